@@ -50,7 +50,7 @@ static const char EXPECT_EXAMPLE[] = "expect:\n"
                                      "  joints.crank-coupler.force_max: below 1.2 kN\n"
                                      "  joints.crank-coupler.impacts: between 3 and 12\n"
                                      "  bodies.coupler.alpha_max: within 2 % of 7574 rad/s^2\n"
-                                     "  ode.error.omega_max: below 1e-3\n";
+                                     "  ode.error.max: below 1e-3\n";
 
 static const char *const RULES[] = {
     "A case is one YAML document of at most 16 MiB. Every quantity but 0 has its unit; the "
@@ -260,7 +260,7 @@ static void describe_outcomes(bool is_page, Text *text)
         "to "
         "fail is no error.";
     static const char KINDS[] =
-        "agrees: it ends, and its error of omega up to the predictability horizon and the "
+        "agrees: it ends, and its error up to the predictability horizon and the "
         "reference's uncertainty are together within X. reported: it ends, and the error, which "
         "`jointplay run` prints, is above X. detected: it stops after its first step with a "
         "message, or ends short of its tolerance, and says so in these words. refused: the case "

@@ -300,8 +300,9 @@ const SchemaRow SCHEMA_ROWS[] = {
             "staggered and map impulse, or stepping extrapolated if all joints are ideal"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
      .needs = ODE | CHOSEN_STEP,
-     .doc = "with step auto: the largest allowed error of omega, relative to each body's largest "
-            "omega, up to the predictability horizon"},
+     .doc = "with step auto: the largest allowed error of any body's angular velocity or velocity, "
+            "and of any pin's in its hole, each relative to its own largest value, up to the "
+            "predictability horizon"},
     {.path = "run.most-steps", .type = SCHEMA_INTEGER, AT(run.most_steps), .low = 1e3, .high = 1e12,
      .needs = ODE | CHOSEN_STEP,
      .doc = "with step auto: the limit for the world steps of all trials together; if it is too "

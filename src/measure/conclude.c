@@ -27,7 +27,7 @@ static double error_of(const Ladder *ladder, const LadderPoint *point)
         return truth->uncertainty;
     }
     const TrajectoryError *error = &point->run.error;
-    return truth->is_limited ? error->omega_max_in_horizon : error->omega_max;
+    return error_of_run(error, truth->is_limited);
 }
 
 static void explain(LadderPoint *point, const char *reason)

@@ -47,15 +47,15 @@ static Distribution distribution_of(double *values, size_t count)
 
 // Runs the scenario from one start; the first of all says how fast the bodies move.
 static Trajectory *run_member(const Scenario *scenario, const Solver *solver, RunWatch watch,
-                              unsigned member, DistanceScale *scales)
+                              unsigned member, PerturbUnit *units)
 {
     Scenario beside = scenario_copy(scenario);
     if (member > 0) {
-        perturb_start(&beside, scales, ENSEMBLE_PERTURBATION, member);
+        perturb_start(&beside, units, ENSEMBLE_PERTURBATION, member);
     }
     Trajectory *trajectory = run_scenario(&beside, solver, watch);
     if (member == 0) {
-        distance_scales(trajectory, scales);
+        perturb_units(trajectory, units);
     }
     scenario_free(&beside);
     return trajectory;
@@ -65,10 +65,10 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
                   Ensemble *ensemble)
 {
     Draws draws;
-    DistanceScale *scales = zeroed(scenario->linkage.body_count, sizeof *scales);
+    PerturbUnit *units = zeroed(scenario->linkage.body_count, sizeof *units);
     memset(ensemble, 0, sizeof *ensemble);
     for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
-        Trajectory *trajectory = run_member(scenario, solver, watch, member, scales);
+        Trajectory *trajectory = run_member(scenario, solver, watch, member, units);
         if (trajectory->is_complete) {
             take_member(trajectory, ensemble->members++, &draws);
         } else if (ensemble->failed++ == 0) {
@@ -76,7 +76,7 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
         }
         trajectory_destroy(trajectory);
     }
-    free(scales);
+    free(units);
     const size_t joints = ensemble_joint_count(&scenario->linkage);
     for (size_t i = 0; ensemble->members > 0 && i < joints; i++) {
         if (!linkage_has_play(&scenario->linkage.joints[i])) {

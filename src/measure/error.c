@@ -5,10 +5,7 @@
 
 #include "base/zeroed.h"
 
-typedef struct Sums {
-    double square; // of the relative errors of omega
-    size_t count;
-} Sums;
+#include <stdio.h>
 
 static bool can_compare(const Trajectory *trajectory, const Trajectory *reference)
 {
@@ -18,42 +15,138 @@ static bool can_compare(const Trajectory *trajectory, const Trajectory *referenc
 }
 
 bool error_series(const Trajectory *trajectory, const Trajectory *reference,
-                  const DistanceScale *scales, double *omega)
+                  const DistanceMeasure *measure, double *distance)
 {
     if (!can_compare(trajectory, reference)) {
         return false;
     }
     for (size_t k = 0; k < reference->sample_count; k++) {
-        omega[k] = distance_at(trajectory, reference, k, scales);
+        distance[k] = distance_apart(measure, distance_motion_at(trajectory, k),
+                                     distance_motion_at(reference, k), NULL);
     }
     return true;
 }
 
-static void add_body(const Trajectory *trajectory, const Trajectory *reference, size_t body,
-                     const DistanceScale *scales, double horizon_s, TrajectoryError *error,
-                     Sums *sums)
+// One rate over all samples. A number that is not finite stays one.
+typedef struct RateError {
+    double max;
+    double max_time_s;
+    double max_in_horizon;
+    double square; // sum over the samples
+} RateError;
+
+static RateError rate_error(const Trajectory *trajectory, const Trajectory *reference,
+                            const DistanceMeasure *measure, size_t index, double horizon_s)
 {
-    const DistanceMeasure measure = distance_measure(reference, body);
+    const DistanceRate *rate = &measure->rates[index];
+    RateError error = {.max = 0.0};
     for (size_t k = 0; k < reference->sample_count; k++) {
-        const Motion *truth = trajectory_motion(reference, k, body);
-        const Motion *motion = trajectory_motion(trajectory, k, body);
-        const double omega = distance_between(distance_rate(trajectory, k, body, measure),
-                                              distance_rate(reference, k, body, measure)) /
-                             scales->omega;
-        const double alpha = distance_between(distance_change(trajectory, k, body, measure),
-                                              distance_change(reference, k, body, measure)) /
-                             scales->alpha;
-        if (omega > error->omega_max) {
-            error->omega_max = omega;
-            error->omega_max_time_s = reference->times[k];
+        const double apart = distance_between(
+            rate, distance_value(measure->linkage, rate, distance_motion_at(trajectory, k)),
+            distance_value(measure->linkage, rate, distance_motion_at(reference, k)));
+        if (apart > error.max) {
+            error.max = apart;
+            error.max_time_s = reference->times[k];
         }
         if (reference->times[k] <= horizon_s) {
-            error->omega_max_in_horizon = fmax(error->omega_max_in_horizon, omega);
+            error.max_in_horizon = fmax(error.max_in_horizon, apart);
         }
-        error->alpha_max = fmax(error->alpha_max, alpha);
-        error->angle_max_rad = fmax(error->angle_max_rad, fabs(motion->angle - truth->angle));
-        sums->square += omega * omega;
-        sums->count++;
+        error.square += apart * apart;
+    }
+    return error;
+}
+
+static Vec3 angular_acceleration(const Trajectory *trajectory, size_t sample, size_t body)
+{
+    return trajectory->space_motions != NULL
+               ? trajectory_space_motion(trajectory, sample, body)->alpha
+               : (Vec3){trajectory_motion(trajectory, sample, body)->alpha, 0.0, 0.0};
+}
+
+// A body's largest angular acceleration in the reference, but at least this share of that with
+// which its furthest point would accelerate as the fastest of all does.
+static double alpha_scale(const Trajectory *reference, size_t body, double fastest)
+{
+    double largest = DISTANCE_FLOOR * fastest / reference->reach[body];
+    for (size_t k = 0; k < reference->sample_count; k++) {
+        largest = fmax(largest, vec3_length(angular_acceleration(reference, k, body)));
+    }
+    return largest > 0.0 ? largest : 1.0;
+}
+
+static double fastest_change(const Trajectory *reference)
+{
+    double fastest = 0.0;
+    for (size_t i = 0; i < reference->body_count; i++) {
+        for (size_t k = 0; k < reference->sample_count; k++) {
+            const Vec2 planar = trajectory_motion(reference, k, i)->acceleration;
+            const double moving =
+                reference->space_motions != NULL
+                    ? vec3_length(trajectory_space_motion(reference, k, i)->acceleration)
+                    : vec2_length(planar);
+            const double turning = vec3_length(angular_acceleration(reference, k, i));
+            fastest = fmax(fastest, moving + turning * reference->reach[i]);
+        }
+    }
+    return fastest;
+}
+
+// Accelerations and angles, which stand beside the error.
+static void add_beside(const Trajectory *trajectory, const Trajectory *reference,
+                       TrajectoryError *error)
+{
+    const double fastest = fastest_change(reference);
+    for (size_t i = 0; i < reference->body_count; i++) {
+        const double scale = alpha_scale(reference, i, fastest);
+        const bool is_driven = (int)i == reference->driven_body;
+        for (size_t k = 0; k < reference->sample_count && !is_driven; k++) {
+            const Vec3 apart = vec3_sub(angular_acceleration(trajectory, k, i),
+                                        angular_acceleration(reference, k, i));
+            error->alpha_max = fmax(error->alpha_max, vec3_length(apart) / scale);
+            error->angle_max_rad =
+                fmax(error->angle_max_rad, fabs(trajectory_motion(trajectory, k, i)->angle -
+                                                trajectory_motion(reference, k, i)->angle));
+        }
+    }
+}
+
+static void add_rates(const Trajectory *trajectory, const Trajectory *reference, double horizon_s,
+                      const DistanceMeasure *measure, TrajectoryError *error)
+{
+    // without a sample in the horizon the whole run names its worst
+    const bool has_horizon = reference->sample_count > 1 && reference->times[1] <= horizon_s;
+    double square = 0.0;
+    double omega_square = 0.0;
+    size_t omega_count = 0;
+    size_t worst = 0;
+    // a solver that takes every joint as ideal has no rates in them
+    const bool has_joints = options_backend_has_play(trajectory->backend) &&
+                            options_backend_has_play(reference->backend);
+    const size_t count = has_joints ? measure->count : 2 * reference->body_count;
+    for (size_t i = 0; i < count; i++) {
+        const RateError rate = rate_error(trajectory, reference, measure, i, horizon_s);
+        const bool is_worst =
+            has_horizon ? rate.max_in_horizon > error->max_in_horizon : rate.max > error->max;
+        worst = is_worst ? i : worst;
+        if (rate.max > error->max) {
+            error->max = rate.max;
+            error->max_time_s = rate.max_time_s;
+        }
+        error->max_in_horizon = fmax(error->max_in_horizon, rate.max_in_horizon);
+        square += rate.square;
+        if (measure->rates[i].kind == DISTANCE_TURNING &&
+            measure->rates[i].number != reference->driven_body) {
+            error->omega_max = fmax(error->omega_max, rate.max);
+            error->omega_max_in_horizon = fmax(error->omega_max_in_horizon, rate.max_in_horizon);
+            omega_square += rate.square;
+            omega_count += reference->sample_count;
+        }
+    }
+    error->is_known = measure->count > 0 && isfinite(square);
+    error->omega_rms = omega_count > 0 ? sqrt(omega_square / (double)omega_count) : 0.0;
+    if (measure->count > 0) {
+        distance_name(measure->linkage, &measure->rates[worst], error->in);
+        error->is_floor = distance_is_floor(&measure->rates[worst]);
     }
 }
 
@@ -64,22 +157,14 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
     if (!can_compare(trajectory, reference)) {
         return error;
     }
-    Sums sums = {0.0, 0};
-    DistanceScale *scales = zeroed(reference->body_count, sizeof *scales);
-    distance_scales(reference, scales);
-    for (size_t i = 0; i < reference->body_count; i++) {
-        if (scales[i].omega > 0.0) {
-            add_body(trajectory, reference, i, &scales[i], horizon_s, &error, &sums);
-        }
-    }
-    free(scales);
+    DistanceMeasure measure = distance_measure(reference);
+    add_rates(trajectory, reference, horizon_s, &measure, &error);
+    add_beside(trajectory, reference, &error);
+    distance_finish(&measure);
     // a horizon without a sample beyond the start gives no error
     if (reference->sample_count > 1 && !(reference->times[1] <= horizon_s)) {
-        error.omega_max_in_horizon = NAN;
+        error.max_in_horizon = error.omega_max_in_horizon = NAN;
     }
-    // a number that is not finite makes the sum not finite, though it is larger than nothing
-    error.is_known = sums.count > 0 && isfinite(sums.square);
     error.against = reference->backend;
-    error.omega_rms = sums.count > 0 ? sqrt(sums.square / (double)sums.count) : 0.0;
     return error;
 }

@@ -1,7 +1,7 @@
 // How far is one trajectory from another that is taken as the truth?
 //
-// In omega and alpha; where no drive turns anything, in the velocities and accelerations of the
-// bodies' centres instead.
+// In the rates of model/distance.h: every body's angular velocity and velocity, and in joints with
+// play those of the pin relative to its hole.
 #pragma once
 
 #include "model/distance.h"
@@ -13,13 +13,18 @@ static const double ERROR_CLEAR_OF_TRUTH = 10.0;
 typedef struct TrajectoryError {
     bool is_known;       // false: there was no reference, or the two have no samples in common
     const char *against; // name of the reference's backend: lives as long as it
-    double omega_max;    // 1: largest |omega - omega_ref| over all moving bodies that are not
-                         // driven and all samples, each over that body's largest |omega_ref|
-    double omega_max_time_s;
-    double omega_max_in_horizon; // 1: as omega_max, up to the horizon; NAN without a sample in it
-    double omega_rms;            // 1: root of the mean square of the same, whole run
-    double alpha_max;            // 1: as omega_max, of the angular acceleration
-    double angle_max_rad;        // largest |angle - angle_ref|
+    double max;          // 1: largest |rate - rate_ref| over all rates and samples, each over the
+                         // rate's own largest |rate_ref| (or the floor of model/distance.h)
+    double max_time_s;
+    double max_in_horizon;       // 1: as max, up to the horizon; NAN without a sample in it
+    char in[DISTANCE_NAME_SIZE]; // which rate that is: distance_name; of max without a horizon
+    bool is_floor;               // whether it is measured in the floor
+    double omega_max;            // 1: as max, of the bodies' angular velocities alone
+    double omega_max_in_horizon;
+    double
+        omega_rms; // 1: root of the mean square of these of bodies that are not driven, whole run
+    double alpha_max;     // 1: as omega_max, of the angular accelerations
+    double angle_max_rad; // largest |angle - angle_ref|
 } TrajectoryError;
 
 // Both trajectories must be of the same scenario: same bodies, same sample times. The horizon, s,
@@ -27,9 +32,14 @@ typedef struct TrajectoryError {
 TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference,
                               double horizon_s);
 
-// The same measure sample by sample: writes the largest difference in omega over the bodies at each
-// sample, relative to scales, by body, into an array of the trajectories' length. The scales are
-// mostly those of the reference. Returns false, the array untouched, where the two cannot be
-// compared.
+// The error in the horizon where there is one, else that of the whole run.
+static inline double error_of_run(const TrajectoryError *error, bool is_limited)
+{
+    return is_limited ? error->max_in_horizon : error->max;
+}
+
+// The same measure sample by sample: writes the largest distance at each sample, in scales that are
+// mostly those of the reference, into an array of the trajectories' length. Returns false, the
+// array untouched, where the two cannot be compared.
 bool error_series(const Trajectory *trajectory, const Trajectory *reference,
-                  const DistanceScale *scales, double *omega);
+                  const DistanceMeasure *measure, double *distance);

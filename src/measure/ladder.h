@@ -53,7 +53,7 @@ typedef struct LadderPoint {
     // set by ladder_conclude
     bool is_failed;                   // there are no numbers, for the reason below
     char reason[LADDER_MESSAGE_SIZE]; // or why it has no error though it did not fail
-    double error;                     // 1: of omega, within the horizon; NAN where there is none
+    double error;                     // 1: within the horizon; NAN where there is none
     bool is_limited_by_truth;         // the error is below ten times the truth's uncertainty
     double wall_median_s;             // NAN where it failed or is not timed
     double wall_min_s;

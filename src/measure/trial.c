@@ -5,7 +5,12 @@
 //
 // The truth's uncertainty U belongs to its horizon T and was less before. How it grew shows in the
 // distance to a run of the reference at another tolerance, d(t), the largest so far:
-//     U(t) = U d(t) / d(T)
+//     U(t) = U max(d(t) / d(T), 1 / growth)
+// with the growth of the fastest of all perturbations up to T: no error has grown more.
+//
+// Where U(t) grows above a tenth of the tolerance nothing can be said to hold any more. There a run
+// still may not be further away than ten times U: as far as the truth is known it is as good as one
+// for a larger tolerance.
 #include "measure/trial.h"
 
 #include "base/zeroed.h"
@@ -19,11 +24,11 @@
 static const double TRUTH_MARGIN = 3.0;
 
 // of the other run's tolerance to the truth's
-static const double OTHER = 1e2;
+static const double OTHER = 1e1;
 
 typedef struct Watcher {
     const TrialRule *rule;
-    DistanceScale *scales; // owned
+    DistanceMeasure measure; // of the truth
     Trial *trial;
     bool is_over; // the tolerance was exceeded
 } Watcher;
@@ -32,19 +37,26 @@ static bool look(const Trajectory *trajectory, size_t sample, void *context, Err
 {
     Watcher *watcher = context;
     const TrialRule *rule = watcher->rule;
-    const Truth *truth = rule->truth;
+    const Trajectory *truth = rule->truth->trajectory;
     Trial *trial = watcher->trial;
-    const double time_s = truth->trajectory->times[sample];
-    if (time_s > rule->window.until_s || (watcher->is_over && !rule->is_smooth)) {
+    const double time_s = truth->times[sample];
+    const bool is_behind = time_s > rule->window.until_s;
+    const bool is_of_interest =
+        !is_behind || (rule->window.is_uncertain && time_s <= rule->window.horizon_s);
+    if (!is_of_interest || (watcher->is_over && !rule->is_smooth)) {
         return true;
     }
-    const double bound = distance_at(trajectory, truth->trajectory, sample, watcher->scales) +
-                         TRUTH_MARGIN * rule->window.uncertainty;
-    trial->worst = fmax(trial->worst, bound);
+    const double apart = distance_apart(&watcher->measure, distance_motion_at(trajectory, sample),
+                                        distance_motion_at(truth, sample), NULL);
+    if (is_behind && apart <= rule->window.behind * rule->tolerance) {
+        return true;
+    }
+    const double bound = apart + TRUTH_MARGIN * rule->window.uncertainty;
+    trial->worst = is_behind ? trial->worst : fmax(trial->worst, bound);
     if (watcher->is_over) {
         return true;
     }
-    if (bound <= rule->tolerance) {
+    if (!is_behind && bound <= rule->tolerance) {
         trial->held_s = time_s;
         trial->held_error = fmax(trial->held_error, bound);
         return true;
@@ -63,13 +75,12 @@ Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch
     Watcher watcher = {
         .rule = rule,
         .trial = &trial,
-        .scales = zeroed(scenario->linkage.body_count, sizeof *watcher.scales),
+        .measure = distance_measure(rule->truth->trajectory),
     };
-    distance_scales(rule->truth->trajectory, watcher.scales);
     const RunGuard guard = {look, &watcher};
     trial.run = run_guarded(scenario, registry_solver(BACKEND_ODE), watch, probe, &guard);
     trial.holds = trial.run->is_complete && !watcher.is_over;
-    free(watcher.scales);
+    distance_finish(&watcher.measure);
     return trial;
 }
 
@@ -79,27 +90,29 @@ void trial_finish(Trial *trial)
     trial->run = NULL;
 }
 
-static TrialWindow shorten(const Trajectory *truth, const Trajectory *other, TrialWindow whole,
-                           double most)
+static TrialWindow shorten(const Trajectory *truth, const Trajectory *other, double growth,
+                           TrialWindow whole, double most)
 {
-    DistanceScale *scales = zeroed(truth->body_count, sizeof *scales);
-    distance_scales(truth, scales);
+    DistanceMeasure measure = distance_measure(truth);
+    double *so_far = zeroed(truth->sample_count, sizeof *so_far);
     double largest = 0.0;
     for (size_t k = 0; k < truth->sample_count && truth->times[k] <= whole.until_s; k++) {
-        largest = fmax(largest, distance_at(other, truth, k, scales));
+        largest = fmax(largest, distance_apart(&measure, distance_motion_at(other, k),
+                                               distance_motion_at(truth, k), NULL));
+        so_far[k] = largest;
     }
-    TrialWindow window = {.until_s = 0.0};
-    double so_far = 0.0;
+    distance_finish(&measure);
+    TrialWindow window = {.horizon_s = whole.until_s, .behind = whole.uncertainty / most};
     for (size_t k = 0; largest > 0.0 && k < truth->sample_count; k++) {
-        so_far = fmax(so_far, distance_at(other, truth, k, scales));
-        const double uncertainty = whole.uncertainty * so_far / largest;
+        const double uncertainty = whole.uncertainty * fmax(so_far[k] / largest, 1.0 / growth);
         window.is_uncertain = truth->times[k] <= whole.until_s && !(uncertainty <= most);
         if (truth->times[k] > whole.until_s || window.is_uncertain) {
             break;
         }
-        window = (TrialWindow){.until_s = truth->times[k], .uncertainty = uncertainty};
+        window.until_s = truth->times[k];
+        window.uncertainty = uncertainty;
     }
-    free(scales);
+    free(so_far);
     return window;
 }
 
@@ -120,9 +133,10 @@ TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double mo
     // looser, or tighter where no run is as loose
     const double own = options_reference_tolerance(&scenario->reference);
     other.reference.tolerance = own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER;
-    Trajectory *run = run_scenario(&other, registry_solver(BACKEND_REFERENCE), watch);
-    const TrialWindow window = run->is_complete ? shorten(truth->trajectory, run, whole, most)
-                                                : (TrialWindow){.is_uncertain = true};
+    Trajectory *run = run_motion(&other, registry_solver(BACKEND_REFERENCE), watch);
+    const TrialWindow window = run->is_complete
+                                   ? shorten(truth->trajectory, run, truth->growth, whole, most)
+                                   : (TrialWindow){.is_uncertain = true};
     trajectory_destroy(run);
     return window;
 }

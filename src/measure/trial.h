@@ -3,18 +3,20 @@
 
 #include "measure/truth.h"
 
-// The part of a run in which a truth is sure enough.
+// The part of a run in which a truth is sure enough, and what holds after it.
 typedef struct TrialWindow {
     double until_s;     // the end of the run, the truth's horizon, or before it
     double uncertainty; // 1, of the truth up to there
     bool is_uncertain;  // it ends where the uncertainty grows too large
+    double horizon_s;   // where it does, the truth's horizon or the end of the run
+    double behind;      // 1: up to there, times the tolerance, what a run may be away
 } TrialWindow;
 
 // What a trial is held against, and when it is not worth running on.
 typedef struct TrialRule {
     const Truth *truth;
     TrialWindow window; // in which errors count
-    double tolerance;   // 1, of omega
+    double tolerance;   // 1
     bool is_last;       // it is run to its end, though it misses the tolerance
     bool is_smooth;     // likewise, for its largest error says which step is next
 } TrialRule;
@@ -27,7 +29,7 @@ typedef struct Trial {
     double held_s;     // the last sample up to which it did; 0: not even the first
     double error;      // 1, at the sample after that; 0 where there is none
     double worst;      // 1, largest on the whole window, where the trial is run to its end
-    bool holds;        // the tolerance, on the whole window
+    bool holds;        // the tolerance on the whole window, and what is allowed behind it
 } Trial;
 
 // Runs the scenario, which has its step, and looks at every sample of it. The probe may be NULL.

@@ -11,7 +11,7 @@
 // has grown 1e5 times, two solutions that are right to 1e-10 have only five digits in common, and
 // an engine's none. The same holds where the second or third run is that far away. All are watched
 // on a grid of at least a thousand samples, for the case's own samples may be few.
-// Sizes: errors are relative to the largest omega of a body at the case's own samples. Where these
+// Sizes: errors are relative to the largest rates at the case's own samples. Where these
 // miss a spike that is less than on the grid, and the uncertainty, which stands beside errors, is
 // therefore taken in it; the horizon, which samples must not move, in that of the grid.
 #include "measure/truth.h"
@@ -42,16 +42,9 @@ typedef struct Apart {
     double *stated;   // as errors are stated: relative to sizes at the case's own samples
 } Apart;
 
-static DistanceScale *scales_of(const Trajectory *trajectory)
-{
-    DistanceScale *scales = zeroed(trajectory->body_count, sizeof *scales);
-    distance_scales(trajectory, scales);
-    return scales;
-}
-
 // With sizes on the grid and at the case's own samples.
 static Apart apart_of(const Trajectory *trajectory, const Trajectory *other,
-                      const DistanceScale *on_grid, const DistanceScale *at_own)
+                      const DistanceMeasure *on_grid, const DistanceMeasure *at_own)
 {
     Apart apart = {.times = trajectory->times};
     apart.distance = zeroed(trajectory->sample_count + 1, sizeof *apart.distance);
@@ -96,14 +89,11 @@ static double largest_stated(const Apart *apart, const Truth *truth)
 }
 
 // How many times a distance may be larger by sizes at the case's own samples than by the grid's.
-static double ratio_of_sizes(size_t body_count, const DistanceScale *on_grid,
-                             const DistanceScale *at_own)
+static double ratio_of_sizes(const DistanceMeasure *on_grid, const DistanceMeasure *at_own)
 {
     double largest = 1.0;
-    for (size_t i = 0; i < body_count; i++) {
-        if (at_own[i].omega > 0.0) {
-            largest = fmax(largest, on_grid[i].omega / at_own[i].omega);
-        }
+    for (size_t i = 0; i < at_own->count; i++) {
+        largest = fmax(largest, on_grid->rates[i].scale / at_own->rates[i].scale);
     }
     return largest;
 }
@@ -114,7 +104,7 @@ static void certify_ideal(const Scenario *scenario, RunWatch watch, Truth *truth
     truth->horizon_s = scenario_duration(scenario);
     Trajectory *second = run(scenario, BACKEND_REFERENCE, watch);
     const TrajectoryError error = error_against(second, truth->trajectory, truth->horizon_s);
-    truth->uncertainty = error.is_known ? error.omega_max + ROUNDING : INFINITY;
+    truth->uncertainty = error.is_known ? error.max + ROUNDING : INFINITY;
     trajectory_destroy(second);
 }
 
@@ -154,12 +144,12 @@ static void certify(TruthRuns *runs, Truth *truth)
     note_failure(third, truth);
     truth->is_limited = false;
     truth->horizon_s = truth_runs_duration(runs);
-    DistanceScale *of_first = scales_of(first);
-    DistanceScale *of_second = scales_of(second);
-    DistanceScale *own = scales_of(truth_runs_first(runs));
+    DistanceMeasure of_first = distance_measure(first);
+    DistanceMeasure of_second = distance_measure(second);
+    DistanceMeasure own = distance_measure(truth_runs_first(runs));
     Apart aparts[] = {
-        apart_of(second, first, of_second, own), apart_of(first, third, of_first, own),
-        apart_of(second, third, of_second, own), // of the other two
+        apart_of(second, first, &of_second, &own), apart_of(first, third, &of_first, &own),
+        apart_of(second, third, &of_second, &own), // of the other two
     };
     shorten_horizon(&aparts[0], truth);
     shorten_horizon(&aparts[2], truth);
@@ -172,9 +162,8 @@ static void certify(TruthRuns *runs, Truth *truth)
     }
     const double to_others =
         fmax(largest_stated(&aparts[0], truth), largest_stated(&aparts[1], truth));
-    truth->uncertainty =
-        fmax(to_others + largest_stated(&aparts[2], truth),
-             ROUNDING * truth->growth * ratio_of_sizes(first->body_count, of_first, own));
+    truth->uncertainty = fmax(to_others + largest_stated(&aparts[2], truth),
+                              ROUNDING * truth->growth * ratio_of_sizes(&of_first, &own));
     if (truth->message[0] != '\0') {
         truth->is_limited = true;
         truth->horizon_s = 0.0;
@@ -183,9 +172,9 @@ static void certify(TruthRuns *runs, Truth *truth)
     for (int i = 0; i < 3; i++) {
         apart_finish(&aparts[i]);
     }
-    free(of_first);
-    free(of_second);
-    free(own);
+    distance_finish(&of_first);
+    distance_finish(&of_second);
+    distance_finish(&own);
 }
 
 BackendKind truth_backend(const Scenario *scenario)

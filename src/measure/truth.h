@@ -5,7 +5,7 @@
 
 typedef struct Truth {
     Trajectory *trajectory; // owned; complete, unless its message says why there is none
-    double uncertainty;     // 1: of omega, as omega_max of an error, up to the horizon, from two
+    double uncertainty;     // 1: as the error of a run, up to the horizon, from two
                             // further runs; above 0; INFINITY where unknown
     double horizon_s;       // up to when trajectories may be compared: where neither these two
                             // nor the fastest of all starts 1e-10 beside is too far away

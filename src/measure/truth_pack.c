@@ -12,7 +12,7 @@ typedef struct Part {
     size_t size;
 } Part;
 
-enum { PART_COUNT = 12 };
+enum { PART_COUNT = 11 };
 
 static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
 {
@@ -29,11 +29,10 @@ static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
     parts[4] = (Part){trajectory->space_motions, bodies * sizeof(SpaceMotion)};
     parts[5] = (Part){trajectory->space_states, joints * sizeof(SpaceJointState)};
     parts[6] = (Part){trajectory->reach, body_count * sizeof(double)};
-    parts[7] = (Part){trajectory->slides, body_count * sizeof(bool)};
-    parts[8] = (Part){trajectory->bodies, body_count * sizeof(BodyExtremes)};
-    parts[9] = (Part){trajectory->joints, joint_count * sizeof(JointExtremes)};
-    parts[10] = (Part){trajectory->alpha_spikes, body_count * sizeof(SignalSpikes)};
-    parts[11] = (Part){trajectory->force_spikes, joint_count * sizeof(SignalSpikes)};
+    parts[7] = (Part){trajectory->bodies, body_count * sizeof(BodyExtremes)};
+    parts[8] = (Part){trajectory->joints, joint_count * sizeof(JointExtremes)};
+    parts[9] = (Part){trajectory->alpha_spikes, body_count * sizeof(SignalSpikes)};
+    parts[10] = (Part){trajectory->force_spikes, joint_count * sizeof(SignalSpikes)};
 }
 
 size_t truth_pack_size(const Scenario *scenario)
@@ -45,10 +44,9 @@ size_t truth_pack_size(const Scenario *scenario)
         a_sample += linkage->body_count * sizeof(SpaceMotion) +
                     linkage->joint_count * sizeof(SpaceJointState);
     }
-    const size_t once =
-        linkage->body_count * (sizeof(double) + sizeof(bool) + sizeof(BodyExtremes)) +
-        linkage->joint_count * sizeof(JointExtremes) +
-        (linkage->body_count + linkage->joint_count) * sizeof(SignalSpikes);
+    const size_t once = linkage->body_count * (sizeof(double) + sizeof(BodyExtremes)) +
+                        linkage->joint_count * sizeof(JointExtremes) +
+                        (linkage->body_count + linkage->joint_count) * sizeof(SignalSpikes);
     return sizeof(Truth) + sizeof(Trajectory) + once + scenario_sample_count(scenario) * a_sample;
 }
 
@@ -76,6 +74,7 @@ Truth truth_pack_read(const Scenario *scenario, const void *packed)
     truth.trajectory = trajectory_create(scenario, "");
     Part parts[PART_COUNT];
     list_parts(truth.trajectory, parts);
+    const Linkage linkage = truth.trajectory->linkage;
     memcpy(truth.trajectory, source + sizeof truth, sizeof *truth.trajectory);
     // ranges are for the pictures and series of `run`, which has its truth in the same process
     truth.trajectory->ranges = (Ranges){0};
@@ -86,11 +85,11 @@ Truth truth_pack_read(const Scenario *scenario, const void *packed)
     truth.trajectory->space_motions = parts[4].start;
     truth.trajectory->space_states = parts[5].start;
     truth.trajectory->reach = parts[6].start;
-    truth.trajectory->slides = parts[7].start;
-    truth.trajectory->bodies = parts[8].start;
-    truth.trajectory->joints = parts[9].start;
-    truth.trajectory->alpha_spikes = parts[10].start;
-    truth.trajectory->force_spikes = parts[11].start;
+    truth.trajectory->linkage = linkage;
+    truth.trajectory->bodies = parts[7].start;
+    truth.trajectory->joints = parts[8].start;
+    truth.trajectory->alpha_spikes = parts[9].start;
+    truth.trajectory->force_spikes = parts[10].start;
     source += sizeof truth + sizeof *truth.trajectory;
     for (int i = 0; i < PART_COUNT; i++) {
         if (parts[i].size > 0) {

@@ -28,7 +28,7 @@ enum { RUN_FIRST, RUN_SECOND, RUN_THIRD, RUN_FINE, RUN_COUNT };
 typedef struct Perturbed {
     bool is_begun;
     Scenario scenario;
-    DistanceScale scales[PERTURB_BODY_MAX];
+    DistanceMeasure measure;
     PerturbBasis basis;
     GrowthRuns *runs; // owned
     double started_s; // by the clock
@@ -81,13 +81,15 @@ static void begin_perturbed(TruthRuns *runs)
     }
     perturbed->scenario = with_tolerance(fine, perturbed_tolerance(fine));
     perturbed->started_s = clock_now_s();
-    distance_scales(second, perturbed->scales);
-    perturb_basis(&perturbed->scenario, perturbed->scales, &perturbed->basis);
+    perturbed->measure = distance_measure(second);
+    PerturbUnit units[PERTURB_BODY_MAX];
+    perturb_units(second, units);
+    perturb_basis(&perturbed->scenario, &perturbed->measure, units, &perturbed->basis);
     perturbed->runs = growth_begin(&(GrowthWork){
         .solver = registry_solver(BACKEND_REFERENCE),
         .scenario = &perturbed->scenario,
         .beside = second,
-        .scales = perturbed->scales,
+        .measure = &perturbed->measure,
         .basis = &perturbed->basis,
         .size = DISTANCE_PERTURBATION,
         .most = DISTANCE_GROWTH,
@@ -223,6 +225,7 @@ Trajectory *truth_runs_finish(TruthRuns *runs)
             trajectory_destroy(runs->trajectories[i]);
         }
     }
+    distance_finish(&runs->perturbed.measure);
     scenario_free(&runs->scenarios[RUN_THIRD]);
     free(runs);
     return first;

@@ -1,115 +1,235 @@
-// How far are two motions of one linkage apart, in numbers that mean the same for all bodies?
+// How far are two motions of one linkage apart, in numbers that mean the same for all rates?
 //
-//     d(t) = max over bodies |omega_b(t) - ref_b(t)| / max over t |ref_b|
-// over every body whose speed is not prescribed. A body that hardly turns is measured by the omega
-// with which its furthest joint would move at a thousandth of the speed of the fastest point of the
-// linkage: its own would be rounding. Sizes are those of the body itself, so that a pivot far away
-// changes nothing. Where no drive turns anything, bodies may not turn at all: the speeds of their
-// centres then take the place of omega, and their accelerations that of alpha. How a body turns
-// that slides on another, or stops at it, does not say how it moves: it is measured by the velocity
-// (x, y, omega reach) of its points.
+//     d = max over rates |r - r_ref| / max(max over t |r_ref|, f)
+//     f = 1e-6 V of a velocity, 1e-6 V / reach of an angular rate
+//     V = max over bodies and t (|v| + |omega| reach), the speed of the fastest point
+//
+// The relative velocity in a joint is that of the pin's middle P against the point of the hole's
+// body that is there: v_b + omega_b x (P - x_b) - v_a - omega_a x (P - x_a). A tilt rate is omega_b
+// - omega_a, in space without its part along the hole's axis.
 #include "model/distance.h"
 
-enum { LEAST_SAMPLES = 1000 }; // fewer steps of a horizon would say little
+#include "base/zeroed.h"
+#include "model/coordinate.h"
+#include "model/space_coordinate.h"
 
-static const double SMALLEST_SCALE =
-    1e-3; // of the fastest point's: below it lies no motion to speak of
+#include <stdio.h>
 
-// How large the rates of a body are at a sample: of its centre, and of its turning.
-typedef struct Sizes {
-    double moving;
-    double turning;
-    double changing;
-    double speeding;
-} Sizes;
+enum { LEAST_SAMPLES = 2000 }; // fewer steps of a horizon would say little
 
-static inline Sizes sizes_at(const Trajectory *reference, size_t sample, size_t body)
+static double size_of(Vec3 v)
 {
-    if (reference->space_motions == NULL) {
-        const Motion *motion = trajectory_motion(reference, sample, body);
-        return (Sizes){distance_size(motion->velocity), fabs(motion->omega),
-                       distance_size(motion->acceleration), fabs(motion->alpha)};
+    return v.y == 0.0 && v.z == 0.0 ? fabs(v.x) : vec3_length(v);
+}
+
+static bool is_tilting(const Linkage *linkage, const Joint *joint)
+{
+    return joint->kind == JOINT_GUIDE || (linkage->is_spatial && joint->kind == JOINT_CLEARANCE);
+}
+
+// The reach of the body that a joint turns.
+static double turned_reach(const Linkage *linkage, size_t joint, const double *reaches)
+{
+    int turned;
+    int against;
+    linkage_turning(linkage, (int)joint, &turned, &against);
+    return reaches[turned];
+}
+
+static void add_rate(DistanceMeasure *measure, DistanceKind kind, size_t number, double reach)
+{
+    measure->rates[measure->count++] =
+        (DistanceRate){.kind = kind, .number = (int)number, .reach = reach};
+}
+
+DistanceMeasure distance_rates(const Linkage *linkage)
+{
+    DistanceMeasure measure = {.linkage = linkage};
+    const size_t most = 2 * (linkage->body_count + linkage->joint_count);
+    measure.rates = zeroed(most, sizeof *measure.rates);
+    double *reaches = zeroed(linkage->body_count, sizeof *reaches);
+    linkage_reaches(linkage, reaches);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        add_rate(&measure, DISTANCE_TURNING, i, reaches[i]);
+        add_rate(&measure, DISTANCE_MOVING, i, 0.0);
     }
-    const Vec3 still = {0.0, 0.0, 0.0};
-    const SpaceMotion *motion = trajectory_space_motion(reference, sample, body);
-    return (Sizes){
-        distance_between(motion->velocity, still),
-        distance_between(motion->omega, still),
-        distance_between(motion->acceleration, still),
-        distance_between(motion->alpha, still),
-    };
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const double reach = turned_reach(linkage, i, reaches);
+        if (linkage_has_play(joint)) {
+            add_rate(&measure, DISTANCE_PLAY, i, linkage_is_torsional(joint) ? reach : 0.0);
+        }
+        if (is_tilting(linkage, joint)) {
+            add_rate(&measure, DISTANCE_TILT, i, reach);
+        }
+    }
+    free(reaches);
+    return measure;
 }
 
-static inline double raised(double largest, double value)
+// The angular velocity of body b of a joint less that of body a.
+static Vec3 relative_turning(const Joint *joint, DistanceMotion motion)
 {
-    return value > largest ? value : largest;
+    Vec3 turning = {0.0, 0.0, 0.0};
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        const double sign = side == 0 ? -1.0 : 1.0;
+        if (body != LINKAGE_GROUND && motion.spatial != NULL) {
+            turning = vec3_add(turning, vec3_scale(sign, motion.spatial[body].omega));
+        } else if (body != LINKAGE_GROUND) {
+            turning.x += sign * motion.planar[body].omega;
+        }
+    }
+    return turning;
 }
 
-// The largest rates of one body. A point of it moves with |v| + |omega| reach at most.
-static DistanceScale body_scale(const Trajectory *reference, size_t body)
+static Vec2 moving_at(const Motion *motions, int body, Vec2 point)
 {
-    const Vec3 still = {0.0, 0.0, 0.0};
-    const DistanceMeasure own = distance_measure(reference, body);
-    const double reach = reference->reach[body];
-    DistanceScale scale = {.by_velocity = own.by_velocity};
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &motions[body];
+    const Vec2 arm = vec2_sub(point, motion->position);
+    return vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm)));
+}
+
+static Vec3 play_value(const Linkage *linkage, int number, DistanceMotion motion)
+{
+    const Joint *joint = &linkage->joints[number];
+    if (motion.spatial != NULL) {
+        if (linkage_is_torsional(joint)) {
+            return (Vec3){space_coordinate_rate(linkage, motion.spatial, number), 0.0, 0.0};
+        }
+        const SpaceEnd pin = space_end(linkage, (size_t)number, 1);
+        const Vec3 point = space_point(motion.spatial, pin.body, pin.anchor);
+        return vec3_sub(space_velocity_at(motion.spatial, joint->body_b, point),
+                        space_velocity_at(motion.spatial, joint->body_a, point));
+    }
+    if (joint->limits.kind != LIMIT_NONE) {
+        return (Vec3){coordinate_rate(linkage, motion.planar, number), 0.0, 0.0};
+    }
+    const Vec2 point = linkage_point(motion.planar, joint->body_b, joint->anchor_b);
+    const Vec2 velocity = vec2_sub(moving_at(motion.planar, joint->body_b, point),
+                                   moving_at(motion.planar, joint->body_a, point));
+    return (Vec3){velocity.x, velocity.y, 0.0};
+}
+
+static Vec3 tilt_value(const Linkage *linkage, int number, DistanceMotion motion)
+{
+    const Vec3 turning = relative_turning(&linkage->joints[number], motion);
+    if (motion.spatial == NULL) {
+        return turning;
+    }
+    const SpaceEnd hole = space_end(linkage, (size_t)number, 0);
+    return vec3_across(turning, space_direction(motion.spatial, hole.body, hole.axis));
+}
+
+Vec3 distance_value(const Linkage *linkage, const DistanceRate *rate, DistanceMotion motion)
+{
+    switch (rate->kind) {
+    case DISTANCE_TURNING:
+        return motion.spatial != NULL ? motion.spatial[rate->number].omega
+                                      : (Vec3){motion.planar[rate->number].omega, 0.0, 0.0};
+    case DISTANCE_MOVING: {
+        const Vec2 planar = motion.planar[rate->number].velocity;
+        return motion.spatial != NULL ? motion.spatial[rate->number].velocity
+                                      : (Vec3){planar.x, planar.y, 0.0};
+    }
+    case DISTANCE_PLAY:
+        return play_value(linkage, rate->number, motion);
+    default:
+        return tilt_value(linkage, rate->number, motion);
+    }
+}
+
+int distance_components(const Linkage *linkage, const DistanceRate *rate)
+{
+    const bool is_scalar =
+        rate->kind == DISTANCE_PLAY && linkage->joints[rate->number].limits.kind != LIMIT_NONE;
+    const bool is_angular = rate->kind == DISTANCE_TURNING || rate->kind == DISTANCE_TILT;
+    return is_scalar ? 1 : linkage->is_spatial ? 3 : is_angular ? 1 : 2;
+}
+
+// The speed of the fastest point of all bodies, m/s.
+static double fastest_point(const DistanceMeasure *measure, const Trajectory *reference)
+{
+    double fastest = 0.0;
     for (size_t k = 0; k < reference->sample_count; k++) {
-        const Sizes at = sizes_at(reference, k, body);
-        double rate = own.by_velocity ? at.moving : at.turning;
-        double change = own.by_velocity ? at.changing : at.speeding;
-        if (own.reach > 0.0) {
-            rate = distance_between(distance_rate(reference, k, body, own), still);
-            change = distance_between(distance_change(reference, k, body, own), still);
-        }
-        scale.omega = raised(scale.omega, rate);
-        scale.alpha = raised(scale.alpha, change);
-        scale.moving = raised(scale.moving, at.moving + at.turning * reach);
-        scale.changing = raised(scale.changing, at.changing + at.speeding * reach);
-    }
-    return scale;
-}
-
-// A share of a rate of the fastest point of all, as a rate of one body; 1 where nothing moves.
-static double least_rate(double fastest, double reach, bool is_velocity)
-{
-    return fastest > 0.0 ? SMALLEST_SCALE * fastest / (is_velocity ? 1.0 : reach) : 1.0;
-}
-
-void distance_scales(const Trajectory *reference, DistanceScale *scales)
-{
-    double moving = 0.0;
-    double changing = 0.0;
-    for (size_t i = 0; i < reference->body_count; i++) {
-        scales[i] = body_scale(reference, i);
-        moving = fmax(moving, scales[i].moving);
-        changing = fmax(changing, scales[i].changing);
-    }
-    for (size_t i = 0; i < reference->body_count; i++) {
-        const double reach = reference->reach[i];
-        DistanceScale *scale = &scales[i];
-        scale->omega = fmax(scale->omega, least_rate(moving, reach, scale->by_velocity));
-        scale->alpha = fmax(scale->alpha, least_rate(changing, reach, scale->by_velocity));
-        scale->moving = fmax(scale->moving, least_rate(moving, reach, true));
-        scale->turning = scale->moving / reach;
-        if ((int)i == reference->driven_body) {
-            scale->omega = 0.0;
-            scale->alpha = 0.0;
+        const DistanceMotion motion = distance_motion_at(reference, k);
+        for (size_t i = 0; i + 1 < 2 * reference->body_count; i += 2) {
+            const DistanceRate *rates = &measure->rates[i];
+            const double turning = size_of(distance_value(measure->linkage, &rates[0], motion));
+            const double moving = size_of(distance_value(measure->linkage, &rates[1], motion));
+            fastest = fmax(fastest, moving + turning * rates[0].reach);
         }
     }
+    return fastest;
 }
 
-double distance_at(const Trajectory *trajectory, const Trajectory *reference, size_t sample,
-                   const DistanceScale *scales)
+DistanceMeasure distance_measure(const Trajectory *reference)
+{
+    DistanceMeasure measure = distance_rates(&reference->linkage);
+    const double floor = DISTANCE_FLOOR * fastest_point(&measure, reference);
+    for (size_t i = 0; i < measure.count; i++) {
+        DistanceRate *rate = &measure.rates[i];
+        for (size_t k = 0; k < reference->sample_count; k++) {
+            const DistanceMotion motion = distance_motion_at(reference, k);
+            const double size = size_of(distance_value(measure.linkage, rate, motion));
+            rate->largest = size > rate->largest ? size : rate->largest;
+        }
+        rate->scale = fmax(rate->largest, rate->reach > 0.0 ? floor / rate->reach : floor);
+        // where nothing moves there is nothing to be relative to
+        rate->scale = rate->scale > 0.0 ? rate->scale : 1.0;
+    }
+    return measure;
+}
+
+void distance_finish(DistanceMeasure *measure)
+{
+    free(measure->rates);
+    *measure = (DistanceMeasure){.rates = NULL};
+}
+
+double distance_between(const DistanceRate *rate, Vec3 a, Vec3 b)
+{
+    return size_of(vec3_sub(a, b)) / rate->scale;
+}
+
+double distance_apart(const DistanceMeasure *measure, DistanceMotion a, DistanceMotion b,
+                      size_t *which)
 {
     double largest = 0.0;
-    for (size_t i = 0; i < reference->body_count; i++) {
-        if (scales[i].omega > 0.0) {
-            const DistanceMeasure measure = distance_measure(reference, i);
-            const double apart = distance_between(distance_rate(trajectory, sample, i, measure),
-                                                  distance_rate(reference, sample, i, measure));
-            largest = fmax(largest, apart / scales[i].omega);
+    for (size_t i = 0; i < measure->count; i++) {
+        const DistanceRate *rate = &measure->rates[i];
+        const double apart = distance_between(rate, distance_value(measure->linkage, rate, a),
+                                              distance_value(measure->linkage, rate, b));
+        // a number that is not finite is no small one
+        if (!(apart <= largest)) {
+            largest = apart;
+            if (which != NULL) {
+                *which = i;
+            }
+            if (isnan(apart)) {
+                return apart;
+            }
         }
     }
     return largest;
+}
+
+void distance_name(const Linkage *linkage, const DistanceRate *rate, char name[DISTANCE_NAME_SIZE])
+{
+    const bool is_of_body = rate->kind == DISTANCE_TURNING || rate->kind == DISTANCE_MOVING;
+    const char *of =
+        is_of_body ? linkage->bodies[rate->number].name : linkage->joints[rate->number].name;
+    const Joint *joint = is_of_body ? NULL : &linkage->joints[rate->number];
+    const char *what = rate->kind == DISTANCE_TURNING     ? "omega of"
+                       : rate->kind == DISTANCE_MOVING    ? "velocity of"
+                       : rate->kind == DISTANCE_TILT      ? "tilt rate in"
+                       : joint->limits.kind != LIMIT_NONE ? "coordinate rate of"
+                       : joint->kind == JOINT_CLEARANCE   ? "pin velocity in"
+                                                          : "relative velocity in";
+    snprintf(name, DISTANCE_NAME_SIZE, "%s %s", what, of);
 }
 
 Scenario distance_grid(const Scenario *scenario)

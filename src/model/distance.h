@@ -1,6 +1,10 @@
-// How far two trajectories of one scenario are apart, in omega and alpha relative to each body's
-// largest; where no drive turns anything, in the velocities and accelerations of the centres, and
-// of bodies that slide or stop in those of their points.
+// How far two trajectories of one scenario are apart: the largest difference of any of the rates
+// below, each relative to its own largest value in the reference.
+//
+//     of every body              its angular velocity (a vector), the velocity of its centre (a
+//     vector) of every joint with play   the velocity of the pin relative to its hole, or of what
+//     is limited of pins in space, guides   the rate at which the pin tilts in its hole, the block
+//     in its guides
 #pragma once
 
 #include "model/trajectory.h"
@@ -11,92 +15,84 @@
 static const double DISTANCE_PERTURBATION = 1e-10;
 static const double DISTANCE_GROWTH = 1e5;
 
+// The least a rate is measured in, of the speed of the fastest point of all bodies (of an angular
+// rate: of that over the body's reach). A rate smaller than that is mostly rounding: the turning of
+// what only translates, the centre of a balanced rotor.
+static const double DISTANCE_FLOOR = 1e-6;
+
 // The scenario with samples fine enough to compare on, its own among them.
 Scenario distance_grid(const Scenario *scenario);
 
-// How fast a body moves: its largest rates over a trajectory, all above 0 but where noted.
-typedef struct DistanceScale {
-    double omega;     // rad/s, or m/s: what distances are measured in; 0 for the driven body, which
-                      // does not count
-    double alpha;     // rad/s^2, or m/s^2; likewise
-    double moving;    // m/s, of the body's fastest point
-    double turning;   // rad/s, with which its furthest joint moves that fast
-    bool by_velocity; // whether omega and alpha above are those of velocities
-    double changing;  // m/s^2, acceleration of the body's fastest point; 0 where there is none
-} DistanceScale;
+typedef enum DistanceKind {
+    DISTANCE_TURNING, // angular velocity of a body, rad/s
+    DISTANCE_MOVING,  // velocity of a body's centre of mass, m/s
+    DISTANCE_PLAY,    // velocity of a pin's middle relative to the hole (of a block to its guides,
+                      // of a disc to its stop), m/s; of a limited coordinate its rate, m/s or rad/s
+    DISTANCE_TILT,    // tilt rate of a block in its guides or of a pin in space in its hole, rad/s
+} DistanceKind;
 
-void distance_scales(const Trajectory *reference, DistanceScale *scales);
+// One rate by which motions are compared.
+typedef struct DistanceRate {
+    DistanceKind kind;
+    int number;     // of the body or joint
+    double reach;   // m, of the body: its furthest point, where the rate is angular; else 0
+    double largest; // rad/s or m/s, in the reference
+    double scale;   // rad/s or m/s, in which it is measured: the largest value or the floor
+} DistanceRate;
 
-// What the distance of a body is measured by.
+// Whether a rate is measured in the floor, because its own values are smaller.
+static inline bool distance_is_floor(const DistanceRate *rate)
+{
+    return rate->scale > rate->largest;
+}
+
+// All rates of a linkage, those of bodies first, two a body.
 typedef struct DistanceMeasure {
-    bool by_velocity; // of the centre, in place of omega
-    double reach;     // m: omega at this reach counts beside the velocity; 0: it does not
+    const Linkage *linkage; // of the reference, which must live as long
+    size_t count;
+    DistanceRate *rates; // owned
 } DistanceMeasure;
 
-static inline DistanceMeasure distance_measure(const Trajectory *reference, size_t body)
+// The rates of a linkage without scales: largest and scale are 0. For distance_finish.
+DistanceMeasure distance_rates(const Linkage *linkage);
+
+// The rates with their scales, those of the reference at its samples. For distance_finish.
+DistanceMeasure distance_measure(const Trajectory *reference);
+void distance_finish(DistanceMeasure *measure);
+
+// How the bodies of a linkage move at one instant: in the plane, or in space (the other is NULL).
+typedef struct DistanceMotion {
+    const Motion *planar;
+    const SpaceMotion *spatial;
+} DistanceMotion;
+
+static inline DistanceMotion distance_motion_at(const Trajectory *trajectory, size_t sample)
 {
-    return (DistanceMeasure){
-        .by_velocity = reference->driven_body == LINKAGE_GROUND || reference->slides[body],
-        .reach = reference->slides[body] ? reference->reach[body] : 0.0,
-    };
+    return (DistanceMotion){
+        trajectory_motion(trajectory, sample, 0),
+        trajectory->space_motions != NULL ? trajectory_space_motion(trajectory, sample, 0) : NULL};
 }
 
-// A rate of the centre with that of turning at some reach.
-static inline Vec3 distance_planar(Vec2 moving, double turning, DistanceMeasure measure)
+static inline DistanceMotion distance_motion_of(const Sample *sample)
 {
-    const double at_reach = measure.reach > 0.0 ? measure.reach * turning : 0.0;
-    return measure.by_velocity ? (Vec3){moving.x, moving.y, at_reach} : (Vec3){turning, 0.0, 0.0};
+    return (DistanceMotion){sample->bodies, sample->space_bodies};
 }
 
-// A body's omega or velocity at a sample, and its alpha or acceleration: as vectors, in the plane
-// of omega (omega, 0, 0), of velocity (x, y, omega reach).
-static inline Vec3 distance_rate(const Trajectory *trajectory, size_t sample, size_t body,
-                                 DistanceMeasure measure)
-{
-    if (trajectory->space_motions == NULL) {
-        const Motion *planar = trajectory_motion(trajectory, sample, body);
-        return distance_planar(planar->velocity, planar->omega, measure);
-    }
-    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
-    return measure.by_velocity ? motion->velocity : motion->omega;
-}
+// The value of a rate, in the world's axes; of a scalar x alone. Linear in the bodies' velocities.
+Vec3 distance_value(const Linkage *linkage, const DistanceRate *rate, DistanceMotion motion);
 
-static inline Vec3 distance_change(const Trajectory *trajectory, size_t sample, size_t body,
-                                   DistanceMeasure measure)
-{
-    if (trajectory->space_motions == NULL) {
-        const Motion *motion = trajectory_motion(trajectory, sample, body);
-        return distance_planar(motion->acceleration, motion->alpha, measure);
-    }
-    const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, body);
-    return measure.by_velocity ? motion->acceleration : motion->alpha;
-}
+// How many numbers of a value there are: 1, 2 or 3.
+int distance_components(const Linkage *linkage, const DistanceRate *rate);
 
-// The rate of a body in a sample that no trajectory holds.
-static inline Vec3 distance_sample_rate(const Sample *sample, bool is_spatial, size_t body,
-                                        DistanceMeasure measure)
-{
-    if (!is_spatial) {
-        return distance_planar(sample->bodies[body].velocity, sample->bodies[body].omega, measure);
-    }
-    const SpaceMotion *motion = &sample->space_bodies[body];
-    return measure.by_velocity ? motion->velocity : motion->omega;
-}
+// The difference of two values over the rate's scale.
+double distance_between(const DistanceRate *rate, Vec3 a, Vec3 b);
 
-// How large a vector is, and how far apart two of these are.
-static inline double distance_size(Vec2 v)
-{
-    return v.y == 0.0 ? fabs(v.x) : (v.x == 0.0 ? fabs(v.y) : hypot(v.x, v.y));
-}
+// The largest relative distance of any rate between two motions of the linkage. *which, where it is
+// not NULL, is then the number of that rate. NAN where one of them is not finite.
+double distance_apart(const DistanceMeasure *measure, DistanceMotion a, DistanceMotion b,
+                      size_t *which);
 
-static inline double distance_between(Vec3 a, Vec3 b)
-{
-    const Vec3 apart = vec3_sub(a, b);
-    // of turning in the plane, and of moving
-    const double across = distance_size((Vec2){apart.x, apart.y});
-    return apart.z == 0.0 ? across : hypot(across, apart.z);
-}
-
-// The largest relative distance of any body at one sample.
-double distance_at(const Trajectory *trajectory, const Trajectory *reference, size_t sample,
-                   const DistanceScale *scales);
+// What a rate is called: "omega of coupler", "velocity of coupler", "pin velocity in
+// crank-coupler", "tilt rate in guide".
+enum { DISTANCE_NAME_SIZE = LINKAGE_NAME_SIZE + 32 };
+void distance_name(const Linkage *linkage, const DistanceRate *rate, char name[DISTANCE_NAME_SIZE]);

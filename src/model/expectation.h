@@ -27,7 +27,8 @@ typedef enum ExpectedNumber {
     EXPECTED_IMPULSE,          // N s
     EXPECTED_PENETRATION_MAX,  // m
     EXPECTED_CONTACT_FRACTION, // 1
-    EXPECTED_ERROR_OMEGA_MAX,  // 1, as the three below up to the horizon of predictability
+    EXPECTED_ERROR_MAX,        // 1, as the three below up to the horizon of predictability
+    EXPECTED_ERROR_OMEGA_MAX,
     EXPECTED_ERROR_OMEGA_RMS,
     EXPECTED_ERROR_ALPHA_MAX,
     EXPECTED_DRIVE_WORK, // J
@@ -65,7 +66,7 @@ typedef struct ExpectedOutcome {
     char of[EXPECTATION_PATH_SIZE]; // a backend, or the words of schemes of ODE, with / between
                                     // them; empty: every backend that feels the play
     OutcomeKind kind;
-    double limit;                     // 1, of the error of omega: agreed within, or reported above
+    double limit;                     // 1, of the error: agreed within, or reported above
     char message[OUTCOME_WORDS_SIZE]; // words of the message of a run that is detected or refused
     char words[OUTCOME_WORDS_SIZE];   // as the case has it: "agrees within 1e-6"
 } ExpectedOutcome;

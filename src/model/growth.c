@@ -1,11 +1,11 @@
 // How long does the motion stay near its neighbours?
 //
 // f runs start beside the motion, along directions w_1 ... w_f that are orthonormal in
-//     |w|^2 = sum over bodies (w_omega / omega_b)^2 + (w_v / v_b)^2
+//     |w|^2 = sum over the measure's rates (w_rate / scale)^2
 // and span every change of the speeds that joints and driver allow. With D_i(t) what the i-th is
-// away, over its size r, the start sum c_i w_i is to first order sum c_i D_i(t) away; the largest
-// of that in body b over all |c| = 1 is the largest singular value of (D_1b ... D_fb). So
-//     growth(t) = max over bodies sigma_max(D_1b(t) ... D_fb(t)) / scale_b
+// away, over its size r_i, the start sum c_i w_i is to first order sum c_i D_i(t) away; the largest
+// of that in rate b over all |c| = 1 is the largest singular value of (D_1b ... D_fb). So
+//     growth(t) = max over rates sigma_max(D_1b(t) ... D_fb(t)) / scale_b
 // is that of the fastest of all perturbations. It does not depend on the directions that were run.
 #include "model/growth.h"
 
@@ -29,10 +29,11 @@ typedef struct Walk {
     bool has_step;
     size_t beats; // that were due or not
     double reached_s;
-    size_t sample;     // the first of the samples that it has not come to
-    bool is_away;      // so far that the growth is above the most, at the last sample it came to
-    Err failure;       // why it did not come to the sample
-    Vec3 *apart;       // how far it is from the motion, by sample of the block and body; owned
+    size_t sample; // the first of the samples that it has not come to
+    bool is_away;  // so far that the growth is above the most, at the last sample it came to
+    Err failure;   // why it did not come to the sample
+    Vec3 *apart;   // how far it is from the motion, by sample of the block and rate, over its size;
+                   // owned
     bool is_under_way; // in the block
     bool is_through;   // with the block
 } Walk;
@@ -81,19 +82,21 @@ static bool walk_to(const GrowthWork *work, Walk *walk, double time_s, bool is_c
     return true;
 }
 
-// How far a run is from the motion at a sample, by body; whether that alone is too far.
-static bool find_apart(const GrowthWork *work, const Sample *sample, size_t k, Vec3 *apart)
+// How far a run is from the motion at a sample, by rate, over the size of its perturbation; whether
+// that alone is too far.
+static bool find_apart(const GrowthWork *work, double size, const Sample *sample, size_t k,
+                       Vec3 *apart)
 {
-    const Trajectory *beside = work->beside;
+    const DistanceMeasure *measure = work->measure;
+    const DistanceMotion beside = distance_motion_at(work->beside, k);
+    const DistanceMotion motion = distance_motion_of(sample);
     bool is_away = false;
-    for (size_t body = 0; body < beside->body_count; body++) {
-        const DistanceMeasure measure = distance_measure(beside, body);
-        const bool is_spatial = work->scenario->linkage.is_spatial;
-        apart[body] = vec3_sub(distance_sample_rate(sample, is_spatial, body, measure),
-                               distance_rate(beside, k, body, measure));
-        const double scale = work->scales[body].omega;
-        is_away = is_away ||
-                  (scale > 0.0 && !(vec3_length(apart[body]) <= work->most * work->size * scale));
+    for (size_t i = 0; i < measure->count; i++) {
+        const DistanceRate *rate = &measure->rates[i];
+        const Vec3 difference = vec3_sub(distance_value(measure->linkage, rate, motion),
+                                         distance_value(measure->linkage, rate, beside));
+        apart[i] = vec3_scale(1.0 / (size * rate->scale), difference);
+        is_away = is_away || !(vec3_length(apart[i]) <= work->most);
     }
     return is_away;
 }
@@ -104,13 +107,14 @@ void growth_walk(size_t index, bool is_callers, void *context)
     Runs *runs = context;
     const GrowthWork *work = &runs->work;
     Walk *walk = &runs->walks[index];
-    const size_t bodies = work->beside->body_count;
+    const size_t rates = work->measure->count;
+    const double size = work->size * work->basis->stretch[index];
     Sample sample = sample_create(&work->scenario->linkage);
     for (size_t k = runs->first; k < runs->end && !walk->is_away; k++) {
         if (!walk_to(work, walk, work->beside->times[k], is_callers, &sample)) {
             break;
         }
-        walk->is_away = find_apart(work, &sample, k, walk->apart + (k - runs->first) * bodies);
+        walk->is_away = find_apart(work, size, &sample, k, walk->apart + (k - runs->first) * rates);
         walk->sample = k + 1;
     }
     sample_free(&sample);
@@ -126,17 +130,18 @@ static bool open_runs(Runs *runs)
     for (size_t i = 0; i < work->basis->count; i++) {
         Walk *walk = &runs->walks[i];
         runs->scenarios[i] = scenario_copy(work->scenario);
-        perturb_along(&runs->scenarios[i], work->basis->changes[i], work->size);
+        perturb_along(&runs->scenarios[i], work->basis->changes[i],
+                      work->size * work->basis->stretch[i]);
         if (!work->solver->open(&runs->scenarios[i], &walk->state, &runs->failure)) {
             return false;
         }
         runs->count++;
     }
-    const size_t bodies = work->beside->body_count;
-    const size_t room = ROOM / (runs->count * bodies + 1);
+    const size_t rates = work->measure->count;
+    const size_t room = ROOM / (runs->count * rates + 1);
     runs->block_most = room < 1 ? 1 : (room < BLOCK_MOST ? room : BLOCK_MOST);
     for (size_t i = 0; i < runs->count; i++) {
-        Vec3 *apart = calloc(runs->block_most * bodies + 1, sizeof *apart);
+        Vec3 *apart = calloc(runs->block_most * rates + 1, sizeof *apart);
         assert(apart != NULL);
         runs->walks[i].apart = apart;
     }
@@ -163,7 +168,7 @@ static void close_runs(Runs *runs, Growth *growth)
     free(runs);
 }
 
-// The products of the rows of (D_1b ... D_fb), of one body: a symmetric matrix of 3 by 3.
+// The products of the rows of (D_1b ... D_fb), of one rate: a symmetric matrix of 3 by 3.
 typedef struct Gram {
     double xx, xy, yy, xz, yz, zz;
 } Gram;
@@ -210,8 +215,7 @@ static double largest_singular(Gram gram)
 // The growth at one sample of the block; false where a run does not come there.
 static bool find_at(Runs *runs, size_t k, double *found)
 {
-    const GrowthWork *work = &runs->work;
-    const size_t bodies = work->beside->body_count;
+    const size_t rates = runs->work.measure->count;
     for (size_t i = 0; i < runs->count; i++) {
         const Walk *walk = &runs->walks[i];
         if (walk->sample <= k && walk->is_away) {
@@ -224,18 +228,15 @@ static bool find_at(Runs *runs, size_t k, double *found)
         }
     }
     *found = 0.0;
-    for (size_t body = 0; body < bodies; body++) {
+    for (size_t rate = 0; rate < rates; rate++) {
         Gram gram = {.xx = 0.0};
         for (size_t i = 0; i < runs->count; i++) {
-            add_difference(runs->walks[i].apart[(k - runs->first) * bodies + body], &gram);
+            add_difference(runs->walks[i].apart[(k - runs->first) * rates + rate], &gram);
         }
-        if (work->scales[body].omega > 0.0) {
-            const double apart = largest_singular(gram) / work->scales[body].omega;
-            // a number that is not finite is no small one
-            *found = !(apart <= *found) ? apart : *found;
-        }
+        const double apart = largest_singular(gram);
+        // a number that is not finite is no small one
+        *found = !(apart <= *found) ? apart : *found;
     }
-    *found /= work->size;
     return true;
 }
 

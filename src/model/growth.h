@@ -13,15 +13,15 @@ typedef struct GrowthPulse {
 
 typedef struct GrowthWork {
     const Solver *solver;
-    const Scenario *scenario;    // unperturbed
-    const Trajectory *beside;    // its motion; growth is looked at at its samples
-    const DistanceScale *scales; // of that
-    const PerturbBasis *basis;   // the starts that are run
-    double size;                 // of their perturbations
-    double most;                 // growth at which it ends
-    double until_s;              // or here, s
-    size_t threads;              // that may run starts at the same time, at least 1
-    GrowthPulse pulse;           // from the caller's thread alone
+    const Scenario *scenario;       // unperturbed
+    const Trajectory *beside;       // its motion; growth is looked at at its samples
+    const DistanceMeasure *measure; // of that
+    const PerturbBasis *basis;      // the starts that are run
+    double size;                    // of their perturbations, before the basis stretches them
+    double most;                    // growth at which it ends
+    double until_s;                 // or here, s
+    size_t threads;                 // that may run starts at the same time, at least 1
+    GrowthPulse pulse;              // from the caller's thread alone
 } GrowthWork;
 
 typedef struct Growth {

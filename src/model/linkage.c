@@ -127,32 +127,6 @@ void linkage_reaches(const Linkage *linkage, double *reaches)
     }
 }
 
-static bool has_limits(const Linkage *linkage)
-{
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
-            return true;
-        }
-    }
-    return false;
-}
-
-void linkage_find_sliding(const Linkage *linkage, bool *slides)
-{
-    const bool is_any = !linkage->driver.is_present && has_limits(linkage);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        slides[i] = is_any;
-    }
-    for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
-        const JointKind kind = linkage->joints[i / 2].kind;
-        const int body = linkage_end(&linkage->joints[i / 2], i % 2).body;
-        const bool is_pivot = kind == JOINT_REVOLUTE || kind == JOINT_CLEARANCE;
-        if (body != LINKAGE_GROUND && !is_pivot && kind != JOINT_GEAR) {
-            slides[body] = true;
-        }
-    }
-}
-
 int linkage_find_body(const Linkage *linkage, const char *name)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {

@@ -303,11 +303,6 @@ double linkage_reach(const Linkage *linkage, int body);
 // The same of all bodies, in time proportional to the linkage.
 void linkage_reaches(const Linkage *linkage, double *reaches);
 
-// Whether a body is to be judged by the velocities of its points: where it slides on another or
-// stops at it, how it turns does not say how it moves; and where flanks, stops or teeth are all
-// that turns it, its centre may stay where it is. Written for all bodies.
-void linkage_find_sliding(const Linkage *linkage, bool *slides);
-
 // The number of a body or joint by its name, or -1.
 int linkage_find_body(const Linkage *linkage, const char *name);
 int linkage_find_joint(const Linkage *linkage, const char *name);

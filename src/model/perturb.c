@@ -3,7 +3,8 @@
 // Each body draws a change of its velocity and its omega, each of the size of the body's own
 // largest; the nearest change w that ideal joints and driver allow (in the norm w' M w of kinetic
 // energy) is taken, and multiplied so that
-//     max over bodies max(|w_omega| / omega_b, |w_v| / v_b)  =  size.
+//     max over bodies max(|w_omega| reach, |w_v|) / V  =  size,  V = max over t (|v| + |omega|
+//     reach)
 // Draws are along directions that the geometry gives, not along the axes of a frame: turned with
 // its mechanism a scenario draws the same changes, turned.
 #include "model/perturb.h"
@@ -22,11 +23,35 @@ static const double ALLOWED = 1e-8;
 // of the body's reach: two points that make a direction
 static const double APART = 1e-6;
 
-// What one body's changes are measured in.
-typedef struct Unit {
-    double moving;  // m/s
-    double turning; // rad/s
-} Unit;
+// of the fastest body's speed: below it lies no motion to speak of
+static const double SLOWEST = 1e-3;
+
+// A perturbation is stretched so far that its end, DISTANCE_GROWTH times the size, is still small.
+static const double STRETCH_MOST = 1e3;
+
+void perturb_units(const Trajectory *reference, PerturbUnit *units)
+{
+    double fastest = 0.0;
+    for (size_t i = 0; i < reference->body_count; i++) {
+        units[i].moving = 0.0;
+        for (size_t k = 0; k < reference->sample_count; k++) {
+            const Motion *motion = trajectory_motion(reference, k, i);
+            double moving = vec2_length(motion->velocity);
+            double turning = fabs(motion->omega);
+            if (reference->space_motions != NULL) {
+                const SpaceMotion *spatial = trajectory_space_motion(reference, k, i);
+                moving = vec3_length(spatial->velocity);
+                turning = vec3_length(spatial->omega);
+            }
+            units[i].moving = fmax(units[i].moving, moving + turning * reference->reach[i]);
+        }
+        fastest = fmax(fastest, units[i].moving);
+    }
+    for (size_t i = 0; i < reference->body_count; i++) {
+        units[i].moving = fmax(units[i].moving, fastest > 0.0 ? SLOWEST * fastest : 1.0);
+        units[i].turning = units[i].moving / reference->reach[i];
+    }
+}
 
 // What is left of changes that joints and driver allow.
 static void allow_change(const Linkage *linkage, const Motion *motions, SpeedChange *changes)
@@ -38,20 +63,13 @@ static void allow_change(const Linkage *linkage, const Motion *motions, SpeedCha
     }
 }
 
-// As errors are measured, and what errors do not measure by the speed of the body's points.
-static Unit unit_of(const DistanceScale *scale)
-{
-    return scale->by_velocity ? (Unit){scale->omega, scale->turning}
-                              : (Unit){scale->moving, scale->omega};
-}
-
-static double change_size(const Linkage *linkage, const DistanceScale *scales,
+static double change_size(const Linkage *linkage, const PerturbUnit *units,
                           const SpeedChange *changes)
 {
     double size = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         if ((int)i != linkage_driven_body(linkage)) {
-            const Unit unit = unit_of(&scales[i]);
+            const PerturbUnit unit = units[i];
             size = fmax(size, vec2_length(changes[i].velocity) / unit.moving);
             size = fmax(size, fabs(changes[i].omega) / unit.turning);
             if (linkage->is_spatial) {
@@ -82,15 +100,15 @@ static Vec2 own_direction(const Scenario *scenario, const Motion *motions, size_
     return speed > 0.0 ? vec2_scale(1.0 / speed, motions[body].velocity) : (Vec2){0.0, -1.0};
 }
 
-static void draw_changes(const Scenario *scenario, const DistanceScale *scales,
-                         const Motion *motions, unsigned member, SpeedChange *changes)
+static void draw_changes(const Scenario *scenario, const PerturbUnit *units, const Motion *motions,
+                         unsigned member, SpeedChange *changes)
 {
     const Linkage *linkage = &scenario->linkage;
     uint64_t seed = lcg_stirred(member);
     for (size_t i = 0; i < linkage->body_count; i++) {
         changes[i] = (SpeedChange){.omega = 0.0};
         if ((int)i != linkage_driven_body(linkage)) {
-            const Unit unit = unit_of(&scales[i]);
+            const PerturbUnit unit = units[i];
             const Vec2 along = vec2_scale(unit.moving, own_direction(scenario, motions, i));
             const double ahead = lcg_draw(&seed);
             const double aside = lcg_draw(&seed);
@@ -106,16 +124,16 @@ static void draw_changes(const Scenario *scenario, const DistanceScale *scales,
     }
 }
 
-bool perturb_start(Scenario *scenario, const DistanceScale *scales, double size, unsigned member)
+bool perturb_start(Scenario *scenario, const PerturbUnit *units, double size, unsigned member)
 {
     Linkage *linkage = &scenario->linkage;
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     SpeedChange *changes = zeroed(linkage->body_count, sizeof *changes);
     linkage_start(linkage, motions);
-    draw_changes(scenario, scales, motions, member, changes);
-    const double drawn = change_size(linkage, scales, changes);
+    draw_changes(scenario, units, motions, member, changes);
+    const double drawn = change_size(linkage, units, changes);
     allow_change(linkage, motions, changes);
-    const double allowed = change_size(linkage, scales, changes);
+    const double allowed = change_size(linkage, units, changes);
     const bool is_free = allowed > ALLOWED * drawn;
     if (is_free) {
         perturb_along(scenario, changes, size / allowed);
@@ -136,24 +154,6 @@ void perturb_along(Scenario *scenario, const SpeedChange *changes, double factor
         space->omega_x += factor * changes[i].omega_x;
         space->omega_y += factor * changes[i].omega_y;
     }
-}
-
-static double product(const Linkage *linkage, const DistanceScale *scales, const SpeedChange *a,
-                      const SpeedChange *b)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != linkage_driven_body(linkage)) {
-            const Unit unit = unit_of(&scales[i]);
-            sum += vec2_dot(a[i].velocity, b[i].velocity) / (unit.moving * unit.moving) +
-                   a[i].omega * b[i].omega / (unit.turning * unit.turning);
-            // these are 0 in the plane
-            sum += a[i].velocity_z * b[i].velocity_z / (unit.moving * unit.moving) +
-                   (a[i].omega_x * b[i].omega_x + a[i].omega_y * b[i].omega_y) /
-                       (unit.turning * unit.turning);
-        }
-    }
-    return sum;
 }
 
 static void add_multiple(const Linkage *linkage, double factor, const SpeedChange *from,
@@ -178,7 +178,7 @@ static double *rate_of(SpeedChange *change, int rate)
 
 // What joints and driver allow of each single rate of each body. Returns the freedoms: the trace of
 // that projection.
-static size_t allow_each(const Linkage *linkage, const DistanceScale *scales, PerturbBasis *each)
+static size_t allow_each(const Linkage *linkage, const PerturbUnit *units, PerturbBasis *each)
 {
     Motion motions[PERTURB_BODY_MAX];
     linkage_start(linkage, motions);
@@ -186,7 +186,7 @@ static size_t allow_each(const Linkage *linkage, const DistanceScale *scales, Pe
     double trace = 0.0;
     each->count = 0;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const Unit unit = unit_of(&scales[i]);
+        const PerturbUnit unit = units[i];
         for (int rate = 0; rate < rates && (int)i != linkage_driven_body(linkage); rate++) {
             SpeedChange *changes = each->changes[each->count++];
             for (size_t k = 0; k < linkage->body_count; k++) {
@@ -265,21 +265,62 @@ static void merge_groups(const Linkage *linkage, PerturbBasis *basis, PerturbBas
     *basis = *merged;
 }
 
-void perturb_basis(const Scenario *scenario, const DistanceScale *scales, PerturbBasis *basis)
+// The rates of changes, each over its scale, one after the other: three numbers a rate.
+static void rates_of(const Scenario *scenario, const DistanceMeasure *measure,
+                     const SpeedChange *changes, double *rates)
 {
     const Linkage *linkage = &scenario->linkage;
-    assert(linkage->body_count <= PERTURB_BODY_MAX);
-    PerturbBasis *left = malloc(sizeof *left);
-    assert(left != NULL);
-    const size_t freedoms = allow_each(linkage, scales, left);
+    Motion planar[PERTURB_BODY_MAX];
+    SpaceMotion spatial[PERTURB_BODY_MAX];
+    linkage_start(linkage, planar);
+    if (linkage->is_spatial) {
+        space_start(linkage, spatial);
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const SpeedChange *change = &changes[i];
+        planar[i].velocity = change->velocity;
+        planar[i].omega = change->omega;
+        spatial[i].velocity = (Vec3){change->velocity.x, change->velocity.y, change->velocity_z};
+        spatial[i].omega = (Vec3){change->omega_x, change->omega_y, change->omega};
+    }
+    const DistanceMotion motion = {planar, linkage->is_spatial ? spatial : NULL};
+    for (size_t i = 0; i < measure->count; i++) {
+        const DistanceRate *rate = &measure->rates[i];
+        const Vec3 value = distance_value(linkage, rate, motion);
+        rates[3 * i] = value.x / rate->scale;
+        rates[3 * i + 1] = value.y / rate->scale;
+        rates[3 * i + 2] = value.z / rate->scale;
+    }
+}
+
+static double product(size_t count, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        sum += a[i] * b[i];
+    }
+    return sum;
+}
+
+// Makes orthonormal changes of those that are left, the longest first, until there are so many.
+static void find_basis(const Scenario *scenario, const DistanceMeasure *measure, size_t freedoms,
+                       PerturbBasis *left, PerturbBasis *basis)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const size_t width = 3 * measure->count;
+    double *rates = zeroed(left->count * width + width, sizeof *rates);
+    double *own = rates + left->count * width;
+    for (size_t i = 0; i < left->count; i++) {
+        rates_of(scenario, measure, left->changes[i], rates + i * width);
+    }
     for (basis->count = 0; basis->count < freedoms; basis->count++) {
-        // the longest of what is left comes next
         size_t longest = 0;
         double square = 0.0;
         for (size_t i = 0; i < left->count; i++) {
-            const double own = product(linkage, scales, left->changes[i], left->changes[i]);
-            if (own > square) {
-                square = own;
+            const double *of = rates + i * width;
+            const double found = product(width, of, of);
+            if (found > square) {
+                square = found;
                 longest = i;
             }
         }
@@ -289,11 +330,32 @@ void perturb_basis(const Scenario *scenario, const DistanceScale *scales, Pertur
         SpeedChange *next = basis->changes[basis->count];
         memset(next, 0, sizeof basis->changes[0]);
         add_multiple(linkage, 1.0 / sqrt(square), left->changes[longest], next);
+        rates_of(scenario, measure, next, own);
         for (size_t i = 0; i < left->count; i++) {
-            const double share = product(linkage, scales, next, left->changes[i]);
+            double *of = rates + i * width;
+            const double share = product(width, own, of);
             add_multiple(linkage, -share, next, left->changes[i]);
+            for (size_t k = 0; k < width; k++) {
+                of[k] -= share * own[k];
+            }
         }
     }
+    free(rates);
+}
+
+void perturb_basis(const Scenario *scenario, const DistanceMeasure *measure,
+                   const PerturbUnit *units, PerturbBasis *basis)
+{
+    const Linkage *linkage = &scenario->linkage;
+    assert(linkage->body_count <= PERTURB_BODY_MAX);
+    PerturbBasis *left = malloc(sizeof *left);
+    assert(left != NULL);
+    const size_t freedoms = allow_each(linkage, units, left);
+    find_basis(scenario, measure, freedoms, left, basis);
     merge_groups(linkage, basis, left);
     free(left);
+    for (size_t i = 0; i < basis->count; i++) {
+        const double size = change_size(linkage, units, basis->changes[i]);
+        basis->stretch[i] = fmax(1.0, fmin(STRETCH_MOST, 1.0 / size));
+    }
 }

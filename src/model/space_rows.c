@@ -9,7 +9,7 @@
 
 // What is left of a row, of itself, once everything that others hold is taken out: rounding leaves
 // 1e-15
-static const double INDEPENDENT = 1e-9;
+static const double SPACE_INDEPENDENT = 1e-9;
 
 // of what is left of two rows: a difference that is none
 static const double SAME = 1e-6;
@@ -188,8 +188,8 @@ static bool add_row(Basis *basis, const SpaceRow *row)
 {
     size_t first;
     const double size = spread(basis, row, &first);
-    const bool is_taken =
-        size > 0.0 && sparse_rank_take(&basis->sparse, first, size, INDEPENDENT, basis->columns);
+    const bool is_taken = size > 0.0 && sparse_rank_take(&basis->sparse, first, size,
+                                                         SPACE_INDEPENDENT, basis->columns);
     basis->count += is_taken ? 1 : 0;
     return is_taken;
 }

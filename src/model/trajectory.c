@@ -76,14 +76,13 @@ static Trajectory *create(const Scenario *scenario, const char *backend, bool ha
     trajectory->body_count = scenario->linkage.body_count;
     trajectory->joint_count = scenario->linkage.joint_count;
     trajectory->reach = zeroed(trajectory->body_count, sizeof *trajectory->reach);
-    trajectory->slides = zeroed(trajectory->body_count, sizeof *trajectory->slides);
     trajectory->bodies = zeroed(trajectory->body_count, sizeof *trajectory->bodies);
     trajectory->joints = zeroed(trajectory->joint_count, sizeof *trajectory->joints);
     trajectory->alpha_spikes = zeroed(trajectory->body_count, sizeof(SignalSpikes));
     trajectory->force_spikes = zeroed(trajectory->joint_count, sizeof(SignalSpikes));
     trajectory->driven_body = linkage_driven_body(&scenario->linkage);
     linkage_reaches(&scenario->linkage, trajectory->reach);
-    linkage_find_sliding(&scenario->linkage, trajectory->slides);
+    trajectory->linkage = linkage_copy(&scenario->linkage);
     trajectory->sample_count = samples;
     trajectory->times = calloc(samples, sizeof *trajectory->times);
     trajectory->motions = calloc(samples * trajectory->body_count + 1, sizeof *trajectory->motions);
@@ -137,7 +136,7 @@ void trajectory_destroy(Trajectory *trajectory)
         return;
     }
     free(trajectory->reach);
-    free(trajectory->slides);
+    linkage_free(&trajectory->linkage);
     free(trajectory->bodies);
     free(trajectory->joints);
     free(trajectory->alpha_spikes);

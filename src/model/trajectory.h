@@ -120,8 +120,8 @@ typedef struct Trajectory {
     size_t body_count;
     size_t joint_count;
     int driven_body; // whose motion is prescribed, or LINKAGE_GROUND
-    double *reach;   // m, of each body's points from its centre: linkage_reach; owned, as the next
-    bool *slides;    // linkage_find_sliding
+    double *reach;   // m, of each body's points from its centre: linkage_reach; owned
+    Linkage linkage; // what moved; owned
     size_t sample_count;
     double *times;              // s, by sample; owned, like the three below
     double *crank_angles;       // rad, by sample, not wrapped
@@ -146,7 +146,7 @@ typedef struct Trajectory {
     size_t contact_rows;    // most at any one step; of the reference its joints with play
     size_t fallback_rows;   // of contacts, where the map asked for would not have been stable
     size_t trials;          // made to choose the step for a tolerance, this run included; else 0
-    double error_estimate;  // 1, of omega: an upper bound, where the step was chosen; else 0
+    double error_estimate;  // 1: an upper bound, where the step was chosen; else 0
     double estimate_s;      // s, up to which it holds
     bool estimate_is_cut;   // the reference is too uncertain after that for the error wanted
     bool is_short;          // that is less than was asked for: the trials had no more steps

@@ -10,8 +10,12 @@ enum { KEPT = FIELD_JSON | FIELD_STORE, SHOWN = KEPT | FIELD_CSV };
 // clang-format off
 const Field ERROR_FIELDS[] = {
     {"is_known", FIELD_FLAG, FIELD_STORE, ERROR(is_known)},
+    {"max", FIELD_NUMBER, SHOWN, ERROR(max)},
+    {"max_time_s", FIELD_NUMBER, KEPT, ERROR(max_time_s)},
+    {"max_in_horizon", FIELD_NUMBER, KEPT, ERROR(max_in_horizon)},
+    {"in", FIELD_TEXT, SHOWN, ERROR(in)},
+    {"in_is_floor", FIELD_FLAG, KEPT, ERROR(is_floor)},
     {"omega_max", FIELD_NUMBER, SHOWN, ERROR(omega_max)},
-    {"omega_max_time_s", FIELD_NUMBER, KEPT, ERROR(omega_max_time_s)},
     {"omega_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(omega_max_in_horizon)},
     {"omega_rms", FIELD_NUMBER, SHOWN, ERROR(omega_rms)},
     {"alpha_max", FIELD_NUMBER, SHOWN, ERROR(alpha_max)},

@@ -5,6 +5,7 @@
 #include "model/joint_rows.h"
 #include "write/csv.h"
 #include "write/joint_units.h"
+#include "write/rate_columns.h"
 #include "write/units.h"
 
 static void write_range_heads(const Linkage *linkage, FILE *stream)
@@ -147,7 +148,34 @@ static void write_space(const Linkage *linkage, const Trajectory *trajectory, si
     }
 }
 
-static void write_head(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
+// The rates by which motions are compared, but for what is written of every body anyway.
+static void write_rate_heads(const DistanceMeasure *rates, FILE *stream)
+{
+    char names[RATE_COLUMNS_MOST][RATE_COLUMN_SIZE];
+    for (size_t i = 0; i < rates->count; i++) {
+        const int count = rate_columns(rates->linkage, &rates->rates[i], names);
+        for (int k = 0; rates->rates[i].kind != DISTANCE_TURNING && k < count; k++) {
+            fprintf(stream, ",%s", names[k]);
+        }
+    }
+}
+
+static void write_rates(const DistanceMeasure *rates, const Trajectory *trajectory, size_t sample,
+                        FILE *stream)
+{
+    const DistanceMotion motion = distance_motion_at(trajectory, sample);
+    for (size_t i = 0; i < rates->count; i++) {
+        const DistanceRate *rate = &rates->rates[i];
+        const Vec3 value = distance_value(rates->linkage, rate, motion);
+        if (rate->kind != DISTANCE_TURNING) {
+            write_cells((const double[]){value.x, value.y, value.z},
+                        (size_t)distance_components(rates->linkage, rate), stream);
+        }
+    }
+}
+
+static void write_head(const Scenario *scenario, const Trajectory *trajectory,
+                       const DistanceMeasure *rates, FILE *stream)
 {
     const Linkage *linkage = &scenario->linkage;
     fputs("time_s,crank_deg", stream);
@@ -170,14 +198,15 @@ static void write_head(const Scenario *scenario, const Trajectory *trajectory, F
     if (linkage->is_spatial) {
         write_space_heads(linkage, stream);
     }
+    write_rate_heads(rates, stream);
     if (trajectory->ranges.count > 0) {
         write_range_heads(linkage, stream);
     }
     fputc('\n', stream);
 }
 
-static void write_row(const Scenario *scenario, const Trajectory *trajectory, size_t sample,
-                      FILE *stream)
+static void write_row(const Scenario *scenario, const Trajectory *trajectory,
+                      const DistanceMeasure *rates, size_t sample, FILE *stream)
 {
     const double crank_deg = trajectory->crank_angles[sample] * UNITS_DEG;
     csv_write_number(stream, trajectory->times[sample]);
@@ -203,6 +232,7 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
     if (scenario->linkage.is_spatial) {
         write_space(&scenario->linkage, trajectory, sample, stream);
     }
+    write_rates(rates, trajectory, sample, stream);
     if (trajectory->ranges.count > 0) {
         write_ranges(trajectory, sample, stream);
     }
@@ -211,8 +241,10 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory, si
 
 void series_rows_write(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
 {
-    write_head(scenario, trajectory, stream);
+    DistanceMeasure rates = distance_rates(&scenario->linkage);
+    write_head(scenario, trajectory, &rates, stream);
     for (size_t i = 0; i < trajectory->sample_count; i++) {
-        write_row(scenario, trajectory, i, stream);
+        write_row(scenario, trajectory, &rates, i, stream);
     }
+    distance_finish(&rates);
 }

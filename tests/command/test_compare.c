@@ -115,7 +115,7 @@ static void json_holds_every_point(void **state)
     }
     // first order against the closed form, some 82 rad/s^2 .. of error a second of step
     assert_near(number(json_object_get(direct, "order"), "order"), 1.0, 0.05);
-    assert_near(number(json_array_get(points, 0), "error_omega"), 8.2e-3, 1e-3);
+    assert_near(number(json_array_get(points, 0), "error_max"), 8.2e-3, 1e-3);
     assert_non_null(find_scheme(root, "analytic"));
     assert_string_equal(
         json_string_value(json_object_get(json_object_get(root, "truth"), "backend")), "analytic");
@@ -223,7 +223,7 @@ static double error_of(const Program *program)
 {
     json_t *root = program_json(program);
     const json_t *points = json_object_get(find_scheme(root, "direct/plain"), "points");
-    const double error = number(json_array_get(points, 0), "error_omega");
+    const double error = number(json_array_get(points, 0), "error_max");
     json_decref(root);
     return error;
 }
@@ -383,7 +383,7 @@ static void a_collider_is_a_part_of_the_scheme(void **state)
         const json_t *scheme = find_scheme(root, NAMES[i]);
         assert_string_equal(json_string_value(json_object_get(scheme, "collider")), COLLIDERS[i]);
         const json_t *points = json_object_get(scheme, "points");
-        errors[i] = number(json_array_get(points, 0), "error_omega");
+        errors[i] = number(json_array_get(points, 0), "error_max");
     }
     assert_true(errors[0] > 0.0 && errors[1] > 0.0 && errors[0] != errors[1]);
     json_decref(root);

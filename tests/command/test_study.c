@@ -54,7 +54,7 @@ static void what_came_of_it_is_printed(void **state)
     run_well(program, "study s.yaml --jobs 2");
     assert_says(program->output, "4 of 4 runs are over");
     assert_says(program->output, "They are kept in s.sqlite.");
-    assert_says(program->output, "error_omega_max");
+    assert_says(program->output, "error_max");
     assert_string_equal(program->errors, "");
     run_well(program, "study s.yaml --json");
     json_t *root = program_json(program);
@@ -77,7 +77,7 @@ static void rows_are_exported_and_drawn(void **state)
     assert_string_equal(program->output, "");
     assert_says(program->errors, "wrote a.csv");
     assert_says(program->errors, "wrote a.jsonl");
-    run_well(program, "study plot s.yaml --x run_step_s --y error_omega_max --by drive_speed_rad_s "
+    run_well(program, "study plot s.yaml --x run_step_s --y error_max --by drive_speed_rad_s "
                       "a.svg --title Words -q");
     assert_string_equal(program->errors, "");
     program_run(program, "study plot s.yaml --x nothing a.svg");

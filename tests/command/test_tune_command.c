@@ -59,8 +59,8 @@ static void the_error_is_met_on_running_again(void **state)
         json_t *run = run_again(program, cheapest, "");
         assert_string_equal(words(run, "hash"), words(cheapest, "hash"));
         const json_t *error = json_object_get(run, "error");
-        assert_true(number(error, "omega_max") <= 3e-3);
-        assert_close(number(error, "omega_max"), number(cheapest, "error_omega"), 1e-12);
+        assert_true(number(error, "max") <= 3e-3);
+        assert_close(number(error, "max"), number(cheapest, "error_max"), 1e-12);
         // and the plain rows as well, where there are contacts
         const json_t *loop = json_object_get(root, "own_loop");
         if (i == 0) {
@@ -105,8 +105,8 @@ static void the_reference_stands_beside_the_settings_of_ode(void **state)
         json_t *root = tune(program, options, 0);
         const json_t *reference = json_object_get(root, "reference");
         tolerances[i] = number(reference, "tolerance");
-        assert_true(number(reference, "error_omega") > 0.0);
-        assert_true(number(reference, "error_omega") < ERRORS[i]);
+        assert_true(number(reference, "error_max") > 0.0);
+        assert_true(number(reference, "error_max") < ERRORS[i]);
         assert_true(number(reference, "processor_median_s") > 0.0);
         json_t *again = reference_run(program, tolerances[i]);
         assert_string_equal(words(again, "hash"), words(reference, "hash"));
@@ -137,7 +137,7 @@ static double cheapest_steps(const json_t *root, double error)
         const json_t *points = json_object_get(scheme, "points");
         for (size_t k = 0; k < json_array_size(points); k++) {
             const json_t *point = json_array_get(points, k);
-            const json_t *reached = json_object_get(point, "error_omega");
+            const json_t *reached = json_object_get(point, "error_max");
             if (strcmp(words(scheme, "backend"), "ode") == 0 && json_is_number(reached) &&
                 json_number_value(reached) <= error) {
                 least = fmin(least, number(point, "steps"));
@@ -185,7 +185,7 @@ static void a_cost_that_is_too_small_ends_with_status_1(void **state)
     assert_true(json_is_false(json_object_get(root, "is_met")));
     const json_t *least = json_object_get(root, "least_error");
     assert_true(number(least, "steps") <= 40.0);
-    assert_true(number(least, "error_omega") > 1e-3);
+    assert_true(number(least, "error_max") > 1e-3);
     assert_true(number(json_object_get(root, "cheapest"), "steps") > 40.0);
     json_decref(root);
     assert_says(program->errors, "no setting within --max-cost meets an error of 0.001");
@@ -205,7 +205,7 @@ static double compared_error(Program *program, const char *scheme, const char *s
     json_t *root = program_json(program);
     const json_t *first = json_array_get(json_object_get(root, "schemes"), 0);
     const json_t *point = json_array_get(json_object_get(first, "points"), 0);
-    const double error = number(point, "error_omega");
+    const double error = number(point, "error_max");
     json_decref(root);
     return error;
 }
@@ -225,7 +225,7 @@ static void at_a_step_that_is_held_the_least_error_is_named(void **state)
     const json_t *best = json_object_get(root, "best_at_step");
     assert_string_equal(words(best, "scheme"), "direct/staggered/impulse");
     assert_near(number(best, "step_s"), 8e-5, 1e-18);
-    assert_close(number(best, "error_omega"),
+    assert_close(number(best, "error_max"),
                  compared_error(program, "direct/staggered/impulse", "80 us"), 1e-9);
     json_t *run = run_again(program, best, "");
     assert_string_equal(words(run, "hash"), words(best, "hash"));
@@ -234,17 +234,17 @@ static void at_a_step_that_is_held_the_least_error_is_named(void **state)
     const json_t *loop = json_object_get(root, "own_loop");
     assert_string_equal(words(loop, "scheme"), "direct/plain/textbook");
     const double plain = compared_error(program, "direct/plain/textbook", "80 us");
-    assert_close(number(loop, "error_omega"), plain, 1e-9);
-    assert_true(plain > 2.0 * number(best, "error_omega"));
+    assert_close(number(loop, "error_max"), plain, 1e-9);
+    assert_true(plain > 2.0 * number(best, "error_max"));
     assert_int_equal(json_array_size(json_object_get(root, "trials")), 2);
     assert_near(number(json_object_get(root, "gazebo"), "max_step_size"), 8e-5, 1e-18);
     // every constant is of that step, and the one handed on has the least error of all kp and kd
     const json_t *constants = json_object_get(root, "constants");
-    const double taken = number(json_object_get(root, "gazebo"), "error_omega");
+    const double taken = number(json_object_get(root, "gazebo"), "error_max");
     assert_true(json_array_size(constants) >= 5);
     for (size_t i = 0; i < json_array_size(constants); i++) {
         const json_t *one = json_array_get(constants, i);
-        const json_t *error = json_object_get(one, "error_omega");
+        const json_t *error = json_object_get(one, "error_max");
         assert_near(number(one, "step_s"), 8e-5, 1e-18);
         assert_true(json_is_true(json_object_get(one, "is_row")) || json_is_null(error) ||
                     json_number_value(error) >= taken);
@@ -267,9 +267,9 @@ static void where_nothing_at_the_step_will_do_the_longest_that_does_is_named(voi
     assert_non_null(held);
     assert_true(strstr(held, "meets it") > strstr(held, "Schemes at shorter steps"));
     assert_true(json_is_false(json_object_get(root, "is_met")));
-    assert_true(number(json_object_get(root, "best_at_step"), "error_omega") > 1e-2);
+    assert_true(number(json_object_get(root, "best_at_step"), "error_max") > 1e-2);
     const json_t *longest = json_object_get(root, "longest_step");
-    assert_true(number(longest, "error_omega") <= 1e-2);
+    assert_true(number(longest, "error_max") <= 1e-2);
     assert_true(number(longest, "step_s") < 8e-4);
     // control: the next longer step of the grid does not meet it
     char step[64];

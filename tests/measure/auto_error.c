@@ -77,13 +77,14 @@ static bool load(const Work *work, Scenario *scenario, Err *err)
 static double error_until(const Trajectory *run, const Trajectory *judge, const Truth *truth,
                           double until_s)
 {
-    DistanceScale scales[KINEMATICS_BODY_MAX];
-    distance_scales(truth->trajectory, scales);
+    DistanceMeasure measure = distance_measure(truth->trajectory);
     double largest = 0.0;
     for (size_t k = 0; k < judge->sample_count && judge->times[k] <= until_s; k++) {
-        const double error = distance_at(run, judge, k, scales);
+        const double error = distance_apart(&measure, distance_motion_at(run, k),
+                                            distance_motion_at(judge, k), NULL);
         largest = error <= largest ? largest : error;
     }
+    distance_finish(&measure);
     return largest;
 }
 

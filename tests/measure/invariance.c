@@ -38,15 +38,15 @@ static Answers answer(const Scenario *scenario, unsigned seed, size_t members)
     Answers answers = {.truth = truth_make(scenario, NOBODY)};
     answers.evaluations = answers.truth.trajectory->evaluations;
     const Starts starts = {PERTURBATION, seed, members};
-    DistanceScale scales[KINEMATICS_BODY_MAX];
-    distance_scales(answers.truth.trajectory, scales);
+    PerturbUnit units[KINEMATICS_BODY_MAX];
+    perturb_units(answers.truth.trajectory, units);
     Scenario longer = kept_copy(scenario);
     longer.run.revolutions = TURNS;
-    answers.horizon = starts_horizon(&longer, scales, starts);
+    answers.horizon = starts_horizon(&longer, units, starts);
     Scenario plain = kept_copy(scenario);
     plain.run.step = STEP_S;
     plain.run.samples = 360;
-    starts_impact(&plain, scales, starts, PIN, &answers.force, &answers.impulse);
+    starts_impact(&plain, units, starts, PIN, &answers.force, &answers.impulse);
     return answers;
 }
 

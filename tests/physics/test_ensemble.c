@@ -32,16 +32,16 @@ static size_t loose_joint(const Scenario *scenario)
 // The largest force on the joint with play, N, of each start.
 static void run_members(const Scenario *scenario, double forces[ENSEMBLE_MEMBERS])
 {
-    DistanceScale scales[8];
+    PerturbUnit units[8];
     for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
         Scenario beside = kept_copy(scenario);
         if (member > 0) {
-            perturb_start(&beside, scales, ENSEMBLE_PERTURBATION, member);
+            perturb_start(&beside, units, ENSEMBLE_PERTURBATION, member);
         }
         Trajectory *run = run_scenario(&beside, registry_solver(BACKEND_ODE), (RunWatch){0});
         assert_true(run->is_complete && run->body_count <= 8);
         if (member == 0) {
-            distance_scales(run, scales);
+            perturb_units(run, units);
         }
         forces[member] = run->joints[loose_joint(scenario)].force_max.value;
         trajectory_destroy(run);

@@ -60,7 +60,7 @@ static double error_of(double length, double tolerance)
     assert_true(error.is_known);
     trajectory_destroy(run);
     trajectory_destroy(truth);
-    return error.omega_max;
+    return error.max;
 }
 
 // Control: a hundred times the tolerance is seen.
@@ -90,16 +90,16 @@ static void median_horizons_and_forces_are_the_same(void **state)
     Median horizon[2];
     Median force[2];
     Median impulse[2];
-    DistanceScale scales[KINEMATICS_BODY_MAX];
+    PerturbUnit units[KINEMATICS_BODY_MAX];
     Scenario scenario;
     for (int i = 0; i < 2; i++) {
         scenario = rocker_of(i == 0 ? 100.0 : 1000.0, 1e-12, 3.0);
-        starts_scales(&scenario, scales);
-        horizon[i] = starts_horizon(&scenario, scales, BESIDE);
+        starts_units(&scenario, units);
+        horizon[i] = starts_horizon(&scenario, units, BESIDE);
         scenario.run.revolutions = 1.0;
         scenario.run.samples = 360;
         scenario.run.step = 4e-6;
-        starts_impact(&scenario, scales, BESIDE, PIN, &force[i], &impulse[i]);
+        starts_impact(&scenario, units, BESIDE, PIN, &force[i], &impulse[i]);
         assert_true(horizon[i].error < 0.3 * horizon[i].value);
         assert_true(force[i].error < 0.1 * force[i].value);
     }
@@ -111,11 +111,10 @@ static void median_horizons_and_forces_are_the_same(void **state)
     scenario = rocker_of(30.0, 1e-12, 1.0);
     scenario.run.samples = 360;
     scenario.run.step = 4e-6;
-    starts_scales(&scenario, scales);
-    scales[ROCKER].omega = scenario.linkage.driver.speed;
-    scales[ROCKER].turning = scenario.linkage.driver.speed;
-    scales[ROCKER].moving = scenario.linkage.driver.speed * 30.0;
-    starts_impact(&scenario, scales, BESIDE, PIN, &force[1], &impulse[1]);
+    starts_units(&scenario, units);
+    units[ROCKER].turning = scenario.linkage.driver.speed;
+    units[ROCKER].moving = scenario.linkage.driver.speed * 30.0;
+    starts_impact(&scenario, units, BESIDE, PIN, &force[1], &impulse[1]);
     assert_false(is_same(force[0], force[1]));
 }
 

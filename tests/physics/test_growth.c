@@ -15,9 +15,17 @@ enum { DIRECTIONS = 20 };
 typedef struct Bench {
     Scenario scenario;
     Trajectory *beside;
-    DistanceScale scales[KINEMATICS_BODY_MAX];
+    DistanceMeasure measure;
     PerturbBasis basis;
 } Bench;
+
+static void find_basis(const Scenario *scenario, const Trajectory *beside, Bench *bench)
+{
+    PerturbUnit units[KINEMATICS_BODY_MAX];
+    perturb_units(beside, units);
+    bench->measure = distance_measure(beside);
+    perturb_basis(scenario, &bench->measure, units, &bench->basis);
+}
 
 // The paper's mechanism with half a millimetre of play, up to 11 ms: two freedoms, chaotic.
 static int set_up(void **state)
@@ -32,8 +40,7 @@ static int set_up(void **state)
     bench->scenario.reference.tolerance = 1e-12;
     bench->scenario.run.revolutions = 0.2;
     bench->beside = complete_run(&bench->scenario, BACKEND_REFERENCE);
-    distance_scales(bench->beside, bench->scales);
-    perturb_basis(&bench->scenario, bench->scales, &bench->basis);
+    find_basis(&bench->scenario, bench->beside, bench);
     *state = bench;
     return 0;
 }
@@ -41,6 +48,7 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     Bench *bench = *state;
+    distance_finish(&bench->measure);
     trajectory_destroy(bench->beside);
     free(bench);
     return 0;
@@ -52,7 +60,7 @@ static Growth grow_on(const Bench *bench, const PerturbBasis *basis, double size
         .solver = registry_solver(BACKEND_REFERENCE),
         .scenario = &bench->scenario,
         .beside = bench->beside,
-        .scales = bench->scales,
+        .measure = &bench->measure,
         .basis = basis,
         .size = size,
         .most = 1e5,
@@ -90,17 +98,17 @@ static PerturbBasis turned(const PerturbBasis *basis, double angle)
 static void every_freedom_has_a_direction(void **state)
 {
     (void)state;
-    DistanceScale scales[KINEMATICS_BODY_MAX];
-    PerturbBasis basis;
+    Bench *bench = calloc(1, sizeof *bench);
     for (size_t joints = 0; joints <= 3; joints++) {
         Scenario scenario = joints == 0 ? mechanism_paper() : mechanism_loose(joints);
         scenario.run.revolutions = 0.01;
         Trajectory *own = complete_run(&scenario, BACKEND_REFERENCE);
-        distance_scales(own, scales);
-        perturb_basis(&scenario, scales, &basis);
-        assert_int_equal(basis.count, 2 * joints);
+        find_basis(&scenario, own, bench);
+        assert_int_equal(bench->basis.count, 2 * joints);
+        distance_finish(&bench->measure);
         trajectory_destroy(own);
     }
+    free(bench);
 }
 
 static void the_horizon_is_no_matter_of_directions_or_sizes(void **state)
@@ -201,10 +209,10 @@ static Growth grow_pins(bool with_first, bool with_second, size_t *runs)
     scenario.run.duration = 0.03;
     Bench bench = {.scenario = scenario};
     bench.beside = complete_run(&scenario, BACKEND_REFERENCE);
-    distance_scales(bench.beside, bench.scales);
-    perturb_basis(&scenario, bench.scales, &bench.basis);
+    find_basis(&scenario, bench.beside, &bench);
     const Growth growth = grow(&bench, &bench.basis, 1e-8);
     *runs = bench.basis.count;
+    distance_finish(&bench.measure);
     trajectory_destroy(bench.beside);
     return growth;
 }

@@ -102,11 +102,11 @@ static void ode_keeps_its_order_beside_contacts(void **state)
     Scenario scenario = load(RUN_UP, overrides, 2);
     scenario.ode.stepping = ODE_STAGGERED;
     scenario.ode.map = ODE_MAP_IMPULSE;
-    const double coarse = ode_error_at(scenario, BACKEND_REFERENCE, 4e-6).omega_max;
-    const double fine = ode_error_at(scenario, BACKEND_REFERENCE, 1e-6).omega_max;
+    const double coarse = ode_error_at(scenario, BACKEND_REFERENCE, 4e-6).max;
+    const double fine = ode_error_at(scenario, BACKEND_REFERENCE, 1e-6).max;
     assert_near(ode_order(coarse, fine, 4.0), 2.0, 0.3);
     scenario.ode.map = ODE_MAP_MIDPOINT;
-    assert_true(ode_error_at(scenario, BACKEND_REFERENCE, 5e-7).omega_max < 1e-3);
+    assert_true(ode_error_at(scenario, BACKEND_REFERENCE, 5e-7).max < 1e-3);
 }
 
 // A damper that the drive's own body carries, so that its force is the drive's to overcome.

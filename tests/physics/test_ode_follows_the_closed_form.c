@@ -29,8 +29,8 @@ static void the_error_falls_in_proportion_to_the_step(void **state)
     Scenario scenario = mechanism_paper();
     const double steps[] = {1e-4, 3e-5, 1e-5, 3e-6, 1e-6};
     for (size_t i = 0; i + 1 < sizeof steps / sizeof *steps; i++) {
-        const double coarse = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i]).omega_max;
-        const double fine = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i + 1]).omega_max;
+        const double coarse = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i]).max;
+        const double fine = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i + 1]).max;
         const double order = ode_order(coarse, fine, steps[i] / steps[i + 1]);
         // the second-order term is 2 % of the first at 1e-4 s
         assert_near(order, 1.0, 0.03);
@@ -43,7 +43,7 @@ static void the_error_is_the_half_step_that_plain_reading_is_late(void **state)
     (void)state;
     Scenario scenario = mechanism_paper();
     const double predicted = 0.5e-5 * 12485.5 / 80.5551;
-    assert_close(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).omega_max, predicted, 0.01);
+    assert_close(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).max, predicted, 0.01);
 }
 
 // The control: without the steps before time zero the joint rows lag at the start.

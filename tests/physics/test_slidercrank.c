@@ -37,7 +37,7 @@ static void the_reference_agrees_with_the_closed_form_to_rounding(void **state)
     Trajectory *truth = complete_run(&scenario, BACKEND_ANALYTIC);
     Trajectory *reference = complete_run(&scenario, BACKEND_REFERENCE);
     const TrajectoryError error = error_against(reference, truth, INFINITY);
-    assert_true(error.is_known && error.omega_max <= 1e-12);
+    assert_true(error.is_known && error.max <= 1e-12);
     for (size_t joint = 1; joint < 4; joint++) {
         assert_true(force_error(reference, truth, joint) <= 1e-10);
     }
@@ -66,14 +66,14 @@ static void the_error_of_staggered_stepping_falls_with_the_square_of_the_step(vo
     scenario.ode.map = ODE_MAP_MIDPOINT;
     const double steps[] = {2e-5, 1e-5, 5e-6};
     for (size_t i = 0; i + 1 < sizeof steps / sizeof *steps; i++) {
-        const double coarse = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i]).omega_max;
-        const double fine = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i + 1]).omega_max;
+        const double coarse = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i]).max;
+        const double fine = ode_error_at(scenario, BACKEND_ANALYTIC, steps[i + 1]).max;
         assert_near(ode_order(coarse, fine, 2.0), 2.0, 0.1);
     }
     // the control: plain stepping is of the first order
     scenario.ode.stepping = ODE_PLAIN;
-    const double coarse = ode_error_at(scenario, BACKEND_ANALYTIC, 2e-5).omega_max;
-    const double fine = ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).omega_max;
+    const double coarse = ode_error_at(scenario, BACKEND_ANALYTIC, 2e-5).max;
+    const double fine = ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).max;
     assert_near(ode_order(coarse, fine, 2.0), 1.0, 0.1);
 }
 

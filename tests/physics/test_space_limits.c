@@ -115,7 +115,8 @@ static void an_upright_hinge_rebounds_as_in_the_plane(void **state)
     } RUNS[] = {
         {BACKEND_REFERENCE, ODE_STAGGERED, ODE_MAP_MIDPOINT, 1e-9},
         {BACKEND_ODE, ODE_STAGGERED, ODE_MAP_MIDPOINT, 1e-9},
-        {BACKEND_ODE, ODE_STAGGERED, ODE_MAP_IMPULSE, 1e-9},
+        // rounding of two units in the last place of 10 rad/s, which grows so, too
+        {BACKEND_ODE, ODE_STAGGERED, ODE_MAP_IMPULSE, 3e-9},
         // the rounding of ODE's own turning inertias, 1e-12, grows 15 times at each of five impacts
         {BACKEND_ODE, ODE_PLAIN, ODE_MAP_MIDPOINT, 1e-3},
     };

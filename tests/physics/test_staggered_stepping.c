@@ -45,8 +45,8 @@ static void plain_stepping_is_of_first_order_and_a_hundred_times_worse(void **st
     const Scenario plain = ideal(ODE_PLAIN);
     const OdeClimb climb = ode_climb(&plain, BACKEND_ANALYTIC, 62.5e-6, 2.0, 3);
     assert_near(ode_climb_order(&climb, 0, 2), 1.0, 0.15);
-    const double at_end = ode_error_at(plain, BACKEND_ANALYTIC, 10e-6).omega_max;
-    const double leapfrog = ode_error_at(ideal(ODE_STAGGERED), BACKEND_ANALYTIC, 10e-6).omega_max;
+    const double at_end = ode_error_at(plain, BACKEND_ANALYTIC, 10e-6).max;
+    const double leapfrog = ode_error_at(ideal(ODE_STAGGERED), BACKEND_ANALYTIC, 10e-6).max;
     assert_true(at_end > 100.0 * leapfrog);
 }
 
@@ -61,10 +61,9 @@ static Turns first_and_last(const Scenario *scenario)
     Trajectory *ode = complete_run(scenario, BACKEND_ODE);
     Trajectory *exact = complete_run(scenario, BACKEND_ANALYTIC);
     double *errors = calloc(ode->sample_count, sizeof *errors);
-    DistanceScale *scales = calloc(exact->body_count, sizeof *scales);
-    distance_scales(exact, scales);
-    assert_true(error_series(ode, exact, scales, errors));
-    free(scales);
+    DistanceMeasure measure = distance_measure(exact);
+    assert_true(error_series(ode, exact, &measure, errors));
+    distance_finish(&measure);
     Turns turns = {{0.0}, {0.0}};
     for (size_t k = 0; k <= scenario->run.samples; k++) {
         const size_t samples[2] = {k, ode->sample_count - 1 - k};
@@ -198,20 +197,20 @@ static void contacts_within_the_step_allow_steps_longer_than_a_contact(void **st
                 1e-3);
     // control: a row a step cannot follow them at a sixth of that step
     const Scenario rows = loose(ODE_MAP_MIDPOINT, 1);
-    assert_true(ode_error_at(rows, BACKEND_REFERENCE, step_s / 6.0).omega_max > 1e-3);
+    assert_true(ode_error_at(rows, BACKEND_REFERENCE, step_s / 6.0).max > 1e-3);
 }
 
 static void the_quick_solver_is_as_good_where_it_iterates_enough(void **state)
 {
     (void)state;
     Scenario scenario = ideal(ODE_STAGGERED);
-    const double direct = ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).omega_max;
+    const double direct = ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).max;
     scenario.ode.solver = ODE_QUICK;
     scenario.ode.iterations = 50;
-    assert_close(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).omega_max, direct, 0.05);
+    assert_close(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).max, direct, 0.05);
     // control: too few of them leave an error of their own
     scenario.ode.iterations = 2;
-    assert_true(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).omega_max > 10.0 * direct);
+    assert_true(ode_error_at(scenario, BACKEND_ANALYTIC, 1e-5).max > 10.0 * direct);
     // with play six joint rows are left, and 20 iterations solve them
     for (int map = ODE_MAP_TEXTBOOK; map <= ODE_MAP_IMPULSE; map++) {
         Scenario played = loose((OdeMap)map, 1);

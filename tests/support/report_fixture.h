@@ -178,6 +178,8 @@ static inline int fixture_set_up(void **state)
     fixture->errors[1] = (TrajectoryError){
         .is_known = true,
         .against = "analytic",
+        .max = 0.017,
+        .in = "omega of coupler",
         .omega_max = 0.017,
         .omega_rms = 0.004,
     };

@@ -30,61 +30,63 @@ static Median median_of(double *values, size_t count)
                     of_median * quartiles / deviations_apart / sqrt((double)count)};
 }
 
-static Scenario start_of(const Scenario *scenario, const DistanceScale *scales, Starts starts,
+static Scenario start_of(const Scenario *scenario, const PerturbUnit *units, Starts starts,
                          size_t number)
 {
     assert(starts.count <= STARTS_MAX);
     Scenario beside = kept_copy(scenario);
-    perturb_start(&beside, scales, starts.size, starts.seed * STARTS_MAX + (unsigned)number);
+    perturb_start(&beside, units, starts.size, starts.seed * STARTS_MAX + (unsigned)number);
     return beside;
 }
 
-void starts_scales(const Scenario *scenario, DistanceScale scales[KINEMATICS_BODY_MAX])
+void starts_units(const Scenario *scenario, PerturbUnit units[KINEMATICS_BODY_MAX])
 {
     Trajectory *own = run(scenario, BACKEND_REFERENCE);
-    distance_scales(own, scales);
+    perturb_units(own, units);
     trajectory_destroy(own);
 }
 
 static double horizon_of(const Scenario *scenario)
 {
-    DistanceScale scales[KINEMATICS_BODY_MAX];
+    PerturbUnit units[KINEMATICS_BODY_MAX];
     PerturbBasis basis;
     Trajectory *own = run(scenario, BACKEND_REFERENCE);
-    distance_scales(own, scales);
-    perturb_basis(scenario, scales, &basis);
+    perturb_units(own, units);
+    DistanceMeasure measure = distance_measure(own);
+    perturb_basis(scenario, &measure, units, &basis);
     const Growth growth = growth_find(&(GrowthWork){
         .solver = registry_solver(BACKEND_REFERENCE),
         .scenario = scenario,
         .beside = own,
-        .scales = scales,
+        .measure = &measure,
         .basis = &basis,
         .size = DISTANCE_PERTURBATION,
         .most = DISTANCE_GROWTH,
         .until_s = INFINITY,
     });
     assert(!growth.is_failed);
+    distance_finish(&measure);
     trajectory_destroy(own);
     return growth.until_s;
 }
 
-Median starts_horizon(const Scenario *scenario, const DistanceScale *scales, Starts starts)
+Median starts_horizon(const Scenario *scenario, const PerturbUnit *units, Starts starts)
 {
     double horizons[STARTS_MAX];
     for (size_t i = 0; i < starts.count; i++) {
-        const Scenario beside = start_of(scenario, scales, starts, i);
+        const Scenario beside = start_of(scenario, units, starts, i);
         horizons[i] = horizon_of(&beside);
     }
     return median_of(horizons, starts.count);
 }
 
-void starts_impact(const Scenario *scenario, const DistanceScale *scales, Starts starts,
-                   size_t joint, Median *force, Median *impulse)
+void starts_impact(const Scenario *scenario, const PerturbUnit *units, Starts starts, size_t joint,
+                   Median *force, Median *impulse)
 {
     double forces[STARTS_MAX];
     double impulses[STARTS_MAX];
     for (size_t i = 0; i < starts.count; i++) {
-        const Scenario beside = start_of(scenario, scales, starts, i);
+        const Scenario beside = start_of(scenario, units, starts, i);
         Trajectory *trajectory = run(&beside, BACKEND_ODE);
         forces[i] = trajectory->joints[joint].force_max.value;
         impulses[i] = trajectory->joints[joint].impulse;

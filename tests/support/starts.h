@@ -1,8 +1,8 @@
 // What many starts beside a scenario's own have in common: medians, with their standard errors.
 #pragma once
 
-#include "model/distance.h"
 #include "model/kinematics.h"
+#include "model/perturb.h"
 
 enum { STARTS_MAX = 256 };
 
@@ -18,11 +18,11 @@ typedef struct Starts {
 } Starts;
 
 // What a perturbation is relative to: the largest speeds of the reference's run.
-void starts_scales(const Scenario *scenario, DistanceScale scales[KINEMATICS_BODY_MAX]);
+void starts_units(const Scenario *scenario, PerturbUnit units[KINEMATICS_BODY_MAX]);
 
 // Up to when a start can be followed, s: to where small perturbations have grown 1e5 times.
-Median starts_horizon(const Scenario *scenario, const DistanceScale *scales, Starts starts);
+Median starts_horizon(const Scenario *scenario, const PerturbUnit *units, Starts starts);
 
 // Largest force, N, and impulse, N s, of a joint in ODE.
-void starts_impact(const Scenario *scenario, const DistanceScale *scales, Starts starts,
-                   size_t joint, Median *force, Median *impulse);
+void starts_impact(const Scenario *scenario, const PerturbUnit *units, Starts starts, size_t joint,
+                   Median *force, Median *impulse);

@@ -36,7 +36,7 @@ static inline int truth_fixture_set_up(void **state)
     fixture->runs[0]->evaluations = 54321;
     fixture->runs[1]->energy = (Energy){2.0, 0.5, 0.125, 1.25, 0.0625};
     fixture->errors[1].against = "reference";
-    fixture->errors[1].omega_max_in_horizon = 3e-9;
+    fixture->errors[1].max_in_horizon = 3e-9;
     own->truth = (Truth){
         .trajectory = fixture->runs[0],
         .uncertainty = 4e-10,

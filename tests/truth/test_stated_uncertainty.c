@@ -53,7 +53,7 @@ static double error_of(const Scenario *scenario, const Truth *truth, double spee
     const TrajectoryError error = error_against(truth->trajectory, exact, truth->horizon_s);
     trajectory_destroy(exact);
     assert_true(error.is_known);
-    return error.omega_max_in_horizon;
+    return error.max_in_horizon;
 }
 
 static void check(double rpm, double turns, double tolerance, bool has_control)
@@ -113,7 +113,7 @@ static void samples_that_miss_the_speed_state_their_error_as_well(void **state)
     const TruthOptions options = truth_options_default();
     TruthFigures figures;
     Trajectory *exact = truth_trajectory(&few, &problem, &options, truth.horizon_s, &figures);
-    const double error = error_against(truth.trajectory, exact, truth.horizon_s).omega_max;
+    const double error = error_against(truth.trajectory, exact, truth.horizon_s).max;
     // the control: relative to the speed of the impact, which other samples see
     const Scenario many = dropped_pin(1000);
     Truth at_impact = truth_make(&many, NOBODY);

@@ -24,6 +24,8 @@ Trajectory *truth_trajectory(const Scenario *scenario, const QuadProblem *proble
         sample.time_s = times[k];
         for (size_t i = 0; k < figures->samples && i < problem->body_count; i++) {
             const TruthSample *body = &samples[k * problem->body_count + i];
+            sample.bodies[i].position = (Vec2){(double)body->x, (double)body->y};
+            sample.bodies[i].angle = (double)body->angle;
             sample.bodies[i].velocity = (Vec2){(double)body->x_rate, (double)body->y_rate};
             sample.bodies[i].omega = (double)body->omega;
             // a difference from a number that is none would count as no error

@@ -28,8 +28,8 @@ static void add_runs(Ladder *ladder)
         run.is_complete = run.point != 5;
         strcpy(run.message, run.is_complete ? "" : "at 1 ms: the \"pin\", alas, has left");
         run.error = (TrajectoryError){.is_known = true,
-                                      .omega_max = 100.0 * step_s,
-                                      .omega_max_in_horizon = 50.0 * step_s,
+                                      .max = 100.0 * step_s,
+                                      .max_in_horizon = 50.0 * step_s,
                                       .omega_rms = step_s,
                                       .alpha_max = INFINITY};
         run.steps = (size_t)(0.06 / step_s);
@@ -128,7 +128,7 @@ static void a_truth_that_could_not_be_certified_has_no_horizon(void **state)
     strcpy(truth->message, "the tighter run left the plane");
     truth->uncertainty = INFINITY;
     for (size_t i = 0; i < fixture->ladder->point_count; i++) {
-        fixture->ladder->points[i].run.error.omega_max_in_horizon = NAN;
+        fixture->ladder->points[i].run.error.max_in_horizon = NAN;
     }
     ladder_conclude(fixture->ladder);
     compare_text_write(&fixture->report, &STYLE_PLAIN, &fixture->text);
@@ -148,7 +148,7 @@ static void a_truth_that_could_not_be_certified_has_no_horizon(void **state)
     const json_t *point = json_array_get(
         json_object_get(json_array_get(json_object_get(root, "schemes"), 0), "points"), 0);
     assert_string_equal(json_string_value(json_object_get(point, "status")), "ok");
-    assert_true(json_is_null(json_object_get(point, "error_omega")));
+    assert_true(json_is_null(json_object_get(point, "error_max")));
     assert_true(json_is_true(json_object_get(point, "on_frontier")) == 0);
     json_decref(root);
     text_finish(&fixture->text);
@@ -181,8 +181,8 @@ static void programs_read_the_same(void **state)
     assert_string_equal(json_string_value(json_object_get(direct, "map")), "textbook");
     assert_near(number(json_object_get(direct, "order"), "order"), 1.0, 1e-9);
     const json_t *point = at(direct, "points", 0);
-    assert_near(number(point, "error_omega"), 5e-4, 1e-15);
-    assert_near(number(json_object_get(point, "error"), "omega_max"), 1e-3, 1e-15);
+    assert_near(number(point, "error_max"), 5e-4, 1e-15);
+    assert_near(number(json_object_get(point, "error"), "max"), 1e-3, 1e-15);
     assert_true(json_is_null(json_object_get(json_object_get(point, "error"), "alpha_max")));
     assert_int_equal(json_array_size(json_object_get(point, "wall_s")), REPEATS);
     assert_true(json_is_true(json_object_get(point, "on_frontier")));
@@ -231,7 +231,7 @@ static void a_spreadsheet_has_as_many_cells_in_every_row(void **state)
     make_file(path);
     Err err = {0};
     // a point without an error has an empty cell and its reason
-    fixture->ladder->points[0].run.error.omega_max_in_horizon = NAN;
+    fixture->ladder->points[0].run.error.max_in_horizon = NAN;
     ladder_conclude(fixture->ladder);
     assert_true(compare_rows_write_csv(&fixture->report, path, &err));
     char line[4096];
@@ -323,8 +323,8 @@ static void the_frontier_goes_down_to_the_right(void **state)
     Fixture *fixture = *state;
     // a point of the second scheme comes between two of the first
     LadderPoint *between = &fixture->ladder->points[STEPS];
-    between->run.error.omega_max *= 0.6;
-    between->run.error.omega_max_in_horizon *= 0.6;
+    between->run.error.max *= 0.6;
+    between->run.error.max_in_horizon *= 0.6;
     ladder_conclude(fixture->ladder);
     assert_true(between->is_on_frontier);
     compare_plot_write(&fixture->report, &fixture->text);

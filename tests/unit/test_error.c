@@ -26,7 +26,7 @@ static Trajectory *made(const Scenario *scenario, double offset, double slip)
     return trajectory;
 }
 
-static void the_largest_relative_error_of_any_free_body_counts(void **state)
+static void the_largest_relative_error_of_any_rate_counts(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_paper();
@@ -36,26 +36,34 @@ static void the_largest_relative_error_of_any_free_body_counts(void **state)
     const TrajectoryError error = error_against(other, truth, INFINITY);
     assert_true(error.is_known);
     assert_string_equal(error.against, "made");
-    // the coupler, whose scale is 10; the crank is driven and does not count
+    // the coupler, whose scale is 10
+    assert_near(error.max, 0.03, 1e-15);
+    assert_near(error.max_time_s, scenario_sample_time(&scenario, 7), 1e-18);
+    assert_string_equal(error.in, "omega of coupler");
+    assert_false(error.is_floor);
     assert_near(error.omega_max, 0.03, 1e-15);
-    assert_near(error.omega_max_time_s, scenario_sample_time(&scenario, 7), 1e-18);
+    // the crank is driven and has no part in the mean
     assert_near(error.omega_rms, sqrt((0.03 * 0.03 + 0.003 * 0.003) / 42.0), 1e-15);
     assert_near(error.angle_max_rad, 0.02, 1e-15);
     assert_near(error.alpha_max, 0.0, 0.0);
     assert_near(trajectory_omega_scale(truth, 1), 10.0, 0.0);
+    // before the sample that is off, and where the horizon ends before the first sample
+    const double before_s = 0.5 * (truth->times[6] + truth->times[7]);
+    assert_near(error_against(other, truth, before_s).max_in_horizon, 0.0, 0.0);
+    assert_true(isnan(error_against(other, truth, 0.5 * truth->times[1]).max_in_horizon));
     trajectory_destroy(truth);
     trajectory_destroy(other);
 }
 
-// A slider whose velocity is off by some, and whose block turns by some.
-static Trajectory *made_sliding(const Scenario *scenario, double faster, double turning)
+// A slider that moves at 5 m/s in guides of the ground, off by some, and turns by some.
+static Trajectory *made_sliding(const Scenario *scenario, Vec2 off, double turning)
 {
     Trajectory *trajectory = made(scenario, 0.0, 0.0);
     for (size_t k = 0; k < trajectory->sample_count; k++) {
         Sample sample = sample_create(&scenario->linkage);
         sample.time_s = scenario_sample_time(scenario, k);
         sample.bodies[1].omega = 10.0;
-        sample.bodies[2].velocity.x = 5.0 + faster;
+        sample.bodies[2].velocity = vec2_add((Vec2){5.0, 0.0}, off);
         sample.bodies[2].omega = turning;
         trajectory_store(trajectory, k, &sample);
         sample_free(&sample);
@@ -63,24 +71,79 @@ static Trajectory *made_sliding(const Scenario *scenario, double faster, double 
     return trajectory;
 }
 
-// Its omega is 0 whatever its error.
-static void a_body_that_slides_is_measured_by_the_speed_of_its_points(void **state)
+static Scenario sliding(void)
 {
-    (void)state;
     Scenario scenario = slider_driven(&SLIDER_USUAL, 100.0);
     scenario.run.revolutions = 1.0;
     scenario.run.samples = 20;
     slider_loosen_guide(&scenario, 0.061, 0.06, 0.08);
-    Trajectory *truth = made_sliding(&scenario, 0.0, 0.0);
-    Trajectory *faster = made_sliding(&scenario, 0.01, 0.0);
-    Trajectory *turning = made_sliding(&scenario, 0.0, 2.0);
-    // half a diagonal of the block
-    assert_near(linkage_reach(&scenario.linkage, 2), 0.05, 1e-17);
-    assert_near(error_against(faster, truth, INFINITY).omega_max, 0.01 / 5.0, 1e-15);
-    assert_near(error_against(turning, truth, INFINITY).omega_max, 2.0 * 0.05 / 5.0, 1e-15);
+    return scenario;
+}
+
+static void a_velocity_counts_as_a_vector_and_a_tilt_rate_by_itself(void **state)
+{
+    (void)state;
+    Scenario scenario = sliding();
+    Trajectory *truth = made_sliding(&scenario, (Vec2){0.0, 0.0}, 0.1);
+    Trajectory *faster = made_sliding(&scenario, (Vec2){0.03, 0.04}, 0.1);
+    Trajectory *turning = made_sliding(&scenario, (Vec2){0.0, 0.0}, 0.102);
+    const TrajectoryError of_velocity = error_against(faster, truth, INFINITY);
+    assert_near(of_velocity.max, 0.05 / 5.0, 1e-15);
+    assert_string_equal(of_velocity.in, "velocity of slider");
+    assert_near(of_velocity.omega_max, 0.0, 0.0);
+    // 2 % of its own rate, though a point of it moves hardly faster for it
+    const TrajectoryError of_tilt = error_against(turning, truth, INFINITY);
+    assert_near(of_tilt.max, 0.02, 1e-13);
+    assert_string_equal(of_tilt.in, "omega of slider");
     trajectory_destroy(truth);
     trajectory_destroy(faster);
     trajectory_destroy(turning);
+}
+
+// What hardly moves is measured by a millionth of the fastest point's speed, over the reach.
+static void a_rate_that_is_nothing_has_a_floor(void **state)
+{
+    (void)state;
+    Scenario scenario = sliding();
+    Trajectory *truth = made_sliding(&scenario, (Vec2){0.0, 0.0}, 0.0);
+    Trajectory *turning = made_sliding(&scenario, (Vec2){0.0, 0.0}, 1e-6);
+    double fastest = 0.0;
+    for (size_t i = 0; i < 3; i++) {
+        const Motion *motion = trajectory_motion(truth, 0, i);
+        const double speed = vec2_length(motion->velocity) +
+                             fabs(motion->omega) * linkage_reach(&scenario.linkage, (int)i);
+        fastest = fmax(fastest, speed);
+    }
+    const TrajectoryError error = error_against(turning, truth, INFINITY);
+    // half a diagonal of the block
+    assert_near(linkage_reach(&scenario.linkage, 2), 0.05, 1e-17);
+    assert_close(error.max, 1e-6 / (1e-6 * fastest / 0.05), 1e-12);
+    assert_true(error.is_floor);
+    trajectory_destroy(truth);
+    trajectory_destroy(turning);
+}
+
+// The pin's own velocity in its hole is small beside those of the bodies, and so is its scale.
+static void a_pin_is_measured_in_its_hole(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_loose(1);
+    scenario.run.samples = 20;
+    const Joint *joint = &scenario.linkage.joints[1];
+    DistanceMeasure rates = distance_rates(&scenario.linkage);
+    assert_int_equal(rates.count, 7);
+    assert_int_equal(rates.rates[6].kind, DISTANCE_PLAY);
+    Motion motions[3];
+    linkage_start(&scenario.linkage, motions);
+    const DistanceMotion motion = {motions, NULL};
+    // at the start it goes with its hole, as the ideal joint does
+    assert_near(distance_value(&scenario.linkage, &rates.rates[6], motion).x, 0.0, 1e-12);
+    motions[joint->body_b].velocity.y += 0.25;
+    assert_near(distance_value(&scenario.linkage, &rates.rates[6], motion).y, 0.25, 1e-12);
+    char name[DISTANCE_NAME_SIZE];
+    distance_name(&scenario.linkage, &rates.rates[6], name);
+    assert_string_equal(name, "pin velocity in crank-coupler");
+    distance_finish(&rates);
 }
 
 static void a_failed_run_has_no_error(void **state)
@@ -112,8 +175,10 @@ static void a_number_that_is_not_finite_is_no_small_error(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_largest_relative_error_of_any_free_body_counts),
-        cmocka_unit_test(a_body_that_slides_is_measured_by_the_speed_of_its_points),
+        cmocka_unit_test(the_largest_relative_error_of_any_rate_counts),
+        cmocka_unit_test(a_velocity_counts_as_a_vector_and_a_tilt_rate_by_itself),
+        cmocka_unit_test(a_rate_that_is_nothing_has_a_floor),
+        cmocka_unit_test(a_pin_is_measured_in_its_hole),
         cmocka_unit_test(a_failed_run_has_no_error),
         cmocka_unit_test(a_number_that_is_not_finite_is_no_small_error),
     };

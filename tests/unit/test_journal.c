@@ -331,14 +331,14 @@ static void every_run_comes_back_from_its_line(void **state)
                      .evaluations = 5,
                      .wall_s = 0.25,
                      .hash = 0xfedcba9876543210u};
-    run.error = (TrajectoryError){.is_known = true, .omega_max = 1.0 / 3.0, .alpha_max = INFINITY};
+    run.error = (TrajectoryError){.is_known = true, .max = 1.0 / 3.0, .alpha_max = INFINITY};
     line = ladder_json_run(ladder, &run, "m");
     assert_int_equal(ladder_json_take(other, linkage, line, "m"), LADDER_JSON_TAKEN);
     assert_int_equal(ladder_json_take(other, linkage, line, "m"), LADDER_JSON_UNUSED);
     json_decref(line);
     const LadderRun *taken = &other->points[1].run;
     assert_true(taken->hash == run.hash && taken->steps == 20000 && taken->is_complete);
-    assert_near(taken->error.omega_max, 1.0 / 3.0, 0.0);
+    assert_near(taken->error.max, 1.0 / 3.0, 0.0);
     assert_true(isnan(taken->error.alpha_max));
     // times are only those of this machine
     run.kind = LADDER_TIMING;

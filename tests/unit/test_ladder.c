@@ -35,8 +35,8 @@ static void fill(Ladder *ladder)
         const LadderPoint *point = &ladder->points[run.point];
         const double step_s = point->step_s > 0.0 ? point->step_s : 1e-4;
         run.is_complete = true;
-        run.error = (TrajectoryError){.is_known = true, .omega_max = 10.0 * step_s};
-        run.error.omega_max_in_horizon = 0.5 * run.error.omega_max;
+        run.error = (TrajectoryError){.is_known = true, .max = 10.0 * step_s};
+        run.error.max_in_horizon = 0.5 * run.error.max;
         run.steps = 100;
         run.wall_s = (1.0 + (double)point->scheme) * 1e-6 / step_s + 1e-5 * (double)run.round;
         assert_true(ladder_add(ladder, &run));
@@ -176,9 +176,9 @@ static void unstable_and_unknown_errors_are_no_numbers(void **state)
     (void)state;
     Ladder *ladder = make_ladder();
     fill(ladder);
-    ladder->points[0].run.error.omega_max = 1.5;
+    ladder->points[0].run.error.max = 1.5;
     ladder->points[1].run.error.is_known = false;
-    ladder->points[2].run.error.omega_max = NAN;
+    ladder->points[2].run.error.max = NAN;
     strcpy(ladder->points[3].timing_message, "took too long");
     ladder_conclude(ladder);
     assert_non_null(strstr(ladder->points[0].reason, "unstable"));
@@ -195,7 +195,7 @@ static void a_point_without_a_sample_in_the_horizon_has_no_error(void **state)
     Ladder *ladder = make_ladder();
     fill(ladder);
     ladder->truth.is_limited = true;
-    ladder->points[0].run.error.omega_max_in_horizon = NAN;
+    ladder->points[0].run.error.max_in_horizon = NAN;
     ladder_conclude(ladder);
     const LadderPoint *point = &ladder->points[0];
     assert_false(point->is_failed || point->is_on_frontier || point->is_limited_by_truth);
@@ -425,7 +425,7 @@ static void a_task_does_in_this_process_what_it_does_in_a_child(void **state)
     LadderRun run;
     task_measure(&task, &run);
     assert_true(run.is_complete && run.error.is_known);
-    assert_true(run.error.omega_max > 1e-4 && run.error.omega_max < 1e-1);
+    assert_true(run.error.max > 1e-4 && run.error.max < 1e-1);
     assert_true(run.steps > 600 && run.hash != 0 && run.wall_s > 0.0);
     Ensemble ensemble = {0};
     task_spread(&task, &ensemble);

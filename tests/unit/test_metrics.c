@@ -41,7 +41,7 @@ static void columns_have_names_with_units(void **state)
     assert_int_equal(layout.results[column(&layout, "crank_coupler_impacts")].kind, COLUMN_WHOLE);
     column(&layout, "follower_omega_max_rad_s");
     column(&layout, "coupler_alpha_min_rad_s2");
-    column(&layout, "error_omega_max_in_horizon");
+    column(&layout, "error_max_in_horizon");
     // the crank is driven, the other joints are ideal
     for (size_t i = 0; i < layout.result_count; i++) {
         assert_true(strncmp(layout.results[i].name, "crank_omega", 11) != 0);
@@ -50,7 +50,7 @@ static void columns_have_names_with_units(void **state)
     const Spec bare = one_key(false);
     Layout short_one;
     metrics_layout(&bare, &scenario, &short_one);
-    assert_int_equal(short_one.result_count + 6, layout.result_count);
+    assert_int_equal(short_one.result_count + 8, layout.result_count);
 }
 
 static void names_that_become_one_are_numbered(void **state)
@@ -93,7 +93,7 @@ static void results_are_those_of_the_trajectory(void **state)
                 joint->contact_time / run->duration_s);
     assert_true(results[column(&layout, "steps")] == (double)run->steps);
     assert_true(results[column(&layout, "energy_residual_J")] == run->energy.residual);
-    assert_true(results[column(&layout, "error_omega_max")] == error.omega_max);
+    assert_true(results[column(&layout, "error_max")] == error.max);
     assert_true(results[column(&layout, "error_horizon_s")] == 0.01);
     assert_true(results[column(&layout, "error_reference_uncertainty")] == 1e-9);
     double peak = 0.0;
@@ -117,13 +117,13 @@ static void without_a_truth_there_is_no_error(void **state)
     Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
     double results[RECORD_RESULT_MAX];
     metrics_take(&scenario, run, NULL, results);
-    assert_true(isnan(results[column(&layout, "error_omega_max")]));
+    assert_true(isnan(results[column(&layout, "error_max")]));
     assert_true(isnan(results[column(&layout, "error_horizon_s")]));
     // a truth that is not certified gives errors, and no horizon to trust
     Truth open = {.trajectory = run, .horizon_s = 0.01};
     strcpy(open.message, "its two runs differ");
     metrics_take(&scenario, run, &open, results);
-    assert_true(results[column(&layout, "error_omega_max")] == 0.0);
+    assert_true(results[column(&layout, "error_max")] == 0.0);
     assert_true(isnan(results[column(&layout, "error_horizon_s")]));
     // the reference has no step of its own
     assert_true(isnan(results[column(&layout, "step_s")]));

@@ -11,22 +11,22 @@
 
 enum { SEEDS = 20 };
 
-// The scales of a scenario's start, as of a trajectory of one sample.
-static void start_scales(const Scenario *scenario, DistanceScale scales[KINEMATICS_BODY_MAX])
+// The units of a scenario's start, as of a trajectory of one sample.
+static void start_units(const Scenario *scenario, PerturbUnit units[KINEMATICS_BODY_MAX])
 {
     Trajectory *trajectory = trajectory_create(scenario, "start");
     trajectory->sample_count = 1;
     linkage_start(&scenario->linkage, trajectory->motions);
-    distance_scales(trajectory, scales);
+    perturb_units(trajectory, units);
     trajectory_destroy(trajectory);
 }
 
 static Scenario perturbed(const Scenario *scenario, double size, unsigned member)
 {
-    DistanceScale scales[KINEMATICS_BODY_MAX];
-    start_scales(scenario, scales);
+    PerturbUnit units[KINEMATICS_BODY_MAX];
+    start_units(scenario, units);
     Scenario beside = kept_copy(scenario);
-    assert_true(perturb_start(&beside, scales, size, member));
+    assert_true(perturb_start(&beside, units, size, member));
     return beside;
 }
 
@@ -45,15 +45,15 @@ static void a_start_of_some_size_is_that_far_away(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_loose(1);
-    DistanceScale scales[KINEMATICS_BODY_MAX];
-    start_scales(&scenario, scales);
+    PerturbUnit units[KINEMATICS_BODY_MAX];
+    start_units(&scenario, units);
     for (unsigned member = 1; member <= SEEDS; member++) {
         const Scenario beside = perturbed(&scenario, 1e-4, member);
         double largest = 0.0;
         for (size_t i = 1; i < 3; i++) {
             const double moving = vec2_length(velocity_change(&scenario, &beside, i));
-            largest = fmax(largest, fabs(omega_change(&scenario, &beside, i)) / scales[i].omega);
-            largest = fmax(largest, moving / scales[i].moving);
+            largest = fmax(largest, fabs(omega_change(&scenario, &beside, i)) / units[i].turning);
+            largest = fmax(largest, moving / units[i].moving);
         }
         assert_close(largest, 1e-4, 1e-9);
         Motion motions[KINEMATICS_BODY_MAX];
@@ -73,9 +73,9 @@ static void where_nothing_is_free_nothing_is_perturbed(void **state)
     const Scenario *const scenarios[] = {&ideal, &redundant};
     for (int i = 0; i < 2; i++) {
         Scenario beside = *scenarios[i];
-        DistanceScale scales[KINEMATICS_BODY_MAX];
-        start_scales(&beside, scales);
-        assert_false(perturb_start(&beside, scales, 1e-3, 1));
+        PerturbUnit units[KINEMATICS_BODY_MAX];
+        start_units(&beside, units);
+        assert_false(perturb_start(&beside, units, 1e-3, 1));
         assert_memory_equal(&beside, scenarios[i], sizeof beside);
     }
 }

@@ -44,7 +44,7 @@ static void json_holds_the_keys_that_others_rely_on(void **state)
     assert_true(number_at(run, "joints", "crank-coupler", "impulse_N_s") == 0.75);
     assert_true(number_at(run, "joints", "crank-coupler", "penetration_max_m") == 2.5e-6);
     assert_close(number_at(run, "joints", "crank-coupler", "contact_fraction"), 0.25, 1e-12);
-    assert_true(number_at(run, "error", "omega_max", NULL) == 0.017);
+    assert_true(number_at(run, "error", "max", NULL) == 0.017);
     assert_true(number_at(run, "error", "omega_rms", NULL) == 0.004);
     const json_t *error = json_object_get(run, "error");
     assert_string_equal(json_string_value(json_object_get(error, "against")), "analytic");
@@ -68,7 +68,7 @@ static void json_holds_the_truth_and_what_limits_it(void **state)
     assert_true(json_is_true(json_object_get(truth, "is_limited")));
     assert_true(json_is_false(json_object_get(truth, "other_contact_model")));
     const json_t *run = json_array_get(json_object_get(root, "runs"), 1);
-    assert_true(number_at(run, "error", "omega_max_in_horizon", NULL) == 3e-9);
+    assert_true(number_at(run, "error", "max_in_horizon", NULL) == 3e-9);
     assert_true(number_at(run, "error", "horizon_s", NULL) == 0.02);
     assert_true(number_at(run, "error", "reference_uncertainty", NULL) == 4e-10);
     const json_t *error = json_object_get(run, "error");

@@ -286,7 +286,7 @@ static void a_truth_that_holds_is_told_in_one_line(void **state)
     };
     own->truth.is_limited = false;
     own->fixture->report.ensembles = NULL;
-    own->fixture->errors[1].omega_max_in_horizon = 4.1e-9;
+    own->fixture->errors[1].max_in_horizon = 4.1e-9;
     // without a drive, or where its work is rounding, the largest energy is another one: kinetic
     // 0.785 mJ, change 1.25 J
     own->fixture->runs[1]->energy.drive_work = 0.0;
@@ -310,14 +310,14 @@ static void a_truth_that_is_not_sure_does_not_hold(void **state)
     own->truth.is_limited = false;
     own->truth.uncertainty = 2e-3;
     run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
-    assert_non_null(strstr(text.data, "own uncertainty is 0.002 of omega"));
+    assert_non_null(strstr(text.data, "own uncertainty is 0.002 over the run"));
     assert_null(strstr(text.data, "holds through"));
     text_finish(&text);
     text_init(&text);
     strcpy(own->truth.message, "the twin left the plane");
     own->truth.is_limited = true;
     own->truth.uncertainty = INFINITY;
-    own->fixture->errors[1].omega_max_in_horizon = NAN;
+    own->fixture->errors[1].max_in_horizon = NAN;
     run_text_write(&own->fixture->report, &STYLE_PLAIN, &text);
     assert_non_null(strstr(text.data, "could not be certified: the twin left the plane"));
     assert_null(strstr(text.data, "cannot be predicted"));

@@ -26,14 +26,16 @@ static void a_series_has_the_columns_that_others_rely_on(void **state)
               "crank-coupler_ex_m,crank-coupler_ey_m,crank-coupler_gap_m,crank-coupler_force_N,"
               "coupler-follower_ex_m,coupler-follower_ey_m,coupler-follower_gap_m,"
               "coupler-follower_force_N,follower-ground_ex_m,follower-ground_ey_m,"
-              "follower-ground_gap_m,follower-ground_force_N,tip_x_m,tip_y_m");
+              "follower-ground_gap_m,follower-ground_force_N,tip_x_m,tip_y_m,"
+              "crank_vx_m_s,crank_vy_m_s,coupler_vx_m_s,coupler_vy_m_s,follower_vx_m_s,"
+              "follower_vy_m_s,crank-coupler_vx_m_s,crank-coupler_vy_m_s");
     size_t rows = 0;
     while ((line = strtok(NULL, "\n")) != NULL) {
-        double values[29];
+        double values[37];
         char *rest = line;
-        for (int i = 0; i < 29; i++) {
+        for (int i = 0; i < 37; i++) {
             values[i] = strtod(rest, &rest);
-            assert_true(*rest == (i < 28 ? ',' : '\0'));
+            assert_true(*rest == (i < 36 ? ',' : '\0'));
             rest++;
         }
         // 17 digits bring back every bit
@@ -102,7 +104,7 @@ static void ranges_stand_behind_the_samples(void **state)
     for (int i = 1; i <= SAMPLES; i++) {
         rows[i] = strtok(NULL, "\n");
     }
-    assert_non_null(strstr(rows[0], ",tip_x_m,tip_y_m,crank_omega_min_rad_s,"));
+    assert_non_null(strstr(rows[0], ",tip_x_m,tip_y_m,crank_vx_m_s,crank_vy_m_s,"));
     assert_non_null(strstr(rows[0], "follower-ground_force_min_N,follower-ground_force_max_N"));
     const size_t least = column_of(rows[0], "coupler_alpha_min_rad_s2");
     const size_t most = column_of(rows[0], "coupler_alpha_max_rad_s2");

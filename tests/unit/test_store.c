@@ -360,7 +360,7 @@ static void a_run_that_missed_its_truth_is_made_again(void **state)
     for (uint64_t run = 0; run < 3; run++) {
         Record record = study_record(&layout, run);
         if (run == 1) {
-            record.results[store_column(&layout, "error_omega_max") - layout.setting_count] = NAN;
+            record.results[store_column(&layout, "error_max") - layout.setting_count] = NAN;
         }
         assert_true(store_add(store, &record, &err));
     }

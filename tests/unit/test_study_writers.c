@@ -243,14 +243,14 @@ static void a_picture_has_lines_on_a_grid_and_dots_elsewhere(void **state)
     (void)state;
     make_store(RUNS);
     // eight steps, shared by many runs: a median each and two lines, with bands
-    Text svg = draw("run_step_s", "error_omega_max", "scheme");
+    Text svg = draw("run_step_s", "error_max", "scheme");
     assert_int_equal(count_words(svg.data, "<circle"), 2 * 8 + 2);
     assert_int_equal(count_words(svg.data, "fill-opacity=\"0.16\""), 2);
     assert_has(svg, "196 runs: median, and the band that nine of ten lie in");
     assert_has(svg, "4 without a result left out");
     text_finish(&svg);
     // a result has a value of its own in each run
-    svg = draw("coupler_omega_max_rad_s", "error_omega_max", NULL);
+    svg = draw("coupler_omega_max_rad_s", "error_max", NULL);
     assert_true(count_words(svg.data, "<circle") > 180);
     assert_int_equal(count_words(svg.data, "fill-opacity=\"0.16\""), 0);
     assert_has(svg, "a dot each");
@@ -261,7 +261,7 @@ static void a_picture_of_one_column_is_its_distribution(void **state)
 {
     (void)state;
     make_store(RUNS);
-    Text svg = draw("error_omega_max", NULL, NULL);
+    Text svg = draw("error_max", NULL, NULL);
     assert_has(svg, "share of the runs, %");
     assert_has(svg, "median ");
     assert_int_equal(count_words(svg.data, "fill-opacity=\"0.16\""), 1);

@@ -29,7 +29,7 @@ static LadderRun run_of(double error, size_t steps)
 {
     return (LadderRun){
         .is_complete = true,
-        .error = {.is_known = true, .omega_max = error, .omega_max_in_horizon = error},
+        .error = {.is_known = true, .max = error, .max_in_horizon = error},
         .steps = steps,
         .wall_s = 1e-6 * (double)steps,
         .processor_s = 1e-6 * (double)steps,

@@ -245,15 +245,15 @@ static void add_cost(CheckAdd *work, const Trajectory *run)
 void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
                      double uncertainty)
 {
-    const double values[] = {error->omega_max, error->omega_rms, error->alpha_max};
-    static const char *const NAMES[] = {"omega_max_1", "omega_rms_1", "alpha_max_1"};
-    for (int i = 0; i < 3; i++) {
+    const double values[] = {error->max, error->omega_max, error->omega_rms, error->alpha_max};
+    static const char *const NAMES[] = {"max_1", "omega_max_1", "omega_rms_1", "alpha_max_1"};
+    for (int i = 0; i < 4; i++) {
         add(work, run, "error", NAMES[i],
             (CheckMetric){.kind = CHECK_REAL,
                           .value = values[i],
                           .scale = values[i],
                           .floor =
-                              ROUNDING + uncertainty + (i == 2 ? alpha_rounding(run, 1.0) : 0.0)});
+                              ROUNDING + uncertainty + (i == 3 ? alpha_rounding(run, 1.0) : 0.0)});
     }
 }
 

@@ -45,7 +45,7 @@ static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, Backend
 static double find_error(CheckAdd *work, const Scenario *scenario, const Trajectory *truth)
 {
     Trajectory *run = run_backend(work, scenario, BACKEND_ODE, NULL);
-    const double error = run != NULL ? error_against(run, truth, INFINITY).omega_max : NAN;
+    const double error = run != NULL ? error_against(run, truth, INFINITY).max : NAN;
     trajectory_destroy(run);
     return error;
 }
@@ -56,7 +56,7 @@ static void add_orders(CheckAdd *work, const Trajectory *run, const Trajectory *
 {
     static const char *const NAMES[HALVINGS] = {"order_1", "order_at_half_step_1"};
     Scenario scenario = *work->scenario;
-    double error = error_against(run, truth, INFINITY).omega_max;
+    double error = error_against(run, truth, INFINITY).max;
     for (int i = 0; i < HALVINGS && work->measure->is_complete; i++) {
         scenario.run.step *= 0.5;
         const double finer = find_error(work, &scenario, truth);
@@ -184,15 +184,15 @@ void check_measure_start(Scenario *scenario, CheckStart start)
         shake_inputs(scenario, start.shake);
     }
     if (start.member > 0) {
-        DistanceScale *scales = zeroed(scenario->linkage.body_count, sizeof *scales);
+        PerturbUnit *units = zeroed(scenario->linkage.body_count, sizeof *units);
         Trajectory *own = backend_run(scenario, motion_backend(scenario), NULL, NOBODY, NULL);
         // a run that fails here will fail when it is measured
         if (own->is_complete) {
-            distance_scales(own, scales);
-            perturb_start(scenario, scales, start.share, start.member);
+            perturb_units(own, units);
+            perturb_start(scenario, units, start.share, start.member);
         }
         trajectory_destroy(own);
-        free(scales);
+        free(units);
     }
 }
 

@@ -14,7 +14,7 @@ typedef struct OutcomeRun {
     bool is_short; // its step was chosen, and its tolerance does not hold to the end
     char message[CHECK_OUTCOME_TEXT_SIZE]; // why it is not complete, or is short
     bool has_error;
-    double error;       // 1, of omega up to the horizon; of the reference itself its uncertainty
+    double error;       // 1, up to the horizon; of the reference itself its uncertainty
     double bound;       // 1, that a run with a chosen step states; else 0
     double bound_error; // 1, its error as far as the bound holds
     double step_s;

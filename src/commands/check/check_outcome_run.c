@@ -43,13 +43,12 @@ static void keep_error(const Piece *piece, const Trajectory *run, OutcomeRun *re
     if (!is_truth) {
         const double horizon_s = truth->is_limited ? truth->horizon_s : INFINITY;
         const TrajectoryError error = error_against(run, truth->trajectory, horizon_s);
-        result->error = error.is_known ? error.omega_max_in_horizon : NAN;
+        result->error = error.is_known ? error.max_in_horizon : NAN;
     }
     result->has_error = isfinite(result->error);
     if (run->error_estimate > 0.0) {
         result->bound = run->error_estimate;
-        result->bound_error =
-            error_against(run, truth->trajectory, run->estimate_s).omega_max_in_horizon;
+        result->bound_error = error_against(run, truth->trajectory, run->estimate_s).max_in_horizon;
     }
 }
 

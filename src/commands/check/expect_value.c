@@ -16,14 +16,16 @@ static double error_number(const TrajectoryError *error, ExpectedNumber number)
     if (error == NULL || !error->is_known) {
         return NAN;
     }
-    return number == EXPECTED_ERROR_OMEGA_MAX   ? error->omega_max
+    return number == EXPECTED_ERROR_MAX         ? error->max
+           : number == EXPECTED_ERROR_OMEGA_MAX ? error->omega_max
            : number == EXPECTED_ERROR_OMEGA_RMS ? error->omega_rms
                                                 : error->alpha_max;
 }
 
 bool expect_value_is_error(const Expectation *expectation)
 {
-    return expectation->number == EXPECTED_ERROR_OMEGA_MAX ||
+    return expectation->number == EXPECTED_ERROR_MAX ||
+           expectation->number == EXPECTED_ERROR_OMEGA_MAX ||
            expectation->number == EXPECTED_ERROR_OMEGA_RMS ||
            expectation->number == EXPECTED_ERROR_ALPHA_MAX;
 }

@@ -82,8 +82,8 @@ static void choose_axes(const Ladder *ladder, PlotPanel *panel)
     panel->x = (Axis){
         .title = "wall time of the run, ms", .scale = AXIS_LOG, .low = low_x, .high = high_x};
     panel->y = (Axis){.title = ladder->truth.is_limited
-                                   ? "largest error of omega within the horizon, relative"
-                                   : "largest error of omega, relative",
+                                   ? "largest error within the horizon, relative"
+                                   : "largest error, relative",
                       .scale = AXIS_LOG,
                       .low = low_y,
                       .high = high_y};

@@ -81,7 +81,7 @@ static const Field DONE_FIELDS[] = {
     {"evaluations", FIELD_COUNT, FIELD_FILES, AT(run.evaluations)},
     {NULL, FIELD_NUMBER, FIELD_TABLE, "evaluations", "", "%.0f", .align = TABLE_DETAIL,
      .number = evaluations_of},
-    {"error_omega", FIELD_NUMBER, FIELD_FILES | TABLES, "error", "of omega", "%.2e", AT(error)},
+    {"error_max", FIELD_NUMBER, FIELD_FILES | TABLES, "error", "1", "%.2e", AT(error)},
     {"limited_by_truth", FIELD_FLAG, FIELD_FILES, AT(is_limited_by_truth)},
     {"error", FIELD_GROUP, FIELD_JSON, AT(run.error), .of = ERROR_FIELDS},
     {NULL, FIELD_GROUP, FIELD_CSV, AT(run.error), .of = ERROR_FIELDS},

@@ -16,7 +16,7 @@ static void write_head(const CompareReport *report, const Style *style, Text *te
         text_append(text, "  truth       %s, made in %.3g s; could not be certified: %s\n",
                     truth->backend, truth->wall_s, truth->message);
     } else {
-        text_append(text, "  truth       %s, to %.2g of omega; made and certified in %.3g s\n",
+        text_append(text, "  truth       %s, to %.2g; made and certified in %.3g s\n",
                     truth->backend, truth->uncertainty, truth->wall_s);
     }
     if (truth->is_limited && truth->message[0] == '\0') {

@@ -56,7 +56,8 @@ static double evaluations_shown(const void *record)
 
 static json_t *is_held(const void *record)
 {
-    return json_boolean(!((const Trajectory *)record)->is_short);
+    const Trajectory *run = record;
+    return json_boolean(!run->is_short && !run->estimate_is_cut);
 }
 
 static double unknown(const void *record)

@@ -49,7 +49,7 @@ static inline bool run_report_is_limited_by_reference(const RunReport *report,
                                                       const TrajectoryError *error)
 {
     return run_report_is_certified(report, error) &&
-           error->omega_max_in_horizon < ERROR_CLEAR_OF_TRUTH * report->truth->uncertainty;
+           error->max_in_horizon < ERROR_CLEAR_OF_TRUTH * report->truth->uncertainty;
 }
 
 // Whether errors against the reference contain more than a solver's own: it knows contact by its

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// of omega: a reference that is less sure than this holds nowhere
+// 1: a reference that is less sure than this holds nowhere
 static const double HOLDS = 1e-3;
 
 static void error_row(Table *table, const RunReport *report, size_t run)
@@ -19,11 +19,13 @@ static void error_row(Table *table, const RunReport *report, size_t run)
     const bool is_certified = run_report_is_certified(report, error);
     table_cell(table, "%s", report->runs[run]->backend);
     table_cell(table, "%s", error->against);
-    section_number(table, error->omega_max);
-    section_number(table, error->omega_max_time_s * UNITS_MS);
-    section_number_or_dash(table, is_certified && isfinite(error->omega_max_in_horizon),
-                           error->omega_max_in_horizon);
+    section_number(table, error->max);
+    section_number(table, error->max_time_s * UNITS_MS);
+    section_number_or_dash(table, is_certified && isfinite(error->max_in_horizon),
+                           error->max_in_horizon);
     section_number_or_dash(table, is_certified, is_certified ? report->truth->uncertainty : 0.0);
+    table_cell(table, "%s%s", error->in, error->is_floor ? " (floor)" : "");
+    section_number(table, error->omega_max);
     section_number(table, error->omega_rms);
     section_number(table, error->alpha_max);
     section_number(table, error->angle_max_rad * UNITS_DEG);
@@ -48,8 +50,7 @@ static void write_horizon(const RunReport *report, Text *text)
                     "distributions over many starts can be compared.\n",
                     truth->horizon_s * UNITS_MS, end_ms, truth->growth);
     } else if (!(truth->uncertainty <= HOLDS)) {
-        text_append(text,
-                    "  The reference's own uncertainty is %.2g of omega over the run of %.4g ms.\n",
+        text_append(text, "  The reference's own uncertainty is %.2g over the run of %.4g ms.\n",
                     truth->uncertainty, end_ms);
     } else {
         text_append(text,
@@ -108,28 +109,32 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
     static const SectionHead HEADS[] = {
         {"backend", "", TABLE_LEFT},
         {"against", "", TABLE_LEFT},
-        {"omega max", "1", TABLE_RIGHT},
-        {"at time", "ms", TABLE_RIGHT | TABLE_MINOR},
+        {"largest", "1", TABLE_RIGHT},
+        {"at time", "ms", TABLE_RIGHT | TABLE_DETAIL},
         {"in horizon", "1", TABLE_RIGHT},
         {"reference +-", "1", TABLE_RIGHT},
-        {"omega rms", "1", TABLE_RIGHT | TABLE_MINOR},
+        {"in", "", TABLE_LEFT},
+        {"omega max", "1", TABLE_RIGHT | TABLE_MINOR},
+        {"omega rms", "1", TABLE_RIGHT | TABLE_DETAIL},
         {"alpha max", "1", TABLE_RIGHT | TABLE_DETAIL},
         {"angle max", "deg", TABLE_RIGHT | TABLE_DETAIL},
         {"", "", TABLE_LEFT},
     };
     Table *table = NULL;
     bool includes_play = false;
+    bool has_floor = false;
     for (size_t i = 0; i < report->run_count; i++) {
         const TrajectoryError *error = &report->errors[i];
         if (!report->runs[i]->is_complete || !error->is_known) {
             continue;
         }
         if (table == NULL) {
-            table = section_begin("Error at the samples, over the reference's largest value", 10,
+            table = section_begin("Error at the samples, over the reference's largest value", 12,
                                   HEADS, style, text);
         }
         error_row(table, report, i);
         includes_play = includes_play || run_report_includes_play(report, i);
+        has_floor = has_floor || error->is_floor;
     }
     if (table == NULL) {
         write_truth_alone(report, style, text);
@@ -139,6 +144,12 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
     if (includes_play) {
         text_append(text, "  The analytic solver takes every joint as ideal: an error of it, or "
                           "against it, contains the play itself.\n");
+    }
+    if (has_floor) {
+        text_append(text,
+                    "  (floor): that rate is next to nothing in the reference, and its error is "
+                    "relative to %g of the speed of the fastest point.\n",
+                    DISTANCE_FLOOR);
     }
     if (run_report_has_truth(report)) {
         write_horizon(report, text);

@@ -115,18 +115,23 @@ static const Metric METRICS[] = {
     RUN("fallback_rows", WHOLE, NOTHING, fallback_rows,
         "contact rows for which the requested map would have been unstable"),
     RUN("error_estimate", REAL, TRIALS, error_estimate,
-        "upper bound of the error of omega, for a step chosen for a tolerance"),
+        "upper bound of the error, for a step chosen for a tolerance"),
     RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds"),
+    ERROR("error_max", REAL, NOTHING, max,
+          "largest error of any body's angular velocity or velocity, or of a pin's in its hole, each "
+          "relative to its own largest value"),
+    ERROR("error_max_in_horizon", REAL, NOTHING, max_in_horizon,
+          "the same up to the predictability horizon"),
     ERROR("error_omega_max", REAL, NOTHING, omega_max,
-          "largest error of omega, relative to each body's largest omega"),
+          "the part of angular velocities in it"),
     ERROR("error_omega_max_in_horizon", REAL, NOTHING, omega_max_in_horizon,
           "the same up to the predictability horizon"),
-    ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the same error"),
+    ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the errors of omega"),
     ERROR("error_alpha_max", REAL, NOTHING, alpha_max,
           "largest error of alpha, relative to each body's largest alpha"),
     TRUTH("error_horizon_s", REAL, CERTIFICATE, horizon_s, "predictability horizon"),
     TRUTH("error_reference_uncertainty", REAL, CERTIFICATE, uncertainty,
-          "uncertainty of the reference's omega, relative in the same way"),
+          "uncertainty of the reference, relative in the same way"),
 };
 // clang-format on
 enum { METRIC_COUNT = sizeof METRICS / sizeof *METRICS };

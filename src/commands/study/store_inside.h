@@ -14,7 +14,7 @@ enum {
 };
 
 // The first of the columns of a run's error, see metrics.c.
-static const char STORE_ERROR_COLUMN[] = "error_omega_max";
+static const char STORE_ERROR_COLUMN[] = "error_max";
 
 struct Store {
     struct sqlite3 *base;

@@ -143,7 +143,7 @@ bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
     bool is_done = forget_damaged(store, forgotten, err) &&
                    store_run_sql(store,
                                  has_errors ? "DELETE FROM run WHERE outcome <> 0 OR "
-                                              "error_omega_max IS NULL"
+                                              "error_max IS NULL"
                                             : "DELETE FROM run WHERE outcome <> 0",
                                  err);
     *forgotten += is_done ? (uint64_t)sqlite3_changes64(store->base) : 0;

@@ -148,8 +148,7 @@ bool tune_is_plain_row(const Tune *tune, const Scenario *scenario, size_t scheme
 
 double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MESSAGE_SIZE])
 {
-    const double error =
-        tune->truth.is_limited ? run->error.omega_max_in_horizon : run->error.omega_max;
+    const double error = error_of_run(&run->error, tune->truth.is_limited);
     const char *why = NULL;
     if (!run->is_complete) {
         why = run->message;

@@ -171,7 +171,7 @@ static void write_linears(const TuneReport *report, const Style *style, Text *te
     const SectionHead heads[] = {
         {"spring at", units->length, TABLE_RIGHT}, {"spring", units->stiffness, TABLE_RIGHT},
         {"damper", units->damping, TABLE_RIGHT},   {"step", "us", TABLE_RIGHT},
-        {"error", "of omega", TABLE_RIGHT},        {"", "", TABLE_WRAP},
+        {"error", "1", TABLE_RIGHT},        {"", "", TABLE_WRAP},
     };
     Table *table = section_begin("A contact with constants", 6, heads, style, text);
     for (size_t i = 0; i < tune->linear_count; i++) {

@@ -76,7 +76,7 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
     text_init(&source);
     tune_held_text_source(report, linear, &source);
     text_append(text,
-                "<!-- error of omega with these constants, measured: %.2g;\n"
+                "<!-- error with these constants, measured: %.2g;\n"
                 "     best for: %s -->\n",
                 gazebo.error, source.data);
     text_finish(&source);

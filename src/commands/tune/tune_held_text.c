@@ -97,7 +97,7 @@ static void write_schemes(const Tune *tune, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
         {"scheme", "", TABLE_LEFT},
-        {"error", "of omega", TABLE_RIGHT},
+        {"error", "1", TABLE_RIGHT},
         {"world steps", "", TABLE_RIGHT | TABLE_DETAIL},
         {"CPU", "ms", TABLE_RIGHT | TABLE_DETAIL},
         {"", "", TABLE_LEFT},
@@ -199,7 +199,7 @@ void tune_held_text_constants(const TuneReport *report, const Style *style, Text
         {"kd", units->damping, TABLE_RIGHT},
         {"ERP", "1", TABLE_RIGHT},
         {"CFM", units->cfm, TABLE_RIGHT},
-        {"error", "of omega", TABLE_RIGHT},
+        {"error", "1", TABLE_RIGHT},
         {"", "", TABLE_LEFT},
     };
     char heading[HEADING_SIZE];

@@ -35,7 +35,7 @@ static json_t *trial_object(const Tune *tune, const TuneTrial *trial)
     json_value_set(object, scheme_has_step(scheme) ? "step_s" : "tolerance", trial->value);
     json_object_set_new(object, "status", json_string(trial->run.is_complete ? "ok" : "failed"));
     json_object_set_new(object, "message", json_value_text(trial->reason));
-    json_value_set(object, "error_omega", trial->error);
+    json_value_set(object, "error_max", trial->error);
     json_object_set_new(object, "meets", json_boolean(trial->meets));
     json_object_set_new(object, "steps", json_integer((json_int_t)trial->run.steps));
     json_object_set_new(object, "evaluations", json_integer((json_int_t)trial->run.evaluations));
@@ -132,7 +132,7 @@ static json_t *linear_object(const TuneReport *report, const TuneLinear *linear)
     json_value_set(object, "stiffness_N_m", linear->stiffness);
     json_value_set(object, "damping_N_s_m", linear->damping);
     json_value_set(object, "step_s", linear->step_s);
-    json_value_set(object, "error_omega", linear->error);
+    json_value_set(object, "error_max", linear->error);
     json_object_set_new(object, "message", json_value_text(linear->reason));
     return of_contact(report, object);
 }
@@ -152,7 +152,7 @@ static json_t *gazebo_object(const TuneReport *report)
     json_value_set(object, "min_depth", gazebo.min_depth);
     json_value_set(object, "max_vel", gazebo.max_vel);
     json_value_set(object, "max_step_size", gazebo.step_s);
-    json_value_set(object, "error_omega", gazebo.error);
+    json_value_set(object, "error_max", gazebo.error);
     json_object_set_new(object, "sdf", written_value(tune_gazebo_write, report));
     return object;
 }

@@ -153,7 +153,7 @@ json_t *tune_reference_object(const TuneReport *report)
     }
     json_t *object = json_object();
     json_value_set(object, "tolerance", reference->tolerance);
-    json_value_set(object, "error_omega", reference->error);
+    json_value_set(object, "error_max", reference->error);
     json_object_set_new(object, "evaluations",
                         json_integer((json_int_t)reference->run.evaluations));
     json_value_set(object, "processor_median_s", reference->processor_median_s);

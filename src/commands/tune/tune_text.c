@@ -12,7 +12,7 @@
 static void write_asked(const Tune *tune, Text *text)
 {
     if (tune->held_s > 0.0) {
-        text_append(text, "  asked for   the least error of omega at a step of %.4g us",
+        text_append(text, "  asked for   the least error at a step of %.4g us",
                     tune->held_s * UNITS_US);
         if (isfinite(tune->target)) {
             text_append(text, ", %.3g at most", tune->target);
@@ -20,7 +20,7 @@ static void write_asked(const Tune *tune, Text *text)
         text_append(text, "\n");
         return;
     }
-    text_append(text, "  asked for   error of omega at most %.3g", tune->target);
+    text_append(text, "  asked for   error at most %.3g", tune->target);
     if (tune->limit.steps > 0) {
         text_append(text, ", in at most %zu world steps", tune->limit.steps);
     } else if (tune->limit.time_s > 0.0) {
@@ -35,7 +35,7 @@ static void write_head(const TuneReport *report, const Style *style, Text *text)
     const Tune *tune = report->tune;
     section_title(scenario->title, scenario_path(scenario), style, text);
     write_asked(tune, text);
-    text_append(text, "  truth       %s, to %.2g of omega\n", tune->truth.backend,
+    text_append(text, "  truth       %s, to %.2g\n", tune->truth.backend,
                 tune->truth.uncertainty);
     if (tune->truth.is_limited) {
         text_append(text,
@@ -141,7 +141,7 @@ static void write_schemes(const TuneReport *report, const Style *style, Text *te
         {"scheme", "", TABLE_LEFT},
         {"runs", "", TABLE_RIGHT | TABLE_DETAIL},
         {"setting", "", TABLE_RIGHT},
-        {"error", "of omega", TABLE_RIGHT},
+        {"error", "1", TABLE_RIGHT},
         {"world steps", "", TABLE_RIGHT | TABLE_DETAIL},
         {"CPU", "ms", TABLE_RIGHT},
         {"how it ended", "", TABLE_WRAP},
@@ -232,7 +232,7 @@ static void write_trials(const TuneReport *report, const Style *style, Text *tex
 {
     static const SectionHead HEADS[] = {
         {"scheme", "", TABLE_LEFT},         {"setting", "", TABLE_RIGHT},
-        {"error", "of omega", TABLE_RIGHT}, {"world steps", "", TABLE_RIGHT},
+        {"error", "1", TABLE_RIGHT}, {"world steps", "", TABLE_RIGHT},
         {"CPU", "ms", TABLE_RIGHT},         {"", "", TABLE_LEFT},
     };
     const Tune *tune = report->tune;
