@@ -50,8 +50,7 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
     PLAY(EXPECTED_CONTACT_FRACTION, "contact_fraction", DIMENSION_NONE, false,
          "share of the time in contact"),
     NUMBER(EXPECTED_ERROR_MAX, EXPECT_ERROR, "max", DIMENSION_NONE,
-           "largest error of any body's angular velocity or velocity, or of a pin's in its hole, "
-           "each relative to its own largest value"),
+           "largest error of any velocity of bodies and pins, over its own largest"),
     NUMBER(EXPECTED_ERROR_OMEGA_MAX, EXPECT_ERROR, "omega_max", DIMENSION_NONE,
            "its part of angular velocities, relative to each body's largest omega"),
     NUMBER(EXPECTED_ERROR_OMEGA_RMS, EXPECT_ERROR, "omega_rms", DIMENSION_NONE,

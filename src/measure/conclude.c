@@ -11,8 +11,6 @@
 
 const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
 
-// speeds that are off by as much as their own size follow nothing
-static const double UNSTABLE = 1.0;
 
 static bool is_truth(const Ladder *ladder, const LadderPoint *point)
 {
@@ -70,9 +68,8 @@ static void judge(const Ladder *ladder, LadderPoint *point)
     } else if ((ladder->truth.is_limited || is_truth(ladder, point)) &&
                !isfinite(error_of(ladder, point))) {
         explain(point, why_without_error(ladder, point));
-    } else if (!(error_of(ladder, point) < UNSTABLE)) {
-        fail(point,
-             "the speeds are off by their own size and more: unstable, or impacts at other times");
+    } else if (!(error_of(ladder, point) < ERROR_UNSTABLE)) {
+        fail(point, ERROR_UNSTABLE_WORDS);
     } else {
         point->error = error_of(ladder, point);
     }

@@ -10,6 +10,11 @@
 // Errors below this multiple of the reference's uncertainty are dominated by it.
 static const double ERROR_CLEAR_OF_TRUTH = 10.0;
 
+// Two rates that are both within the largest of the reference differ by at most twice that: an
+// impact at another time does it. What is further off is faster than the true motion ever is.
+static const double ERROR_UNSTABLE = 2.0;
+static const char ERROR_UNSTABLE_WORDS[] = "is faster than the true motion ever is: unstable";
+
 typedef struct TrajectoryError {
     bool is_known;       // false: there was no reference, or the two have no samples in common
     const char *against; // name of the reference's backend: lives as long as it

@@ -27,8 +27,11 @@ static void errors_are_against_the_certified_reference(void **state)
     assert_true(json_is_null(json_object_get(run_at(root, 1), "error")));
     const json_t *ode = run_at(root, 2);
     assert_true(number_of(ode, "error", "reference_uncertainty") < 1e-6);
-    assert_true(number_of(ode, "error", "max_in_horizon") < 0.05);
-    assert_true(number_of(ode, "error", "max_in_horizon") > 1e-6);
+    assert_true(number_of(ode, "error", "omega_max_in_horizon") < 0.05);
+    assert_true(number_of(ode, "error", "omega_max_in_horizon") > 1e-6);
+    // steps that are longer than impacts turn the pin's velocity round late
+    assert_true(number_of(ode, "error", "max_in_horizon") > 0.1);
+    assert_true(number_of(ode, "error", "max_in_horizon") < 2.0);
     assert_false(json_is_true(json_object_get(json_object_get(ode, "error"), "includes_play")));
     const json_t *ideal = json_object_get(run_at(root, 0), "error");
     assert_true(json_is_true(json_object_get(ideal, "includes_play")));

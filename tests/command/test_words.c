@@ -79,7 +79,7 @@ static void wide_tables_have_what_was_left_out(void **state)
 {
     Program *program = *state;
     program_run(program, "run $cases/paper/impact-k66.yaml --step '20 us'");
-    assert_says(program->output, "--wide shows them: alpha max");
+    assert_says(program->output, "--wide shows them: at time, omega max");
     assert_null(strstr(program->output, "alpha max  angle max"));
     program_run(program, "run $cases/paper/impact-k66.yaml --step '20 us' --wide");
     assert_null(strstr(program->output, "--wide shows"));

@@ -93,7 +93,7 @@ static void people_read_of_truth_points_orders_and_the_cheapest(void **state)
     Fixture *fixture = *state;
     compare_text_write(&fixture->report, &STYLE_PLAIN, &fixture->text);
     const char *text = fixture->text.data;
-    assert_has(text, "truth       reference, to 4e-06 of omega");
+    assert_has(text, "truth       reference, to 4e-06; made");
     assert_has(text, "horizon     25 ms of 60 ms");
     assert_has(text, "median of 5 runs, taken in turn, on A Processor");
     assert_has(text, "frontier, truth-limited");

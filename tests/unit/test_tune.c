@@ -139,11 +139,11 @@ static void a_run_that_fails_or_is_unstable_has_no_error(void **state)
     const LadderRun failed = {.message = "it broke"};
     assert_true(isnan(tune_error(tune, &failed, reason)));
     assert_string_equal(reason, "it broke");
-    const LadderRun wild = run_of(1.5, 10);
+    const LadderRun wild = run_of(2.5, 10);
     assert_true(isnan(tune_error(tune, &wild, reason)));
-    // control: one that is merely bad has
-    const LadderRun bad = run_of(0.9, 10);
-    assert_true(tune_error(tune, &bad, reason) == 0.9);
+    // control: one that is merely bad has, such as impacts at other times, velocities turned round
+    const LadderRun bad = run_of(1.9, 10);
+    assert_true(tune_error(tune, &bad, reason) == 1.9);
     assert_string_equal(reason, "");
     // and only the next setting is tried after a failure
     tune_take(tune, 0, 20, &failed);

@@ -108,12 +108,12 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
         {"backend", "", TABLE_LEFT},
-        {"against", "", TABLE_LEFT},
+        {"against", "", TABLE_LEFT | TABLE_MINOR},
         {"largest", "1", TABLE_RIGHT},
         {"at time", "ms", TABLE_RIGHT | TABLE_DETAIL},
         {"in horizon", "1", TABLE_RIGHT},
         {"reference +-", "1", TABLE_RIGHT},
-        {"in", "", TABLE_LEFT},
+        {"in", "", TABLE_WRAP},
         {"omega max", "1", TABLE_RIGHT | TABLE_MINOR},
         {"omega rms", "1", TABLE_RIGHT | TABLE_DETAIL},
         {"alpha max", "1", TABLE_RIGHT | TABLE_DETAIL},

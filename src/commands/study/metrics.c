@@ -118,8 +118,7 @@ static const Metric METRICS[] = {
         "upper bound of the error, for a step chosen for a tolerance"),
     RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds"),
     ERROR("error_max", REAL, NOTHING, max,
-          "largest error of any body's angular velocity or velocity, or of a pin's in its hole, each "
-          "relative to its own largest value"),
+          "largest error of any velocity of bodies and pins, over its own largest"),
     ERROR("error_max_in_horizon", REAL, NOTHING, max_in_horizon,
           "the same up to the predictability horizon"),
     ERROR("error_omega_max", REAL, NOTHING, omega_max,

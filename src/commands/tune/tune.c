@@ -43,9 +43,6 @@ static const double TIE = 1.1;
 // errors this close are the same
 static const double SAME = 1.01;
 
-// speeds that are off by their own size mean that the run is unstable
-static const double UNSTABLE = 1.0;
-
 // a decade finer must take a third off the error, by its median, once a run takes as long as this,
 // s
 static const double STALL_GAIN = 0.67;
@@ -154,8 +151,8 @@ double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MES
         why = run->message;
     } else if (!run->error.is_known || !isfinite(error)) {
         why = "has no error: its numbers are not finite";
-    } else if (!(error < UNSTABLE)) {
-        why = "the speeds are off by their own size and more: unstable, or impacts at other times";
+    } else if (!(error < ERROR_UNSTABLE)) {
+        why = ERROR_UNSTABLE_WORDS;
     }
     snprintf(reason, LADDER_MESSAGE_SIZE, "%s", why != NULL ? why : "");
     return why != NULL ? NAN : error;
