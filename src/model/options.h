@@ -131,6 +131,8 @@ typedef struct RunOptions {
     double revolutions;     // of a driver of constant speed
     double duration;        // s, where there is none
     size_t samples;         // per revolution of that driver, or in the whole run without it
+    double interval;        // no key, s: samples stand so far apart, as many as the run has room
+                            // for; 0: as `samples` says
     double step;            // s; 0: chosen for the tolerance
     double tolerance;       // 1, largest error in omega wanted of a step that is chosen
     size_t most_steps;      // world steps of all trials of a step that is chosen

@@ -94,6 +94,9 @@ double scenario_duration(const Scenario *scenario)
 static size_t interval_count(const Scenario *scenario)
 {
     const double samples = (double)scenario->run.samples;
+    if (scenario->run.interval > 0.0) {
+        return (size_t)floor(scenario_duration(scenario) / scenario->run.interval + 1e-9);
+    }
     if (!drive_is_steady(&scenario->linkage.driver)) {
         return scenario->run.samples;
     }
@@ -121,6 +124,9 @@ bool scenario_reports_any(const Scenario *scenario)
 
 double scenario_sample_time(const Scenario *scenario, size_t sample)
 {
+    if (scenario->run.interval > 0.0) {
+        return scenario->run.interval * (double)sample;
+    }
     const double turn = drive_is_steady(&scenario->linkage.driver)
                             ? linkage_period(&scenario->linkage)
                             : scenario->run.duration;

@@ -9,6 +9,7 @@
 #include "commands/tune/tune_limit.h"
 #include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_options.h"
+#include "commands/tune/tune_program.h"
 #include "commands/tune/tune_report.h"
 #include "commands/tune/tune_search.h"
 #include "commands/tune/tune_setting.h"
@@ -64,7 +65,16 @@ static bool write_form(const TuneReport *report, TuneForm form, Text *text, cons
         *nothing = lacks;
         return false;
     }
-    if (!scheme_has_step(&report->tune->schemes[trial->scheme].scheme)) {
+    const TuneProgram *program = &report->tune->program;
+    if (form == TUNE_WITH_LIBRARY && program->reason[0] != '\0') {
+        *nothing = program->reason;
+        return false;
+    }
+    if (form == TUNE_WITH_LIBRARY && tune_report_is_met(report) && !program->meets) {
+        *nothing = "its error is larger than what was asked for";
+        return false;
+    }
+    if (form == TUNE_ONE_FILE && !scheme_has_step(&report->tune->schemes[trial->scheme].scheme)) {
         // its step is chosen once more, against a truth of its own
         long_work_warn("choosing the step for the code",
                        report->tune->truth.wall_s + trial->run.wall_s, true);
@@ -122,13 +132,25 @@ static const Results RESULTS = {
     RESULT_FILES(FILES),
 };
 
+// Nor is a program written for an error that it does not meet.
+static bool check_program(const TuneProgram *program, const Tune *tune, Err *err)
+{
+    if (!program->is_run || program->meets) {
+        return true;
+    }
+    return err_set(err, ERR_DIFFERS,
+                   "the program of --code, run with libjointplay, has an error of %.3g at a step "
+                   "of %.3g ms, where %.3g was asked for; --schemes may name another setting",
+                   program->error, program->step_s * UNITS_MS, tune->target);
+}
+
 // That nothing meets the error is a result, with a status of its own.
 static bool check_met(const TuneReport *report, Err *err)
 {
     const Tune *tune = report->tune;
     const TuneTrial *best = tune_best(tune, tune->winner);
     if (tune_report_is_met(report)) {
-        return true;
+        return check_program(&tune->program, tune, err);
     }
     if (tune->held_s > 0.0) {
         return tune_held_text_unmet(report, err);
@@ -144,18 +166,39 @@ static bool check_met(const TuneReport *report, Err *err)
                    tune->schemes[best->scheme].processor_median_s * UNITS_MS);
 }
 
+// Runs the program that is to be written, if there is one.
+static bool run_program(const TuneOptions *options, const TuneSearch *work, Err *err)
+{
+    const CommonOptions *common = &options->common;
+    const TuneReport report = {work->scenario, work->tune, common->overrides,
+                               common->override_count, common->time_limit_s};
+    const bool may_shorten = tune_report_is_met(&report) && work->tune->held_s == 0.0;
+    const bool is_asked = options->code != NULL || common->folder != NULL;
+    if (!is_asked || work->scenario->linkage.is_spatial || tune_export_trial(&report) == NULL ||
+        tune_export_lacks(&report) != NULL) {
+        return true;
+    }
+    Scenario *scenario = calloc(1, sizeof *scenario);
+    assert(scenario != NULL);
+    const bool is_done = tune_export_scenario(&report, scenario, err) &&
+                         tune_program_run(work, scenario, may_shorten, err);
+    free(scenario);
+    return is_done;
+}
+
 static bool search(const TuneOptions *options, const Scenario *scenario, Tune *tune, Err *err)
 {
-    Watching watching = {tune, status_line_start(options->common.is_quiet)};
+    const CommonOptions *common = &options->common;
+    Watching watching = {tune, status_line_start(common->is_quiet)};
     const TuneSearch work = {
         .tune = tune,
         .scenario = scenario,
-        .jobs = options->common.jobs,
-        .time_limit_s = options->common.time_limit_s,
+        .jobs = common->jobs,
+        .time_limit_s = common->time_limit_s,
         .wait = wait,
         .context = &watching,
     };
-    const bool is_done = tune_search_execute(&work, err);
+    const bool is_done = tune_search_execute(&work, err) && run_program(options, &work, err);
     status_line_end(&watching.line);
     return is_done;
 }

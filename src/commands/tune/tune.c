@@ -58,8 +58,7 @@ double tune_value(int index)
     return strtod(digits, NULL);
 }
 
-// The index of the largest value that is not above this one.
-static int index_below(double value)
+int tune_index_below(double value)
 {
     int index = (int)floor(-STEPS_A_DECADE * log10(value)) - 1;
     while (tune_value(index) > value) {
@@ -71,13 +70,13 @@ static int index_below(double value)
 static int first_index(const Scenario *scenario, const Scheme *scheme, double target)
 {
     if (!scheme_has_step(scheme)) {
-        return index_below(fmin(TOLERANCE_MOST, COARSEST_TOLERANCE * target));
+        return tune_index_below(fmin(TOLERANCE_MOST, COARSEST_TOLERANCE * target));
     }
     const double duration_s = scenario_duration(scenario);
     const double turn_s = drive_is_steady(&scenario->linkage.driver)
                               ? linkage_period(&scenario->linkage)
                               : duration_s;
-    return index_below(fmin(duration_s, turn_s) / COARSEST_STEPS);
+    return tune_index_below(fmin(duration_s, turn_s) / COARSEST_STEPS);
 }
 
 static void add_scheme(Tune *tune, const Scenario *scenario, const Scheme *scheme)
@@ -253,7 +252,7 @@ void tune_hold(Tune *tune, double step_s)
         }
     }
     tune->scheme_count = kept;
-    int below = index_below(step_s);
+    int below = tune_index_below(step_s);
     below += tune_value(below) < step_s ? 0 : 1;
     for (size_t i = 0; i < kept; i++) {
         tune->schemes[i].first = tune->schemes[i].next = below;

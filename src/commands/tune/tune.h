@@ -108,6 +108,18 @@ typedef struct TuneReference {
     double processor_median_s;
 } TuneReference;
 
+// The program that --code writes, run before it is written.
+typedef struct TuneProgram {
+    bool is_asked;
+    bool is_run;
+    bool meets;          // its error and the truth's uncertainty are within the target
+    double step_first_s; // of the setting that was found
+    double error_first;  // 1: with that step; NAN where there is none
+    double step_s;       // that the program has: shorter where that step missed the target
+    double error;        // 1: against the reference at the times that it prints
+    char reason[LADDER_MESSAGE_SIZE]; // why there is none
+} TuneProgram;
+
 typedef struct Tune {
     double target;  // 1; INFINITY where any error will do
     double held_s;  // s, the only step that its user can take; 0: any
@@ -131,11 +143,15 @@ typedef struct Tune {
     int linear; // the kp and kd to take, or TUNE_NONE
     int row;    // the ERP and CFM, at a step that is held
     TuneReference reference;
+    TuneProgram program;
 } Tune;
 
 // The value of an index of the grid: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1,
 // ... the R10 series of ISO 3 downwards. Indices may be negative.
 double tune_value(int index);
+
+// The index of the largest value of the grid that is not above this one.
+int tune_index_below(double value);
 
 // A search with nothing run yet: the schemes of ODE among those given, the several tolerances of
 // steps that are chosen as one scheme.

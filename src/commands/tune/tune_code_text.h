@@ -10,6 +10,8 @@ typedef struct TuneCode {
     const char *command;      // the command line that does the same, as a shell takes it
     double error;             // 1, measured
     double target;            // 1; INFINITY where none was asked for
+    double step_first_s;      // of the setting: a program may need a shorter step
+    double error_first;       // 1, of the program with that step; NAN where it has none
 } TuneCode;
 
 // Appends the comment in front: what this is, how it is compiled (as a shell takes it), of which

@@ -45,15 +45,37 @@ static bool choose_step(Scenario *scenario, Err *err)
     return is_chosen;
 }
 
-bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *err)
+bool tune_export_scenario(const TuneReport *report, Scenario *scenario, Err *err)
 {
     const TuneTrial *trial = tune_export_trial(report);
     assert(trial != NULL);
-    Scenario *scenario = malloc(sizeof *scenario);
-    assert(scenario != NULL);
     *scenario = *report->scenario;
     tune_apply(&report->tune->schemes[trial->scheme], trial->value, scenario);
-    if (scenario->run.step == 0.0 && !choose_step(scenario, err)) {
+    return scenario->run.step > 0.0 || choose_step(scenario, err);
+}
+
+// The scenario of a program that was run already: its step is known.
+static void take_program(const TuneReport *report, Scenario *scenario)
+{
+    const TuneTrial *trial = tune_export_trial(report);
+    *scenario = *report->scenario;
+    tune_apply(&report->tune->schemes[trial->scheme], trial->value, scenario);
+    if (scenario->run.step == 0.0) {
+        *scenario = chosen_run_scenario(scenario, report->tune->program.step_s);
+    }
+    scenario->run.step = report->tune->program.step_s;
+}
+
+bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *err)
+{
+    const TuneTrial *trial = tune_export_trial(report);
+    const TuneProgram *program = &report->tune->program;
+    assert(trial != NULL);
+    Scenario *scenario = malloc(sizeof *scenario);
+    assert(scenario != NULL);
+    if (form == TUNE_WITH_LIBRARY) {
+        take_program(report, scenario);
+    } else if (!tune_export_scenario(report, scenario, err)) {
         free(scenario);
         return false;
     }
@@ -63,7 +85,13 @@ bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *
     text_init(&command);
     tune_setting_words(report, trial, &words);
     tune_setting_command(report, trial, " ", &command);
-    const TuneCode code = {scenario, words.data, command.data, trial->error, report->tune->target};
+    const TuneCode code = {.scenario = scenario,
+                           .words = words.data,
+                           .command = command.data,
+                           .error = form == TUNE_WITH_LIBRARY ? program->error : trial->error,
+                           .target = report->tune->target,
+                           .step_first_s = program->step_first_s,
+                           .error_first = program->error_first};
     const bool is_written = form == TUNE_ONE_FILE ? tune_code_write(&code, text, err)
                                                   : tune_world_write(&code, text, err);
     text_finish(&words);
@@ -95,6 +123,26 @@ static void append_indented(const char *lines, Text *text)
     }
 }
 
+// What the program of --code is worth.
+static void write_program(const TuneProgram *program, Text *text)
+{
+    if (isnan(program->error)) {
+        text_append(text, "  Run with libjointplay, the setting has no error: %s.\n",
+                    program->reason);
+        return;
+    }
+    text_append(text,
+                "  Run with libjointplay, at steps of %.3g ms, the setting has an error of "
+                "%.3g at the times that the program of --code prints.",
+                program->step_s * UNITS_MS, program->error);
+    if (program->step_s < program->step_first_s) {
+        text_append(text, " At the %.3g ms found above it would be %.3g, so the step is shorter.",
+                    program->step_first_s * UNITS_MS, program->error_first);
+    }
+    text_append(text, " Compile it with: cc FILE.c -o run $(pkg-config --cflags --libs jointplay) "
+                      "-lm\n");
+}
+
 static void write_code(const TuneReport *report, const Style *style, Text *text)
 {
     text_append(text, "\n%sAs ODE C code%s\n\n", style->heading, style->end);
@@ -102,8 +150,10 @@ static void write_code(const TuneReport *report, const Style *style, Text *text)
         text_append(text, "  There is no setting to write.\n");
         return;
     }
-    const char *lacks = tune_export_lacks(report);
-    if (lacks == NULL) {
+    const TuneProgram *program = &report->tune->program;
+    if (program->is_run) {
+        write_program(program, text);
+    } else if (tune_export_lacks(report) == NULL) {
         text_append(text, "  --code FILE.c writes the setting as a short program against "
                           "libjointplay, for worlds of your own: cc FILE.c -o run $(pkg-config "
                           "--cflags --libs jointplay) -lm\n");
@@ -169,9 +219,12 @@ static void write_linears(const TuneReport *report, const Style *style, Text *te
     const Tune *tune = report->tune;
     const JointUnits *units = joint_units(&report->scenario->linkage.joints[tune->contact.joint]);
     const SectionHead heads[] = {
-        {"spring at", units->length, TABLE_RIGHT}, {"spring", units->stiffness, TABLE_RIGHT},
-        {"damper", units->damping, TABLE_RIGHT},   {"step", "us", TABLE_RIGHT},
-        {"error", "1", TABLE_RIGHT},        {"", "", TABLE_WRAP},
+        {"spring at", units->length, TABLE_RIGHT},
+        {"spring", units->stiffness, TABLE_RIGHT},
+        {"damper", units->damping, TABLE_RIGHT},
+        {"step", "us", TABLE_RIGHT},
+        {"error", "1", TABLE_RIGHT},
+        {"", "", TABLE_WRAP},
     };
     Table *table = section_begin("A contact with constants", 6, heads, style, text);
     for (size_t i = 0; i < tune->linear_count; i++) {

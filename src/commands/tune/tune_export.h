@@ -19,6 +19,10 @@ bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *
 // Why there is no program of that setting against libjointplay; NULL where there is one.
 const char *tune_export_lacks(const TuneReport *report);
 
+// The scenario of the setting of code, its step chosen where it is chosen for a tolerance.
+// ERR_SOLVER where none can be.
+bool tune_export_scenario(const TuneReport *report, Scenario *scenario, Err *err);
+
 // For people, one section each.
 void tune_export_write(const TuneReport *report, const Style *style, Text *text);
 

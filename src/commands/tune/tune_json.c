@@ -204,6 +204,22 @@ static void set_asked(json_t *object, const Tune *tune)
                                               : json_null());
 }
 
+// The program of --code as it was run, null where it was not.
+static json_t *program_object(const TuneProgram *program)
+{
+    if (!program->is_run) {
+        return json_null();
+    }
+    json_t *object = json_object();
+    json_value_set(object, "step_s", program->step_s);
+    json_value_set(object, "error_max", program->error);
+    json_object_set_new(object, "meets", json_boolean(program->meets));
+    json_value_set(object, "first_step_s", program->step_first_s);
+    json_value_set(object, "first_error_max", program->error_first);
+    json_object_set_new(object, "message", json_value_text(program->reason));
+    return object;
+}
+
 json_t *tune_json_build(const void *target)
 {
     const TuneReport *report = target;
@@ -243,6 +259,7 @@ json_t *tune_json_build(const void *target)
     json_object_set_new(object, "own_row",
                         tune->row != TUNE_NONE ? linear_object(report, &tune->linears[tune->row])
                                                : json_null());
+    json_object_set_new(object, "program", program_object(&tune->program));
     json_object_set_new(object, "gazebo", gazebo_object(report));
     json_object_set_new(object, "mujoco", mujoco_object(report));
     return object;

@@ -3,6 +3,8 @@
 
 #include "base/shell.h"
 #include "casefile/quantity.h"
+#include "cli/output.h"
+#include "commands/tune/tune_world.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -149,6 +151,54 @@ TuneOptions tune_options_default(void)
                          .common.time_limit_s = DEFAULT_TIME_LIMIT};
 }
 
+// What a program against libjointplay lacks for a scheme of ODE, or NULL.
+static const char *program_lacks(const Scenario *scenario, const Scheme *scheme)
+{
+    Scenario setting = *scenario;
+    scheme_apply(scheme, scenario->run.step, &setting);
+    if (!scheme_has_step(scheme)) {
+        // the way of stepping that a step chosen for a tolerance is for
+        setting = scenario_with_step(&setting, setting.run.step);
+    }
+    return tune_world_lacks(&setting);
+}
+
+// Keeps the schemes that a program of --code can have, and says what it leaves out. Fails where
+// none is left: nothing is searched for that cannot be written.
+static bool keep_writable(const TuneOptions *options, const Scenario *scenario, Scheme *schemes,
+                          size_t *count, Err *err)
+{
+    if (options->code == NULL) {
+        return true;
+    }
+    if (scenario->linkage.is_spatial) {
+        return err_set(err, ERR_USAGE, "--code: programs are written for cases in the plane alone");
+    }
+    const char *lacks = NULL;
+    size_t kept = 0;
+    size_t left_out = 0;
+    Scheme first;
+    for (size_t i = 0; i < *count; i++) {
+        const char *why =
+            schemes[i].backend == BACKEND_ODE ? program_lacks(scenario, &schemes[i]) : "";
+        if (why == NULL) {
+            schemes[kept++] = schemes[i];
+        } else if (*why != '\0' && left_out++ == 0) {
+            lacks = why;
+            first = schemes[i];
+        }
+    }
+    *count = kept;
+    if (kept == 0) {
+        return err_set(err, ERR_USAGE, "--code: %s", lacks);
+    }
+    if (left_out > 0 && !options->common.is_quiet) {
+        output_say("left out for --code: %s%s (%s)\n", first.name,
+                   left_out > 1 ? " and others" : "", lacks);
+    }
+    return true;
+}
+
 bool tune_options_search(const TuneOptions *options, const Scenario *scenario, Tune **tune,
                          Err *err)
 {
@@ -166,6 +216,7 @@ bool tune_options_search(const TuneOptions *options, const Scenario *scenario, T
     Scheme schemes[SCHEME_MAX];
     size_t scheme_count;
     if (!common_options_list_schemes(common, scenario, schemes, &scheme_count, err) ||
+        !keep_writable(options, scenario, schemes, &scheme_count, err) ||
         (is_held && !common_options_check_step(common, options->at_step_s, err))) {
         return false;
     }

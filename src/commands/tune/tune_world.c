@@ -13,9 +13,6 @@
 
 #include <math.h>
 
-// Of ODE's joints per step: what they stay open by costs the least there (docs/library.md).
-static const double STAGGERED_ERP = 1.5;
-
 static const char *lacks_setting(const Scenario *scenario)
 {
     const bool has_rows =
@@ -67,11 +64,15 @@ const char *tune_world_lacks(const Scenario *scenario)
     return lacks;
 }
 
+double tune_world_every(const Scenario *scenario)
+{
+    return fmax(1.0, round(scenario_sample_time(scenario, 1) / scenario->run.step));
+}
+
 static void write_includes(const Scenario *scenario, Text *text)
 {
     const double step_s = scenario->run.step;
-    const double sample_s = scenario_sample_time(scenario, 1);
-    const double every = fmax(1.0, round(sample_s / step_s));
+    const double every = tune_world_every(scenario);
     // what is left of the last step is rounding
     const double steps = ceil(scenario_duration(scenario) / step_s - 1e-6);
     text_append(text,
@@ -155,9 +156,11 @@ static const char PRINT_ROW[] =
     "\nstatic void print_row(double time, const dBodyID *bodies, int count)\n{\n"
     "    printf(\"%.17g\", time);\n"
     "    for (int i = 0; i < count; i++) {\n"
-    "        const dReal *centre = dBodyGetPosition(bodies[i]);\n"
-    "        const double omega = dBodyGetAngularVel(bodies[i])[2];\n"
-    "        printf(\",%.17g,%.17g,%.17g\", centre[0], centre[1], omega);\n"
+    "        const dReal *at = dBodyGetPosition(bodies[i]);\n"
+    "        const dReal *v = dBodyGetLinearVel(bodies[i]);\n"
+    "        const dReal *turn = dBodyGetQuaternion(bodies[i]);\n"
+    "        printf(\",%.17g,%.17g,%.17g\", at[0], at[1], 2 * atan2(turn[3], turn[0]));\n"
+    "        printf(\",%.17g,%.17g,%.17g\", v[0], v[1], dBodyGetAngularVel(bodies[i])[2]);\n"
     "    }\n    putchar('\\n');\n}\n";
 
 static void write_functions(const Scenario *scenario, Text *text)
@@ -201,7 +204,7 @@ static void write_world(const Scenario *scenario, Text *text)
                 "    dWorldSetGravity(world, 0, %s, 0);\n"
                 "    dWorldSetERP(world, %s); // of ODE's joints\n",
                 number_shortest(0.0 - scenario->gravity).text,
-                number_shortest(is_plain ? scenario->ode.erp : STAGGERED_ERP).text);
+                number_shortest(is_plain ? scenario->ode.erp : TUNE_WORLD_ERP).text);
     for (int i = 0; i < (int)linkage->body_count; i++) {
         write_body(linkage, i, text);
     }
@@ -262,7 +265,11 @@ static void write_list(const Linkage *linkage, Text *text)
         Text head;
         text_init(&head);
         const char *name = linkage->bodies[i].name;
-        text_append(&head, ",%s_x_m,%s_y_m,%s_omega_rad_s", name, name, name);
+        // a body that is led stands at its pivot
+        const char *of = tune_world_is_led(linkage, (int)i) ? "_pivot" : "";
+        text_append(&head, ",%s%s_x_m,%s%s_y_m,%s_angle_rad,%s%s_vx_m_s,%s%s_vy_m_s,", name, of,
+                    name, of, name, name, of, name, of);
+        text_append(&head, "%s_omega_rad_s", name);
         text_append(text, "\n         ");
         tune_code_string(head.data, text);
         text_finish(&head);
@@ -325,9 +332,16 @@ bool tune_world_write(const TuneCode *code, Text *text, Err *err)
     const Linkage *linkage = &scenario->linkage;
     tune_code_head(code, ", as a world of libjointplay",
                    "$(pkg-config --cflags --libs jointplay) -lm", text);
-    text_append(text, "//\n// The error is that of jointplay's own world of the case. The library, "
-                      "which knows no more of a world\n// than ODE says, has one of the same size "
-                      "(docs/library.md).\n");
+    text_append(text, "//\n// The error is this program's own, of all bodies and joints at the "
+                      "times that it prints, against\n// jointplay's reference.");
+    if (scenario->run.step < code->step_first_s) {
+        text_append(text,
+                    " With the setting's step of %s s it is %.3g:\n"
+                    "// the step was shortened to %s s.",
+                    number_shortest(code->step_first_s).text, code->error_first,
+                    number_shortest(scenario->run.step).text);
+    }
+    text_append(text, "\n");
     write_includes(scenario, text);
     write_names(linkage, text);
     write_functions(scenario, text);

@@ -12,8 +12,7 @@
 #include "model/forces.h"
 #include "write/number.h"
 
-// Whether a spring at a joint moves anything: not where a drive says how the joint turns.
-static bool has_effect(const Linkage *linkage, const TorsionSpring *spring)
+bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring)
 {
     return !linkage->driver.is_present || linkage->driver.joint != spring->joint;
 }
@@ -23,7 +22,7 @@ bool tune_world_pushes(const Linkage *linkage)
     bool is_any = linkage->spring_count > 0 || linkage->torque.table.count > 0;
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
-        is_any = is_any || (has_effect(linkage, spring) && spring->stiffness > 0.0);
+        is_any = is_any || (tune_world_has_effect(linkage, spring) && spring->stiffness > 0.0);
     }
     return is_any;
 }
@@ -97,8 +96,7 @@ static void write_springs(const Linkage *linkage, Text *text)
     }
 }
 
-// The angle of a hinge of ODE's is 0 at the start.
-static double angle_at_start(const Linkage *linkage, int joint)
+double tune_world_angle_at_start(const Linkage *linkage, int joint)
 {
     int turned;
     int against;
@@ -111,14 +109,15 @@ static void write_torsions(const Linkage *linkage, Text *text)
 {
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
-        if (!has_effect(linkage, spring) || !(spring->stiffness > 0.0)) {
+        if (!tune_world_has_effect(linkage, spring) || !(spring->stiffness > 0.0)) {
             continue;
         }
         text_append(text, "    dJointAddHingeTorque(");
         tune_world_joint(linkage, spring->joint, text);
-        text_append(text, ", %s * (%s - dJointGetHingeAngle(",
-                    number_shortest(spring->stiffness).text,
-                    number_shortest(spring->angle - angle_at_start(linkage, spring->joint)).text);
+        text_append(
+            text, ", %s * (%s - dJointGetHingeAngle(", number_shortest(spring->stiffness).text,
+            number_shortest(spring->angle - tune_world_angle_at_start(linkage, spring->joint))
+                .text);
         tune_world_joint(linkage, spring->joint, text);
         text_append(text, "))); // within half a turn\n");
     }
@@ -214,7 +213,7 @@ void tune_world_motors(const Linkage *linkage, Text *text)
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
-        if (has_effect(linkage, spring) && spring->damping > 0.0) {
+        if (tune_world_has_effect(linkage, spring) && spring->damping > 0.0) {
             write_param(linkage, spring->joint, "dParamFMax", "dInfinity", text);
             write_param(linkage, spring->joint, "dParamCFM",
                         number_shortest(2.0 / spring->damping).text, text);
@@ -239,7 +238,7 @@ void tune_world_drive(const Linkage *linkage, Text *text)
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
-        if (has_effect(linkage, spring) && spring->damping > 0.0) {
+        if (tune_world_has_effect(linkage, spring) && spring->damping > 0.0) {
             Text rate;
             text_init(&rate);
             text_append(&rate, "-dJointGetHingeAngleRate(");

@@ -4,6 +4,12 @@
 #include "base/text.h"
 #include "model/linkage.h"
 
+// Whether a spring at a joint moves anything: not where a drive says how the joint turns.
+bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring);
+
+// The angle, rad, at which a hinge of ODE's, which counts from where it starts, is at 0.
+double tune_world_angle_at_start(const Linkage *linkage, int joint);
+
 // Whether anything pushes where a step evaluates forces: springs, or a torque over time.
 bool tune_world_pushes(const Linkage *linkage);
 
