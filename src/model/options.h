@@ -134,7 +134,7 @@ typedef struct RunOptions {
     double interval;        // no key, s: samples stand so far apart, as many as the run has room
                             // for; 0: as `samples` says
     double step;            // s; 0: chosen for the tolerance
-    double tolerance;       // 1, largest error in omega wanted of a step that is chosen
+    double tolerance;       // 1, largest error wanted of a step that is chosen
     size_t most_steps;      // world steps of all trials of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show
     double report_from;     // s, or turns of the driver; what is before is not reported

@@ -13,7 +13,7 @@ const Field ERROR_FIELDS[] = {
     {"max", FIELD_NUMBER, SHOWN, ERROR(max)},
     {"max_time_s", FIELD_NUMBER, KEPT, ERROR(max_time_s)},
     {"max_in_horizon", FIELD_NUMBER, KEPT, ERROR(max_in_horizon)},
-    {"in", FIELD_TEXT, SHOWN, ERROR(in)},
+    {"in", FIELD_TEXT, SHOWN, ERROR(in), .size = sizeof(((TrajectoryError *)NULL)->in)},
     {"in_is_floor", FIELD_FLAG, KEPT, ERROR(is_floor)},
     {"omega_max", FIELD_NUMBER, SHOWN, ERROR(omega_max)},
     {"omega_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(omega_max_in_horizon)},

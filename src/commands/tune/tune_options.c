@@ -58,7 +58,7 @@ static const char *const COSTS[] = {"time", "steps", NULL};
 
 static const OptionRow OPTIONS[] = {
     {"error", "X",
-     "The largest error in omega allowed, relative to each body's largest omega, such as 1e-3", 1,
+     "The largest error allowed of any rate of the motion, relative to its own largest value, such as 1e-3", 1,
      OPTION_READ, .read = read_error},
     {"max-cost", "COST",
      "What one run may cost: a time such as '50 ms', or world steps such as 2000", 1, OPTION_READ,
