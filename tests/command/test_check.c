@@ -157,7 +157,7 @@ static void a_baseline_says_what_it_is_to_the_one_before(void **state)
     assert_int_equal(program->status, 0);
     assert_says(program->output, "  unchanged: ");
     assert_says(program->output, "1 case: 0 new, 0 replaced, 1 unchanged");
-    write_file(program, "b/pin.json", "{\n  \"format\": \"jointplay baseline 1\",\n  \"case\": ");
+    write_file(program, "b/pin.json", "{\n  \"format\": \"jointplay baseline 2\",\n  \"case\": ");
     program_run(program, "check --baselines b --bless --json pin.yaml");
     assert_int_equal(program->status, 0);
     json_t *root = program_json(program);

@@ -341,7 +341,10 @@ static void everything_wrong_in_a_baseline_is_found(void **state)
 {
     Bench *bench = *state;
     static const char *const EDITS[][3] = {
-        {"jointplay baseline 1", "jointplay baseline 2", "its format is 'jointplay baseline 2'"},
+        {"jointplay baseline 2", "jointplay baseline 3", "its format is 'jointplay baseline 3'"},
+        {"jointplay baseline 2", "jointplay baseline 1",
+         "its errors are of omega alone, and now an error is that of the whole motion; bless "
+         "again"},
         {"{\n  \"format\"", "[\n  \"format\"", "line "},
         {"\"band\": ", "\"band\": -", "'band' is negative"},
         {"\"band\": 0, \"why\": \"exact: a", "\"band\": 1, \"why\": \"exact: a", "'band' is not 0"},
