@@ -57,6 +57,7 @@ static void judge(const Ladder *ladder, LadderPoint *point)
     point->is_failed = false;
     point->reason[0] = '\0';
     point->error = NAN;
+    const char *unstable = error_is_unstable(&point->run.error, ladder->truth.is_limited);
     if (!point->is_measured) {
         fail(point, "not run");
     } else if (!point->run.is_complete) {
@@ -68,8 +69,8 @@ static void judge(const Ladder *ladder, LadderPoint *point)
     } else if ((ladder->truth.is_limited || is_truth(ladder, point)) &&
                !isfinite(error_of(ladder, point))) {
         explain(point, why_without_error(ladder, point));
-    } else if (!(error_of(ladder, point) < ERROR_UNSTABLE)) {
-        fail(point, ERROR_UNSTABLE_WORDS);
+    } else if (unstable != NULL) {
+        fail(point, unstable);
     } else {
         point->error = error_of(ladder, point);
     }

@@ -150,6 +150,52 @@ static void add_rates(const Trajectory *trajectory, const Trajectory *reference,
     }
 }
 
+double error_energy(const Trajectory *run)
+{
+    const Energy *energy = &run->energy;
+    double largest = fmax(fabs(energy->drive_work), fabs(energy->change));
+    largest = fmax(largest, fabs(energy->dissipated) + fabs(energy->friction));
+    for (size_t i = 0; i < run->sample_count; i++) {
+        const double kinetic =
+            run->space_motions != NULL
+                ? space_kinetic_energy(&run->linkage, trajectory_space_motion(run, i, 0))
+                : linkage_kinetic_energy(&run->linkage, trajectory_motion(run, i, 0));
+        largest = fmax(largest, kinetic);
+    }
+    return largest;
+}
+
+// Of a run in which nothing moves there is none to lose.
+static double energy_lost(const Trajectory *trajectory, const Trajectory *reference)
+{
+    const double lost = fabs(trajectory->energy.residual);
+    return lost > 0.0 ? lost / error_energy(reference) : 0.0;
+}
+
+const char *error_is_unstable(const TrajectoryError *error, bool is_limited)
+{
+    if (!(error_of_run(error, is_limited) < ERROR_UNSTABLE)) {
+        return "is faster than the true motion ever is: unstable";
+    }
+    return error->energy_lost > ERROR_ENERGY_LOST
+               ? "has an energy residual above the largest energy of the true motion: unstable"
+               : NULL;
+}
+
+bool error_fail_unstable(Trajectory *run, const Trajectory *reference, TrajectoryError *error)
+{
+    if (!(error->energy_lost > ERROR_ENERGY_LOST)) {
+        return false;
+    }
+    run->is_complete = false;
+    snprintf(run->message, sizeof run->message,
+             "it is unstable: its energy is off by %.3g J, and the largest energy of the %s is "
+             "%.3g J; a shorter step may help",
+             fabs(run->energy.residual), reference->backend, error_energy(reference));
+    *error = (TrajectoryError){.against = "none"};
+    return true;
+}
+
 TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *reference,
                               double horizon_s)
 {
@@ -166,5 +212,6 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
         error.max_in_horizon = error.omega_max_in_horizon = NAN;
     }
     error.against = reference->backend;
+    error.energy_lost = energy_lost(trajectory, reference);
     return error;
 }

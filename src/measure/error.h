@@ -13,7 +13,9 @@ static const double ERROR_CLEAR_OF_TRUTH = 10.0;
 // Two rates that are both within the largest of the reference differ by at most twice that: an
 // impact at another time does it. What is further off is faster than the true motion ever is.
 static const double ERROR_UNSTABLE = 2.0;
-static const char ERROR_UNSTABLE_WORDS[] = "is faster than the true motion ever is: unstable";
+
+// More energy than there is in the true motion comes from nowhere but the solver.
+static const double ERROR_ENERGY_LOST = 1.0;
 
 typedef struct TrajectoryError {
     bool is_known;       // false: there was no reference, or the two have no samples in common
@@ -30,7 +32,13 @@ typedef struct TrajectoryError {
         omega_rms; // 1: root of the mean square of these of bodies that are not driven, whole run
     double alpha_max;     // 1: as omega_max, of the angular accelerations
     double angle_max_rad; // largest |angle - angle_ref|
+    double energy_lost;   // 1: |residual of the energy| over the largest energy of the reference
 } TrajectoryError;
+
+// The largest energy that a run's balance is about, J: the work of the drive, what was lost, or the
+// largest kinetic energy. Over whole turns the work may be next to nothing, and what goes to and
+// fro is what a solver has to get right.
+double error_energy(const Trajectory *run);
 
 // Both trajectories must be of the same scenario: same bodies, same sample times. The horizon, s,
 // is the time up to which trajectories may be compared; INFINITY where nothing limits it.
@@ -42,6 +50,13 @@ static inline double error_of_run(const TrajectoryError *error, bool is_limited)
 {
     return is_limited ? error->max_in_horizon : error->max;
 }
+
+// Why a run has no meaningful error though it came to its end, or NULL.
+const char *error_is_unstable(const TrajectoryError *error, bool is_limited);
+
+// Makes a run that has more energy from nowhere than there is in the reference one that failed,
+// with its message and no error. Returns whether it did.
+bool error_fail_unstable(Trajectory *run, const Trajectory *reference, TrajectoryError *error);
 
 // The same measure sample by sample: writes the largest distance at each sample, in scales that are
 // mostly those of the reference, into an array of the trajectories' length. Returns false, the

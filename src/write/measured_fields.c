@@ -20,6 +20,7 @@ const Field ERROR_FIELDS[] = {
     {"omega_rms", FIELD_NUMBER, SHOWN, ERROR(omega_rms)},
     {"alpha_max", FIELD_NUMBER, SHOWN, ERROR(alpha_max)},
     {"angle_max_rad", FIELD_NUMBER, SHOWN, ERROR(angle_max_rad)},
+    {"energy_lost", FIELD_NUMBER, KEPT, ERROR(energy_lost)},
     {0},
 };
 

@@ -22,20 +22,23 @@ enum { HALVINGS = 2 }; // of the step, for the order
 
 static const ChosenWatch NOBODY = {.begin = NULL};
 
+static void note_failure(CheckMeasure *measure, const Trajectory *run)
+{
+    measure->is_complete = false;
+    Text words;
+    text_init(&words);
+    text_append(&words, "%s failed: %s", run->backend, run->message);
+    shorten_copy(measure->message, sizeof measure->message, words.data);
+    text_finish(&words);
+}
+
 // A run that is complete, or NULL with the reason in the measure.
 static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, BackendKind backend,
                                const Truth *truth)
 {
-    const Solver *solver = registry_solver(backend);
     Trajectory *run = backend_run(scenario, backend, truth, NOBODY, &TRACER_PROBE);
     if (!run->is_complete) {
-        CheckMeasure *measure = work->measure;
-        measure->is_complete = false;
-        Text words;
-        text_init(&words);
-        text_append(&words, "%s failed: %s", solver->name, run->message);
-        shorten_copy(measure->message, sizeof measure->message, words.data);
-        text_finish(&words);
+        note_failure(work->measure, run);
         trajectory_destroy(run);
         return NULL;
     }
@@ -82,7 +85,7 @@ static void measure_expected(CheckAdd *work, BackendKind backend, const Trajecto
     }
 }
 
-static void measure_run(CheckAdd *work, BackendKind backend, const Trajectory *run,
+static void measure_run(CheckAdd *work, BackendKind backend, Trajectory *run,
                         const Trajectory *truth, const CheckPlan *plan)
 {
     check_add_run(work, run, backend);
@@ -90,8 +93,12 @@ static void measure_run(CheckAdd *work, BackendKind backend, const Trajectory *r
     if (truth == NULL || run == truth) {
         return;
     }
-    const TrajectoryError error = error_against(run, truth, INFINITY);
+    TrajectoryError error = error_against(run, truth, INFINITY);
     if (!error.is_known) {
+        return;
+    }
+    if (error_fail_unstable(run, truth, &error)) {
+        note_failure(work->measure, run);
         return;
     }
     check_add_error(work, run, &error, plan->uncertainty);

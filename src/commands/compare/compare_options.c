@@ -3,16 +3,23 @@
 
 #include "cli/option_values.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
 // three decades, from where a steel contact is hardly seen; the fine end is thinner, for it costs
 // most
+// The usual steps, of runs as long as one revolution of the paper's crank, s. Of longer ones they
+// are longer by powers of ten, so that as many steps are made.
 static const double DEFAULT_STEPS[] = {3e-5, 2e-5, 1e-5, 5e-6, 3e-6, 2e-6,
                                        1e-6, 5e-7, 3e-7, 1e-7, 3e-8};
+static const double DEFAULT_DURATION = 0.06;
 static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the longest usual run
 
 #define AT(field) .offset = offsetof(CompareOptions, field)
 
 static const OptionRow OPTIONS[] = {
-    {"steps", "LIST", "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.03)", 1,
+    {"steps", "LIST", "The steps, such as '10 us, 3 us, 1 us' (default: eleven over three decades, from about 2000 to 2,000,000 in the run)", 1,
      OPTION_TEXT, AT(steps)},
     COMMON_SCHEMES(1),
     COMMON_SET(1),
@@ -69,14 +76,28 @@ static bool read_steps(const CompareOptions *options, double *steps, size_t *cou
     return true;
 }
 
+// To the digits of the usual steps.
+static double rounded(double step_s)
+{
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.0e", step_s);
+    return strtod(digits, NULL);
+}
+
+static double step_factor(const Scenario *scenario)
+{
+    return pow(10.0, fmax(0.0, ceil(log10(scenario_duration(scenario) / DEFAULT_DURATION) - 0.5)));
+}
+
 // Those of the usual steps that the scenario can be run at; its own where that is none.
 static size_t usual_steps(const CompareOptions *options, const Scenario *scenario, double *steps)
 {
     size_t count = 0;
     for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof DEFAULT_STEPS[0]; i++) {
         Err err = {0};
-        if (common_options_check_step(&options->common, DEFAULT_STEPS[i], &err)) {
-            steps[count++] = DEFAULT_STEPS[i];
+        const double step_s = rounded(step_factor(scenario) * DEFAULT_STEPS[i]);
+        if (common_options_check_step(&options->common, step_s, &err)) {
+            steps[count++] = step_s;
         }
     }
     if (count == 0) {

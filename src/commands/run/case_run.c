@@ -72,6 +72,7 @@ static void measure_errors(CaseRun *run)
     for (size_t i = 0; truth != NULL && i < run->scenario.run.backend_count; i++) {
         if (run->runs[i] != truth && run->runs[i]->is_complete) {
             run->errors[i] = error_against(run->runs[i], truth, horizon);
+            run->failed_count += error_fail_unstable(run->runs[i], truth, &run->errors[i]) ? 1 : 0;
         }
     }
 }

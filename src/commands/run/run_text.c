@@ -295,6 +295,36 @@ static void write_contact(const Scenario *scenario, size_t width, Text *text)
     }
 }
 
+// What does not hold that a reader of the run would take for granted.
+static void write_doubts(const RunReport *report, size_t number, const Style *style, Text *text)
+{
+    const Trajectory *run = report->runs[number];
+    const TrajectoryError *error = &report->errors[number];
+    const double tolerance = report->scenario->run.tolerance;
+    if (!run->is_complete) {
+        return;
+    }
+    if (run->trials > 0 && (run->is_short || run->estimate_is_cut)) {
+        text_append(
+            text, "              %sits tolerance of %.3g holds up to %.4g ms of %.4g ms: %s%s\n",
+            style->failure, tolerance, run->estimate_s * UNITS_MS, run->duration_s * UNITS_MS,
+            run->is_short ? "the trials had no more steps"
+                          : "the reference is too uncertain after that",
+            style->end);
+    }
+    const bool has_truth = run_report_has_truth(report);
+    const double said = error_of_run(error, has_truth && report->truth->is_limited);
+    const double uncertainty = has_truth ? report->truth->uncertainty : 0.0;
+    // of a solver whose steps are all there is to its error; energy goes with the square of speed,
+    // and is off by twice as much
+    if (run->step_s > 0.0 && error->is_known && error->energy_lost > 2.0 * (said + uncertainty)) {
+        text_append(text,
+                    "              %sits energy is off by %.2g of the largest, its error in speed "
+                    "is %.2g%s\n",
+                    style->failure, error->energy_lost, said, style->end);
+    }
+}
+
 static void write_models(const RunReport *report, const Style *style, Text *text)
 {
     for (size_t i = 0; i < report->run_count; i++) {
@@ -314,6 +344,7 @@ static void write_models(const RunReport *report, const Style *style, Text *text
             text_append(text, ", %sFAILED%s", style->failure, style->end);
         }
         text_append(text, "\n");
+        write_doubts(report, i, style, text);
     }
 }
 

@@ -157,23 +157,6 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
     }
 }
 
-// The largest energy that the balance is about, J: the work of the drive, what was lost, or the
-// largest kinetic energy. Over whole turns the work may be next to nothing, and what goes to and
-// fro is what a solver has to get right.
-static double energy_scale(const Linkage *linkage, const Trajectory *run)
-{
-    double scale = fmax(fabs(run->energy.drive_work), fabs(run->energy.change));
-    scale = fmax(scale, fabs(run->energy.dissipated) + fabs(run->energy.friction));
-    for (size_t i = 0; i < run->sample_count; i++) {
-        const double kinetic =
-            run->space_motions != NULL
-                ? space_kinetic_energy(linkage, trajectory_space_motion(run, i, 0))
-                : linkage_kinetic_energy(linkage, trajectory_motion(run, i, 0));
-        scale = fmax(scale, kinetic);
-    }
-    return scale;
-}
-
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
 {
     Table *table = NULL;
@@ -189,7 +172,7 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text)
         table_cell(table, "%s", report->runs[i]->backend);
         const Energy shown = run_floor_energy(energy, &floors[i]);
         fields_table_row(RUN_ENERGY_FIELDS, FIELD_TABLE, &shown, table);
-        const double scale = energy_scale(&report->scenario->linkage, report->runs[i]);
+        const double scale = error_energy(report->runs[i]);
         section_number_or_dash(table, scale > 0.0, fabs(shown.residual / scale));
     }
     free(floors);

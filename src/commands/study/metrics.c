@@ -296,13 +296,16 @@ static double read_value(const Metric *metric, const Measured *measured, size_t 
                                           : *(const double *)value;
 }
 
-void metrics_take(const Scenario *scenario, const Trajectory *trajectory, const Truth *truth,
+bool metrics_take(const Scenario *scenario, Trajectory *trajectory, const Truth *truth,
                   double results[RECORD_RESULT_MAX])
 {
     assert(trajectory->is_complete);
     Measured measured = {.linkage = &scenario->linkage, .run = trajectory, .truth = truth};
     if (truth != NULL && truth->trajectory->is_complete) {
         measured.error = error_against(trajectory, truth->trajectory, truth->horizon_s);
+        if (error_fail_unstable(trajectory, truth->trajectory, &measured.error)) {
+            return false;
+        }
     }
     Result list[RECORD_RESULT_MAX];
     const size_t count = list_results(measured.linkage, list);
@@ -311,6 +314,7 @@ void metrics_take(const Scenario *scenario, const Trajectory *trajectory, const 
         const double value = is_known ? read_value(list[i].metric, &measured, list[i].member) : NAN;
         results[i] = isfinite(value) ? value : NAN;
     }
+    return true;
 }
 
 void metrics_describe(bool is_markdown, Text *text)

@@ -49,8 +49,8 @@ static void measure(const SweepRun *task, const Scenario *scenario, BackendKind 
 {
     Trajectory *trajectory =
         backend_run(scenario, backend, task->truth, (ChosenWatch){.begin = NULL}, NULL);
-    if (trajectory->is_complete) {
-        metrics_take(scenario, trajectory, task->truth, record->results);
+    if (trajectory->is_complete &&
+        metrics_take(scenario, trajectory, task->truth, record->results)) {
         record->hash = trajectory->hash;
         check_results(task->layout, record);
     } else {

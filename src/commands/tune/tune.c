@@ -150,8 +150,8 @@ double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MES
         why = run->message;
     } else if (!run->error.is_known || !isfinite(error)) {
         why = "has no error: its numbers are not finite";
-    } else if (!(error < ERROR_UNSTABLE)) {
-        why = ERROR_UNSTABLE_WORDS;
+    } else {
+        why = error_is_unstable(&run->error, tune->truth.is_limited);
     }
     snprintf(reason, LADDER_MESSAGE_SIZE, "%s", why != NULL ? why : "");
     return why != NULL ? NAN : error;
