@@ -35,14 +35,17 @@ typedef struct Outcomes {
     Piece *piece; // about to begin
 } Outcomes;
 
-static void keep_error(const Piece *piece, const Trajectory *run, OutcomeRun *result)
+static void keep_error(const Piece *piece, Trajectory *run, OutcomeRun *result)
 {
     const Truth *truth = piece->truth;
     const bool is_truth = piece->backend == truth_backend(&piece->scenario);
     result->error = is_truth ? truth->uncertainty : NAN;
     if (!is_truth) {
         const double horizon_s = truth->is_limited ? truth->horizon_s : INFINITY;
-        const TrajectoryError error = error_against(run, truth->trajectory, horizon_s);
+        TrajectoryError error = error_against(run, truth->trajectory, horizon_s);
+        if (error_fail_unstable(run, truth->trajectory, &error)) {
+            return;
+        }
         result->error = error.is_known ? error.max_in_horizon : NAN;
     }
     result->has_error = isfinite(result->error);
@@ -59,6 +62,9 @@ static void measure(const void *context, void *target)
     OutcomeRun *result = target;
     const ChosenWatch nobody = {.begin = NULL};
     Trajectory *run = backend_run(&piece->scenario, piece->backend, piece->truth, nobody, NULL);
+    if (run->is_complete && piece->truth != NULL) {
+        keep_error(piece, run, result);
+    }
     result->is_complete = run->is_complete;
     result->is_short = run->is_complete && run->is_short;
     result->step_s = run->step_s;
@@ -69,9 +75,6 @@ static void measure(const void *context, void *target)
         snprintf(result->message, sizeof result->message,
                  "the tolerance %.3g holds up to %.4g s of %.4g s only",
                  piece->scenario.run.tolerance, run->estimate_s, run->duration_s);
-    }
-    if (run->is_complete && piece->truth != NULL) {
-        keep_error(piece, run, result);
     }
     trajectory_destroy(run);
 }

@@ -300,17 +300,15 @@ static void write_doubts(const RunReport *report, size_t number, const Style *st
 {
     const Trajectory *run = report->runs[number];
     const TrajectoryError *error = &report->errors[number];
-    const double tolerance = report->scenario->run.tolerance;
     if (!run->is_complete) {
         return;
     }
     if (run->trials > 0 && (run->is_short || run->estimate_is_cut)) {
-        text_append(
-            text, "              %sits tolerance of %.3g holds up to %.4g ms of %.4g ms: %s%s\n",
-            style->failure, tolerance, run->estimate_s * UNITS_MS, run->duration_s * UNITS_MS,
-            run->is_short ? "the trials had no more steps"
-                          : "the reference is too uncertain after that",
-            style->end);
+        text_append(text, "              %sheld up to %.4g of %.4g ms only: %s%s\n", style->failure,
+                    tolerance, run->estimate_s * UNITS_MS, run->duration_s * UNITS_MS,
+                    run->is_short ? "run.most-steps is too small"
+                                  : "the reference is too uncertain",
+                    style->end);
     }
     const bool has_truth = run_report_has_truth(report);
     const double said = error_of_run(error, has_truth && report->truth->is_limited);
