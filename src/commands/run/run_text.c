@@ -305,7 +305,7 @@ static void write_doubts(const RunReport *report, size_t number, const Style *st
     }
     if (run->trials > 0 && (run->is_short || run->estimate_is_cut)) {
         text_append(text, "              %sheld up to %.4g of %.4g ms only: %s%s\n", style->failure,
-                    tolerance, run->estimate_s * UNITS_MS, run->duration_s * UNITS_MS,
+                    run->estimate_s * UNITS_MS, run->duration_s * UNITS_MS,
                     run->is_short ? "run.most-steps is too small"
                                   : "the reference is too uncertain",
                     style->end);
