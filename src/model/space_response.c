@@ -4,12 +4,17 @@
 // velocities in the world's frame (model/space_rows.h), and M holds masses and the inertias as they
 // are turned, R I R'.
 #include "model/space_response.h"
+#include "base/zeroed.h"
 #include "model/response_matrix.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // the share of a row that must be left when the rows before it are taken out
 static const double INDEPENDENT = 1e-12;
+
+// rows that are less independent than this share of what others would be are chosen anew
+static const double WORN = 0.25;
 
 enum { NO_MOVER = -1 };
 
@@ -139,12 +144,30 @@ static void place_rows(SpaceResponse *response, const SpaceRow *play_rows)
     }
 }
 
+// Whether the rows that were chosen are far less independent by now than others would be.
+static bool is_worn(const SpaceResponse *response, const SpaceMotion *motions)
+{
+    const Linkage *linkage = response->linkage;
+    unsigned *chosen = zeroed(2 * linkage->joint_count, sizeof *chosen);
+    unsigned *fresh = chosen + linkage->joint_count;
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        chosen[response->joint_of[i]] |= 1U << response->part_of[i];
+    }
+    const double own = space_rows_least_share(linkage, motions, response->is_asked, chosen);
+    bool is_worn = false;
+    if (own < WORN && response->choose(linkage, motions, response->is_asked, fresh)) {
+        is_worn = own < WORN * space_rows_least_share(linkage, motions, response->is_asked, fresh);
+    }
+    free(chosen);
+    return is_worn;
+}
+
 bool space_response_place(SpaceResponse *response, const SpaceMotion *motions,
                           const SpaceRow *play_rows)
 {
     place_bodies(response, motions);
     place_rows(response, play_rows);
-    if (factor_rows(response)) {
+    if (!(response->is_redundant && is_worn(response, motions)) && factor_rows(response)) {
         return true;
     }
     if (!space_response_choose(response, motions)) {

@@ -40,6 +40,8 @@ typedef struct SpaceResponse {
     // where it was placed
     Mat3 *turns;       // by body, from its frame to the world's
     Mat3 *inverse;     // of the inertia, in the world's frame
+    bool is_redundant; // whether rows of the joints were left out
+    size_t choices;    // how often rows were chosen
     size_t ideal_rows; // independent ones; they come first
     size_t row_count;
     int *joint_of; // of an ideal row
@@ -89,7 +91,7 @@ static inline size_t space_response_play_rows(const SpaceResponse *response)
 
 // Takes the response at the positions of the motions given, with rows of play, place by place
 // (NULL: zeros; a row of zeros has no part). Where the rows of the ideal joints have ceased to be
-// independent, others are chosen. Returns false where none are.
+// independent, or others have become more so, those are chosen. Returns false where none are.
 bool space_response_place(SpaceResponse *response, const SpaceMotion *motions,
                           const SpaceRow *play_rows);
 

@@ -79,6 +79,8 @@ bool space_response_choose(SpaceResponse *response, const SpaceMotion *motions)
     const bool is_held = response->choose(response->linkage, motions, response->is_asked, chosen);
     list_ideal(response, chosen);
     free(chosen);
+    response->is_redundant = response->ideal_rows < SPACE_JOINT_ROWS * response->ideal_count;
+    response->choices++;
     free_rows(response);
     make_matrix(response);
     return is_held;

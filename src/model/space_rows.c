@@ -11,6 +11,10 @@
 // 1e-15
 static const double SPACE_INDEPENDENT = 1e-9;
 
+// Joints of a linkage of which those axes are chosen that are the most independent: each is looked
+// at again for each that is taken.
+enum { BEST_OF = 64 };
+
 // of what is left of two rows: a difference that is none
 static const double SAME = 1e-6;
 
@@ -212,37 +216,116 @@ size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions, con
     return close_basis(&basis);
 }
 
-size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
-                                const bool *is_asked, unsigned *chosen)
+// Takes the points of all joints into the basis.
+static void add_points(Basis *basis, const SpaceMotion *motions, const bool *is_asked,
+                       unsigned *chosen)
 {
-    Basis basis = open_basis(linkage, is_asked);
     SpaceRow rows[SPACE_JOINT_ROWS];
-    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+    for (size_t joint = 0; joint < basis->linkage->joint_count; joint++) {
         chosen[joint] = 0;
         if (is_asked[joint]) {
-            space_rows_of_joint(linkage, motions, joint, rows);
+            space_rows_of_joint(basis->linkage, motions, joint, rows);
             for (int i = 0; i < SPACE_POINT_ROWS; i++) {
-                chosen[joint] |= add_row(&basis, &rows[i]) ? 1U << i : 0;
+                chosen[joint] |= add_row(basis, &rows[i]) ? 1U << i : 0;
             }
         }
     }
-    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+}
+
+// Takes the axes of all joints into the basis, joint by joint. Returns whether each was.
+static bool add_axes(Basis *basis, const SpaceMotion *motions, const bool *is_asked,
+                     unsigned *chosen)
+{
+    SpaceRow rows[SPACE_JOINT_ROWS];
+    bool are_all = true;
+    for (size_t joint = 0; joint < basis->linkage->joint_count; joint++) {
         if (!is_asked[joint]) {
             continue;
         }
-        space_rows_of_joint(linkage, motions, joint, rows);
+        space_rows_of_joint(basis->linkage, motions, joint, rows);
         // of two that hold the same, the one that holds more of it
         int order[2] = {SPACE_POINT_ROWS, SPACE_POINT_ROWS + 1};
-        if (share_left(&basis, &rows[order[1]]) >
-            (1.0 + SAME) * share_left(&basis, &rows[order[0]])) {
+        if (share_left(basis, &rows[order[1]]) >
+            (1.0 + SAME) * share_left(basis, &rows[order[0]])) {
             order[0] = SPACE_POINT_ROWS + 1;
             order[1] = SPACE_POINT_ROWS;
         }
         for (int i = 0; i < 2; i++) {
-            chosen[joint] |= add_row(&basis, &rows[order[i]]) ? 1U << order[i] : 0;
+            const bool is_taken = add_row(basis, &rows[order[i]]);
+            chosen[joint] |= is_taken ? 1U << order[i] : 0;
+            are_all = are_all && is_taken;
         }
     }
+    return are_all;
+}
+
+// Takes in of all axes again and again the one of which most is left.
+static void add_best_axes(Basis *basis, const SpaceMotion *motions, const bool *is_asked,
+                          unsigned *chosen)
+{
+    SpaceRow rows[SPACE_JOINT_ROWS];
+    double best;
+    do {
+        best = SPACE_INDEPENDENT;
+        size_t best_joint = 0;
+        int best_part = 0;
+        for (size_t joint = 0; joint < basis->linkage->joint_count; joint++) {
+            for (int i = SPACE_POINT_ROWS; is_asked[joint] && i < SPACE_JOINT_ROWS; i++) {
+                if ((chosen[joint] >> i & 1U) != 0) {
+                    continue;
+                }
+                space_rows_of_joint(basis->linkage, motions, joint, rows);
+                const double share = share_left(basis, &rows[i]);
+                if (share > (1.0 + SAME) * best) {
+                    best = share;
+                    best_joint = joint;
+                    best_part = i;
+                }
+            }
+        }
+        if (best > SPACE_INDEPENDENT) {
+            space_rows_of_joint(basis->linkage, motions, best_joint, rows);
+            add_row(basis, &rows[best_part]);
+            chosen[best_joint] |= 1U << best_part;
+        }
+    } while (best > SPACE_INDEPENDENT);
+}
+
+size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
+                                const bool *is_asked, unsigned *chosen)
+{
+    Basis basis = open_basis(linkage, is_asked);
+    add_points(&basis, motions, is_asked, chosen);
+    if (add_axes(&basis, motions, is_asked, chosen) || linkage->joint_count > BEST_OF) {
+        return close_basis(&basis);
+    }
+    close_basis(&basis);
+    basis = open_basis(linkage, is_asked);
+    add_points(&basis, motions, is_asked, chosen);
+    add_best_axes(&basis, motions, is_asked, chosen);
     return close_basis(&basis);
+}
+
+double space_rows_least_share(const Linkage *linkage, const SpaceMotion *motions,
+                              const bool *is_asked, const unsigned *chosen)
+{
+    Basis basis = open_basis(linkage, is_asked);
+    SpaceRow rows[SPACE_JOINT_ROWS];
+    unsigned *points = zeroed(linkage->joint_count, sizeof *points);
+    double least = 1.0;
+    add_points(&basis, motions, is_asked, points);
+    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
+        for (int i = SPACE_POINT_ROWS; i < SPACE_JOINT_ROWS; i++) {
+            if ((chosen[joint] >> i & 1U) != 0) {
+                space_rows_of_joint(linkage, motions, joint, rows);
+                least = fmin(least, share_left(&basis, &rows[i]));
+                add_row(&basis, &rows[i]);
+            }
+        }
+    }
+    free(points);
+    close_basis(&basis);
+    return least;
 }
 
 size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, bool ideal_only)

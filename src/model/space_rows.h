@@ -49,6 +49,12 @@ size_t space_rows_choose(const Linkage *linkage, const SpaceMotion *motions, con
                          unsigned *chosen);
 
 // The same, but the points of all joints before the directions of their axes: what is left out is
-// of axes wherever the points alone are independent.
+// of axes wherever the points alone are independent. Where some are left out, of a linkage with few
+// joints, those are taken of which the most is independent.
 size_t space_rows_choose_points(const Linkage *linkage, const SpaceMotion *motions,
                                 const bool *is_asked, unsigned *chosen);
+
+// The least share of a chosen row of an axis that is independent of those before it: 1 of rows at
+// right angles, 0 where one follows from the others.
+double space_rows_least_share(const Linkage *linkage, const SpaceMotion *motions,
+                              const bool *is_asked, const unsigned *chosen);

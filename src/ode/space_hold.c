@@ -27,7 +27,7 @@ SpaceHold *space_hold_make(const Scenario *scenario, const SpaceResponse *respon
 {
     const Linkage *linkage = &scenario->linkage;
     const size_t rows = SPACE_JOINT_ROWS * linkage->joint_count;
-    if (!world_hold_is_alone(scenario) ||
+    if (!world_hold_is_alone(scenario) || response->is_redundant ||
         response_matrix_largest(&response->matrix) <= WORLD_HOLD_ROWS) {
         return NULL;
     }

@@ -1,13 +1,9 @@
-// How is a linkage built in ODE in space, with no row that follows from others?
+// How is a linkage built in ODE in space, where rows of a loop may follow from others?
 //
-// A joint in space has five rows. ODE's own joints have five (hinge), four (universal: the point,
-// and one of the two directions of the axis) or three (ball). In a loop some follow from others:
-// the parallel axes of a planar four-bar leave three too many. The response of the linkage chooses
-// (model/space_rows.h): all points, and of each axis both directions, one, or none.
-//
-// A universal joint keeps its first axis u, on one body, at right angles to its second, w, on the
-// other: the row is (u x w) . (omega_b - omega_a). w is chosen so that u x w is the direction asked
-// for, and turns with body b.
+// A hinge has five rows. In a loop some follow from others: the parallel axes of a planar four-bar
+// leave three too many. Which do changes as it moves, and rows chosen once lose its branch where
+// they come to depend on each other (Bennett's linkage). So all hinges have all their rows, and
+// redundant ones a compliance so small that their rates are those of least squares.
 //
 // Turning inertias: with I at mid-step, o and n the angular velocities at start and end, the
 // angular momenta in the world's frame are
@@ -22,11 +18,16 @@
 #include "base/zeroed.h"
 #include "ode/engine.h"
 
+#include <math.h>
 #include <string.h>
 
 // each iteration leaves about the step's angle of the error before
 enum { GYRATION_STEPS = 12 };
 static const double GYRATION_ROUNDING = 1e-15;
+
+// what the rows of redundant joints give way, as a share of what a body's mass does: less lets
+// forces between them grow that are mere rounding, more is felt by the motion
+static const double REDUNDANT_SHARE = 1e-4;
 
 static void make_body(const Scenario *scenario, size_t number, const SpaceMotion *motion,
                       World *world)
@@ -50,60 +51,29 @@ static dBodyID body_of(const World *world, int body)
     return body == LINKAGE_GROUND ? 0 : world->bodies[body];
 }
 
-// The directions of a joint's axis that are held, and, of one alone, which.
-static int held_directions(const SpaceResponse *response, int joint, Vec3 *direction)
-{
-    int count = 0;
-    for (size_t i = response->first_ideal[joint]; i < response->first_ideal[joint + 1]; i++) {
-        if (response->part_of[i] >= SPACE_POINT_ROWS) {
-            *direction = response->direction_of[i];
-            count++;
-        }
-    }
-    return count;
-}
-
-static dJointID make_joint(World *world, int count, Vec3 point, Vec3 axis, Vec3 direction,
-                           dBodyID a, dBodyID b)
-{
-    if (count == 0) {
-        const dJointID ball = dJointCreateBall(world->id, 0);
-        dJointAttach(ball, a, b);
-        dJointSetBallAnchor(ball, point.x, point.y, point.z);
-        return ball;
-    }
-    if (count == 1) {
-        const Vec3 second = vec3_cross(direction, axis);
-        const dJointID universal = dJointCreateUniversal(world->id, 0);
-        dJointAttach(universal, a, b);
-        dJointSetUniversalAnchor(universal, point.x, point.y, point.z);
-        dJointSetUniversalAxis1(universal, axis.x, axis.y, axis.z);
-        dJointSetUniversalAxis2(universal, second.x, second.y, second.z);
-        return universal;
-    }
-    const dJointID hinge = dJointCreateHinge(world->id, 0);
-    dJointAttach(hinge, a, b);
-    dJointSetHingeAnchor(hinge, point.x, point.y, point.z);
-    dJointSetHingeAxis(hinge, axis.x, axis.y, axis.z);
-    return hinge;
-}
-
 static void make_ideal(const Scenario *scenario, const SpaceMotion *motions, size_t number,
                        const SpaceResponse *response, World *world)
 {
     const SpaceEnd *ends = response->ends[number];
-    Vec3 direction = {0.0, 0.0, 0.0};
-    const int count = held_directions(response, (int)number, &direction);
     const Vec3 point = space_point(motions, ends[0].body, ends[0].anchor);
     const Vec3 axis = space_direction(motions, ends[0].body, ends[0].axis);
     const Joint *joint = &scenario->linkage.joints[number];
-    const dJointID made = make_joint(world, count, point, axis, direction,
-                                     body_of(world, joint->body_a), body_of(world, joint->body_b));
-    if (count == 0) {
-        dJointSetBallParam(made, dParamERP, dWorldGetERP(world->id));
-        dJointSetBallParam(made, dParamCFM, dWorldGetCFM(world->id));
-    }
+    const dJointID made = dJointCreateHinge(world->id, 0);
+    dJointAttach(made, body_of(world, joint->body_a), body_of(world, joint->body_b));
+    dJointSetHingeAnchor(made, point.x, point.y, point.z);
+    dJointSetHingeAxis(made, axis.x, axis.y, axis.z);
     dJointSetFeedback(made, &world->feedback[number]);
+}
+
+// A CFM that lets redundant rows share what they hold together: the rates of rows are then those of
+// least squares, wherever in the motion some of them come to depend on each other.
+static double redundant_cfm(const Scenario *scenario)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        sum += 1.0 / scenario->linkage.bodies[i].mass;
+    }
+    return REDUNDANT_SHARE * scenario->run.step * sum / (double)scenario->linkage.body_count;
 }
 
 bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
@@ -121,13 +91,17 @@ bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
                        "some play");
     }
     world_start(scenario, world);
-    world->constraint_rows = response->ideal_rows;
+    world->constraint_rows =
+        response->is_redundant ? SPACE_JOINT_ROWS * response->ideal_count : response->ideal_rows;
     for (size_t i = 0; i < linkage->body_count; i++) {
         make_body(scenario, i, &motions[i], world);
     }
     const int driven = linkage_driven_body(linkage);
     if (driven >= 0) {
         dBodySetKinematic(world->bodies[driven]);
+    }
+    if (response->is_redundant) {
+        dWorldSetCFM(world->id, fmax(dWorldGetCFM(world->id), redundant_cfm(scenario)));
     }
     *hold = space_hold_make(scenario, response);
     for (size_t i = 0; i < linkage->joint_count; i++) {

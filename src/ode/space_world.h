@@ -1,5 +1,5 @@
-// A linkage in space built in ODE: bodies with their full inertias, and ideal joints of which no
-// row follows from the others. Contacts are made step by step (ode/space_contacts.h).
+// A linkage in space built in ODE: bodies with their full inertias, and ideal joints that are
+// hinges. Contacts are made step by step (ode/space_contacts.h).
 #pragma once
 
 #include "model/space_response.h"

@@ -110,18 +110,21 @@ static void tilting_pins_are_followed_to_second_order(void **state)
     }
 }
 
-// Four axes that neither meet nor are parallel: three of the fifteen rows follow from the others.
-static void a_bennett_linkage_moves_with_twelve_rows(void **state)
+// Four axes that neither meet nor are parallel: three of the fifteen rows follow from the others,
+// and at 139.8 deg of the crank other three than at its start. Rows that were chosen there once
+// lose the linkage's branch: an error of 0.39 at any step.
+static void a_bennett_linkage_keeps_its_branch(void **state)
 {
     (void)state;
-    Scenario scenario = load_with("cases/space/bennett.yaml", "run.revolutions=0.4");
+    Scenario scenario = load_with("cases/space/bennett.yaml", "run.revolutions=1");
     scenario.linkage.joints[2].kind = JOINT_REVOLUTE;
     set_ode(&scenario, ODE_STAGGERED, ODE_MAP_MIDPOINT, 1e-5);
-    const OdeClimb climb = ode_climb(&scenario, BACKEND_REFERENCE, 400e-6, 2.0, 3);
+    const OdeClimb climb = ode_climb(&scenario, BACKEND_REFERENCE, 200e-6, 2.0, 3);
     assert_near(ode_climb_order(&climb, 0, 1), 2.0, 0.2);
     assert_near(ode_climb_order(&climb, 1, 2), 2.0, 0.2);
+    assert_true(climb.errors[2].max < 1e-5);
     Trajectory *run = complete_run(&scenario, BACKEND_ODE);
-    assert_int_equal(run->constraint_rows, 12);
+    assert_int_equal(run->constraint_rows, 15);
     trajectory_destroy(run);
 }
 
@@ -226,7 +229,7 @@ int main(void)
         cmocka_unit_test(a_free_body_tumbles_to_second_order),
         cmocka_unit_test(a_free_body_keeps_its_angular_momentum_to_rounding),
         cmocka_unit_test(tilting_pins_are_followed_to_second_order),
-        cmocka_unit_test(a_bennett_linkage_moves_with_twelve_rows),
+        cmocka_unit_test(a_bennett_linkage_keeps_its_branch),
         cmocka_unit_test(each_end_carries_its_share_by_the_levers),
         cmocka_unit_test(a_collar_gives_back_what_its_law_delivers),
         cmocka_unit_test(a_dragged_pin_is_braked_as_coulomb_has_it),
