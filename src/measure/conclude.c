@@ -11,7 +11,6 @@
 
 const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
 
-
 static bool is_truth(const Ladder *ladder, const LadderPoint *point)
 {
     return strcmp(point->name, ladder->truth.backend) == 0;

@@ -4,14 +4,14 @@
 #include "run/run.h"
 
 typedef struct Truth {
-    Trajectory *trajectory; // owned; complete, unless its message says why there is none
-    double uncertainty;     // 1: as the error of a run, up to the horizon, from two
-                            // further runs; above 0; INFINITY where unknown
-    double horizon_s;       // up to when trajectories may be compared: where neither these two
-                            // nor the fastest of all starts 1e-10 beside is too far away
-    double growth;          // 1: by how much that one's distance grew up to the horizon
-    bool is_limited;        // whether the horizon ends before the run does
-    bool is_uncertified;    // because it was not requested
+    Trajectory *trajectory;      // owned; complete, unless its message says why there is none
+    double uncertainty;          // 1: as the error of a run, up to the horizon, from two
+                                 // further runs; above 0; INFINITY where unknown
+    double horizon_s;            // up to when trajectories may be compared: where neither these two
+                                 // nor the fastest of all starts 1e-10 beside is too far away
+    double growth;               // 1: by how much that one's distance grew up to the horizon
+    bool is_limited;             // whether the horizon ends before the run does
+    bool is_uncertified;         // because it was not requested
     char message[ERR_TEXT_SIZE]; // why it is not certified; empty where it is
 } Truth;
 

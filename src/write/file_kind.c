@@ -46,8 +46,7 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
     [FILE_CODE] = {"C code of jointplay tune",
                    {{"// A mechanism with play in its joints in the Open Dynamics Engine,",
                      "`jointplay tune`"}}},
-    [FILE_SDF] = {"SDF of jointplay tune",
-                  {{"<!-- error with these constants, measured:", NULL}}},
+    [FILE_SDF] = {"SDF of jointplay tune", {{"<!-- error with these constants, measured:", NULL}}},
     [FILE_MJCF] = {"MJCF of jointplay tune", {{"<!-- spring ", "not run here; for bodies"}}},
     [FILE_JUNIT] = {"JUnit XML of jointplay check",
                     {{"<?xml version=\"1.0\" encoding=\"UTF-8\"?><testsuites name=\"jointplay "

@@ -6,8 +6,8 @@
 #include "program.h"
 
 // its contacts are all in the first degrees
-#define CASE   "$cases/paper/impact-k66.yaml --set run.revolutions=0.2"
-#define K66    CASE " --error 3e-2"
+#define CASE "$cases/paper/impact-k66.yaml --set run.revolutions=0.2"
+#define K66  CASE " --error 3e-2"
 // a polygon is not the round hole, however fine its facets and the step
 #define FACETS CASE " --set ode.facets=64 --error 0.2 "
 

@@ -123,8 +123,8 @@ static void run_own(Program *program, const char *command, const char *backend)
 // What is asked for, and the setting.
 typedef struct Wanted {
     const char *options;
-    double asked; // of the whole motion
-    double error; // of omega
+    double asked;        // of the whole motion
+    double error;        // of omega
     const char *changed; // for the control: what sed does to the program, so that it is wrong
 } Wanted;
 
@@ -170,8 +170,8 @@ static void check_worlds(void **state, const Wanted *wanted, size_t count)
 static void pins_in_holes_make_the_same_run(void **state)
 {
     static const Wanted RUNS[] = {
-        {K66 "/impulse --at-step '20 us' --set run.revolutions=0.1 --set run.samples=3000", 1e-3, 3e-5,
-         "s/restitution = 0.9/restitution = 0.8/"},
+        {K66 "/impulse --at-step '20 us' --set run.revolutions=0.1 --set run.samples=3000", 1e-3,
+         3e-5, "s/restitution = 0.9/restitution = 0.8/"},
         {K66 "/midpoint --at-step '5 us' --set run.revolutions=0.1 --set run.samples=3000 "
              "--set contact.friction=0.1",
          1e-1, 1e-3, "s/friction = 0.1/friction = 0/"},
@@ -230,8 +230,7 @@ static void what_the_library_cannot_do_is_refused(void **state)
 {
     expect_refused(*state, "$cases/mechanisms/gear-pair.yaml --error 1e-1",
                    "libjointplay has no pair of gears; --one-file FILE.c writes one");
-    expect_refused(*state,
-                   "$cases/paper/ideal-nominal.yaml --error 1e-2 --schemes extrapolated",
+    expect_refused(*state, "$cases/paper/ideal-nominal.yaml --error 1e-2 --schemes extrapolated",
                    "libjointplay does not extrapolate from several worlds");
     expect_refused(*state,
                    "$cases/paper/impact-k66.yaml --error 3e-2 --set ode.facets=64 "

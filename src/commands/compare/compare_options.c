@@ -19,8 +19,10 @@ static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the lon
 #define AT(field) .offset = offsetof(CompareOptions, field)
 
 static const OptionRow OPTIONS[] = {
-    {"steps", "LIST", "The steps, such as '10 us, 3 us, 1 us' (default: eleven over three decades, from about 2000 to 2,000,000 in the run)", 1,
-     OPTION_TEXT, AT(steps)},
+    {"steps", "LIST",
+     "The steps, such as '10 us, 3 us, 1 us' (default: eleven over three decades, from about 2000 "
+     "to 2,000,000 in the run)",
+     1, OPTION_TEXT, AT(steps)},
     COMMON_SCHEMES(1),
     COMMON_SET(1),
     {"repeats", "N", "Timing runs of each point, at least 5 (default: 5)", 2, OPTION_COUNT,

@@ -81,12 +81,12 @@ static void choose_axes(const Ladder *ladder, PlotPanel *panel)
     axis_round_log(&low_y, &high_y);
     panel->x = (Axis){
         .title = "wall time of the run, ms", .scale = AXIS_LOG, .low = low_x, .high = high_x};
-    panel->y = (Axis){.title = ladder->truth.is_limited
-                                   ? "largest error within the horizon, relative"
-                                   : "largest error, relative",
-                      .scale = AXIS_LOG,
-                      .low = low_y,
-                      .high = high_y};
+    panel->y =
+        (Axis){.title = ladder->truth.is_limited ? "largest error within the horizon, relative"
+                                                 : "largest error, relative",
+               .scale = AXIS_LOG,
+               .low = low_y,
+               .high = high_y};
 }
 
 // Where an error is not a number of its own.

@@ -58,8 +58,9 @@ static const char *const COSTS[] = {"time", "steps", NULL};
 
 static const OptionRow OPTIONS[] = {
     {"error", "X",
-     "The largest error allowed of any rate of the motion, relative to its own largest value, such as 1e-3", 1,
-     OPTION_READ, .read = read_error},
+     "The largest error allowed of any rate of the motion, relative to its own largest value, such "
+     "as 1e-3",
+     1, OPTION_READ, .read = read_error},
     {"max-cost", "COST",
      "What one run may cost: a time such as '50 ms', or world steps such as 2000", 1, OPTION_READ,
      .read = read_limit},

@@ -35,8 +35,7 @@ static void write_head(const TuneReport *report, const Style *style, Text *text)
     const Tune *tune = report->tune;
     section_title(scenario->title, scenario_path(scenario), style, text);
     write_asked(tune, text);
-    text_append(text, "  truth       %s, to %.2g\n", tune->truth.backend,
-                tune->truth.uncertainty);
+    text_append(text, "  truth       %s, to %.2g\n", tune->truth.backend, tune->truth.uncertainty);
     if (tune->truth.is_limited) {
         text_append(text,
                     "  horizon     %.4g ms of %.4g ms: errors are those up to it, costs those of "
@@ -231,9 +230,8 @@ static void write_failure(const Tune *tune, size_t scheme, Text *text)
 static void write_trials(const TuneReport *report, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
-        {"scheme", "", TABLE_LEFT},         {"setting", "", TABLE_RIGHT},
-        {"error", "1", TABLE_RIGHT}, {"world steps", "", TABLE_RIGHT},
-        {"CPU", "ms", TABLE_RIGHT},         {"", "", TABLE_LEFT},
+        {"scheme", "", TABLE_LEFT},       {"setting", "", TABLE_RIGHT}, {"error", "1", TABLE_RIGHT},
+        {"world steps", "", TABLE_RIGHT}, {"CPU", "ms", TABLE_RIGHT},   {"", "", TABLE_LEFT},
     };
     const Tune *tune = report->tune;
     Table *table = section_begin("What was tried", 6, HEADS, style, text);
