@@ -52,7 +52,8 @@ static void write_ranges(const Trajectory *trajectory, size_t sample, FILE *stre
     }
 }
 
-// What a slider has more than a pin: its tilt, and the couple with the force on it.
+// What a slider has more than a pin: its tilt, the couple with the force on it, and of a block the
+// vector sum of the forces whose sizes its force adds up.
 static bool slides(const Joint *joint)
 {
     return joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE;
@@ -65,6 +66,9 @@ static void write_slide_heads(const Linkage *linkage, FILE *stream)
         if (slides(&linkage->joints[i])) {
             fprintf(stream, ",%s_tilt_rad,%s_moment_N_m", name, name);
             fprintf(stream, ",%s_slide_acceleration_m_s2", name);
+        }
+        if (linkage->joints[i].kind == JOINT_GUIDE) {
+            fprintf(stream, ",%s_resultant_N", name);
         }
     }
 }
@@ -82,6 +86,11 @@ static void write_slides(const Linkage *linkage, const Trajectory *trajectory, s
             const double numbers[] = {state->tilt, state->moment_on_b,
                                       vec2_dot(along, motions[body].acceleration)};
             write_cells(numbers, 3, stream);
+        }
+        if (joint->kind == JOINT_GUIDE) {
+            const double resultant =
+                vec2_length(trajectory_state(trajectory, sample, i)->force_on_b);
+            write_cells(&resultant, 1, stream);
         }
     }
 }

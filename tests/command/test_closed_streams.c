@@ -11,7 +11,8 @@ static const char STUDY[] = "title: A study without a terminal\n"
                             "vary:\n"
                             "  run.step: [10 us, 20 us]\n"
                             "  run.revolutions: [1, 100000]\n"
-                            "limits: {time: 0.2 s}\n";
+                            "limits: {time: 1 s}\n"; // many times what a run of one turn takes with
+                                                     // sanitizers on a busy machine
 
 static void write_study(const Program *program)
 {

@@ -27,6 +27,7 @@ extern const char *const CHECK_CHANGE_WORDS[CHECK_CHANGE_COUNT];
 typedef struct CheckCase {
     const char *path;           // of the case
     const char *baseline;       // of its baseline; empty where its limits alone judge it
+    bool lacks_baseline;        // there is none, though it was not asked to go without
     Err err;                    // why it could not be checked; ERR_NONE where it was
     char note[CHECK_NOTE_SIZE]; // of another version of a library; empty where there is none
     double wall_s;              // of its runs, added up; when blessing, of all that was done

@@ -85,6 +85,7 @@ static void note_versions(const CheckItem *item, CheckCase *result)
 static void note_alone(const CheckOptions *options, const CheckItem *item, CheckCase *result)
 {
     if (!options->is_expect_only && item->scenario->expectation_count > 0) {
+        result->lacks_baseline = true;
         snprintf(result->note, sizeof result->note,
                  "there is no baseline %.150s: judged by its limits alone", item->baseline_path);
     }

@@ -168,6 +168,15 @@ static void write_case(const CheckReport *report, const CheckCase *item, bool is
     text_append(text, "%s%s\n", item->note[0] != '\0' ? "\n  " : "", item->note);
 }
 
+static size_t lacking_baselines(const CheckReport *report)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < report->case_count; i++) {
+        count += report->cases[i].lacks_baseline ? 1 : 0;
+    }
+    return count;
+}
+
 void check_text_write(const void *target, const Style *style, Text *text)
 {
     const CheckReport *report = target;
@@ -193,6 +202,10 @@ void check_text_write(const void *target, const Style *style, Text *text)
     if (report->is_full && report->test_count > 0) {
         text_append(text, "; %zu rank tests, false-alarm rate %.2g together", report->test_count,
                     report->rate);
+    }
+    const size_t alone = lacking_baselines(report);
+    if (alone > 0) {
+        text_append(text, "; %zu without a baseline, judged by limits alone", alone);
     }
     text_append(text, "%s\n", report->is_full ? "" : "; quick: no ensembles, no orders");
     Text outcomes;

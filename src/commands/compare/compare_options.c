@@ -7,21 +7,23 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// three decades, from where a steel contact is hardly seen; the fine end is thinner, for it costs
-// most
-// The usual steps, of runs as long as one revolution of the paper's crank, s. Of longer ones they
-// are longer by powers of ten, so that as many steps are made.
+// The usual steps, of runs as long as one revolution of the paper's crank, s: three decades, from
+// where a steel contact is hardly seen; the fine end is thinner, for it costs most. Of longer runs
+// they are longer by powers of ten.
 static const double DEFAULT_STEPS[] = {3e-5, 2e-5, 1e-5, 5e-6, 3e-6, 2e-6,
                                        1e-6, 5e-7, 3e-7, 1e-7, 3e-8};
 static const double DEFAULT_DURATION = 0.06;
+
+// World steps of a run at a usual step, at most: all schemes, five times each, take some minutes.
+static const double DEFAULT_STEPS_MOST = 1e6;
 static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the longest usual run
 
 #define AT(field) .offset = offsetof(CompareOptions, field)
 
 static const OptionRow OPTIONS[] = {
     {"steps", "LIST",
-     "The steps, such as '10 us, 3 us, 1 us' (default: eleven over three decades, from about 2000 "
-     "to 2,000,000 in the run)",
+     "The steps, such as '10 us, 3 us, 1 us' (default: up to eleven, of some 2000 to "
+     "1,000,000 steps in the run)",
      1, OPTION_TEXT, AT(steps)},
     COMMON_SCHEMES(1),
     COMMON_SET(1),
@@ -98,7 +100,8 @@ static size_t usual_steps(const CompareOptions *options, const Scenario *scenari
     for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof DEFAULT_STEPS[0]; i++) {
         Err err = {0};
         const double step_s = rounded(step_factor(scenario) * DEFAULT_STEPS[i]);
-        if (common_options_check_step(&options->common, step_s, &err)) {
+        if (scenario_duration(scenario) <= DEFAULT_STEPS_MOST * step_s &&
+            common_options_check_step(&options->common, step_s, &err)) {
             steps[count++] = step_s;
         }
     }

@@ -57,6 +57,7 @@ static void set_slide(json_t *object, const Linkage *linkage, const Trajectory *
     if (joint->kind == JOINT_GUIDE) {
         json_value_set(object, "tilt_max_rad", is_felt ? run->joints[number].tilt_max.value : NAN);
         json_value_set(object, "tilt_limit_rad", linkage_guide_tilt(&joint->guide));
+        json_value_set(object, "resultant_max_N", is_felt ? range.resultant.value : NAN);
     }
 }
 

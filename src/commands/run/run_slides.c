@@ -70,6 +70,9 @@ static void block_row(Table *table, const RunReport *report, const Trajectory *r
     run_when_cell(table, report, extremes->tilt_max.time_s, extremes->tilt_max.crank_rad);
     section_number(table, limit * UNITS_MRAD);
     table_cell(table, "%.1f", extremes->tilt_max.value / limit * UNITS_PERCENT);
+    section_number(table, extremes->force_max.value);
+    section_number(table,
+                   slide_range_find(&report->scenario->linkage, run, number).resultant.value);
 }
 
 void run_slides_blocks(const RunReport *report, const Style *style, Text *text)
@@ -78,6 +81,7 @@ void run_slides_blocks(const RunReport *report, const Style *style, Text *text)
         {"joint", "", TABLE_LEFT},         {"backend", "", TABLE_LEFT},
         {"tilt max", "mrad", TABLE_RIGHT}, {"", "", TABLE_RIGHT},
         {"limit", "mrad", TABLE_RIGHT},    {"of limit", "%", TABLE_RIGHT},
+        {"corners", "N", TABLE_RIGHT},     {"resultant", "N", TABLE_RIGHT},
     };
     const Linkage *linkage = &report->scenario->linkage;
     Table *table = NULL;
@@ -89,7 +93,7 @@ void run_slides_blocks(const RunReport *report, const Style *style, Text *text)
                 continue;
             }
             if (table == NULL) {
-                table = section_begin("Blocks between their guides", 6, HEADS, style, text);
+                table = section_begin("Blocks between their guides", 8, HEADS, style, text);
                 run_when_head(table, 3, report);
             }
             block_row(table, report, run, joint);

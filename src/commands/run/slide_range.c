@@ -17,10 +17,15 @@ double slide_range_acceleration(const Linkage *linkage, const Trajectory *run, s
     return vec2_dot(joint_rows_along(linkage, motions, (int)joint), motions[body].acceleration);
 }
 
+static Extreme at_sample(double value, const Trajectory *run, size_t sample)
+{
+    return (Extreme){value, run->times[sample], run->crank_angles[sample]};
+}
+
 // Takes a value that was then into the least and most.
 static void widen(Extreme range[2], double value, const Trajectory *run, size_t sample)
 {
-    const Extreme now = {value, run->times[sample], run->crank_angles[sample]};
+    const Extreme now = at_sample(value, run, sample);
     range[0] = sample == 0 || value < range[0].value ? now : range[0];
     range[1] = sample == 0 || value > range[1].value ? now : range[1];
 }
@@ -40,6 +45,10 @@ SlideRange slide_range_find(const Linkage *linkage, const Trajectory *run, size_
               vec2_dot(along, gap.velocity) + omega * vec2_dot(vec2_perp(along), gap.position), run,
               i);
         widen(range.acceleration, slide_range_acceleration(linkage, run, i, joint), run, i);
+        const double resultant = vec2_length(trajectory_state(run, i, joint)->force_on_b);
+        if (i == 0 || resultant > range.resultant.value) {
+            range.resultant = at_sample(resultant, run, i);
+        }
     }
     return range;
 }

@@ -8,6 +8,7 @@ typedef struct SlideRange {
     Extreme position[2];     // m, least and most, along the line from its point on body a
     Extreme velocity[2];     // m/s, likewise, of the slider against the line's body
     Extreme acceleration[2]; // m/s^2, of the slider's centre of mass, along the line
+    Extreme resultant;       // N, largest size of the vector sum of all forces on the slider in it
 } SlideRange;
 
 // Whether a joint has a slider.
