@@ -5,6 +5,53 @@
 #include "contact/law.h"
 
 #include <math.h>
+#include <string.h>
+
+// What a scenario must be for a bit to be met.
+typedef struct Condition {
+    unsigned bit;
+    unsigned within; // bits without which it cannot be met
+    SchemaLack lack;
+} Condition;
+
+// A key that lacks several is told the first. A mistake is what changes the mechanism or its
+// contact and takes one word of another key; what chooses among ways to compute may well be kept
+// for another setting. What a key asks of itself (OWN_STIFFNESS, LATER and such) and what check.c
+// refuses (FREE, DRIVE and such) has no row.
+// clang-format off
+static const Condition CONDITIONS[] = {
+    {SPATIAL, 0, {"space: spatial", "space", true}},
+    {PLAY, 0, {"a joint with play", "", false}},
+    {IDEAL, 0, {"a case whose joints are all ideal", "", false}},
+    {IMPACT, PLAY, {"contact.model: impact", "contact.model", false}},
+    {POISSON, PLAY, {"contact.model: poisson", "contact.model", true}},
+    {LAW, IMPACT, {"a pin with play that has no stiffness of its own", "contact.stiffness", false}},
+    {VISCOUS, IMPACT, {"contact.damping: viscous", "contact.damping contact.model", true}},
+    {MATERIAL, PLAY, {"contact.law, or contact.model: poisson without contact.penalty", "contact.model", false}},
+    {FRICTION, PLAY, {"contact.friction above 0", "contact.friction", false}},
+    {REFERENCE, 0, {"reference among run.backends", "run.backends", false}},
+    {ODE, 0, {"ode among run.backends", "run.backends", false}},
+    {GIVEN_STEP, ODE, {"a given run.step, such as 1 us", "run.step", false}},
+    {CHOSEN_STEP, ODE, {"run.step: auto", "run.step", false}},
+    {LOCAL, ODE | IMPACT, {"ode.map: impulse", "ode.map", false}},
+    {PLAIN, GIVEN_STEP, {"ode.stepping: plain", "ode.stepping", false}},
+    {EXTRAPOLATED, ODE | IDEAL, {"ode.stepping: extrapolated", "ode.stepping", false}},
+    {QUICK, ODE, {"ode.solver: quick", "ode.solver", false}},
+    {FACETED, ODE | PLAY, {"any ode.collider but pin-hole", "ode.collider", false}},
+};
+// clang-format on
+
+enum { CONDITION_COUNT = sizeof CONDITIONS / sizeof *CONDITIONS };
+
+// The bits of a row, and those without which they cannot be met.
+static unsigned needs_of(const SchemaRow *row)
+{
+    unsigned needs = row->needs;
+    for (size_t i = CONDITION_COUNT; i-- > 0;) {
+        needs |= needs & CONDITIONS[i].bit ? CONDITIONS[i].within : 0;
+    }
+    return needs;
+}
 
 static unsigned bit(unsigned need, bool is_met)
 {
@@ -110,4 +157,47 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         }
     }
     return (row->needs & ~met) == 0;
+}
+
+// Settings of how a run is computed and reported.
+static bool is_of_computing(const SchemaRow *row)
+{
+    static const char *const GROUPS[] = {"run.", "reference.", "ode."};
+    for (size_t i = 0; i < sizeof GROUPS / sizeof *GROUPS; i++) {
+        if (strncmp(row->path, GROUPS[i], strlen(GROUPS[i])) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool schema_lacks(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met,
+                  SchemaLack *lack)
+{
+    const unsigned missing = needs_of(row) & ~met;
+    if (schema_applies(row, scenario, index, met)) {
+        return false;
+    }
+    for (size_t i = 0; i < CONDITION_COUNT; i++) {
+        if (missing & CONDITIONS[i].bit) {
+            *lack = CONDITIONS[i].lack;
+            lack->is_mistake = lack->is_mistake && !is_of_computing(row);
+            return true;
+        }
+    }
+    return false;
+}
+
+void schema_list_needs(const SchemaRow *row, Text *text)
+{
+    size_t count = 0;
+    unsigned implied = 0;
+    for (size_t i = 0; i < CONDITION_COUNT; i++) {
+        implied |= row->needs & CONDITIONS[i].bit ? CONDITIONS[i].within : 0;
+    }
+    for (size_t i = 0; i < CONDITION_COUNT; i++) {
+        if (row->needs & ~implied & CONDITIONS[i].bit) {
+            text_append(text, "%s%s", count++ > 0 ? ", " : "", CONDITIONS[i].lack.words);
+        }
+    }
 }

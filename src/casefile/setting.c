@@ -336,8 +336,7 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     }
 }
 
-// The name of a family's member; one that the scenario does not have keeps the star.
-static const char *member_name(const Scenario *scenario, SchemaFamily family, size_t member)
+const char *schema_member_name(const Scenario *scenario, SchemaFamily family, size_t member)
 {
     const bool is_there = member < schema_member_count(scenario, family);
     const void *named = schema_member(scenario, family, member);
@@ -376,7 +375,7 @@ bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
     const SchemaRow *row = &SCHEMA_ROWS[walk->row];
     const size_t member = walk->member++;
     *setting = (CasefileSetting){0};
-    schema_path(row, member_name(scenario, row->family, member), setting->key);
+    schema_path(row, schema_member_name(scenario, row->family, member), setting->key);
     text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
     set_value(setting, row, scenario, member);
     setting->applies = schema_applies(row, scenario, member, walk->met);

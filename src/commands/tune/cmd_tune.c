@@ -246,8 +246,10 @@ static void warn(const TuneOptions *options, const Scenario *scenario)
     for (size_t i = 0; !options->common.is_quiet && i < options->common.override_count; i++) {
         if (tune_setting_replaces(options->common.overrides[i])) {
             const char *given = options->common.overrides[i];
-            output_say("without effect: %.*s (it is what tune searches for)\n",
-                       (int)strcspn(given, "="), given);
+            output_say(
+                "jointplay: warning: %.*s of the command line has no effect here; it is what "
+                "tune searches for\n",
+                (int)strcspn(given, "="), given);
         }
     }
 }
