@@ -106,7 +106,8 @@ typedef struct SchemaRow {
     const char *zero_word;     // what may be written for the number 0; NULL: nothing
     const char *default_words; // in place of the default's number; NULL: the number says it
     unsigned kinds;            // of joints: SCHEMA_OF each kind that has the key; 0: all
-    unsigned needs;            // what a scenario must have for the key to matter
+    unsigned needs;            // what a scenario must have for the key to be among its settings
+    unsigned wants;            // and, besides, for its value to change anything
     const char *doc;
 } SchemaRow;
 

@@ -8,9 +8,9 @@
 #include <string.h>
 
 // Whether one of the keys that decide, their paths separated by blanks, is given by --set.
-static bool is_overridden(const Entries *entries, const char *paths)
+static bool is_overridden(const Entries *entries, const char *paths, size_t index)
 {
-    const Entry *first = entries_blame(entries, paths, 0);
+    const Entry *first = entries_blame(entries, paths, index);
     return first != NULL && first->source->is_override;
 }
 
@@ -21,7 +21,7 @@ bool unused_check(const Entries *entries, const Scenario *scenario, Err *err)
         const Entry *entry = &entries->entries[i];
         SchemaLack lack;
         if (schema_lacks(entry->row, scenario, entry->index, met, &lack) && lack.is_mistake &&
-            !is_overridden(entries, lack.paths)) {
+            !is_overridden(entries, lack.paths, entry->index)) {
             char path[SCHEMA_PATH_SIZE];
             schema_path(entry->row, entries_name(entries, entry->row, entry->index), path);
             return entries_refuse(entry, err,

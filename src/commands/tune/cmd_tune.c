@@ -239,8 +239,12 @@ static void warn(const TuneOptions *options, const Scenario *scenario)
     Scenario *whole = malloc(sizeof *whole);
     assert(whole != NULL);
     *whole = *scenario;
-    // the search tries both solvers, whatever the case says
+    // the search tries both solvers beside the reference, whatever the case says
     whole->ode.solver = ODE_QUICK;
+    whole->run.backend_count = BACKEND_COUNT;
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        whole->run.backends[i] = (BackendKind)i;
+    }
     warnings_say(whole, &options->common);
     free(whole);
     for (size_t i = 0; !options->common.is_quiet && i < options->common.override_count; i++) {
