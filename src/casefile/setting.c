@@ -381,3 +381,26 @@ bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
     setting->applies = schema_applies(row, scenario, member, walk->met);
     return true;
 }
+
+size_t casefile_unused(const Scenario *scenario, Text *lines)
+{
+    const unsigned met = schema_met(scenario);
+    size_t count = 0;
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        const ScenarioKey *key = &scenario->keys[i];
+        const SchemaRow *row = &SCHEMA_ROWS[key->row];
+        SchemaLack lack;
+        if (!schema_lacks(row, scenario, key->member, met, &lack)) {
+            continue;
+        }
+        char path[SCHEMA_PATH_SIZE];
+        schema_path(row, schema_member_name(scenario, row->family, key->member), path);
+        if (key->line > 0) {
+            text_append(lines, "%s:%zu: ", scenario_path(scenario), key->line);
+        }
+        text_append(lines, "%s%s has no effect here; it would with %s\n", path,
+                    key->line > 0 ? "" : " of the command line", lack.words);
+        count++;
+    }
+    return count;
+}

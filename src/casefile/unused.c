@@ -1,11 +1,8 @@
-// Which keys does a case give that nothing in it makes use of, and what would?
+// Does a case give a key that nothing in it makes use of because another was forgotten?
 #include "casefile/unused.h"
 
 #include "base/zeroed.h"
-#include "casefile/casefile.h"
 #include "casefile/keys.h"
-
-#include <string.h>
 
 // Whether one of the keys that decide, their paths separated by blanks, is given by --set.
 static bool is_overridden(const Entries *entries, const char *paths, size_t index)
@@ -47,27 +44,4 @@ void unused_remember(const Entries *entries, Scenario *scenario)
                         : source_line(entry->source, keys_span(entry->node).start),
         };
     }
-}
-
-size_t casefile_unused(const Scenario *scenario, Text *lines)
-{
-    const unsigned met = schema_met(scenario);
-    size_t count = 0;
-    for (size_t i = 0; i < scenario->key_count; i++) {
-        const ScenarioKey *key = &scenario->keys[i];
-        const SchemaRow *row = &SCHEMA_ROWS[key->row];
-        SchemaLack lack;
-        if (!schema_lacks(row, scenario, key->member, met, &lack)) {
-            continue;
-        }
-        char path[SCHEMA_PATH_SIZE];
-        schema_path(row, schema_member_name(scenario, row->family, key->member), path);
-        if (key->line > 0) {
-            text_append(lines, "%s:%zu: ", scenario_path(scenario), key->line);
-        }
-        text_append(lines, "%s%s has no effect here; it would with %s\n", path,
-                    key->line > 0 ? "" : " of the command line", lack.words);
-        count++;
-    }
-    return count;
 }
