@@ -33,7 +33,8 @@ void casefile_describe(Text *text);
 void casefile_describe_markdown(Text *text);
 
 // Appends a line for each key that the case or the command line gives and that the scenario, as it
-// is now, makes no use of: where it stands, and what would. Returns how many.
+// is now, makes no use of: where it stands, and what would. A key of the file beside which the
+// command line replaces what decides about it is left out. Returns how many.
 size_t casefile_unused(const Scenario *scenario, Text *lines);
 
 typedef enum CasefileKind {

@@ -382,6 +382,21 @@ bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
     return true;
 }
 
+// Whether the command line gives one of the keys of these paths, which blanks separate: what the
+// file says beside it is then kept for the file's own setting.
+static bool is_decided(const Scenario *scenario, const char *paths)
+{
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        const char *path = SCHEMA_ROWS[scenario->keys[i].row].path;
+        const size_t length = strlen(path);
+        const char *found = scenario->keys[i].line == 0 ? strstr(paths, path) : NULL;
+        if (found != NULL && (found[length] == ' ' || found[length] == '\0')) {
+            return true;
+        }
+    }
+    return false;
+}
+
 size_t casefile_unused(const Scenario *scenario, Text *lines)
 {
     const unsigned met = schema_met(scenario);
@@ -390,7 +405,8 @@ size_t casefile_unused(const Scenario *scenario, Text *lines)
         const ScenarioKey *key = &scenario->keys[i];
         const SchemaRow *row = &SCHEMA_ROWS[key->row];
         SchemaLack lack;
-        if (!schema_lacks(row, scenario, key->member, met, &lack)) {
+        if (!schema_lacks(row, scenario, key->member, met, &lack) ||
+            (key->line > 0 && is_decided(scenario, lack.paths))) {
             continue;
         }
         char path[SCHEMA_PATH_SIZE];

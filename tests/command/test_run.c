@@ -352,12 +352,28 @@ static void settings_without_effect_are_said_a_line_each(void **state)
     assert_int_equal(program->status, 0);
     assert_string_equal(
         program->errors,
+        "jointplay: warning: run.step of the command line has no effect here; it would with ode "
+        "among run.backends\n"
         "jointplay: warning: contact.law of the command line has no effect here; it would with a "
         "joint with play\n"
         "jointplay: warning: ode.seed of the command line has no effect here; it would with ode "
-        "among run.backends\n"
-        "jointplay: warning: run.step of the command line has no effect here; it would with ode "
         "among run.backends\n");
+    // a key of the file has its line
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "kept.yaml", path);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("bodies: {pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}}\n"
+          "joints: {hinge: {between: [ground, pin], at: [0 mm, 0 mm]}}\n"
+          "run: {duration: 1 ms, samples: 10}\n"
+          "ode:\n  erp: 0.3\n",
+          file);
+    fclose(file);
+    program_run(program, "run kept.yaml --step '10 us'");
+    assert_string_equal(program->errors, "jointplay: warning: kept.yaml:5: ode.erp has no effect "
+                                         "here; it would with ode.stepping: plain\n");
+    program_run(program, "run kept.yaml --backend reference");
+    assert_string_equal(program->errors, "");
     program_run(program, "run -q $cases/paper/ideal-nominal.yaml --set contact.law=johnson");
     assert_int_equal(program->status, 0);
     assert_string_equal(program->errors, "");
