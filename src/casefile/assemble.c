@@ -10,6 +10,7 @@
 #include "casefile/limits.h"
 #include "casefile/slider.h"
 #include "casefile/store.h"
+#include "casefile/unused.h"
 #include "model/space.h"
 
 #include <string.h>
@@ -157,12 +158,13 @@ bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
     Scenario built = scenario_default();
     if (!check_required(entries, err) || !store_entries(entries, &built, err) ||
         !check_values(entries, &built, err) || !closure_check_members(entries, &built, err) ||
-        !build(entries, &built, err)) {
+        !build(entries, &built, err) || !unused_check(entries, &built, err)) {
         scenario_free(&built);
         return false;
     }
     const Source *source = entries_group(entries, "", 0)->source;
     scenario_set_path(&built, source->name);
+    unused_remember(entries, &built);
     *scenario = built;
     return true;
 }

@@ -32,6 +32,11 @@ bool casefile_expects_refusal(const char *path, char title[SCENARIO_TITLE_SIZE],
 void casefile_describe(Text *text);
 void casefile_describe_markdown(Text *text);
 
+// Appends a line for each key that the case or the command line gives and that the scenario, as it
+// is now, makes no use of: where it stands, and what would. A key of the file beside which the
+// command line replaces what decides about it is left out. Returns how many.
+size_t casefile_unused(const Scenario *scenario, Text *lines);
+
 typedef enum CasefileKind {
     CASEFILE_NUMBER,    // a quantity in SI, or a vector of two or three
     CASEFILE_TOLERATED, // a length with a tolerance: nominal, and both limits as deviations

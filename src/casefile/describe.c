@@ -58,6 +58,9 @@ static const char *const RULES[] = {
     "A case has either four-bar or slider-crank, for a mechanism of that kind, or bodies, for "
     "any planar linkage.",
     "Unknown and doubled keys are errors, as are anchors, aliases and tags.",
+    "A key that the case makes no use of is an error where another key was forgotten, such as "
+    "space: spatial beside inertia-x; otherwise run, map, compare and tune name it in a warning, "
+    "with what would use it, unless --quiet.",
     "On the command line, --set KEY=VALUE takes a key's whole path: --set run.step=2us. It "
     "replaces what the file says about the key, and about a key that excludes it.",
 };
@@ -160,6 +163,16 @@ static void append_wrapped(const char *words, int indent, Text *text)
     text_append(text, "\n");
 }
 
+// The row's meaning, and what a case needs besides for it to matter.
+static void describe_meaning(const SchemaRow *row, Text *text)
+{
+    Text needs;
+    text_init(&needs);
+    schema_list_needs(row, &needs);
+    text_append(text, needs.length > 0 ? "%s. Used with: %s" : "%s", row->doc, needs.data);
+    text_finish(&needs);
+}
+
 // A row in words for a terminal, or as a line of a table.
 static void describe_row(size_t row_number, bool is_page, Text *text)
 {
@@ -175,12 +188,15 @@ static void describe_row(size_t row_number, bool is_page, Text *text)
         describe_range(row, text);
         text_append(text, " | ");
         describe_default(row_number, text);
-        text_append(text, " | %s |\n", row->doc);
+        text_append(text, " | ");
+        describe_meaning(row, text);
+        text_append(text, " |\n");
         return;
     }
     Text words;
     text_init(&words);
-    text_append(&words, "%s. ", row->doc);
+    describe_meaning(row, &words);
+    text_append(&words, ". ");
     schema_describe(row, false, &words);
     text_append(&words, "; ");
     const size_t before = words.length;

@@ -106,7 +106,8 @@ typedef struct SchemaRow {
     const char *zero_word;     // what may be written for the number 0; NULL: nothing
     const char *default_words; // in place of the default's number; NULL: the number says it
     unsigned kinds;            // of joints: SCHEMA_OF each kind that has the key; 0: all
-    unsigned needs;            // what a scenario must have for the key to matter
+    unsigned needs;            // what a scenario must have for the key to be among its settings
+    unsigned wants;            // and, besides, for its value to change anything
     const char *doc;
 } SchemaRow;
 
@@ -159,6 +160,21 @@ unsigned schema_met(const Scenario *scenario);
 // Whether a scenario, which has met those bits, makes use of a row, of that member of its family.
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met);
 
+// What a row lacks that a scenario makes no use of.
+typedef struct SchemaLack {
+    const char *words; // what would make use of it
+    const char *paths; // the keys that decide about that, separated by blanks; empty: none alone
+    bool is_mistake;   // nothing but a key that was forgotten explains it
+} SchemaLack;
+
+// Whether a scenario, which has met those bits, makes no use of a row of that member and something
+// else would; what it lacks.
+bool schema_lacks(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met,
+                  SchemaLack *lack);
+
+// Appends what a row asks of a case before it matters, all of it; nothing where it always does.
+void schema_list_needs(const SchemaRow *row, Text *text);
+
 // Whether a row's value is one that a run depends on or is named by: all but expectations.
 bool schema_is_setting(const SchemaRow *row);
 
@@ -181,6 +197,9 @@ size_t schema_member_count(const Scenario *scenario, SchemaFamily family);
 
 // One of them. A member that the scenario does not have is one with nothing but zeros.
 const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t index);
+
+// Its name; of one that the scenario does not have, and of SCHEMA_SINGLE, a star.
+const char *schema_member_name(const Scenario *scenario, SchemaFamily family, size_t index);
 
 // The rows' fields in a scenario; `index` numbers the member of a family, which the scenario must
 // have for schema_field.

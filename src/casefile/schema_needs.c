@@ -5,6 +5,74 @@
 #include "contact/law.h"
 
 #include <math.h>
+#include <string.h>
+
+// ODE's quick solver draws a new order of the rows before every eighth iteration but the first.
+enum { SHUFFLE_ITERATIONS = 8 };
+
+// What a scenario must be for a bit to be met.
+typedef struct Condition {
+    unsigned bit;
+    unsigned within; // bits without which it cannot be met
+    SchemaLack lack;
+} Condition;
+
+// A key that lacks several is told the first. A mistake is what changes the mechanism or its
+// contact and takes one word of another key; what chooses among ways to compute may well be kept
+// for another setting. What a key asks of itself (OWN_STIFFNESS, LATER and such) and what check.c
+// refuses (FREE, DRIVE and such) has no row.
+// clang-format off
+static const Condition CONDITIONS[] = {
+    {SPATIAL, 0, {"space: spatial", "space", true}},
+    {PLAY, 0, {"a joint with play", "", false}},
+    {IDEAL, 0, {"a case whose joints are all ideal", "", false}},
+    {IMPACT, PLAY, {"contact.model: impact", "contact.model", false}},
+    {POISSON, PLAY, {"contact.model: poisson", "contact.model", true}},
+    {STIFFNESS, IMPACT, {"contact.model: impact", "contact.model", false}},
+    {LAW, IMPACT, {"a pin with play that has no stiffness of its own", "contact.stiffness", false}},
+    {VISCOUS, IMPACT, {"contact.damping: viscous", "contact.damping contact.model", true}},
+    {MATERIAL, PLAY, {"contact.law, or contact.model: poisson without contact.penalty", "contact.model", false}},
+    {FRICTION, PLAY, {"contact.friction above 0", "contact.friction", false}},
+    {REFERENCE, 0, {"reference among run.backends", "run.backends", false}},
+    {ODE, 0, {"ode among run.backends", "run.backends", false}},
+    {GIVEN_STEP, ODE, {"a given run.step, such as 1 us", "run.step", false}},
+    {CHOSEN_STEP, ODE, {"run.step: auto", "run.step", false}},
+    {LOCAL, ODE | IMPACT, {"ode.map: impulse", "ode.map", false}},
+    {PLAIN, GIVEN_STEP, {"ode.stepping: plain", "ode.stepping", false}},
+    {EXTRAPOLATED, ODE | IDEAL, {"ode.stepping: extrapolated", "ode.stepping", false}},
+    {QUICK, ODE, {"ode.solver: quick", "ode.solver", false}},
+    {FACETED, ODE | PLAY, {"any ode.collider but pin-hole", "ode.collider", false}},
+};
+// clang-format on
+
+// clang-format off
+static const Condition WANTS[] = {
+    {COMMON_STIFFNESS, 0, {"a joint with play that has no stiffness of its own", "", false}},
+    {COMMON_DAMPING, 0, {"a joint with play that has no viscous-coefficient of its own", "", false}},
+    {REBOUND, 0, {"a contact.damping but none and viscous, at a joint without values of its own", "contact.damping", false}},
+    {OWN_REBOUND, 0, {"a contact.damping but none and viscous", "contact.damping", false}},
+    {PIN, 0, {"a pin with play in its hole", "", false}},
+    {HELD_ROWS, 0, {"an ideal joint", "", false}},
+    {ANY_ROWS, 0, {"an ideal joint, or any ode.map but impulse", "", false}},
+    {SMOOTHED, 0, {"contact.model: impact, and reference among run.backends or ode.solver: direct", "", false}},
+    {SHUFFLED, 0, {"ode.iterations above 8", "ode.iterations", false}},
+    {MOVED, 0, {"a drive that determines the motion", "", false}},
+};
+// clang-format on
+
+enum { WANT_COUNT = sizeof WANTS / sizeof *WANTS };
+
+enum { CONDITION_COUNT = sizeof CONDITIONS / sizeof *CONDITIONS };
+
+// The bits of a row, and those without which they cannot be met.
+static unsigned needs_of(const SchemaRow *row)
+{
+    unsigned needs = row->needs;
+    for (size_t i = CONDITION_COUNT; i-- > 0;) {
+        needs |= needs & CONDITIONS[i].bit ? CONDITIONS[i].within : 0;
+    }
+    return needs;
+}
 
 static unsigned bit(unsigned need, bool is_met)
 {
@@ -110,4 +178,126 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         }
     }
     return (row->needs & ~met) == 0;
+}
+
+static bool is_restored(DampingKind damping)
+{
+    return damping != DAMPING_NONE && damping != DAMPING_VISCOUS;
+}
+
+// What the joints of a scenario take from the contact that all share.
+static unsigned shared_bits(const Scenario *scenario)
+{
+    const ContactOptions *contact = &scenario->contact;
+    const bool is_poisson = contact->model == CONTACT_POISSON;
+    unsigned met = 0;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (!linkage_has_play(joint)) {
+            continue;
+        }
+        const DampingKind damping = law_options(contact, joint).damping;
+        met |=
+            bit(COMMON_STIFFNESS, (joint_bits(scenario, joint) & OWN_STIFFNESS) == 0) |
+            bit(COMMON_DAMPING, joint->contact.viscous == 0.0) |
+            bit(REBOUND, (is_restored(damping) || is_poisson) && !joint->contact.has_restitution) |
+            bit(PIN, joint->kind == JOINT_CLEARANCE);
+    }
+    return met;
+}
+
+// The rows that ODE has, and whether some solver smooths friction.
+static unsigned row_bits(const Scenario *scenario)
+{
+    const RunOptions *run = &scenario->run;
+    bool is_held = false;
+    bool is_smoothed = scenario->ode.solver != ODE_QUICK;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const JointKind kind = scenario->linkage.joints[i].kind;
+        is_held = is_held || kind == JOINT_REVOLUTE || kind == JOINT_PRISMATIC;
+    }
+    for (size_t i = 0; i < run->backend_count; i++) {
+        is_smoothed = is_smoothed || run->backends[i] == BACKEND_REFERENCE;
+    }
+    const bool has_contacts = run->step > 0.0 && scenario->ode.map != ODE_MAP_IMPULSE;
+    return bit(HELD_ROWS, is_held) | bit(ANY_ROWS, is_held || has_contacts) |
+           bit(SMOOTHED, is_smoothed && scenario->contact.model == CONTACT_IMPACT) |
+           bit(SHUFFLED, scenario->ode.iterations > SHUFFLE_ITERATIONS) |
+           bit(MOVED, build_is_determined(&scenario->linkage));
+}
+
+static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)
+{
+    const bool is_joint = row->family == SCHEMA_JOINT && index < scenario->linkage.joint_count;
+    const Joint *joint = is_joint ? &scenario->linkage.joints[index] : NULL;
+    const bool is_own = is_joint && (scenario->contact.model == CONTACT_POISSON ||
+                                     is_restored(law_options(&scenario->contact, joint).damping));
+    return shared_bits(scenario) | row_bits(scenario) | bit(OWN_REBOUND, is_own);
+}
+
+// A start is one of play: without, nothing says where a joint starts but its bodies.
+static bool lacks_gap(const SchemaRow *row, const Scenario *scenario, size_t index,
+                      SchemaLack *lack)
+{
+    const bool is_start = row->type == SCHEMA_START && index < scenario->linkage.joint_count;
+    if (!is_start || limits_apply(row, &scenario->linkage.joints[index],
+                                  schema_field_const(row, scenario, index))) {
+        return false;
+    }
+    *lack = (SchemaLack){"backlash of the joint", "joints.*.backlash", true};
+    return true;
+}
+
+// Settings of how a run is computed and reported.
+static bool is_of_computing(const SchemaRow *row)
+{
+    static const char *const GROUPS[] = {"run.", "reference.", "ode."};
+    for (size_t i = 0; i < sizeof GROUPS / sizeof *GROUPS; i++) {
+        if (strncmp(row->path, GROUPS[i], strlen(GROUPS[i])) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool schema_lacks(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met,
+                  SchemaLack *lack)
+{
+    const unsigned missing = needs_of(row) & ~met;
+    const bool applies = schema_applies(row, scenario, index, met);
+    for (size_t i = 0; !applies && i < CONDITION_COUNT; i++) {
+        if (missing & CONDITIONS[i].bit) {
+            *lack = CONDITIONS[i].lack;
+            lack->is_mistake = lack->is_mistake && !is_of_computing(row);
+            return true;
+        }
+    }
+    const unsigned unmet =
+        applies && row->wants ? row->wants & ~wants_met(row, scenario, index) : 0;
+    for (size_t i = 0; i < WANT_COUNT; i++) {
+        if (unmet & WANTS[i].bit) {
+            *lack = WANTS[i].lack;
+            return true;
+        }
+    }
+    return !applies && lacks_gap(row, scenario, index, lack);
+}
+
+void schema_list_needs(const SchemaRow *row, Text *text)
+{
+    size_t count = 0;
+    unsigned implied = 0;
+    for (size_t i = 0; i < CONDITION_COUNT; i++) {
+        implied |= row->needs & CONDITIONS[i].bit ? CONDITIONS[i].within : 0;
+    }
+    for (size_t i = 0; i < CONDITION_COUNT; i++) {
+        if (row->needs & ~implied & CONDITIONS[i].bit) {
+            text_append(text, "%s%s", count++ > 0 ? "; " : "", CONDITIONS[i].lack.words);
+        }
+    }
+    for (size_t i = 0; i < WANT_COUNT; i++) {
+        if (row->wants & WANTS[i].bit) {
+            text_append(text, "%s%s", count++ > 0 ? "; " : "", WANTS[i].lack.words);
+        }
+    }
 }

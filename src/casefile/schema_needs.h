@@ -37,3 +37,17 @@ enum {
     OWN_VISCOUS = 1 << 30,     // or a viscous coefficient
     TURNING = 1 << 28,         // the drive's speed is constant: revolutions measure the run
 };
+
+// Likewise, of a key that stays a setting of a run without them: it is named as one without effect.
+enum {
+    COMMON_STIFFNESS = 1 << 0, // some joint with play has no stiffness of its own
+    COMMON_DAMPING = 1 << 1,   // or no viscous coefficient
+    REBOUND = 1 << 2,          // a restitution of the contact sets the damping of some joint
+    OWN_REBOUND = 1 << 3,      // or that of the joint sets its own
+    PIN = 1 << 4,              // a pin has play in its hole
+    HELD_ROWS = 1 << 5,        // ODE has rows of an ideal joint
+    ANY_ROWS = 1 << 6,         // or any
+    SMOOTHED = 1 << 7,         // some solver lets friction set in over a speed
+    MOVED = 1 << 8,            // a drive determines the motion before time zero
+    SHUFFLED = 1 << 9,         // the quick solver comes to change the order of the rows
+};

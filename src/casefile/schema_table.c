@@ -255,13 +255,13 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "contact.stiffness", .type = SCHEMA_STIFFNESS, .dimension = DIMENSION_STIFFNESS,
      AT(contact), .low = 0.0, .high = 1e24, .low_is_open = true,
      .rivalry = SCHEMA_ELASTICITY, .side = 1, .default_words = "from the law",
-     .needs = STIFFNESS,
+     .needs = STIFFNESS, .wants = COMMON_STIFFNESS,
      .doc = "K in F = K d^n, instead of a law; n follows from the unit: N/m^1.5, N/mm^1.5, N/m"},
     {.path = "contact.damping", .type = SCHEMA_CHOICE, AT(contact.damping),
-     .words = OPTIONS_DAMPINGS, .needs = IMPACT,
+     .words = OPTIONS_DAMPINGS, .needs = IMPACT, .wants = COMMON_DAMPING,
      .doc = "damping law of the impact model"},
     {.path = "contact.restitution", AT(contact.restitution), .low = 0.0, .high = 1.0,
-     .needs = PLAY, .doc = "desired ratio of the speeds after and before an impact"},
+     .needs = PLAY, .wants = REBOUND, .doc = "desired ratio of the speeds after and before an impact"},
     {.path = "contact.viscous-coefficient", .dimension = DIMENSION_DAMPING,
      AT(contact.viscous_coefficient), .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "none", .needs = VISCOUS,
@@ -269,7 +269,7 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "contact.friction", AT(contact.friction), .low = 0.0, .high = 1.0,
      .needs = PLAY, .doc = "Coulomb's friction coefficient; 0 for none"},
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
-     .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION,
+     .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION, .wants = SMOOTHED,
      .doc = "sliding speed over which friction sets in; ODE's quick solver and the poisson model "
             "do without"},
     {.path = "contact.penalty", .dimension = DIMENSION_DAMPING, AT(contact.penalty),
@@ -281,7 +281,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "in the poisson model, impacts below this speed do not bounce"},
     {.path = "contact.impact-speed-floor", .dimension = DIMENSION_SPEED,
      AT(contact.impact_speed_floor), .low = 0.0, .high = 1e3, .low_is_open = true,
-     .needs = IMPACT, .doc = "smallest impact speed by which the damping laws divide"},
+     .needs = IMPACT, .wants = REBOUND, .doc = "smallest impact speed by which the damping laws divide"},
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
      .low_is_open = true, .needs = TURNING,
@@ -328,7 +328,7 @@ const SchemaRow SCHEMA_ROWS[] = {
             "above 3e-5, which costs least, it is 3e-5"},
 
     {.path = "ode.solver", .type = SCHEMA_CHOICE, AT(ode.solver), .words = OPTIONS_ODE_SOLVERS,
-     .needs = ODE, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
+     .needs = ODE, .wants = ANY_ROWS, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
     {.path = "ode.stepping", .type = SCHEMA_CHOICE, AT(ode.stepping),
      .words = OPTIONS_ODE_STEPPINGS, .needs = ODE | GIVEN_STEP,
      .default_words = "staggered; plain with map textbook, corrected or exact, or model poisson",
@@ -342,7 +342,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "how stiffness and damping become ERP and CFM; impulse: neither, the contact is "
             "integrated within the step, with staggered stepping only"},
     {.path = "ode.collider", .type = SCHEMA_CHOICE, AT(ode.collider),
-     .words = OPTIONS_ODE_COLLIDERS, .needs = ODE | PLAY,
+     .words = OPTIONS_ODE_COLLIDERS, .needs = ODE | PLAY, .wants = PIN,
      .doc = "how the contact of pin and hole is found: pin-hole: exactly; staves: a ring of convex "
             "staves, by libccd's portal refinement; staves-gjk: the same by its GJK and EPA; "
             "ode-convex: the same through ODE; trimesh: a mesh of triangles. Only pin-hole goes "
@@ -356,9 +356,9 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = ODE | PLAY | FACETED,
      .doc = "circumscribed: sides touch the wall at their middles; inscribed: corners lie on the "
             "wall, as those of a CAD mesh do, and the sagitta is taken from the play"},
-    {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE | PLAIN,
+    {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE | PLAIN, .wants = HELD_ROWS,
      .doc = "error reduction of the ideal joints per step, with plain stepping; otherwise it is 1"},
-    {.path = "ode.cfm", .plain_unit = "s/kg", AT(ode.cfm), .low = 0.0, .high = 1e6, .needs = ODE,
+    {.path = "ode.cfm", .plain_unit = "s/kg", AT(ode.cfm), .low = 0.0, .high = 1e6, .needs = ODE, .wants = HELD_ROWS,
      .doc = "constraint force mixing of the ideal joints, in s/kg = m/(N s), written without a "
             "unit"},
     {.path = "ode.push-out", AT(ode.push_out), .low = 0.0, .high = 1.0,
@@ -368,9 +368,9 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "ode.over-relaxation", AT(ode.over_relaxation), .low = 0.0, .high = 2.0,
      .low_is_open = true, .needs = ODE | QUICK, .doc = "over-relaxation of the quick solver"},
     {.path = "ode.seed", .type = SCHEMA_INTEGER, AT(ode.seed), .low = 0.0, .high = 4294967295.0,
-     .needs = ODE | QUICK, .doc = "seed for the order in which the quick solver visits rows"},
+     .needs = ODE | QUICK, .wants = SHUFFLED, .doc = "seed for the order in which the quick solver visits rows"},
     {.path = "ode.settle-steps", .type = SCHEMA_INTEGER, AT(ode.settle_steps), .low = 0.0,
-     .high = 1e7, .needs = ODE | IDEAL | PLAIN,
+     .high = 1e7, .needs = ODE | IDEAL | PLAIN, .wants = MOVED,
      .doc = "with plain stepping and ideal joints only: steps run before time zero"},
     {.path = "ode.levels", .type = SCHEMA_INTEGER, AT(ode.levels), .low = 2.0, .high = 6.0,
      .needs = ODE | EXTRAPOLATED,

@@ -336,8 +336,7 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     }
 }
 
-// The name of a family's member; one that the scenario does not have keeps the star.
-static const char *member_name(const Scenario *scenario, SchemaFamily family, size_t member)
+const char *schema_member_name(const Scenario *scenario, SchemaFamily family, size_t member)
 {
     const bool is_there = member < schema_member_count(scenario, family);
     const void *named = schema_member(scenario, family, member);
@@ -376,9 +375,48 @@ bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
     const SchemaRow *row = &SCHEMA_ROWS[walk->row];
     const size_t member = walk->member++;
     *setting = (CasefileSetting){0};
-    schema_path(row, member_name(scenario, row->family, member), setting->key);
+    schema_path(row, schema_member_name(scenario, row->family, member), setting->key);
     text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
     set_value(setting, row, scenario, member);
     setting->applies = schema_applies(row, scenario, member, walk->met);
     return true;
+}
+
+// Whether the command line gives one of the keys of these paths, which blanks separate: what the
+// file says beside it is then kept for the file's own setting.
+static bool is_decided(const Scenario *scenario, const char *paths)
+{
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        const char *path = SCHEMA_ROWS[scenario->keys[i].row].path;
+        const size_t length = strlen(path);
+        const char *found = scenario->keys[i].line == 0 ? strstr(paths, path) : NULL;
+        if (found != NULL && (found[length] == ' ' || found[length] == '\0')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+size_t casefile_unused(const Scenario *scenario, Text *lines)
+{
+    const unsigned met = schema_met(scenario);
+    size_t count = 0;
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        const ScenarioKey *key = &scenario->keys[i];
+        const SchemaRow *row = &SCHEMA_ROWS[key->row];
+        SchemaLack lack;
+        if (!schema_lacks(row, scenario, key->member, met, &lack) ||
+            (key->line > 0 && is_decided(scenario, lack.paths))) {
+            continue;
+        }
+        char path[SCHEMA_PATH_SIZE];
+        schema_path(row, schema_member_name(scenario, row->family, key->member), path);
+        if (key->line > 0) {
+            text_append(lines, "%s:%zu: ", scenario_path(scenario), key->line);
+        }
+        text_append(lines, "%s%s has no effect here; it would with %s\n", path,
+                    key->line > 0 ? "" : " of the command line", lack.words);
+        count++;
+    }
+    return count;
 }

@@ -46,7 +46,7 @@ typedef struct CommonOptions {
 #define COMMON_WIDE(help_group) \
     {"wide", NULL, "All columns of the tables, however wide the terminal is", help_group, OPTION_FLAG, COMMON_AT(is_wide)}
 #define COMMON_QUIET(help_group) \
-    {"quiet", NULL, "Nothing on standard error but errors and a warning of long work", help_group, OPTION_FLAG, \
+    {"quiet", NULL, "Nothing on standard error but errors and warnings of long work and of files that are not written", help_group, OPTION_FLAG, \
      COMMON_AT(is_quiet), .letter = 'q'}
 // clang-format on
 

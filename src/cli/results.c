@@ -101,40 +101,51 @@ static bool fill(const Results *results, const ResultFile *file, const void *rep
     return true;
 }
 
+// Writes one file. Where there is nothing to write: of a file that an option names an error, of one
+// that the folder would have had with others a warning, which quiet does not silence.
 static bool write_file(const Results *results, const ResultFile *file, const char *path,
-                       bool is_quiet, const void *report, Err *err)
+                       const CommonOptions *options, bool is_named, const void *report, Err *err)
 {
     if (file->write != NULL) {
-        return file->write(report, path, err) && written_say(path, is_quiet);
+        return file->write(report, path, err) && written_say(path, options->is_quiet);
     }
     Text text;
     text_init(&text);
     const char *nothing = "";
     const bool is_filled = fill(results, file, report, &text, &nothing, err);
-    const bool is_done = is_filled ? written_text(file->kind, path, text.data, is_quiet, err)
-                                   : err->kind == ERR_NONE;
-    if (!is_filled && is_done && !is_quiet) {
-        output_say("not written: %s (%s)\n", path, nothing);
+    bool is_done = is_filled ? written_text(file->kind, path, text.data, options->is_quiet, err)
+                             : err->kind == ERR_NONE;
+    if (!is_filled && is_done && is_named) {
+        is_done = err_set(err, ERR_DIFFERS, "not written: %s %s (%s)", file->option, path, nothing);
+    } else if (!is_filled && is_done) {
+        output_say("jointplay: warning: not written: %s (%s)\n", path, nothing);
     }
     text_finish(&text);
     return is_done;
 }
 
+// Keeps the first error and goes on: what is missing of one file does not take the others away.
 bool results_write(const Results *results, const CommonOptions *options, const char *case_path,
                    const void *report, Err *err)
 {
     bool is_done = true;
-    for (size_t i = 0; i < results->file_count && is_done; i++) {
+    for (size_t i = 0; i < results->file_count && err->kind != ERR_FILE; i++) {
         const char *path = path_of(&results->files[i], options);
-        is_done = path == NULL ||
-                  write_file(results, &results->files[i], path, options->is_quiet, report, err);
+        Err own = {0};
+        if (path != NULL &&
+            !write_file(results, &results->files[i], path, options, true, report, &own)) {
+            is_done = err_set_lines(err, own.kind, own.text);
+        }
     }
-    for (size_t i = 0; options->folder != NULL && i < results->file_count && is_done; i++) {
+    for (size_t i = 0; options->folder != NULL && i < results->file_count; i++) {
         const ResultFile *file = &results->files[i];
         char path[FILE_PATH_SIZE];
-        is_done = file->ending == NULL ||
-                  (find_path(results, options, case_path, file, path, err) &&
-                   write_file(results, file, path, options->is_quiet, report, err));
+        Err own = {0};
+        if (file->ending != NULL &&
+            !(find_path(results, options, case_path, file, path, &own) &&
+              write_file(results, file, path, options, false, report, &own))) {
+            is_done = err_set_lines(err, own.kind, own.text);
+        }
     }
     return is_done;
 }

@@ -44,7 +44,9 @@ void results_print(const Results *results, const CommonOptions *options, const v
 bool results_claim(const Results *results, const CommonOptions *options, const char *case_path,
                    Err *err);
 
-// Writes all files, and says so unless quiet. ERR_FILE, and what `may` says.
+// Writes all files, and says so unless quiet. ERR_FILE, what `may` says, and ERR_DIFFERS where
+// there is nothing to write into a file that an option names: the others are written all the same.
+// A file of the folder that has no contents is named in a warning.
 bool results_write(const Results *results, const CommonOptions *options, const char *case_path,
                    const void *report, Err *err);
 

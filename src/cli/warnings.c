@@ -1,4 +1,4 @@
-// What in a case is unlikely to be meant, and which settings of the command line change nothing?
+// What in a case is unlikely to be meant, and which of its keys change nothing?
 //
 // A joint at the end of a uniform bar is sqrt(3) = 1.73 radii of gyration, sqrt(inertia / mass),
 // from its centre of mass. One that is a hundred times as far has a position or an inertia in
@@ -9,7 +9,6 @@
 #include "cli/output.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const double FAR = 100.0; // radii of gyration: no body is as slender as that
@@ -42,39 +41,21 @@ static void say_doubts(const Scenario *scenario)
     }
 }
 
-// Whether a key of the case format is one that the scenario makes no use of.
-static bool is_idle(const Scenario *scenario, const char *key)
+static void say_unused(const Scenario *scenario)
 {
-    CasefileSetting setting;
-    CasefileWalk walk = casefile_walk(scenario);
-    while (casefile_next(&walk, &setting)) {
-        if (strcmp(setting.key, key) == 0) {
-            return !setting.applies;
-        }
+    Text lines;
+    text_init(&lines);
+    casefile_unused(scenario, &lines);
+    for (const char *line = lines.data; *line != '\0'; line = strchr(line, '\n') + 1) {
+        output_say("jointplay: warning: %.*s\n", (int)strcspn(line, "\n"), line);
     }
-    return false; // a group of keys
-}
-
-static void say_idle(const Scenario *scenario, const char *const *overrides, size_t count)
-{
-    size_t idle = 0;
-    for (size_t i = 0; i < count; i++) {
-        char key[CASEFILE_KEY_SIZE];
-        snprintf(key, sizeof key, "%.*s", (int)strcspn(overrides[i], "="), overrides[i]);
-        if (is_idle(scenario, key)) {
-            output_say("%s%s", idle++ == 0 ? "without effect: " : ", ", key);
-        }
-    }
-    if (idle > 0) {
-        output_say(" (nothing in %s makes use of %s)\n", scenario_path(scenario),
-                   idle == 1 ? "it" : "them");
-    }
+    text_finish(&lines);
 }
 
 void warnings_say(const Scenario *scenario, const CommonOptions *options)
 {
     if (!options->is_quiet) {
         say_doubts(scenario);
-        say_idle(scenario, options->overrides, options->override_count);
+        say_unused(scenario);
     }
 }

@@ -37,11 +37,25 @@ static double choose(MappingSource source, double given, double median, double m
                                                               : median;
 }
 
-// Makes a contact of a joint whose pin closes in at some speed.
-static bool make_contact(const Scenario *scenario, const MappingJoint *joint, double mass,
-                         double speed, MappingContact *contact, Err *lack)
+// Whether laws are asked for in place of the case's own.
+static bool has_laws(const Mapping *mapping)
 {
-    const bool is_torsional = linkage_is_torsional(&scenario->linkage.joints[joint->joint]);
+    return mapping->settings.law_count > 0 && mapping->scenario->contact.model != CONTACT_POISSON;
+}
+
+// Makes a contact of a joint whose pin closes in at some speed. Limits of a pivot have a stiffness
+// of their own, which no law replaces.
+static bool make_contact(const Mapping *mapping, const Scenario *scenario,
+                         const MappingJoint *joint, double mass, double speed,
+                         MappingContact *contact, Err *lack)
+{
+    const Joint *at = &scenario->linkage.joints[joint->joint];
+    const bool is_torsional = linkage_is_torsional(at);
+    if (is_torsional && has_laws(mapping)) {
+        return err_set(lack, ERR_USAGE,
+                       "its stiffness is its own: the law %s is for a pin in its hole",
+                       OPTIONS_LAWS[scenario->contact.law]);
+    }
     return speed > 0.0 ? mapping_contact_make(scenario, joint, mass, speed, contact, lack)
                        : err_set(lack, ERR_USAGE,
                                  "no contact of the case's run begins with a closing speed; give "
@@ -54,11 +68,13 @@ static void add_contact(Mapping *mapping, const Scenario *scenario, const Mappin
                         double mass, double speed, MappingSource speed_source)
 {
     MappingContact *contact = &mapping->contacts[mapping->contact_count++];
+    const Joint *at = &scenario->linkage.joints[joint->joint];
     Err lack = {ERR_NONE, ""};
-    if (!make_contact(scenario, joint, mass, speed, contact, &lack)) {
+    if (!make_contact(mapping, scenario, joint, mass, speed, contact, &lack)) {
         *contact = (MappingContact){
             .joint = *joint,
-            .law_name = mapping_law_name(scenario, &scenario->linkage.joints[joint->joint]),
+            .law_name = has_laws(mapping) ? OPTIONS_LAWS[scenario->contact.law]
+                                          : mapping_law_name(scenario, at),
             .scenario = *scenario,
             .impact = {.mass = mass, .speed = speed},
             .lack_kind = lack.kind,
@@ -67,12 +83,6 @@ static void add_contact(Mapping *mapping, const Scenario *scenario, const Mappin
     }
     contact->mass_source = mapping->settings.mass_source;
     contact->speed_source = speed_source;
-}
-
-// Whether laws are asked for in place of the case's own.
-static bool has_laws(const Mapping *mapping)
-{
-    return mapping->settings.law_count > 0 && mapping->scenario->contact.model != CONTACT_POISSON;
 }
 
 static size_t law_count(const Mapping *mapping)

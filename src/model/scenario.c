@@ -37,6 +37,7 @@ Scenario scenario_copy(const Scenario *scenario)
     copy.path = copied(scenario->path, 1 + strlen(scenario_path(scenario)), 1);
     copy.expectations =
         copied(scenario->expectations, scenario->expectation_count, sizeof *scenario->expectations);
+    copy.keys = copied(scenario->keys, scenario->key_count, sizeof *scenario->keys);
     copy.outcomes = copied(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
     return copy;
 }
@@ -48,6 +49,8 @@ Scenario scenario_around(const Scenario *scenario, Linkage linkage)
     around.path = NULL;
     around.expectations = NULL;
     around.outcomes = NULL;
+    around.keys = NULL;
+    around.key_count = 0;
     around.expectation_count = around.outcome_count = 0;
     return around;
 }
@@ -69,9 +72,12 @@ void scenario_free(Scenario *scenario)
     free(scenario->path);
     free(scenario->expectations);
     free(scenario->outcomes);
+    free(scenario->keys);
     scenario->path = NULL;
     scenario->expectations = NULL;
     scenario->outcomes = NULL;
+    scenario->keys = NULL;
+    scenario->key_count = 0;
     scenario->expectation_count = scenario->outcome_count = 0;
 }
 

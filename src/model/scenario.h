@@ -24,6 +24,13 @@ typedef enum ScenarioSpace {
 
 extern const char *const SCENARIO_SPACES[]; // the words, ending in NULL
 
+// A key that the case or the command line gives, for messages about it.
+typedef struct ScenarioKey {
+    size_t row;    // of the table of keys, casefile/schema.h
+    size_t member; // of its family
+    size_t line;   // of the case file, from 1; 0 of the command line
+} ScenarioKey;
+
 // It owns the arrays of its linkage and its own. An assignment shares them: it is for a scenario of
 // other options that does not outlive the first. What is to have other bodies, joints or a life of
 // its own needs scenario_copy.
@@ -48,6 +55,8 @@ typedef struct Scenario {
     Expectation *expectations; // for the checks of runs; no solver reads them; owned
     size_t outcome_count;
     ExpectedOutcome *outcomes; // likewise
+    size_t key_count;
+    ScenarioKey *keys; // that were given, in the order of the text; no solver reads them; owned
 } Scenario;
 
 // A scenario with every option at its default and an empty linkage, without arrays.

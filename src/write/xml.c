@@ -4,6 +4,7 @@
 #include "base/printable.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 void xml_append(const char *words, Text *text)
 {
@@ -30,4 +31,15 @@ void xml_append(const char *words, Text *text)
         }
     }
     free(shown);
+}
+
+void xml_append_element(const char *tag, const char *lines, Text *text)
+{
+    text_append(text, "<%s>\n", tag);
+    while (*lines != '\0') {
+        const size_t length = strcspn(lines, "\n");
+        text_append(text, "  %.*s\n", (int)length, lines);
+        lines += length + (lines[length] == '\n' ? 1 : 0);
+    }
+    text_append(text, "</%.*s>\n", (int)strcspn(tag, " "), tag);
 }

@@ -421,7 +421,8 @@ static void a_wrong_command_line_is_answered(void **state)
     program_run(program, "compare $cases/paper/ideal-nominal.yaml --store s.jsonl --steps 100us "
                          "--set contact.law=johnson --set ode.seed=4");
     assert_int_equal(program->status, 0);
-    assert_says(program->errors, "without effect: contact.law (");
+    assert_says(program->errors, "contact.law of the command line has no effect here; it would ");
+    assert_null(strstr(program->errors, "ode.seed"));
     program_run(program, "compare --help");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "Usage: jointplay compare [OPTION...] CASE");

@@ -322,6 +322,14 @@ static void the_velocity_level_model_has_rows_of_its_own(void **state)
                         "know no map and no elastic law");
 }
 
+static void a_law_that_no_joint_can_have_is_said(void **state)
+{
+    Program *program = *state;
+    program_fails_usage(program, "map $cases/mechanisms/servo-backlash.yaml -q --laws johnson",
+                        "output: its stiffness is its own: the law johnson is for a pin in its "
+                        "hole");
+}
+
 static void the_papers_penalty_stands_beside_its_approach(void **state)
 {
     Program *program = *state;
@@ -472,6 +480,8 @@ int main(void)
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(the_velocity_level_model_has_rows_of_its_own,
                                         program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(a_law_that_no_joint_can_have_is_said, program_set_up,
+                                        program_tear_down),
         cmocka_unit_test_setup_teardown(the_papers_penalty_stands_beside_its_approach,
                                         program_set_up, program_tear_down),
         cmocka_unit_test_setup_teardown(a_row_is_read_as_spring_and_damper, program_set_up,

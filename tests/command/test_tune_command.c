@@ -388,9 +388,11 @@ static void files_hold_what_was_asked_for(void **state)
     expect_keys_in_tables(program);
     expect_code_compiles(program);
     // ideal joints have no contact to hand on
-    program_run(program, "tune $cases/paper/ideal-nominal.yaml --error 1e-2 --sdf none.sdf");
-    assert_int_equal(program->status, 0);
-    assert_says(program->errors, "not written: none.sdf (no joint of the case has play)");
+    program_fails_usage(program, "tune $cases/paper/ideal-nominal.yaml --error 1e-2 --sdf none.sdf",
+                        "--sdf: no joint of the case has play");
+    program_fails_usage(program,
+                        "tune $cases/paper/ideal-nominal.yaml --error 1e-2 --mjcf none.xml",
+                        "--mjcf: no joint of the case has play");
 }
 
 static void what_cannot_be_asked_is_refused(void **state)

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <ode/ode.h>
+#include <unistd.h>
 
 static const double INERTIA = 0.01; // kg m^2
 static const double SPEED = 10.0;   // rad/s
@@ -151,24 +152,45 @@ static void backlash_is_a_range_about_its_middle(void **state)
     assert_true(fabs(number_in(program->output, "<dissipation>") - 0.2) < 1e-12);
 }
 
+#define GEARS                                                                                      \
+    "tune $cases/mechanisms/gear-pair.yaml --error 0.1 --schemes direct/staggered/impulse "
+
+static bool is_absent(Program *program, const char *name)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, name, path);
+    return access(path, F_OK) != 0;
+}
+
 static void what_they_have_not_is_said(void **state)
 {
     Program *program = *state;
-    program_run(program, "tune $cases/mechanisms/gear-pair.yaml --error 0.1 --schemes "
-                         "direct/staggered/impulse --sdf none.sdf --mjcf none.xml");
+    const char *const gears = "Gazebo and MuJoCo get constants of pins in holes, or of the stops "
+                              "or backlash of one pivot or slider that alone has play";
+    // before the search, whatever else is asked for
+    program_fails_usage(program, GEARS "--quiet --sdf none.sdf", gears);
+    program_fails_usage(program, GEARS "--mjcf none.xml", gears);
+    assert_true(is_absent(program, "none.sdf") && is_absent(program, "none.xml"));
+    // what is not asked for by name is named, and the others are written
+    program_run(program, GEARS "--quiet --out all");
     assert_int_equal(program->status, 0);
-    assert_says(program->errors,
-                "not written: none.sdf (Gazebo and MuJoCo get constants of pins in "
-                "holes, or of the stops or backlash of one pivot or slider that "
-                "alone has play)");
+    assert_says(program->errors, "jointplay: warning: not written: all/gear-pair-tune.sdf (Gazebo");
+    assert_says(program->errors, "jointplay: warning: not written: all/gear-pair-tune.xml (Gazebo");
+    assert_true(is_absent(program, "all/gear-pair-tune.sdf"));
+    assert_false(is_absent(program, "all/gear-pair-tune.json"));
+    program_run(program, GEARS);
     assert_says(program->output, "As Gazebo SDF and MuJoCo MJCF There is none: Gazebo and MuJoCo");
     // flanks without a gap: ODE's stop has them, a range of MuJoCo has not
     program_run(program, "tune $cases/mechanisms/servo-backlash.yaml --error 0.1 --at-step '1 ms' "
                          "--schemes direct/staggered/impulse --set run.duration='1.5 s' "
-                         "--set 'joints.output.backlash=0 deg' --sdf zero.sdf --mjcf zero.xml");
-    assert_says(program->errors, "not written: zero.xml (MuJoCo has no range of length 0");
+                         "--set 'joints.output.backlash=0 deg' --sdf zero.sdf");
+    assert_int_equal(program->status, 0);
     read_file(program, "zero.sdf");
     assert_says(program->output, "<upper>0</upper>");
+    program_fails_usage(program,
+                        "tune $cases/mechanisms/servo-backlash.yaml --error 0.1 "
+                        "--set 'joints.output.backlash=0 deg' --mjcf zero.xml",
+                        "--mjcf: MuJoCo has no range of length 0");
 }
 
 int main(void)

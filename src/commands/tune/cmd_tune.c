@@ -49,12 +49,19 @@ static bool has_contact(const TuneReport *report, bool is_found, const char *rea
     return is_found;
 }
 
+// Programs are of planar cases.
+static const char *program_lacks(const Scenario *scenario)
+{
+    return scenario->linkage.is_spatial ? "programs are written for cases in the plane alone"
+                                        : NULL;
+}
+
 static bool write_form(const TuneReport *report, TuneForm form, Text *text, const char **nothing,
                        Err *err)
 {
     const TuneTrial *trial = tune_export_trial(report);
-    if (report->scenario->linkage.is_spatial) {
-        *nothing = "programs are written for cases in the plane alone";
+    *nothing = program_lacks(report->scenario);
+    if (*nothing != NULL) {
         return false;
     }
     if (!has_contact(report, trial != NULL, "no run has a meaningful error", nothing)) {
@@ -131,6 +138,28 @@ static const Results RESULTS = {
     .text = tune_text_write,
     RESULT_FILES(FILES),
 };
+
+// Refuses before the search what it cannot write, whatever it finds. --code, of which some schemes
+// may be writable, is checked scheme by scheme in tune_options_search.
+static bool check_files(const TuneOptions *options, const Scenario *scenario, Err *err)
+{
+    const struct {
+        const char *option;
+        const char *path;
+        const char *(*lacks)(const Scenario *scenario);
+    } asked[] = {
+        {"--one-file", options->one_file, program_lacks},
+        {"--sdf", options->sdf, tune_linear_lacks_case},
+        {"--mjcf", options->mjcf, tune_linear_lacks_range},
+    };
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+        const char *lacks = asked[i].path != NULL ? asked[i].lacks(scenario) : NULL;
+        if (lacks != NULL) {
+            return err_set(err, ERR_USAGE, "%s: %s", asked[i].option, lacks);
+        }
+    }
+    return true;
+}
 
 // Nor is a program written for an error that it does not meet.
 static bool check_program(const TuneProgram *program, const Tune *tune, Err *err)
@@ -210,15 +239,21 @@ static void warn(const TuneOptions *options, const Scenario *scenario)
     Scenario *whole = malloc(sizeof *whole);
     assert(whole != NULL);
     *whole = *scenario;
-    // the search tries both solvers, whatever the case says
+    // the search tries both solvers beside the reference, whatever the case says
     whole->ode.solver = ODE_QUICK;
+    whole->run.backend_count = BACKEND_COUNT;
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        whole->run.backends[i] = (BackendKind)i;
+    }
     warnings_say(whole, &options->common);
     free(whole);
     for (size_t i = 0; !options->common.is_quiet && i < options->common.override_count; i++) {
         if (tune_setting_replaces(options->common.overrides[i])) {
             const char *given = options->common.overrides[i];
-            output_say("without effect: %.*s (it is what tune searches for)\n",
-                       (int)strcspn(given, "="), given);
+            output_say(
+                "jointplay: warning: %.*s of the command line has no effect here; it is what "
+                "tune searches for\n",
+                (int)strcspn(given, "="), given);
         }
     }
 }
@@ -231,6 +266,7 @@ static bool tune_case(void *target, Err *err)
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
     bool is_done = common_options_load(common, scenario, err) &&
+                   check_files(options, scenario, err) &&
                    tune_options_search(options, scenario, &tune, err) &&
                    results_claim(&RESULTS, common, scenario_path(scenario), err);
     if (is_done) {
@@ -241,8 +277,12 @@ static bool tune_case(void *target, Err *err)
         const TuneReport report = {scenario, tune, common->overrides, common->override_count,
                                    common->time_limit_s};
         results_print(&RESULTS, common, &report);
-        is_done = results_write(&RESULTS, common, scenario_path(scenario), &report, err) &&
-                  check_met(&report, err);
+        is_done = check_met(&report, err);
+        Err unwritten = {0};
+        if (!results_write(&RESULTS, common, scenario_path(scenario), &report, &unwritten)) {
+            // that an error is not met says why a program is not written
+            is_done = err_set_lines(err, unwritten.kind, unwritten.text);
+        }
     }
     tune_destroy(tune);
     scenario_destroy(scenario);

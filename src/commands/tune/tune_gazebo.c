@@ -13,6 +13,7 @@
 #include "commands/tune/tune_report.h"
 #include "contact/map.h"
 #include "write/number.h"
+#include "write/xml.h"
 
 #include <math.h>
 
@@ -80,7 +81,9 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
                 "     best for: %s -->\n",
                 gazebo.error, source.data);
     text_finish(&source);
-    text_append(text,
+    Text parts;
+    text_init(&parts);
+    text_append(&parts,
                 "<physics type=\"ode\">\n"
                 "  <max_step_size>%s</max_step_size>\n"
                 "  <ode>\n"
@@ -97,8 +100,12 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
                 number_shortest(report->scenario->ode.erp).text,
                 number_shortest(gazebo.max_vel).text);
     if (report->tune->contact.is_limit) {
-        tune_limit_sdf(report, (ErpCfm){.erp = gazebo.soft_erp, .cfm = gazebo.soft_cfm}, text);
+        tune_limit_sdf(report, (ErpCfm){.erp = gazebo.soft_erp, .cfm = gazebo.soft_cfm}, &parts);
     } else {
-        write_surface(report, &gazebo, linear, text);
+        write_surface(report, &gazebo, linear, &parts);
     }
+    text_append(text, "<!-- physics belongs into the world%s -->\n",
+                report->tune->contact.is_limit ? ", joint into the model" : "");
+    xml_append_element("sdf version=\"1.6\"", parts.data, text);
+    text_finish(&parts);
 }

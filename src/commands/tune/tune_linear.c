@@ -141,19 +141,39 @@ static void find_contact(const Scenario *scenario, const Trajectory *truth, Tune
     contact->is_known = contact->is_known && isfinite(contact->mass);
 }
 
-const char *tune_linear_lacks(const Scenario *scenario, const Tune *tune)
+const char *tune_linear_lacks_case(const Scenario *scenario)
 {
     size_t number = 0;
     bool has_pin = false;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         has_pin = has_pin || scenario->linkage.joints[i].kind == JOINT_CLEARANCE;
     }
+    if (!scenario_has_clearance(scenario)) {
+        return "no joint of the case has play";
+    }
+    if (!space_has_plane(&scenario->linkage)) {
+        return "Gazebo and MuJoCo get constants of joints whose axes stand upright alone";
+    }
     const bool is_alone = tune_limit_alone(&scenario->linkage, &number);
     if (!has_pin && !is_alone) {
         return "Gazebo and MuJoCo get constants of pins in holes, or of the stops or backlash of "
                "one pivot or slider that alone has play";
     }
-    const char *lacks = is_alone ? tune_limit_lacks(scenario, number) : NULL;
+    return is_alone ? tune_limit_lacks(scenario, number) : NULL;
+}
+
+const char *tune_linear_lacks_range(const Scenario *scenario)
+{
+    size_t number = 0;
+    const char *lacks = tune_linear_lacks_case(scenario);
+    return lacks != NULL || !tune_limit_alone(&scenario->linkage, &number)
+               ? lacks
+               : tune_limit_lacks_range(scenario, number);
+}
+
+const char *tune_linear_lacks(const Scenario *scenario, const Tune *tune)
+{
+    const char *lacks = tune_linear_lacks_case(scenario);
     return lacks != NULL            ? lacks
            : tune->contact.is_known ? "no contact with constants that was tried is stable"
                                     : "nothing touches in a joint with play";

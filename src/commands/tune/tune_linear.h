@@ -12,7 +12,12 @@ double tune_linear_damping(double stiffness, double mass, double restitution);
 // stepping, direct solver.
 Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear);
 
-// Why there are no constants after a search, as a sentence without a full stop.
+// Why there can be no constants of a case, known before the search, as a sentence without a full
+// stop; NULL where there can be. The second: none for MuJoCo.
+const char *tune_linear_lacks_case(const Scenario *scenario);
+const char *tune_linear_lacks_range(const Scenario *scenario);
+
+// Why there are none after a search, likewise.
 const char *tune_linear_lacks(const Scenario *scenario, const Tune *tune);
 
 // Looks up the deepest contact in the truth, runs constants taken from it at several depths and

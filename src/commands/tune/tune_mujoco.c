@@ -19,6 +19,7 @@
 #include "commands/tune/tune_limit.h"
 #include "write/joint_units.h"
 #include "write/number.h"
+#include "write/xml.h"
 
 #include <float.h>
 #include <math.h>
@@ -71,14 +72,15 @@ bool tune_mujoco_is_finer(const TuneReport *report, const TuneMujoco *mujoco)
     return mujoco->step_s < report->tune->held_s;
 }
 
-static void write_pair(const TuneReport *report, const TuneMujoco *mujoco, Text *text)
+// Appends the words above the document to `text`, and its elements to `parts`.
+static void write_pair(const TuneReport *report, const TuneMujoco *mujoco, Text *text, Text *parts)
 {
     const double friction = report->scenario->contact.friction;
     char slides[FRICTION_SIZE] = "";
     if (friction > 0.0) {
         // both directions of sliding; MuJoCo's own numbers for torsion and rolling, which a planar
         // pin does not do
-        snprintf(slides, sizeof slides, "\n      friction=\"%s %s 0.005 0.0001 0.0001\"",
+        snprintf(slides, sizeof slides, "\n        friction=\"%s %s 0.005 0.0001 0.0001\"",
                  number_shortest(friction).text, number_shortest(friction).text);
     }
     text_append(text,
@@ -86,30 +88,34 @@ static void write_pair(const TuneReport *report, const TuneMujoco *mujoco, Text 
                 "     with free joints, held by connect equalities: A = %.6g 1/kg. In any\n"
                 "     other model multiply solref by (invweight0 of both bodies) / A. -->\n",
                 mujoco->stiffness, mujoco->damping, mujoco->weight);
-    text_append(text,
+    text_append(parts,
                 "<option timestep=\"%s\"\n        integrator=\"Euler\" cone=\"elliptic\"/>\n"
-                "<pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"%s\n"
-                "      solref=\"%s %s\"\n"
-                "      solimp=\"%s %s 1 0.5 1\"/>\n",
+                "<contact>\n"
+                "  <pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"%s\n"
+                "        solref=\"%s %s\"\n"
+                "        solimp=\"%s %s 1 0.5 1\"/>\n"
+                "</contact>\n",
                 number_shortest(mujoco->step_s).text, friction > 0.0 ? 3 : 1, slides,
                 number_shortest(mujoco->solref[0]).text, number_shortest(mujoco->solref[1]).text,
                 number_shortest(mujoco->impedance).text, number_shortest(mujoco->impedance).text);
 }
 
 // The limit of a joint, in radians or metres.
-static void write_limit(const TuneReport *report, const TuneMujoco *mujoco, Text *text)
+static void write_limit(const TuneReport *report, const TuneMujoco *mujoco, Text *text, Text *parts)
 {
     const Joint *joint = &report->scenario->linkage.joints[report->tune->contact.joint];
     const JointUnits *units = joint_units(joint);
     text_append(text,
                 "<!-- spring %.4g %s, damper %.4g %s, not run here; for bodies\n"
                 "     in a tree of joints: A = %.6g 1/(%s). In any other model multiply\n"
-                "     solreflimit by the joint's dof_invweight0 / A. -->\n"
+                "     solreflimit by the joint's dof_invweight0 / A. -->\n",
+                mujoco->stiffness, units->stiffness, mujoco->damping, units->damping,
+                mujoco->weight, units->mass);
+    text_append(parts,
                 "<compiler angle=\"radian\"/>\n"
                 "<option timestep=\"%s\" integrator=\"Euler\"/>\n",
-                mujoco->stiffness, units->stiffness, mujoco->damping, units->damping,
-                mujoco->weight, units->mass, number_shortest(mujoco->step_s).text);
-    tune_limit_mjcf(report, mujoco->solref, mujoco->impedance, text);
+                number_shortest(mujoco->step_s).text);
+    tune_limit_mjcf(report, mujoco->solref, mujoco->impedance, parts);
 }
 
 void tune_mujoco_write(const TuneReport *report, Text *text)
@@ -118,9 +124,13 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
     if (!tune_mujoco_find(report, &mujoco)) {
         return;
     }
+    Text parts;
+    text_init(&parts);
     if (report->tune->contact.is_limit) {
-        write_limit(report, &mujoco, text);
+        write_limit(report, &mujoco, text, &parts);
     } else {
-        write_pair(report, &mujoco, text);
+        write_pair(report, &mujoco, text, &parts);
     }
+    xml_append_element("mujoco", parts.data, text);
+    text_finish(&parts);
 }
