@@ -64,6 +64,8 @@ static bool make_room(Answer *answer)
 void answer_free(Answer *answer)
 {
     free(answer->memory);
+    encounter_sums_free(&answer->sums);
+    closing_free(&answer->closing);
     *answer = (Answer){0};
 }
 

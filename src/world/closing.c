@@ -76,20 +76,13 @@ bool closing_is_linear(const JpWorld *world)
     return true;
 }
 
-// What a step writes beside the bodies.
-typedef struct Kept {
-    dJointID joint;
-    dJointFeedback feedback;
-    double erp;
-} Kept;
-
 static bool has_own_erp(dJointID joint)
 {
     return dJointGetType(joint) == dJointTypeBall || dJointGetType(joint) == dJointTypeFixed;
 }
 
 // Lists the joints of all bodies, those of two of them twice. Returns their number.
-static size_t list_joints(const JpWorld *world, Kept *kept)
+static size_t list_joints(const JpWorld *world, ClosingJoint *kept)
 {
     size_t count = 0;
     for (size_t i = 0; i < world->bodies.count; i++) {
@@ -119,7 +112,7 @@ bool closing_is_read(const JpWorld *world)
     return false;
 }
 
-static void keep(Kept *kept)
+static void keep(ClosingJoint *kept)
 {
     const dJointFeedback *feedback = dJointGetFeedback(kept->joint);
     if (feedback != NULL) {
@@ -130,7 +123,7 @@ static void keep(Kept *kept)
     }
 }
 
-static void put_back(const Kept *kept)
+static void put_back(const ClosingJoint *kept)
 {
     dJointFeedback *feedback = dJointGetFeedback(kept->joint);
     if (feedback != NULL) {
@@ -154,14 +147,26 @@ static void step_freely(JpWorld *world, double step)
     dWorldSetERP(world->id, erp);
 }
 
-void closing_run(JpWorld *world, double step)
+bool closing_make(const JpWorld *world, Closing *closing)
 {
     const size_t count = list_joints(world, NULL);
-    Kept *kept = calloc(count + 1, sizeof *kept);
-    if (kept == NULL) {
-        return;
+    *closing = (Closing){count, calloc(count + 1, sizeof *closing->joints)};
+    if (closing->joints != NULL) {
+        list_joints(world, closing->joints);
     }
-    list_joints(world, kept);
+    return closing->joints != NULL;
+}
+
+void closing_free(Closing *closing)
+{
+    free(closing->joints);
+    *closing = (Closing){0};
+}
+
+void closing_run(JpWorld *world, const Closing *closing, double step)
+{
+    const size_t count = closing->count;
+    ClosingJoint *kept = closing->joints;
     for (size_t i = 0; i < count; i++) {
         keep(&kept[i]);
     }
@@ -176,5 +181,4 @@ void closing_run(JpWorld *world, double step)
     for (size_t i = 0; i < count; i++) {
         put_back(&kept[i]);
     }
-    free(kept);
 }

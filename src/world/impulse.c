@@ -131,10 +131,10 @@ static JpStatus find_contacts(Answer *answer, double step, bool can_recall, bool
     do {
         REFUSAL_TRY(answer_find_columns(answer, step, error));
         set_free(answer, step);
-        *is_found = inside_run(answer, step);
+        REFUSAL_TRY(inside_run(answer, step, is_found, error));
     } while (*is_found && activate_near(answer, step));
-    if (!answer->is_recalled) {
-        recall_keep(answer);
+    if (!answer->is_recalled && !recall_keep(answer)) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the answers of a step");
     }
     return JP_OK;
 }
@@ -186,6 +186,9 @@ JpStatus impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done
     }
     bodies_put_back(&world->bodies);
     answer->is_linear = closing_is_linear(world);
+    if (answer->is_linear && !closing_make(world, &answer->closing)) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the joints of a step");
+    }
     REFUSAL_TRY(close_joints(answer, step, error));
     for (size_t i = 0; i < answer->place_count; i++) {
         world->stats.rows += answer->places[i].is_active ? 1 : 0;
@@ -244,6 +247,6 @@ void impulse_finish(JpWorld *world, double step, Answer *answer)
     }
     inside_book(answer);
     if (answer->is_linear) {
-        closing_run(world, step);
+        closing_run(world, &answer->closing, step);
     }
 }

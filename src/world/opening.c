@@ -105,10 +105,12 @@ JpStatus opening_settle(JpWorld *world, double step, JpError *error)
 {
     const bool can_try = !world->options.is_quick && dWorldGetERP(world->id) > 0.0 &&
                          is_any_moving(&world->bodies) && trial_check(world, NULL) == JP_OK;
-    double *speeds =
-        can_try ? malloc((BODY_NUMBERS * world->bodies.count + 1) * sizeof *speeds) : NULL;
-    if (speeds == NULL) {
+    if (!can_try) {
         return JP_OK;
+    }
+    double *speeds = malloc((BODY_NUMBERS * world->bodies.count + 1) * sizeof *speeds);
+    if (speeds == NULL) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the first step");
     }
     JpStatus status = trial_step(world, step, error);
     for (size_t i = 0; i < world->bodies.count; i++) {

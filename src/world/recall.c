@@ -152,7 +152,7 @@ static Recall *start(const Answer *answer)
     return recall;
 }
 
-void recall_keep(const Answer *answer)
+bool recall_keep(const Answer *answer)
 {
     JpWorld *world = answer->world;
     if (world->recall == NULL || !is_alike(world->recall, answer)) {
@@ -161,7 +161,7 @@ void recall_keep(const Answer *answer)
     }
     Recall *recall = world->recall;
     if (recall == NULL) {
-        return;
+        return false;
     }
     const size_t now = world->stats.steps;
     const bool is_again = recall->count > 0 && recall->found_at[0] == now; // in another round
@@ -177,4 +177,5 @@ void recall_keep(const Answer *answer)
     memcpy(recall->sets[0], answer->columns, columns * sizeof(double));
     memcpy(recall->sets[0] + columns, answer->bodies,
            (set_size(recall) - columns) * sizeof(double));
+    return true;
 }
