@@ -230,6 +230,11 @@ typedef struct JpWorldOptions {
      * geoms. NULL: none. */
     dSpaceID space;
     dSurfaceParameters surface; /* of all of these */
+    /* The library gives the world a self-threaded implementation of its own
+     * (dWorldSetStepThreadingImplementation), so that each thread may step a world; jp_world_destroy
+     * puts back ODE's default. True: the world keeps the implementation that it has, such as a pool
+     * of threads of yours, which no other world may use at the same time. */
+    bool keeps_threading;
 } JpWorldOptions;
 
 /* Staggered, by dWorldStep, without contacts; a surface with ODE's friction of .5. */

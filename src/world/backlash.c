@@ -159,6 +159,7 @@ JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpError *erro
         return refusal(error, JP_ERROR_ARGUMENT,
                        "the joint is a pin in a hole; read it with jp_pin_state");
     }
+    REFUSAL_TRY(play_check_bodies(joint, error));
     Coordinate coordinate = joint->coordinate; // so that reading changes nothing
     const Direction along = coordinate_direction(&coordinate);
     const Side *sides = joint->places[0].sides;

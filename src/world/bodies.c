@@ -147,23 +147,90 @@ bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count)
     return is_done;
 }
 
-bool bodies_are_finite(const Bodies *bodies)
+// ODE multiplies up to four of these numbers with each other, in an inverse inertia twice over, and
+// squares what comes of it: this to the sixth power is a double.
+static const double LARGEST = 1e50;
+
+static bool is_vector_in_range(const dReal *vector, double scale)
 {
-    for (size_t i = 0; i < bodies->count; i++) {
+    return fabs(scale * vector[0]) <= LARGEST && fabs(scale * vector[1]) <= LARGEST &&
+           fabs(scale * vector[2]) <= LARGEST;
+}
+
+static bool is_size_in_range(double size)
+{
+    return size >= 1.0 / LARGEST && size <= LARGEST;
+}
+
+// The mass, the inertia, and what forces change in a step.
+static const char *mass_out_of_range(dBodyID id, double step)
+{
+    dMass mass;
+    dBodyGetMass(id, &mass);
+    const double least = fmin(mass.I[0], fmin(mass.I[5], mass.I[10]));
+    const double most = fmax(mass.I[0], fmax(mass.I[5], mass.I[10]));
+    return dBodyIsKinematic(id)                                       ? NULL
+           : !is_size_in_range(mass.mass)                             ? "mass"
+           : !is_size_in_range(least) || !is_size_in_range(most)      ? "inertia"
+           : !is_vector_in_range(dBodyGetForce(id), step / mass.mass) ? "force"
+           : !is_vector_in_range(dBodyGetTorque(id), step / least)    ? "torque"
+                                                                      : NULL;
+}
+
+bool bodies_are_in_range(const Bodies *bodies, double step, const char **name)
+{
+    static const char *const NAMES[] = {"position", "velocity", "angular velocity",
+                                        "force",    "torque",   "orientation"};
+    *name = NULL;
+    for (size_t i = 0; i < bodies->count && *name == NULL; i++) {
         const dBodyID id = bodies->records[i].id;
+        const dReal *turn = dBodyGetQuaternion(id);
         const dReal *vectors[] = {dBodyGetPosition(id),   dBodyGetLinearVel(id),
                                   dBodyGetAngularVel(id), dBodyGetForce(id),
-                                  dBodyGetTorque(id),     &dBodyGetQuaternion(id)[1]};
-        double sum = dBodyGetQuaternion(id)[0];
-        for (int v = 0; v < 6; v++) {
-            // a sum that overflows is as good as one that is infinite
-            sum += vectors[v][0] + vectors[v][1] + vectors[v][2];
+                                  dBodyGetTorque(id),     &turn[1]};
+        for (int v = 0; v < 6 && *name == NULL; v++) {
+            *name = is_vector_in_range(vectors[v], 1.0) ? NULL : NAMES[v];
         }
-        if (!isfinite(sum)) {
-            return false;
-        }
+        *name = *name != NULL || isfinite(turn[0]) ? *name : NAMES[5];
+        *name = *name != NULL ? *name : mass_out_of_range(id, step);
     }
-    return true;
+    return *name == NULL;
+}
+
+void bodies_find_all(Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        BodyFound *found = &bodies->records[i].found;
+        const dBodyID id = bodies->records[i].id;
+        memcpy(found->position, dBodyGetPosition(id), sizeof found->position);
+        memcpy(found->turn, dBodyGetQuaternion(id), sizeof found->turn);
+        memcpy(found->velocity, dBodyGetLinearVel(id), sizeof found->velocity);
+        memcpy(found->omega, dBodyGetAngularVel(id), sizeof found->omega);
+        memcpy(found->force, dBodyGetForce(id), sizeof found->force);
+        memcpy(found->torque, dBodyGetTorque(id), sizeof found->torque);
+        found->is_enabled = dBodyIsEnabled(id);
+        found->is_gyroscopic = dBodyGetGyroscopicMode(id);
+    }
+}
+
+void bodies_put_back_all(Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
+        const BodyFound *found = &record->found;
+        const dBodyID id = record->id;
+        dBodySetPosition(id, found->position[0], found->position[1], found->position[2]);
+        dBodySetQuaternion(id, found->turn);
+        dBodySetLinearVel(id, found->velocity[0], found->velocity[1], found->velocity[2]);
+        dBodySetAngularVel(id, found->omega[0], found->omega[1], found->omega[2]);
+        dBodySetForce(id, found->force[0], found->force[1], found->force[2]);
+        dBodySetTorque(id, found->torque[0], found->torque[1], found->torque[2]);
+        dBodySetGyroscopicMode(id, found->is_gyroscopic);
+        if (found->is_enabled != dBodyIsEnabled(id)) {
+            (found->is_enabled ? dBodyEnable : dBodyDisable)(id);
+        }
+        record->is_gyrating = false;
+    }
 }
 
 void bodies_keep_positions(Bodies *bodies)

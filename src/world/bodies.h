@@ -7,6 +7,18 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+// A body as a step finds it (world/found.h).
+typedef struct BodyFound {
+    dVector3 position;
+    dQuaternion turn;
+    dVector3 velocity;
+    dVector3 omega;
+    dVector3 force;
+    dVector3 torque;
+    bool is_enabled;
+    bool is_gyroscopic;
+} BodyFound;
+
 typedef struct BodyRecord {
     dBodyID id;
     bool is_added; // by hand: stays known without a joint
@@ -19,6 +31,7 @@ typedef struct BodyRecord {
     dVector3 force;
     dVector3 torque;
     bool is_enabled;
+    BodyFound found;
     // of the step before, for the gyroscopic torque
     dVector3 last_omega; // at its end
     dVector3 last_alpha;
@@ -48,8 +61,13 @@ BodyRecord *bodies_add(Bodies *bodies, dBodyID body);
 // those given (NULL among them is the world itself). Returns false where there is no memory.
 bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count);
 
-// Whether all numbers of all bodies are finite: ODE ends the program where they are not.
-bool bodies_are_finite(const Bodies *bodies);
+// Whether all numbers of all bodies are of a size that ODE can multiply with each other, as is what
+// a step, s, changes of their velocities. Where they are not, the name of one.
+bool bodies_are_in_range(const Bodies *bodies, double step, const char **name);
+
+// Notes how a step finds all bodies; puts them back.
+void bodies_find_all(Bodies *bodies);
+void bodies_put_back_all(Bodies *bodies);
 
 // Notes everything about all bodies; puts it back.
 void bodies_keep(Bodies *bodies);

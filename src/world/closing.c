@@ -48,7 +48,8 @@ static bool only_holds(const JpWorld *world, dJointID joint)
 {
     typedef dReal (*Param)(dJointID, int);
     const dJointType type = dJointGetType(joint);
-    if (type == dJointTypeBall || type == dJointTypeFixed || !dJointIsEnabled(joint)) {
+    if (type == dJointTypeBall || type == dJointTypeFixed || type == dJointTypeNull ||
+        !dJointIsEnabled(joint)) {
         return true;
     }
     if (type != dJointTypeHinge && type != dJointTypeSlider) {
@@ -150,7 +151,7 @@ static void step_freely(JpWorld *world, double step)
 bool closing_make(const JpWorld *world, Closing *closing)
 {
     const size_t count = list_joints(world, NULL);
-    *closing = (Closing){count, calloc(count + 1, sizeof *closing->joints)};
+    *closing = (Closing){.count = count, .joints = calloc(count + 1, sizeof *closing->joints)};
     if (closing->joints != NULL) {
         list_joints(world, closing->joints);
     }
@@ -163,13 +164,22 @@ void closing_free(Closing *closing)
     *closing = (Closing){0};
 }
 
-void closing_run(JpWorld *world, const Closing *closing, double step)
+void closing_put_back(Closing *closing)
+{
+    for (size_t i = 0; closing->is_open && i < closing->count; i++) {
+        put_back(&closing->joints[i]);
+    }
+    closing->is_open = false;
+}
+
+void closing_run(JpWorld *world, Closing *closing, double step)
 {
     const size_t count = closing->count;
     ClosingJoint *kept = closing->joints;
     for (size_t i = 0; i < count; i++) {
         keep(&kept[i]);
     }
+    closing->is_open = true;
     for (size_t i = 0; i < count; i++) {
         if (has_own_erp(kept[i].joint)) {
             set_own_erp(kept[i].joint, 0.0);
@@ -178,7 +188,5 @@ void closing_run(JpWorld *world, const Closing *closing, double step)
     bodies_keep_positions(&world->bodies);
     step_freely(world, step);
     bodies_put_back_positions(&world->bodies);
-    for (size_t i = 0; i < count; i++) {
-        put_back(&kept[i]);
-    }
+    closing_put_back(closing);
 }

@@ -21,6 +21,7 @@ typedef struct ClosingJoint {
 typedef struct Closing {
     size_t count;
     ClosingJoint *joints; // owned
+    bool is_open;         // while what is kept is set aside
 } Closing;
 
 // Lists the joints; false where there is no memory.
@@ -29,4 +30,7 @@ void closing_free(Closing *closing);
 
 // Takes from the bodies' velocities what would open the joints where the bodies are now, in a world
 // that is linear and in which no forces act: positions stay.
-void closing_run(JpWorld *world, const Closing *closing, double step);
+void closing_run(JpWorld *world, Closing *closing, double step);
+
+// Puts back what closing_run had set aside where it was left in between.
+void closing_put_back(Closing *closing);

@@ -108,7 +108,8 @@ JpStatus opening_settle(JpWorld *world, double step, JpError *error)
     if (!can_try) {
         return JP_OK;
     }
-    double *speeds = malloc((BODY_NUMBERS * world->bodies.count + 1) * sizeof *speeds);
+    double *speeds = world->settling =
+        malloc((BODY_NUMBERS * world->bodies.count + 1) * sizeof *speeds);
     if (speeds == NULL) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the first step");
     }
@@ -119,6 +120,7 @@ JpStatus opening_settle(JpWorld *world, double step, JpError *error)
     bodies_put_back(&world->bodies);
     status = status == JP_OK ? opening_find(world, step, speeds, error) : status;
     free(speeds);
+    world->settling = NULL;
     for (size_t i = 0; i < world->bodies.count && status == JP_OK; i++) {
         BodyRecord *record = &world->bodies.records[i];
         move_kept(record, record->opening, open_too_little(world, step));

@@ -1,5 +1,7 @@
 // What does a caller's world hold besides ODE's?
+#include "world/fault.h"
 #include "world/recall.h"
+#include "world/threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,6 +38,8 @@ JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **c
     world->options = chosen;
     world->rows = dJointGroupCreate(0);
     world->contacts = dJointGroupCreate(0);
+    fault_hold();
+    threads_begin(world);
     *created = world;
     return refusal_none(error);
 }
@@ -56,6 +60,8 @@ void jp_world_destroy(JpWorld *world)
         encounter_finish(world->encounter);
     }
     free(world->encounter);
+    threads_end(world);
+    fault_release();
     free(world);
 }
 
