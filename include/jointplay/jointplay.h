@@ -250,6 +250,10 @@ JP_API void jp_world_destroy(JpWorld *world);
 JP_API JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error);
 JP_API JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error);
 
+/* Adds all bodies that the world has now. JP_ERROR_NONE with a version of ODE that does not let them
+ * be found; then add each. Not while another thread uses the world. */
+JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
+
 /* One step, s, in place of dWorldStep. Forces that were added to bodies act in it. */
 JP_API JpStatus jp_world_step(JpWorld *world, double step, JpError *error);
 

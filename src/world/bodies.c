@@ -308,7 +308,7 @@ void bodies_drift(const Bodies *bodies, double time)
     }
 }
 
-long bodies_unknown(const Bodies *bodies, dWorldID world)
+long bodies_count(dWorldID world)
 {
     char *text = NULL;
     size_t size = 0;
@@ -323,5 +323,11 @@ long bodies_unknown(const Bodies *bodies, dWorldID world)
         count++;
     }
     free(text);
-    return is_written ? count - 1 - (long)bodies->count : -1;
+    return is_written ? count - 1 : -1;
+}
+
+long bodies_unknown(const Bodies *bodies, dWorldID world)
+{
+    const long count = bodies_count(world);
+    return count < 0 ? -1 : count - (long)bodies->count;
 }

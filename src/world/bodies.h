@@ -83,6 +83,9 @@ void bodies_drift(const Bodies *bodies, double time);
 // The quaternion turned on for a time, s, at an angular velocity in the world's frame.
 void bodies_turn(const dReal *from, const dReal *omega, double time, dQuaternion turned);
 
+// How many bodies ODE's world has; -1 where that cannot be found out.
+long bodies_count(dWorldID world);
+
 // Whether the world has bodies that are not known: their number, or -1 where it cannot be found
 // out.
 long bodies_unknown(const Bodies *bodies, dWorldID world);

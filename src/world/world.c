@@ -1,5 +1,6 @@
 // What does a caller's world hold besides ODE's?
 #include "world/fault.h"
+#include "world/listing.h"
 #include "world/recall.h"
 #include "world/threads.h"
 
@@ -83,6 +84,12 @@ JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error)
     }
     record->is_added = true;
     return refusal_none(error);
+}
+
+JpStatus jp_world_add_all(JpWorld *world, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    return listing_add_all(world, error);
 }
 
 JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error)
