@@ -18,6 +18,7 @@ void bodies_finish(Bodies *bodies)
 {
     free(bodies->records);
     free(bodies->slots);
+    free(bodies->queue);
     *bodies = (Bodies){0};
 }
 
@@ -64,6 +65,11 @@ static bool make_room(Bodies *bodies)
         return false;
     }
     bodies->slots = slots;
+    dBodyID *queue = realloc(bodies->queue, room * sizeof *queue);
+    if (queue == NULL) {
+        return false;
+    }
+    bodies->queue = queue;
     bodies->room = room;
     bodies->slot_count = 4 * room;
     fill_slots(bodies);
@@ -144,7 +150,84 @@ bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count)
     if (is_done) {
         drop_unseen(bodies);
     }
+    bodies->reach = bodies->moving = bodies->count;
+    bodies->queue_count = 0;
     return is_done;
+}
+
+void bodies_reach_from(Bodies *bodies, dBodyID body)
+{
+    BodyRecord *record = body != NULL ? bodies_find(bodies, body) : NULL;
+    if (record != NULL && record->reached != bodies->gathering) {
+        record->reached = bodies->gathering;
+        bodies->queue[bodies->queue_count++] = body;
+    }
+}
+
+// Puts the bodies that are reached first, in the order in which they are.
+static void put_reached_first(Bodies *bodies)
+{
+    size_t reached = 0;
+    bool is_changed = false;
+    for (size_t i = 0; i < bodies->count; i++) {
+        if (bodies->records[i].reached != bodies->gathering) {
+            continue;
+        }
+        if (i != reached) {
+            const BodyRecord other = bodies->records[reached];
+            bodies->records[reached] = bodies->records[i];
+            bodies->records[i] = other;
+            is_changed = true;
+        }
+        reached++;
+    }
+    bodies->reach = bodies->moving = reached;
+    if (is_changed) {
+        fill_slots(bodies);
+    }
+}
+
+void bodies_reach(Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        if (dBodyGetAutoDisableFlag(bodies->records[i].id)) {
+            bodies_reach_from(bodies, bodies->records[i].id);
+        }
+    }
+    for (size_t i = 0; i < bodies->queue_count; i++) {
+        const dBodyID body = bodies->queue[i];
+        const int joints = dBodyGetNumJoints(body);
+        for (int j = 0; j < joints; j++) {
+            const dJointID joint = dBodyGetJoint(body, j);
+            bodies_reach_from(bodies, dJointGetBody(joint, 0));
+            bodies_reach_from(bodies, dJointGetBody(joint, 1));
+        }
+    }
+    put_reached_first(bodies);
+}
+
+void bodies_rest(Bodies *bodies)
+{
+    bodies->moving = bodies->reach;
+    for (size_t i = bodies->reach; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
+        if (dBodyIsEnabled(record->id)) {
+            dBodyDisable(record->id);
+            record->is_resting = true;
+        }
+    }
+}
+
+void bodies_wake(Bodies *bodies)
+{
+    for (size_t i = bodies->reach; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
+        if (record->is_resting) {
+            dBodyEnable(record->id);
+            record->is_resting = false;
+        }
+    }
+    bodies->moving = bodies->count;
 }
 
 // ODE multiplies up to four of these numbers with each other, in an inverse inertia twice over, and
@@ -229,13 +312,14 @@ void bodies_put_back_all(Bodies *bodies)
         if (found->is_enabled != dBodyIsEnabled(id)) {
             (found->is_enabled ? dBodyEnable : dBodyDisable)(id);
         }
-        record->is_gyrating = false;
+        record->is_gyrating = record->is_resting = false;
     }
+    bodies->moving = bodies->count;
 }
 
 void bodies_keep_positions(Bodies *bodies)
 {
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         BodyRecord *record = &bodies->records[i];
         memcpy(record->position, dBodyGetPosition(record->id), sizeof record->position);
         memcpy(record->turn, dBodyGetQuaternion(record->id), sizeof record->turn);
@@ -245,7 +329,7 @@ void bodies_keep_positions(Bodies *bodies)
 void bodies_keep(Bodies *bodies)
 {
     bodies_keep_positions(bodies);
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         BodyRecord *record = &bodies->records[i];
         const dBodyID id = record->id;
         memcpy(record->velocity, dBodyGetLinearVel(id), sizeof record->velocity);
@@ -258,7 +342,7 @@ void bodies_keep(Bodies *bodies)
 
 void bodies_put_back_positions(const Bodies *bodies)
 {
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         const BodyRecord *record = &bodies->records[i];
         const dReal *at = record->position;
         dBodySetPosition(record->id, at[0], at[1], at[2]);
@@ -269,7 +353,7 @@ void bodies_put_back_positions(const Bodies *bodies)
 void bodies_put_back(const Bodies *bodies)
 {
     bodies_put_back_positions(bodies);
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         const BodyRecord *record = &bodies->records[i];
         const dBodyID id = record->id;
         dBodySetLinearVel(id, record->velocity[0], record->velocity[1], record->velocity[2]);

@@ -21,8 +21,10 @@ typedef struct BodyFound {
 
 typedef struct BodyRecord {
     dBodyID id;
-    bool is_added; // by hand: stays known without a joint
-    unsigned seen; // the gathering that found it last
+    bool is_added;    // by hand: stays known without a joint
+    unsigned seen;    // the gathering that found it last
+    unsigned reached; // the one in whose step a joint of ours could move it last
+    bool is_resting;  // disabled by bodies_rest
     // kept by bodies_keep
     dVector3 position;
     dQuaternion turn;
@@ -42,10 +44,14 @@ typedef struct BodyRecord {
 
 typedef struct Bodies {
     size_t count;
+    size_t reach;  // those that joints of ours can move in the step under way: the first ones
+    size_t moving; // that trial steps move: all, or as far as these reach
     size_t room;
     BodyRecord *records; // owned
     size_t slot_count;   // a power of two
     size_t *slots;       // owned: by hash of a body, its number plus 1
+    dBodyID *queue;      // owned: those whose joints are to be followed
+    size_t queue_count;
     unsigned gathering;
 } Bodies;
 
@@ -69,7 +75,18 @@ bool bodies_are_in_range(const Bodies *bodies, double step, const char **name);
 void bodies_find_all(Bodies *bodies);
 void bodies_put_back_all(Bodies *bodies);
 
-// Notes everything about all bodies; puts it back.
+// Finds the bodies that hang together, by joints and the contacts of the step, with those from
+// which is looked, and puts them first. From then on trial steps read and put back these alone, and
+// the others are as the first of these steps leaves them. All are taken where one of the others may
+// be disabled by ODE, whose clock for that begins anew when it is enabled.
+void bodies_reach_from(Bodies *bodies, dBodyID body);
+void bodies_reach(Bodies *bodies);
+
+// Disables the bodies that are not reached, so that steps leave them alone; ends that.
+void bodies_rest(Bodies *bodies);
+void bodies_wake(Bodies *bodies);
+
+// Notes everything about all bodies; puts it back. Of these and the next two: of those that move.
 void bodies_keep(Bodies *bodies);
 void bodies_put_back(const Bodies *bodies);
 

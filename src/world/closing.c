@@ -62,7 +62,7 @@ static bool only_holds(const JpWorld *world, dJointID joint)
 
 bool closing_is_linear(const JpWorld *world)
 {
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID body = world->bodies.records[i].id;
         if (dBodyGetLinearDamping(body) != 0.0 || dBodyGetAngularDamping(body) != 0.0 ||
             isfinite(dBodyGetMaxAngularSpeed(body)) || !dBodyIsEnabled(body)) {
@@ -86,7 +86,7 @@ static bool has_own_erp(dJointID joint)
 static size_t list_joints(const JpWorld *world, ClosingJoint *kept)
 {
     size_t count = 0;
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID body = world->bodies.records[i].id;
         const int joints = dBodyGetNumJoints(body);
         for (int k = 0; k < joints; k++, count++) {
@@ -100,7 +100,7 @@ static size_t list_joints(const JpWorld *world, ClosingJoint *kept)
 
 bool closing_is_read(const JpWorld *world)
 {
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID body = world->bodies.records[i].id;
         const int joints = dBodyGetNumJoints(body);
         for (int k = 0; k < joints; k++) {

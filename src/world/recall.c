@@ -49,11 +49,11 @@ void recall_free(Recall *recall)
 static bool is_alike(const Recall *recall, const Answer *answer)
 {
     const Bodies *bodies = &answer->world->bodies;
-    if (recall->row_count != answer->row_count || recall->body_count != bodies->count ||
+    if (recall->row_count != answer->row_count || recall->body_count != bodies->moving ||
         recall->place_count != answer->place_count || recall->step != answer->step) {
         return false;
     }
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         if (recall->bodies[i] != bodies->records[i].id) {
             return false;
         }
@@ -128,7 +128,7 @@ static Recall *start(const Answer *answer)
         return NULL;
     }
     recall->row_count = answer->row_count;
-    recall->body_count = answer->world->bodies.count;
+    recall->body_count = answer->world->bodies.moving;
     recall->place_count = answer->place_count;
     recall->step = answer->step;
     const size_t numbers = SETS * set_size(recall) * sizeof(double);

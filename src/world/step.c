@@ -229,9 +229,11 @@ static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, 
                                    JpError *error)
 {
     REFUSAL_TRY(impulse_step(world, step, answer, is_done, error));
+    bodies_wake(&world->bodies);
     if (*is_done) {
         return JP_OK;
     }
+    bodies_put_back(&world->bodies);
     world->stats.fallbacks++;
     return step_with_rows(world, step, error);
 }
