@@ -91,6 +91,7 @@ BodyRecord *bodies_add(Bodies *bodies, dBodyID body)
     return record;
 }
 
+// Marks a body of this gathering, new or not, whose joints are to be followed.
 static bool see(Bodies *bodies, dBodyID body)
 {
     if (body == NULL) {
@@ -100,7 +101,10 @@ static bool see(Bodies *bodies, dBodyID body)
     if (record == NULL) {
         return false;
     }
-    record->seen = bodies->gathering;
+    if (record->seen != bodies->gathering) {
+        record->seen = bodies->gathering;
+        bodies->queue[bodies->queue_count++] = body;
+    }
     return true;
 }
 
@@ -122,31 +126,23 @@ static void drop_unseen(Bodies *bodies)
 // the ones behind them still exist is known once a joint leads there.
 bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count)
 {
-    Bodies found = {.gathering = bodies->gathering + 1};
+    bodies->gathering++;
+    bodies->queue_count = 0;
     bool is_done = true;
     for (size_t i = 0; i < bodies->count && is_done; i++) {
-        is_done = !bodies->records[i].is_added || see(&found, bodies->records[i].id);
+        is_done = !bodies->records[i].is_added || see(bodies, bodies->records[i].id);
     }
     for (size_t i = 0; i < seed_count && is_done; i++) {
-        is_done = see(&found, seeds[i]);
+        is_done = see(bodies, seeds[i]);
     }
-    for (size_t i = 0; i < found.count && is_done; i++) {
-        const dBodyID body = found.records[i].id;
+    for (size_t i = 0; i < bodies->queue_count && is_done; i++) {
+        const dBodyID body = bodies->queue[i];
         const int joints = dBodyGetNumJoints(body);
         for (int j = 0; j < joints && is_done; j++) {
             const dJointID joint = dBodyGetJoint(body, j);
-            is_done = see(&found, dJointGetBody(joint, 0)) && see(&found, dJointGetBody(joint, 1));
+            is_done = see(bodies, dJointGetBody(joint, 0)) && see(bodies, dJointGetBody(joint, 1));
         }
     }
-    for (size_t i = 0; i < found.count && is_done; i++) {
-        BodyRecord *record = bodies_add(bodies, found.records[i].id);
-        is_done = record != NULL;
-        if (is_done) {
-            record->seen = found.gathering;
-        }
-    }
-    bodies->gathering = found.gathering;
-    bodies_finish(&found);
     if (is_done) {
         drop_unseen(bodies);
     }
@@ -230,54 +226,51 @@ void bodies_wake(Bodies *bodies)
     bodies->moving = bodies->count;
 }
 
-// ODE multiplies up to four of these numbers with each other, in an inverse inertia twice over, and
-// squares what comes of it: this to the sixth power is a double.
+// ODE multiplies up to four of these numbers with each other and takes squares on the way: this to
+// the sixth power is a double. What masses and inertias make of them ODE's own assertions see.
 static const double LARGEST = 1e50;
 
-static bool is_vector_in_range(const dReal *vector, double scale)
+static bool is_vector_in_range(const dReal *vector)
 {
-    return fabs(scale * vector[0]) <= LARGEST && fabs(scale * vector[1]) <= LARGEST &&
-           fabs(scale * vector[2]) <= LARGEST;
+    return fabs(vector[0]) + fabs(vector[1]) + fabs(vector[2]) <= 0.1 * LARGEST;
 }
 
-static bool is_size_in_range(double size)
+static bool is_body_in_range(dBodyID id)
 {
-    return size >= 1.0 / LARGEST && size <= LARGEST;
-}
-
-// The mass, the inertia, and what forces change in a step.
-static const char *mass_out_of_range(dBodyID id, double step)
-{
-    dMass mass;
-    dBodyGetMass(id, &mass);
-    const double least = fmin(mass.I[0], fmin(mass.I[5], mass.I[10]));
-    const double most = fmax(mass.I[0], fmax(mass.I[5], mass.I[10]));
-    return dBodyIsKinematic(id)                                       ? NULL
-           : !is_size_in_range(mass.mass)                             ? "mass"
-           : !is_size_in_range(least) || !is_size_in_range(most)      ? "inertia"
-           : !is_vector_in_range(dBodyGetForce(id), step / mass.mass) ? "force"
-           : !is_vector_in_range(dBodyGetTorque(id), step / least)    ? "torque"
-                                                                      : NULL;
-}
-
-bool bodies_are_in_range(const Bodies *bodies, double step, const char **name)
-{
-    static const char *const NAMES[] = {"position", "velocity", "angular velocity",
-                                        "force",    "torque",   "orientation"};
-    *name = NULL;
-    for (size_t i = 0; i < bodies->count && *name == NULL; i++) {
-        const dBodyID id = bodies->records[i].id;
-        const dReal *turn = dBodyGetQuaternion(id);
-        const dReal *vectors[] = {dBodyGetPosition(id),   dBodyGetLinearVel(id),
-                                  dBodyGetAngularVel(id), dBodyGetForce(id),
-                                  dBodyGetTorque(id),     &turn[1]};
-        for (int v = 0; v < 6 && *name == NULL; v++) {
-            *name = is_vector_in_range(vectors[v], 1.0) ? NULL : NAMES[v];
-        }
-        *name = *name != NULL || isfinite(turn[0]) ? *name : NAMES[5];
-        *name = *name != NULL ? *name : mass_out_of_range(id, step);
+    const dReal *vectors[] = {dBodyGetPosition(id), dBodyGetLinearVel(id), dBodyGetAngularVel(id),
+                              dBodyGetForce(id), dBodyGetTorque(id)};
+    const dReal *turn = dBodyGetQuaternion(id);
+    double sum = fabs(turn[0]) + fabs(turn[1]) + fabs(turn[2]) + fabs(turn[3]);
+    for (int v = 0; v < 5; v++) {
+        sum += fabs(vectors[v][0]) + fabs(vectors[v][1]) + fabs(vectors[v][2]);
     }
-    return *name == NULL;
+    return sum <= LARGEST;
+}
+
+// What of a body that is out of range is so most of all.
+static const char *name_out_of_range(dBodyID id)
+{
+    static const char *const NAMES[] = {"position", "velocity", "angular velocity", "force",
+                                        "torque"};
+    const dReal *vectors[] = {dBodyGetPosition(id), dBodyGetLinearVel(id), dBodyGetAngularVel(id),
+                              dBodyGetForce(id), dBodyGetTorque(id)};
+    for (int v = 0; v < 5; v++) {
+        if (!is_vector_in_range(vectors[v])) {
+            return NAMES[v];
+        }
+    }
+    return "orientation";
+}
+
+bool bodies_are_in_range(const Bodies *bodies, const char **name)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        if (!is_body_in_range(bodies->records[i].id)) {
+            *name = name_out_of_range(bodies->records[i].id);
+            return false;
+        }
+    }
+    return true;
 }
 
 void bodies_find_all(Bodies *bodies)
@@ -375,20 +368,38 @@ void bodies_turn(const dReal *from, const dReal *by, double time, dQuaternion tu
     dQMultiply0(turned, step, from);
 }
 
+// Moves a body on from a position and an orientation.
+static void drift_from(dBodyID id, const dReal *at, const dReal *turn, double time)
+{
+    const dReal *velocity = dBodyGetLinearVel(id);
+    dQuaternion turned;
+    bodies_turn(turn, dBodyGetAngularVel(id), time, turned);
+    dBodySetPosition(id, at[0] + time * velocity[0], at[1] + time * velocity[1],
+                     at[2] + time * velocity[2]);
+    dBodySetQuaternion(id, turned);
+}
+
 void bodies_drift(const Bodies *bodies, double time)
 {
     for (size_t i = 0; i < bodies->count; i++) {
         const dBodyID id = bodies->records[i].id;
-        if (!dBodyIsEnabled(id)) {
-            continue;
+        if (dBodyIsEnabled(id)) {
+            drift_from(id, dBodyGetPosition(id), dBodyGetQuaternion(id), time);
         }
-        const dReal *at = dBodyGetPosition(id);
-        const dReal *velocity = dBodyGetLinearVel(id);
-        dBodySetPosition(id, at[0] + time * velocity[0], at[1] + time * velocity[1],
-                         at[2] + time * velocity[2]);
-        dQuaternion turned;
-        bodies_turn(dBodyGetQuaternion(id), dBodyGetAngularVel(id), time, turned);
-        dBodySetQuaternion(id, turned);
+    }
+}
+
+void bodies_drift_kept(const Bodies *bodies, double time)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        const BodyRecord *record = &bodies->records[i];
+        const dReal *at = record->position;
+        if (dBodyIsEnabled(record->id)) {
+            drift_from(record->id, at, record->turn, time);
+        } else {
+            dBodySetPosition(record->id, at[0], at[1], at[2]);
+            dBodySetQuaternion(record->id, record->turn);
+        }
     }
 }
 

@@ -67,9 +67,9 @@ BodyRecord *bodies_add(Bodies *bodies, dBodyID body);
 // those given (NULL among them is the world itself). Returns false where there is no memory.
 bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count);
 
-// Whether all numbers of all bodies are of a size that ODE can multiply with each other, as is what
-// a step, s, changes of their velocities. Where they are not, the name of one.
-bool bodies_are_in_range(const Bodies *bodies, double step, const char **name);
+// Whether all numbers of all bodies are of a size that ODE can multiply with each other. Where they
+// are not, the name of one.
+bool bodies_are_in_range(const Bodies *bodies, const char **name);
 
 // Notes how a step finds all bodies; puts them back.
 void bodies_find_all(Bodies *bodies);
@@ -96,6 +96,9 @@ void bodies_put_back_positions(const Bodies *bodies);
 
 // Moves all bodies on by a time, s, along their velocities.
 void bodies_drift(const Bodies *bodies, double time);
+
+// The same from where they were kept.
+void bodies_drift_kept(const Bodies *bodies, double time);
 
 // The quaternion turned on for a time, s, at an angular velocity in the world's frame.
 void bodies_turn(const dReal *from, const dReal *omega, double time, dQuaternion turned);

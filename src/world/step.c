@@ -248,8 +248,7 @@ static void book_joints(JpWorld *world, double step)
 static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse)
 {
     if (is_staggered(world)) {
-        bodies_put_back_positions(&world->bodies);
-        bodies_drift(&world->bodies, 0.5 * step);
+        bodies_drift_kept(&world->bodies, 0.5 * step);
     }
     if (is_impulse) {
         impulse_finish(world, step, answer);
@@ -289,7 +288,7 @@ static JpStatus step_bodies(JpWorld *world, double step, Answer *answer, JpError
 static JpStatus check_bodies(const JpWorld *world, double step, bool is_after, JpError *error)
 {
     const char *name = NULL;
-    if (bodies_are_in_range(&world->bodies, step, &name)) {
+    if (bodies_are_in_range(&world->bodies, &name)) {
         return JP_OK;
     }
     return is_after ? refusal(error, JP_ERROR_WORLD,
@@ -297,9 +296,9 @@ static JpStatus check_bodies(const JpWorld *world, double step, bool is_after, J
                               "step of %g s; the world is as before it, take a shorter step",
                               name, step)
                     : refusal(error, JP_ERROR_WORLD,
-                              "the %s of a body is too large for a step of %g s, too small or no "
-                              "finite number; the steps before may have been too long",
-                              name, step);
+                              "the %s of a body is too large or no finite number; the steps before "
+                              "may have been too long",
+                              name);
 }
 
 static JpStatus make_step(JpWorld *world, double step, Answer *answer, JpError *error)

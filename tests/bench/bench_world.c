@@ -38,7 +38,6 @@ static void add_pin(JpWorld *play, dBodyID body, double z)
     JpPinInHole pin = jp_pin_default();
     pin.hole_radius = 5e-3;
     pin.pin_radius = 4.95e-3;
-    pin.width = 0.02;
     pin.hole[2] = z;
     pin.pin[0] = -0.15;
     pin.contact.stiffness = 1e8;
