@@ -6,6 +6,8 @@
 #define _GNU_SOURCE // open_memstream
 #include "world/bodies.h"
 
+#include "base/sinc.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -363,8 +365,8 @@ void bodies_turn(const dReal *from, const dReal *by, double time, dQuaternion tu
 {
     const double rate = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
     const double half = 0.5 * rate * time;
-    const double along = rate > 0.0 ? sin(half) / rate : 0.0;
-    const dQuaternion step = {cos(half), along * by[0], along * by[1], along * by[2]};
+    const double along = 0.5 * time * sinc(half);
+    const dQuaternion step = {sinc_cos(half), along * by[0], along * by[1], along * by[2]};
     dQMultiply0(turned, step, from);
 }
 
