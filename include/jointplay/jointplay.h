@@ -42,8 +42,9 @@ typedef enum JpStatus {
     JP_ERROR_ARGUMENT, /* an argument that no call may have: NULL, NaN, out of range */
     JP_ERROR_NONE,     /* what is asked for does not exist: no such step, no such spring */
     JP_ERROR_MEMORY,   /* there is no memory */
-    JP_ERROR_WORLD,    /* the world cannot be stepped: a number in it is too large or not finite, it
-                          has    bodies that are not known, a joint's body was destroyed, or ODE failed */
+    /* the world cannot be stepped: a number in it is too large or not finite, it has bodies that
+     * are not known, a joint's body was destroyed, or ODE failed */
+    JP_ERROR_WORLD,
 } JpStatus;
 
 enum { JP_ERROR_SIZE = 256 };
