@@ -391,6 +391,15 @@ JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error)
             found.is_touching = found.is_touching || found.collars[k].is_touching;
         }
     }
+    bool is_finite = isfinite(vec3_length(middle.offset) + vec3_length(joint->force) + found.axial +
+                              found.tilt + found.slid);
+    for (int i = 0; i < SIDE_COUNT; i++) {
+        is_finite = is_finite && play_is_side_finite(&found.ends[i]) &&
+                    play_is_side_finite(&found.collars[i]);
+    }
+    if (!is_finite) {
+        return refusal(error, JP_ERROR_WORLD, "the pin's state is out of a double's range");
+    }
     *state = found;
     return refusal_none(error);
 }

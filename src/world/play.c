@@ -34,6 +34,28 @@ JpStatus play_check_bodies(const JpJoint *joint, JpError *error)
                               "attached to other bodies; destroy the joint with jp_joint_destroy");
 }
 
+// Sums: one that overflows is as good as one that is infinite.
+bool play_is_finite(const JpJoint *joint)
+{
+    double sum = joint->rotor.position + joint->rotor.speed + vec3_length(joint->force);
+    for (size_t i = 0; i < joint->place_count; i++) {
+        const Place *place = &joint->places[i];
+        sum += place->slid;
+        for (size_t k = 0; k < place_side_count(place); k++) {
+            const Side *side = &place->sides[k];
+            sum += side->force + side->force_max + side->depth_max + side->impulse + side->work +
+                   side->impact_speed;
+        }
+    }
+    return isfinite(sum);
+}
+
+bool play_is_side_finite(const JpSide *side)
+{
+    return isfinite(side->force + side->force_max + side->depth_max + side->impulse + side->work +
+                    side->stored + side->impact_speed);
+}
+
 void jp_joint_destroy(JpJoint *joint)
 {
     if (joint == NULL) {

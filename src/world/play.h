@@ -100,6 +100,11 @@ struct JpWorld {
 // Fails where a body of a joint was destroyed, or ODE's joint got other bodies.
 JpStatus play_check_bodies(const JpJoint *joint, JpError *error);
 
+// Whether all numbers of a joint are finite that steps change, and all of a side that is read but
+// its gap.
+bool play_is_finite(const JpJoint *joint);
+bool play_is_side_finite(const JpSide *side);
+
 // Adds a joint to a world; NULL where there is no memory.
 JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2]);
 

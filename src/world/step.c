@@ -301,11 +301,26 @@ static JpStatus check_bodies(const JpWorld *world, double step, bool is_after, J
                               name);
 }
 
+static JpStatus check_joints_after(const JpWorld *world, double step, JpError *error)
+{
+    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        if (!play_is_finite(joint)) {
+            return refusal(
+                error, JP_ERROR_WORLD,
+                "a joint with play would have a force, a work or a rotor's speed that is "
+                "no finite number after a step of %g s; the world is as before it",
+                step);
+        }
+    }
+    return JP_OK;
+}
+
 static JpStatus make_step(JpWorld *world, double step, Answer *answer, JpError *error)
 {
     go_there(world, step);
     REFUSAL_TRY(step_bodies(world, step, answer, error));
-    return check_bodies(world, step, true, error);
+    REFUSAL_TRY(check_bodies(world, step, true, error));
+    return check_joints_after(world, step, error);
 }
 
 // A step that ODE cannot make fails, and no more.
