@@ -193,6 +193,25 @@ static void add_totals(Answer *answer, double step)
     }
 }
 
+// Numbers of rows above this are out of any use, and what is integrated from them may not end.
+static const double LARGEST_NUMBER = 1e50;
+
+static bool are_in_range(const double *numbers, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        sum += fabs(numbers[i]);
+    }
+    return sum <= LARGEST_NUMBER;
+}
+
+static bool is_in_range(const Encounter *encounter)
+{
+    const size_t rows = encounter->row_count;
+    return are_in_range(encounter->position, rows) && are_in_range(encounter->speed, rows) &&
+           are_in_range(encounter->free, rows) && are_in_range(encounter->mobility, rows * rows);
+}
+
 // What needs memory: all of it belongs to the world's encounter or to the answer.
 static bool run(Answer *answer, double step)
 {
@@ -201,7 +220,7 @@ static bool run(Answer *answer, double step)
     fill_mobility(answer);
     encounter_sums_free(&answer->sums);
     answer->sums = encounter_sums(encounter->row_count);
-    if (!encounter_run(encounter, step)) {
+    if (!is_in_range(encounter) || !encounter_run(encounter, step)) {
         return false;
     }
     add_totals(answer, step);
