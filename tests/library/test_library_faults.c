@@ -251,8 +251,6 @@ static void random_worlds_at_long_steps_end_in_a_sentence(void **state)
         for (unsigned seed = 0; seed < WORLDS; seed++) {
             failed += play_random_world((JpStepping)stepping, seed);
         }
-        print_message("stepping %d: %zu of %d worlds ended in a sentence\n", stepping, failed,
-                      WORLDS);
         // the control: some are beyond what ODE can step, most are not
         assert_true(failed > 0 && failed < WORLDS / 2);
     }
