@@ -6,8 +6,20 @@
  * an angle alike.
  *
  * A function that can fail returns a JpStatus, JP_OK being 0, and fills in the JpError behind its
- * last argument, which may be NULL, with one sentence. What it was to fill in is untouched then. No
- * function prints, keeps anything outside what you hand it, or ends your program. */
+ * last argument, which may be NULL, with one sentence. What it was to fill in is untouched then,
+ * and a world is as it was before the call. With JP_OK all numbers are finite, but for gaps to
+ * sides that do not exist.
+ *
+ * No function prints, or ends your program. ODE does both where its own numbers go wrong. From the
+ * first jp_world_create to the last jp_world_destroy the library has handlers of its own for that
+ * (dSetDebugHandler, dSetErrorHandler), which turn what ODE finds wrong in jp_world_step into a
+ * JpStatus, and hand on all else to the handlers that were there before. If you set handlers of
+ * your own, set them before the first world. Nothing else is kept outside what you hand over.
+ *
+ * Threads: a thread may use one world while others use other worlds, each with the ODE data of its
+ * own (dAllocateODEDataForThread). Worlds that share a space of geoms, and handlers of ODE, belong
+ * to one thread at a time. dWorldQuickStep shuffles its rows by a seed of the whole process
+ * (dRandSetSeed): its numbers depend on what other threads do. */
 #ifndef JOINTPLAY_JOINTPLAY_H
 #define JOINTPLAY_JOINTPLAY_H
 
@@ -30,8 +42,9 @@ typedef enum JpStatus {
     JP_ERROR_ARGUMENT, /* an argument that no call may have: NULL, NaN, out of range */
     JP_ERROR_NONE,     /* what is asked for does not exist: no such step, no such spring */
     JP_ERROR_MEMORY,   /* there is no memory */
-    JP_ERROR_WORLD, /* the world cannot be stepped: a number in it is not finite, or it has bodies
-                       that are not known */
+    /* the world cannot be stepped: a number in it is too large or not finite, it has bodies that
+     * are not known, a joint's body was destroyed, or ODE failed */
+    JP_ERROR_WORLD,
 } JpStatus;
 
 enum { JP_ERROR_SIZE = 256 };
@@ -200,8 +213,9 @@ JP_API JpStatus jp_step_longest(JpMap map, const JpContact *contact, double mass
  *
  * A JpWorld steps your world with the library's joints in it. The world, its bodies, joints and
  * contacts remain yours; destroy a JpJoint before the ODE joint that it acts on, and the JpWorld
- * before the world. Between two steps ODE's getters read all positions and velocities at the same
- * time. */
+ * before the world. A JpJoint whose body was destroyed is noticed: steps fail until it is
+ * destroyed, too. Bodies of pins have one more joint each in ODE, without rows, for that. Between
+ * two steps ODE's getters read all positions and velocities at the same time. */
 
 typedef struct JpWorld JpWorld;
 typedef struct JpJoint JpJoint;
@@ -230,6 +244,11 @@ typedef struct JpWorldOptions {
      * geoms. NULL: none. */
     dSpaceID space;
     dSurfaceParameters surface; /* of all of these */
+    /* The library gives the world a self-threaded implementation of its own
+     * (dWorldSetStepThreadingImplementation), so that each thread may step a world;
+     * jp_world_destroy puts back ODE's default. True: the world keeps the implementation that it
+     * has, such as a pool of threads of yours, which no other world may use at the same time. */
+    bool keeps_threading;
 } JpWorldOptions;
 
 /* Staggered, by dWorldStep, without contacts; a surface with ODE's friction of .5. */
@@ -245,7 +264,16 @@ JP_API void jp_world_destroy(JpWorld *world);
 JP_API JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error);
 JP_API JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error);
 
-/* One step, s, in place of dWorldStep. Forces that were added to bodies act in it. */
+/* Adds all bodies that the world has now. JP_ERROR_NONE with a version of ODE that does not let
+ * them be found; then add each. Not while another thread uses the world. */
+JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
+
+/* One step, s, from 1e-30 to 1e30, in place of dWorldStep. Forces that were added to bodies act in
+ * it. Positions, velocities and forces above 1e50 are refused. Where it fails, bodies, forces and
+ * joints are as before, so that it may be tried again, shorter or with the cause removed. A step
+ * that ODE breaks off costs the memory that ODE had in use for it, once each time. With a threading
+ * implementation of yours (keeps_threading) ODE still ends the program where it fails in a thread
+ * of that, and the world must not be stepped again after a step that ODE broke off. */
 JP_API JpStatus jp_world_step(JpWorld *world, double step, JpError *error);
 
 typedef struct JpWorldStats {

@@ -5,7 +5,8 @@
 // right side is exchanged as they come. The work is in proportion to rows times reach^2.
 #include "base/banded.h"
 
-#include <assert.h>
+#include "base/memory.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,16 +42,17 @@ void banded_shape(Banded *banded, size_t count, size_t reach)
     const size_t size = banded_size(count, reach);
     set_shape(banded, count, reach);
     if (size > banded->room || banded->values == NULL) {
-        banded->room = size;
         free(banded->values);
-        banded->values = malloc((banded->room + 1) * sizeof *banded->values);
+        banded->values = NULL;
+        banded->values = memory_plain(size + 1, sizeof *banded->values);
+        banded->room = size;
     }
     if (count > banded->pivot_room || banded->pivots == NULL) {
-        banded->pivot_room = count;
         free(banded->pivots);
-        banded->pivots = malloc((count + 1) * sizeof *banded->pivots);
+        banded->pivots = NULL;
+        banded->pivots = memory_plain(count + 1, sizeof *banded->pivots);
+        banded->pivot_room = count;
     }
-    assert(banded->values != NULL && banded->pivots != NULL);
     memset(banded->values, 0, size * sizeof *banded->values);
 }
 

@@ -1,6 +1,8 @@
 // Room in lists that grow.
 #pragma once
 
+#include "base/memory.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +15,7 @@ static inline void *room_grow(void *list, size_t *room, size_t least, size_t siz
         return list;
     }
     const size_t grown = least > 2 * *room ? least : 2 * *room;
-    char *made = realloc(list, grown * size);
-    assert(made != NULL);
+    char *made = memory_grown(list, grown, size);
     memset(made + *room * size, 0, (grown - *room) * size);
     *room = grown;
     return made;
@@ -26,7 +27,5 @@ static inline void *room_copy(const void *list, size_t count, size_t size)
     if (count == 0) {
         return NULL;
     }
-    void *made = malloc(count * size);
-    assert(made != NULL);
-    return memcpy(made, list, count * size);
+    return memcpy(memory_plain(count, size), list, count * size);
 }

@@ -137,9 +137,15 @@ double damping_depth_max(double stiffness, double exponent, double chi, double m
     return pow(-scale * log_remainder(chi), 1.0 / order);
 }
 
+// of the damping: its square is no double's any more
+static const double HUGE_RATIO = 1e150;
+
 // z acos(z) / sqrt(1 - z^2), continued through z = 1.
 static double phase_decay(double z)
 {
+    if (z > HUGE_RATIO) {
+        return log(2.0) + log(z); // asinh z
+    }
     const double root = sqrt(fabs((1.0 - z) * (1.0 + z)));
     if (root == 0.0) {
         return 1.0;

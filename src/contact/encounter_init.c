@@ -35,16 +35,15 @@ size_t encounter_rows(const Encounter *encounter)
 static void grow(Encounter *encounter, size_t rows)
 {
     if (encounter->joint_count == encounter->joint_room) {
-        encounter->joint_room = 2 * encounter->joint_room + 1;
-        encounter->joints =
-            realloc(encounter->joints, encounter->joint_room * sizeof *encounter->joints);
+        const size_t room = 2 * encounter->joint_room + 1;
+        encounter->joints = memory_grown(encounter->joints, room, sizeof *encounter->joints);
+        encounter->joint_room = room;
     }
     while (encounter->row_count + rows > encounter->row_room) {
-        encounter->row_room = 2 * encounter->row_room + ENCOUNTER_ROWS_PLAIN;
-        encounter->joint_of =
-            realloc(encounter->joint_of, encounter->row_room * sizeof *encounter->joint_of);
+        const size_t room = 2 * encounter->row_room + ENCOUNTER_ROWS_PLAIN;
+        encounter->joint_of = memory_grown(encounter->joint_of, room, sizeof *encounter->joint_of);
+        encounter->row_room = room;
     }
-    assert(encounter->joints != NULL && encounter->joint_of != NULL);
 }
 
 void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t rows)
@@ -66,9 +65,11 @@ void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
 
 EncounterPoint encounter_point(size_t rows, size_t joints)
 {
-    double *numbers = zeroed(5 * rows, sizeof *numbers);
+    // one piece of memory, so that there is no moment at which half of it has no owner
+    const size_t bytes = 5 * rows * sizeof(double);
+    double *numbers = zeroed(1, bytes + joints * sizeof(EncounterPlaced));
     return (EncounterPoint){
-        .placed = zeroed(joints, sizeof(EncounterPlaced)),
+        .placed = (EncounterPlaced *)(numbers + 5 * rows),
         .impulse = numbers,
         .moment = numbers + rows,
         .force = numbers + 3 * rows,
@@ -78,14 +79,16 @@ EncounterPoint encounter_point(size_t rows, size_t joints)
 
 void encounter_point_free(EncounterPoint *point)
 {
-    free(point->placed);
     free(point->impulse);
     *point = (EncounterPoint){.time_s = 0.0};
 }
 
-static EncounterWork *make_work(size_t rows, size_t joints)
+// The encounter owns it before it is filled.
+static void make_work(Encounter *encounter)
 {
-    EncounterWork *work = zeroed(1, sizeof *work);
+    const size_t rows = encounter->row_count;
+    const size_t joints = encounter->joint_count;
+    EncounterWork *work = encounter->work = zeroed(1, sizeof *work);
     work->ends[0] = encounter_point(rows, joints);
     work->ends[1] = encounter_point(rows, joints);
     work->inside = encounter_point(rows, joints);
@@ -100,7 +103,6 @@ static EncounterWork *make_work(size_t rows, size_t joints)
     }
     work->crossings_s = zeroed(joints, sizeof *work->crossings_s);
     work->has_event = zeroed(joints, sizeof *work->has_event);
-    return work;
 }
 
 static void free_work(EncounterWork *work)
@@ -144,7 +146,7 @@ void encounter_make_room(Encounter *encounter, size_t reach)
     encounter->mobility =
         zeroed(rows * (is_dense ? rows : 2 * reach + 1), sizeof *encounter->mobility);
     encounter_make_rows(encounter);
-    encounter->work = make_work(rows, encounter->joint_count);
+    make_work(encounter);
 }
 
 void encounter_finish(Encounter *encounter)

@@ -4,11 +4,11 @@
 // Q'' at both; its derivatives are impulse and force, right to the orders 4 and 3 of the local
 // step. Where two contacts that should end together do so a rounding apart, the force is linear
 // between the nodes: a difference of integrals over the square of that time would be rounding.
+#include "base/memory.h"
 #include "contact/encounter_force.h"
 #include "contact/encounter_quintic.h"
 #include "contact/encounter_stiff.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,21 +70,19 @@ void encounter_nodes_begin(Encounter *encounter)
 // Makes room for more nodes.
 static void grow_nodes(Encounter *encounter)
 {
-    encounter->node_room = 2 * encounter->node_room + FIRST_ROOM;
-    const size_t room = encounter->node_room;
+    const size_t room = 2 * encounter->node_room + FIRST_ROOM;
     const size_t rows = encounter->row_count;
     const size_t joints = encounter->joint_count;
     const size_t words = (joints + 63) / 64;
-    encounter->times = realloc(encounter->times, room * sizeof *encounter->times);
+    encounter->times = memory_grown(encounter->times, room, sizeof *encounter->times);
     encounter->values =
-        realloc(encounter->values, (4 * rows * room + 1) * sizeof *encounter->values);
+        memory_grown(encounter->values, 4 * rows * room + 1, sizeof *encounter->values);
     encounter->closings =
-        realloc(encounter->closings, (joints * room + 1) * sizeof *encounter->closings);
-    encounter->losses = realloc(encounter->losses, 2 * room * sizeof *encounter->losses);
+        memory_grown(encounter->closings, joints * room + 1, sizeof *encounter->closings);
+    encounter->losses = memory_grown(encounter->losses, 2 * room, sizeof *encounter->losses);
     encounter->touching =
-        realloc(encounter->touching, (words * room + 1) * sizeof *encounter->touching);
-    assert(encounter->times != NULL && encounter->values != NULL && encounter->closings != NULL &&
-           encounter->losses != NULL && encounter->touching != NULL);
+        memory_grown(encounter->touching, words * room + 1, sizeof *encounter->touching);
+    encounter->node_room = room;
 }
 
 void encounter_nodes_add(Encounter *encounter, const EncounterPoint *point)

@@ -39,10 +39,10 @@ static const double SOLVED = 1e-2;
 
 static const double FROM_DEPTH = 0.5; // of the depth at the start, a smooth force goes on linearly
 
-EncounterStages *encounter_stages_create(const Encounter *encounter)
+void encounter_stages_create(Encounter *encounter)
 {
     const size_t rows = encounter_rows(encounter);
-    EncounterStages *stages = zeroed(1, sizeof *stages);
+    EncounterStages *stages = encounter->stages = zeroed(1, sizeof *stages);
     stages->row_of = zeroed(rows, sizeof *stages->row_of);
     stages->from_depth = zeroed(encounter->joint_count, sizeof *stages->from_depth);
     for (size_t i = 0; i < ENCOUNTER_STAGES; i++) {
@@ -57,7 +57,6 @@ EncounterStages *encounter_stages_create(const Encounter *encounter)
     for (size_t i = 0; i < 2; i++) {
         stages->changes[i] = zeroed(rows, sizeof *stages->changes[i]);
     }
-    return stages;
 }
 
 void encounter_stages_destroy(EncounterStages *stages)

@@ -29,7 +29,8 @@ typedef struct EncounterStages {
     double *changes[2];
 } EncounterStages;
 
-EncounterStages *encounter_stages_create(const Encounter *encounter);
+// Gives the encounter its stages.
+void encounter_stages_create(Encounter *encounter);
 void encounter_stages_destroy(EncounterStages *stages);
 
 // Solves for the stages of a step of a length, s, from a completed point. Returns false where

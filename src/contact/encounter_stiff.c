@@ -142,7 +142,7 @@ double encounter_stiff_step(Encounter *encounter, const EncounterPoint *from, do
                             EncounterPoint *to)
 {
     if (encounter->stages == NULL) {
-        encounter->stages = encounter_stages_create(encounter);
+        encounter_stages_create(encounter);
     }
     EncounterStages *stages = encounter->stages;
     const bool is_solved = encounter_stages_solve(encounter, stages, from, width_s);

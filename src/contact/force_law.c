@@ -33,7 +33,6 @@ static const double LEVEL_ROUNDING = 1e-13;
 
 ForceLaw force_law_power(double stiffness, double exponent)
 {
-    assert(stiffness > 0.0 && exponent > 0.0);
     return (ForceLaw){
         .family = FORCE_LAW_POWER,
         .stiffness = stiffness,
@@ -44,7 +43,6 @@ ForceLaw force_law_power(double stiffness, double exponent)
 
 ForceLaw force_law_logarithmic(double compliance, double offset)
 {
-    assert(compliance > 0.0);
     return (ForceLaw){
         .family = FORCE_LAW_LOGARITHMIC,
         .compliance = compliance,
@@ -52,6 +50,16 @@ ForceLaw force_law_logarithmic(double compliance, double offset)
         .log_scale = offset + log(compliance),
         .impact_speed_floor = DEFAULT_SPEED_FLOOR,
     };
+}
+
+bool force_law_is_sound(const ForceLaw *law)
+{
+    if (law->family == FORCE_LAW_POWER) {
+        return law->stiffness > 0.0 && isfinite(law->stiffness) && law->exponent > 0.0 &&
+               isfinite(law->exponent);
+    }
+    return law->compliance > 0.0 && isfinite(law->compliance) && isfinite(law->offset) &&
+           isfinite(law->log_scale);
 }
 
 ForceLaw force_law_share(const ForceLaw *law, double share)

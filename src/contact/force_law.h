@@ -29,6 +29,9 @@ typedef struct ForceLaw {
 ForceLaw force_law_power(double stiffness, double exponent);
 ForceLaw force_law_logarithmic(double compliance, double offset);
 
+// Whether all numbers of the elastic part are finite and of the right sign.
+bool force_law_is_sound(const ForceLaw *law);
+
 // The law of one of several places that share a contact's load, > 0: that share of its force,
 // elastic and damping, at every penetration.
 ForceLaw force_law_share(const ForceLaw *law, double share);

@@ -47,7 +47,15 @@ bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err)
     if (!check_pair(kind, pair, err)) {
         return false;
     }
-    law_get(kind)->make(pair, law);
+    ForceLaw made;
+    law_get(kind)->make(pair, &made);
+    if (!force_law_is_sound(&made)) {
+        return err_set(err, ERR_CASE,
+                       "the contact law %s of these radii, this width and this material is out of a"
+                       " double's range; are they in m and Pa?",
+                       OPTIONS_LAWS[kind]);
+    }
+    *law = made;
     return true;
 }
 

@@ -50,10 +50,16 @@ ErpCfm map_row(double erp, double cfm)
     return (ErpCfm){.erp = erp, .cfm = cfm, .rest = 1.0 - erp};
 }
 
+bool map_contact_is_sound(const MapContact *contact)
+{
+    const double sum = contact->stiffness + contact->damping;
+    return contact->stiffness >= 0.0 && contact->damping >= 0.0 && contact->step > 0.0 &&
+           sum > 0.0 && isfinite(sum);
+}
+
 static void check_contact(const MapContact *contact)
 {
-    assert(contact->stiffness >= 0.0 && contact->damping >= 0.0 && contact->step > 0.0);
-    assert(contact->stiffness + contact->damping > 0.0);
+    assert(map_contact_is_sound(contact));
 }
 
 static ErpCfm textbook(const MapContact *contact)

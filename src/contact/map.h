@@ -37,6 +37,9 @@ typedef struct Map {
     bool (*invert)(ErpCfm row, MapContact *contact);
 } Map;
 
+// Whether a spring and damper at a step are such: no number below 0, not both 0, and finite.
+bool map_contact_is_sound(const MapContact *contact);
+
 // Of every map but ODE_MAP_IMPULSE, which makes no rows.
 const Map *map_get(OdeMap kind);
 

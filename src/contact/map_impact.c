@@ -84,6 +84,9 @@ static Row map_row_of(const MapImpactCase *impact, double depth, double closing)
         sqrt(force_law_tangent(&impact->law, depth) / impact->mass) * impact->step;
     const Map *map = impact->rows.map;
     const bool falls_back = !(omega_h < map->stability_limit);
+    if (!map_contact_is_sound(&contact)) {
+        return (Row){.speed = NAN, .cfm = NAN}; // out of a double's range: the impact never ends
+    }
     const ErpCfm soft = law_row_soft(map, falls_back, &contact);
     return (Row){soft.erp / impact->step * depth, soft.cfm, omega_h, falls_back};
 }
@@ -100,6 +103,9 @@ MapImpact map_impact(const MapImpactCase *impact, double first_overlap)
                                                  : poisson_row(impact, depth, closing);
         // the row, solved for the force; the wall never pulls
         const double wanted = (row.speed + closing) / (row.cfm + impact->step / impact->mass);
+        if (isnan(wanted)) {
+            return (MapImpact){.steps = result.steps};
+        }
         const double force = larger(wanted, 0.0);
         result.force_max = larger(force, result.force_max);
         result.penetration_max = larger(depth, result.penetration_max);
@@ -193,6 +199,9 @@ MapImpact map_impact_law(const MapImpactCase *impact)
     const double damper = force_law_damping(&impact->law, deepest, impact->speed);
     const double time =
         fmin(deepest / impact->speed / LAW_STEPS, impact->mass / (DAMPER_STEPS * damper));
+    if (!(time >= DBL_MIN)) {
+        return result; // no clock tells such an impact's steps apart
+    }
     // just inside the wall, where a viscous damper presses at once
     State now = {FIRST_DEPTH * deepest, impact->speed};
     State before = now;

@@ -38,7 +38,7 @@ static bool make_room(Answer *answer)
     const JpWorld *world = answer->world;
     count(world, answer);
     const size_t n = answer->row_count;
-    const size_t body = BODY_NUMBERS * world->bodies.count;
+    const size_t body = BODY_NUMBERS * world->bodies.moving;
     const size_t numbers = (8 + INSIDE_ROWS) * n + n * n + (n + 1) * body;
     const size_t size = numbers * sizeof(double) + answer->place_count * sizeof(AnswerPlace) +
                         n * (sizeof(Direction *) + INSIDE_ROWS * sizeof(size_t));
@@ -64,6 +64,8 @@ static bool make_room(Answer *answer)
 void answer_free(Answer *answer)
 {
     free(answer->memory);
+    encounter_sums_free(&answer->sums);
+    closing_free(&answer->closing);
     *answer = (Answer){0};
 }
 
@@ -86,7 +88,7 @@ static void fill_places(Answer *answer)
 
 void answer_read_bodies(const JpWorld *world, double *speeds)
 {
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID id = world->bodies.records[i].id;
         memcpy(&speeds[BODY_NUMBERS * i], dBodyGetLinearVel(id), 3 * sizeof(double));
         memcpy(&speeds[BODY_NUMBERS * i + 3], dBodyGetAngularVel(id), 3 * sizeof(double));
@@ -133,7 +135,7 @@ static double hardest(const Answer *answer, const AnswerPlace *of, double speed,
 static double fastest(const Answer *answer, bool is_turn)
 {
     double most = 0.0;
-    for (size_t b = 0; b < answer->world->bodies.count; b++) {
+    for (size_t b = 0; b < answer->world->bodies.moving; b++) {
         for (size_t k = 0; k < 3; k++) {
             most = fmax(most, fabs(answer->speeds[BODY_NUMBERS * b + (is_turn ? 3 : 0) + k]));
         }
@@ -175,7 +177,7 @@ static JpStatus find_column(Answer *answer, const AnswerPlace *of, size_t own, d
 {
     JpWorld *world = answer->world;
     const size_t n = answer->row_count;
-    const size_t numbers = BODY_NUMBERS * world->bodies.count;
+    const size_t numbers = BODY_NUMBERS * world->bodies.moving;
     const size_t row = of->first_row + own;
     const double mobility = direction_mobility(answer->rows[row]);
     if (!(mobility > 0.0)) {
@@ -209,8 +211,8 @@ double answer_to(const Answer *answer, const double *impulses, size_t row)
 
 void answer_take(const Answer *answer)
 {
-    const size_t numbers = BODY_NUMBERS * answer->world->bodies.count;
-    for (size_t b = 0; b < answer->world->bodies.count; b++) {
+    const size_t numbers = BODY_NUMBERS * answer->world->bodies.moving;
+    for (size_t b = 0; b < answer->world->bodies.moving; b++) {
         const dBodyID id = answer->world->bodies.records[b].id;
         double speeds[BODY_NUMBERS];
         memcpy(speeds, &answer->speeds[BODY_NUMBERS * b], sizeof speeds);

@@ -159,12 +159,13 @@ JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpError *erro
         return refusal(error, JP_ERROR_ARGUMENT,
                        "the joint is a pin in a hole; read it with jp_pin_state");
     }
+    REFUSAL_TRY(play_check_bodies(joint, error));
     Coordinate coordinate = joint->coordinate; // so that reading changes nothing
     const Direction along = coordinate_direction(&coordinate);
     const Side *sides = joint->places[0].sides;
     const double position = coordinate_read(&coordinate);
     const double off = position - joint->rotor.position;
-    *state = (JpJointState){
+    const JpJointState found = {
         .position = position,
         .speed = direction_rate(&along),
         .rotor_position = joint->rotor.position,
@@ -173,5 +174,10 @@ JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpError *erro
         .low = play_side(&sides[0], off),
         .high = play_side(&sides[1], off),
     };
+    const double all = found.position + found.speed + found.rotor_position + found.rotor_speed;
+    if (!isfinite(all) || !play_is_side_finite(&found.low) || !play_is_side_finite(&found.high)) {
+        return refusal(error, JP_ERROR_WORLD, "the joint's state is out of a double's range");
+    }
+    *state = found;
     return refusal_none(error);
 }

@@ -6,6 +6,8 @@
 #define _GNU_SOURCE // open_memstream
 #include "world/bodies.h"
 
+#include "base/sinc.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -18,6 +20,7 @@ void bodies_finish(Bodies *bodies)
 {
     free(bodies->records);
     free(bodies->slots);
+    free(bodies->queue);
     *bodies = (Bodies){0};
 }
 
@@ -64,6 +67,11 @@ static bool make_room(Bodies *bodies)
         return false;
     }
     bodies->slots = slots;
+    dBodyID *queue = realloc(bodies->queue, room * sizeof *queue);
+    if (queue == NULL) {
+        return false;
+    }
+    bodies->queue = queue;
     bodies->room = room;
     bodies->slot_count = 4 * room;
     fill_slots(bodies);
@@ -85,6 +93,7 @@ BodyRecord *bodies_add(Bodies *bodies, dBodyID body)
     return record;
 }
 
+// Marks a body of this gathering, new or not, whose joints are to be followed.
 static bool see(Bodies *bodies, dBodyID body)
 {
     if (body == NULL) {
@@ -94,7 +103,10 @@ static bool see(Bodies *bodies, dBodyID body)
     if (record == NULL) {
         return false;
     }
-    record->seen = bodies->gathering;
+    if (record->seen != bodies->gathering) {
+        record->seen = bodies->gathering;
+        bodies->queue[bodies->queue_count++] = body;
+    }
     return true;
 }
 
@@ -116,59 +128,193 @@ static void drop_unseen(Bodies *bodies)
 // the ones behind them still exist is known once a joint leads there.
 bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count)
 {
-    Bodies found = {.gathering = bodies->gathering + 1};
+    bodies->gathering++;
+    bodies->queue_count = 0;
     bool is_done = true;
     for (size_t i = 0; i < bodies->count && is_done; i++) {
-        is_done = !bodies->records[i].is_added || see(&found, bodies->records[i].id);
+        is_done = !bodies->records[i].is_added || see(bodies, bodies->records[i].id);
     }
     for (size_t i = 0; i < seed_count && is_done; i++) {
-        is_done = see(&found, seeds[i]);
+        is_done = see(bodies, seeds[i]);
     }
-    for (size_t i = 0; i < found.count && is_done; i++) {
-        const dBodyID body = found.records[i].id;
+    for (size_t i = 0; i < bodies->queue_count && is_done; i++) {
+        const dBodyID body = bodies->queue[i];
         const int joints = dBodyGetNumJoints(body);
         for (int j = 0; j < joints && is_done; j++) {
             const dJointID joint = dBodyGetJoint(body, j);
-            is_done = see(&found, dJointGetBody(joint, 0)) && see(&found, dJointGetBody(joint, 1));
+            is_done = see(bodies, dJointGetBody(joint, 0)) && see(bodies, dJointGetBody(joint, 1));
         }
     }
-    for (size_t i = 0; i < found.count && is_done; i++) {
-        BodyRecord *record = bodies_add(bodies, found.records[i].id);
-        is_done = record != NULL;
-        if (is_done) {
-            record->seen = found.gathering;
-        }
-    }
-    bodies->gathering = found.gathering;
-    bodies_finish(&found);
     if (is_done) {
         drop_unseen(bodies);
     }
+    bodies->reach = bodies->moving = bodies->count;
+    bodies->queue_count = 0;
     return is_done;
 }
 
-bool bodies_are_finite(const Bodies *bodies)
+void bodies_reach_from(Bodies *bodies, dBodyID body)
+{
+    BodyRecord *record = body != NULL ? bodies_find(bodies, body) : NULL;
+    if (record != NULL && record->reached != bodies->gathering) {
+        record->reached = bodies->gathering;
+        bodies->queue[bodies->queue_count++] = body;
+    }
+}
+
+// Puts the bodies that are reached first, in the order in which they are.
+static void put_reached_first(Bodies *bodies)
+{
+    size_t reached = 0;
+    bool is_changed = false;
+    for (size_t i = 0; i < bodies->count; i++) {
+        if (bodies->records[i].reached != bodies->gathering) {
+            continue;
+        }
+        if (i != reached) {
+            const BodyRecord other = bodies->records[reached];
+            bodies->records[reached] = bodies->records[i];
+            bodies->records[i] = other;
+            is_changed = true;
+        }
+        reached++;
+    }
+    bodies->reach = bodies->moving = reached;
+    if (is_changed) {
+        fill_slots(bodies);
+    }
+}
+
+void bodies_reach(Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->count; i++) {
-        const dBodyID id = bodies->records[i].id;
-        const dReal *vectors[] = {dBodyGetPosition(id),   dBodyGetLinearVel(id),
-                                  dBodyGetAngularVel(id), dBodyGetForce(id),
-                                  dBodyGetTorque(id),     &dBodyGetQuaternion(id)[1]};
-        double sum = dBodyGetQuaternion(id)[0];
-        for (int v = 0; v < 6; v++) {
-            // a sum that overflows is as good as one that is infinite
-            sum += vectors[v][0] + vectors[v][1] + vectors[v][2];
+        if (dBodyGetAutoDisableFlag(bodies->records[i].id)) {
+            bodies_reach_from(bodies, bodies->records[i].id);
         }
-        if (!isfinite(sum)) {
+    }
+    for (size_t i = 0; i < bodies->queue_count; i++) {
+        const dBodyID body = bodies->queue[i];
+        const int joints = dBodyGetNumJoints(body);
+        for (int j = 0; j < joints; j++) {
+            const dJointID joint = dBodyGetJoint(body, j);
+            bodies_reach_from(bodies, dJointGetBody(joint, 0));
+            bodies_reach_from(bodies, dJointGetBody(joint, 1));
+        }
+    }
+    put_reached_first(bodies);
+}
+
+void bodies_rest(Bodies *bodies)
+{
+    bodies->moving = bodies->reach;
+    for (size_t i = bodies->reach; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
+        if (dBodyIsEnabled(record->id)) {
+            dBodyDisable(record->id);
+            record->is_resting = true;
+        }
+    }
+}
+
+void bodies_wake(Bodies *bodies)
+{
+    for (size_t i = bodies->reach; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
+        if (record->is_resting) {
+            dBodyEnable(record->id);
+            record->is_resting = false;
+        }
+    }
+    bodies->moving = bodies->count;
+}
+
+// ODE multiplies up to four of these numbers with each other and takes squares on the way: this to
+// the sixth power is a double. What masses and inertias make of them ODE's own assertions see.
+static const double LARGEST = 1e50;
+
+static bool is_vector_in_range(const dReal *vector)
+{
+    return fabs(vector[0]) + fabs(vector[1]) + fabs(vector[2]) <= 0.1 * LARGEST;
+}
+
+static bool is_body_in_range(dBodyID id)
+{
+    const dReal *vectors[] = {dBodyGetPosition(id), dBodyGetLinearVel(id), dBodyGetAngularVel(id),
+                              dBodyGetForce(id), dBodyGetTorque(id)};
+    const dReal *turn = dBodyGetQuaternion(id);
+    double sum = fabs(turn[0]) + fabs(turn[1]) + fabs(turn[2]) + fabs(turn[3]);
+    for (int v = 0; v < 5; v++) {
+        sum += fabs(vectors[v][0]) + fabs(vectors[v][1]) + fabs(vectors[v][2]);
+    }
+    return sum <= LARGEST;
+}
+
+// What of a body that is out of range is so most of all.
+static const char *name_out_of_range(dBodyID id)
+{
+    static const char *const NAMES[] = {"position", "velocity", "angular velocity", "force",
+                                        "torque"};
+    const dReal *vectors[] = {dBodyGetPosition(id), dBodyGetLinearVel(id), dBodyGetAngularVel(id),
+                              dBodyGetForce(id), dBodyGetTorque(id)};
+    for (int v = 0; v < 5; v++) {
+        if (!is_vector_in_range(vectors[v])) {
+            return NAMES[v];
+        }
+    }
+    return "orientation";
+}
+
+bool bodies_are_in_range(const Bodies *bodies, const char **name)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        if (!is_body_in_range(bodies->records[i].id)) {
+            *name = name_out_of_range(bodies->records[i].id);
             return false;
         }
     }
     return true;
 }
 
-void bodies_keep_positions(Bodies *bodies)
+void bodies_find_all(Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->count; i++) {
+        BodyFound *found = &bodies->records[i].found;
+        const dBodyID id = bodies->records[i].id;
+        memcpy(found->position, dBodyGetPosition(id), sizeof found->position);
+        memcpy(found->turn, dBodyGetQuaternion(id), sizeof found->turn);
+        memcpy(found->velocity, dBodyGetLinearVel(id), sizeof found->velocity);
+        memcpy(found->omega, dBodyGetAngularVel(id), sizeof found->omega);
+        memcpy(found->force, dBodyGetForce(id), sizeof found->force);
+        memcpy(found->torque, dBodyGetTorque(id), sizeof found->torque);
+        found->is_enabled = dBodyIsEnabled(id);
+        found->is_gyroscopic = dBodyGetGyroscopicMode(id);
+    }
+}
+
+void bodies_put_back_all(Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        BodyRecord *record = &bodies->records[i];
+        const BodyFound *found = &record->found;
+        const dBodyID id = record->id;
+        dBodySetPosition(id, found->position[0], found->position[1], found->position[2]);
+        dBodySetQuaternion(id, found->turn);
+        dBodySetLinearVel(id, found->velocity[0], found->velocity[1], found->velocity[2]);
+        dBodySetAngularVel(id, found->omega[0], found->omega[1], found->omega[2]);
+        dBodySetForce(id, found->force[0], found->force[1], found->force[2]);
+        dBodySetTorque(id, found->torque[0], found->torque[1], found->torque[2]);
+        dBodySetGyroscopicMode(id, found->is_gyroscopic);
+        if (found->is_enabled != dBodyIsEnabled(id)) {
+            (found->is_enabled ? dBodyEnable : dBodyDisable)(id);
+        }
+        record->is_gyrating = record->is_resting = false;
+    }
+    bodies->moving = bodies->count;
+}
+
+void bodies_keep_positions(Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->moving; i++) {
         BodyRecord *record = &bodies->records[i];
         memcpy(record->position, dBodyGetPosition(record->id), sizeof record->position);
         memcpy(record->turn, dBodyGetQuaternion(record->id), sizeof record->turn);
@@ -178,7 +324,7 @@ void bodies_keep_positions(Bodies *bodies)
 void bodies_keep(Bodies *bodies)
 {
     bodies_keep_positions(bodies);
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         BodyRecord *record = &bodies->records[i];
         const dBodyID id = record->id;
         memcpy(record->velocity, dBodyGetLinearVel(id), sizeof record->velocity);
@@ -191,7 +337,7 @@ void bodies_keep(Bodies *bodies)
 
 void bodies_put_back_positions(const Bodies *bodies)
 {
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         const BodyRecord *record = &bodies->records[i];
         const dReal *at = record->position;
         dBodySetPosition(record->id, at[0], at[1], at[2]);
@@ -202,7 +348,7 @@ void bodies_put_back_positions(const Bodies *bodies)
 void bodies_put_back(const Bodies *bodies)
 {
     bodies_put_back_positions(bodies);
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         const BodyRecord *record = &bodies->records[i];
         const dBodyID id = record->id;
         dBodySetLinearVel(id, record->velocity[0], record->velocity[1], record->velocity[2]);
@@ -219,29 +365,47 @@ void bodies_turn(const dReal *from, const dReal *by, double time, dQuaternion tu
 {
     const double rate = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
     const double half = 0.5 * rate * time;
-    const double along = rate > 0.0 ? sin(half) / rate : 0.0;
-    const dQuaternion step = {cos(half), along * by[0], along * by[1], along * by[2]};
+    const double along = 0.5 * time * sinc(half);
+    const dQuaternion step = {sinc_cos(half), along * by[0], along * by[1], along * by[2]};
     dQMultiply0(turned, step, from);
+}
+
+// Moves a body on from a position and an orientation.
+static void drift_from(dBodyID id, const dReal *at, const dReal *turn, double time)
+{
+    const dReal *velocity = dBodyGetLinearVel(id);
+    dQuaternion turned;
+    bodies_turn(turn, dBodyGetAngularVel(id), time, turned);
+    dBodySetPosition(id, at[0] + time * velocity[0], at[1] + time * velocity[1],
+                     at[2] + time * velocity[2]);
+    dBodySetQuaternion(id, turned);
 }
 
 void bodies_drift(const Bodies *bodies, double time)
 {
     for (size_t i = 0; i < bodies->count; i++) {
         const dBodyID id = bodies->records[i].id;
-        if (!dBodyIsEnabled(id)) {
-            continue;
+        if (dBodyIsEnabled(id)) {
+            drift_from(id, dBodyGetPosition(id), dBodyGetQuaternion(id), time);
         }
-        const dReal *at = dBodyGetPosition(id);
-        const dReal *velocity = dBodyGetLinearVel(id);
-        dBodySetPosition(id, at[0] + time * velocity[0], at[1] + time * velocity[1],
-                         at[2] + time * velocity[2]);
-        dQuaternion turned;
-        bodies_turn(dBodyGetQuaternion(id), dBodyGetAngularVel(id), time, turned);
-        dBodySetQuaternion(id, turned);
     }
 }
 
-long bodies_unknown(const Bodies *bodies, dWorldID world)
+void bodies_drift_kept(const Bodies *bodies, double time)
+{
+    for (size_t i = 0; i < bodies->count; i++) {
+        const BodyRecord *record = &bodies->records[i];
+        const dReal *at = record->position;
+        if (dBodyIsEnabled(record->id)) {
+            drift_from(record->id, at, record->turn, time);
+        } else {
+            dBodySetPosition(record->id, at[0], at[1], at[2]);
+            dBodySetQuaternion(record->id, record->turn);
+        }
+    }
+}
+
+long bodies_count(dWorldID world)
 {
     char *text = NULL;
     size_t size = 0;
@@ -256,5 +420,11 @@ long bodies_unknown(const Bodies *bodies, dWorldID world)
         count++;
     }
     free(text);
-    return is_written ? count - 1 - (long)bodies->count : -1;
+    return is_written ? count - 1 : -1;
+}
+
+long bodies_unknown(const Bodies *bodies, dWorldID world)
+{
+    const long count = bodies_count(world);
+    return count < 0 ? -1 : count - (long)bodies->count;
 }

@@ -7,10 +7,24 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+// A body as a step finds it (world/found.h).
+typedef struct BodyFound {
+    dVector3 position;
+    dQuaternion turn;
+    dVector3 velocity;
+    dVector3 omega;
+    dVector3 force;
+    dVector3 torque;
+    bool is_enabled;
+    bool is_gyroscopic;
+} BodyFound;
+
 typedef struct BodyRecord {
     dBodyID id;
-    bool is_added; // by hand: stays known without a joint
-    unsigned seen; // the gathering that found it last
+    bool is_added;    // by hand: stays known without a joint
+    unsigned seen;    // the gathering that found it last
+    unsigned reached; // the one in whose step a joint of ours could move it last
+    bool is_resting;  // disabled by bodies_rest
     // kept by bodies_keep
     dVector3 position;
     dQuaternion turn;
@@ -19,6 +33,7 @@ typedef struct BodyRecord {
     dVector3 force;
     dVector3 torque;
     bool is_enabled;
+    BodyFound found;
     // of the step before, for the gyroscopic torque
     dVector3 last_omega; // at its end
     dVector3 last_alpha;
@@ -29,10 +44,14 @@ typedef struct BodyRecord {
 
 typedef struct Bodies {
     size_t count;
+    size_t reach;  // those that joints of ours can move in the step under way: the first ones
+    size_t moving; // that trial steps move: all, or as far as these reach
     size_t room;
     BodyRecord *records; // owned
     size_t slot_count;   // a power of two
     size_t *slots;       // owned: by hash of a body, its number plus 1
+    dBodyID *queue;      // owned: those whose joints are to be followed
+    size_t queue_count;
     unsigned gathering;
 } Bodies;
 
@@ -48,10 +67,26 @@ BodyRecord *bodies_add(Bodies *bodies, dBodyID body);
 // those given (NULL among them is the world itself). Returns false where there is no memory.
 bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count);
 
-// Whether all numbers of all bodies are finite: ODE ends the program where they are not.
-bool bodies_are_finite(const Bodies *bodies);
+// Whether all numbers of all bodies are of a size that ODE can multiply with each other. Where they
+// are not, the name of one.
+bool bodies_are_in_range(const Bodies *bodies, const char **name);
 
-// Notes everything about all bodies; puts it back.
+// Notes how a step finds all bodies; puts them back.
+void bodies_find_all(Bodies *bodies);
+void bodies_put_back_all(Bodies *bodies);
+
+// Finds the bodies that hang together, by joints and the contacts of the step, with those from
+// which is looked, and puts them first. From then on trial steps read and put back these alone, and
+// the others are as the first of these steps leaves them. All are taken where one of the others may
+// be disabled by ODE, whose clock for that begins anew when it is enabled.
+void bodies_reach_from(Bodies *bodies, dBodyID body);
+void bodies_reach(Bodies *bodies);
+
+// Disables the bodies that are not reached, so that steps leave them alone; ends that.
+void bodies_rest(Bodies *bodies);
+void bodies_wake(Bodies *bodies);
+
+// Notes everything about all bodies; puts it back. Of these and the next two: of those that move.
 void bodies_keep(Bodies *bodies);
 void bodies_put_back(const Bodies *bodies);
 
@@ -62,8 +97,14 @@ void bodies_put_back_positions(const Bodies *bodies);
 // Moves all bodies on by a time, s, along their velocities.
 void bodies_drift(const Bodies *bodies, double time);
 
+// The same from where they were kept.
+void bodies_drift_kept(const Bodies *bodies, double time);
+
 // The quaternion turned on for a time, s, at an angular velocity in the world's frame.
 void bodies_turn(const dReal *from, const dReal *omega, double time, dQuaternion turned);
+
+// How many bodies ODE's world has; -1 where that cannot be found out.
+long bodies_count(dWorldID world);
 
 // Whether the world has bodies that are not known: their number, or -1 where it cannot be found
 // out.

@@ -48,7 +48,8 @@ static bool only_holds(const JpWorld *world, dJointID joint)
 {
     typedef dReal (*Param)(dJointID, int);
     const dJointType type = dJointGetType(joint);
-    if (type == dJointTypeBall || type == dJointTypeFixed || !dJointIsEnabled(joint)) {
+    if (type == dJointTypeBall || type == dJointTypeFixed || type == dJointTypeNull ||
+        !dJointIsEnabled(joint)) {
         return true;
     }
     if (type != dJointTypeHinge && type != dJointTypeSlider) {
@@ -61,7 +62,7 @@ static bool only_holds(const JpWorld *world, dJointID joint)
 
 bool closing_is_linear(const JpWorld *world)
 {
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID body = world->bodies.records[i].id;
         if (dBodyGetLinearDamping(body) != 0.0 || dBodyGetAngularDamping(body) != 0.0 ||
             isfinite(dBodyGetMaxAngularSpeed(body)) || !dBodyIsEnabled(body)) {
@@ -76,23 +77,16 @@ bool closing_is_linear(const JpWorld *world)
     return true;
 }
 
-// What a step writes beside the bodies.
-typedef struct Kept {
-    dJointID joint;
-    dJointFeedback feedback;
-    double erp;
-} Kept;
-
 static bool has_own_erp(dJointID joint)
 {
     return dJointGetType(joint) == dJointTypeBall || dJointGetType(joint) == dJointTypeFixed;
 }
 
 // Lists the joints of all bodies, those of two of them twice. Returns their number.
-static size_t list_joints(const JpWorld *world, Kept *kept)
+static size_t list_joints(const JpWorld *world, ClosingJoint *kept)
 {
     size_t count = 0;
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID body = world->bodies.records[i].id;
         const int joints = dBodyGetNumJoints(body);
         for (int k = 0; k < joints; k++, count++) {
@@ -106,7 +100,7 @@ static size_t list_joints(const JpWorld *world, Kept *kept)
 
 bool closing_is_read(const JpWorld *world)
 {
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID body = world->bodies.records[i].id;
         const int joints = dBodyGetNumJoints(body);
         for (int k = 0; k < joints; k++) {
@@ -119,7 +113,7 @@ bool closing_is_read(const JpWorld *world)
     return false;
 }
 
-static void keep(Kept *kept)
+static void keep(ClosingJoint *kept)
 {
     const dJointFeedback *feedback = dJointGetFeedback(kept->joint);
     if (feedback != NULL) {
@@ -130,7 +124,7 @@ static void keep(Kept *kept)
     }
 }
 
-static void put_back(const Kept *kept)
+static void put_back(const ClosingJoint *kept)
 {
     dJointFeedback *feedback = dJointGetFeedback(kept->joint);
     if (feedback != NULL) {
@@ -154,17 +148,38 @@ static void step_freely(JpWorld *world, double step)
     dWorldSetERP(world->id, erp);
 }
 
-void closing_run(JpWorld *world, double step)
+bool closing_make(const JpWorld *world, Closing *closing)
 {
     const size_t count = list_joints(world, NULL);
-    Kept *kept = calloc(count + 1, sizeof *kept);
-    if (kept == NULL) {
-        return;
+    *closing = (Closing){.count = count, .joints = calloc(count + 1, sizeof *closing->joints)};
+    if (closing->joints != NULL) {
+        list_joints(world, closing->joints);
     }
-    list_joints(world, kept);
+    return closing->joints != NULL;
+}
+
+void closing_free(Closing *closing)
+{
+    free(closing->joints);
+    *closing = (Closing){0};
+}
+
+void closing_put_back(Closing *closing)
+{
+    for (size_t i = 0; closing->is_open && i < closing->count; i++) {
+        put_back(&closing->joints[i]);
+    }
+    closing->is_open = false;
+}
+
+void closing_run(JpWorld *world, Closing *closing, double step)
+{
+    const size_t count = closing->count;
+    ClosingJoint *kept = closing->joints;
     for (size_t i = 0; i < count; i++) {
         keep(&kept[i]);
     }
+    closing->is_open = true;
     for (size_t i = 0; i < count; i++) {
         if (has_own_erp(kept[i].joint)) {
             set_own_erp(kept[i].joint, 0.0);
@@ -173,8 +188,5 @@ void closing_run(JpWorld *world, double step)
     bodies_keep_positions(&world->bodies);
     step_freely(world, step);
     bodies_put_back_positions(&world->bodies);
-    for (size_t i = 0; i < count; i++) {
-        put_back(&kept[i]);
-    }
-    free(kept);
+    closing_put_back(closing);
 }

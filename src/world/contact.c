@@ -100,6 +100,12 @@ JpStatus contact_law(const JpContact *contact, ForceLaw *law, JpError *error)
     REFUSAL_TRY(check_damping(contact, error));
     *law = contact->compliance == 0.0 ? force_law_power(contact->stiffness, contact->exponent)
                                       : force_law_logarithmic(contact->compliance, contact->offset);
+    if (!force_law_is_sound(law)) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the contact's compliance is %g and its offset %g, which is out of a "
+                       "double's range",
+                       contact->compliance, contact->offset);
+    }
     law->impact_speed_floor = contact->speed_floor;
     if (contact->damping == JP_DAMPING_VISCOUS) {
         law->viscous = contact->damper;
@@ -157,7 +163,9 @@ JpStatus jp_damper_of(double stiffness, double restitution, double mass, double 
         return refusal(error, JP_ERROR_ARGUMENT, "the restitution is %g; it must not be above 1",
                        restitution);
     }
-    *damper = 2.0 * damping_linear_ratio(restitution) * sqrt(stiffness) * sqrt(mass);
+    const double found = 2.0 * damping_linear_ratio(restitution) * sqrt(stiffness) * sqrt(mass);
+    REFUSAL_TRY(refusal_of_result(found, "the damper", error));
+    *damper = found;
     return refusal_none(error);
 }
 
@@ -168,6 +176,8 @@ JpStatus jp_restitution_of(double stiffness, double damper, double mass, double 
     REFUSAL_TRY(refusal_of_positive(stiffness, "the stiffness", error));
     REFUSAL_TRY(refusal_of_positive(mass, "the mass", error));
     REFUSAL_TRY(refusal_of_negative(damper, "the damper", error));
-    *restitution = damping_linear_restitution(damper / (2.0 * sqrt(stiffness) * sqrt(mass)));
+    const double ratio = damper / (2.0 * sqrt(stiffness) * sqrt(mass));
+    REFUSAL_TRY(refusal_of_result(ratio, "the ratio of damping", error));
+    *restitution = damping_linear_restitution(ratio);
     return refusal_none(error);
 }

@@ -9,6 +9,8 @@
 // own torque is implicit Euler, of first order.
 #include "world/gyration.h"
 
+#include "base/sinc.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -21,8 +23,8 @@ static void turned_away(const dReal *x, const dReal *by, double share, dVector3 
     dVector3 once;
     dVector3 twice;
     const double angle = fabs(share) * sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
-    const double first = angle > 0.0 ? sin(angle) / angle : 1.0;
-    const double half = angle > 0.0 ? sin(0.5 * angle) / (0.5 * angle) : 1.0;
+    const double first = sinc(angle);
+    const double half = sinc(0.5 * angle);
     const dVector3 turn = {share * by[0], share * by[1], share * by[2], 0.0};
     dCalcVectorCross3(once, turn, x);
     dCalcVectorCross3(twice, turn, once);

@@ -3,6 +3,7 @@
 #include "world/contact.h"
 #include "world/mapping.h"
 
+#include <float.h>
 #include <math.h>
 
 // to a contact in rows: every map is right long before
@@ -29,7 +30,11 @@ static JpStatus ask(const JpContact *contact, double mass, double speed, Questio
     MapImpactCase undamped = question->impact;
     undamped.law.viscous = undamped.law.hysteresis = 0.0;
     question->contact_s = map_impact_law(&undamped).duration;
-    return question->asked.is_ended && question->contact_s > 0.0
+    const MapImpact *asked = &question->asked;
+    const bool is_finite = isfinite(asked->restitution) && isfinite(asked->force_max) &&
+                           isfinite(asked->penetration_max) && isfinite(asked->duration);
+    return asked->is_ended && is_finite && question->contact_s >= DBL_MIN &&
+                   isfinite(question->contact_s)
                ? JP_OK
                : refusal(
                      error, JP_ERROR_NONE,
@@ -104,6 +109,10 @@ JpStatus jp_impact_of_rows(JpMap map, const JpContact *contact, double mass, dou
     const ImpactSpread *f = &found.force_max;
     const ImpactSpread *d = &found.penetration_max;
     const ImpactSpread *t = &found.duration;
+    // what is widest of all: a sum that overflows is as good as one that is infinite
+    const double all = e->mean + f->mean + d->mean + t->mean + e->most + f->most + d->most +
+                       t->most + found.omega_h_max;
+    REFUSAL_TRY(refusal_of_result(all, "what the rows deliver", error));
     *delivered = (JpDelivered){
         .mean = {e->mean, f->mean, d->mean, t->mean},
         .least = {e->least, f->least, d->least, t->least},

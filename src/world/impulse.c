@@ -19,6 +19,9 @@
 // unless somebody reads their forces (dJointSetFeedback). One more step closes the velocities
 // (world/closing.h).
 //
+// The first of these steps is that of all bodies, and stays for those that no joint with play can
+// move in the step, by joints and contacts. In the others these are disabled.
+//
 // With n rows in which joints touch a step costs n + 3 steps of ODE, and 1 where none does. W and A
 // may be those of the steps before (world/recall.h): then the step under the contacts' forces has
 // to be as promised, and n steps are saved.
@@ -131,10 +134,10 @@ static JpStatus find_contacts(Answer *answer, double step, bool can_recall, bool
     do {
         REFUSAL_TRY(answer_find_columns(answer, step, error));
         set_free(answer, step);
-        *is_found = inside_run(answer, step);
+        REFUSAL_TRY(inside_run(answer, step, is_found, error));
     } while (*is_found && activate_near(answer, step));
-    if (!answer->is_recalled) {
-        recall_keep(answer);
+    if (!answer->is_recalled && !recall_keep(answer)) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the answers of a step");
     }
     return JP_OK;
 }
@@ -171,8 +174,19 @@ static JpStatus make_rounds(Answer *answer, double step, bool *is_done, JpError 
     }
 }
 
+// Which bodies the joints with play can move in the step.
+static void find_reach(JpWorld *world)
+{
+    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        bodies_reach_from(&world->bodies, joint->bodies[0]);
+        bodies_reach_from(&world->bodies, joint->bodies[1]);
+    }
+    bodies_reach(&world->bodies);
+}
+
 JpStatus impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done, JpError *error)
 {
+    find_reach(world);
     if (!answer_make(world, step, answer)) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the contacts of a step");
     }
@@ -185,7 +199,11 @@ JpStatus impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done
         return JP_OK;
     }
     bodies_put_back(&world->bodies);
+    bodies_rest(&world->bodies);
     answer->is_linear = closing_is_linear(world);
+    if (answer->is_linear && !closing_make(world, &answer->closing)) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the joints of a step");
+    }
     REFUSAL_TRY(close_joints(answer, step, error));
     for (size_t i = 0; i < answer->place_count; i++) {
         world->stats.rows += answer->places[i].is_active ? 1 : 0;
@@ -225,10 +243,11 @@ static void finish_place(const AnswerPlace *of, const Answer *answer, double ste
 
 void impulse_finish(JpWorld *world, double step, Answer *answer)
 {
-    const size_t numbers = BODY_NUMBERS * world->bodies.count;
+    const size_t reach = world->bodies.reach;
+    const size_t numbers = BODY_NUMBERS * reach;
     for (size_t i = 0; i < answer->row_count; i++) {
         const double late = answer->moment[i] - 0.5 * step * answer->net[i];
-        for (size_t b = 0; late != 0.0 && b < world->bodies.count; b++) {
+        for (size_t b = 0; late != 0.0 && b < reach; b++) {
             move_on(world->bodies.records[b].id, &answer->bodies[i * numbers + BODY_NUMBERS * b],
                     late);
         }
@@ -244,6 +263,8 @@ void impulse_finish(JpWorld *world, double step, Answer *answer)
     }
     inside_book(answer);
     if (answer->is_linear) {
-        closing_run(world, step);
+        bodies_rest(&world->bodies);
+        closing_run(world, &answer->closing, step);
+        bodies_wake(&world->bodies);
     }
 }

@@ -8,6 +8,7 @@
 // Works and tops are found from the poses between the nodes, by Lobatto's rule on four points.
 #include "world/inside.h"
 
+#include "base/memory.h"
 #include "contact/encounter_force.h"
 
 #include <float.h>
@@ -84,12 +85,9 @@ static Encounter *make_encounter(Answer *answer)
 {
     JpWorld *world = answer->world;
     if (world->encounter == NULL) {
-        world->encounter = calloc(1, sizeof *world->encounter);
+        world->encounter = memory_zeroed(1, sizeof *world->encounter);
     }
     Encounter *encounter = world->encounter;
-    if (encounter == NULL) {
-        return NULL;
-    }
     visit_sides(answer, count_side);
     if (encounter->joint_count != answer->side_count || !visit_sides(answer, is_laid_out)) {
         encounter_finish(encounter);
@@ -180,32 +178,75 @@ static void fill_mobility(Answer *answer)
 }
 
 // Sums what the encounter's rows did by row here.
-static bool add_totals(Answer *answer, double step)
+static void add_totals(Answer *answer, double step)
 {
     const Encounter *encounter = answer->world->encounter;
-    EncounterSums total = encounter_sums(encounter->row_count);
-    encounter_at(encounter, encounter->node_count - 1, step, &total);
+    const EncounterSums *total = &answer->sums;
+    encounter_at(encounter, encounter->node_count - 1, step, &answer->sums);
     memset(answer->net, 0, answer->row_count * sizeof(double));
     memset(answer->moment, 0, answer->row_count * sizeof(double));
     for (size_t i = 0; i < encounter->row_count; i++) {
         if (answer->inside[i] > 0) {
-            answer->net[answer->inside[i] - 1] += answer->signs[i] * total.impulse[i];
-            answer->moment[answer->inside[i] - 1] += answer->signs[i] * total.moment[i];
+            answer->net[answer->inside[i] - 1] += answer->signs[i] * total->impulse[i];
+            answer->moment[answer->inside[i] - 1] += answer->signs[i] * total->moment[i];
         }
     }
-    encounter_sums_free(&total);
+}
+
+// Numbers of rows above this are out of any use, and what is integrated from them may not end.
+static const double LARGEST_NUMBER = 1e50;
+
+static bool are_in_range(const double *numbers, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        sum += fabs(numbers[i]);
+    }
+    return sum <= LARGEST_NUMBER;
+}
+
+static bool is_in_range(const Encounter *encounter)
+{
+    const size_t rows = encounter->row_count;
+    return are_in_range(encounter->position, rows) && are_in_range(encounter->speed, rows) &&
+           are_in_range(encounter->free, rows) && are_in_range(encounter->mobility, rows * rows);
+}
+
+// What needs memory: all of it belongs to the world's encounter or to the answer.
+static bool run(Answer *answer, double step)
+{
+    Encounter *encounter = make_encounter(answer);
+    visit_sides(answer, fill_side);
+    fill_mobility(answer);
+    encounter_sums_free(&answer->sums);
+    answer->sums = encounter_sums(encounter->row_count);
+    if (!is_in_range(encounter) || !encounter_run(encounter, step)) {
+        return false;
+    }
+    add_totals(answer, step);
     return true;
 }
 
-bool inside_run(Answer *answer, double step)
+// What was under way is of no use, and the next step begins anew.
+static JpStatus forget(JpWorld *world, JpError *error)
 {
-    Encounter *encounter = make_encounter(answer);
-    if (encounter == NULL) {
-        return false;
+    if (world->encounter != NULL) {
+        encounter_finish(world->encounter);
     }
-    visit_sides(answer, fill_side);
-    fill_mobility(answer);
-    return encounter_run(encounter, step) && add_totals(answer, step);
+    return refusal(error, JP_ERROR_MEMORY, "there is no memory for the contacts of a step");
+}
+
+JpStatus inside_run(Answer *answer, double step, bool *is_found, JpError *error)
+{
+    MemoryGuard guard;
+    memory_guard_begin(&guard);
+    if (setjmp(guard.left) == 0) {
+        *is_found = run(answer, step);
+        memory_guard_end(&guard);
+        return JP_OK;
+    }
+    memory_guard_end(&guard);
+    return forget(answer->world, error);
 }
 
 // A side while what happened to it in the step is read.
@@ -301,17 +342,16 @@ static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size
 {
     const Encounter *encounter = answer->world->encounter;
     Side *side = &of->place->sides[number];
-    EncounterSums sums = encounter_sums(encounter->row_count);
-    Reading reading = {.encounter = encounter, .sums = &sums, .number = joint, .side = side};
+    EncounterSums *sums = &answer->sums;
+    Reading reading = {.encounter = encounter, .sums = sums, .number = joint, .side = side};
     of->place->inside[number] = encounter->joints[joint];
     read_side(&reading);
     if (of->place->shape == PLACE_LINE) {
         // to rounding
         const double end = encounter->times[encounter->node_count - 1];
-        encounter_at(encounter, encounter->node_count - 1, end, &sums);
-        reading.impulse = sums.impulse[encounter->joints[joint].first_row];
+        encounter_at(encounter, encounter->node_count - 1, end, sums);
+        reading.impulse = sums->impulse[encounter->joints[joint].first_row];
     }
-    encounter_sums_free(&sums);
     of->place->slid += reading.slid;
     side->impulse += reading.impulse;
     side->force = reading.impulse / answer->step;

@@ -4,9 +4,9 @@
 #include "world/answer.h"
 
 // Integrates the contacts of the active places over a step, s, to the impulses and their integrals.
-// Returns false where there are too many of them, or where that takes more local steps than there
-// can be sense in.
-bool inside_run(Answer *answer, double step);
+// `is_found` is false where there are too many of them, or where that takes more local steps than
+// there can be sense in. Fails where there is no memory.
+JpStatus inside_run(Answer *answer, double step, bool *is_found, JpError *error);
 
 // Books what the contacts that were integrated last did.
 void inside_book(Answer *answer);

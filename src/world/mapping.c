@@ -43,7 +43,7 @@ static JpStatus check_instant(JpMap kind, const Map *map, const JpInstant *insta
 
 static JpStatus check_row(JpRow row, JpError *error)
 {
-    return isfinite(row.erp) && isfinite(row.cfm)
+    return isfinite(row.erp) && isfinite(row.cfm) && isfinite(row.rest)
                ? refusal_none(error)
                : refusal(error, JP_ERROR_NONE,
                          "the row has an ERP of %g and a CFM of %g, which ODE cannot take; the "
@@ -68,8 +68,7 @@ JpStatus jp_row(JpMap kind, const JpContact *contact, const JpInstant *instant, 
                        .share = 1.0,
                        .mass = instant->mass};
     const MapContact contact_now = law_row_contact(&law, &at, instant->step);
-    if (!(contact_now.stiffness > 0.0 && isfinite(contact_now.stiffness) &&
-          isfinite(contact_now.damping))) {
+    if (!(contact_now.stiffness > 0.0 && map_contact_is_sound(&contact_now))) {
         return refusal(error, JP_ERROR_NONE,
                        "the contact's law has no stiffness at a depth of %g; it holds to %g",
                        instant->depth, force_law_depth_limit(&law));
@@ -135,6 +134,8 @@ JpStatus jp_bounce_of_row(double bounce, double cfm, double mass, double step, d
     REFUSAL_TRY(refusal_of_negative(cfm, "the CFM", error));
     REFUSAL_TRY(refusal_of_positive(mass, "the mass", error));
     REFUSAL_TRY(refusal_of_positive(step, "the step", error));
-    *restitution = map_bounce_delivered(bounce, cfm, mass, step);
+    const double found = map_bounce_delivered(bounce, cfm, mass, step);
+    REFUSAL_TRY(refusal_of_result(found, "the restitution", error));
+    *restitution = found;
     return refusal_none(error);
 }

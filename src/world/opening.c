@@ -51,7 +51,7 @@ JpStatus opening_find(JpWorld *world, double step, const double *speeds, JpError
     dWorldSetERP(world->id, 0.5 * erp);
     const JpStatus status = trial_step(world, step, error);
     dWorldSetERP(world->id, erp);
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         BodyRecord *record = &world->bodies.records[i];
         read_speeds(record, record->opening);
         for (int k = 0; k < BODY_NUMBERS; k++) {
@@ -105,19 +105,23 @@ JpStatus opening_settle(JpWorld *world, double step, JpError *error)
 {
     const bool can_try = !world->options.is_quick && dWorldGetERP(world->id) > 0.0 &&
                          is_any_moving(&world->bodies) && trial_check(world, NULL) == JP_OK;
-    double *speeds =
-        can_try ? malloc((BODY_NUMBERS * world->bodies.count + 1) * sizeof *speeds) : NULL;
-    if (speeds == NULL) {
+    if (!can_try) {
         return JP_OK;
     }
+    double *speeds = world->settling =
+        malloc((BODY_NUMBERS * world->bodies.moving + 1) * sizeof *speeds);
+    if (speeds == NULL) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the first step");
+    }
     JpStatus status = trial_step(world, step, error);
-    for (size_t i = 0; i < world->bodies.count; i++) {
+    for (size_t i = 0; i < world->bodies.moving; i++) {
         read_speeds(&world->bodies.records[i], &speeds[BODY_NUMBERS * i]);
     }
     bodies_put_back(&world->bodies);
     status = status == JP_OK ? opening_find(world, step, speeds, error) : status;
     free(speeds);
-    for (size_t i = 0; i < world->bodies.count && status == JP_OK; i++) {
+    world->settling = NULL;
+    for (size_t i = 0; i < world->bodies.moving && status == JP_OK; i++) {
         BodyRecord *record = &world->bodies.records[i];
         move_kept(record, record->opening, open_too_little(world, step));
     }

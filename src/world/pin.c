@@ -310,6 +310,17 @@ static void make_places(JpJoint *joint, const JpPinInHole *given, const ForceLaw
     }
 }
 
+// A pin is no joint of ODE's, which would lose its bodies.
+static void watch_bodies(JpJoint *joint)
+{
+    for (int i = 0; i < 2; i++) {
+        if (joint->bodies[i] != NULL) {
+            joint->watches[i] = dJointCreateNull(joint->world->id, 0);
+            dJointAttach(joint->watches[i], joint->bodies[i], NULL);
+        }
+    }
+}
+
 JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
                        JpJoint **created, JpError *error)
 {
@@ -325,6 +336,7 @@ JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInH
     if (joint == NULL) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for a joint");
     }
+    watch_bodies(joint);
     joint->pin = place_pin(bodies, given);
     make_places(joint, given, &law);
     *created = joint;
@@ -351,6 +363,7 @@ JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error)
 {
     REFUSAL_TRY(check_pin(joint, error));
     REFUSAL_TRY(refusal_of_null(state, "the state", error));
+    REFUSAL_TRY(play_check_bodies(joint, error));
     const Vec3 axis = axis_of(joint->bodies[HOLE], joint->pin.axes[HOLE]);
     const End middle = end_of(joint, joint->pin.middle);
     JpPinState found = {.gap = INFINITY, .end_count = joint->pin.hole_count};
@@ -377,6 +390,15 @@ JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error)
             found.collars[k] = play_side(&place->sides[k], found.axial);
             found.is_touching = found.is_touching || found.collars[k].is_touching;
         }
+    }
+    bool is_finite = isfinite(vec3_length(middle.offset) + vec3_length(joint->force) + found.axial +
+                              found.tilt + found.slid);
+    for (int i = 0; i < SIDE_COUNT; i++) {
+        is_finite = is_finite && play_is_side_finite(&found.ends[i]) &&
+                    play_is_side_finite(&found.collars[i]);
+    }
+    if (!is_finite) {
+        return refusal(error, JP_ERROR_WORLD, "the pin's state is out of a double's range");
     }
     *state = found;
     return refusal_none(error);

@@ -19,6 +19,43 @@ JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2])
     return joint;
 }
 
+JpStatus play_check_bodies(const JpJoint *joint, JpError *error)
+{
+    bool is_whole = true;
+    for (int i = 0; i < 2; i++) {
+        const dBodyID now = joint->kind != PLAY_PIN     ? dJointGetBody(joint->coordinate.joint, i)
+                            : joint->watches[i] != NULL ? dJointGetBody(joint->watches[i], 0)
+                                                        : NULL;
+        is_whole = is_whole && now == joint->bodies[i];
+    }
+    return is_whole ? JP_OK
+                    : refusal(error, JP_ERROR_WORLD,
+                              "a body of a joint with play was destroyed, or its joint in ODE was "
+                              "attached to other bodies; destroy the joint with jp_joint_destroy");
+}
+
+// Sums: one that overflows is as good as one that is infinite.
+bool play_is_finite(const JpJoint *joint)
+{
+    double sum = joint->rotor.position + joint->rotor.speed + vec3_length(joint->force);
+    for (size_t i = 0; i < joint->place_count; i++) {
+        const Place *place = &joint->places[i];
+        sum += place->slid;
+        for (size_t k = 0; k < place_side_count(place); k++) {
+            const Side *side = &place->sides[k];
+            sum += side->force + side->force_max + side->depth_max + side->impulse + side->work +
+                   side->impact_speed;
+        }
+    }
+    return isfinite(sum);
+}
+
+bool play_is_side_finite(const JpSide *side)
+{
+    return isfinite(side->force + side->force_max + side->depth_max + side->impulse + side->work +
+                    side->stored + side->impact_speed);
+}
+
 void jp_joint_destroy(JpJoint *joint)
 {
     if (joint == NULL) {
@@ -32,6 +69,11 @@ void jp_joint_destroy(JpJoint *joint)
     for (size_t i = 0; i < joint->place_count; i++) {
         if (joint->places[i].row.motor != NULL) {
             dJointDestroy(joint->places[i].row.motor);
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        if (joint->watches[i] != NULL) {
+            dJointDestroy(joint->watches[i]);
         }
     }
     free(joint);

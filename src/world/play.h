@@ -35,6 +35,18 @@ typedef struct Pin {
     Vec3 axes[2];         // unit, in the frames of the pin's body and of the hole's
 } Pin;
 
+// What a step found of a joint (world/found.h).
+typedef struct JointFound {
+    Rotor rotor;
+    Vec3 force;
+    double last; // rad, of the coordinate
+    struct {
+        Side sides[SIDE_COUNT];
+        EncounterJoint inside[SIDE_COUNT];
+        double slid;
+    } places[PLACES_MOST];
+} JointFound;
+
 struct JpJoint {
     JpWorld *world;
     JpJoint *next;
@@ -47,6 +59,10 @@ struct JpJoint {
     Vec3 force;           // N, of a pin: on the pin, mean of the last step
     size_t place_count;
     Place places[PLACES_MOST];
+    // of a pin: joints of ODE without rows, from each of its bodies to the world, that lose their
+    // body when it is destroyed
+    dJointID watches[2];
+    JointFound found;
 };
 
 // Steps without recall, after one that was wrong (world/recall.h).
@@ -54,6 +70,14 @@ typedef struct RecallPause {
     size_t steps; // of the last pause; 0 after a recall that was right
     size_t until; // number of the step
 } RecallPause;
+
+// What a step found of a world (world/found.h).
+typedef struct WorldFound {
+    dVector3 gravity; // m/s^2
+    double erp;
+    JpWorldStats stats;
+    RecallPause pause;
+} WorldFound;
 
 struct JpWorld {
     dWorldID id;
@@ -66,9 +90,20 @@ struct JpWorld {
     RecallPause pause;
     struct Recall *recall; // owned, NULL before the first (world/recall.h)
     JpWorldStats stats;
-    double last_step;          // s, of the step before; 0: there was none
-    size_t known_when_counted; // bodies, when it was last made sure that all are known
+    double last_step;                     // s, of the step before; 0: there was none
+    size_t known_when_counted;            // bodies, when it was last made sure that all are known
+    dThreadingImplementationID threading; // owned; NULL: the caller's
+    double *settling;                     // owned, of a first step under way (world/opening.h)
+    WorldFound found;
 };
+
+// Fails where a body of a joint was destroyed, or ODE's joint got other bodies.
+JpStatus play_check_bodies(const JpJoint *joint, JpError *error);
+
+// Whether all numbers of a joint are finite that steps change, and all of a side that is read but
+// its gap.
+bool play_is_finite(const JpJoint *joint);
+bool play_is_side_finite(const JpSide *side);
 
 // Adds a joint to a world; NULL where there is no memory.
 JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2]);

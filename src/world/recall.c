@@ -49,11 +49,11 @@ void recall_free(Recall *recall)
 static bool is_alike(const Recall *recall, const Answer *answer)
 {
     const Bodies *bodies = &answer->world->bodies;
-    if (recall->row_count != answer->row_count || recall->body_count != bodies->count ||
+    if (recall->row_count != answer->row_count || recall->body_count != bodies->moving ||
         recall->place_count != answer->place_count || recall->step != answer->step) {
         return false;
     }
-    for (size_t i = 0; i < bodies->count; i++) {
+    for (size_t i = 0; i < bodies->moving; i++) {
         if (recall->bodies[i] != bodies->records[i].id) {
             return false;
         }
@@ -128,7 +128,7 @@ static Recall *start(const Answer *answer)
         return NULL;
     }
     recall->row_count = answer->row_count;
-    recall->body_count = answer->world->bodies.count;
+    recall->body_count = answer->world->bodies.moving;
     recall->place_count = answer->place_count;
     recall->step = answer->step;
     const size_t numbers = SETS * set_size(recall) * sizeof(double);
@@ -152,7 +152,7 @@ static Recall *start(const Answer *answer)
     return recall;
 }
 
-void recall_keep(const Answer *answer)
+bool recall_keep(const Answer *answer)
 {
     JpWorld *world = answer->world;
     if (world->recall == NULL || !is_alike(world->recall, answer)) {
@@ -161,7 +161,7 @@ void recall_keep(const Answer *answer)
     }
     Recall *recall = world->recall;
     if (recall == NULL) {
-        return;
+        return false;
     }
     const size_t now = world->stats.steps;
     const bool is_again = recall->count > 0 && recall->found_at[0] == now; // in another round
@@ -177,4 +177,5 @@ void recall_keep(const Answer *answer)
     memcpy(recall->sets[0], answer->columns, columns * sizeof(double));
     memcpy(recall->sets[0] + columns, answer->bodies,
            (set_size(recall) - columns) * sizeof(double));
+    return true;
 }

@@ -16,5 +16,6 @@ void recall_columns(Answer *answer);
 // are not recalled for a while.
 void recall_note(JpWorld *world, bool is_promised);
 
-// Keeps the answers of a step that have been found in it. Forgets all where there is no memory.
-void recall_keep(const Answer *answer);
+// Keeps the answers of a step that have been found in it. Forgets all and returns false where there
+// is no memory.
+bool recall_keep(const Answer *answer);

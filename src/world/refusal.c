@@ -48,6 +48,15 @@ JpStatus refusal_of_negative(double value, const char *name, JpError *error)
                : refusal(error, JP_ERROR_ARGUMENT, "%s is %g; it must not be below 0", name, value);
 }
 
+JpStatus refusal_of_result(double value, const char *name, JpError *error)
+{
+    return isfinite(value) ? JP_OK
+                           : refusal(error, JP_ERROR_NONE,
+                                     "%s is out of a double's range; are all numbers in the same "
+                                     "units, such as m, kg and s?",
+                                     name);
+}
+
 JpStatus refusal_of_null(const void *pointer, const char *name, JpError *error)
 {
     return pointer != NULL ? JP_OK : refusal(error, JP_ERROR_ARGUMENT, "%s is NULL", name);

@@ -16,6 +16,9 @@ JpStatus refusal_of_finite(double value, const char *name, JpError *error);
 JpStatus refusal_of_positive(double value, const char *name, JpError *error);
 JpStatus refusal_of_negative(double value, const char *name, JpError *error);
 
+// Fails with JP_ERROR_NONE where what was found is no finite number.
+JpStatus refusal_of_result(double value, const char *name, JpError *error);
+
 // Fails where a pointer is NULL.
 JpStatus refusal_of_null(const void *pointer, const char *name, JpError *error);
 

@@ -12,12 +12,15 @@
 // (h/J) (D - s F). The map's row is of the rate of q - p:
 //     s (q' - p') + CFM F = (ERP/h) d    is    s q' + (CFM + h/J) F = (ERP/h) d + s (p + (h/J) D)
 // a row of ODE's bodies alone.
+#include "world/fault.h"
+#include "world/found.h"
 #include "world/geoms.h"
 #include "world/gyration.h"
 #include "world/impulse.h"
 #include "world/joints.h"
 #include "world/opening.h"
 #include "world/row.h"
+#include "world/threads.h"
 #include "world/trial.h"
 
 #include <math.h>
@@ -59,15 +62,31 @@ static JpStatus gather(JpWorld *world, JpError *error)
                    : refusal(error, JP_ERROR_MEMORY, "there is no memory for the world's bodies");
 }
 
+// Whether the law of a side that touches gives a spring and damper there.
+static JpStatus check_contact(const Side *side, double step, JpError *error)
+{
+    const MapContact contact = side_contact(side, step);
+    return map_contact_is_sound(&contact)
+               ? JP_OK
+               : refusal(error, JP_ERROR_WORLD,
+                         "a joint is %g inside its play, where its contact's law gives no force; "
+                         "the step of %g s may be too long",
+                         side->depth, step);
+}
+
 // The mobility with which a side meets the stability limit: of free bodies where that is low
 // enough, or, once in a contact, found by trial.
 static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
     const Map *map = map_get(ODE_MAP_MIDPOINT);
+    REFUSAL_TRY(check_contact(side, step, error));
     if (side->mobility > 0.0 || side_is_stable(side, map, play_mobility(joint, place), step)) {
         return JP_OK;
     }
     const double force = side->sign * force_law_elastic(&side->law, side->depth);
+    if (force == 0.0 || !isfinite(force)) {
+        return JP_OK; // no push to try with
+    }
     REFUSAL_TRY(trial_mobility(joint->world, &place->along, force, step, &side->mobility, error));
     side->mobility += 1.0 / joint->rotor.inertia;
     return JP_OK;
@@ -115,7 +134,10 @@ static void go_there(JpWorld *world, double step)
     }
     geoms_touch(world);
     if (world->options.collide != NULL) {
+        // what ODE finds wrong there is the caller's
+        Fault *fault = fault_suspend();
         world->options.collide(world->id, world->options.collide_data);
+        fault_resume(fault);
     }
     find_places(world);
 }
@@ -195,18 +217,6 @@ static void book(JpJoint *joint, double step)
     joint->rotor.position += (is_staggered(joint->world) ? 0.5 : 1.0) * step * joint->rotor.speed;
 }
 
-static void take_back(JpWorld *world, double step)
-{
-    bodies_put_back(&world->bodies);
-    if (is_staggered(world)) {
-        bodies_drift(&world->bodies, -0.5 * step);
-        for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-            joint->rotor.position -= 0.5 * step * joint->rotor.speed;
-        }
-        gyration_finish(&world->bodies, step);
-    }
-}
-
 // The new velocities, with rows for what touches.
 static JpStatus step_with_rows(JpWorld *world, double step, JpError *error)
 {
@@ -219,9 +229,11 @@ static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, 
                                    JpError *error)
 {
     REFUSAL_TRY(impulse_step(world, step, answer, is_done, error));
+    bodies_wake(&world->bodies);
     if (*is_done) {
         return JP_OK;
     }
+    bodies_put_back(&world->bodies);
     world->stats.fallbacks++;
     return step_with_rows(world, step, error);
 }
@@ -236,8 +248,7 @@ static void book_joints(JpWorld *world, double step)
 static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse)
 {
     if (is_staggered(world)) {
-        bodies_put_back_positions(&world->bodies);
-        bodies_drift(&world->bodies, 0.5 * step);
+        bodies_drift_kept(&world->bodies, 0.5 * step);
     }
     if (is_impulse) {
         impulse_finish(world, step, answer);
@@ -252,16 +263,12 @@ static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse
 // Opens ODE's joints as far as they stay open at the step.
 static JpStatus settle(JpWorld *world, double step, JpError *error)
 {
-    const JpStatus status = opening_settle(world, step, error);
-    if (status != JP_OK) {
-        take_back(world, step);
-        return status;
-    }
+    REFUSAL_TRY(opening_settle(world, step, error));
     find_places(world);
     return JP_OK;
 }
 
-static JpStatus step_bodies(JpWorld *world, double step, JpError *error)
+static JpStatus step_bodies(JpWorld *world, double step, Answer *answer, JpError *error)
 {
     if (is_staggered(world)) {
         gyration_push(&world->bodies, step);
@@ -270,33 +277,105 @@ static JpStatus step_bodies(JpWorld *world, double step, JpError *error)
     if (is_staggered(world) && world->last_step != step) {
         REFUSAL_TRY(settle(world, step, error));
     }
-    Answer answer = {0};
+    const bool has_impulses = world->options.stepping == JP_STEPPING_IMPULSE;
     bool is_impulse = false;
-    const JpStatus status = world->options.stepping == JP_STEPPING_IMPULSE
-                                ? step_with_impulses(world, step, &answer, &is_impulse, error)
-                                : step_with_rows(world, step, error);
-    if (status == JP_OK) {
-        move_on(world, step, &answer, is_impulse);
-    } else {
-        take_back(world, step);
+    REFUSAL_TRY(has_impulses ? step_with_impulses(world, step, answer, &is_impulse, error)
+                             : step_with_rows(world, step, error));
+    move_on(world, step, answer, is_impulse);
+    return JP_OK;
+}
+
+static JpStatus check_bodies(const JpWorld *world, double step, bool is_after, JpError *error)
+{
+    const char *name = NULL;
+    if (bodies_are_in_range(&world->bodies, &name)) {
+        return JP_OK;
     }
-    answer_free(&answer);
-    return status;
+    return is_after ? refusal(error, JP_ERROR_WORLD,
+                              "the %s of a body would be too large or no finite number after a "
+                              "step of %g s; the world is as before it, take a shorter step",
+                              name, step)
+                    : refusal(error, JP_ERROR_WORLD,
+                              "the %s of a body is too large or no finite number; the steps before "
+                              "may have been too long",
+                              name);
+}
+
+static JpStatus check_joints_after(const JpWorld *world, double step, JpError *error)
+{
+    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        if (!play_is_finite(joint)) {
+            return refusal(
+                error, JP_ERROR_WORLD,
+                "a joint with play would have a force, a work or a rotor's speed that is "
+                "no finite number after a step of %g s; the world is as before it",
+                step);
+        }
+    }
+    return JP_OK;
+}
+
+static JpStatus make_step(JpWorld *world, double step, Answer *answer, JpError *error)
+{
+    go_there(world, step);
+    REFUSAL_TRY(step_bodies(world, step, answer, error));
+    REFUSAL_TRY(check_bodies(world, step, true, error));
+    return check_joints_after(world, step, error);
+}
+
+// A step that ODE cannot make fails, and no more.
+static JpStatus make_step_guarded(JpWorld *world, double step, Answer *answer, JpError *error)
+{
+    Fault fault;
+    fault_begin(&fault);
+    if (setjmp(fault.left) == 0) {
+        const JpStatus status = make_step(world, step, answer, error);
+        fault_end(&fault);
+        return status;
+    }
+    fault_end(&fault);
+    threads_renew(world);
+    return refusal(error, JP_ERROR_WORLD,
+                   "ODE cannot make a step of %g s: \"%.100s\"; the world is as before it, its "
+                   "joints may contradict each other or the step be too long",
+                   step, fault.text);
+}
+
+// Outside of these a double cannot hold what ODE divides by the step or its square.
+static const double STEP_LEAST = 1e-30; // s
+static const double STEP_MOST = 1e30;
+
+static JpStatus check_step(double step, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_positive(step, "the step", error));
+    return step >= STEP_LEAST && step <= STEP_MOST
+               ? JP_OK
+               : refusal(error, JP_ERROR_ARGUMENT, "the step is %g; it must be from %g to %g", step,
+                         STEP_LEAST, STEP_MOST);
+}
+
+static JpStatus check_joints(const JpWorld *world, JpError *error)
+{
+    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        REFUSAL_TRY(play_check_bodies(joint, error));
+    }
+    return JP_OK;
 }
 
 JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
 {
     REFUSAL_TRY(refusal_of_null(world, "the world", error));
-    REFUSAL_TRY(refusal_of_positive(step, "the step", error));
+    REFUSAL_TRY(check_step(step, error));
+    REFUSAL_TRY(check_joints(world, error));
     REFUSAL_TRY(gather(world, error));
-    if (!bodies_are_finite(&world->bodies)) {
-        return refusal(
-            error, JP_ERROR_WORLD,
-            "a body has a position, velocity or force that is no finite number; the steps "
-            "before may have been too long");
+    REFUSAL_TRY(check_bodies(world, step, false, error));
+    found_keep(world);
+    Answer answer = {0};
+    const JpStatus status = make_step_guarded(world, step, &answer, error);
+    if (status != JP_OK) {
+        found_put_back(world, &answer);
     }
-    go_there(world, step);
-    const JpStatus status = step_bodies(world, step, error);
+    answer_free(&answer);
     dJointGroupEmpty(world->rows);
     dJointGroupEmpty(world->contacts);
     if (status != JP_OK) {

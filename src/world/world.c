@@ -1,5 +1,8 @@
 // What does a caller's world hold besides ODE's?
+#include "world/fault.h"
+#include "world/listing.h"
 #include "world/recall.h"
+#include "world/threads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,6 +39,8 @@ JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **c
     world->options = chosen;
     world->rows = dJointGroupCreate(0);
     world->contacts = dJointGroupCreate(0);
+    fault_hold();
+    threads_begin(world);
     *created = world;
     return refusal_none(error);
 }
@@ -56,6 +61,8 @@ void jp_world_destroy(JpWorld *world)
         encounter_finish(world->encounter);
     }
     free(world->encounter);
+    threads_end(world);
+    fault_release();
     free(world);
 }
 
@@ -77,6 +84,12 @@ JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error)
     }
     record->is_added = true;
     return refusal_none(error);
+}
+
+JpStatus jp_world_add_all(JpWorld *world, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    return listing_add_all(world, error);
 }
 
 JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error)

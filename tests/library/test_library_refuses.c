@@ -170,6 +170,7 @@ static void a_world_that_is_none_is_refused(void **state)
     assert_refused(jp_world_stats(scene.play, NULL, &error));
     const dWorldID other = dWorldCreate();
     const dBodyID stranger = dBodyCreate(other);
+    assert_refused(jp_world_add_all(NULL, &error));
     assert_refused(jp_world_add_body(scene.play, NULL, &error));
     assert_refused(jp_world_add_body(scene.play, stranger, &error));
     assert_refused(jp_world_remove_body(scene.play, dJointGetBody(scene.hinge, 0), &error));

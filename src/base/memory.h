@@ -1,0 +1,29 @@
+// Memory that has to be there, and what happens where it is not.
+//
+// Code deep inside a computation allocates through these and never sees NULL. Where there is no
+// memory the innermost guard of the thread is left, or, without a guard, the program ends. Between
+// a guard and what allocates under it, all memory must belong to structures that whoever made the
+// guard destroys, at every moment: nothing else is given back.
+#pragma once
+
+#include <setjmp.h>
+#include <stddef.h>
+
+typedef struct MemoryGuard {
+    jmp_buf left; // where to go on
+    struct MemoryGuard *outer;
+} MemoryGuard;
+
+// Puts a guard in place of the thread's; takes it away again. In between:
+//     MemoryGuard guard;
+//     memory_guard_begin(&guard);
+//     if (setjmp(guard.left) == 0) { compute(); } else { there is no memory }
+//     memory_guard_end(&guard);
+void memory_guard_begin(MemoryGuard *guard);
+void memory_guard_end(const MemoryGuard *guard);
+
+// Memory for so many elements: zeroed; as it comes; or what there was, in more room. One byte at
+// least. Where these do not return, the old memory stays as it was.
+void *memory_zeroed(size_t count, size_t size);
+void *memory_plain(size_t count, size_t size);
+void *memory_grown(void *old, size_t count, size_t size);

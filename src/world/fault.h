@@ -1,0 +1,28 @@
+// What ODE ends the program for, while a step of the library is under way: it becomes an error.
+//
+// ODE checks its own numbers by assertions, which call a handler (dSetDebugHandler) and then end
+// the program. The first world of the library puts a handler of its own there, and the last one
+// takes it away. In a step of the library it leaves the step; else it hands on to the handler that
+// was there before.
+#pragma once
+
+#include <setjmp.h>
+
+enum { FAULT_TEXT_SIZE = 128 };
+
+typedef struct Fault {
+    jmp_buf left;               // where to go on
+    char text[FAULT_TEXT_SIZE]; // what ODE says
+    struct Fault *outer;
+} Fault;
+
+// A world comes, or goes.
+void fault_hold(void);
+void fault_release(void);
+
+// Faults of this thread leave to here from now on; and no longer. Of NULL they end the program, as
+// those of the caller's own code are to.
+void fault_begin(Fault *fault);
+void fault_end(const Fault *fault);
+Fault *fault_suspend(void);
+void fault_resume(Fault *fault);

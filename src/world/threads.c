@@ -1,0 +1,36 @@
+// Who does the work of a step?
+//
+// Not several threads: ODE's self-threaded implementation does all in the thread that waits for it.
+#include "world/threads.h"
+
+static void give(JpWorld *world)
+{
+    world->threading = dThreadingAllocateSelfThreadedImplementation();
+    if (world->threading != NULL) {
+        dWorldSetStepThreadingImplementation(
+            world->id, dThreadingImplementationGetFunctions(world->threading), world->threading);
+    }
+}
+
+void threads_begin(JpWorld *world)
+{
+    if (!world->options.keeps_threading) {
+        give(world);
+    }
+}
+
+void threads_end(JpWorld *world)
+{
+    if (world->threading != NULL) {
+        dWorldSetStepThreadingImplementation(world->id, NULL, NULL);
+        dThreadingFreeImplementation(world->threading);
+    }
+}
+
+void threads_renew(JpWorld *world)
+{
+    if (world->threading != NULL) {
+        give(world);
+        dWorldCleanupWorkingMemory(world->id);
+    }
+}
