@@ -23,7 +23,7 @@
 enum { TOLERANCE_COUNT = 3 };
 
 static const double TOLERANCES[TOLERANCE_COUNT] = {1e-3, 1e-4, 1e-6};
-static const double JUDGE_TOLERANCES[2] = {1e-15, 1e-17};
+static const double JUDGE_TOLERANCES[2] = {1e-13, 1e-15};
 static const double HONEST = 3.0;       // of the uncertainty
 static const double JUDGE_SHARE = 0.25; // of it, that the judge may not know
 static const double CONTROL_GRAVITY = 1.001;
