@@ -25,6 +25,7 @@
 enum { ROWS = 10, FEWEST = 2, EASY = 5, HARD = 8, LOCATE_MAX = 80, IDLE_MAX = 200 };
 
 static const double FIRST_STEP_S = 1e-7;
+static const double STEPS_LEAST = 20000.0; // in a run
 static const double SHORTEST_S = 1e-17;
 static const long STEPS_MOST = 4000000;
 
@@ -62,11 +63,26 @@ void maximal_destroy(Maximal *maximal)
     }
 }
 
+// The elastic force of the law, N, to the precision of Real: that of force_law_elastic would do to
+// one part in 1e16 only, which is rough for small steps.
+static Real elastic_force(const ForceLaw *law, Real depth)
+{
+    if (law->family == FORCE_LAW_POWER) {
+        return law->stiffness * powl(depth, law->exponent);
+    }
+    Real force = force_law_elastic(law, (double)depth);
+    for (int i = 0; i < 3 && force > 0.0L; i++) {
+        const Real rest = law->offset - logl(force);
+        force -= (law->compliance * force * rest - depth) / (law->compliance * (rest - 1.0L));
+    }
+    return force;
+}
+
 // The force that would press and the sign by which a pressing contact goes slack.
 static Real pressing(const MaximalContact *contact, MaximalGap gap, Real *release)
 {
     const ForceLaw *law = &contact->law;
-    const double size = force_law_elastic(law, (double)fabsl(gap.depth));
+    const Real size = elastic_force(law, fabsl(gap.depth));
     // odd below zero depth: a step beyond the end of a contact stays smooth
     const Real elastic = gap.depth < 0.0L ? -size : size;
     const Real rise = 1.0L + contact->damping_rate * gap.closing;
@@ -143,6 +159,7 @@ typedef struct Motor {
     Real *room;   // for the midpoint rule, three states
     Real *table;  // ROWS states, and what they were in the row before
     Real fastest; // m/s, so far
+    Real longest; // s, of a step: events are looked for at its end
     int row;      // at which the step was taken
     long steps;
 } Motor;
@@ -391,7 +408,9 @@ static size_t find_event(Motor *motor, Real *length, MaximalMode *after)
     size_t rounds = 0; // events that rounding cannot tell apart may each come before the others
     for (size_t i = 0; i<maximal->contact_count && * length> 0.0L; i++) {
         const Margin margin = margin_of(maximal, i, motor->next);
-        if (margin.left < 0.0L && i != found && rounds < 3 * maximal->contact_count) {
+        // a contact may go slack before it ends
+        const bool is_other = i != found || margin.after != *after;
+        if (margin.left < 0.0L && is_other && rounds < 3 * maximal->contact_count) {
             rounds++;
             *length = locate(motor, i, margin.after, *length);
             *after = margin.after;
@@ -422,7 +441,7 @@ static bool advance(Motor *motor, Real most, Real *wanted, int *idle)
 {
     Maximal *maximal = motor->maximal;
     maximal->kind->rates(maximal, motor->since_s, motor->time_s, motor->y, motor->begin);
-    Real length = fminl(fminl(*wanted, flight_of(motor)), most);
+    Real length = fminl(fminl(*wanted, flight_of(motor)), fminl(motor->longest, most));
     bool is_cut = length < *wanted;
     while (length > SHORTEST_S || length == most) {
         if (!try_step(motor, length)) {
@@ -522,14 +541,14 @@ Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, doubl
 {
     Trajectory *trajectory = trajectory_create(scenario, "maximal coordinates");
     Err err = {ERR_NONE, ""};
-    Maximal *maximal = scenario->linkage.is_spatial ? maximal_space_create(scenario, flaw, &err)
-                                                    : maximal_plane_create(scenario, flaw, &err);
+    Maximal *maximal = maximal_plane_create(scenario, flaw, &err);
     if (maximal == NULL) {
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
     }
     Motor motor = motor_create(maximal, tolerance);
     Real wanted = FIRST_STEP_S;
+    motor.longest = scenario_duration(scenario) / STEPS_LEAST;
     motor.fastest = fmaxl(maximal->kind->fastest(maximal, motor.y), 1e-3L);
     trajectory->is_complete = true;
     for (size_t k = 0; k < trajectory->sample_count; k++) {

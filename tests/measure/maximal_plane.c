@@ -653,6 +653,10 @@ Maximal *maximal_plane_create(const Scenario *scenario, const MaximalFlaw *flaw,
     const Linkage *linkage = &scenario->linkage;
     Touch *places = NULL;
     size_t count = 0;
+    if (linkage->is_spatial) {
+        err_set(err, ERR_CASE, "these are the equations of the plane");
+        return NULL;
+    }
     if (scenario->contact.model != CONTACT_IMPACT) {
         err_set(err, ERR_CASE, "the velocity-level model is not among these equations");
         return NULL;
