@@ -7,6 +7,11 @@
 
 #include <math.h>
 
+// A parabola that is nowhere below 0 at three equal distances is between them at most an eighth
+// above the largest of the three. At other distances it is not let above that: beside a short one,
+// or a long one after a flat stretch, its top could be at any height.
+static const double HIGHEST = 1.125;
+
 // The top of the parabola through three values, the middle one `before` behind the first and
 // `after` ahead of the last; the largest of the three where it has none between them.
 static double top(const double values[3], double before, double after)
@@ -20,7 +25,9 @@ static double top(const double values[3], double before, double after)
     const double bend = (fall - rise) / (before + after);
     const double slope = fall - bend * after;
     const double at = bend < 0.0 ? -0.5 * slope / bend : -before;
-    return at > -before && at < after ? values[1] - 0.25 * slope * slope / bend : largest;
+    return at > -before && at < after
+               ? fmin(values[1] - 0.25 * slope * slope / bend, HIGHEST * largest)
+               : largest;
 }
 
 void tops_begin(Tops *tops, double force, double since)

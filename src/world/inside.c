@@ -5,11 +5,14 @@
 // acts in the place's row times s. The mobility between rows is what the trials gave, and of a line
 // with a rotor of inertia J another s s' / J.
 //
-// Works and tops are found from the poses between the nodes, by Lobatto's rule on four points.
+// Works are found from the poses between the nodes, by Lobatto's rule on four points. The largest
+// force and depth are those of the law at such poses, searched for where they lie: a curve through
+// forces at uneven distances could be at any height.
 #include "world/inside.h"
 
 #include "base/memory.h"
 #include "contact/encounter_force.h"
+#include "contact/encounter_quintic.h"
 
 #include <float.h>
 #include <math.h>
@@ -17,6 +20,18 @@
 #include <string.h>
 
 static const double LOCAL_PHASE = 0.05; // rad: leaves about 1e-7 of an impact
+
+enum {
+    READ_COUNT = 4, // instants of an interval
+    HALVINGS = 12,  // of the time in which a depth is largest: leaves 1e-7 of what is left of it
+    SECTIONS = 12,  // likewise of a force: a share of 3e-3 of the time leaves 1e-5 of the same
+};
+
+static const double GOLDEN = 0.6180339887498949; // (sqrt(5) - 1) / 2
+
+// of the largest force so far: what is below at the instants is not above between them, which are a
+// small share of a contact's oscillation apart
+static const double WORTH_SEARCHING = 0.5;
 
 static bool has_side(const Place *place, size_t side)
 {
@@ -249,27 +264,27 @@ JpStatus inside_run(Answer *answer, double step, bool *is_found, JpError *error)
     return forget(answer->world, error);
 }
 
+// A side at an instant.
+typedef struct Instant {
+    double time;
+    double closing; // rate of the depth
+    double force;
+    double power;   // W, done by the contact there along its normal
+    double slipped; // W, lost in friction there
+} Instant;
+
 // A side while what happened to it in the step is read.
 typedef struct Reading {
     const Encounter *encounter;
     EncounterSums *sums;
     size_t number; // of its joint there
     Side *side;
-    double force;   // at the point read last
-    double power;   // W, done by the contact there along its normal
-    double slipped; // W, lost in friction there
     double impulse;
     double slid; // J
 } Reading;
 
-static PinHole pose_at(Reading *reading, size_t node, double time)
-{
-    encounter_at(reading->encounter, node, time, reading->sums);
-    return encounter_pose(reading->encounter, reading->number, node, time, reading->sums).pose;
-}
-
 // What friction takes: what all rows take less what the normal does.
-static double slipping_power(const Reading *reading, double time)
+static double slipping_power(const Reading *reading, double time, double normal)
 {
     const EncounterJoint *joint = &reading->encounter->joints[reading->number];
     double power = 0.0;
@@ -279,44 +294,115 @@ static double slipping_power(const Reading *reading, double time)
                                                                     reading->sums->impulse,
                                                                     reading->sums->moment);
     }
-    return joint->has_friction ? reading->power - power : 0.0;
+    return joint->has_friction ? normal - power : 0.0;
 }
 
-// How the side is at a time behind a node; a damper presses from the first touch on, at no depth
-// yet.
-static void read_at(Reading *reading, size_t node, double time)
+// How the side is at a time behind a node, by its law; a damper presses from the first touch on, at
+// no depth yet. What is found is noted, so that no peak is above the law's force.
+static Instant read_at(Reading *reading, size_t node, double time)
 {
     Side *side = reading->side;
-    const PinHole pose = pose_at(reading, node, time);
+    encounter_at(reading->encounter, node, time, reading->sums);
+    const PinHole pose =
+        encounter_pose(reading->encounter, reading->number, node, time, reading->sums).pose;
     side->inside = fmax(pose.penetration, 0.0);
-    reading->force = force_law_force(&side->law, fmax(side->inside, DBL_MIN), pose.approach_speed,
-                                     side->impact_speed);
-    reading->power = -reading->force * pose.approach_speed;
-    reading->slipped = slipping_power(reading, time);
+    Instant at = {.time = time, .closing = pose.approach_speed};
+    at.force =
+        force_law_force(&side->law, fmax(side->inside, DBL_MIN), at.closing, side->impact_speed);
+    at.power = -at.force * at.closing;
+    side_note(side, at.force);
+    return at;
 }
 
-// Adds what a side did between a node and the next.
+// The same with what friction takes.
+static Instant read_powers(Reading *reading, size_t node, double time)
+{
+    Instant at = read_at(reading, node, time);
+    at.slipped = slipping_power(reading, time, at.power);
+    return at;
+}
+
+// The depth is largest where its rate changes its sign.
+static void search_depth(Reading *reading, size_t node, double first, double last)
+{
+    for (int i = 0; i < HALVINGS; i++) {
+        const double middle = first + 0.5 * (last - first);
+        if (read_at(reading, node, middle).closing > 0.0) {
+            first = middle;
+        } else {
+            last = middle;
+        }
+    }
+}
+
+// Golden section, between the neighbours of the largest force that was read.
+static void search_force(Reading *reading, size_t node, double first, double last)
+{
+    double low = last - GOLDEN * (last - first);
+    double high = first + GOLDEN * (last - first);
+    double low_force = read_at(reading, node, low).force;
+    double high_force = read_at(reading, node, high).force;
+    for (int i = 0; i < SECTIONS; i++) {
+        if (low_force < high_force) {
+            first = low;
+            low = high;
+            low_force = high_force;
+            high = first + GOLDEN * (last - first);
+            high_force = read_at(reading, node, high).force;
+        } else {
+            last = high;
+            high = low;
+            high_force = low_force;
+            low = last - GOLDEN * (last - first);
+            low_force = read_at(reading, node, low).force;
+        }
+    }
+}
+
+// Looks between the instants of an interval for what is larger than at them.
+static void search_peaks(Reading *reading, size_t node, const Instant at[READ_COUNT])
+{
+    size_t largest = 0;
+    for (size_t i = 1; i < READ_COUNT; i++) {
+        if (at[i - 1].closing > 0.0 && at[i].closing <= 0.0) {
+            search_depth(reading, node, at[i - 1].time, at[i].time);
+        }
+        largest = at[i].force > at[largest].force ? i : largest;
+    }
+    if (at[largest].force > WORTH_SEARCHING * reading->side->force_max) {
+        const size_t after = largest + 1 < READ_COUNT ? largest + 1 : largest;
+        search_force(reading, node, at[largest > 0 ? largest - 1 : 0].time, at[after].time);
+    }
+}
+
+// Adds what a side did between a node and the next. Between nodes so near to each other that
+// others' events make them, rounding in the motion could be all there is: then only they are read.
 static void read_interval(Reading *reading, size_t node)
 {
-    static const double SHARES[] = {0.27639320225002103, 0.72360679774997897, 1.0};
-    static const double WEIGHTS[] = {5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0};
-    const double start = reading->encounter->times[node];
-    const double width = reading->encounter->times[node + 1] - start;
-    Side *side = reading->side;
-    read_at(reading, node, start);
-    double impulse = reading->force / 12.0;
-    double work = reading->power / 12.0;
-    double slid = reading->slipped / 12.0;
-    for (int i = 0; i < 3; i++) {
-        read_at(reading, node, start + SHARES[i] * width);
-        side_note_tops(side, reading->force, (SHARES[i] - (i > 0 ? SHARES[i - 1] : 0.0)) * width);
-        impulse += WEIGHTS[i] * reading->force;
-        work += WEIGHTS[i] * reading->power;
-        slid += WEIGHTS[i] * reading->slipped;
+    static const double SHARES[READ_COUNT] = {0.0, 0.27639320225002103, 0.72360679774997897, 1.0};
+    static const double WEIGHTS[READ_COUNT] = {1.0 / 12.0, 5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0};
+    static const double ENDS[READ_COUNT] = {0.5, 0.0, 0.0, 0.5};
+    const Encounter *encounter = reading->encounter;
+    const double start = encounter->times[node];
+    const double width = encounter->times[node + 1] - start;
+    const bool is_short = width < ENCOUNTER_NARROW * encounter->times[encounter->node_count - 1];
+    const double *weights = is_short ? ENDS : WEIGHTS;
+    Instant at[READ_COUNT];
+    double work = 0.0;
+    for (int i = 0; i < READ_COUNT; i++) {
+        if (weights[i] == 0.0) {
+            continue;
+        }
+        const bool is_last = i + 1 == READ_COUNT;
+        at[i] = read_powers(reading, is_last ? node + 1 : node, start + SHARES[i] * width);
+        reading->impulse += width * weights[i] * at[i].force;
+        reading->slid += width * weights[i] * at[i].slipped;
+        work += weights[i] * at[i].power;
     }
-    reading->impulse += width * impulse;
-    reading->slid += width * slid;
-    side->work += width * work;
+    reading->side->work += width * work;
+    if (!is_short) {
+        search_peaks(reading, node, at);
+    }
 }
 
 static void read_side(Reading *reading)
@@ -328,7 +414,8 @@ static void read_side(Reading *reading)
         const bool was_touching = side->is_touching;
         side->is_touching = encounter_touches(encounter, node, reading->number);
         if (side->is_touching && !was_touching) {
-            side_begin(side, pose_at(reading, node, start).approach_speed);
+            // the very speed by which the contact was damped
+            side_begin(side, encounter->closings[node * encounter->joint_count + reading->number]);
         }
         if (side->is_touching && node + 1 < encounter->node_count &&
             encounter->times[node + 1] > start) {

@@ -69,9 +69,11 @@ static void keep_largest(Side *side)
     side->depth_max = fmax(side->depth_max, side->tops.depth);
 }
 
-void side_note_tops(Side *side, double force, double ahead)
+void side_note(Side *side, double force)
 {
-    tops_note(&side->tops, force, side->inside, ahead);
+    tops_begin(&side->tops, force, 0.0);
+    side->tops.force = force;
+    side->tops.depth = side->inside;
     keep_largest(side);
 }
 

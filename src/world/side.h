@@ -59,10 +59,8 @@ bool side_is_stable(const Side *side, const Map *map, double mobility, double st
 // A contact begins, with a closing speed.
 void side_begin(Side *side, double closing);
 
-// Notes a force and the depth where it is; they are ahead of the last ones, or of the onset, by a
-// time, s. The largest of a contact lie between: on the parabola through three, of which the first
-// may be the onset.
-void side_note_tops(Side *side, double force, double ahead);
+// Notes a force of the law at a depth that the step has found, as they are.
+void side_note(Side *side, double force);
 
 // Notes the force of the step that was made, N m or N, and the rates before and after it.
 void side_book(Side *side, double force, double rate_before, double rate_after, double step);
