@@ -4,8 +4,9 @@
 // Q'' at both; its derivatives are impulse and force, right to the orders 4 and 3 of the local
 // step. Where two contacts that should end together do so a rounding apart, the force is linear
 // between the nodes: a difference of integrals over the square of that time would be rounding.
-#include "base/memory.h"
 #include "contact/encounter_force.h"
+
+#include "base/memory.h"
 #include "contact/encounter_quintic.h"
 #include "contact/encounter_stiff.h"
 
