@@ -73,6 +73,7 @@ static inline Scenario kept_instead(Scenario *scenario)
     kept_hold(copy.path);
     kept_hold(copy.expectations);
     kept_hold(copy.outcomes);
+    kept_hold(copy.keys);
     linkage_free(&scenario->linkage);
     return copy;
 }
