@@ -13,7 +13,6 @@
 #include "measure/child.h"
 #include "measure/chosen_run.h"
 #include "measure/error.h"
-#include "model/distance.h"
 #include "model/kinematics.h"
 #include "run/registry.h"
 
@@ -72,22 +71,6 @@ static bool load(const Work *work, Scenario *scenario, Err *err)
     return is_loaded;
 }
 
-// Relative to the speeds that the run's own error is relative to: past the horizon the judge may
-// move faster.
-static double error_until(const Trajectory *run, const Trajectory *judge, const Truth *truth,
-                          double until_s)
-{
-    DistanceMeasure measure = distance_measure(truth->trajectory);
-    double largest = 0.0;
-    for (size_t k = 0; k < judge->sample_count && judge->times[k] <= until_s; k++) {
-        const double error = distance_apart(&measure, distance_motion_at(run, k),
-                                            distance_motion_at(judge, k), NULL);
-        largest = error <= largest ? largest : error;
-    }
-    distance_finish(&measure);
-    return largest;
-}
-
 static void run_auto(const Scenario *scenario, const Truth *truth, const Trajectory *judge,
                      Run *result)
 {
@@ -102,7 +85,7 @@ static void run_auto(const Scenario *scenario, const Truth *truth, const Traject
         result->step_s = run->step_s;
         result->estimate = run->error_estimate;
         result->until_s = run->estimate_s;
-        result->error = error_until(run, judge, truth, run->estimate_s);
+        result->error = apart_until(run, judge, truth->trajectory, run->estimate_s);
     }
     trajectory_destroy(run);
 }
@@ -121,8 +104,9 @@ static void run_ladder(const Scenario *scenario, const Truth *truth, const Traje
         fixed.ode.gear = 1;
         Trajectory *run =
             run_scenario(&fixed, registry_solver(BACKEND_ODE), (RunWatch){NULL, NULL});
-        const double error =
-            run->is_complete ? error_until(run, judge, truth, result->horizon_s) : INFINITY;
+        const double error = run->is_complete
+                                 ? apart_until(run, judge, truth->trajectory, result->horizon_s)
+                                 : INFINITY;
         for (int k = 0; k < TOLERANCE_COUNT; k++) {
             if (error <= TOLERANCES[k] && result->runs[k].best == 0) {
                 result->runs[k].best = run->steps;

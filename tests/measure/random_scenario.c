@@ -3,6 +3,7 @@
 #include "../support/kept.h"
 
 #include "casefile/casefile.h"
+#include "model/distance.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -53,4 +54,18 @@ Scenario moved_scenario(const Scenario *scenario, double tolerance)
     other.has_slidercrank = false;
     other.reference.tolerance = tolerance;
     return other;
+}
+
+double apart_until(const Trajectory *run, const Trajectory *judge, const Trajectory *scale,
+                   double until_s)
+{
+    DistanceMeasure measure = distance_measure(scale);
+    double largest = 0.0;
+    for (size_t k = 0; k < judge->sample_count && judge->times[k] <= until_s; k++) {
+        const double error = distance_apart(&measure, distance_motion_at(run, k),
+                                            distance_motion_at(judge, k), NULL);
+        largest = error <= largest ? largest : error;
+    }
+    distance_finish(&measure);
+    return largest;
 }

@@ -3,7 +3,7 @@
 
 #include "random_case.h"
 
-#include "model/scenario.h"
+#include "model/trajectory.h"
 
 // Loads the case of a kind and a seed with settings, as --set takes them.
 bool random_scenario(const CaseKind *kind, uint64_t seed, const char *const *settings, size_t count,
@@ -12,3 +12,8 @@ bool random_scenario(const CaseKind *kind, uint64_t seed, const char *const *set
 // The same mechanism elsewhere, for a reference that is to judge: its coordinates are other
 // numbers, and so is their rounding. The tolerance is the reference's.
 Scenario moved_scenario(const Scenario *scenario, double tolerance);
+
+// The largest distance of a run from its judge at the samples up to a time, s, in the rates and
+// scales of a third trajectory (model/distance.h): past the horizon the judge may move faster.
+double apart_until(const Trajectory *run, const Trajectory *judge, const Trajectory *scale,
+                   double until_s);

@@ -15,7 +15,6 @@
 
 #include "measure/child.h"
 #include "measure/chosen_run.h"
-#include "model/distance.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -55,20 +54,6 @@ typedef struct Work {
     uint64_t seed;
     MaximalFlaw flaw;
 } Work;
-
-static double apart_until(const Trajectory *run, const Trajectory *judge, const Trajectory *scale,
-                          double until_s)
-{
-    DistanceMeasure measure = distance_measure(scale);
-    double largest = 0.0;
-    for (size_t k = 0; k < judge->sample_count && judge->times[k] <= until_s; k++) {
-        const double error = distance_apart(&measure, distance_motion_at(run, k),
-                                            distance_motion_at(judge, k), NULL);
-        largest = error <= largest ? largest : error;
-    }
-    distance_finish(&measure);
-    return largest;
-}
 
 static void judge_runs(Scenario *scenario, const Truth *truth, const Trajectory *judge,
                        double horizon_s, Result *result)
