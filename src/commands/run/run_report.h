@@ -4,6 +4,7 @@
 
 #include "analytic/stackup.h"
 #include "analytic/summary.h"
+#include "measure/change_point.h"
 #include "measure/ensemble.h"
 #include "measure/error.h"
 #include "measure/spike_match.h"
@@ -50,6 +51,13 @@ static inline bool run_report_is_limited_by_reference(const RunReport *report,
 {
     return run_report_is_certified(report, error) &&
            error->max_in_horizon < ERROR_CLEAR_OF_TRUTH * report->truth->uncertainty;
+}
+
+// Whether the tolerance of a run is held only up to a change point of the ideal joints.
+static inline bool run_report_leaves_branch(const RunReport *report, const Trajectory *run)
+{
+    return run->is_short && run_report_has_truth(report) &&
+           change_point_is_near(report->truth->trajectory, run->estimate_s);
 }
 
 // Whether errors against the reference contain more than a solver's own: it knows contact by its

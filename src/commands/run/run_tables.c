@@ -241,11 +241,13 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
     text_append(text, "  %s: step %.4g us, chosen by %zu trial%s; the steps are those of all.\n",
                 run->backend, run->step_s * UNITS_US, run->trials, run->trials == 1 ? "" : "s");
     if (run->is_short) {
-        text_append(text,
-                    "  The tolerance %.3g holds up to %.4g ms of %.4g ms only; for more, allow "
-                    "more steps: run.most-steps.\n",
-                    report->scenario->run.tolerance, run->estimate_s * UNITS_MS,
-                    run->duration_s * UNITS_MS);
+        text_append(
+            text, "  The tolerance %.3g holds up to %.4g ms of %.4g ms only; for more, %s.\n",
+            report->scenario->run.tolerance, run->estimate_s * UNITS_MS, run->duration_s * UNITS_MS,
+            run_report_leaves_branch(report, run)
+                ? "give one of the ideal joints play: they pass a change point there, "
+                  "where no step keeps to the motion's branch"
+                : "allow more steps: run.most-steps");
     }
     // without the reference's doubts what is not whole ends at the horizon, at a sample
     const double *last_s = &run->times[run->sample_count - 1];

@@ -295,6 +295,16 @@ static void write_contact(const Scenario *scenario, size_t width, Text *text)
     }
 }
 
+// Why the tolerance asked for is not held to the end.
+static const char *why_held_only_so_far(const RunReport *report, const Trajectory *run)
+{
+    if (!run->is_short) {
+        return "the reference is too uncertain";
+    }
+    return run_report_leaves_branch(report, run) ? "its joints pass a change point there"
+                                                 : "run.most-steps is too small";
+}
+
 // What does not hold that a reader of the run would take for granted.
 static void write_doubts(const RunReport *report, size_t number, const Style *style, Text *text)
 {
@@ -306,9 +316,7 @@ static void write_doubts(const RunReport *report, size_t number, const Style *st
     if (run->trials > 0 && (run->is_short || run->estimate_is_cut)) {
         text_append(text, "              %sheld up to %.4g of %.4g ms only: %s%s\n", style->failure,
                     run->estimate_s * UNITS_MS, run->duration_s * UNITS_MS,
-                    run->is_short ? "run.most-steps is too small"
-                                  : "the reference is too uncertain",
-                    style->end);
+                    why_held_only_so_far(report, run), style->end);
     }
     const bool has_truth = run_report_has_truth(report);
     const double said = error_of_run(error, has_truth && report->truth->is_limited);
