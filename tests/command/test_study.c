@@ -48,6 +48,32 @@ static void a_dry_run_tells_all_and_writes_nothing(void **state)
     assert_says(program->output, "of them no valid case: 2; the first is run 1: ");
 }
 
+// Whether a study of friction at 0 and at another value says that its friction speed has no use.
+static bool says_unused(Program *program, const char *vary)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "friction.yaml", path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fprintf(stream,
+            "title: Friction\ncase: %s/paper/impact-k66.yaml\n"
+            "set: {run.revolutions: 0.01, contact.friction-speed: 1 mm/s}\n"
+            "vary: {%s}\ntruth: false\n",
+            getenv("JOINTPLAY_CASES"), vary);
+    fclose(stream);
+    run_well(program, "study friction.yaml --dry-run");
+    return strstr(program->errors, "contact.friction-speed of the study has no effect in any run; "
+                                   "it would with contact.friction above 0") != NULL;
+}
+
+static void a_key_that_no_run_uses_is_said(void **state)
+{
+    Program *program = *state;
+    assert_true(says_unused(program, "run.step: [1 us, 2 us]"));
+    // one run of two makes use of it
+    assert_false(says_unused(program, "contact.friction: [0, 0.1]"));
+}
+
 static void what_came_of_it_is_printed(void **state)
 {
     Program *program = *state;
@@ -177,6 +203,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #define STUDY_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, program_tear_down)
         STUDY_TEST(a_dry_run_tells_all_and_writes_nothing),
+        STUDY_TEST(a_key_that_no_run_uses_is_said),
         STUDY_TEST(what_came_of_it_is_printed),
         STUDY_TEST(rows_are_exported_and_drawn),
         STUDY_TEST(a_study_of_which_every_run_fails_ends_with_status_4),

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "casefile/casefile.h"
+#include "cli/warnings.h"
 #include "commands/check/baseline_json.h"
 #include "write/file.h"
 
@@ -108,6 +109,7 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
         note_refusal(item, options);
         return false;
     }
+    warnings_say(item->scenario, &options->common);
     baseline_set_head(&item->now, item->scenario, &item->baseline.plan);
     return true;
 }

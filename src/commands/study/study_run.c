@@ -16,9 +16,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 
-enum { PRINT_SIZE = 17 };
+enum { PRINT_SIZE = 17, UNUSED_LOOKS = 64 };
 
 // How far it has come, and how long the rest will take.
 static void show_progress(const SweepState *state, void *line)
@@ -229,12 +230,87 @@ static bool make_runs(const StudyOptions *options, const Spec *spec, const Layou
     return print_report(&report, &options->common, err) && check_runs(&report, err);
 }
 
+// Leaves of some lines those that are among others too.
+static void keep_shared(Text *lines, const char *others)
+{
+    Text shared;
+    text_init(&shared);
+    for (const char *line = lines->data; *line != '\0';) {
+        const size_t size = strcspn(line, "\n") + 1;
+        for (const char *other = others; *other != '\0'; other = strchr(other, '\n') + 1) {
+            if (strncmp(other, line, size) == 0) {
+                text_append_bytes(&shared, line, size);
+                break;
+            }
+        }
+        line += size;
+    }
+    text_finish(lines);
+    *lines = shared;
+}
+
+// Says one line of casefile_unused in words of a study.
+static void say_unused_key(const char *line)
+{
+    static const char HERE[] = " has no effect here";
+    static const char SET[] = " of the command line";
+    const char *here = strstr(line, HERE);
+    const char *set = strstr(line, SET);
+    const bool is_set = set != NULL && set < here;
+    const char *rest = here + strlen(HERE);
+    output_say("jointplay: warning: %.*s%s has no effect in any run%.*s\n",
+               (int)((is_set ? set : here) - line), line, is_set ? " of the study" : "",
+               (int)strcspn(rest, "\n"), rest);
+}
+
+// Says which keys of the case and the study change none of the runs, of which so many are looked
+// at, evenly over all.
+static void say_unused(const Spec *spec)
+{
+    const uint64_t count = design_run_count(spec);
+    const uint64_t looks = count < UNUSED_LOOKS ? count : UNUSED_LOOKS;
+    Text unused;
+    bool is_first = true;
+    text_init(&unused);
+    for (uint64_t i = 0; i < looks && (is_first || unused.length > 0); i++) {
+        // the last one too: what varies fastest has moved between any two
+        const uint64_t run =
+            looks > 1 ? (uint64_t)((double)i * (double)(count - 1) / (double)(looks - 1)) : 0;
+        Cell values[RECORD_SETTING_MAX];
+        Scenario scenario;
+        BackendKind backend;
+        Err err = {0};
+        design_values(spec, run, values);
+        if (!design_scenario(spec, values, &scenario, &backend, &err)) {
+            continue;
+        }
+        Text lines;
+        text_init(&lines);
+        casefile_unused(&scenario, &lines);
+        if (is_first) {
+            text_append(&unused, "%s", lines.data);
+            is_first = false;
+        } else {
+            keep_shared(&unused, lines.data);
+        }
+        text_finish(&lines);
+        scenario_free(&scenario);
+    }
+    for (const char *line = unused.data; *line != '\0'; line = strchr(line, '\n') + 1) {
+        say_unused_key(line);
+    }
+    text_finish(&unused);
+}
+
 bool study_run(void *target, Err *err)
 {
     const StudyOptions *options = target;
     Spec *spec = spec_open(options->common.path, err);
     Layout *layout = calloc(1, sizeof *layout);
     assert(layout != NULL);
+    if (spec != NULL && !options->common.is_quiet) {
+        say_unused(spec);
+    }
     const bool is_done = spec != NULL && find_layout(spec, layout, err) &&
                          (options->is_dry ? study_run_dry(options, spec, layout, err)
                                           : make_runs(options, spec, layout, err));
