@@ -15,6 +15,17 @@
 
 #include <string.h>
 
+// Notes which values a joint has of its own.
+static void note_given(const Entries *entries, size_t number, Joint *joint)
+{
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        if (row->flag > 0) {
+            *(bool *)((char *)joint + row->flag) = entries_find(entries, row->path, number) != NULL;
+        }
+    }
+}
+
 // What follows from the keys that are given and not from their values.
 static void store_presence(const Entries *entries, Scenario *scenario)
 {
@@ -34,7 +45,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         text_copy(joint->name, LINKAGE_NAME_SIZE, names[SCHEMA_JOINT].names[i]);
         joint->kind = joint_kind_find(entries, i);
         joint->stop.is_disc = entries_find(entries, "joints.*.discs", i) != NULL;
-        joint->contact.has_restitution = entries_find(entries, "joints.*.restitution", i) != NULL;
+        note_given(entries, i, joint);
         joint->limits = limits_prepare(entries, i);
         joint->space.axis = (Vec3){0.0, 0.0, 1.0};
     }

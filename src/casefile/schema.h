@@ -96,6 +96,7 @@ typedef struct SchemaRow {
     SchemaFamily holder;    // whose field it is; SCHEMA_SINGLE: the Scenario's own
     size_t member;          // the number of the holder, to which that of the family is added
     size_t offset;          // in the holder
+    size_t flag;            // where the holder notes, as a bool, that the key is given; 0: nowhere
     double low;             // SI; smallest value allowed, or the bound itself where low_is_open
     double high;            // SI; largest value allowed
     bool low_is_open;

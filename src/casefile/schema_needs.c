@@ -32,7 +32,7 @@ static const Condition CONDITIONS[] = {
     {LAW, IMPACT, {"a pin with play that has no stiffness of its own", "contact.stiffness", false}},
     {VISCOUS, IMPACT, {"contact.damping: viscous", "contact.damping contact.model", true}},
     {MATERIAL, PLAY, {"contact.law, or contact.model: poisson without contact.penalty", "contact.model", false}},
-    {FRICTION, PLAY, {"contact.friction above 0", "contact.friction", false}},
+    {FRICTION, PLAY, {"a friction above 0", "contact.friction", false}},
     {REFERENCE, 0, {"reference among run.backends", "run.backends", false}},
     {ODE, 0, {"ode among run.backends", "run.backends", false}},
     {GIVEN_STEP, ODE, {"a given run.step, such as 1 us", "run.step", false}},
@@ -51,6 +51,7 @@ static const Condition WANTS[] = {
     {COMMON_DAMPING, 0, {"a joint with play that has no viscous-coefficient of its own", "", false}},
     {REBOUND, 0, {"a contact.damping but none and viscous, at a joint without values of its own", "contact.damping", false}},
     {OWN_REBOUND, 0, {"a contact.damping but none and viscous", "contact.damping", false}},
+    {COMMON_FRICTION, 0, {"a joint with play whose sides slide and that has no friction of its own", "", false}},
     {PIN, 0, {"a pin with play in its hole", "", false}},
     {HELD_ROWS, 0, {"an ideal joint", "", false}},
     {ANY_ROWS, 0, {"an ideal joint, or any ode.map but impulse", "", false}},
@@ -136,7 +137,7 @@ static unsigned contact_bits(const Scenario *scenario)
            bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
            bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
            bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
-           bit(FRICTION, has_play && contact->friction > 0.0) | step_bits(scenario, is_impact);
+           bit(FRICTION, law_has_friction(scenario)) | step_bits(scenario, is_impact);
 }
 
 unsigned schema_met(const Scenario *scenario)
@@ -158,8 +159,7 @@ static unsigned joint_bits(const Scenario *scenario, const Joint *joint)
 {
     const bool is_own = joint->contact.stiffness > 0.0 &&
                         (!scenario->contact.is_for_all || linkage_is_torsional(joint));
-    return bit(OWN_STIFFNESS, is_own) | bit(OWN_RESTITUTION, joint->contact.has_restitution) |
-           bit(OWN_VISCOUS, joint->contact.viscous > 0.0);
+    return bit(OWN_STIFFNESS, is_own) | bit(OWN_VISCOUS, joint->contact.viscous > 0.0);
 }
 
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met)
@@ -172,6 +172,7 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     if (row->family == SCHEMA_JOINT && is_member) {
         const Joint *joint = &scenario->linkage.joints[index];
         met |= joint_bits(scenario, joint);
+        met |= bit(OWN, row->flag > 0 && *((const bool *)((const char *)joint + row->flag)));
         if (!limits_apply(row, joint, schema_field_const(row, scenario, index)) ||
             !schema_is_of_kind(row, joint->kind)) {
             return false;
@@ -200,6 +201,7 @@ static unsigned shared_bits(const Scenario *scenario)
         met |=
             bit(COMMON_STIFFNESS, (joint_bits(scenario, joint) & OWN_STIFFNESS) == 0) |
             bit(COMMON_DAMPING, joint->contact.viscous == 0.0) |
+            bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
             bit(REBOUND, (is_restored(damping) || is_poisson) && !joint->contact.has_restitution) |
             bit(PIN, joint->kind == JOINT_CLEARANCE);
     }

@@ -267,7 +267,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .default_words = "none", .needs = VISCOUS,
      .doc = "force over penetration rate; required by damping: viscous"},
     {.path = "contact.friction", AT(contact.friction), .low = 0.0, .high = 1.0,
-     .needs = PLAY, .doc = "Coulomb's friction coefficient; 0 for none"},
+     .needs = PLAY, .wants = COMMON_FRICTION, .doc = "Coulomb's friction coefficient; 0 for none"},
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION, .wants = SMOOTHED,
      .doc = "sliding speed over which friction sets in; ODE's quick solver and the poisson model "

@@ -44,8 +44,6 @@ typedef struct EncounterJoint {
     int siblings[2];         // the first and the last place that can touch together with this one,
                              // counted from here; 0 and 0 where there is none
     bool has_friction;
-    double friction;       // 1, Coulomb's coefficient; the encounter's, where nobody changes it
-    double friction_speed; // m/s, likewise
     size_t first_row;
     size_t row_count;
     bool is_touching;
@@ -66,8 +64,6 @@ typedef struct Encounter {
     int *joint_of;          // of a row: which of the joints here
     size_t joint_room;      // of these arrays
     size_t row_room;
-    double friction; // 1, Coulomb's coefficient
-    double friction_speed;
     double phase;        // rad of a contact's oscillation in one local step; 0: as many as suit
     double stiff_phase;  // rad, likewise, where steps are implicit
     double stable;       // time constants of a contact's damping in an explicit local step, at most
@@ -114,7 +110,7 @@ typedef struct EncounterPose {
 } EncounterPose;
 
 // An encounter of no joints yet.
-Encounter encounter_start(double friction, double friction_speed, double phase);
+Encounter encounter_start(double phase);
 
 // Adds a joint, of which the first six parts are given, with its rows: ENCOUNTER_ROWS_PLAIN, or
 // more of one with friction, but for a line's.

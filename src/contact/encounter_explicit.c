@@ -216,7 +216,7 @@ double encounter_explicit_error(const Encounter *encounter, EncounterExplicit *s
         const double depth = fmax(pose.penetration, 0.0);
         const double frequency = encounter_force_frequency(encounter, i, pose.normal, depth);
         double fastest = frequency;
-        if (encounter->friction > 0.0) {
+        if (joint->law.friction > 0.0) {
             fastest = fmax(fastest, 1.0 / encounter_force_friction_time(encounter, i, from->force));
         }
         const bool is_linear = joint->law.family == FORCE_LAW_POWER && joint->law.exponent == 1.0;

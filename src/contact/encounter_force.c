@@ -54,8 +54,8 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
     const EncounterJoint *of = &encounter->joints[joint];
     const size_t row = of->first_row;
     if (of->shape == TOUCH_LINE) {
-        const double taken =
-            of->friction * normal * encounter_friction_hold(speed[1], of->friction_speed).held;
+        const double taken = of->law.friction * normal *
+                             encounter_friction_hold(speed[1], of->law.friction_speed).held;
         force[row + 1] -= taken;
         return taken * speed[1];
     }
@@ -66,13 +66,14 @@ static double add_friction(const Encounter *encounter, size_t joint, const doubl
     double held;
     double power;
     if (of->row_count < ENCOUNTER_ROWS_MOST) {
-        held = of->friction * normal * encounter_friction_hold(sliding, of->friction_speed).held;
+        held = of->law.friction * normal *
+               encounter_friction_hold(sliding, of->law.friction_speed).held;
         power = held * sliding;
     } else {
         const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
         const double size = hypot(sliding, axial);
         const double grip =
-            of->friction * normal * encounter_friction_grip(size, of->friction_speed).share;
+            of->law.friction * normal * encounter_friction_grip(size, of->law.friction_speed).share;
         const double along = grip * axial;
         held = grip * sliding;
         power = grip * size * size;
@@ -214,6 +215,6 @@ double encounter_force_friction_time(const Encounter *encounter, size_t joint, c
         const bool is_turn = k >= ENCOUNTER_ROWS_PLAIN && k != ENCOUNTER_ROW_AXIAL;
         mobility += is_turn ? arm * arm * diagonal : diagonal;
     }
-    const double held = encounter->joints[joint].friction * hypot(force[row], force[row + 1]);
-    return held > 0.0 ? encounter->joints[joint].friction_speed / (held * mobility) : INFINITY;
+    const double held = encounter->joints[joint].law.friction * hypot(force[row], force[row + 1]);
+    return held > 0.0 ? encounter->joints[joint].law.friction_speed / (held * mobility) : INFINITY;
 }

@@ -14,11 +14,9 @@
 // rad: of implicit steps, where the phase is not given
 static const double STIFF_PHASE = 0.05;
 
-Encounter encounter_start(double friction, double friction_speed, double phase)
+Encounter encounter_start(double phase)
 {
     return (Encounter){
-        .friction = friction,
-        .friction_speed = friction_speed,
         .phase = phase,
         .stiff_phase = phase > 0.0 ? phase : STIFF_PHASE,
         .stable = 2.0,
@@ -54,9 +52,7 @@ void encounter_add(Encounter *encounter, const EncounterJoint *joint, size_t row
     added->first_row = encounter->row_count;
     added->row_count = rows;
     added->has_friction =
-        encounter->friction > 0.0 && (rows > ENCOUNTER_ROWS_PLAIN || added->shape == TOUCH_LINE);
-    added->friction = encounter->friction;
-    added->friction_speed = encounter->friction_speed;
+        added->law.friction > 0.0 && (rows > ENCOUNTER_ROWS_PLAIN || added->shape == TOUCH_LINE);
     for (size_t i = 0; i < rows; i++) {
         encounter->joint_of[encounter->row_count++] = (int)encounter->joint_count;
     }

@@ -12,7 +12,7 @@ EncounterIsland *encounter_island_make(const EncounterIslands *islands, size_t *
     const Encounter *all = islands->all;
     EncounterIsland *island = zeroed(1, sizeof *island);
     Encounter *encounter = &island->encounter;
-    *encounter = encounter_start(all->friction, all->friction_speed, all->phase);
+    *encounter = encounter_start(all->phase);
     encounter->duration_before_s = islands->duration_before_s;
     island->places = places;
     for (size_t i = 0; i < count; i++) {

@@ -81,10 +81,11 @@ static Rated rate_space_friction(Moving *moving, Rated round, Rated *held)
         rated_times(moving->pin_arm, rows_along(moving, moving->tangent, ENCOUNTER_ROW_PIN));
     const Rated axial = rated_plus(moving->speed[ENCOUNTER_ROW_AXIAL], rated_plus(by_hole, by_pin));
     const EncounterGrip found =
-        encounter_friction_grip(hypot(round.value, axial.value), moving->joint->friction_speed);
+        encounter_friction_grip(hypot(round.value, axial.value), moving->joint->law.friction_speed);
     const Rated share = {found.share,
                          found.bend * (round.value * round.rate + axial.value * axial.rate)};
-    const Rated grip = rated_times(rated_scale(moving->joint->friction, moving->pressing), share);
+    const Rated grip =
+        rated_times(rated_scale(moving->joint->law.friction, moving->pressing), share);
     const Rated along_axis = rated_times(grip, axial);
     *held = rated_times(grip, round);
     push_row(moving, ENCOUNTER_ROW_AXIAL, rated_scale(-1.0, along_axis));
@@ -101,9 +102,10 @@ static Rated rate_space_friction(Moving *moving, Rated round, Rated *held)
 static Rated rate_friction(Moving *moving)
 {
     const EncounterJoint *joint = moving->joint;
-    const Rated grip = rated_scale(joint->friction, moving->pressing);
+    const Rated grip = rated_scale(joint->law.friction, moving->pressing);
     if (joint->shape == TOUCH_LINE) {
-        const Rated held = rated_times(grip, rated_hold(moving->speed[1], joint->friction_speed));
+        const Rated held =
+            rated_times(grip, rated_hold(moving->speed[1], joint->law.friction_speed));
         push_row(moving, 1, rated_scale(-1.0, held));
         return rated_times(held, moving->speed[1]);
     }
@@ -117,7 +119,7 @@ static Rated rate_friction(Moving *moving)
     if (joint->row_count == ENCOUNTER_ROWS_MOST) {
         power = rate_space_friction(moving, sliding, &held);
     } else {
-        held = rated_times(grip, rated_hold(sliding, joint->friction_speed));
+        held = rated_times(grip, rated_hold(sliding, joint->law.friction_speed));
         power = rated_times(held, sliding);
     }
     for (size_t i = 0; i < 2; i++) {

@@ -106,19 +106,20 @@ static void find_both(const EncounterJoint *joint, double round, const Gradient 
                       double axial, const Gradient *by_axial, double normal,
                       const Gradient *by_normal, Held *held)
 {
-    const EncounterGrip grip = encounter_friction_grip(hypot(round, axial), joint->friction_speed);
+    const EncounterGrip grip =
+        encounter_friction_grip(hypot(round, axial), joint->law.friction_speed);
     const double share = grip.share;
     for (size_t k = 0; k < PARTS; k++) {
         const double growth = grip.bend * (round * by_round->of[k] + axial * by_axial->of[k]);
         const double along_round = share * by_round->of[k] + growth * round;
         const double along_axis = share * by_axial->of[k] + growth * axial;
         held->by_round.of[k] =
-            joint->friction * (share * round * by_normal->of[k] + normal * along_round);
+            joint->law.friction * (share * round * by_normal->of[k] + normal * along_round);
         held->by_axial.of[k] =
-            joint->friction * (share * axial * by_normal->of[k] + normal * along_axis);
+            joint->law.friction * (share * axial * by_normal->of[k] + normal * along_axis);
     }
-    held->round = joint->friction * normal * share * round;
-    held->axial = joint->friction * normal * share * axial;
+    held->round = joint->law.friction * normal * share * round;
+    held->axial = joint->law.friction * normal * share * axial;
 }
 
 // How fast the pin slides round its hole, or a circle along its line, and how that changes.
@@ -152,12 +153,12 @@ static void find_friction(const EncounterJoint *joint, const PinHole *pose, cons
         find_both(joint, sliding, &by_sliding, axial, &by_axial, normal, by_normal, held);
         return;
     }
-    const EncounterHold hold = encounter_friction_hold(sliding, joint->friction_speed);
+    const EncounterHold hold = encounter_friction_hold(sliding, joint->law.friction_speed);
     for (size_t k = 0; k < PARTS; k++) {
-        held->by_round.of[k] = joint->friction * (hold.held * by_normal->of[k] +
-                                                  normal * hold.slope * by_sliding.of[k]);
+        held->by_round.of[k] = joint->law.friction * (hold.held * by_normal->of[k] +
+                                                      normal * hold.slope * by_sliding.of[k]);
     }
-    held->round = joint->friction * normal * hold.held;
+    held->round = joint->law.friction * normal * hold.held;
 }
 
 // The rows of the bodies' turns about the pin's axis.

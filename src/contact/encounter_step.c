@@ -122,7 +122,7 @@ static double choose_width(const Encounter *encounter, const EncounterPoint *poi
         *frictionless_s =
             fmin(*frictionless_s, fmin(share_s, fmax(GROWTH * joint->touching_s, least_s)));
         *frictionless_s = fmin(*frictionless_s, width_before_end(&pose, share_s));
-        if (encounter->friction > 0.0) {
+        if (joint->law.friction > 0.0) {
             width_s = fmin(width_s, FRICTION_PHASE *
                                         encounter_force_friction_time(encounter, i, point->force));
         }
@@ -224,7 +224,7 @@ static double limit_explicit(const Encounter *encounter, const EncounterPoint *f
             *may_be_stiff = *may_be_stiff || joint->is_overdamped || decay > DAMPED * frequency;
             longest_s = fmin(longest_s, DECAYS_MOST / decay);
         }
-        if (encounter->friction > 0.0) {
+        if (joint->law.friction > 0.0) {
             longest_s = fmin(
                 longest_s, DECAYS_MOST * encounter_force_friction_time(encounter, i, from->force));
         }

@@ -1,5 +1,5 @@
-// The force between pin and hole as a function of penetration and its rate, ready for the inner
-// loop of every solver.
+// The law of a contact: the force between pin and hole as a function of penetration and its rate,
+// and the friction that it holds, ready for the inner loop of every solver.
 //
 // Penetration is positive inside the metal, its rate positive while it grows; the force is the
 // pressing force along the normal and never negative.
@@ -22,12 +22,22 @@ typedef struct ForceLaw {
     double hysteresis;         // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
     double viscous;            // c, N s/m: F = F_el + c d'; 0 for none
     double impact_speed_floor; // m/s, > 0: smallest v0 the hysteretic damping divides by
+    double friction;           // mu, 1: Coulomb's coefficient; 0 for none
+    double friction_speed;     // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
 } ForceLaw;
 
-// The two families, undamped, with an impact speed floor of 1 mm/s. Every number must be > 0
-// (B alone may be anything).
+// The two families, without damping and friction, with an impact speed floor of 1 mm/s. Every
+// number must be > 0 (B alone may be anything).
 ForceLaw force_law_power(double stiffness, double exponent);
 ForceLaw force_law_logarithmic(double compliance, double offset);
+
+// That law with a coefficient of friction and the sliding speed, m/s, over which it sets in.
+static inline ForceLaw force_law_with_friction(ForceLaw law, double friction, double speed)
+{
+    law.friction = friction;
+    law.friction_speed = speed;
+    return law;
+}
 
 // Whether all numbers of the elastic part are finite and of the right sign.
 bool force_law_is_sound(const ForceLaw *law);

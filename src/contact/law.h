@@ -33,7 +33,8 @@ bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err);
 // driver's speed, rad/s; 0 stands for 1000 rpm.
 ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material, double speed);
 
-// The whole law of a joint as the options say: given stiffness or law, damping, speed floor. Fails
+// The whole law of a joint as the options say: given stiffness or law, damping, speed floor,
+// friction. Fails
 // as law_make does.
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err);
@@ -43,6 +44,9 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint);
 
 // Whether the stiffness of any joint with play is that of the law that the options name.
 bool law_is_asked(const Scenario *scenario);
+
+// Whether any joint with play has friction.
+bool law_has_friction(const Scenario *scenario);
 
 // The law of a joint with play of a scenario. Fails as law_make does, with the joint's name in
 // front, and where a joint that is no pin in its hole has no stiffness that is given.

@@ -16,6 +16,9 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
     if (joint->contact.has_restitution) {
         own.restitution = joint->contact.restitution;
     }
+    if (joint->contact.has_friction) {
+        own.friction = joint->contact.friction;
+    }
     return own;
 }
 
@@ -24,6 +27,17 @@ bool law_is_asked(const Scenario *scenario)
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         if (linkage_has_play(joint) && law_options(&scenario->contact, joint).stiffness == 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool law_has_friction(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (linkage_has_play(joint) && law_options(&scenario->contact, joint).friction > 0.0) {
             return true;
         }
     }

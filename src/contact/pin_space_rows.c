@@ -17,9 +17,10 @@
 // the rows of an end with friction, in order
 enum { ROW_TURN = 2, ROW_AXIAL = 4, ROW_SIDES = 5 };
 
-size_t pin_space_row_count(const PinSpace *place, bool has_friction)
+size_t pin_space_row_count(const PinSpace *place)
 {
-    return has_friction && place->place != PIN_SPACE_COLLAR ? PIN_SPACE_ROWS : PIN_SPACE_PLAIN_ROWS;
+    return place->law.friction > 0.0 && place->place != PIN_SPACE_COLLAR ? PIN_SPACE_ROWS
+                                                                         : PIN_SPACE_PLAIN_ROWS;
 }
 
 static SpaceRow turn_row(int body, Vec3 direction)
@@ -66,10 +67,9 @@ void pin_space_rows_move(const PinSpace *place, const SpaceMotion *motions, PinS
     write_rows(place, motions, rows);
 }
 
-void pin_space_rows_place(const PinSpace *place, const SpaceMotion *motions, bool has_friction,
-                          PinSpaceRows *rows)
+void pin_space_rows_place(const PinSpace *place, const SpaceMotion *motions, PinSpaceRows *rows)
 {
-    rows->count = pin_space_row_count(place, has_friction);
+    rows->count = pin_space_row_count(place);
     if (place->place == PIN_SPACE_COLLAR) {
         rows->across[0] = space_direction(motions, place->hole.body, place->hole.axis);
         rows->across[1] = vec3_normal_to(rows->across[0]);

@@ -25,12 +25,11 @@ typedef struct PinSpaceRows {
     SpaceRow rows[PIN_SPACE_ROWS];
 } PinSpaceRows;
 
-// The number of rows of a place.
-size_t pin_space_row_count(const PinSpace *place, bool has_friction);
+// The number of rows of a place: more where its law has friction.
+size_t pin_space_row_count(const PinSpace *place);
 
 // Freezes the rows of a place.
-void pin_space_rows_place(const PinSpace *place, const SpaceMotion *motions, bool has_friction,
-                          PinSpaceRows *rows);
+void pin_space_rows_place(const PinSpace *place, const SpaceMotion *motions, PinSpaceRows *rows);
 
 // Takes frozen rows along to where the bodies are at another instant, their directions as they are.
 void pin_space_rows_move(const PinSpace *place, const SpaceMotion *motions, PinSpaceRows *rows);

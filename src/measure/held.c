@@ -266,6 +266,7 @@ static Scenario held_scenario(const MappingContact *contact, double step_s,
     clearance->hole_radius = clearance->pin_radius + room;
     held_apply(setting, &scenario);
     scenario.contact.friction = 0.0;
+    scenario.linkage.joints[contact->joint.joint].contact.has_friction = false;
     return scenario;
 }
 

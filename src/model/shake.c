@@ -76,6 +76,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake(&joint->contact.restitution, seed);
         joint->contact.restitution = fmin(joint->contact.restitution, 1.0);
     }
+    if (joint->contact.has_friction) {
+        shake(&joint->contact.friction, seed);
+    }
 }
 
 // The ends of a limited coordinate, and what a pair of gears is made of. The teeth's ratio and the

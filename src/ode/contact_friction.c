@@ -59,7 +59,6 @@ struct FrictionWork {
 
 // The equations of a step: of each row what presses, then what acts along the wall.
 typedef struct System {
-    const ContactOptions *contact;
     const FrictionRow *rows;
     Share *shares;
     size_t count;   // of rows
@@ -146,12 +145,12 @@ static Share start_share(const FrictionRow *row, const double *free, double step
 static double find_force(const System *system, size_t row, double drift)
 {
     Share *share = &system->shares[row];
-    const double speed = system->contact->friction_speed;
+    const double speed = system->rows[row].friction_speed;
     const double mobility = share->own[3];
     if (system->rows[row].pair->is_end) {
         return 0.0;
     }
-    const double most = system->contact->friction * system->forces[2 * row];
+    const double most = system->rows[row].friction * system->forces[2 * row];
     const double stiffness = mobility * most / speed;
     share->theta = stiffness > 2.0 ? 1.0 - 1.0 / stiffness : 0.5;
     const double before = (1.0 - share->theta) * system->rows[row].sliding;
@@ -266,8 +265,8 @@ static void fill_changes(System *system, const Response *response, double step_s
 static void linearise_force(const System *system, size_t number, FrictionRow *row)
 {
     const Share *share = &system->shares[number];
-    const double speed = system->contact->friction_speed;
-    const double most = system->contact->friction * system->forces[2 * number];
+    const double speed = row->friction_speed;
+    const double most = row->friction * system->forces[2 * number];
     const double held = tanh(share->mean / speed);
     const double slope = 1.0 - held * held;
     if (slope > FLAT && most > 0.0) {
@@ -278,11 +277,11 @@ static void linearise_force(const System *system, size_t number, FrictionRow *ro
     }
 }
 
-void contact_friction_find(const ContactOptions *contact, const Response *response,
-                           const Motion *motions, double gravity, const BodyLoad *loads,
-                           double step_s, FrictionWork *work, FrictionRow *rows, size_t count)
+void contact_friction_find(const Response *response, const Motion *motions, double gravity,
+                           const BodyLoad *loads, double step_s, FrictionWork *work,
+                           FrictionRow *rows, size_t count)
 {
-    System system = {contact, rows, work->shares, count, work->forces};
+    System system = {rows, work->shares, count, work->forces};
     response_free(response, motions, gravity, loads, work->free);
     for (size_t i = 0; i < count; i++) {
         rows[i].sliding = contact_friction_sliding(&rows[i]);
@@ -297,8 +296,8 @@ void contact_friction_find(const ContactOptions *contact, const Response *respon
     solve_forces(&system, true);
     for (size_t i = 0; i < count; i++) {
         const double pressing = system.forces[2 * i];
-        rows[i].bound = work->alone[i] > 0.0 ? contact->friction * pressing / work->alone[i]
-                                             : contact->friction;
+        rows[i].bound =
+            work->alone[i] > 0.0 ? rows[i].friction * pressing / work->alone[i] : rows[i].friction;
         rows[i].slip = INFINITY;
         linearise_force(&system, i, &rows[i]);
     }

@@ -81,7 +81,7 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
     if (!touch_list(scenario, &places, &count, err)) {
         return false;
     }
-    const bool has_friction = scenario->contact.friction > 0.0;
+    const bool has_friction = law_has_friction(scenario);
     rows->rows = zeroed(count, sizeof *rows->rows);
     rows->friction = zeroed(count, sizeof *rows->friction);
     rows->numbers = zeroed(count, sizeof *rows->numbers);
@@ -123,7 +123,9 @@ FrictionRow contact_rows_friction(const ContactRows *rows, size_t number)
         .normal = row->normal,
         .closing = row->closing,
         .cfm = row->contact.surface.soft_cfm,
-        .bound = rows->scenario->contact.friction,
+        .friction = row->law.friction,
+        .friction_speed = row->law.friction_speed,
+        .bound = row->law.friction,
         .slip = INFINITY,
     };
 }
@@ -166,7 +168,7 @@ static void find_friction(ContactRows *rows, double step_s)
     const Motion *motions = is_solved ? contact_mass_place(&rows->mass) : NULL;
     if (motions != NULL) {
         const Applied *applied = &rows->world->applied;
-        contact_friction_find(options, &rows->mass.response, motions, rows->scenario->gravity,
+        contact_friction_find(&rows->mass.response, motions, rows->scenario->gravity,
                               applied->is_any ? applied->loads : NULL, step_s, rows->work, found,
                               count);
     }
@@ -194,7 +196,7 @@ static void make_row(ContactRows *rows, size_t number, double step_s)
 // Makes the rows of all places that touch.
 static void make_contact_rows(ContactRows *rows, double step_s)
 {
-    const bool has_friction = rows->scenario->contact.friction > 0.0;
+    const bool has_friction = rows->work != NULL;
     size_t row_count = 0;
     if (has_friction) {
         find_friction(rows, step_s);

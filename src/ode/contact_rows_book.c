@@ -47,7 +47,7 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
         row->dissipated = damped * closing * step_s;
         row->elastic = force_law_energy(&row->law, fmax(0.0, depth));
     }
-    if (rows->scenario->contact.friction > 0.0) {
+    if (row->law.friction > 0.0) {
         row->friction = friction_work(rows, number, force, step_s);
     }
 }

@@ -2,6 +2,7 @@
 #include "ode/impulse_step.h"
 
 #include "base/zeroed.h"
+#include "contact/law.h"
 
 #include <stdlib.h>
 
@@ -11,7 +12,7 @@ static void make_arrays(ImpulseStep *step)
     const size_t joints = step->scenario->linkage.joint_count;
     ImpulseWork *work = step->work = zeroed(1, sizeof *step->work);
     touch_response(&step->scenario->linkage, step->places, step->place_count,
-                   step->scenario->contact.friction > 0.0, &work->there);
+                   law_has_friction(step->scenario), &work->there);
     step->before = zeroed(bodies, sizeof *step->before);
     step->middle = zeroed(bodies, sizeof *step->middle);
     step->after = zeroed(bodies, sizeof *step->after);
@@ -135,13 +136,11 @@ EncounterCoupling impulse_step_coupling(const Response *response)
 static bool init_encounter(ImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
-    const ContactOptions *contact = &scenario->contact;
-    step->encounter =
-        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
+    step->encounter = encounter_start(scenario->ode.contact_phase);
     if (!touch_list(scenario, &step->places, &step->place_count, err)) {
         return false;
     }
-    const bool has_friction = contact->friction > 0.0;
+    const bool has_friction = law_has_friction(scenario);
     touch_response(&scenario->linkage, step->places, step->place_count, has_friction,
                    &step->response);
     for (size_t i = 0; i < step->place_count; i++) {

@@ -49,5 +49,6 @@ typedef struct SpaceContacts {
     SpaceMotion *motions;   // room: by body
     size_t most_rows;
     size_t fallback_count;
+    bool has_friction; // at any place
     bool is_staggered; // positions stand half a step behind the speeds
 } SpaceContacts;

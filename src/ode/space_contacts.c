@@ -33,6 +33,7 @@ void space_contacts_init(SpaceContacts *contacts, World *world, SpaceResponse *r
     contacts->response = response;
     contacts->rows = zeroed(space_response_play_rows(response), sizeof *contacts->rows);
     contacts->is_staggered = is_staggered;
+    contacts->has_friction = law_has_friction(scenario);
     contacts->group = dJointGroupCreate(0);
     contacts->penalty = scenario->contact.penalty > 0.0
                             ? scenario->contact.penalty
@@ -205,7 +206,7 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
         check_stability(contacts, i, step_s);
         fill_contact(contacts, i, step_s);
     }
-    if (contacts->scenario->contact.friction > 0.0) {
+    if (contacts->has_friction) {
         space_friction_rows_add(contacts, motions, seen, step_s);
     }
     const size_t rows = make_joints(contacts);
@@ -224,7 +225,7 @@ static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotio
     }
     const PinSpace *place = &contacts->places[number];
     const PinSpacePose after = pin_space_pose(place, motions);
-    if (contacts->scenario->contact.friction > 0.0 && place->place != PIN_SPACE_COLLAR) {
+    if (place->law.friction > 0.0 && place->place != PIN_SPACE_COLLAR) {
         const Vec3 moved = vec3_sub(after.at_a, contact->pose.at_a);
         const Vec3 sliding = space_friction_rows_sliding(
             place, motions, vec3_add(contact->point, moved), contact->pose.normal);

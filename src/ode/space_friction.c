@@ -32,7 +32,6 @@ typedef struct Share {
 
 // The equations of a step: of each place what presses, then what acts along the wall.
 typedef struct System {
-    const ContactOptions *contact;
     const SpaceFrictionRow *rows;
     size_t count;
     const SpaceResponse *response; // placed: W
@@ -197,8 +196,8 @@ static void find_hold(System *system, size_t place)
 {
     Share *share = &system->shares[place];
     const size_t first = PARTS * place + 1;
-    const double speed = system->contact->friction_speed;
-    const double most = system->contact->friction * system->forces[PARTS * place];
+    const double speed = system->rows[place].friction_speed;
+    const double most = system->rows[place].friction * system->forces[PARTS * place];
     const double m[3] = {at(system, first, first), at(system, first, first + 1),
                          at(system, first + 1, first + 1)};
     const double stiffness = fmax(m[0], m[2]) * most / speed;
@@ -246,9 +245,9 @@ static void make_rows(const System *system, size_t place, double alone, SpaceFri
 {
     const Share *share = &system->shares[place];
     const double *w = share->mean + 1;
-    const double speed = system->contact->friction_speed;
+    const double speed = row->friction_speed;
     const double pressing = system->forces[PARTS * place];
-    const double most = system->contact->friction * pressing;
+    const double most = row->friction * pressing;
     const double size = hypot(w[0], w[1]);
     if (!row->has_friction || !(most > 0.0)) {
         return;
@@ -257,7 +256,7 @@ static void make_rows(const System *system, size_t place, double alone, SpaceFri
         row->along = vec3_scale(1.0 / size, vec3_add(vec3_scale(w[0], direction(row, 1)),
                                                      vec3_scale(w[1], direction(row, 2))));
     }
-    row->bound = alone > 0.0 ? system->contact->friction * pressing / alone : row->bound;
+    row->bound = alone > 0.0 ? row->friction * pressing / alone : row->bound;
     const Vec3 across = vec3_cross(row->normal, row->along);
     const double before[2] = {(1.0 - share->theta) * vec3_dot(row->sliding, row->along),
                               (1.0 - share->theta) * vec3_dot(row->sliding, across)};
@@ -285,12 +284,10 @@ static void find_rows(System *system, double *alone, SpaceFrictionRow *rows)
     }
 }
 
-bool space_friction_find(const ContactOptions *contact, SpaceResponse *response,
-                         const SpaceFrictionStep *step, const size_t *places,
-                         SpaceFrictionRow *rows, size_t count)
+bool space_friction_find(SpaceResponse *response, const SpaceFrictionStep *step,
+                         const size_t *places, SpaceFrictionRow *rows, size_t count)
 {
     System system = {
-        .contact = contact,
         .rows = rows,
         .count = count,
         .response = response,

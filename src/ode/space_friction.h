@@ -12,6 +12,8 @@ typedef struct SpaceFrictionRow {
     Vec3 normal; // unit: direction of the force on the pin
     Vec3 side;   // unit: a direction along the wall
     bool has_friction;
+    double friction;       // 1: the coefficient of the place's law
+    double friction_speed; // m/s, of the law
     double target;     // m/s: separating speed that the row along the normal asks for, (ERP / h) d
     double cfm;        // s/kg, of that row
     Vec3 sliding;      // m/s, of the pin along the wall, before the step
@@ -32,6 +34,5 @@ typedef struct SpaceFrictionStep {
 // Finds the friction of all pins that touch, for a step of ODE's direct solver. `places`: of each
 // row its number in the response, in order, whose places have three rows each. Returns false, the
 // rows untouched, where the response cannot be placed.
-bool space_friction_find(const ContactOptions *contact, SpaceResponse *response,
-                         const SpaceFrictionStep *step, const size_t *places,
-                         SpaceFrictionRow *rows, size_t count);
+bool space_friction_find(SpaceResponse *response, const SpaceFrictionStep *step,
+                         const size_t *places, SpaceFrictionRow *rows, size_t count);

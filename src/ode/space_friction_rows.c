@@ -35,12 +35,14 @@ static SpaceFrictionRow friction_row(SpaceContacts *contacts, size_t number,
         .point = contact->point,
         .normal = normal,
         .side = side,
-        .has_friction = is_end,
+        .has_friction = is_end && place->law.friction > 0.0,
         .target = surface->soft_erp / step_s * contact->depth,
         .cfm = surface->soft_cfm,
         .sliding = contact->sliding,
         .along = speed > 0.0 ? vec3_scale(1.0 / speed, contact->sliding) : side,
-        .bound = contacts->scenario->contact.friction,
+        .friction = place->law.friction,
+        .friction_speed = place->law.friction_speed,
+        .bound = place->law.friction,
         .slip = {INFINITY, INFINITY},
     };
 }
@@ -85,7 +87,7 @@ void space_friction_rows_add(SpaceContacts *contacts, const SpaceMotion *motions
     if (scenario->contact.model == CONTACT_IMPACT && scenario->ode.solver == ODE_DIRECT &&
         count > 0) {
         const SpaceFrictionStep step = {seen, step_s, dWorldGetERP(contacts->world->id)};
-        space_friction_find(&scenario->contact, contacts->response, &step, numbers, found, count);
+        space_friction_find(contacts->response, &step, numbers, found, count);
     }
     for (size_t i = 0; i < count; i++) {
         if (found[i].has_friction) {

@@ -29,9 +29,7 @@ void space_impulse_step_finish(SpaceImpulseStep *step)
 static bool init_encounter(SpaceImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
-    const ContactOptions *contact = &scenario->contact;
-    step->encounter =
-        encounter_start(contact->friction, contact->friction_speed, scenario->ode.contact_phase);
+    step->encounter = encounter_start(scenario->ode.contact_phase);
     step->places = pin_space_list(scenario, &step->place_count, err);
     if (step->places == NULL) {
         return false;
@@ -45,7 +43,7 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
     step->place_count += stop_count;
     for (size_t i = 0; i < step->pin_count; i++) {
         const PinSpace *place = &step->places[i];
-        const size_t rows = pin_space_row_count(place, contact->friction > 0.0);
+        const size_t rows = pin_space_row_count(place);
         const Joint *joint = &scenario->linkage.joints[place->joint];
         const EncounterJoint added = {
             .law = place->law,

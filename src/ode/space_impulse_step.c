@@ -121,7 +121,6 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
     double *play_drift = step->play[0];
     double *ideal_drift = step->ideal[0];
     SpaceMotion *loose = step->motions;
-    const bool has_friction = step->scenario->contact.friction > 0.0;
     for (size_t i = 0; i < step->place_count; i++) {
         const EncounterJoint *joint = &encounter->joints[i];
         const StopSpace *stop = space_impulse_step_stop(step, i);
@@ -130,7 +129,7 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
             step->rows[i].rows[0] = stop_space_row(stop, &step->scenario->linkage, middle);
             step->rows[i].rows[1] = (SpaceRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
         } else {
-            pin_space_rows_place(&step->places[i], middle, has_friction, &step->rows[i]);
+            pin_space_rows_place(&step->places[i], middle, &step->rows[i]);
         }
         memcpy(step->play_rows + joint->first_row, step->rows[i].rows,
                joint->row_count * sizeof *step->play_rows);

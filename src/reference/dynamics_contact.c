@@ -20,7 +20,7 @@
 static void add_friction(const Dynamics *dynamics, size_t number, const TreeState *state,
                          ContactForce *force)
 {
-    const ContactOptions *options = &dynamics->system.scenario->contact;
+    const ForceLaw *law = &dynamics->system.contacts[number].law;
     const int end = 2 * dynamics->places[number].pair;
     const Vec2 tangent = vec2_perp(force->pose.normal);
     Vec2 from_a;
@@ -30,8 +30,7 @@ static void add_friction(const Dynamics *dynamics, size_t number, const TreeStat
         vec2_sub(dynamics_contact_velocity(&dynamics->tree, state, end + 1, from_b),
                  dynamics_contact_velocity(&dynamics->tree, state, end, from_a));
     const double speed = vec2_dot(tangent, sliding);
-    const double held =
-        options->friction * force->press.normal * tanh(speed / options->friction_speed);
+    const double held = law->friction * force->press.normal * tanh(speed / law->friction_speed);
     force->force = vec2_sub(force->force, vec2_scale(held, tangent));
     force->press.friction_power = held * speed;
 }
@@ -122,7 +121,7 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
         const Joint *joint = &dynamics->tree.linkage->joints[contact->joint];
         force->couple = place->touch.sign * coordinate_sense(joint) * force->press.normal;
     }
-    if (dynamics->system.scenario->contact.friction > 0.0 && !dynamics_contact_is_turn(place)) {
+    if (contact->law.friction > 0.0 && !dynamics_contact_is_turn(place)) {
         add_friction(dynamics, number, state, force);
     }
 }

@@ -60,9 +60,8 @@ static PlanePlace place_of(const Dynamics *dynamics, const Touch *touch, size_t 
     return (PlanePlace){
         .touch = *touch,
         .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,
-        .acts_beside =
-            touch->shape == TOUCH_LINE || touch->shape == TOUCH_TEETH ||
-            (dynamics->system.scenario->contact.friction > 0.0 && touch->shape != TOUCH_TURN),
+        .acts_beside = touch->shape == TOUCH_LINE || touch->shape == TOUCH_TEETH ||
+                       (touch->law.friction > 0.0 && touch->shape != TOUCH_TURN),
         .end = touch->clearance - touch->sign * tree_coordinate_origin(joint),
     };
 }

@@ -23,7 +23,7 @@
 // A pressing contact and what its force changes with.
 typedef struct Pressing {
     const Touch *touch;
-    const ContactOptions *options;
+    const ForceLaw *law;
     ContactForce force;
     Vec2 velocity;    // m/s, v
     double bend;      // m, +-|e| over which n turns; infinite of a line
@@ -73,18 +73,17 @@ static void find_friction(const Dynamics *dynamics, const TreeState *state, int 
             pressing->arms[tree->angle_column[body]] += arm;
         }
     }
-    pressing->grip = tanh(sliding / pressing->options->friction_speed);
+    pressing->grip = tanh(sliding / pressing->law->friction_speed);
 }
 
 static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t number)
 {
     const Contact *contact = &dynamics->system.contacts[number];
     const PlanePlace *place = &dynamics->places[number];
-    const ContactOptions *options = &dynamics->system.scenario->contact;
     const Coupling *coupling = dynamics->system.coupling;
     Pressing pressing = {
         .touch = &place->touch,
-        .options = options,
+        .law = &contact->law,
         .bend = INFINITY,
         .centre = dynamics->room.row,
         .arms = dynamics->room.arms,
@@ -113,7 +112,7 @@ static Pressing look_at(const Dynamics *dynamics, const TreeState *state, size_t
                          force_law_tangent(&contact->law, fabs(pose->gap));
     pressing.damping = press_damping(contact, &pressing.force.press);
     loops_pair_row(&dynamics->tree, state, place->pair, pressing.centre);
-    if (options->friction > 0.0) {
+    if (contact->law.friction > 0.0) {
         find_friction(dynamics, state, place->pair, &pressing);
     }
     return pressing;
@@ -131,14 +130,14 @@ static Change change_force(const Pressing *pressing, Vec2 moved, Vec2 faster, do
     const double pressed = pressing->stiffness * deeper + pressing->damping * closing;
     double held = 0.0;
     double friction = 0.0;
-    if (pressing->options->friction > 0.0) {
+    if (pressing->law->friction > 0.0) {
         const double grip = pressing->grip;
         const double slid =
             vec2_dot(tangent, faster) - turned * vec2_dot(normal, velocity) - rolled;
-        const double gripped = (1.0 - grip * grip) * slid / pressing->options->friction_speed;
-        held = pressing->options->friction * pressing->force.press.normal * grip;
+        const double gripped = (1.0 - grip * grip) * slid / pressing->law->friction_speed;
+        held = pressing->law->friction * pressing->force.press.normal * grip;
         friction =
-            pressing->options->friction * (pressed * grip + pressing->force.press.normal * gripped);
+            pressing->law->friction * (pressed * grip + pressing->force.press.normal * gripped);
     }
     // n turns towards t, and t away from n
     const double across = pressed + held * turned;
@@ -183,7 +182,7 @@ static void find_pushed(const Dynamics *dynamics, const TreeState *state, const 
     const Vec2 none = {0.0, 0.0};
     const bool is_line = tree->measures[pressing->pair] == TREE_LINE;
     const Vec2 under = is_line ? tree_pair_gap(tree, state, pressing->pair) : none;
-    const bool has_friction = pressing->options->friction > 0.0;
+    const bool has_friction = pressing->law->friction > 0.0;
     // without friction what its arms push stays zero
     for (int way = 0; way < (has_friction ? DYNAMICS_PUSHED : 2); way++) {
         const Vec2 force = {way == 0 ? 1.0 : 0.0, way == 1 ? 1.0 : 0.0};

@@ -73,8 +73,7 @@ static void find_pose(const SpaceContact *at, const SpaceTreeState *state, Space
 
 // Adds what friction does to an end that presses.
 static void add_friction(const SpaceContact *at, const Contact *contact,
-                         const ContactOptions *options, const SpaceTreeState *state,
-                         SpaceForce *force)
+                         const SpaceTreeState *state, SpaceForce *force)
 {
     const Vec3 wall = vec3_scale(contact->hole_radius, force->outward);
     force->force_a = vec3_add(force->from_a, wall);
@@ -84,16 +83,15 @@ static void add_friction(const SpaceContact *at, const Contact *contact,
                              space_tree_velocity(state, at->place.hole.body, force->force_a)),
                     force->outward);
     const double speed = vec3_length(sliding);
-    const double scale = options->friction_speed;
+    const double scale = contact->law.friction_speed;
     // tanh(x) / x, which is 1 to the last bit below this speed
     const double share = speed > 1e-9 * scale ? tanh(speed / scale) / speed : 1.0 / scale;
-    const double held = options->friction * force->press.normal * share;
+    const double held = contact->law.friction * force->press.normal * share;
     force->force = vec3_sub(force->force, vec3_scale(held, sliding));
     force->press.friction_power = held * speed * speed;
 }
 
-void space_contact_find(const SpaceContact *at, const Contact *contact,
-                        const ContactOptions *options, const SpaceTreeState *state,
+void space_contact_find(const SpaceContact *at, const Contact *contact, const SpaceTreeState *state,
                         SpaceForce *force)
 {
     find_pose(at, state, force);
@@ -116,8 +114,8 @@ void space_contact_find(const SpaceContact *at, const Contact *contact,
     force->force = vec3_scale(-force->press.normal, force->outward);
     force->force_a = force->from_a;
     force->force_b = force->from_b;
-    if (options->friction > 0.0 && !contact->is_collar) {
-        add_friction(at, contact, options, state, force);
+    if (contact->law.friction > 0.0 && !contact->is_collar) {
+        add_friction(at, contact, state, force);
     }
 }
 

@@ -52,8 +52,7 @@ void space_turn_find(const SpaceContact *at, const Contact *contact, const Space
 void space_contact_rebase(const SpaceTree *tree, SpaceContact *contact);
 
 // A place's quantities from the state of the tree. The mode is that of `contact`, the law's.
-void space_contact_find(const SpaceContact *at, const Contact *contact,
-                        const ContactOptions *options, const SpaceTreeState *state,
+void space_contact_find(const SpaceContact *at, const Contact *contact, const SpaceTreeState *state,
                         SpaceForce *force);
 
 // The second rate of the depth, m/s^2, of a place whose bodies have accelerations.

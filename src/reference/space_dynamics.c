@@ -165,7 +165,7 @@ static void find_force(const SpaceDynamics *dynamics, size_t number, SpaceState 
     if (contact->is_turn) {
         space_turn_find(contact, law, &dynamics->tree, &state->tree, force);
     } else {
-        space_contact_find(contact, law, &dynamics->system.scenario->contact, &state->tree, force);
+        space_contact_find(contact, law, &state->tree, force);
     }
 }
 

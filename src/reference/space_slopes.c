@@ -18,7 +18,6 @@
 // A pressing place and what its force changes with.
 typedef struct Pressing {
     const Contact *contact;
-    const ContactOptions *options;
     const SpaceForce *force;
     double stiffness;   // N/m, dN by depth
     double damping;     // N s/m, dN by closing speed
@@ -52,7 +51,6 @@ static void look_at(const SpaceDynamics *dynamics, const SpaceState *state, size
     const SpaceForce *force = &state->forces[number];
     const Contact *contact = &dynamics->system.contacts[number];
     pressing->contact = contact;
-    pressing->options = &dynamics->system.scenario->contact;
     pressing->force = force;
     pressing->stiffness = (1.0 + contact->damping_rate * force->press.closing) *
                           force_law_tangent(&contact->law, fabs(force->press.depth));
@@ -61,8 +59,8 @@ static void look_at(const SpaceDynamics *dynamics, const SpaceState *state, size
     find_points(dynamics, &state->tree, place, force->from_a, force->from_b, pressing->centre);
     find_points(dynamics, &state->tree, place, force->force_a, force->force_b, pressing->wall);
     pressing->share = pressing->share_slope = 0.0;
-    if (pressing->options->friction > 0.0 && !contact->is_collar) {
-        const double scale = pressing->options->friction_speed;
+    if (pressing->contact->law.friction > 0.0 && !contact->is_collar) {
+        const double scale = pressing->contact->law.friction_speed;
         pressing->sliding = vec3_across(
             vec3_sub(space_tree_velocity(&state->tree, place->pin.body, force->force_b),
                      space_tree_velocity(&state->tree, place->hole.body, force->force_a)),
@@ -98,7 +96,7 @@ static Change change_force(const Pressing *pressing, Vec3 moved, Vec3 faster, Ve
         .normal = vec3_sub(vec3_scale(-pressed, outward), vec3_scale(normal, turned)),
     };
     if (pressing->share > 0.0) {
-        const double friction = pressing->options->friction;
+        const double friction = pressing->contact->law.friction;
         // the wall turns: so does what slides along it
         const Vec3 swung = vec3_add(vec3_scale(force->press.closing, turned),
                                     vec3_scale(vec3_dot(pressing->sliding, turned), outward));

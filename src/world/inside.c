@@ -84,17 +84,6 @@ static bool count_side(Answer *answer, const AnswerPlace *of, size_t side, size_
     return true;
 }
 
-// Of all active places.
-static double most_friction(const Answer *answer)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < answer->place_count; i++) {
-        const AnswerPlace *of = &answer->places[i];
-        most = of->is_active ? fmax(most, of->place->friction) : most;
-    }
-    return most;
-}
-
 // The world's encounter with a joint for each active side. What it keeps is laid out by its rows.
 static Encounter *make_encounter(Answer *answer)
 {
@@ -106,11 +95,10 @@ static Encounter *make_encounter(Answer *answer)
     visit_sides(answer, count_side);
     if (encounter->joint_count != answer->side_count || !visit_sides(answer, is_laid_out)) {
         encounter_finish(encounter);
-        *encounter = encounter_start(0.0, 1.0, LOCAL_PHASE);
+        *encounter = encounter_start(LOCAL_PHASE);
         visit_sides(answer, lay_out);
         encounter_make_room(encounter, encounter->row_count);
     }
-    encounter->friction = most_friction(answer);
     return encounter;
 }
 
@@ -147,13 +135,12 @@ static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t
     const Place *place = of->place;
     const Side *from = &place->sides[side];
     *joint = place->inside[side];
-    joint->law = from->law;
+    joint->law = force_law_with_friction(from->law, place->friction,
+                                         place->friction > 0.0 ? place->friction_speed : 1.0);
     joint->shape = place->shape == PLACE_LINE ? TOUCH_LINE : TOUCH_HOLE;
     joint->radial_clearance = place->clearance;
     joint->hole_radius = place->hole_radius;
     joint->has_friction = place->friction > 0.0;
-    joint->friction = place->friction;
-    joint->friction_speed = place->friction > 0.0 ? place->friction_speed : 1.0;
     joint->first_row = laid_out.first_row;
     joint->row_count = laid_out.row_count;
     joint->is_touching = from->is_touching;

@@ -18,9 +18,7 @@ static const double PER_FORCE = 1e-9; // s/kg, CFM of the normal's row
 // along a direction that is neither of the row's; nothing else acts.
 static SpaceFrictionRow pressed_pin(double speed, double friction_speed)
 {
-    Scenario scenario = space_pin(1e-3, 1e-3, 0.0, 1e8);
-    scenario.contact.friction = FRICTION;
-    scenario.contact.friction_speed = friction_speed;
+    const Scenario scenario = space_pin(1e-3, 1e-3, 0.0, 1e8);
     SpaceMotion motion;
     memset(&motion, 0, sizeof motion);
     motion.turn.w = 1.0;
@@ -36,13 +34,15 @@ static SpaceFrictionRow pressed_pin(double speed, double friction_speed)
         .normal = {1.0, 0.0, 0.0},
         .side = {0.0, 1.0, 0.0},
         .has_friction = true,
+        .friction = FRICTION,
+        .friction_speed = friction_speed,
         .target = PRESS * pushed,
         .cfm = PER_FORCE,
         .sliding = motion.velocity,
     };
     const SpaceFrictionStep step = {&motion, STEP_S, 0.2};
     const size_t place = 0;
-    assert_true(space_friction_find(&scenario.contact, &response, &step, &place, &row, 1));
+    assert_true(space_friction_find(&response, &step, &place, &row, 1));
     space_response_finish(&response);
     return row;
 }

@@ -171,9 +171,9 @@ static void a_pressed_disc_is_braked_by_friction(void **state)
     const double friction = 0.1;
     const double sideways = 0.3;
     const double duration_s = 2e-4;
-    Encounter pin = encounter_start(friction, 5e-4, LONE_PIN_PHASE);
+    Encounter pin = encounter_start(LONE_PIN_PHASE);
     const EncounterJoint joint = {
-        .law = sticking(1e-9),
+        .law = force_law_with_friction(sticking(1e-9), friction, 5e-4),
         .radial_clearance = clearance,
         .hole_radius = clearance + radius,
     };

@@ -20,7 +20,7 @@ static inline ForceLaw lone_pin_hertz(double chi)
 
 static inline Encounter lone_pin(ForceLaw law, double phase)
 {
-    Encounter encounter = encounter_start(0.0, 5e-3, phase);
+    Encounter encounter = encounter_start(phase);
     const EncounterJoint joint = {
         .law = law,
         .radial_clearance = ONE_IMPACT_CLEARANCE,

@@ -10,13 +10,14 @@ static const double PRESSED_DEPTH = 1e-7;     // m
 // A pin in its wall, somewhere round the hole, sliding and turning and on its way in.
 static inline Encounter pressed_pin(uint64_t *seed, double friction, size_t rows)
 {
-    Encounter pin = encounter_start(friction, 5e-3, 0.05);
-    encounter_add(&pin, &(EncounterJoint){.joint = 0}, rows);
+    Encounter pin = encounter_start(0.05);
+    ForceLaw law = force_law_power(6.6e10, 1.5);
+    law.hysteresis = 0.7;
+    law.viscous = 30.0;
+    encounter_add(&pin, &(EncounterJoint){.law = force_law_with_friction(law, friction, 5e-3)},
+                  rows);
     encounter_make_room(&pin, rows);
     EncounterJoint *joint = &pin.joints[0];
-    joint->law = force_law_power(6.6e10, 1.5);
-    joint->law.hysteresis = 0.7;
-    joint->law.viscous = 30.0;
     joint->radial_clearance = PRESSED_CLEARANCE;
     joint->hole_radius = 5e-3;
     joint->is_touching = true;

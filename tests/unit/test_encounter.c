@@ -325,9 +325,9 @@ static const double DISC_RADIUS = 5e-3;    // m
 // and the fourth; the hole stands still.
 static Encounter disc(double friction, double sideways)
 {
-    Encounter pin = encounter_start(friction, 5e-3, LONE_PIN_PHASE);
+    Encounter pin = encounter_start(LONE_PIN_PHASE);
     const EncounterJoint joint = {
-        .law = lone_pin_hertz(0.3),
+        .law = force_law_with_friction(lone_pin_hertz(0.3), friction, 5e-3),
         .radial_clearance = DISC_CLEARANCE,
         .hole_radius = DISC_CLEARANCE + DISC_RADIUS,
     };

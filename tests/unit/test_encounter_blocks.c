@@ -37,7 +37,7 @@ static const double *block_of(const void *context, size_t place, size_t other)
 static void make_row(Row *row, ForceLaw law, double closing)
 {
     uint64_t seed = lcg_stirred(3);
-    *row = (Row){.all = encounter_start(0.0, 5e-3, 0.0)};
+    *row = (Row){.all = encounter_start(0.0)};
     row->first_partner = zeroed(PINS + 1, sizeof *row->first_partner);
     row->partners = zeroed(3 * PINS, sizeof *row->partners);
     size_t count = 0;

@@ -15,8 +15,9 @@ static void run(Encounter *encounter)
 // The pin of lone_pin.h against a line. Its rows: the gap, and sliding.
 static Encounter at_line(ForceLaw law, double friction, double sliding)
 {
-    Encounter pin = encounter_start(friction, 5e-3, LONE_PIN_PHASE);
-    const EncounterJoint joint = {.law = law, .shape = TOUCH_LINE};
+    Encounter pin = encounter_start(LONE_PIN_PHASE);
+    const EncounterJoint joint = {.law = force_law_with_friction(law, friction, 5e-3),
+                                  .shape = TOUCH_LINE};
     encounter_add(&pin, &joint, ENCOUNTER_ROWS_PLAIN);
     encounter_make_room(&pin, pin.row_count);
     pin.mobility[0] = 1.0 / ONE_IMPACT_MASS;
@@ -33,9 +34,11 @@ static Encounter at_disc(ForceLaw law, double friction, double off)
 {
     const double reach = RADIUS_A + RADIUS_B;
     const size_t rows = friction > 0.0 ? RESPONSE_ROWS_A_JOINT : ENCOUNTER_ROWS_PLAIN;
-    Encounter pin = encounter_start(friction, 5e-3, LONE_PIN_PHASE);
-    const EncounterJoint joint = {
-        .law = law, .shape = TOUCH_DISC, .radial_clearance = -reach, .hole_radius = -RADIUS_A};
+    Encounter pin = encounter_start(LONE_PIN_PHASE);
+    const EncounterJoint joint = {.law = force_law_with_friction(law, friction, 5e-3),
+                                  .shape = TOUCH_DISC,
+                                  .radial_clearance = -reach,
+                                  .hole_radius = -RADIUS_A};
     encounter_add(&pin, &joint, rows);
     encounter_make_room(&pin, pin.row_count);
     for (size_t i = 0; i < rows; i++) {
@@ -172,7 +175,7 @@ static void discs_that_graze_keep_energy_and_angular_momentum(void **state)
 static void two_corners_at_once_share_the_impact(void **state)
 {
     (void)state;
-    Encounter pin = encounter_start(0.0, 5e-3, LONE_PIN_PHASE);
+    Encounter pin = encounter_start(LONE_PIN_PHASE);
     for (int i = 0; i < 2; i++) {
         const EncounterJoint joint = {
             .law = lone_pin_hertz(0.0), .shape = TOUCH_LINE, .siblings = {-i, 1 - i}};
@@ -201,7 +204,7 @@ enum { BALL_PLACES = 100 };
 // balls that do not meet do not move each other.
 static Encounter balls_in_a_row(ForceLaw law, double gap, size_t reach)
 {
-    Encounter pin = encounter_start(0.0, 5e-3, LONE_PIN_PHASE);
+    Encounter pin = encounter_start(LONE_PIN_PHASE);
     for (size_t i = 0; i < BALL_PLACES; i++) {
         const EncounterJoint joint = {.law = law, .shape = TOUCH_LINE};
         encounter_add(&pin, &joint, ENCOUNTER_ROWS_PLAIN);
@@ -298,7 +301,7 @@ static void a_hundred_balls_hand_an_impact_on(void **state)
 static void forces_between_nodes_are_no_rounding(void **state)
 {
     (void)state;
-    Encounter pin = encounter_start(0.0, 5e-3, LONE_PIN_PHASE);
+    Encounter pin = encounter_start(LONE_PIN_PHASE);
     for (int i = 0; i < 2; i++) {
         const EncounterJoint joint = {.law = lone_pin_hertz(0.3), .shape = TOUCH_LINE};
         encounter_add(&pin, &joint, ENCOUNTER_ROWS_PLAIN);

@@ -52,7 +52,7 @@ static void make_case(unsigned number, Case *made)
     SpaceResponsePlace taken[PIN_SPACE_PLACES];
     for (size_t i = 0; i < made->place_count; i++) {
         made->places[i] = places[i];
-        taken[i] = (SpaceResponsePlace){places[i].joint, pin_space_row_count(&places[i], true)};
+        taken[i] = (SpaceResponsePlace){places[i].joint, pin_space_row_count(&places[i])};
     }
     free(places);
     made->response = test_calloc(1, sizeof *made->response);
@@ -67,7 +67,7 @@ static void make_case(unsigned number, Case *made)
         motion->alpha = drawn(&seed, 100.0);
     }
     for (size_t i = 0; i < made->place_count; i++) {
-        pin_space_rows_place(&made->places[i], made->motions, true, &made->rows[i]);
+        pin_space_rows_place(&made->places[i], made->motions, &made->rows[i]);
         memcpy(made->play_rows + made->play_count, made->rows[i].rows,
                made->rows[i].count * sizeof(SpaceRow));
         made->play_count += made->rows[i].count;

@@ -10,6 +10,7 @@
 #include "commands/check/check_add.h"
 
 #include "base/room.h"
+#include "contact/law.h"
 
 #include <float.h>
 #include <math.h>
@@ -216,7 +217,7 @@ static void add_energy(CheckAdd *work, const Trajectory *run)
     add_real(work, run, "energy", "dissipated_J", energy->dissipated, scale);
     add_real(work, run, "energy", "change_J", energy->change, scale);
     add_real(work, run, "energy", "residual_J", energy->residual, scale);
-    if (work->scenario->contact.friction > 0.0) {
+    if (law_has_friction(work->scenario)) {
         add_real(work, run, "energy", "friction_J", energy->friction, scale);
     }
 }

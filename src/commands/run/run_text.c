@@ -271,6 +271,34 @@ static void write_penalty(const Scenario *scenario, const Joint *joint, Text *te
                 is_given ? "given" : "the paper's estimate", scenario_restitution(scenario, joint));
 }
 
+// The coefficient of all joints with play, or of each where one has its own.
+static void write_friction(const Scenario *scenario, size_t width, Text *text)
+{
+    const Linkage *linkage = &scenario->linkage;
+    bool has_own = false;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        has_own = has_own || linkage->joints[i].contact.has_friction;
+    }
+    if (!law_has_friction(scenario)) {
+        return;
+    }
+    if (!has_own) {
+        text_append(text, "  friction    coefficient %.4g\n", scenario->contact.friction);
+        return;
+    }
+    Alike *alike = alike_start();
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (linkage_has_play(joint) && !linkage_is_torsional(joint)) {
+            char said[40];
+            snprintf(said, sizeof said, "coefficient %.4g",
+                     law_options(&scenario->contact, joint).friction);
+            alike_add(alike, joint->name, said);
+        }
+    }
+    alike_end(alike, "  friction    ", ": ", width, text);
+}
+
 static void write_contact(const Scenario *scenario, size_t width, Text *text)
 {
     Alike *alike = alike_start();
@@ -290,9 +318,7 @@ static void write_contact(const Scenario *scenario, size_t width, Text *text)
         text_finish(&said);
     }
     alike_end(alike, "  contact     ", ": ", width, text);
-    if (scenario->contact.friction > 0.0 && scenario_has_clearance(scenario)) {
-        text_append(text, "  friction    coefficient %.4g\n", scenario->contact.friction);
-    }
+    write_friction(scenario, width, text);
 }
 
 // Why the tolerance asked for is not held to the end.

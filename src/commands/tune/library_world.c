@@ -255,9 +255,10 @@ static bool make_pin(LibraryWorld *world, int number, Err *err)
     pin.hole[1] = hole.y;
     pin.pin[0] = centre.x;
     pin.pin[1] = centre.y;
-    if (scenario->contact.friction > 0.0) {
-        pin.friction = scenario->contact.friction;
-        pin.friction_speed = scenario->contact.friction_speed;
+    const ContactOptions contact = law_options(&scenario->contact, joint);
+    if (contact.friction > 0.0) {
+        pin.friction = contact.friction;
+        pin.friction_speed = contact.friction_speed;
     }
     JpError error;
     JpJoint *made;

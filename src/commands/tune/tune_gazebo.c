@@ -11,6 +11,7 @@
 
 #include "commands/tune/tune_limit.h"
 #include "commands/tune/tune_report.h"
+#include "contact/law.h"
 #include "contact/map.h"
 #include "write/number.h"
 #include "write/xml.h"
@@ -43,6 +44,9 @@ bool tune_gazebo_find(const Tune *tune, TuneGazebo *gazebo)
 static void write_surface(const TuneReport *report, const TuneGazebo *gazebo,
                           const TuneLinear *linear, Text *text)
 {
+    const Scenario *scenario = report->scenario;
+    const Joint *joint = &scenario->linkage.joints[report->tune->contact.joint];
+    const double friction = law_options(&scenario->contact, joint).friction;
     text_append(text,
                 "<!-- in the collision of the pin, and the same in that of the hole -->\n"
                 "<surface>\n"
@@ -62,8 +66,7 @@ static void write_surface(const TuneReport *report, const TuneGazebo *gazebo,
                 number_shortest(gazebo->kp).text, linear->stiffness,
                 number_shortest(gazebo->kd).text, linear->damping,
                 number_shortest(gazebo->min_depth).text, number_shortest(gazebo->max_vel).text,
-                number_shortest(report->scenario->contact.friction).text,
-                number_shortest(report->scenario->contact.friction).text);
+                number_shortest(friction).text, number_shortest(friction).text);
 }
 
 void tune_gazebo_write(const TuneReport *report, Text *text)

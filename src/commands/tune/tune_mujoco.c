@@ -17,6 +17,7 @@
 #include "commands/tune/tune_export.h"
 
 #include "commands/tune/tune_limit.h"
+#include "contact/law.h"
 #include "write/joint_units.h"
 #include "write/number.h"
 #include "write/xml.h"
@@ -75,7 +76,9 @@ bool tune_mujoco_is_finer(const TuneReport *report, const TuneMujoco *mujoco)
 // Appends the words above the document to `text`, and its elements to `parts`.
 static void write_pair(const TuneReport *report, const TuneMujoco *mujoco, Text *text, Text *parts)
 {
-    const double friction = report->scenario->contact.friction;
+    const Scenario *scenario = report->scenario;
+    const Joint *joint = &scenario->linkage.joints[report->tune->contact.joint];
+    const double friction = law_options(&scenario->contact, joint).friction;
     char slides[FRICTION_SIZE] = "";
     if (friction > 0.0) {
         // both directions of sliding; MuJoCo's own numbers for torsion and rolling, which a planar

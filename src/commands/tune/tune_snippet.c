@@ -106,8 +106,7 @@ static void write_stop(const Joint *joint, const ForceLaw *law, OdeMap map, Text
     text_append(text, "}\n\n");
 }
 
-static void write_surface(const Joint *joint, const ForceLaw *law, const Scenario *scenario,
-                          OdeMap map, Text *text)
+static void write_surface(const Joint *joint, const ForceLaw *law, OdeMap map, Text *text)
 {
     static const RowLines SURFACE = {"surface->soft_erp = ", "surface->soft_cfm = ", ""};
     if (joint->kind == JOINT_GEAR) {
@@ -124,11 +123,11 @@ static void write_surface(const Joint *joint, const ForceLaw *law, const Scenari
     text_append(text, "(\n    dSurfaceParameters *surface, double depth, double v0)\n{\n");
     write_elastic(law, false, text);
     write_damping(law, false, text);
-    if (scenario->contact.friction > 0.0 && joint->kind != JOINT_GEAR) {
+    if (law->friction > 0.0 && joint->kind != JOINT_GEAR) {
         text_append(text,
                     "    surface->mode = dContactSoftERP | dContactSoftCFM | dContactApprox1;\n"
                     "    surface->mu = %s;\n",
-                    number_shortest(scenario->contact.friction).text);
+                    number_shortest(law->friction).text);
     } else {
         text_append(text, "    surface->mode = dContactSoftERP | dContactSoftCFM;\n"
                           "    surface->mu = 0.0; // one row, along the normal\n");
@@ -177,7 +176,7 @@ bool tune_snippet_write(const TuneReport *report, const TuneTrial *trial, Text *
             if (has_stops(&linkage->joints[i])) {
                 write_stop(&linkage->joints[i], &law, map, &lines);
             } else {
-                write_surface(&linkage->joints[i], &law, scenario, map, &lines);
+                write_surface(&linkage->joints[i], &law, map, &lines);
             }
         }
     }

@@ -254,7 +254,7 @@ static bool write_pin(const Scenario *scenario, int number, Text *text, Err *err
 {
     const Linkage *linkage = &scenario->linkage;
     const Joint *joint = &linkage->joints[number];
-    const ContactOptions *contact = &scenario->contact;
+    const ContactOptions contact = law_options(&scenario->contact, joint);
     Made made = begin_made(linkage, number, "JpPinInHole", "pin", "contact", text);
     const char *pin = made.options.data;
     write_field(pin, "hole_radius", joint->clearance.hole_radius, "m", text);
@@ -262,9 +262,9 @@ static bool write_pin(const Scenario *scenario, int number, Text *text, Err *err
     write_point(pin, "hole", tune_world_local(linkage, joint->body_a, joint->anchor_a), text);
     write_point(pin, "pin", tune_world_local(linkage, joint->body_b, joint->anchor_b), text);
     const bool is_done = write_contact(scenario, joint, made.contact.data, text, err);
-    if (contact->friction > 0.0) {
-        write_field(pin, "friction", contact->friction, "", text);
-        write_field(pin, "friction_speed", contact->friction_speed, "m/s", text);
+    if (contact.friction > 0.0) {
+        write_field(pin, "friction", contact.friction, "", text);
+        write_field(pin, "friction_speed", contact.friction_speed, "m/s", text);
     }
     tune_world_body(linkage, joint->body_a, &made.on);
     text_append(&made.on, ", ");
