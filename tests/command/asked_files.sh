@@ -3,6 +3,7 @@
 # file, taken from the help of the commands, over several kinds of case, quiet: a file that is not
 # there needs another status and a reason, and one that is refused is not begun. Prints TAP.
 set -u
+export MALLOC_PERTURB_=0 # see tests/support/program.h
 program=$1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT

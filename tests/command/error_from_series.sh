@@ -3,6 +3,7 @@
 # columns of two series, for seeded random cases and two in space; a changed column must be seen.
 # Prints TAP. Called with the program, random_case and error_from_series.py.
 set -u
+export MALLOC_PERTURB_=0 # see tests/support/program.h
 jointplay=$(realpath "$1")
 random_case=$(realpath "$2")
 recompute=$(realpath "$3")

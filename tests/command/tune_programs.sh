@@ -4,6 +4,7 @@
 # another frame. Prints TAP. Called with the program, random_case, program_error and the library's
 # folder; in PROGRAMS the kinds and seeds, as "four-bar:3 limits:7".
 set -u
+export MALLOC_PERTURB_=0 # see tests/support/program.h
 jointplay=$(realpath "$1")
 random_case=$(realpath "$2")
 program_error=$(realpath "$3")
