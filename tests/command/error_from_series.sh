@@ -26,7 +26,7 @@ agrees() {
 import json, math, subprocess, sys
 error = json.load(open("run.json"))["runs"][1]["error"]
 horizon = str(error["horizon_s"] or math.inf)
-words = ["python3", sys.argv[1], "s-ode.csv", "s-reference.csv", horizon, "1e-12"]
+words = [sys.executable, sys.argv[1], "s-ode.csv", "s-reference.csv", horizon, "1e-12"]
 found = [float(x) for x in subprocess.run(words, capture_output=True, text=True).stdout.split()]
 printed = [error["max"], error["max_in_horizon"]]
 # sums of squares may be rounded in another order
