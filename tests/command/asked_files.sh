@@ -66,7 +66,7 @@ words_of() {
     run) echo "run $2" ;;
     compare) echo "compare $2 --schemes direct/plain --steps 20us" ;;
     map) echo "map $2 --steps 20us" ;;
-    tune) echo "tune $2 --schemes direct/plain --error 0.4 --time-limit 2s" ;;
+    tune) echo "tune $2 --schemes direct/plain --error 0.4 --cost steps --time-limit 2s" ;;
     check) echo "check $2 --quick --baselines b" ;;
     esac
 }
