@@ -42,8 +42,8 @@ static void the_inverse_is_right_to_rounding_in_every_range(void **state)
     assert_close(normal_below(-0.25), 0.40129367431707628, 1e-15);
 }
 
-// There and back: the error of z, some five roundings of it, is z^2 times as large in the share of a
-// tail.
+// There and back: the error of z, some five roundings of it, is z^2 times as large in the share of
+// a tail.
 static void a_share_is_that_of_its_quantile(void **state)
 {
     (void)state;

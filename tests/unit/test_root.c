@@ -182,7 +182,8 @@ static void at_a_minimum_the_function_rises_to_both_sides(void **state)
             continue;
         }
         assert_true(wild(x, c) <= wild(middle, c));
-        // the width that is left of the interval, on both sides of the minimum, and to be beyond both
+        // the width that is left of the interval, on both sides of the minimum, and to be beyond
+        // both
         const double reach = 4.0 * sqrt(DBL_EPSILON) * (high - low);
         if (!is_lowest(c, x, reach)) {
             fail_msg("kind %d: %.17g of %.17g to %.17g is no minimum", (int)c[0], x, low, high);
