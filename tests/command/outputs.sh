@@ -45,7 +45,7 @@ printf 'time,force\n0,1\n' >measured.csv
 printf '<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg"></svg>\n' >drawing.svg
 # what stays the same in every comparison, search and so on
 compare='--schemes direct/plain/midpoint --steps 20us'
-tune='--schemes direct/plain --error 0.3 --cost steps'
+tune='--schemes direct/plain --error 0.3'
 {
     "$program" study s.yaml --quiet && "$program" compare k.yaml $compare --store j.jsonl --quiet &&
         "$program" check i.yaml --bless --baselines b --quiet
