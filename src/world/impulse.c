@@ -28,6 +28,7 @@
 #include "world/impulse.h"
 
 #include "world/closing.h"
+#include "world/coarse.h"
 #include "world/inside.h"
 #include "world/opening.h"
 #include "world/recall.h"
@@ -165,7 +166,13 @@ static JpStatus make_rounds(Answer *answer, double step, bool *is_done, JpError 
             recall_note(world, is_promised);
         }
         if (is_promised || round == ROUNDS) {
-            world->stats.fallbacks += is_promised ? 0 : 1;
+            if (!is_promised) {
+                world->stats.fallbacks++;
+                coarse_note(world,
+                            "the world's response to the contacts was not found in %d rounds of "
+                            "the step of %g s: bounds are passed in it",
+                            (int)ROUNDS, step);
+            }
             return JP_OK;
         }
         memcpy(answer->base, answer->found, size);

@@ -12,6 +12,7 @@
 // (h/J) (D - s F). The map's row is of the rate of q - p:
 //     s (q' - p') + CFM F = (ERP/h) d    is    s q' + (CFM + h/J) F = (ERP/h) d + s (p + (h/J) D)
 // a row of ODE's bodies alone.
+#include "world/coarse.h"
 #include "world/fault.h"
 #include "world/found.h"
 #include "world/geoms.h"
@@ -111,7 +112,13 @@ static JpStatus make_row(JpJoint *joint, Place *place, Side *side, double step, 
     }
     row_make(joint, place, side, row.cfm + yield, speed, step);
     world->stats.rows++;
-    world->stats.fallbacks += falls_back ? 1 : 0;
+    if (falls_back) {
+        world->stats.fallbacks++;
+        coarse_note(world,
+                    "a contact's oscillation is too fast for the step of %g s: its row presses "
+                    "as the textbook's map has it",
+                    step);
+    }
     return JP_OK;
 }
 
@@ -235,6 +242,10 @@ static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, 
     }
     bodies_put_back(&world->bodies);
     world->stats.fallbacks++;
+    coarse_note(world,
+                "the contacts within the step of %g s take more than the limit of work: they "
+                "were made with rows",
+                step);
     return step_with_rows(world, step, error);
 }
 
@@ -370,6 +381,7 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     REFUSAL_TRY(gather(world, error));
     REFUSAL_TRY(check_bodies(world, step, false, error));
     found_keep(world);
+    coarse_begin(world);
     Answer answer = {0};
     const JpStatus status = make_step_guarded(world, step, &answer, error);
     if (status != JP_OK) {
@@ -381,7 +393,23 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     if (status != JP_OK) {
         return status;
     }
+    world->found.is_kept = true;
     world->stats.steps++;
     world->last_step = step;
+    return coarse_end(world, error);
+}
+
+JpStatus jp_world_undo(JpWorld *world, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    REFUSAL_TRY(check_joints(world, error));
+    if (!world->found.is_kept) {
+        return refusal(error, JP_ERROR_NONE,
+                       "there is no step to take back: the last one failed or was taken back, or "
+                       "joints or bodies have changed since");
+    }
+    Answer none = {0};
+    found_put_back(world, &none);
+    world->found.is_kept = false;
     return refusal_none(error);
 }
