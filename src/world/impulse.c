@@ -133,11 +133,15 @@ static JpStatus find_contacts(Answer *answer, double step, bool can_recall, bool
         recall_columns(answer);
     }
     do {
+        *is_found = answer_is_within_work(answer);
+        if (!*is_found) {
+            break;
+        }
         REFUSAL_TRY(answer_find_columns(answer, step, error));
         set_free(answer, step);
         REFUSAL_TRY(inside_run(answer, step, is_found, error));
     } while (*is_found && activate_near(answer, step));
-    if (!answer->is_recalled && !recall_keep(answer)) {
+    if (*is_found && !answer->is_recalled && !recall_keep(answer)) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the answers of a step");
     }
     return JP_OK;

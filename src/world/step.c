@@ -18,11 +18,14 @@
 #include "world/geoms.h"
 #include "world/gyration.h"
 #include "world/impulse.h"
+#include "world/inside.h"
 #include "world/joints.h"
 #include "world/opening.h"
+#include "world/pin.h"
 #include "world/row.h"
 #include "world/threads.h"
 #include "world/trial.h"
+#include "world/work.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -75,12 +78,50 @@ static JpStatus check_contact(const Side *side, double step, JpError *error)
                          side->depth, step);
 }
 
+// Steps to a contact, below which rows have its force wrong by more than some percent.
+static const double STEPS_TO_A_CONTACT = 3.0;
+
+// Whether an undamped impact at the speed of the onset lasts less than so many steps: it lasts pi
+// times the depth d that it reaches over its speed v on a linear spring, and 2.94 times on Hertz's.
+// At d the law has taken up the energy v^2 / (2 mobility), which is seen at the depth of so many
+// steps.
+static bool is_too_short(const Side *side, double mobility, double step)
+{
+    const double speed = side->impact_speed;
+    const double depth = STEPS_TO_A_CONTACT * step * speed / M_PI;
+    const double energy = 0.5 * speed * speed / mobility;
+    return speed > 0.0 && !(force_law_energy(&side->law, depth) <= energy);
+}
+
+// Notes a contact that has just begun and that the step is too long for. With free bodies it is as
+// short as it can be; where that is too short, the world's own mobility is found by trial.
+static void note_short_contact(const JpJoint *joint, const Place *place, const Side *side,
+                               double step)
+{
+    JpWorld *world = joint->world;
+    double mobility = play_mobility(joint, place);
+    if (!side->begins || !is_too_short(side, mobility, step)) {
+        return;
+    }
+    const double force = side->sign * force_law_elastic(&side->law, side->depth);
+    double found = 0.0;
+    if (!world->options.is_quick && force != 0.0 && isfinite(force) &&
+        trial_mobility(world, &place->along, force, step, &found, NULL) == JP_OK) {
+        mobility = found + 1.0 / joint->rotor.inertia;
+    }
+    if (is_too_short(side, mobility, step)) {
+        coarse_note(world, "a contact began that lasts less than %g steps of %g s",
+                    STEPS_TO_A_CONTACT, step);
+    }
+}
+
 // The mobility with which a side meets the stability limit: of free bodies where that is low
 // enough, or, once in a contact, found by trial.
 static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
     const Map *map = map_get(ODE_MAP_MIDPOINT);
     REFUSAL_TRY(check_contact(side, step, error));
+    note_short_contact(joint, place, side, step);
     if (side->mobility > 0.0 || side_is_stable(side, map, play_mobility(joint, place), step)) {
         return JP_OK;
     }
@@ -178,12 +219,24 @@ static void find_sides(JpJoint *joint, double earlier, double step)
     }
 }
 
+static JpStatus check_work(const JpWorld *world, double step, JpError *error)
+{
+    const double work = work_of_rows(world);
+    return work <= world->work_most
+               ? JP_OK
+               : refusal(error, JP_ERROR_WORK,
+                         "the rows of the contacts in the step of %g s take work of %.3g, of at "
+                         "most %.3g; jp_world_set_work_limit allows more",
+                         step, work, world->work_most);
+}
+
 static JpStatus make_rows(JpWorld *world, double step, JpError *error)
 {
     const double earlier = is_staggered(world) ? 0.5 * step : 0.0;
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         find_sides(joint, earlier, step);
     }
+    REFUSAL_TRY(check_work(world, step, error));
     // trials see the world without our rows
     JpStatus status = each_touching(world, find_mobility, step, error);
     return status == JP_OK ? each_touching(world, make_row, step, error) : status;
@@ -269,6 +322,9 @@ static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse
     if (is_staggered(world)) {
         gyration_finish(&world->bodies, step);
     }
+    if (is_impulse) {
+        inside_judge(answer);
+    }
 }
 
 // Opens ODE's joints as far as they stay open at the step.
@@ -326,11 +382,22 @@ static JpStatus check_joints_after(const JpWorld *world, double step, JpError *e
     return JP_OK;
 }
 
+static JpStatus check_pins(const JpWorld *world, PinMoment moment, JpError *error)
+{
+    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        if (joint->kind == PLAY_PIN) {
+            REFUSAL_TRY(pin_check_inside(joint, moment, error));
+        }
+    }
+    return JP_OK;
+}
+
 static JpStatus make_step(JpWorld *world, double step, Answer *answer, JpError *error)
 {
     go_there(world, step);
     REFUSAL_TRY(step_bodies(world, step, answer, error));
     REFUSAL_TRY(check_bodies(world, step, true, error));
+    REFUSAL_TRY(check_pins(world, PIN_STEPPED, error));
     return check_joints_after(world, step, error);
 }
 
@@ -380,6 +447,7 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     REFUSAL_TRY(check_joints(world, error));
     REFUSAL_TRY(gather(world, error));
     REFUSAL_TRY(check_bodies(world, step, false, error));
+    REFUSAL_TRY(check_pins(world, PIN_FOUND, error));
     found_keep(world);
     coarse_begin(world);
     Answer answer = {0};
