@@ -418,9 +418,9 @@ typedef struct JpPinInHole {
  * no friction, a friction speed of 1e-3. */
 JP_API JpPinInHole jp_pin_default(void);
 
-/* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of its
- * hole, or a collar, by more than the play there or a hundredth of the pin's radius, whichever is
- * more. */
+/* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of
+ * its hole, or a collar, by more than the play there or a hundredth of the pin's radius, whichever
+ * is more. */
 JP_API JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
                               JpJoint **created, JpError *error);
 
