@@ -5,10 +5,11 @@
  * seconds, radians. What is said of a mass, a force and a length holds of an inertia, a torque and
  * an angle alike.
  *
- * A function that can fail returns a JpStatus, JP_OK being 0, and fills in the JpError behind its
- * last argument, which may be NULL, with one sentence. What it was to fill in is untouched then,
- * and a world is as it was before the call. With JP_OK all numbers are finite, but for gaps to
- * sides that do not exist.
+ * A function that can fail returns a JpStatus and fills in the JpError behind its last argument,
+ * which may be NULL, with one sentence. Errors are above JP_OK, which is 0: what the function was
+ * to fill in is untouched then, and a world is as it was before the call. JP_COARSE, below JP_OK,
+ * is of jp_world_step alone and no error. With both of these all numbers are finite, but for gaps
+ * to sides that do not exist.
  *
  * No function prints, or ends your program. ODE does both where its own numbers go wrong. From the
  * first jp_world_create to the last jp_world_destroy the library has handlers of its own for that
@@ -38,6 +39,9 @@ extern "C" {
 #endif
 
 typedef enum JpStatus {
+    /* the step was made, but it is too long for what happens in it: forces and motion may be wrong
+     * by much; jp_world_undo takes it back */
+    JP_COARSE = -1,
     JP_OK = 0,
     JP_ERROR_ARGUMENT, /* an argument that no call may have: NULL, NaN, out of range */
     JP_ERROR_NONE,     /* what is asked for does not exist: no such step, no such spring */
@@ -45,6 +49,8 @@ typedef enum JpStatus {
     /* the world cannot be stepped: a number in it is too large or not finite, it has bodies that
      * are not known, a joint's body was destroyed, or ODE failed */
     JP_ERROR_WORLD,
+    JP_ERROR_OUTSIDE, /* a pin is outside its hole, or would be after the step */
+    JP_ERROR_WORK,    /* the step takes more than the limit of work, however it is made */
 } JpStatus;
 
 enum { JP_ERROR_SIZE = 256 };
@@ -270,11 +276,36 @@ JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
 
 /* One step, s, from 1e-30 to 1e30, in place of dWorldStep. Forces that were added to bodies act in
  * it. Positions, velocities and forces above 1e50 are refused. Where it fails, bodies, forces and
- * joints are as before, so that it may be tried again, shorter or with the cause removed. A step
+ * joints are as before, so that it may be tried again, shorter or with the cause removed.
+ *
+ * JP_COARSE: the step was made, but one of these holds, which the sentence says:
+ *  - a row of a contact is beyond the limit of its map and presses as the textbook's;
+ *  - with rows, an impact or half an oscillation of a contact lasts less than three steps;
+ *  - with JP_STEPPING_IMPULSE, the response of the world was not found in four rounds, or at the
+ *    step's end the bodies are so far from where its contacts have brought them that a force is
+ *    uncertain by a hundredth, or the contacts take more than the limit of work or local steps than
+ *    make sense, and were made with rows.
+ * JP_ERROR_OUTSIDE: a pin is further beyond the wall of its hole, or a collar, than ten times what
+ * jp_pin_create allows, before the step or after it.
+ * A step
  * that ODE breaks off costs the memory that ODE had in use for it, once each time. With a threading
  * implementation of yours (keeps_threading) ODE still ends the program where it fails in a thread
  * of that, and the world must not be stepped again after a step that ODE broke off. */
 JP_API JpStatus jp_world_step(JpWorld *world, double step, JpError *error);
+
+/* Takes back the last step, of any status, once: bodies, the forces on them, joints and counts are
+ * as before it, so that it may be made anew in shorter ones. JP_ERROR_NONE where there is none, or
+ * where bodies or joints were made known to the world or destroyed by functions of this library
+ * since. Bodies must not have been destroyed since. What ODE alone counts, such as the time after
+ * which a body is disabled, stays. */
+JP_API JpStatus jp_world_undo(JpWorld *world, JpError *error);
+
+/* How much one step may take, in operations on one pair of rows or bodies; > 0. The default,
+ * JP_WORK_DEFAULT, is below about half a second on a machine of 2020. It counts the same on every
+ * machine. What would take more is made with rows (JP_COARSE), and fails with JP_ERROR_WORK if that
+ * takes more, too. */
+#define JP_WORK_DEFAULT 2e8
+JP_API JpStatus jp_world_set_work_limit(JpWorld *world, double work, JpError *error);
 
 typedef struct JpWorldStats {
     size_t steps;       /* of jp_world_step */
@@ -282,6 +313,7 @@ typedef struct JpWorldStats {
     size_t rows;        /* contacts of the library's joints, summed over the steps */
     size_t fallbacks;   /* rows beyond the limit of their map, which used the textbook's; with
                            JP_STEPPING_IMPULSE steps in which the world did not respond linearly */
+    size_t coarse;      /* steps with JP_COARSE */
 } JpWorldStats;
 JP_API JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpError *error);
 
@@ -386,7 +418,9 @@ typedef struct JpPinInHole {
  * no friction, a friction speed of 1e-3. */
 JP_API JpPinInHole jp_pin_default(void);
 
-/* One of the bodies may be NULL, the world. */
+/* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of
+ * its hole, or a collar, by more than the play there or a hundredth of the pin's radius, whichever
+ * is more. */
 JP_API JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
                               JpJoint **created, JpError *error);
 

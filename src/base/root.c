@@ -1,8 +1,8 @@
 // Where does a function of one variable cross zero, and where is it smallest?
 //
 // Brent's two methods: interpolation wherever it gets on faster than halving or golden sections
-// would, those otherwise. Both do the operations of GSL's brent in its order, so that numbers made
-// with it stay what they were; tests/unit/test_root.c holds them against it to the last bit.
+// would, those otherwise. Both do the operations of the two brent methods of GSL 2.7.1 in their
+// order, and gave the same values to the last bit.
 // Source: Brent, Algorithms for Minimization without Derivatives, 1973, chapters 4 and 5.
 #include "base/root.h"
 

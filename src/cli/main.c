@@ -25,8 +25,8 @@ static bool print_versions(const char *value, void *options, Err *err)
     (void)value;
     (void)options;
     (void)err;
-    printf("jointplay %s\nODE %s, libccd %s, GSL %s\n", JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION,
-           JOINTPLAY_CCD_VERSION, JOINTPLAY_GSL_VERSION);
+    printf("jointplay %s\nODE %s, libccd %s\n", JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION,
+           JOINTPLAY_CCD_VERSION);
     return true;
 }
 

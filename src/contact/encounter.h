@@ -14,6 +14,7 @@
 #include "contact/pin_hole.h"
 #include "contact/touch.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -99,6 +100,8 @@ typedef struct Encounter {
     double *losses;     // by node: J lost in damping and in friction since the start
     uint64_t *touching; // by node: which joints touch from there on, a word for each 64
     size_t evaluations; // of the forces, since the beginning
+    double work_done;   // since it was set to 0: operations on one pair of rows
+    double work_most;   // at which a step is given up; 0: never
 } Encounter;
 
 // How one place is at an instant, in its first two rows. The size of the eccentricity is less than
@@ -128,6 +131,16 @@ void encounter_finish(Encounter *encounter);
 static inline double *encounter_mobility(const Encounter *encounter, size_t row, size_t column)
 {
     return encounter->mobility + encounter->origin + row * encounter->pitch + column;
+}
+
+// Counts what one evaluation of the forces takes: of each row a force of its law, about as much as
+// on so many pairs of rows, and what it does to the others.
+enum { ENCOUNTER_ROW_WORK = 64 };
+static inline void encounter_count_work(Encounter *encounter)
+{
+    const double rows = (double)encounter->row_count;
+    encounter->work_done +=
+        rows * (ENCOUNTER_ROW_WORK + fmin(rows, 2.0 * (double)encounter->reach + 1.0));
 }
 
 // The number of rows, all joints together.

@@ -153,6 +153,7 @@ void encounter_force_find_touching(Encounter *encounter, const EncounterPoint *p
         }
     }
     encounter->evaluations += is_any ? 1 : 0;
+    encounter_count_work(encounter);
 }
 
 void encounter_force_find(Encounter *encounter, double time_s, const double *impulse,

@@ -207,7 +207,8 @@ bool encounter_run(Encounter *encounter, double duration)
     encounter_nodes_add(encounter, from);
     const double rounding_s = 1e-14 * duration;
     while (duration - from->time_s > rounding_s) {
-        if (encounter->node_count > NODE_MAX || encounter->event_count > encounter->event_most) {
+        if (encounter->node_count > NODE_MAX || encounter->event_count > encounter->event_most ||
+            (encounter->work_most > 0.0 && encounter->work_done > encounter->work_most)) {
             return false;
         }
         size_t events;

@@ -188,6 +188,7 @@ static void evaluate_stages(Encounter *encounter, EncounterStages *stages,
         differentiate(encounter, stages, i, from->time_s + ENCOUNTER_NODE[i] * width_s,
                       stages->impulse[i], stages->moment[i], is_smooth);
         encounter->evaluations++;
+        encounter_count_work(encounter);
     }
 }
 
@@ -220,6 +221,14 @@ static bool factor_stages(EncounterStages *stages, double width_s, bool from_sta
         }
     }
     return banded_factor(&stages->matrix);
+}
+
+// Counts what it takes to make and to factor Newton's matrix: of a full one count^3 / 3.
+static void count_factor(Encounter *encounter, const EncounterStages *stages)
+{
+    const double count = (double)stages->matrix.count;
+    const double reach = fmin(count, 2.0 * (double)stages->matrix.reach + 1.0);
+    encounter->work_done += count * reach * (reach / 3.0 + ENCOUNTER_STAGES);
 }
 
 // Newton's next change of what the stages have moved. Returns the largest over what is allowed.
@@ -322,6 +331,7 @@ static bool iterate_stages(Encounter *encounter, EncounterStages *stages,
 {
     for (int i = 0; i < NEWTON_MOST; i++) {
         evaluate_stages(encounter, stages, from, width_s, is_smooth);
+        count_factor(encounter, stages);
         if (!factor_stages(stages, width_s, false)) {
             return false;
         }

@@ -5,6 +5,7 @@
 #include "world/answer.h"
 
 #include "world/trial.h"
+#include "world/work.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,6 +13,12 @@
 
 // of what turns an impact round: less of a push is lost in rounding
 static const double NEAR = 1e-3;
+
+// of forces, in the shortest of contacts, with what it takes to read two nodes of it
+static const double EVALUATIONS_LEAST = 100.0;
+
+// of the rate of a row, in pairs of rows
+static const double RATE_WORK = 30.0;
 
 enum { BODY_NUMBERS = 6, INSIDE_ROWS = 4 /* of the encounter, at most, to one here */ };
 
@@ -199,12 +206,29 @@ static JpStatus find_column(Answer *answer, const AnswerPlace *of, size_t own, d
     return status;
 }
 
+bool answer_is_within_work(const Answer *answer)
+{
+    const JpWorld *world = answer->world;
+    double active = 0.0;
+    double unknown = 0.0;
+    for (size_t i = 0; i < answer->place_count; i++) {
+        const AnswerPlace *of = &answer->places[i];
+        active += of->is_active ? (double)of->place->row_count : 0.0;
+        unknown += of->is_active && !of->is_known ? (double)of->place->row_count : 0.0;
+    }
+    const double trial = RATE_WORK * (double)answer->row_count + work_of_step(world);
+    return world->work + unknown * trial + EVALUATIONS_LEAST * active * active <= world->work_most;
+}
+
 // What impulses do to the rate of a row.
 double answer_to(const Answer *answer, const double *impulses, size_t row)
 {
     double sum = 0.0;
     for (size_t i = 0; i < answer->row_count; i++) {
-        sum += answer->columns[i * answer->row_count + row] * impulses[i];
+        // most rows have none, and reading their answers takes long where rows are many
+        if (impulses[i] != 0.0) {
+            sum += answer->columns[i * answer->row_count + row] * impulses[i];
+        }
     }
     return sum;
 }

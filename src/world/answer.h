@@ -64,5 +64,9 @@ void answer_take(const Answer *answer);
 // are known.
 JpStatus answer_find_columns(Answer *answer, double step, JpError *error);
 
+// Whether the answers that are not known yet, and contacts in all active places, can be found
+// within the limit of work.
+bool answer_is_within_work(const Answer *answer);
+
 // What impulses in all rows do to the rate of one.
 double answer_to(const Answer *answer, const double *impulses, size_t row);

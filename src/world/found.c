@@ -46,6 +46,8 @@ static void put_back_joint(JpJoint *joint)
 void found_keep(JpWorld *world)
 {
     WorldFound *found = &world->found;
+    found->is_kept = false;
+    found->last_step = world->last_step;
     dWorldGetGravity(world->id, found->gravity);
     found->erp = dWorldGetERP(world->id);
     found->stats = world->stats;
@@ -62,6 +64,7 @@ void found_put_back(JpWorld *world, Answer *answer)
     closing_put_back(&answer->closing);
     dWorldSetGravity(world->id, found->gravity[0], found->gravity[1], found->gravity[2]);
     dWorldSetERP(world->id, found->erp);
+    world->last_step = found->last_step;
     world->stats = found->stats;
     world->pause = found->pause;
     bodies_put_back_all(&world->bodies);

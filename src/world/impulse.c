@@ -28,6 +28,7 @@
 #include "world/impulse.h"
 
 #include "world/closing.h"
+#include "world/coarse.h"
 #include "world/inside.h"
 #include "world/opening.h"
 #include "world/recall.h"
@@ -132,11 +133,15 @@ static JpStatus find_contacts(Answer *answer, double step, bool can_recall, bool
         recall_columns(answer);
     }
     do {
+        *is_found = answer_is_within_work(answer);
+        if (!*is_found) {
+            break;
+        }
         REFUSAL_TRY(answer_find_columns(answer, step, error));
         set_free(answer, step);
         REFUSAL_TRY(inside_run(answer, step, is_found, error));
     } while (*is_found && activate_near(answer, step));
-    if (!answer->is_recalled && !recall_keep(answer)) {
+    if (*is_found && !answer->is_recalled && !recall_keep(answer)) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the answers of a step");
     }
     return JP_OK;
@@ -165,7 +170,13 @@ static JpStatus make_rounds(Answer *answer, double step, bool *is_done, JpError 
             recall_note(world, is_promised);
         }
         if (is_promised || round == ROUNDS) {
-            world->stats.fallbacks += is_promised ? 0 : 1;
+            if (!is_promised) {
+                world->stats.fallbacks++;
+                coarse_note(world,
+                            "the world's response to the contacts was not found in %d rounds of "
+                            "the step of %g s: bounds are passed in it",
+                            (int)ROUNDS, step);
+            }
             return JP_OK;
         }
         memcpy(answer->base, answer->found, size);

@@ -10,3 +10,7 @@ JpStatus inside_run(Answer *answer, double step, bool *is_found, JpError *error)
 
 // Books what the contacts that were integrated last did.
 void inside_book(Answer *answer);
+
+// Notes where the bodies, once they are moved, are not where the contacts of the step have brought
+// them, by so much that forces are wrong.
+void inside_judge(Answer *answer);

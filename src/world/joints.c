@@ -55,3 +55,15 @@ void joints_find(JpWorld *world, bool has_rows)
         find_joint(joint, has_rows);
     }
 }
+
+void joints_now(JpJoint *joint, const Place *place, double at[2], double rate[2])
+{
+    at[1] = rate[1] = 0.0;
+    if (joint->kind == PLAY_PIN) {
+        pin_now(joint, place, at, rate);
+        return;
+    }
+    const Direction along = coordinate_direction(&joint->coordinate);
+    at[0] = coordinate_read(&joint->coordinate) - joint->rotor.position;
+    rate[0] = direction_rate(&along) - joint->rotor.speed;
+}

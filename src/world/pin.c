@@ -180,6 +180,21 @@ static void find_rows(const JpJoint *joint, const End *end, Place *place)
     }
 }
 
+void pin_now(const JpJoint *joint, const Place *place, double at[2], double rate[2])
+{
+    if (place->shape != PLACE_HOLE) {
+        const Direction direction = between_collars(joint, &at[0]);
+        rate[0] = direction_rate(&direction);
+        return;
+    }
+    const End end = end_of(joint, joint->pin.holes[place - joint->places]);
+    for (size_t i = 0; i < PLACE_ROWS_PLANE; i++) {
+        const Vec3 across = vec3_of(place->rows[i].axis);
+        at[i] = vec3_dot(across, end.offset);
+        rate[i] = vec3_dot(across, end.velocity);
+    }
+}
+
 // Towards the hole's centre; of a centred pin against the way that it goes.
 static Vec3 inwards(const End *end)
 {
@@ -209,6 +224,51 @@ void pin_find(JpJoint *joint, bool has_rows)
             find_rows(joint, &end, place);
         }
     }
+}
+
+// How deep a pin may be in the wall, of its radius, or of its play where that is more. At creation:
+// a contact of steel yields at a thousandth, and a rubber one is not made pressed in. In a step: at
+// a tenth no law for depths that are small beside the radius holds, and a pin with more play than
+// that has crossed its hole ten times over.
+static const double DEPTH_AT_CREATION = 0.01;
+static const double STEP_DEPTHS = 10.0; // of the depth at creation
+
+static double pin_depth(const JpJoint *joint, size_t number)
+{
+    const Place *place = &joint->places[number];
+    if (place->shape == PLACE_HOLE) {
+        return vec3_length(end_of(joint, joint->pin.holes[number]).offset) - place->clearance;
+    }
+    double position;
+    between_collars(joint, &position);
+    return fabs(position) - place->sides[1].limit;
+}
+
+JpStatus pin_check_inside(const JpJoint *joint, PinMoment moment, JpError *error)
+{
+    const Place *hole = &joint->places[0];
+    const double radius = hole->hole_radius - hole->clearance;
+    const double times = moment == PIN_MADE ? 1.0 : STEP_DEPTHS;
+    for (size_t i = 0; i < joint->place_count; i++) {
+        const Place *place = &joint->places[i];
+        const double play = place->shape == PLACE_HOLE ? place->clearance : place->sides[1].limit;
+        const double most = times * fmax(play, DEPTH_AT_CREATION * radius);
+        const double depth = pin_depth(joint, i);
+        static const char *const WHEN[] = {
+            [PIN_MADE] = "is",
+            [PIN_FOUND] = "is",
+            [PIN_STEPPED] = "would be after a step as long as this",
+        };
+        if (!(depth <= most)) {
+            return refusal(error, JP_ERROR_OUTSIDE,
+                           "the pin of %g m radius %s %g m beyond %s with play of %g m; at most "
+                           "%g m are allowed",
+                           radius, WHEN[moment], depth,
+                           place->shape == PLACE_HOLE ? "the wall of its hole" : "a collar", play,
+                           most);
+        }
+    }
+    return JP_OK;
 }
 
 static JpStatus check_bodies(const JpWorld *world, dBodyID hole, dBodyID pin, JpError *error)
@@ -339,6 +399,11 @@ JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInH
     watch_bodies(joint);
     joint->pin = place_pin(bodies, given);
     make_places(joint, given, &law);
+    const JpStatus status = pin_check_inside(joint, PIN_MADE, error);
+    if (status != JP_OK) {
+        jp_joint_destroy(joint);
+        return status;
+    }
     *created = joint;
     return refusal_none(error);
 }

@@ -15,6 +15,7 @@ JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2])
         joint->rotor.inertia = INFINITY;
         joint->next = world->joints;
         world->joints = joint;
+        world->found.is_kept = false;
     }
     return joint;
 }
@@ -66,6 +67,7 @@ void jp_joint_destroy(JpJoint *joint)
         at = &(*at)->next;
     }
     *at = joint->next;
+    joint->world->found.is_kept = false;
     for (size_t i = 0; i < joint->place_count; i++) {
         if (joint->places[i].row.motor != NULL) {
             dJointDestroy(joint->places[i].row.motor);

@@ -73,6 +73,8 @@ typedef struct RecallPause {
 
 // What a step found of a world (world/found.h).
 typedef struct WorldFound {
+    bool is_kept;     // whether the last step can be taken back
+    double last_step; // s, of the step before it
     dVector3 gravity; // m/s^2
     double erp;
     JpWorldStats stats;
@@ -95,6 +97,9 @@ struct JpWorld {
     dThreadingImplementationID threading; // owned; NULL: the caller's
     double *settling;                     // owned, of a first step under way (world/opening.h)
     WorldFound found;
+    JpError coarse;   // of the step under way: JP_OK, or the first reason for JP_COARSE
+    double work;      // done in the step under way (world/work.h)
+    double work_most; // in a step
 };
 
 // Fails where a body of a joint was destroyed, or ODE's joint got other bodies.

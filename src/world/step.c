@@ -12,16 +12,20 @@
 // (h/J) (D - s F). The map's row is of the rate of q - p:
 //     s (q' - p') + CFM F = (ERP/h) d    is    s q' + (CFM + h/J) F = (ERP/h) d + s (p + (h/J) D)
 // a row of ODE's bodies alone.
+#include "world/coarse.h"
 #include "world/fault.h"
 #include "world/found.h"
 #include "world/geoms.h"
 #include "world/gyration.h"
 #include "world/impulse.h"
+#include "world/inside.h"
 #include "world/joints.h"
 #include "world/opening.h"
+#include "world/pin.h"
 #include "world/row.h"
 #include "world/threads.h"
 #include "world/trial.h"
+#include "world/work.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -74,12 +78,76 @@ static JpStatus check_contact(const Side *side, double step, JpError *error)
                          side->depth, step);
 }
 
+// Steps to a contact, below which rows have its force wrong by more than some percent.
+static const double STEPS_TO_A_CONTACT = 3.0;
+
+enum { DEPTH_DOUBLINGS = 200, DEPTH_HALVINGS = 20 }; // of a depth, to a part in a million
+
+// How long an undamped impact at the speed of the onset lasts, s: pi times the depth that it
+// reaches over its speed on a linear spring, and 2.94 times on Hertz's. At that depth the law has
+// taken up the energy v^2 / (2 mobility). It has none beyond its limit, which ends the search, too.
+static double impact_duration(const Side *side, double mobility, double step)
+{
+    const double speed = side->impact_speed;
+    const double energy = 0.5 * speed * speed / mobility;
+    double high = speed * step;
+    for (int i = 0; i < DEPTH_DOUBLINGS && force_law_energy(&side->law, high) < energy; i++) {
+        high *= 2.0;
+    }
+    double low = 0.0;
+    for (int i = 0; i < DEPTH_HALVINGS; i++) {
+        const double middle = 0.5 * (low + high);
+        if (force_law_energy(&side->law, middle) < energy) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return speed > 0.0 ? M_PI * high / speed : INFINITY;
+}
+
+// Whether fewer steps than that are in the impact of a side, or in half an oscillation at its
+// depth.
+static bool is_too_short(Side *side, double mobility, double step)
+{
+    if (side->begins) {
+        side->lasts = impact_duration(side, mobility, step);
+    }
+    const double steps = STEPS_TO_A_CONTACT * step / M_PI;
+    return (side->age <= side->lasts && STEPS_TO_A_CONTACT * step > side->lasts) ||
+           steps * steps * force_law_tangent(&side->law, side->depth) * mobility > 1.0;
+}
+
+// Notes a step that is too long for the contact of a side. With free bodies that is as short as it
+// can be; where it is too short, the world's own mobility is found by trial.
+static void note_short_contact(const JpJoint *joint, const Place *place, Side *side, double step)
+{
+    JpWorld *world = joint->world;
+    side->tried = side->begins ? 0.0 : side->tried;
+    const double mobility = side->tried > 0.0 ? side->tried : play_mobility(joint, place);
+    bool is_short = is_too_short(side, mobility, step);
+    const double force = side->sign * force_law_elastic(&side->law, side->depth);
+    double found = 0.0;
+    if (is_short && side->tried == 0.0 && !world->options.is_quick && force != 0.0 &&
+        isfinite(force) &&
+        trial_mobility(world, &place->along, force, step, &found, NULL) == JP_OK) {
+        side->tried = found + 1.0 / joint->rotor.inertia;
+        side->lasts = impact_duration(side, side->tried, step);
+        is_short = is_too_short(side, side->tried, step);
+    }
+    if (is_short) {
+        coarse_note(world, "a contact or its oscillation lasts less than %g steps of %g s",
+                    STEPS_TO_A_CONTACT, step);
+    }
+}
+
 // The mobility with which a side meets the stability limit: of free bodies where that is low
 // enough, or, once in a contact, found by trial.
 static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
     const Map *map = map_get(ODE_MAP_MIDPOINT);
     REFUSAL_TRY(check_contact(side, step, error));
+    note_short_contact(joint, place, side, step);
     if (side->mobility > 0.0 || side_is_stable(side, map, play_mobility(joint, place), step)) {
         return JP_OK;
     }
@@ -111,7 +179,13 @@ static JpStatus make_row(JpJoint *joint, Place *place, Side *side, double step, 
     }
     row_make(joint, place, side, row.cfm + yield, speed, step);
     world->stats.rows++;
-    world->stats.fallbacks += falls_back ? 1 : 0;
+    if (falls_back) {
+        world->stats.fallbacks++;
+        coarse_note(world,
+                    "a contact's oscillation is too fast for the step of %g s: its row presses "
+                    "as the textbook's map has it",
+                    step);
+    }
     return JP_OK;
 }
 
@@ -171,12 +245,24 @@ static void find_sides(JpJoint *joint, double earlier, double step)
     }
 }
 
+static JpStatus check_work(const JpWorld *world, double step, JpError *error)
+{
+    const double work = work_of_rows(world);
+    return work <= world->work_most
+               ? JP_OK
+               : refusal(error, JP_ERROR_WORK,
+                         "the rows of the contacts in the step of %g s take work of %.3g, of at "
+                         "most %.3g; jp_world_set_work_limit allows more",
+                         step, work, world->work_most);
+}
+
 static JpStatus make_rows(JpWorld *world, double step, JpError *error)
 {
     const double earlier = is_staggered(world) ? 0.5 * step : 0.0;
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         find_sides(joint, earlier, step);
     }
+    REFUSAL_TRY(check_work(world, step, error));
     // trials see the world without our rows
     JpStatus status = each_touching(world, find_mobility, step, error);
     return status == JP_OK ? each_touching(world, make_row, step, error) : status;
@@ -235,6 +321,10 @@ static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, 
     }
     bodies_put_back(&world->bodies);
     world->stats.fallbacks++;
+    coarse_note(world,
+                "the contacts within the step of %g s take more than the limit of work: they "
+                "were made with rows",
+                step);
     return step_with_rows(world, step, error);
 }
 
@@ -257,6 +347,9 @@ static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse
     }
     if (is_staggered(world)) {
         gyration_finish(&world->bodies, step);
+    }
+    if (is_impulse) {
+        inside_judge(answer);
     }
 }
 
@@ -315,11 +408,22 @@ static JpStatus check_joints_after(const JpWorld *world, double step, JpError *e
     return JP_OK;
 }
 
+static JpStatus check_pins(const JpWorld *world, PinMoment moment, JpError *error)
+{
+    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        if (joint->kind == PLAY_PIN) {
+            REFUSAL_TRY(pin_check_inside(joint, moment, error));
+        }
+    }
+    return JP_OK;
+}
+
 static JpStatus make_step(JpWorld *world, double step, Answer *answer, JpError *error)
 {
     go_there(world, step);
     REFUSAL_TRY(step_bodies(world, step, answer, error));
     REFUSAL_TRY(check_bodies(world, step, true, error));
+    REFUSAL_TRY(check_pins(world, PIN_STEPPED, error));
     return check_joints_after(world, step, error);
 }
 
@@ -369,7 +473,9 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     REFUSAL_TRY(check_joints(world, error));
     REFUSAL_TRY(gather(world, error));
     REFUSAL_TRY(check_bodies(world, step, false, error));
+    REFUSAL_TRY(check_pins(world, PIN_FOUND, error));
     found_keep(world);
+    coarse_begin(world);
     Answer answer = {0};
     const JpStatus status = make_step_guarded(world, step, &answer, error);
     if (status != JP_OK) {
@@ -381,7 +487,23 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     if (status != JP_OK) {
         return status;
     }
+    world->found.is_kept = true;
     world->stats.steps++;
     world->last_step = step;
+    return coarse_end(world, error);
+}
+
+JpStatus jp_world_undo(JpWorld *world, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    REFUSAL_TRY(check_joints(world, error));
+    if (!world->found.is_kept) {
+        return refusal(error, JP_ERROR_NONE,
+                       "there is no step to take back: the last one failed or was taken back, or "
+                       "joints or bodies have changed since");
+    }
+    Answer none = {0};
+    found_put_back(world, &none);
+    world->found.is_kept = false;
     return refusal_none(error);
 }

@@ -1,11 +1,14 @@
 // How does a world answer to a push?
 #include "world/trial.h"
 
+#include "world/work.h"
+
 JpStatus trial_step(JpWorld *world, double step, JpError *error)
 {
     const int is_done =
         world->options.is_quick ? dWorldQuickStep(world->id, step) : dWorldStep(world->id, step);
     world->stats.world_steps++;
+    world->work += work_of_step(world);
     return is_done ? JP_OK : refusal(error, JP_ERROR_MEMORY, "ODE has no memory for a step");
 }
 

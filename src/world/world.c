@@ -37,6 +37,7 @@ JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **c
     }
     world->id = id;
     world->options = chosen;
+    world->work_most = JP_WORK_DEFAULT;
     world->rows = dJointGroupCreate(0);
     world->contacts = dJointGroupCreate(0);
     fault_hold();
@@ -83,12 +84,14 @@ JpStatus jp_world_add_body(JpWorld *world, dBodyID body, JpError *error)
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for a body");
     }
     record->is_added = true;
+    world->found.is_kept = false;
     return refusal_none(error);
 }
 
 JpStatus jp_world_add_all(JpWorld *world, JpError *error)
 {
     REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    world->found.is_kept = false;
     return listing_add_all(world, error);
 }
 
@@ -99,7 +102,16 @@ JpStatus jp_world_remove_body(JpWorld *world, dBodyID body, JpError *error)
     if (record == NULL || !record->is_added) {
         return refusal(error, JP_ERROR_ARGUMENT, "the body was not added");
     }
+    world->found.is_kept = false;
     record->is_added = false; // and is forgotten by the next gathering, unless joints lead to it
+    return refusal_none(error);
+}
+
+JpStatus jp_world_set_work_limit(JpWorld *world, double work, JpError *error)
+{
+    REFUSAL_TRY(refusal_of_null(world, "the world", error));
+    REFUSAL_TRY(refusal_of_positive(work, "the limit of work", error));
+    world->work_most = work;
     return refusal_none(error);
 }
 

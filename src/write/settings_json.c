@@ -9,9 +9,8 @@
 
 json_t *settings_json_tool(void)
 {
-    return json_pack("{s:s, s:s, s:s, s:s}", "version", JOINTPLAY_VERSION, "ode",
-                     JOINTPLAY_ODE_VERSION, "ccd", JOINTPLAY_CCD_VERSION, "gsl",
-                     JOINTPLAY_GSL_VERSION);
+    return json_pack("{s:s, s:s, s:s}", "version", JOINTPLAY_VERSION, "ode", JOINTPLAY_ODE_VERSION,
+                     "ccd", JOINTPLAY_CCD_VERSION);
 }
 
 // A list from words separated by ", ".

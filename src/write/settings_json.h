@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-// New references: version, ode, ccd, gsl; a setting's value in SI.
+// New references: version, ode, ccd; a setting's value in SI.
 json_t *settings_json_tool(void);
 
 // Puts "tool", "case", "title", "settings" and "setting_units" into the object of a result: the

@@ -3,6 +3,7 @@
 # file, taken from the help of the commands, over several kinds of case, quiet: a file that is not
 # there needs another status and a reason, and one that is refused is not begun. Prints TAP.
 set -u
+export MALLOC_PERTURB_=0 # see tests/support/program.h
 program=$1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -65,7 +66,7 @@ words_of() {
     run) echo "run $2" ;;
     compare) echo "compare $2 --schemes direct/plain --steps 20us" ;;
     map) echo "map $2 --steps 20us" ;;
-    tune) echo "tune $2 --schemes direct/plain --error 0.4 --time-limit 2s" ;;
+    tune) echo "tune $2 --schemes direct/plain --error 0.4 --cost steps --time-limit 2s" ;;
     check) echo "check $2 --quick --baselines b" ;;
     esac
 }

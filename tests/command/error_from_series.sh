@@ -3,6 +3,7 @@
 # columns of two series, for seeded random cases and two in space; a changed column must be seen.
 # Prints TAP. Called with the program, random_case and error_from_series.py.
 set -u
+export MALLOC_PERTURB_=0 # see tests/support/program.h
 jointplay=$(realpath "$1")
 random_case=$(realpath "$2")
 recompute=$(realpath "$3")
@@ -25,7 +26,7 @@ agrees() {
 import json, math, subprocess, sys
 error = json.load(open("run.json"))["runs"][1]["error"]
 horizon = str(error["horizon_s"] or math.inf)
-words = ["python3", sys.argv[1], "s-ode.csv", "s-reference.csv", horizon, "1e-12"]
+words = [sys.executable, sys.argv[1], "s-ode.csv", "s-reference.csv", horizon, "1e-12"]
 found = [float(x) for x in subprocess.run(words, capture_output=True, text=True).stdout.split()]
 printed = [error["max"], error["max_in_horizon"]]
 # sums of squares may be rounded in another order

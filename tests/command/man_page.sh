@@ -19,27 +19,30 @@ section() {
     awk -v heading="$heading" '/^# / { is_in = $0 == heading } is_in' "$page"
 }
 
+# The options of a command's help, which is asked for once.
 options_of_help() {
-    "$program" $1 --help | grep -oE '^ +(-[A-Za-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' |
-        grep -vxF -e --help
+    options=$work/$(echo "$1" | tr ' ' -)
+    [ -e "$options" ] || "$program" $1 --help | grep -oE '^ +(-[A-Za-z], )?--[a-z-]+' |
+        grep -oE -e '--[a-z-]+' | grep -vxF -e --help >"$options"
+    cat "$options"
 }
 
 # Lines for each option of a command that its part of the page lacks.
 missing() {
+    section "$1" >"$work/section"
     options_of_help "$1" | while read -r option; do
-        section "$1" | grep -qF -e "*$option*" ||
+        grep -qF -e "*$option*" "$work/section" ||
             echo "docs/jointplay.1.scd lacks $option among the options of $1"
     done
 }
 
 # Lines for each option that the page has under a command and no command of that name has.
 invented() {
+    for command in "$@"; do options_of_help "$command"; done >"$work/all"
     for command in "$@"; do section "$command"; done |
         grep -oE '^\*(-[a-z]\*, \*)?--[a-z-]+' | grep -oE -e '--[a-z-]+' | sort -u |
-        while read -r option; do
-            for command in "$@"; do options_of_help "$command"; done | grep -qxF -e "$option" ||
-                echo "docs/jointplay.1.scd has $option, which $1 does not have"
-        done
+        grep -vxF -f "$work/all" |
+        sed "s|.*|docs/jointplay.1.scd has &, which $1 does not have|"
 }
 
 quiet() { [ ! -s "$log" ]; }

@@ -5,6 +5,7 @@
 # anything runs, and not a byte changed. Then each is pointed at a new file, and at its own again.
 # Prints TAP, a row of the table of pairs a line.
 set -u
+export MALLOC_PERTURB_=0 # see tests/support/program.h
 program=$1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -160,17 +161,25 @@ try() {
     tried=$((tried + 1))
     run_with "$1" "$2" "$3"
     status=$?
-    list_files >"$work/after"
-    message=$(cat "$work/log")
-    if { [ $status = 2 ] || [ $status = 5 ]; } && cmp -s "$work/before" "$work/after" &&
-        [ ! -s "$work/output" ] && is_in "$message" "$4" &&
+    message=""
+    while IFS= read -r line; do message="$message$line"; done <"$work/log"
+    if { [ $status = 2 ] || [ $status = 5 ]; } && [ ! -s "$work/output" ] &&
+        is_in "$message" "$4" &&
         { [ "$2" = @ ] || is_in "$message" "$2" || is_in "$message" --bless; }; then
         refused=$((refused + 1))
     else
         echo "# jointplay $1 $2 $3: status $status"
         sed 's/^/#   /' "$work/log" | head -n 3
-        diff "$work/before" "$work/after" | sed 's/^/#   /'
     fi
+}
+
+# Whether all is as it was before the tries; otherwise none of them counts as refused.
+check_unchanged() {
+    list_files >"$work/after"
+    cmp -s "$work/before" "$work/after" || {
+        refused=-1
+        diff "$work/before" "$work/after" | sed 's/^/#   /'
+    }
 }
 
 # A file in the place of one that is there, by each of its names.
@@ -186,6 +195,7 @@ try_file() {
     for name in $names; do
         try "$1" "$2" "$name" "$name"
     done
+    check_unchanged
     rm -r n self
 }
 
@@ -196,17 +206,22 @@ try_folder() {
         ln "$4" "n/$member"
         list_files >"$work/before"
         try "$1" "$2" n "$member"
+        check_unchanged
         if [ "$5" = read ]; then
             ln -sf "../$4" "n/$member"
             list_files >"$work/before"
             try "$1" "$2" n "$member"
+            check_unchanged
         fi
         rm -r n
     done
-    list_files >"$work/before"
     member=$(basename "$4")
     case " $3 " in
-    *" $member "*) try "$1" "$2" "$(dirname "$4")" "$member" ;;
+    *" $member "*)
+        list_files >"$work/before"
+        try "$1" "$2" "$(dirname "$4")" "$member"
+        check_unchanged
+        ;;
     esac
 }
 

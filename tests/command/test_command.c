@@ -23,7 +23,6 @@ static void the_versions_at_work_are_printed(void **state)
     assert_says(program->output, "jointplay ");
     assert_says(program->output, "ODE ");
     assert_says(program->output, "libccd ");
-    assert_says(program->output, "GSL ");
 }
 
 static void each_command_tells_how_it_is_used(void **state)

@@ -83,7 +83,7 @@ static char *cut_out(const char *text, const char *from, const char *to)
 }
 
 static const char TUNE[] = "tune --error 0.1 --schemes direct/plain --cost steps --quiet "
-                           "--set \"title=$TITLE\" --one-file code.c";
+                           "--set \"title=$TITLE\" --code code.c";
 
 static void what_tune_prints_runs_the_same_case_and_nothing_else(void **state)
 {
@@ -109,7 +109,8 @@ static void what_tune_prints_runs_the_same_case_and_nothing_else(void **state)
         assert_string_equal(hash, wanted);
         free(command);
         snprintf(words, sizeof words,
-                 "cd '%s' && $JOINTPLAY_CC -trigraphs -Wall -Werror -fsyntax-only code.c",
+                 "cd '%s' && $JOINTPLAY_CC -trigraphs -Wall -Werror -fsyntax-only "
+                 "-I\"$JOINTPLAY_HEADERS\" code.c",
                  program->folder);
         assert_int_equal(system(words), 0);
         // in the tables, a setting a line

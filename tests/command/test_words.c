@@ -44,7 +44,8 @@ static void every_line_fits_a_terminal(void **state)
         "map $cases/paper/impact-k66.yaml --steps '30 us, 1 us'",
         "map $cases/literature/three-clearances.yaml --steps '30 us'",
         "map --erp 0.2 --cfm 1e-6 --step '1 ms' --mass '0.1 kg'",
-        "tune $cases/paper/impact-k66.yaml --error 2e-2 --schemes direct/plain",
+        ("tune $cases/paper/impact-k66.yaml --error 2e-2 --schemes direct/plain "
+         "--set run.revolutions=0.1"),
         "check --baselines b --bless $cases/paper/ideal-nominal.yaml --all",
         "study $cases/studies/stackup-monte-carlo.yaml --dry-run",
         "study $cases/studies/clearance-spikes.yaml --dry-run",

@@ -4,6 +4,7 @@
 # another frame. Prints TAP. Called with the program, random_case, program_error and the library's
 # folder; in PROGRAMS the kinds and seeds, as "four-bar:3 limits:7".
 set -u
+export MALLOC_PERTURB_=0 # see tests/support/program.h
 jointplay=$(realpath "$1")
 random_case=$(realpath "$2")
 program_error=$(realpath "$3")
@@ -22,10 +23,13 @@ echo "1..$(($# + 2))"
 number=0
 written=0
 
-# A value of the JSON: its object and its key.
-value() {
-    python3 -c 'import json, sys
-print(json.load(open("tune.json"))[sys.argv[1]][sys.argv[2]])' "$@"
+# Of the JSON: how far the truth goes, its uncertainty, and the error that was promised.
+values() {
+    python3 -c 'import json
+tune = json.load(open("tune.json"))
+truth = tune["truth"]
+print(truth["horizon_s"] if truth["is_limited"] else "inf", truth["uncertainty"],
+      tune["program"]["error_max"])'
 }
 
 # Whether the words of a line hold, as awk puts them.
@@ -46,10 +50,8 @@ run_world() {
 }
 
 check_program() {
-    horizon=$(value truth horizon_s)
-    [ "$(value truth is_limited)" = True ] || horizon=inf
-    printed=$(value program error_max)
-    slack=$(value truth uncertainty)
+    values >values
+    read -r horizon slack printed <values
     found=$(run_world world.c && "$program_error" case.yaml series.csv "$horizon" "$length")
     error=${found%% *}
     [ -n "$error" ] && holds "$error <= $target && $error <= $printed * 1.001 + $slack &&
@@ -70,8 +72,8 @@ check_control() {
 
 for program in "$@"; do
     "$random_case" "${program%:*}" "${program#*:}" >case.yaml
-    length='run.duration=50 ms'
-    ! grep -q 'revolutions: ' case.yaml || length=run.revolutions=0.1
+    length='run.duration=20 ms'
+    ! grep -q 'revolutions: ' case.yaml || length=run.revolutions=0.05
     rm -f world.c
     "$jointplay" tune case.yaml --set "$length" --error "$target" --cost steps --code world.c \
         --schemes direct/staggered --json --quiet >tune.json 2>words

@@ -95,7 +95,7 @@ report "the static library does without the shared one" $?
 strays() {
     "$@" | awk 'NF >= 3 && $NF !~ /^jp_[a-z0-9_]+$/ { print $NF }'
 }
-shared=$(find "$work/dest" -name 'libjointplay.so.0.*')
+shared=$(find "$work/dest" -name 'libjointplay.so.1.*')
 strays nm -D --defined-only "$shared" >"$log"
 [ ! -s "$log" ]
 report "the shared library shows jp_ names alone" $?
@@ -110,6 +110,6 @@ report "the control: ODE's library shows others" $?
     grep -vE '^(libode\.so|libm\.so|libc\.so|ld-linux)' >"$log"
 [ ! -s "$log" ]
 report "it needs ODE, libm and libc alone" $?
-"$readelf" -d "$shared" | grep -q 'SONAME.*libjointplay\.so\.0\]'
-report "its soname has the number 0" $?
+"$readelf" -d "$shared" | grep -q 'SONAME.*libjointplay\.so\.1\]'
+report "its soname has the number 1" $?
 echo "1..$number"

@@ -152,7 +152,7 @@ static void what_ode_asserts_is_an_error(void **state)
         const dJointID again = add_again(&door);
         bool has_failed = false;
         for (int i = 0; i < 100 && !has_failed; i++) {
-            has_failed = jp_world_step(door.play, 1e-3, &error) != JP_OK;
+            has_failed = jp_world_step(door.play, 1e-3, &error) > JP_OK;
         }
         assert_true(has_failed);
         for (int i = 0; i < 10; i++) {
@@ -161,7 +161,7 @@ static void what_ode_asserts_is_an_error(void **state)
         // and goes on where the cause is taken away
         dJointDestroy(again);
         for (int i = 0; i < 100; i++) {
-            assert_int_equal(jp_world_step(door.play, 1e-3, &error), JP_OK);
+            assert_true(jp_world_step(door.play, 1e-3, &error) <= JP_OK);
         }
         assert_int_equal(dWorldStep(door.world, 1e-3), 1);
         door_finish(&door);
@@ -224,10 +224,13 @@ static size_t play_random_world(JpStepping stepping, unsigned seed)
     const double longest = stepping == JP_STEPPING_IMPULSE ? -3.0 : -1.0;
     const double step = pow(10.0, longest - 1.5 + 1.5 * lcg_draw(&draw));
     size_t failed = 0;
-    for (int i = 0; i < WORLD_STEPS && failed == 0; i++) {
+    JpStatus status = JP_OK;
+    for (int i = 0; i < WORLD_STEPS && status <= JP_OK; i++) {
         JpError error = {JP_OK, ""};
-        failed += jp_world_step(play, step, &error) != JP_OK ? 1 : 0;
-        assert_true((failed > 0) == (strlen(error.text) > 10));
+        status = jp_world_step(play, step, &error);
+        // pins that would leave their holes are no failure of ODE
+        failed += status > JP_OK && status != JP_ERROR_OUTSIDE ? 1 : 0;
+        assert_true((status != JP_OK) == (strlen(error.text) > 10));
     }
     jp_world_destroy(play);
     dWorldDestroy(world);

@@ -14,6 +14,9 @@ static const double PI = 3.14159265358979323846;
 
 #define must(call) assert_int_equal((call), JP_OK)
 
+// A step that is made, coarse or not: how right it has to be is asserted of what comes of it.
+#define must_step(call) assert_true((call) <= JP_OK)
+
 // A disc on a hinge, or a block on a slider, with the world on one side.
 typedef struct Bench {
     dWorldID world;
@@ -118,7 +121,7 @@ static Off rebound(const Impact *impact, bool is_hinge, JpStepping stepping, dou
     set_speed(&bench, is_hinge, impact->speed);
     JpJointState state;
     do {
-        must(jp_world_step(bench.play, impact->step, NULL));
+        must_step(jp_world_step(bench.play, impact->step, NULL));
         must(jp_joint_state(joint, &state, NULL));
     } while (state.high.impacts == 0 || state.high.is_touching || state.high.force > 0.0);
     assert_int_equal(state.high.impacts, 1);
@@ -179,7 +182,7 @@ static void a_heavy_damper_throws_nothing_back(void **state)
         set_speed(&bench, true, 1.0);
         JpJointState now;
         for (int i = 0; i < 100; i++) {
-            must(jp_world_step(bench.play, 1e-3, NULL));
+            must_step(jp_world_step(bench.play, 1e-3, NULL));
             must(jp_joint_state(joint, &now, NULL));
             assert_true(now.speed > -1e-2);
         }
@@ -256,7 +259,7 @@ static double rest_under(Bench *bench, const JpJoint *joint, bool is_hinge, doub
         } else {
             dJointAddSliderForce(bench->joint, load);
         }
-        must(jp_world_step(bench->play, step, NULL));
+        must_step(jp_world_step(bench->play, step, NULL));
     }
     must(jp_joint_state(joint, &state, NULL));
     assert_near(state.speed, 0.0, 1e-8);
@@ -311,7 +314,7 @@ static void the_energy_of_a_driven_rotor_closes(void **state)
         for (int i = 0; i < 20000; i++) {
             const double drive = 0.3 * sin(20.0 * i * step);
             must(jp_backlash_drive(joint, drive, NULL));
-            must(jp_world_step(bench.play, step, NULL));
+            must_step(jp_world_step(bench.play, step, NULL));
             must(jp_joint_state(joint, &now, NULL));
             driven += drive * 0.5 * (before + now.rotor_speed) * step;
             moment += drive * step;
@@ -398,7 +401,7 @@ static void momentum_stays_in_space(void **state)
             }
             assert_near(sums[0], start[0], 1e-11);
             assert_near(sums[1], start[1], 1e-5);
-            must(jp_world_step(play, 1e-4, NULL));
+            must_step(jp_world_step(play, 1e-4, NULL));
         }
         JpJointState now;
         must(jp_joint_state(joint, &now, NULL));
@@ -431,7 +434,7 @@ static void the_coordinate_is_that_of_ode(void **state)
         dBodySetLinearVel(body, 0, 0, is_hinge ? 0.0 : speed);
         size_t touched = 0;
         for (int i = 0; i < 3000; i++) {
-            must(jp_world_step(play, 1e-4, NULL));
+            must_step(jp_world_step(play, 1e-4, NULL));
             JpJointState now;
             must(jp_joint_state(joint, &now, NULL));
             const double position =
@@ -472,7 +475,7 @@ static void the_limit_is_that_of_the_body_as_it_is_held(void **state)
         // omega h of the body alone, then of the rod
         const double step = is_beyond ? 2.5 / sqrt(1e4 / 0.091) : 2.5 / sqrt(1e4 / 0.001);
         for (int i = 0; i < 400; i++) {
-            must(jp_world_step(play, step, NULL));
+            must_step(jp_world_step(play, step, NULL));
         }
         JpWorldStats stats;
         must(jp_world_stats(play, &stats, NULL));

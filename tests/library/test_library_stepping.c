@@ -11,6 +11,9 @@
 
 #define must(call) assert_int_equal((call), JP_OK)
 
+// A step that is made, coarse or not: how right it has to be is asserted of what comes of it.
+#define must_step(call) assert_true((call) <= JP_OK)
+
 static JpWorld *make_world(dWorldID world, JpStepping stepping)
 {
     JpWorldOptions options = jp_world_options_default();
@@ -87,7 +90,7 @@ static double pendulum_error(JpStepping stepping, int steps)
     stops.contact.stiffness = 1.0;
     must(jp_stops_create(play, hinge, &stops, &joint, NULL));
     for (int i = 0; i < steps; i++) {
-        must(jp_world_step(play, 1.0 / steps, NULL));
+        must_step(jp_world_step(play, 1.0 / steps, NULL));
     }
     const double angle = remainder(dJointGetHingeAngle(hinge) - truth[0], 6.283185307179586);
     const double error = fabs(angle) + fabs(dJointGetHingeAngleRate(hinge) - truth[1]);
@@ -138,7 +141,7 @@ static double bouncing_error(JpStepping stepping, int steps, JpWorldStats *stats
     stops.contact.damping = JP_DAMPING_NONE;
     must(jp_stops_create(play, hinge, &stops, &joint, NULL));
     for (int i = 0; i < steps; i++) {
-        must(jp_world_step(play, 1.0 / steps, NULL));
+        must_step(jp_world_step(play, 1.0 / steps, NULL));
     }
     JpJointState now;
     must(jp_joint_state(joint, &now, NULL));
@@ -193,7 +196,7 @@ static double heavier_error(bool is_known)
                                0);
             dBodySetMass(body, &heavy);
         }
-        must(jp_world_step(play, step, NULL));
+        must_step(jp_world_step(play, step, NULL));
     }
     JpWorldStats stats;
     must(jp_world_stats(play, &stats, NULL));
@@ -248,7 +251,7 @@ static Held pressed_arm(bool is_read)
     for (int i = 0; i < 4000 && now.low.force < 1000.0; i++) {
         const dReal *velocity = dBodyGetLinearVel(rod);
         const double before[2] = {velocity[0], velocity[1]};
-        must(jp_world_step(play, step, NULL));
+        must_step(jp_world_step(play, step, NULL));
         must(jp_joint_state(joint, &now, NULL));
         velocity = dBodyGetLinearVel(rod);
         for (int k = 0; k < 2; k++) {
@@ -301,7 +304,7 @@ static JpJointState braked(JpStepping stepping, int steps_a_second, JpWorldStats
     stops.contact.restitution = 0.8;
     must(jp_stops_create(play, hinge, &stops, &joint, NULL));
     for (int i = 0; i < 3 * steps_a_second / 100; i++) {
-        must(jp_world_step(play, 1.0 / steps_a_second, NULL));
+        must_step(jp_world_step(play, 1.0 / steps_a_second, NULL));
     }
     JpJointState now;
     must(jp_joint_state(joint, &now, NULL));
@@ -351,7 +354,7 @@ static double top_error(JpStepping stepping, int steps)
     JpWorld *play = make_world(world, stepping);
     must(jp_world_add_body(play, body, NULL));
     for (int i = 0; i < steps; i++) {
-        must(jp_world_step(play, 2.0 / steps, NULL));
+        must_step(jp_world_step(play, 2.0 / steps, NULL));
     }
     dVector3 local;
     const dReal *omega = dBodyGetAngularVel(body);
@@ -402,7 +405,7 @@ static void bodies_that_are_not_known_are_asked_for(void **state)
     assert_near(dBodyGetPosition(stranger)[1], 0.0, 0.0);
     assert_near(dBodyGetPosition(rod)[0], 0.3, 1e-15);
     must(jp_world_add_body(play, stranger, NULL));
-    must(jp_world_step(play, step, NULL));
+    must_step(jp_world_step(play, step, NULL));
     assert_near(dBodyGetPosition(stranger)[1], step, 1e-15);
     must(jp_world_remove_body(play, stranger, NULL));
     jp_world_destroy(play);
@@ -436,7 +439,7 @@ static void contacts_are_asked_for_at_mid_step(void **state)
     JpWorld *play = NULL;
     must(jp_world_create(world, &options, &play, NULL));
     must(jp_world_add_body(play, asked.body, NULL));
-    must(jp_world_step(play, 0.1, NULL));
+    must_step(jp_world_step(play, 0.1, NULL));
     assert_int_equal(asked.times, 1);
     assert_near(asked.height, 0.1, 1e-15);
     assert_near(dBodyGetPosition(asked.body)[2], 0.2, 1e-15);

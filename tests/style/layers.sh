@@ -58,7 +58,6 @@ broken_wall() {
 broken_walls() {
     broken_wall "$1" 'ode/' '/(ode|world)/'
     broken_wall "$1" 'ccd/' '/ode/staves\.c$'
-    broken_wall "$1" 'gsl/' '/commands/study/normal\.c$'
     broken_wall "$1" 'yaml\.h' '/casefile/document\.c$'
     broken_wall "$1" 'jansson\.h' '/(write|commands)/'
     broken_wall "$1" 'sqlite3\.h' '/commands/study/store[a-z_]*\.c$'

@@ -91,7 +91,7 @@ bool cart_run(const CartOptions *options, JpStepping stepping, double step, Cart
     bool is_done = make(options, stepping, &cart, error);
     const long count = lround(options->duration / step);
     for (long i = 0; i < count && is_done; i++) {
-        is_done = jp_world_step(cart.play, step, error) == JP_OK;
+        is_done = jp_world_step(cart.play, step, error) <= JP_OK; // coarse ones are counted
     }
     JpJointState arm;
     if (is_done && jp_joint_state(cart.stops, &arm, error) == JP_OK) {

@@ -99,7 +99,7 @@ bool pressed_base_run(JpStepping stepping, double layer, double step, double dur
     bool is_done = make(&scene, stepping, layer, error);
     const long count = lround(duration / step);
     for (long i = 0; i < count && is_done; i++) {
-        is_done = jp_world_step(scene.play, step, error) == JP_OK;
+        is_done = jp_world_step(scene.play, step, error) <= JP_OK; // coarse ones are counted
     }
     if (is_done) {
         for (int i = 0; i < 2; i++) {

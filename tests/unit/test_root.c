@@ -11,9 +11,6 @@
 
 #include <cmocka.h>
 #include <float.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_min.h>
-#include <gsl/gsl_roots.h>
 #include <math.h>
 
 static double cubic(double x, void *context)
@@ -113,85 +110,90 @@ static void draw(uint64_t *seed, unsigned number, double c[5])
     }
 }
 
-static bool gsl_root(double *c, double low, double high, double tolerance, double *x)
+// Whether the function changes its sign within so much of x.
+static bool crosses(double *c, double x, double reach)
 {
-    gsl_root_fsolver *solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-    gsl_function function = {.function = wild, .params = c};
-    bool is_found = false;
-    int status = gsl_root_fsolver_set(solver, &function, low, high);
-    for (int i = 0; status == GSL_SUCCESS && !is_found && i < 4000; i++) {
-        status = gsl_root_fsolver_iterate(solver);
-        const double a = gsl_root_fsolver_x_lower(solver);
-        const double b = gsl_root_fsolver_x_upper(solver);
-        is_found = b - a <= fmax(tolerance, 2.0 * DBL_EPSILON * fmax(fabs(a), fabs(b)));
-    }
-    *x = gsl_root_fsolver_root(solver);
-    gsl_root_fsolver_free(solver);
-    return is_found;
+    return wild(x - reach, c) * wild(x + reach, c) <= 0.0;
 }
 
-static bool gsl_minimum(double *c, double low, double middle, double high, double *x)
-{
-    gsl_min_fminimizer *minimizer = gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent);
-    gsl_function function = {.function = wild, .params = c};
-    int status = gsl_min_fminimizer_set(minimizer, &function, middle, low, high);
-    const bool is_enclosed = status == GSL_SUCCESS;
-    double width = INFINITY;
-    for (int i = 0; status == GSL_SUCCESS && i < 4000 && width > sqrt(DBL_EPSILON) * (high - low);
-         i++) {
-        status = gsl_min_fminimizer_iterate(minimizer);
-        width = gsl_min_fminimizer_x_upper(minimizer) - gsl_min_fminimizer_x_lower(minimizer);
-    }
-    *x = is_enclosed ? gsl_min_fminimizer_x_minimum(minimizer) : 7.0;
-    gsl_min_fminimizer_free(minimizer);
-    return is_enclosed;
-}
-
-static void roots_are_those_of_gsl_to_the_last_bit(void **state)
+// The truth is the function itself: where it changes its sign.
+static void a_root_lies_where_the_sign_changes(void **state)
 {
     (void)state;
     uint64_t seed = lcg_stirred(1);
     unsigned found = 0;
+    unsigned missed = 0;
     for (unsigned i = 0; i < 20000; i++) {
         double c[5];
         draw(&seed, i, c);
         const double low = -1.0 - 0.5 * lcg_draw(&seed);
         const double high = 1.0 + 0.5 * lcg_draw(&seed);
         const double tolerance = i % 3 == 0 ? 1e-6 : 0.0;
-        double theirs = 7.0;
-        double ours = 7.0;
+        double x = 7.0;
         if (wild(low, c) * wild(high, c) >= 0.0) {
             continue;
         }
-        const bool is_found = gsl_root(c, low, high, tolerance, &theirs);
-        assert_int_equal(root_find(wild, c, low, high, tolerance, &ours), is_found);
-        assert_true(ours == theirs);
+        assert_true(root_find(wild, c, low, high, tolerance, &x));
+        assert_true(x >= low && x <= high);
+        const double reach = fmax(tolerance, 2.0 * DBL_EPSILON * fmax(fabs(x), DBL_MIN));
+        assert_true(crosses(c, x, reach));
+        // the control: not anywhere nearby
+        missed += !crosses(c, x + 3e-6, reach);
         found++;
     }
     assert_true(found > 5000);
+    assert_true(missed > found / 2);
 }
 
-static void minima_are_those_of_gsl_to_the_last_bit(void **state)
+// Whether the function is no lower on that side of x, as near as that reach.
+static bool is_low_on(double *c, double x, double reach)
+{
+    for (int i = 0; i < 8; i++) {
+        if (wild(x + ldexp(reach, -i), c) >= wild(x, c)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool is_lowest(double *c, double x, double reach)
+{
+    return is_low_on(c, x, reach) && is_low_on(c, x, -reach);
+}
+
+// The truth is the function itself: it rises to both sides.
+static void at_a_minimum_the_function_rises_to_both_sides(void **state)
 {
     (void)state;
     uint64_t seed = lcg_stirred(2);
     unsigned found = 0;
-    gsl_error_handler_t *former = gsl_set_error_handler_off();
+    unsigned missed = 0;
     for (unsigned i = 0; i < 20000; i++) {
         double c[5];
         draw(&seed, i, c);
         const double middle = lcg_draw(&seed);
         const double low = middle - 0.5 - 0.4 * lcg_draw(&seed);
         const double high = middle + 0.5 + 0.4 * lcg_draw(&seed);
-        double theirs = 7.0;
-        double ours = 7.0;
-        const bool is_found = gsl_minimum(c, low, middle, high, &theirs);
-        assert_int_equal(root_minimum(wild, c, low, middle, high, &ours), is_found);
-        assert_true(ours == theirs);
-        found += is_found;
+        const bool is_enclosed = wild(middle, c) < wild(low, c) && wild(middle, c) < wild(high, c);
+        double x = 7.0;
+        assert_int_equal(root_minimum(wild, c, low, middle, high, &x), is_enclosed);
+        if (!is_enclosed) {
+            assert_true(x == 7.0);
+            continue;
+        }
+        assert_true(wild(x, c) <= wild(middle, c));
+        // the width that is left of the interval, on both sides of the minimum, and to be beyond
+        // both
+        const double reach = 4.0 * sqrt(DBL_EPSILON) * (high - low);
+        if (!is_lowest(c, x, reach)) {
+            fail_msg("kind %d: %.17g of %.17g to %.17g is no minimum", (int)c[0], x, low, high);
+        }
+        // the control: not anywhere nearby
+        missed += !is_lowest(c, x + 1e-3, reach);
+        found++;
     }
-    gsl_set_error_handler(former);
     assert_true(found > 1000);
+    assert_true(missed > found / 2);
 }
 
 typedef struct Wave {
@@ -228,8 +230,8 @@ int main(void)
         cmocka_unit_test(without_a_change_of_sign_there_is_none),
         cmocka_unit_test(a_function_that_is_not_finite_has_none),
         cmocka_unit_test(a_root_at_zero_ends),
-        cmocka_unit_test(roots_are_those_of_gsl_to_the_last_bit),
-        cmocka_unit_test(minima_are_those_of_gsl_to_the_last_bit),
+        cmocka_unit_test(a_root_lies_where_the_sign_changes),
+        cmocka_unit_test(at_a_minimum_the_function_rises_to_both_sides),
         cmocka_unit_test(a_minimum_far_from_zero_takes_few_calls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -92,7 +92,6 @@ void baseline_set_head(Baseline *baseline, const Scenario *scenario, const Check
     text_copy(baseline->version, sizeof baseline->version, JOINTPLAY_VERSION);
     text_copy(baseline->ode, sizeof baseline->ode, JOINTPLAY_ODE_VERSION);
     text_copy(baseline->ccd, sizeof baseline->ccd, JOINTPLAY_CCD_VERSION);
-    text_copy(baseline->gsl, sizeof baseline->gsl, JOINTPLAY_GSL_VERSION);
 #if defined(__clang__)
     text_copy(baseline->compiler, sizeof baseline->compiler, __VERSION__);
 #else

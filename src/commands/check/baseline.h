@@ -57,7 +57,6 @@ typedef struct Baseline {
     char version[BASELINE_TEXT_SIZE];   // of the program, as the three below of its libraries
     char ode[BASELINE_TEXT_SIZE];
     char ccd[BASELINE_TEXT_SIZE];
-    char gsl[BASELINE_TEXT_SIZE];
     char compiler[BASELINE_TEXT_SIZE];
     char build[BUILD_PRINT_SIZE]; // fingerprint of the program
     CheckPlan plan;

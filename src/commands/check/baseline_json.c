@@ -45,8 +45,7 @@ static void append_head(Text *text, const Baseline *baseline)
     append_pair(text, "case", baseline->case_path, ",\n  \"tool\": {");
     append_pair(text, "version", baseline->version, ", ");
     append_pair(text, "ode", baseline->ode, ", ");
-    append_pair(text, "ccd", baseline->ccd, ", ");
-    append_pair(text, "gsl", baseline->gsl, "},\n  ");
+    append_pair(text, "ccd", baseline->ccd, "},\n  ");
     append_pair(text, "compiler", baseline->compiler, ",\n  ");
     append_pair(text, "build", baseline->build, ",\n  \"truth\": ");
     const CheckPlan *plan = &baseline->plan;
@@ -337,7 +336,9 @@ static bool read_root(const json_t *root, Baseline *baseline, Err *err)
 {
     static const char *const KEYS[] = {"format", "case",     "tool",    "compiler", "build",
                                        "truth",  "settings", "metrics", NULL};
-    static const char *const TOOL_KEYS[] = {"version", "ode", "ccd", "gsl", NULL};
+    static const char *const TOOL_KEYS[] = {"version", "ode", "ccd", NULL};
+    // those of programs that used GSL
+    static const char *const FORMER_TOOL_KEYS[] = {"version", "ode", "ccd", "gsl", NULL};
     const char *format = json_string_value(json_object_get(root, "format"));
     if (format != NULL && strcmp(format, OF_OMEGA) == 0) {
         return err_set(err, ERR_FILE,
@@ -349,12 +350,13 @@ static bool read_root(const json_t *root, Baseline *baseline, Err *err)
                        format != NULL ? format : "", FORMAT);
     }
     const json_t *tool = json_object_get(root, "tool");
-    return check_keys(root, "the whole", KEYS, err) && check_keys(tool, "tool", TOOL_KEYS, err) &&
+    return check_keys(root, "the whole", KEYS, err) &&
+           check_keys(tool, "tool",
+                      json_object_get(tool, "gsl") != NULL ? FORMER_TOOL_KEYS : TOOL_KEYS, err) &&
            read_text(root, "case", baseline->case_path, sizeof baseline->case_path, err) &&
            read_text(tool, "version", baseline->version, sizeof baseline->version, err) &&
            read_text(tool, "ode", baseline->ode, sizeof baseline->ode, err) &&
            read_text(tool, "ccd", baseline->ccd, sizeof baseline->ccd, err) &&
-           read_text(tool, "gsl", baseline->gsl, sizeof baseline->gsl, err) &&
            read_text(root, "compiler", baseline->compiler, sizeof baseline->compiler, err) &&
            read_text(root, "build", baseline->build, sizeof baseline->build, err) &&
            read_truth(root, &baseline->plan, err) && read_settings(root, baseline, err) &&

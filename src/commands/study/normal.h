@@ -1,5 +1,4 @@
-// The standard normal distribution, whole and between two limits (GSL's functions behind the
-// project's name).
+// The standard normal distribution, whole and between two limits.
 #pragma once
 
 // The share of the distribution below z; normal_above that above it, without cancellation.

@@ -32,7 +32,6 @@ enum {
     HEADER_VERSION = 60,
     HEADER_APPLICATION = 68,
     WORK_BYTE = 0x40001000, // SQLite's own locks lie on 0x40000000 to 0x400001ff
-    VIEW_WAIT_MS = 10000,   // for a commit to end, which takes some 10
     WORK_WAIT_MS = 60000,   // for readers, with any tool, to be done
     VALUE_MAX = 1 << 20,    // bytes of a row or of SQL; a row of all columns has some 10 kB
 };
@@ -76,6 +75,11 @@ bool store_fail(const Store *store, const char *what, Err *err)
     case SQLITE_FORMAT:
         return store_fail_damaged(store, sqlite3_errmsg(store->base), err);
     case SQLITE_READONLY:
+        if (code == SQLITE_READONLY_ROLLBACK) {
+            return err_set(err, ERR_FILE,
+                           "a write to the store %s was interrupted while it was read: read again",
+                           store->path);
+        }
         return err_set(err, ERR_FILE, "cannot %s the store %s: it or its folder cannot be written",
                        what, store->path);
     default:
@@ -200,27 +204,47 @@ static void harden(sqlite3 *base)
     sqlite3_limit(base, SQLITE_LIMIT_TRIGGER_DEPTH, 1);
 }
 
-// By the path with all links resolved, as SQLite resolves it: the files next to it are checked by
-// that path, too. It begins with a slash, so that it is not a special name such as ":memory:".
-static bool open_base(Store *store, int flags, int wait_ms, Err *err)
+bool store_file_connect(Store *store, const char *path, bool is_to_work, Err *err)
 {
-    char *path = realpath(store->path, NULL);
-    if (path == NULL) {
-        return fail_system(store, "open", errno, err);
-    }
-    const bool is_open = store_beside_check(store, path, err) &&
-                         (sqlite3_open_v2(path, &store->base, flags | SQLITE_OPEN_NOMUTEX,
-                                          flags == SQLITE_OPEN_READONLY ? store_readonly_vfs()
-                                                                        : NULL) == SQLITE_OK ||
-                          store_fail(store, "open", err));
-    free(path);
-    if (!is_open) {
+    const int flags = is_to_work ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY;
+    if (!store_beside_check(store, path, err)) {
         return false;
     }
+    if (sqlite3_open_v2(path, &store->base, flags | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK) {
+        return store_fail(store, "open", err);
+    }
     sqlite3_extended_result_codes(store->base, 1);
-    sqlite3_busy_timeout(store->base, wait_ms);
+    sqlite3_busy_timeout(store->base, is_to_work ? WORK_WAIT_MS : STORE_VIEW_WAIT_MS);
     harden(store->base);
     return store_run_sql(store, "PRAGMA cell_size_check = ON", err);
+}
+
+// By the path with all links resolved, as SQLite resolves it: the files next to it are checked by
+// that path, too. It begins with a slash, so that it is not a special name such as ":memory:".
+static bool open_to_work(Store *store, Err *err)
+{
+    char *path = realpath(store->path, NULL);
+    const bool is_open = path != NULL ? store_file_connect(store, path, true, err)
+                                      : fail_system(store, "open", errno, err);
+    free(path);
+    return is_open;
+}
+
+// SQLite reads and writes nothing; where that would not do, because the last write was interrupted,
+// it says so at the first read.
+static bool open_to_view(Store *store, Err *err)
+{
+    char *path = realpath(store->path, NULL);
+    bool is_open = path != NULL ? store_file_connect(store, path, false, err)
+                                : fail_system(store, "open", errno, err);
+    if (is_open && sqlite3_exec(store->base, "PRAGMA schema_version", NULL, NULL, NULL) ==
+                       SQLITE_READONLY_ROLLBACK) {
+        sqlite3_close(store->base);
+        store->base = NULL;
+        is_open = store_copy_view(store, path, err);
+    }
+    free(path);
+    return is_open;
 }
 
 // Empties the file, damaged or not, in one transaction. It must be the first use of SQLite on the
@@ -265,8 +289,7 @@ bool store_file_open(Store *store, bool is_fresh, Err *err)
         return fail_system(store, "open", errno, err);
     }
     return claim(store, is_made, err) && check_header(store, store->lock, true, is_fresh, err) &&
-           open_base(store, SQLITE_OPEN_READWRITE, WORK_WAIT_MS, err) &&
-           (!is_fresh || reset(store, err)) &&
+           open_to_work(store, err) && (!is_fresh || reset(store, err)) &&
            store_run_sql(store, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA", err);
 }
 
@@ -282,7 +305,7 @@ bool store_file_view(Store *store, Err *err)
     claims_note_read("store", store->path);
     const bool is_store = check_header(store, file, false, false, err);
     close(file);
-    return is_store && open_base(store, SQLITE_OPEN_READONLY, VIEW_WAIT_MS, err);
+    return is_store && open_to_view(store, err);
 }
 
 void store_file_close(Store *store)

@@ -11,6 +11,7 @@ enum {
     STORE_VERSION = 3,              // of the tables; stands in the file as user_version
     STORE_APPLICATION = 0x4a505354, // "JPST"; stands in the file as application_id
     STORE_WORDS_SIZE = 256,
+    STORE_VIEW_WAIT_MS = 10000, // for a commit to end, which takes some 10
 };
 
 // The first of the columns of a run's error, see metrics.c.
@@ -54,6 +55,10 @@ bool store_file_open(Store *store, bool is_fresh, Err *err);
 // read as it was before.
 bool store_file_view(Store *store, Err *err);
 
+// Has SQLite open the file of that path, to work on it or to read it, after a look at what stands
+// beside it.
+bool store_file_connect(Store *store, const char *path, bool is_to_work, Err *err);
+
 // Closes the file and releases its lock.
 void store_file_close(Store *store);
 
@@ -78,10 +83,10 @@ bool store_step(Store *store, struct sqlite3_stmt **statement, bool *is_good, Er
 // Call it before SQLite opens the file of that resolved path.
 bool store_beside_check(const Store *store, const char *resolved, Err *err);
 
-// store_readonly.c: reading without writing
+// store_copy.c: reading what an interrupted write has left
 
-// The name of the SQLite VFS that reads files and writes none.
-const char *store_readonly_vfs(void);
+// Opens a copy of the store of that resolved path, in which the interrupted write is undone.
+bool store_copy_view(Store *store, const char *resolved, Err *err);
 
 // store_shape.c: the tables
 

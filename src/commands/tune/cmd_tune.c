@@ -1,5 +1,4 @@
 // Which setting of ODE is the cheapest that is accurate enough?
-#include "cli/long_work.h"
 #include "cli/output.h"
 #include "cli/results.h"
 #include "cli/status_line.h"
@@ -56,9 +55,9 @@ static const char *program_lacks(const Scenario *scenario)
                                         : NULL;
 }
 
-static bool write_form(const TuneReport *report, TuneForm form, Text *text, const char **nothing,
-                       Err *err)
+static bool write_code(const void *target, Text *text, const char **nothing, Err *err)
 {
+    const TuneReport *report = target;
     const TuneTrial *trial = tune_export_trial(report);
     *nothing = program_lacks(report->scenario);
     if (*nothing != NULL) {
@@ -67,36 +66,21 @@ static bool write_form(const TuneReport *report, TuneForm form, Text *text, cons
     if (!has_contact(report, trial != NULL, "no run has a meaningful error", nothing)) {
         return false;
     }
-    const char *lacks = form == TUNE_WITH_LIBRARY ? tune_export_lacks(report) : NULL;
+    const char *lacks = tune_export_lacks(report);
     if (lacks != NULL) {
         *nothing = lacks;
         return false;
     }
     const TuneProgram *program = &report->tune->program;
-    if (form == TUNE_WITH_LIBRARY && program->reason[0] != '\0') {
+    if (program->reason[0] != '\0') {
         *nothing = program->reason;
         return false;
     }
-    if (form == TUNE_WITH_LIBRARY && tune_report_is_met(report) && !program->meets) {
+    if (tune_report_is_met(report) && !program->meets) {
         *nothing = "its error is larger than what was asked for";
         return false;
     }
-    if (form == TUNE_ONE_FILE && !scheme_has_step(&report->tune->schemes[trial->scheme].scheme)) {
-        // its step is chosen once more, against a truth of its own
-        long_work_warn("choosing the step for the code",
-                       report->tune->truth.wall_s + trial->run.wall_s, true);
-    }
-    return tune_export_code(report, form, text, err);
-}
-
-static bool write_code(const void *report, Text *text, const char **nothing, Err *err)
-{
-    return write_form(report, TUNE_WITH_LIBRARY, text, nothing, err);
-}
-
-static bool write_one_file(const void *report, Text *text, const char **nothing, Err *err)
-{
-    return write_form(report, TUNE_ONE_FILE, text, nothing, err);
+    return tune_export_code(report, text, err);
 }
 
 static bool write_sdf(const void *target, Text *text, const char **nothing, Err *err)
@@ -124,8 +108,6 @@ static bool write_mjcf(const void *target, Text *text, const char **nothing, Err
 
 static const ResultFile FILES[] = {
     {"--code", offsetof(TuneOptions, code), ".c", FILE_CODE, .may = write_code},
-    {"--one-file", offsetof(TuneOptions, one_file), "-one-file.c", FILE_CODE,
-     .may = write_one_file},
     {"--sdf", offsetof(TuneOptions, sdf), ".sdf", FILE_SDF, .may = write_sdf},
     {"--mjcf", offsetof(TuneOptions, mjcf), ".xml", FILE_MJCF, .may = write_mjcf},
     {.ending = ".txt", .kind = FILE_REPORT},
@@ -148,7 +130,6 @@ static bool check_files(const TuneOptions *options, const Scenario *scenario, Er
         const char *path;
         const char *(*lacks)(const Scenario *scenario);
     } asked[] = {
-        {"--one-file", options->one_file, program_lacks},
         {"--sdf", options->sdf, tune_linear_lacks_case},
         {"--mjcf", options->mjcf, tune_linear_lacks_range},
     };

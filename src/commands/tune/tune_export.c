@@ -1,7 +1,6 @@
 // How can a setting be used outside this program?
 #include "commands/tune/tune_export.h"
 
-#include "commands/tune/tune_code.h"
 #include "commands/tune/tune_limit.h"
 #include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_report.h"
@@ -66,19 +65,14 @@ static void take_program(const TuneReport *report, Scenario *scenario)
     scenario->run.step = report->tune->program.step_s;
 }
 
-bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *err)
+bool tune_export_code(const TuneReport *report, Text *text, Err *err)
 {
     const TuneTrial *trial = tune_export_trial(report);
     const TuneProgram *program = &report->tune->program;
     assert(trial != NULL);
     Scenario *scenario = malloc(sizeof *scenario);
     assert(scenario != NULL);
-    if (form == TUNE_WITH_LIBRARY) {
-        take_program(report, scenario);
-    } else if (!tune_export_scenario(report, scenario, err)) {
-        free(scenario);
-        return false;
-    }
+    take_program(report, scenario);
     Text words;
     Text command;
     text_init(&words);
@@ -88,12 +82,11 @@ bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *
     const TuneCode code = {.scenario = scenario,
                            .words = words.data,
                            .command = command.data,
-                           .error = form == TUNE_WITH_LIBRARY ? program->error : trial->error,
+                           .error = program->error,
                            .target = report->tune->target,
                            .step_first_s = program->step_first_s,
                            .error_first = program->error_first};
-    const bool is_written = form == TUNE_ONE_FILE ? tune_code_write(&code, text, err)
-                                                  : tune_world_write(&code, text, err);
+    const bool is_written = tune_world_write(&code, text, err);
     text_finish(&words);
     text_finish(&command);
     free(scenario);
@@ -151,15 +144,18 @@ static void write_code(const TuneReport *report, const Style *style, Text *text)
         return;
     }
     const TuneProgram *program = &report->tune->program;
+    const char *lacks = tune_export_lacks(report);
     if (program->is_run) {
         write_program(program, text);
-    } else if (tune_export_lacks(report) == NULL) {
+    } else if (report->scenario->linkage.is_spatial) {
+        text_append(text, "  There is none: programs are written for cases in the plane alone.\n");
+    } else if (lacks != NULL) {
+        text_append(text, "  There is none: %s.\n", lacks);
+    } else {
         text_append(text, "  --code FILE.c writes the setting as a short program against "
                           "libjointplay, for worlds of your own: cc FILE.c -o run $(pkg-config "
                           "--cflags --libs jointplay) -lm\n");
     }
-    text_append(text, "  --one-file FILE.c writes it as one C file that needs ODE alone and gives "
-                      "the same run, bit for bit: cc FILE.c -o run -lode -lm\n");
 }
 
 const TuneTrial *tune_export_plain(const Tune *tune)

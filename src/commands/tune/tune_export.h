@@ -11,10 +11,9 @@ const TuneTrial *tune_export_trial(const TuneReport *report);
 // error, or the best at the step that is held; NULL where there is none.
 const TuneTrial *tune_export_plain(const Tune *tune);
 
-// Appends the C program of that setting: one against libjointplay, or one file that needs ODE
-// alone. Fails with ERR_CASE where a law does not fit its joint.
-typedef enum TuneForm { TUNE_WITH_LIBRARY, TUNE_ONE_FILE } TuneForm;
-bool tune_export_code(const TuneReport *report, TuneForm form, Text *text, Err *err);
+// Appends the C program of that setting against libjointplay. Fails with ERR_CASE where a law does
+// not fit its joint.
+bool tune_export_code(const TuneReport *report, Text *text, Err *err);
 
 // Why there is no program of that setting against libjointplay; NULL where there is one.
 const char *tune_export_lacks(const TuneReport *report);

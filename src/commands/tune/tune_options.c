@@ -77,16 +77,11 @@ static const OptionRow OPTIONS[] = {
     COMMON_TIME_LIMIT(2, "A run that takes longer is not tried (default: 60 s)"),
     {"code", "FILE.c", "Write the setting as a short C program against libjointplay", 3,
      OPTION_TEXT, AT(code)},
-    {"one-file", "FILE.c",
-     "Write the setting as one C file of some thousand lines that needs only ODE and gives the "
-     "same run, bit for bit",
-     3, OPTION_TEXT, AT(one_file)},
     {"sdf", "FILE.sdf", "Write the contact in Gazebo's form", 3, OPTION_TEXT, AT(sdf)},
     {"mjcf", "FILE.xml", "Write the contact in MuJoCo's form", 3, OPTION_TEXT, AT(mjcf)},
     COMMON_JSON(3),
     COMMON_WIDE(3),
-    COMMON_OUT(
-        3, "Write <case>-tune.json, .txt, .c, .sdf and .xml, and <case>-tune-one-file.c, there"),
+    COMMON_OUT(3, "Write <case>-tune.json, .txt, .c, .sdf and .xml there"),
     COMMON_QUIET(3),
 };
 

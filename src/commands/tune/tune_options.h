@@ -15,7 +15,6 @@ typedef struct TuneOptions {
     TuneCost cost;
     TuneLimit limit;
     const char *code;
-    const char *one_file;
     const char *sdf;
     const char *mjcf;
 } TuneOptions;
