@@ -541,7 +541,8 @@ Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, doubl
 {
     Trajectory *trajectory = trajectory_create(scenario, "maximal coordinates");
     Err err = {ERR_NONE, ""};
-    Maximal *maximal = maximal_plane_create(scenario, flaw, &err);
+    Maximal *maximal = scenario->linkage.is_spatial ? maximal_space_create(scenario, flaw, &err)
+                                                    : maximal_plane_create(scenario, flaw, &err);
     if (maximal == NULL) {
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
