@@ -39,9 +39,10 @@ static bool is_meshed(const Shaft *shaft, size_t number)
     return number > 0 && shaft->at[number] > shaft->at[number - 1];
 }
 
-static double draw_stiffness(Draw *draw, double inertia)
+// One at which an inertia rings with a frequency up to 1 kHz.
+static double draw_stiffness(Draw *draw, double inertia, double least_hz)
 {
-    const double rate = 2.0 * M_PI * draw_log_between(draw, 5.0, 1000.0);
+    const double rate = 2.0 * M_PI * draw_log_between(draw, least_hz, 1000.0);
     return inertia * rate * rate;
 }
 
@@ -60,7 +61,7 @@ static void write_joints(Shaft *shaft, FILE *file)
         fprintf(file, ", rotor-%zu], at: [%.15g m, 0 m]", i, shaft->at[i]);
         if (i > 0 && !is_meshed(shaft, i) && draw_chance(draw, 0.4)) {
             fprintf(file, ", backlash: %.6g deg, stiffness: %.5g N m/rad, restitution: %.3g",
-                    draw_log_between(draw, 0.01, 5.0), draw_stiffness(draw, inertia),
+                    draw_log_between(draw, 0.01, 5.0), draw_stiffness(draw, inertia, 20.0),
                     draw_between(draw, 0.2, 0.95));
         }
         fprintf(file, "}\n");
@@ -82,7 +83,7 @@ static void write_meshes(Shaft *shaft, FILE *file)
                 "    stiffness: %.5g N/m, restitution: %.3g}\n",
                 i, i - 1, i, shaft->teeth[i - 1], shaft->teeth[i],
                 draw_log_between(draw, 1e-3, 0.3),
-                draw_stiffness(draw, shaft->inertias[i] / (radius * radius)),
+                draw_stiffness(draw, shaft->inertias[i] / (radius * radius), 200.0),
                 draw_between(draw, 0.2, 0.95));
     }
 }
@@ -92,7 +93,7 @@ static void write_springs(Shaft *shaft, FILE *file)
     Draw *draw = &shaft->draw;
     fprintf(file, "torsion-springs:\n");
     for (size_t i = 0; i < shaft->count; i++) {
-        const double stiffness = draw_stiffness(draw, shaft->inertias[i]);
+        const double stiffness = draw_stiffness(draw, shaft->inertias[i], 5.0);
         const double damping =
             draw_log_between(draw, 1e-3, 0.5) * sqrt(stiffness * shaft->inertias[i]);
         fprintf(file, "  coil-%zu: {joint: joint-%zu, ", i, i);
@@ -101,6 +102,16 @@ static void write_springs(Shaft *shaft, FILE *file)
         }
         fprintf(file, "damping: %.5g N m s/rad}\n", damping);
     }
+}
+
+// Any damping but the viscous one, whose coefficient is not that of a torque.
+static void write_damping(Draw *draw, FILE *file)
+{
+    static const char *const DAMPINGS[] = {
+        "none", "lankarani-nikravesh", "hunt-crossley", "flores", "gonthier", "hu-guo", "exact",
+    };
+    fprintf(file, "contact: {damping: %s}\n",
+            DAMPINGS[draw_below(draw, sizeof DAMPINGS / sizeof *DAMPINGS)]);
 }
 
 static void write_rotors(uint64_t seed, FILE *file)
@@ -133,7 +144,7 @@ static void write_rotors(uint64_t seed, FILE *file)
         fprintf(file, "drive: {joint: joint-0, speed: [[0 s, 0 rpm], [%.4g ms, %.5g rpm]]}\n",
                 draw_between(draw, 5.0, 40.0), speed);
     }
-    draw_contact(draw, file);
+    write_damping(draw, file);
     draw_run(draw, drive == 2 ? "revolutions: 1" : "duration: 0.1 s", file);
 }
 

@@ -26,13 +26,17 @@
 enum { TOLERANCE_COUNT = 3 };
 
 static const double TOLERANCES[TOLERANCE_COUNT] = {1e-3, 1e-4, 1e-6};
-static const double JUDGE_TOLERANCES[2] = {1e-13, 1e-14};
+
+// a judge that is too blunt is followed by a sharper one
+enum { JUDGE_COUNT = 4 };
+static const double JUDGE_TOLERANCES[JUDGE_COUNT] = {1e-13, 1e-14, 1e-15, 1e-16};
 static const double HONEST = 3.0; // of the uncertainty
 
 // What the judge does not know: of the difference of its two runs, whose tolerances are ten times
 // apart, a tenth where its error follows the tolerance, here three times that.
 static const double JUDGE_UNKNOWN = 0.3;
-static const double JUDGE_SHARE = 0.5; // of the uncertainty, or a tolerance, that this may be
+static const double JUDGE_UNSURE = 10.0; // times that a blunt judge may be off
+static const double JUDGE_SHARE = 0.5;   // of the uncertainty, or a tolerance, that this may be
 static const double CONTROL_GRAVITY = 1.001;
 static const double TIME_LIMIT_S = 60.0; // of one case
 static const double OWN_TIME_LIMIT_S = 600.0;
@@ -85,6 +89,41 @@ static void judge_runs(const Work *work, Scenario *scenario, const Truth *truth,
     }
 }
 
+// The motion by a judge that is sharp enough for the uncertainty, or the sharpest, and what it says
+// of the reference; a message where there is none.
+static Trajectory *sharp_judge(const Work *work, const Scenario *scenario, const Truth *truth,
+                               Result *result)
+{
+    Trajectory *judge = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[0]);
+    result->horizon_s = truth->is_limited ? truth->horizon_s : scenario_duration(scenario);
+    result->uncertainty = truth->uncertainty;
+    result->is_blunt = true;
+    for (int i = 1; i < JUDGE_COUNT && result->is_blunt; i++) {
+        Trajectory *next = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[i]);
+        if (!judge->is_complete || !next->is_complete) {
+            // the sharpest ones end by rounding: then the one before them judges
+            if (i == 1) {
+                snprintf(result->message, sizeof result->message, "%.70s; %.70s", judge->message,
+                         next->message);
+            }
+            trajectory_destroy(next);
+            break;
+        }
+        const double apart = apart_until(judge, next, truth->trajectory, result->horizon_s);
+        trajectory_destroy(judge);
+        judge = next;
+        result->unknown = JUDGE_UNKNOWN * apart;
+        result->is_blunt = !(result->unknown <= JUDGE_SHARE * truth->uncertainty);
+    }
+    if (result->message[0] != '\0') {
+        return judge;
+    }
+    result->off = apart_until(truth->trajectory, judge, truth->trajectory, result->horizon_s);
+    const double allowed = HONEST * truth->uncertainty + JUDGE_UNSURE * result->unknown;
+    result->is_dishonest = !(truth->uncertainty > 0.0) || !(result->off <= allowed);
+    return judge;
+}
+
 static void measure(const void *context, void *target)
 {
     static const char *const CUT[] = {"run.step=auto", "run.most-steps=300000"};
@@ -107,24 +146,15 @@ static void measure(const void *context, void *target)
         }
     }
     Truth truth = truth_make(&scenario, (RunWatch){NULL, NULL});
-    Trajectory *rough = maximal_run(&scenario, &work->flaw, JUDGE_TOLERANCES[0]);
-    Trajectory *judge = maximal_run(&scenario, &work->flaw, JUDGE_TOLERANCES[1]);
-    if (!truth.trajectory->is_complete || !rough->is_complete || !judge->is_complete) {
-        snprintf(result->message, sizeof result->message, "%.70s; %.70s", truth.trajectory->message,
-                 judge->message);
+    if (!truth.trajectory->is_complete) {
+        snprintf(result->message, sizeof result->message, "%.150s", truth.trajectory->message);
     } else {
-        const double horizon_s = truth.is_limited ? truth.horizon_s : scenario_duration(&scenario);
-        result->horizon_s = horizon_s;
-        result->uncertainty = truth.uncertainty;
-        result->off = apart_until(truth.trajectory, judge, truth.trajectory, horizon_s);
-        result->unknown = JUDGE_UNKNOWN * apart_until(rough, judge, truth.trajectory, horizon_s);
-        result->is_blunt = !(result->unknown <= JUDGE_SHARE * truth.uncertainty);
-        result->is_dishonest = !(truth.uncertainty > 0.0) ||
-                               (!result->is_blunt && !(result->off <= HONEST * truth.uncertainty));
-        judge_runs(work, &scenario, &truth, judge, result);
+        Trajectory *judge = sharp_judge(work, &scenario, &truth, result);
+        if (result->message[0] == '\0') {
+            judge_runs(work, &scenario, &truth, judge, result);
+        }
+        trajectory_destroy(judge);
     }
-    trajectory_destroy(rough);
-    trajectory_destroy(judge);
     truth_finish(&truth);
     scenario_free(&scenario);
 }
