@@ -127,6 +127,9 @@ void maximal_solve(size_t n, Real *a, Real *b)
         for (size_t i = rank + 1; i < n; i++) {
             const size_t row = order[i];
             const Real factor = a[row * n + pivot] / a[pivot * n + pivot];
+            if (factor == 0.0L) {
+                continue;
+            }
             for (size_t k = rank + 1; k < n; k++) {
                 a[row * n + order[k]] -= factor * a[pivot * n + order[k]];
             }

@@ -396,8 +396,9 @@ static void meet_rows(const Stand *stands, size_t count, const SpaceLine *rows, 
                 right[i] -= wrench_dot(row->of[side], wrench_in(of, row->body[side]));
             }
         }
-        for (size_t k = 0; k < count; k++) {
+        for (size_t k = 0; k <= i; k++) {
             matrix[k * count + i] = rows_share(&rows[k], row, by);
+            matrix[i * count + k] = matrix[k * count + i];
         }
     }
     maximal_solve(count, matrix, right);
