@@ -540,7 +540,8 @@ static void motor_finish(Motor *motor)
     free(motor->table);
 }
 
-Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance)
+Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance,
+                        double until_s)
 {
     Trajectory *trajectory = trajectory_create(scenario, "maximal coordinates");
     Err err = {ERR_NONE, ""};
@@ -557,6 +558,9 @@ Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, doubl
     trajectory->is_complete = true;
     for (size_t k = 0; k < trajectory->sample_count; k++) {
         trajectory->times[k] = scenario_sample_time(scenario, k);
+        if (trajectory->times[k] > until_s) {
+            continue;
+        }
         if (!run_to(&motor, trajectory->times[k], &wanted)) {
             snprintf(trajectory->message, sizeof trajectory->message,
                      "at %.6g ms no step was accurate", 1e3 * (double)motor.time_s);

@@ -80,5 +80,7 @@ Real maximal_press(const MaximalContact *contact, MaximalGap gap);
 void maximal_solve(size_t n, Real *a, Real *b);
 
 // Integrates a scenario, each step's error at most the tolerance times the speed of its fastest
-// point, and stores the bodies' motions at its samples. A trajectory that is not complete says why.
-Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance);
+// point, and stores the bodies' motions at its samples up to a time. A trajectory that is not
+// complete says why.
+Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance,
+                        double until_s);

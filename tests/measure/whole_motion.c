@@ -94,12 +94,13 @@ static void judge_runs(const Work *work, Scenario *scenario, const Truth *truth,
 static Trajectory *sharp_judge(const Work *work, const Scenario *scenario, const Truth *truth,
                                Result *result)
 {
-    Trajectory *judge = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[0]);
-    result->horizon_s = truth->is_limited ? truth->horizon_s : scenario_duration(scenario);
+    const double until_s = truth->is_limited ? truth->horizon_s : scenario_duration(scenario);
+    Trajectory *judge = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[0], until_s);
+    result->horizon_s = until_s;
     result->uncertainty = truth->uncertainty;
     result->is_blunt = true;
     for (int i = 1; i < JUDGE_COUNT && result->is_blunt; i++) {
-        Trajectory *next = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[i]);
+        Trajectory *next = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[i], until_s);
         if (!judge->is_complete || !next->is_complete) {
             // the sharpest ones end by rounding: then the one before them judges
             if (i == 1) {
