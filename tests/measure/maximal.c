@@ -25,7 +25,10 @@
 enum { ROWS = 10, FEWEST = 2, EASY = 5, HARD = 8, LOCATE_MAX = 80, IDLE_MAX = 200 };
 
 static const double FIRST_STEP_S = 1e-7;
-static const double STEPS_LEAST = 20000.0; // in a run
+
+// in a run: contacts are looked for at the ends of steps; without any only accuracy counts
+static const double STEPS_LEAST = 4000.0;
+static const double STEPS_LEAST_SMOOTH = 200.0;
 static const double SHORTEST_S = 1e-17;
 static const long STEPS_MOST = 4000000;
 
@@ -553,7 +556,8 @@ Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, doubl
     }
     Motor motor = motor_create(maximal, tolerance);
     Real wanted = FIRST_STEP_S;
-    motor.longest = scenario_duration(scenario) / STEPS_LEAST;
+    motor.longest = scenario_duration(scenario) /
+                    (maximal->contact_count > 0 ? STEPS_LEAST : STEPS_LEAST_SMOOTH);
     motor.fastest = fmaxl(maximal->kind->fastest(maximal, motor.y), 1e-3L);
     trajectory->is_complete = true;
     for (size_t k = 0; k < trajectory->sample_count; k++) {

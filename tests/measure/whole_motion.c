@@ -8,7 +8,8 @@
 // holds. Exit status 1 where there is any.
 //
 // whole_motion --control KIND SEED
-// The same case judged under 0.1 % more gravity: exit status 0 where that is seen.
+// The same case judged under 0.1 % more gravity, with a first body that is 0.1 % heavier: exit
+// status 0 where that is seen.
 //
 // whole_motion --case FILE TOLERANCE...
 // A case of one's own, up to its horizon, at one to three tolerances.
@@ -37,7 +38,7 @@ static const double HONEST = 3.0; // of the uncertainty
 static const double JUDGE_UNKNOWN = 0.3;
 static const double JUDGE_UNSURE = 10.0; // times that a blunt judge may be off
 static const double JUDGE_SHARE = 0.5;   // of the uncertainty, or a tolerance, that this may be
-static const double CONTROL_GRAVITY = 1.001;
+static const double CONTROL_FLAW = 1.001;
 static const double TIME_LIMIT_S = 400.0; // of one case, on a busy machine
 static const double OWN_TIME_LIMIT_S = 600.0;
 
@@ -270,7 +271,7 @@ int main(int argc, char **argv)
     }
     const uint64_t last = strtoull(argv[3], NULL, 10);
     Work work = {.kind = kind,
-                 .flaw = {is_control ? CONTROL_GRAVITY : 1.0, 1.0},
+                 .flaw = is_control ? (MaximalFlaw){CONTROL_FLAW, CONTROL_FLAW} : MAXIMAL_RIGHT,
                  .tolerance_count = TOLERANCE_COUNT,
                  .time_limit_s = TIME_LIMIT_S};
     Sum sum = {0};
