@@ -133,8 +133,8 @@ static void add_pair(Sketch *sketch, const Loop *loop, double angle)
     Draw *draw = &sketch->draw;
     for (;;) {
         const double size = loop->follower;
-        const Point pivot = reach(loop->pivot, size * draw_between(draw, 0.5, 2.0),
-                                  draw_between(draw, -M_PI, M_PI));
+        const double direction = draw_between(draw, -M_PI, M_PI);
+        const Point pivot = reach(loop->pivot, size * draw_between(draw, 0.5, 2.0), direction);
         const double first = size * draw_between(draw, 0.6, 2.0);
         const double second = size * draw_between(draw, 0.6, 2.0);
         bool is_whole = true;
@@ -254,9 +254,8 @@ static void write_run_up(Sketch *sketch, FILE *file)
     Draw *draw = &sketch->draw;
     const bool is_torque = draw_chance(draw, 0.5);
     const char *unit = is_torque ? "N m" : "rpm";
-    const double top = is_torque
-                           ? draw_log_between(draw, 0.01, 5.0) * (draw_chance(draw, 0.5) ? 1 : -1)
-                           : draw_speed_rpm(draw);
+    const double size = is_torque ? draw_log_between(draw, 0.01, 5.0) : draw_speed_rpm(draw);
+    const double top = !is_torque || draw_chance(draw, 0.5) ? size : -size;
     const double start = draw_chance(draw, 0.5) ? 0.0 : draw_between(draw, -0.5, 0.5) * top;
     const double end = draw_between(draw, -0.5, 0.8) * top;
     const double rise_ms = draw_log_between(draw, 2.0, 30.0);

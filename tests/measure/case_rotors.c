@@ -60,9 +60,10 @@ static void write_joints(Shaft *shaft, FILE *file)
         }
         fprintf(file, ", rotor-%zu], at: [%.15g m, 0 m]", i, shaft->at[i]);
         if (i > 0 && !is_meshed(shaft, i) && draw_chance(draw, 0.4)) {
+            const double restitution = draw_between(draw, 0.2, 0.95);
+            const double stiffness = draw_stiffness(draw, inertia, 20.0);
             fprintf(file, ", backlash: %.6g deg, stiffness: %.5g N m/rad, restitution: %.3g",
-                    draw_log_between(draw, 0.01, 5.0), draw_stiffness(draw, inertia, 20.0),
-                    draw_between(draw, 0.2, 0.95));
+                    draw_log_between(draw, 0.01, 5.0), stiffness, restitution);
         }
         fprintf(file, "}\n");
     }
@@ -78,13 +79,14 @@ static void write_meshes(Shaft *shaft, FILE *file)
         }
         const double share = (double)shaft->teeth[i] / (shaft->teeth[i] + shaft->teeth[i - 1]);
         const double radius = (shaft->at[i] - shaft->at[i - 1]) * share;
+        const double restitution = draw_between(draw, 0.2, 0.95);
+        const double stiffness =
+            draw_stiffness(draw, shaft->inertias[i] / (radius * radius), 200.0);
         fprintf(file,
                 "  mesh-%zu: {gears: [joint-%zu, joint-%zu], teeth: [%d, %d], backlash: %.6g mm,\n"
                 "    stiffness: %.5g N/m, restitution: %.3g}\n",
                 i, i - 1, i, shaft->teeth[i - 1], shaft->teeth[i],
-                draw_log_between(draw, 1e-3, 0.3),
-                draw_stiffness(draw, shaft->inertias[i] / (radius * radius), 200.0),
-                draw_between(draw, 0.2, 0.95));
+                draw_log_between(draw, 1e-3, 0.3), stiffness, restitution);
     }
 }
 

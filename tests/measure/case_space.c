@@ -146,8 +146,9 @@ static void write_backlash(SpaceSketch *sketch, FILE *file)
 {
     Draw *draw = &sketch->draw;
     const double rate = 2.0 * M_PI * draw_log_between(draw, 20.0, 1000.0);
+    const double restitution = draw_between(draw, 0.2, 0.95);
     fprintf(file, ",\n    backlash: %.6g deg, stiffness: %.5g N m/rad, restitution: %.3g",
-            draw_log_between(draw, 0.01, 5.0), 1e-4 * rate * rate, draw_between(draw, 0.2, 0.95));
+            draw_log_between(draw, 0.01, 5.0), 1e-4 * rate * rate, restitution);
 }
 
 static void write_pin(SpaceSketch *sketch, size_t number, bool may_limit, FILE *file)
@@ -188,8 +189,8 @@ static void add_chain(SpaceSketch *sketch, int from, Point3 at, size_t count)
 {
     const Point3 z = {0.0, 0.0, 1.0};
     for (size_t i = 0; i < count; i++) {
-        const Point3 along =
-            point3_times(draw_log_between(&sketch->draw, 0.03, 0.3), draw_direction(&sketch->draw));
+        const Point3 direction = draw_direction(&sketch->draw);
+        const Point3 along = point3_times(draw_log_between(&sketch->draw, 0.03, 0.3), direction);
         const Point3 end = {at.x + along.x, at.y + along.y, at.z + along.z};
         const int body = add_body(sketch, at, end);
         add_pin(sketch, from, body, at, sketch->is_upright ? z : draw_direction(&sketch->draw));
@@ -349,7 +350,8 @@ static void write_driven(uint64_t seed, FILE *file)
     const size_t which = draw_below(draw, 4);
     if (which == 0) {
         sketch.is_upright = draw_chance(draw, 0.25);
-        add_chain(&sketch, -1, draw_point3(draw, 0.2), 2 + draw_below(draw, 2));
+        const size_t count = 2 + draw_below(draw, 2);
+        add_chain(&sketch, -1, draw_point3(draw, 0.2), count);
     } else if (which == 1) {
         sketch_four_bar(&sketch);
     } else if (which == 2) {
