@@ -235,15 +235,18 @@ static void write_springs(Sketch *sketch, FILE *file)
     fprintf(file, "springs:\n");
     for (size_t i = 0; i < sketch->body_count; i += 2) {
         const Point end = sketch->ends[i][1];
+        const double above = end.y + draw_between(draw, -0.3, 0.3);
         fprintf(file, "  spring-%zu: {between: [ground, body-%zu], at-a: [%.6g m, %.6g m],\n", i, i,
-                end.x + draw_between(draw, 0.05, 0.3), end.y + draw_between(draw, -0.3, 0.3));
+                end.x + draw_between(draw, 0.05, 0.3), above);
         fprintf(file, "            at-b: [%.15g m, %.15g m], stiffness: %.4g N/m,\n", end.x, end.y,
                 draw_log_between(draw, 10.0, 1e4));
+        const double damping = draw_log_between(draw, 0.01, 30.0);
         fprintf(file, "            length: %.4g m, damping: %.4g N s/m}\n",
-                draw_between(draw, 0.02, 0.3), draw_log_between(draw, 0.01, 30.0));
+                draw_between(draw, 0.02, 0.3), damping);
     }
+    const double stiffness = draw_log_between(draw, 0.01, 10.0);
     fprintf(file, "torsion-springs:\n  coil: {joint: joint-%zu, stiffness: %.4g N m/rad,\n",
-            draw_below(draw, sketch->pin_count), draw_log_between(draw, 0.01, 10.0));
+            draw_below(draw, sketch->pin_count), stiffness);
     fprintf(file, "         damping: %.4g N m s/rad}\n", draw_log_between(draw, 1e-4, 0.1));
 }
 
