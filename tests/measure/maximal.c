@@ -26,8 +26,9 @@ enum { ROWS = 10, FEWEST = 2, EASY = 5, HARD = 8, LOCATE_MAX = 80, IDLE_MAX = 20
 
 static const double FIRST_STEP_S = 1e-7;
 
-// in a run: contacts are looked for at the ends of steps; without any only accuracy counts
-static const double STEPS_LEAST = 4000.0;
+// in a run: a step longer than a contact may pass over its end, and over the next touch; without
+// contacts only accuracy counts
+static const double STEPS_LEAST = 20000.0;
 static const double STEPS_LEAST_SMOOTH = 200.0;
 static const double SHORTEST_S = 1e-17;
 static const long STEPS_MOST = 4000000;
