@@ -26,9 +26,7 @@ enum { ROWS = 10, FEWEST = 2, EASY = 5, HARD = 8, LOCATE_MAX = 80, IDLE_MAX = 20
 
 static const double FIRST_STEP_S = 1e-7;
 
-// in a run: a step longer than a contact may pass over its end, and over the next touch; without
-// contacts only accuracy counts
-static const double STEPS_LEAST = 20000.0;
+// in a run without contacts, where only accuracy counts
 static const double STEPS_LEAST_SMOOTH = 200.0;
 static const double SHORTEST_S = 1e-17;
 static const long STEPS_MOST = 4000000;
@@ -545,7 +543,7 @@ static void motor_finish(Motor *motor)
 }
 
 Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance,
-                        double until_s)
+                        double steps_least, double until_s)
 {
     Trajectory *trajectory = trajectory_create(scenario, "maximal coordinates");
     Err err = {ERR_NONE, ""};
@@ -558,7 +556,7 @@ Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, doubl
     Motor motor = motor_create(maximal, tolerance);
     Real wanted = FIRST_STEP_S;
     motor.longest = scenario_duration(scenario) /
-                    (maximal->contact_count > 0 ? STEPS_LEAST : STEPS_LEAST_SMOOTH);
+                    (maximal->contact_count > 0 ? steps_least : STEPS_LEAST_SMOOTH);
     motor.fastest = fmaxl(maximal->kind->fastest(maximal, motor.y), 1e-3L);
     trajectory->is_complete = true;
     for (size_t k = 0; k < trajectory->sample_count; k++) {

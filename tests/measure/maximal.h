@@ -80,7 +80,8 @@ Real maximal_press(const MaximalContact *contact, MaximalGap gap);
 void maximal_solve(size_t n, Real *a, Real *b);
 
 // Integrates a scenario, each step's error at most the tolerance times the speed of its fastest
-// point, and stores the bodies' motions at its samples up to a time. A trajectory that is not
-// complete says why.
+// point, and stores the bodies' motions at its samples up to a time. With contacts the whole run
+// has so many steps or more: one that is longer than a contact may pass over its end and over the
+// next touch. A trajectory that is not complete says why.
 Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance,
-                        double until_s);
+                        double steps_least, double until_s);

@@ -4,10 +4,10 @@
 // Runs the random cases of those seeds, cut to a tenth of a turn or 0.05 s, and judges the
 // reference and runs at `step: auto`, up to the horizon, by an integration in other coordinates
 // (maximal.h), made at two tolerances: their difference is what the judge does not know. Where that
-// is too much for the uncertainty the judge is made sharper, down to 1e-16; if it is still too
-// blunt, what it does not know is allowed too. Violations are a reference further off than three
-// times its uncertainty, and a run above its tolerance where it says that it holds. Exit status 1
-// where there is any. What a sweep found stands in docs/stepping.md.
+// is too much for the uncertainty the judge is made sharper, down to 1e-16 and with shorter steps;
+// if it is still too blunt, what it does not know is allowed too. Violations are a reference
+// further off than three times its uncertainty, and a run above its tolerance where it says that it
+// holds. Exit status 1 where there is any. What a sweep found stands in docs/stepping.md.
 //
 // whole_motion --control KIND SEED
 // The same case judged under 0.1 % more gravity, with a first body that is 0.1 % heavier: exit
@@ -33,6 +33,7 @@ static const double TOLERANCES[TOLERANCE_COUNT] = {1e-3, 1e-4, 1e-6};
 // a judge that is too blunt is followed by a sharper one
 enum { JUDGE_COUNT = 4 };
 static const double JUDGE_TOLERANCES[JUDGE_COUNT] = {1e-13, 1e-14, 1e-15, 1e-16};
+static const double JUDGE_STEPS[JUDGE_COUNT] = {2e4, 2e4, 1e5, 3e5};
 static const double HONEST = 3.0; // of the uncertainty
 
 // What the judge does not know: of the difference of its two runs, whose tolerances are ten times
@@ -98,12 +99,14 @@ static Trajectory *sharp_judge(const Work *work, const Scenario *scenario, const
                                Result *result)
 {
     const double until_s = truth->is_limited ? truth->horizon_s : scenario_duration(scenario);
-    Trajectory *judge = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[0], until_s);
+    Trajectory *judge =
+        maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[0], JUDGE_STEPS[0], until_s);
     result->horizon_s = until_s;
     result->uncertainty = truth->uncertainty;
     result->is_blunt = true;
     for (int i = 1; i < JUDGE_COUNT && result->is_blunt; i++) {
-        Trajectory *next = maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[i], until_s);
+        Trajectory *next =
+            maximal_run(scenario, &work->flaw, JUDGE_TOLERANCES[i], JUDGE_STEPS[i], until_s);
         if (!judge->is_complete || !next->is_complete) {
             // the sharpest ones end by rounding: then the one before them judges
             if (i == 1) {
