@@ -129,11 +129,12 @@ static void count(Chosen *chosen, const Trial *trial)
     chosen->steps += run->steps;
     chosen->evaluations += run->evaluations;
     chosen->wall_s += run->wall_s;
-    if (run->duration_s > 0.0) {
+    const bool is_failed = !run->is_complete && !trial->is_given_up;
+    // where one of several mechanisms fails, it may be far ahead of what all have reached
+    if (!is_failed && run->duration_s > 0.0) {
         // what a short trial costs need not be what the rest of the run would have
         chosen->cost = fmax(chosen->cost, (double)run->steps * trial->step_s / run->duration_s);
     }
-    const bool is_failed = !run->is_complete && !trial->is_given_up;
     if (!is_failed && trial->held_s > chosen->best_held_s) {
         chosen->best_held_s = trial->held_s;
         chosen->best_step_s = trial->step_s;

@@ -11,6 +11,12 @@ enum { BODY_MAX = 8, JOINT_MAX = 12, TURN_PARTS = 360 };
 // a pair of links is not stretched or folded further than this share of its lengths over a turn
 static const double STRETCH_MOST = 0.96;
 
+typedef enum BodiesKind {
+    BODIES_PLAIN,
+    BODIES_SPRUNG,
+    BODIES_RUN_UP,
+} BodiesKind;
+
 typedef struct Pin {
     int body_a; // -1: the ground
     int body_b;
@@ -127,8 +133,8 @@ static void add_pair(Sketch *sketch, const Loop *loop, double angle)
     Draw *draw = &sketch->draw;
     for (;;) {
         const double size = loop->follower;
-        const Point pivot = reach(loop->pivot, size * draw_between(draw, 0.5, 2.0),
-                                  draw_between(draw, -M_PI, M_PI));
+        const double direction = draw_between(draw, -M_PI, M_PI);
+        const Point pivot = reach(loop->pivot, size * draw_between(draw, 0.5, 2.0), direction);
         const double first = size * draw_between(draw, 0.6, 2.0);
         const double second = size * draw_between(draw, 0.6, 2.0);
         bool is_whole = true;
@@ -229,22 +235,51 @@ static void write_springs(Sketch *sketch, FILE *file)
     fprintf(file, "springs:\n");
     for (size_t i = 0; i < sketch->body_count; i += 2) {
         const Point end = sketch->ends[i][1];
+        const double above = end.y + draw_between(draw, -0.3, 0.3);
         fprintf(file, "  spring-%zu: {between: [ground, body-%zu], at-a: [%.6g m, %.6g m],\n", i, i,
-                end.x + draw_between(draw, 0.05, 0.3), end.y + draw_between(draw, -0.3, 0.3));
+                end.x + draw_between(draw, 0.05, 0.3), above);
         fprintf(file, "            at-b: [%.15g m, %.15g m], stiffness: %.4g N/m,\n", end.x, end.y,
                 draw_log_between(draw, 10.0, 1e4));
+        const double damping = draw_log_between(draw, 0.01, 30.0);
         fprintf(file, "            length: %.4g m, damping: %.4g N s/m}\n",
-                draw_between(draw, 0.02, 0.3), draw_log_between(draw, 0.01, 30.0));
+                draw_between(draw, 0.02, 0.3), damping);
     }
+    const double stiffness = draw_log_between(draw, 0.01, 10.0);
     fprintf(file, "torsion-springs:\n  coil: {joint: joint-%zu, stiffness: %.4g N m/rad,\n",
-            draw_below(draw, sketch->pin_count), draw_log_between(draw, 0.01, 10.0));
+            draw_below(draw, sketch->pin_count), stiffness);
     fprintf(file, "         damping: %.4g N m s/rad}\n", draw_log_between(draw, 1e-4, 0.1));
 }
 
-static void write_case(uint64_t seed, FILE *file, bool is_sprung)
+// A motor that starts, runs and brakes or turns back: its speed, or its torque beside a bearing
+// that brakes it.
+static void write_run_up(Sketch *sketch, FILE *file)
+{
+    Draw *draw = &sketch->draw;
+    const bool is_torque = draw_chance(draw, 0.5);
+    const char *unit = is_torque ? "N m" : "rpm";
+    const double size = is_torque ? draw_log_between(draw, 0.01, 5.0) : draw_speed_rpm(draw);
+    const double top = !is_torque || draw_chance(draw, 0.5) ? size : -size;
+    const double start = draw_chance(draw, 0.5) ? 0.0 : draw_between(draw, -0.5, 0.5) * top;
+    const double end = draw_between(draw, -0.5, 0.8) * top;
+    const double rise_ms = draw_log_between(draw, 2.0, 30.0);
+    const double hold_ms = rise_ms + draw_between(draw, 0.5, 20.0);
+    const double fall_ms = hold_ms + draw_log_between(draw, 1.0, 30.0);
+    if (is_torque) {
+        fprintf(file, "torsion-springs:\n  bearing: {joint: joint-0, damping: %.4g N m s/rad}\n",
+                draw_log_between(draw, 1e-4, 0.1));
+    }
+    fprintf(file,
+            "drive: {joint: joint-0, %s: [[0 s, %.5g %s], [%.4g ms, %.5g %s], [%.4g ms, %.5g %s], "
+            "[%.4g ms, %.5g %s]]}\n",
+            is_torque ? "torque" : "speed", start, unit, rise_ms, top, unit, hold_ms, top, unit,
+            fall_ms, end, unit);
+}
+
+static void write_case(uint64_t seed, FILE *file, BodiesKind kind)
 {
     Sketch sketch = {.draw = draw_start(seed)};
-    const size_t which = draw_below(&sketch.draw, 5);
+    const bool is_sprung = kind == BODIES_SPRUNG;
+    const size_t which = draw_below(&sketch.draw, kind == BODIES_RUN_UP ? 4 : 5);
     if (which == 4) {
         const Point pivot = {draw_between(&sketch.draw, -0.5, 0.5), 0.0};
         add_chain(&sketch, -1, pivot, 1 + draw_below(&sketch.draw, 4));
@@ -271,7 +306,10 @@ static void write_case(uint64_t seed, FILE *file, bool is_sprung)
                     torque, -0.5 * torque);
         }
     }
-    if (sketch.is_driven) {
+    if (kind == BODIES_RUN_UP) {
+        write_run_up(&sketch, file);
+        sketch.is_driven = false;
+    } else if (sketch.is_driven) {
         fprintf(file, "drive: {joint: joint-0, speed: %.5g rpm}\n", draw_speed_rpm(&sketch.draw));
     }
     draw_contact(&sketch.draw, file);
@@ -280,12 +318,17 @@ static void write_case(uint64_t seed, FILE *file, bool is_sprung)
 
 static void write_bodies(uint64_t seed, FILE *file)
 {
-    write_case(seed, file, false);
+    write_case(seed, file, BODIES_PLAIN);
 }
 
 static void write_sprung(uint64_t seed, FILE *file)
 {
-    write_case(seed, file, true);
+    write_case(seed, file, BODIES_SPRUNG);
+}
+
+static void write_run_ups(uint64_t seed, FILE *file)
+{
+    write_case(seed, file, BODIES_RUN_UP);
 }
 
 const CaseKind CASE_BODIES = {
@@ -298,4 +341,10 @@ const CaseKind CASE_SPRUNG = {
     .name = "sprung",
     .summary = "the same with springs, dampers and, one in two, a torque as the drive",
     .write = write_sprung,
+};
+
+const CaseKind CASE_RUN_UPS = {
+    .name = "run-ups",
+    .summary = "driven ones whose speed or torque rises, holds and falls over time",
+    .write = write_run_ups,
 };

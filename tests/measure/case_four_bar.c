@@ -74,8 +74,8 @@ static void write_case(uint64_t seed, FILE *file)
     write_link(&draw, "follower", l.follower, file);
     fprintf(file, "  assembly: %s\n", draw_chance(&draw, 0.5) ? "open" : "crossed");
     write_joints(&draw, file);
-    fprintf(file, "drive: {speed: %.5g rpm, start: %.4g deg}\n", draw_speed_rpm(&draw),
-            draw_between(&draw, 0.0, 360.0));
+    const double start_deg = draw_between(&draw, 0.0, 360.0);
+    fprintf(file, "drive: {speed: %.5g rpm, start: %.4g deg}\n", draw_speed_rpm(&draw), start_deg);
     draw_contact(&draw, file);
     draw_run(&draw, "revolutions: 1", file);
 }

@@ -111,8 +111,9 @@ static void write_chain(Draw *draw, FILE *file)
     if (is_driven) {
         fprintf(file, "drive: {joint: hinge-0, speed: %.5g rpm}\n", draw_speed_rpm(draw));
     } else if (draw_chance(draw, 0.5)) {
+        const double end = draw_between(draw, -2.0, 2.0);
         fprintf(file, "drive: {joint: hinge-%zu, torque: [[0 s, %.4g N m], [0.1 s, %.4g N m]]}\n",
-                count - 1, draw_between(draw, -2.0, 2.0), draw_between(draw, -2.0, 2.0));
+                count - 1, draw_between(draw, -2.0, 2.0), end);
     }
     write_ending(draw, is_driven, file);
 }

@@ -29,8 +29,8 @@ static void write_guide(Draw *draw, double size, FILE *file)
     if (draw_chance(draw, 0.3)) {
         // half of the play each
         const double tilt = 0.4 * 2.0 * play / length * 180.0 / M_PI;
-        fprintf(file, ", start: [%.6g mm, %.6g deg]", draw_between(draw, -0.5, 0.5) * play,
-                draw_between(draw, -1.0, 1.0) * tilt);
+        const double turned = draw_between(draw, -1.0, 1.0) * tilt;
+        fprintf(file, ", start: [%.6g mm, %.6g deg]", draw_between(draw, -0.5, 0.5) * play, turned);
     }
     write_stiffness(draw, file);
 }
@@ -102,8 +102,9 @@ static void write_slider_crank(Draw *draw, FILE *file)
                (incline + turned) * degrees, file);
     write_body(draw, "rod", along(pin, draw_between(draw, 0.3, 0.6) * rod, incline + lift), rod,
                (incline + lift) * degrees, file);
+    const double slider_deg = draw_between(draw, -90.0, 90.0);
     write_body(draw, "slider", along(wrist, draw_between(draw, -0.2, 0.2) * crank, incline), crank,
-               draw_between(draw, -90.0, 90.0), file);
+               slider_deg, file);
     fprintf(file, "joints:\n");
     write_pin(draw, "main", "ground, crank", pivot, false, file);
     write_pin(draw, "big", "crank, rod", pin, !has_guide && !has_wrist, file);
@@ -186,12 +187,13 @@ static void write_balls(uint64_t seed, FILE *file)
         at[i] = (Point){draw_between(&draw, -0.3, 0.3) * radii[i], height};
         height += radii[i];
         const double mass = 3e4 * radii[i] * radii[i] * radii[i];
+        const double spin = draw_between(&draw, -20.0, 20.0);
+        const double rising = draw_between(&draw, -1.0, 0.5);
         fprintf(file,
                 "  ball-%zu: {mass: %.5g kg, inertia: %.5g kg mm^2, at: [%.15g m, %.15g m],\n"
                 "           velocity: [%.5g m/s, %.5g m/s], spin: %.5g rad/s}\n",
                 i, mass, 0.4e6 * mass * radii[i] * radii[i], at[i].x, at[i].y,
-                draw_between(&draw, -0.2, 0.2), draw_between(&draw, -1.0, 0.5),
-                draw_between(&draw, -20.0, 20.0));
+                draw_between(&draw, -0.2, 0.2), rising, spin);
     }
     fprintf(file, "joints:\n");
     for (size_t i = 0; i < count; i++) {

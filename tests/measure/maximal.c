@@ -25,7 +25,9 @@
 enum { ROWS = 10, FEWEST = 2, EASY = 5, HARD = 8, LOCATE_MAX = 80, IDLE_MAX = 200 };
 
 static const double FIRST_STEP_S = 1e-7;
-static const double STEPS_LEAST = 20000.0; // in a run
+
+// in a run without contacts, where only accuracy counts
+static const double STEPS_LEAST_SMOOTH = 200.0;
 static const double SHORTEST_S = 1e-17;
 static const long STEPS_MOST = 4000000;
 
@@ -127,6 +129,9 @@ void maximal_solve(size_t n, Real *a, Real *b)
         for (size_t i = rank + 1; i < n; i++) {
             const size_t row = order[i];
             const Real factor = a[row * n + pivot] / a[pivot * n + pivot];
+            if (factor == 0.0L) {
+                continue;
+            }
             for (size_t k = rank + 1; k < n; k++) {
                 a[row * n + order[k]] -= factor * a[pivot * n + order[k]];
             }
@@ -537,22 +542,28 @@ static void motor_finish(Motor *motor)
     free(motor->table);
 }
 
-Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance)
+Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance,
+                        double steps_least, double until_s)
 {
     Trajectory *trajectory = trajectory_create(scenario, "maximal coordinates");
     Err err = {ERR_NONE, ""};
-    Maximal *maximal = maximal_plane_create(scenario, flaw, &err);
+    Maximal *maximal = scenario->linkage.is_spatial ? maximal_space_create(scenario, flaw, &err)
+                                                    : maximal_plane_create(scenario, flaw, &err);
     if (maximal == NULL) {
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
     }
     Motor motor = motor_create(maximal, tolerance);
     Real wanted = FIRST_STEP_S;
-    motor.longest = scenario_duration(scenario) / STEPS_LEAST;
+    motor.longest = scenario_duration(scenario) /
+                    (maximal->contact_count > 0 ? steps_least : STEPS_LEAST_SMOOTH);
     motor.fastest = fmaxl(maximal->kind->fastest(maximal, motor.y), 1e-3L);
     trajectory->is_complete = true;
     for (size_t k = 0; k < trajectory->sample_count; k++) {
         trajectory->times[k] = scenario_sample_time(scenario, k);
+        if (trajectory->times[k] > until_s) {
+            continue;
+        }
         if (!run_to(&motor, trajectory->times[k], &wanted)) {
             snprintf(trajectory->message, sizeof trajectory->message,
                      "at %.6g ms no step was accurate", 1e3 * (double)motor.time_s);

@@ -1,7 +1,7 @@
-// A truth of its own for random mechanisms in the plane: every body in coordinates of its own (x,
-// y, phi), ideal joints as rows of a constraint, all in long double. It shares no equation and no
-// integrator with src/reference: only the numbers of a linkage, the places where bodies touch and
-// the force laws are those of the program.
+// A truth of its own for random mechanisms: every body in coordinates of its own (x, y, phi in the
+// plane; position, quaternion and angular velocity in space), ideal joints as rows of a constraint,
+// all in long double. It shares no equation and no integrator with src/reference: only the numbers
+// of a linkage, the places where bodies touch and the force laws are those of the program.
 #pragma once
 
 #include "contact/force_law.h"
@@ -63,8 +63,9 @@ typedef struct MaximalFlaw {
 static const MaximalFlaw MAXIMAL_RIGHT = {1.0, 1.0};
 
 // The equations of a scenario, which must live as long. NULL with a reason where there is something
-// in it that they do not describe, such as space. For maximal_destroy.
+// in it that they do not describe. For maximal_destroy.
 Maximal *maximal_plane_create(const Scenario *scenario, const MaximalFlaw *flaw, Err *err);
+Maximal *maximal_space_create(const Scenario *scenario, const MaximalFlaw *flaw, Err *err);
 void maximal_destroy(Maximal *maximal);
 
 // The shared part, for those who make one: room for a state and contacts.
@@ -79,5 +80,8 @@ Real maximal_press(const MaximalContact *contact, MaximalGap gap);
 void maximal_solve(size_t n, Real *a, Real *b);
 
 // Integrates a scenario, each step's error at most the tolerance times the speed of its fastest
-// point, and stores the bodies' motions at its samples. A trajectory that is not complete says why.
-Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance);
+// point, and stores the bodies' motions at its samples up to a time. With contacts the whole run
+// has so many steps or more: one that is longer than a contact may pass over its end and over the
+// next touch. A trajectory that is not complete says why.
+Trajectory *maximal_run(const Scenario *scenario, const MaximalFlaw *flaw, double tolerance,
+                        double steps_least, double until_s);

@@ -87,11 +87,12 @@ static Real vec_length(Vec a)
 typedef struct View {
     const Real *q;
     const Real *v;
+    const Vec *along; // by body, of its x axis; NULL where it is found when asked for
 } View;
 
 static View view_of(const Plane *plane, const Real *y)
 {
-    return (View){y, y + 3 * plane->linkage->body_count};
+    return (View){.q = y, .v = y + 3 * plane->linkage->body_count};
 }
 
 static Real angle_of(View view, int body)
@@ -110,17 +111,24 @@ static Vec centre_of(View view, int body)
                                   : (Vec){view.q[3 * body], view.q[3 * body + 1]};
 }
 
-static Vec turned(Real angle, Vec2 local)
+static Vec direction_of(Real angle)
 {
-    const Real c = cosl(angle);
-    const Real s = sinl(angle);
-    return (Vec){c * local.x - s * local.y, s * local.x + c * local.y};
+    return (Vec){cosl(angle), sinl(angle)};
+}
+
+static Vec turned(Vec along, Vec2 local)
+{
+    return (Vec){along.x * local.x - along.y * local.y, along.y * local.x + along.x * local.y};
 }
 
 // A point of a body from its centre, or of the ground from the origin.
 static Vec arm_of(View view, int body, Vec2 local)
 {
-    return body == LINKAGE_GROUND ? (Vec){local.x, local.y} : turned(angle_of(view, body), local);
+    if (body == LINKAGE_GROUND) {
+        return (Vec){local.x, local.y};
+    }
+    return turned(view.along != NULL ? view.along[body] : direction_of(angle_of(view, body)),
+                  local);
 }
 
 static Vec velocity_of(View view, int body, Vec arm)
@@ -134,8 +142,7 @@ static Vec velocity_of(View view, int body, Vec arm)
 
 static Vec along_of(View view, int body, double direction)
 {
-    const Real angle = angle_of(view, body) + direction;
-    return (Vec){cosl(angle), sinl(angle)};
+    return direction_of(angle_of(view, body) + direction);
 }
 
 // Two anchors of two bodies, seen from their centres, and what lies between them.
@@ -242,6 +249,22 @@ static Real row_times(const Row *row, const Real *of)
     return sum;
 }
 
+// What one row's coefficients make of W J' of another.
+static Real rows_share(const Plane *plane, const Row *a, const Row *b)
+{
+    Real sum = 0.0L;
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < 2; k++) {
+            const int body = a->body[i];
+            if (body == b->body[k] && is_free(plane, body)) {
+                sum += (a->x[i] * b->x[k] + a->y[i] * b->y[k]) / plane->masses[body] +
+                       a->turn[i] * b->turn[k] / plane->inertias[body];
+            }
+        }
+    }
+    return sum;
+}
+
 // W J' l for one row, added to three numbers a body.
 static void add_row(const Plane *plane, const Row *row, Real share, Real *to)
 {
@@ -258,17 +281,12 @@ static void add_row(const Plane *plane, const Row *row, Real share, Real *to)
 // Changes three numbers a body by W J' l so that the rows of them become -right.
 static void meet_rows(const Plane *plane, size_t count, const Row *rows, Real *right, Real *of)
 {
-    const size_t n = 3 * plane->linkage->body_count;
     Real *matrix = zeroed(count * count, sizeof *matrix);
-    Real *answer = zeroed(n, sizeof *answer);
     for (size_t i = 0; i < count; i++) {
         right[i] = -right[i] - row_times(&rows[i], of);
-        for (size_t k = 0; k < n; k++) {
-            answer[k] = 0.0L;
-        }
-        add_row(plane, &rows[i], 1.0L, answer);
-        for (size_t k = 0; k < count; k++) {
-            matrix[k * count + i] = row_times(&rows[k], answer);
+        for (size_t k = 0; k <= i; k++) {
+            matrix[k * count + i] = rows_share(plane, &rows[k], &rows[i]);
+            matrix[i * count + k] = matrix[k * count + i];
         }
     }
     maximal_solve(count, matrix, right);
@@ -276,7 +294,6 @@ static void meet_rows(const Plane *plane, size_t count, const Row *rows, Real *r
         add_row(plane, &rows[i], right[i], of);
     }
     free(matrix);
-    free(answer);
 }
 
 // Puts the driven body on its path.
@@ -296,7 +313,7 @@ static void put_driven(const Plane *plane, Real time_s, Real *q, Real *v)
     Real *of = q + 3 * plane->driven;
     Real *rate = v + 3 * plane->driven;
     of[2] = drive_angle_exact(driver, time_s);
-    const Vec arm = turned(of[2], joint->anchor_b);
+    const Vec arm = turned(direction_of(of[2]), joint->anchor_b);
     of[0] = joint->anchor_a.x - arm.x;
     of[1] = joint->anchor_a.y - arm.y;
     rate[0] = omega * arm.y;
@@ -527,8 +544,13 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
     const Plane *plane = plane_of(maximal);
     const Linkage *linkage = plane->linkage;
     const size_t n = 3 * linkage->body_count;
-    const View view = view_of(plane, y);
+    View view = view_of(plane, y);
+    Vec *along = zeroed(linkage->body_count, sizeof *along);
     Real *accelerations = out + n;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        along[i] = direction_of(view.q[3 * i + 2]);
+    }
+    view.along = along;
     for (size_t i = 0; i < linkage->body_count; i++) {
         accelerations[3 * i] = 0.0L;
         accelerations[3 * i + 1] = -plane->gravity;
@@ -559,6 +581,7 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
         right[i] = rows[i].bias;
     }
     meet_rows(plane, count, rows, right, accelerations);
+    free(along);
     free(rows);
     free(right);
 }

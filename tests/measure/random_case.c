@@ -8,10 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR,  &CASE_BODIES,     &CASE_PENDULA,
-                                        &CASE_FOUR_BARS, &CASE_LOCK,       &CASE_CHANGE_POINT,
-                                        &CASE_TOUCHING,  &CASE_SEPARATING, &CASE_SPRUNG,
-                                        &CASE_SLIDERS,   &CASE_BALLS,      &CASE_LIMITS};
+static const CaseKind *const KINDS[] = {
+    &CASE_FOUR_BAR, &CASE_BODIES,       &CASE_PENDULA,  &CASE_FOUR_BARS,
+    &CASE_LOCK,     &CASE_CHANGE_POINT, &CASE_TOUCHING, &CASE_SEPARATING,
+    &CASE_SPRUNG,   &CASE_SLIDERS,      &CASE_BALLS,    &CASE_LIMITS,
+    &CASE_ROTORS,   &CASE_RUN_UPS,      &CASE_SPACE,    &CASE_SPACE_DRIVEN};
 
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 

@@ -17,6 +17,10 @@ extern const CaseKind CASE_SPRUNG;
 extern const CaseKind CASE_SLIDERS;
 extern const CaseKind CASE_BALLS;
 extern const CaseKind CASE_LIMITS;
+extern const CaseKind CASE_ROTORS;
+extern const CaseKind CASE_RUN_UPS;
+extern const CaseKind CASE_SPACE;
+extern const CaseKind CASE_SPACE_DRIVEN;
 
 extern const CaseKind CASE_PENDULA;
 extern const CaseKind CASE_FOUR_BARS;

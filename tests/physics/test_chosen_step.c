@@ -6,6 +6,7 @@
 #include "mechanism.h"
 #include "ode_error.h"
 
+#include "casefile/casefile.h"
 #include "kept.h"
 #include "measure/chosen_run.h"
 
@@ -327,6 +328,37 @@ static void trials_that_fail_at_one_place_are_few(void **state)
     truth_finish(&truth);
 }
 
+// A pair of gears and a rotor beside them that nothing joins: two mechanisms, of which a coarse
+// trial takes the first far ahead, into a flank.
+static void a_failure_ahead_of_another_mechanism_ends_no_trials(void **state)
+{
+    static const char CASE[] =
+        "bodies:\n"
+        "  pinion: {mass: 1 kg, inertia: 295 kg mm^2, at: [0 m, 0 m]}\n"
+        "  wheel: {mass: 0.6 kg, inertia: 51 kg mm^2, at: [61.25 mm, 0 m]}\n"
+        "  flywheel: {mass: 0.6 kg, inertia: 842 kg mm^2, at: [61.25 mm, 0 m]}\n"
+        "  lone: {mass: 0.2 kg, inertia: 241 kg mm^2, at: [122 mm, 0 m]}\n"
+        "joints:\n"
+        "  a: {between: [ground, pinion], at: [0 m, 0 m]}\n"
+        "  b: {between: [ground, wheel], at: [61.25 mm, 0 m]}\n"
+        "  c: {between: [wheel, flywheel], at: [61.25 mm, 0 m]}\n"
+        "  d: {between: [ground, lone], at: [122 mm, 0 m]}\n"
+        "  mesh: {gears: [a, b], teeth: [69, 56], backlash: 1.97 um, stiffness: 2.6e6 N/m,\n"
+        "         restitution: 0.848}\n"
+        "torsion-springs:\n"
+        "  on-shaft: {joint: c, stiffness: 222 N m/rad, damping: 0.014 N m s/rad}\n"
+        "drive: {joint: a, speed: 89.1 rpm}\n"
+        "run: {revolutions: 0.1, samples: 720, step: auto, tolerance: 1e-4, most-steps: 300000}\n";
+    Scenario scenario;
+    Err err = {ERR_NONE, ""};
+    (void)state;
+    if (!casefile_load_text("gears", CASE, sizeof CASE - 1, NULL, 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    assert_delivers(&scenario, BACKEND_REFERENCE, 100.0 * WASTED);
+    scenario_free(&scenario);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -344,6 +376,7 @@ int main(void)
         cmocka_unit_test(an_error_that_cannot_be_told_is_refused),
         cmocka_unit_test(without_a_reference_its_own_words_come_first),
         cmocka_unit_test(trials_that_fail_at_one_place_are_few),
+        cmocka_unit_test(a_failure_ahead_of_another_mechanism_ends_no_trials),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
