@@ -216,7 +216,9 @@ static void another_sliding_speed_has_other_derivatives(void **state)
     double slopes[2][2][COORDINATES * COORDINATES];
     for (int i = 0; i < 2; i++) {
         dynamics_slopes(0.0, pressed.y, slopes[i][0], slopes[i][1], &pressed.dynamics);
-        pressed.scenario.contact.friction_speed *= 1.1;
+        for (size_t k = 0; k < pressed.dynamics.system.contact_count; k++) {
+            pressed.dynamics.system.contacts[k].law.friction_speed *= 1.1;
+        }
     }
     double apart = 0.0;
     double largest = 0.0;

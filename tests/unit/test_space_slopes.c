@@ -93,7 +93,9 @@ static double worst(Pressed *pressed, bool is_rate, double factor)
     double(*slopes)[COORDINATES * COORDINATES] = test_calloc(2, sizeof *slopes);
     double worst = 0.0;
     space_slopes(0.0, pressed->y, slopes[0], slopes[1], &pressed->dynamics);
-    pressed->scenario.contact.friction_speed *= factor;
+    for (size_t k = 0; k < pressed->dynamics.system.contact_count; k++) {
+        pressed->dynamics.system.contacts[k].law.friction_speed *= factor;
+    }
     for (size_t k = is_rate ? n : 0; k < (is_rate ? 2 * n : n); k++) {
         double column[COORDINATES];
         double error = 0.0;
