@@ -280,10 +280,13 @@ JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
  *
  * JP_COARSE: the step was made, but one of these holds, which the sentence says:
  *  - a row of a contact is beyond the limit of its map and presses as the textbook's;
- *  - with rows, a contact has begun that lasts less than three steps;
- *  - with JP_STEPPING_IMPULSE, the response of the world was not found in four rounds, a body turns
- *    too far in the step for the contacts in it, or the contacts take more than the limit of work
- *    and were made with rows.
+ *  - with rows, an impact or half an oscillation of a contact lasts less than three steps;
+ *  - with JP_STEPPING_IMPULSE, the response of the world was not found in four rounds, or at the
+ *    step's end the bodies are so far from where its contacts have brought them that a force is
+ *    uncertain by a hundredth, or the contacts take more than the limit of work or local steps than
+ *    make sense, and were made with rows.
+ * JP_ERROR_OUTSIDE: a pin is further beyond the wall of its hole, or a collar, than ten times what
+ * jp_pin_create allows, before the step or after it.
  * A step
  * that ODE breaks off costs the memory that ODE had in use for it, once each time. With a threading
  * implementation of yours (keeps_threading) ODE still ends the program where it fails in a thread
@@ -415,7 +418,9 @@ typedef struct JpPinInHole {
  * no friction, a friction speed of 1e-3. */
 JP_API JpPinInHole jp_pin_default(void);
 
-/* One of the bodies may be NULL, the world. */
+/* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of
+ * its hole, or a collar, by more than the play there or a hundredth of the pin's radius, whichever
+ * is more. */
 JP_API JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
                               JpJoint **created, JpError *error);
 

@@ -33,6 +33,7 @@ void side_find(Side *side, const SideMotion *motion, double step)
     const Overlap overlap = find_overlap(side, motion, step);
     side->is_touching = overlap.depth > 0.0;
     side->begins = side->is_touching && !was_touching;
+    side->age = was_touching ? side->age + step : 0.0;
     side->depth = overlap.depth;
     side->share = overlap.share;
     side->inside = fmax(-motion->gap, 0.0);

@@ -15,6 +15,9 @@ typedef struct Side {
     double limit; // rad or m: where it begins to touch; infinite where there is none
     bool is_touching;
     bool begins;         // whether the step under way is the first in which it touches
+    double age;          // s, of the contact under way, before this step
+    double lasts;        // s, that it lasts if it is an impact
+    double tried;        // mobility that the world has, found for that; 0: not found
     double impact_speed; // closing speed where the contact under way began
     double depth;        // of the row in the step under way, 0 where it does not touch
     double share;        // 1, of the step in which it touches

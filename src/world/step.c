@@ -81,36 +81,62 @@ static JpStatus check_contact(const Side *side, double step, JpError *error)
 // Steps to a contact, below which rows have its force wrong by more than some percent.
 static const double STEPS_TO_A_CONTACT = 3.0;
 
-// Whether an undamped impact at the speed of the onset lasts less than so many steps: it lasts pi
-// times the depth d that it reaches over its speed v on a linear spring, and 2.94 times on Hertz's.
-// At d the law has taken up the energy v^2 / (2 mobility), which is seen at the depth of so many
-// steps.
-static bool is_too_short(const Side *side, double mobility, double step)
+enum { DEPTH_DOUBLINGS = 200, DEPTH_HALVINGS = 20 }; // of a depth, to a part in a million
+
+// How long an undamped impact at the speed of the onset lasts, s: pi times the depth that it
+// reaches over its speed on a linear spring, and 2.94 times on Hertz's. At that depth the law has
+// taken up the energy v^2 / (2 mobility). It has none beyond its limit, which ends the search, too.
+static double impact_duration(const Side *side, double mobility, double step)
 {
     const double speed = side->impact_speed;
-    const double depth = STEPS_TO_A_CONTACT * step * speed / M_PI;
     const double energy = 0.5 * speed * speed / mobility;
-    return speed > 0.0 && !(force_law_energy(&side->law, depth) <= energy);
+    double high = speed * step;
+    for (int i = 0; i < DEPTH_DOUBLINGS && force_law_energy(&side->law, high) < energy; i++) {
+        high *= 2.0;
+    }
+    double low = 0.0;
+    for (int i = 0; i < DEPTH_HALVINGS; i++) {
+        const double middle = 0.5 * (low + high);
+        if (force_law_energy(&side->law, middle) < energy) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return speed > 0.0 ? M_PI * high / speed : INFINITY;
 }
 
-// Notes a contact that has just begun and that the step is too long for. With free bodies it is as
-// short as it can be; where that is too short, the world's own mobility is found by trial.
-static void note_short_contact(const JpJoint *joint, const Place *place, const Side *side,
-                               double step)
+// Whether fewer steps than that are in the impact of a side, or in half an oscillation at its
+// depth.
+static bool is_too_short(Side *side, double mobility, double step)
+{
+    if (side->begins) {
+        side->lasts = impact_duration(side, mobility, step);
+    }
+    const double steps = STEPS_TO_A_CONTACT * step / M_PI;
+    return (side->age <= side->lasts && STEPS_TO_A_CONTACT * step > side->lasts) ||
+           steps * steps * force_law_tangent(&side->law, side->depth) * mobility > 1.0;
+}
+
+// Notes a step that is too long for the contact of a side. With free bodies that is as short as it
+// can be; where it is too short, the world's own mobility is found by trial.
+static void note_short_contact(const JpJoint *joint, const Place *place, Side *side, double step)
 {
     JpWorld *world = joint->world;
-    double mobility = play_mobility(joint, place);
-    if (!side->begins || !is_too_short(side, mobility, step)) {
-        return;
-    }
+    side->tried = side->begins ? 0.0 : side->tried;
+    const double mobility = side->tried > 0.0 ? side->tried : play_mobility(joint, place);
+    bool is_short = is_too_short(side, mobility, step);
     const double force = side->sign * force_law_elastic(&side->law, side->depth);
     double found = 0.0;
-    if (!world->options.is_quick && force != 0.0 && isfinite(force) &&
+    if (is_short && side->tried == 0.0 && !world->options.is_quick && force != 0.0 &&
+        isfinite(force) &&
         trial_mobility(world, &place->along, force, step, &found, NULL) == JP_OK) {
-        mobility = found + 1.0 / joint->rotor.inertia;
+        side->tried = found + 1.0 / joint->rotor.inertia;
+        side->lasts = impact_duration(side, side->tried, step);
+        is_short = is_too_short(side, side->tried, step);
     }
-    if (is_too_short(side, mobility, step)) {
-        coarse_note(world, "a contact began that lasts less than %g steps of %g s",
+    if (is_short) {
+        coarse_note(world, "a contact or its oscillation lasts less than %g steps of %g s",
                     STEPS_TO_A_CONTACT, step);
     }
 }

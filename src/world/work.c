@@ -57,7 +57,6 @@ static void join_bodies(const JpWorld *world, size_t *leaders)
 double work_of_rows(const JpWorld *world)
 {
     const size_t count = world->bodies.count;
-    size_t *leaders = malloc((2 * count + 1) * sizeof *leaders);
     double work = 0.0;
     double all = 0.0;
     for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
@@ -65,8 +64,9 @@ double work_of_rows(const JpWorld *world)
     }
     // where even one island of all is within the limit, there is no need to look closer
     const bool is_little = world->options.is_quick || all * all * all <= world->work_most;
-    if (is_little || leaders == NULL) {
-        free(leaders);
+    // without memory for that, they count as one island
+    size_t *leaders = is_little ? NULL : malloc((2 * count + 1) * sizeof *leaders);
+    if (leaders == NULL) {
         return world->options.is_quick ? all : all * all * all;
     }
     size_t *rows = leaders + count;
