@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+static const double STEEL_STEP = 1e-4; // s
 static const double PI = 3.14159265358979323846;
 
 // In [0, 1).
@@ -171,6 +172,8 @@ static void add_pin(RandomWorld *made, dBodyID hole, dBodyID body, const double 
     }
     pin.contact = contact_of(made, lighter(hole, body), 1e-5);
     if (pick(made, 3) == 0) {
+        // steel: its contacts are shorter, and so is the step that anybody would take
+        made->step = made->is_wild ? made->step : fmin(made->step, STEEL_STEP);
         const JpPin sizes = {pin.hole_radius, pin.pin_radius, 2.0 * pin.hole_radius, 2e11, 0.3};
         jp_contact_of_pin((JpPinLaw)pick(made, 5), &sizes, &pin.contact, NULL);
     }

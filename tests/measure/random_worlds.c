@@ -157,6 +157,10 @@ static void check_side(Run *run, size_t play, size_t side, const JpSide *now, do
                        Found *found)
 {
     if (!(now->force >= 0.0 && now->force_max >= 0.0 && now->depth_max >= 0.0)) {
+        if (run->fault == NULL) {
+            printf("world %u: force %g, largest %g, depth %g\n", run->number, now->force,
+                   now->force_max, now->depth_max);
+        }
         blame(run, "a force or a depth below 0");
     }
     if (!isfinite(now->force_max) || !isfinite(now->work) || !isfinite(now->stored)) {
