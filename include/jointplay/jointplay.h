@@ -281,6 +281,7 @@ JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
  * JP_COARSE: the step was made, but one of these holds, which the sentence says:
  *  - a row of a contact is beyond the limit of its map and presses as the textbook's;
  *  - with rows, an impact or half an oscillation of a contact lasts less than three steps;
+ *  - with rows, a joint crosses its play within the step;
  *  - with JP_STEPPING_IMPULSE, the response of the world was not found in four rounds, or at the
  *    step's end the bodies are so far from where its contacts have brought them that a force is
  *    uncertain by a hundredth, or the contacts take more than the limit of work or local steps than

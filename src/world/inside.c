@@ -443,7 +443,7 @@ static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size
     }
     of->place->slid += reading.slid;
     side->impulse += reading.impulse;
-    side->force = reading.impulse / answer->step;
+    side->force = fmax(reading.impulse, 0.0) / answer->step; // rounding may be below 0
     side->share = 1.0;
     return true;
 }

@@ -107,5 +107,6 @@ double row_take(Place *place)
         pressing_row_rest(row->motor);
     }
     row->contact = NULL;
-    return dCalcVectorDot3(row->axis, found) + row->pushed;
+    // rows press or do nothing, but for rounding
+    return fmax(dCalcVectorDot3(row->axis, found) + row->pushed, 0.0);
 }

@@ -234,6 +234,19 @@ static JpStatus each_touching(JpWorld *world, SideFunction function, double step
     return JP_OK;
 }
 
+// A step in which a place leaves one side and reaches the other has one row for both: it is that of
+// the side that is reached, or the place would fly through it.
+static void press_one(const JpJoint *joint, Place *place, double step)
+{
+    Side *low = &place->sides[0];
+    Side *high = &place->sides[1];
+    if (place_side_count(place) == SIDE_COUNT && low->is_touching && high->is_touching) {
+        Side *left = low->closing > 0.0 ? high : low;
+        left->is_touching = false;
+        coarse_note(joint->world, "a joint crosses its play within a step of %g s", step);
+    }
+}
+
 static void find_sides(JpJoint *joint, double earlier, double step)
 {
     for (size_t i = 0; i < joint->place_count; i++) {
@@ -242,6 +255,7 @@ static void find_sides(JpJoint *joint, double earlier, double step)
             const SideMotion motion = place_motion(place, k, earlier, step);
             side_find(&place->sides[k], &motion, step);
         }
+        press_one(joint, place, step);
     }
 }
 
