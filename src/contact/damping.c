@@ -103,16 +103,8 @@ static double exact(double e)
 
 double damping_factor(DampingKind kind, double restitution)
 {
-    static double (*const FACTORS[DAMPING_COUNT])(double restitution) = {
-        [DAMPING_NONE] = none,
-        [DAMPING_LANKARANI_NIKRAVESH] = lankarani_nikravesh,
-        [DAMPING_HUNT_CROSSLEY] = hunt_crossley,
-        [DAMPING_FLORES] = flores,
-        [DAMPING_GONTHIER] = gonthier,
-        [DAMPING_HU_GUO] = hu_guo,
-        [DAMPING_EXACT] = exact,
-        [DAMPING_VISCOUS] = none,
-    };
+#define DAMPING_FACTOR(name, word, factor) factor,
+    static double (*const FACTORS[])(double restitution) = {OPTIONS_DAMPING_LIST(DAMPING_FACTOR)};
     assert(restitution >= 0.0 && restitution <= 1.0);
     return FACTORS[kind](restitution);
 }

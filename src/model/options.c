@@ -9,7 +9,7 @@
 
 const char *const OPTIONS_CONTACT_MODELS[] = {"impact", "poisson", NULL};
 const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(MEMBER_WORD) NULL};
-const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(WORD) NULL};
+const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
 const char *const OPTIONS_ODE_STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_MAP_LIST(WORD) NULL};

@@ -20,16 +20,17 @@
     member(LAW_PAPER_TABLE_2, "paper-table-2", law_paper_table_2) \
     member(LAW_PAPER_TABLE_3, "paper-table-3", law_paper_table_3)
 
-// Where the energy of an impact goes; see contact/damping.h.
+// Where the energy of an impact goes; see contact/damping.h. The name follows DAMPING_ here and
+// JP_DAMPING_ in the library; the function is that of contact/damping.c that gives the factor.
 #define OPTIONS_DAMPING_LIST(member) \
-    member(DAMPING_NONE, "none") \
-    member(DAMPING_LANKARANI_NIKRAVESH, "lankarani-nikravesh") \
-    member(DAMPING_HUNT_CROSSLEY, "hunt-crossley") \
-    member(DAMPING_FLORES, "flores") \
-    member(DAMPING_GONTHIER, "gonthier") \
-    member(DAMPING_HU_GUO, "hu-guo") \
-    member(DAMPING_EXACT, "exact") \
-    member(DAMPING_VISCOUS, "viscous")
+    member(NONE, "none", none) \
+    member(LANKARANI_NIKRAVESH, "lankarani-nikravesh", lankarani_nikravesh) \
+    member(HUNT_CROSSLEY, "hunt-crossley", hunt_crossley) \
+    member(FLORES, "flores", flores) \
+    member(GONTHIER, "gonthier", gonthier) \
+    member(HU_GUO, "hu-guo", hu_guo) \
+    member(EXACT, "exact", exact) \
+    member(VISCOUS, "viscous", none)
 
 // How stiffness and damping become ERP and CFM; see contact/map.h. Last the one that makes no row:
 // with ODE_STAGGERED the contact is integrated within the step.
@@ -67,7 +68,10 @@
 #define OPTIONS_ENUMERATOR(id, ...) id,
 
 typedef enum LawKind { OPTIONS_LAW_LIST(OPTIONS_ENUMERATOR) LAW_COUNT } LawKind;
-typedef enum DampingKind { OPTIONS_DAMPING_LIST(OPTIONS_ENUMERATOR) DAMPING_COUNT } DampingKind;
+#define OPTIONS_DAMPING_ENUMERATOR(name, word, factor) DAMPING_##name,
+typedef enum DampingKind {
+    OPTIONS_DAMPING_LIST(OPTIONS_DAMPING_ENUMERATOR) DAMPING_COUNT
+} DampingKind;
 typedef enum OdeMap { OPTIONS_ODE_MAP_LIST(OPTIONS_ENUMERATOR) ODE_MAP_COUNT } OdeMap;
 typedef enum OdeStepping {
     OPTIONS_ODE_STEPPING_LIST(OPTIONS_ENUMERATOR) ODE_STEPPING_COUNT

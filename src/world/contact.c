@@ -9,16 +9,8 @@
 // slower than any impact of a body of millimetres that one sees
 static const double DEFAULT_SPEED_FLOOR = 1e-6;
 
-static const DampingKind KINDS[] = {
-    [JP_DAMPING_NONE] = DAMPING_NONE,
-    [JP_DAMPING_LANKARANI_NIKRAVESH] = DAMPING_LANKARANI_NIKRAVESH,
-    [JP_DAMPING_HUNT_CROSSLEY] = DAMPING_HUNT_CROSSLEY,
-    [JP_DAMPING_FLORES] = DAMPING_FLORES,
-    [JP_DAMPING_GONTHIER] = DAMPING_GONTHIER,
-    [JP_DAMPING_HU_GUO] = DAMPING_HU_GUO,
-    [JP_DAMPING_EXACT] = DAMPING_EXACT,
-    [JP_DAMPING_VISCOUS] = DAMPING_VISCOUS,
-};
+#define CONTACT_DAMPING(name, word, factor) [JP_DAMPING_##name] = DAMPING_##name,
+static const DampingKind KINDS[] = {OPTIONS_DAMPING_LIST(CONTACT_DAMPING)};
 
 static const LawKind PIN_LAWS[] = {
     [JP_PIN_HERTZ] = LAW_HERTZ_SOCKET,
@@ -31,7 +23,7 @@ static const LawKind PIN_LAWS[] = {
 // the program alone has those of the paper's tables, which follow from no theory of contact
 enum { PAPER_LAWS = 2 };
 _Static_assert(sizeof KINDS / sizeof *KINDS == DAMPING_COUNT,
-               "a damping of OPTIONS_DAMPING_LIST is missing: add it to JpDamping and to KINDS");
+               "JpDamping has a damping that OPTIONS_DAMPING_LIST lacks");
 _Static_assert(sizeof PIN_LAWS / sizeof *PIN_LAWS + PAPER_LAWS == LAW_COUNT,
                "a law of OPTIONS_LAW_LIST is missing: add it to JpPinLaw and to PIN_LAWS");
 

@@ -210,16 +210,8 @@ static bool accept(JpStatus status, const JpError *error, Err *err)
 
 static bool fill_contact(const Scenario *scenario, const Joint *joint, JpContact *contact, Err *err)
 {
-    static const JpDamping DAMPINGS[] = {
-        [DAMPING_NONE] = JP_DAMPING_NONE,
-        [DAMPING_LANKARANI_NIKRAVESH] = JP_DAMPING_LANKARANI_NIKRAVESH,
-        [DAMPING_HUNT_CROSSLEY] = JP_DAMPING_HUNT_CROSSLEY,
-        [DAMPING_FLORES] = JP_DAMPING_FLORES,
-        [DAMPING_GONTHIER] = JP_DAMPING_GONTHIER,
-        [DAMPING_HU_GUO] = JP_DAMPING_HU_GUO,
-        [DAMPING_EXACT] = JP_DAMPING_EXACT,
-        [DAMPING_VISCOUS] = JP_DAMPING_VISCOUS,
-    };
+#define LIBRARY_DAMPING(name, word, factor) JP_DAMPING_##name,
+    static const JpDamping DAMPINGS[] = {OPTIONS_DAMPING_LIST(LIBRARY_DAMPING)};
     const ContactOptions own = law_options(&scenario->contact, joint);
     ForceLaw law;
     if (!law_of_joint(scenario, joint, &law, err)) {

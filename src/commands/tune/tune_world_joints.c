@@ -176,16 +176,8 @@ static void write_point(const char *name, const char *field, Vec2 at, Text *text
 static bool write_contact(const Scenario *scenario, const Joint *joint, const char *name,
                           Text *text, Err *err)
 {
-    static const char *const DAMPINGS[] = {
-        [DAMPING_NONE] = "JP_DAMPING_NONE",
-        [DAMPING_LANKARANI_NIKRAVESH] = "JP_DAMPING_LANKARANI_NIKRAVESH",
-        [DAMPING_HUNT_CROSSLEY] = "JP_DAMPING_HUNT_CROSSLEY",
-        [DAMPING_FLORES] = "JP_DAMPING_FLORES",
-        [DAMPING_GONTHIER] = "JP_DAMPING_GONTHIER",
-        [DAMPING_HU_GUO] = "JP_DAMPING_HU_GUO",
-        [DAMPING_EXACT] = "JP_DAMPING_EXACT",
-        [DAMPING_VISCOUS] = "JP_DAMPING_VISCOUS",
-    };
+#define WRITTEN_DAMPING(name, word, factor) "JP_DAMPING_" #name,
+    static const char *const DAMPINGS[] = {OPTIONS_DAMPING_LIST(WRITTEN_DAMPING)};
     const ContactOptions own = law_options(&scenario->contact, joint);
     const bool is_turn = linkage_is_torsional(joint);
     ForceLaw law;
