@@ -373,7 +373,7 @@ static void write_models(const RunReport *report, const Style *style, Text *text
                         run->contact_rows == 1 ? "" : "s");
         }
         if (!run->is_complete) {
-            text_append(text, ", %sFAILED%s", style->failure, style->end);
+            text_append(text, ", %sFAILED%s: %s", style->failure, style->end, run->message);
         }
         text_append(text, "\n");
         write_doubts(report, i, style, text);
