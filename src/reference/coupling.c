@@ -1,33 +1,34 @@
-// Which parts of a mechanism feel one another, and which can be moved at once to see what they do?
+// Finds which parts of a mechanism act on one another, and which can be displaced at once to
+// differentiate the accelerations by all of them.
 //
 // Two parts are neighbours where a force acts between their bodies. A row has the columns of its
 // part's neighbours and of itself. Parts with a neighbour in common, or neighbours themselves, are
 // of different colours. Source: Curtis, Powell and Reid 1974, differences of sparse Jacobians.
-#include "reference/coupling.h"
+#include "reference/integrators.h"
 
 #include "base/room.h"
 #include "base/zeroed.h"
 
-typedef struct Link {
+typedef struct CouplingLink {
     size_t a;
     size_t b;
-} Link;
+} CouplingLink;
 
 // What is known while a coupling is made.
-typedef struct Maker {
+typedef struct CouplingMaker {
     Coupling *coupling;
     size_t link_count;
     size_t link_room;
-    Link *links;             // of parts, in any order and more than once
+    CouplingLink *links;     // of parts, in any order and more than once
     size_t *first_neighbour; // by part and one more
     size_t *neighbours;      // each once, the part itself the first
-} Maker;
+} CouplingMaker;
 
-static void add_link(Maker *maker, size_t a, size_t b)
+static void add_link(CouplingMaker *maker, size_t a, size_t b)
 {
     maker->links =
         room_grow(maker->links, &maker->link_room, maker->link_count + 1, sizeof *maker->links);
-    maker->links[maker->link_count++] = (Link){a, b};
+    maker->links[maker->link_count++] = (CouplingLink){a, b};
 }
 
 static void add_part(const size_t *part_of_body, int body, CouplingJoint *joint)
@@ -44,7 +45,7 @@ static void add_part(const size_t *part_of_body, int body, CouplingJoint *joint)
     joint->parts[joint->count++] = part;
 }
 
-static void link_all(Maker *maker, const CouplingJoint *joint)
+static void link_all(CouplingMaker *maker, const CouplingJoint *joint)
 {
     for (size_t i = 0; i < joint->count; i++) {
         for (size_t k = 0; k < i; k++) {
@@ -54,7 +55,7 @@ static void link_all(Maker *maker, const CouplingJoint *joint)
 }
 
 // The torque of a drive and springs at joints act between bodies of a joint.
-static void link_bodies(Maker *maker, const Linkage *linkage, const size_t *part_of_body)
+static void link_bodies(CouplingMaker *maker, const Linkage *linkage, const size_t *part_of_body)
 {
     CouplingJoint *joints = zeroed(linkage->joint_count, sizeof *joints);
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -87,7 +88,7 @@ static void begin_each(size_t *counts, size_t count)
 }
 
 // Each part's neighbours, with those that are listed more than once.
-static void gather_neighbours(Maker *maker, size_t *first, size_t *found)
+static void gather_neighbours(CouplingMaker *maker, size_t *first, size_t *found)
 {
     const size_t parts = maker->coupling->part_count;
     size_t *filled = zeroed(parts, sizeof *filled);
@@ -103,14 +104,14 @@ static void gather_neighbours(Maker *maker, size_t *first, size_t *found)
         found[first[i] + filled[i]++] = i;
     }
     for (size_t i = 0; i < maker->link_count; i++) {
-        const Link link = maker->links[i];
+        const CouplingLink link = maker->links[i];
         found[first[link.a] + filled[link.a]++] = link.b;
         found[first[link.b] + filled[link.b]++] = link.a;
     }
     free(filled);
 }
 
-static void find_neighbours(Maker *maker)
+static void find_neighbours(CouplingMaker *maker)
 {
     const size_t parts = maker->coupling->part_count;
     size_t *first = zeroed(parts + 1, sizeof *first);
@@ -141,18 +142,18 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static size_t size_of(const Coupling *coupling, size_t part)
+static size_t coupling_part_size(const Coupling *coupling, size_t part)
 {
     return coupling->first_member[part + 1] - coupling->first_member[part];
 }
 
-static void list_columns(const Maker *maker)
+static void list_columns(const CouplingMaker *maker)
 {
     Coupling *coupling = maker->coupling;
     size_t *first = zeroed(coupling->part_count + 1, sizeof *first);
     for (size_t i = 0; i < coupling->part_count; i++) {
         for (size_t k = maker->first_neighbour[i]; k < maker->first_neighbour[i + 1]; k++) {
-            first[i] += size_of(coupling, maker->neighbours[k]);
+            first[i] += coupling_part_size(coupling, maker->neighbours[k]);
         }
     }
     begin_each(first, coupling->part_count);
@@ -162,8 +163,8 @@ static void list_columns(const Maker *maker)
         for (size_t k = maker->first_neighbour[i]; k < maker->first_neighbour[i + 1]; k++) {
             const size_t part = maker->neighbours[k];
             memcpy(columns + end, coupling->members + coupling->first_member[part],
-                   size_of(coupling, part) * sizeof *columns);
-            end += size_of(coupling, part);
+                   coupling_part_size(coupling, part) * sizeof *columns);
+            end += coupling_part_size(coupling, part);
         }
         qsort(columns + first[i], end - first[i], sizeof *columns, compare);
     }
@@ -176,7 +177,7 @@ static void list_columns(const Maker *maker)
 }
 
 // Colours each part unlike all before it that have a neighbour in common with it.
-static void find_colours(const Maker *maker)
+static void find_colours(const CouplingMaker *maker)
 {
     Coupling *coupling = maker->coupling;
     const size_t parts = coupling->part_count;
@@ -209,7 +210,7 @@ static void find_colours(const Maker *maker)
 }
 
 // Of parts whose links are known.
-static Coupling *make(Maker *maker, size_t count, size_t part_count, const size_t *part_of)
+static Coupling *make(CouplingMaker *maker, size_t count, size_t part_count, const size_t *part_of)
 {
     Coupling *coupling = maker->coupling;
     coupling->count = count;
@@ -234,7 +235,7 @@ static Coupling *make(Maker *maker, size_t count, size_t part_count, const size_
 Coupling *coupling_create(const Linkage *linkage, size_t part_count, size_t body_count,
                           const CouplingBody *bodies)
 {
-    Maker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
+    CouplingMaker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
     size_t count = 0;
     size_t *part_of_body = zeroed(linkage->body_count, sizeof *part_of_body);
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -259,7 +260,7 @@ Coupling *coupling_create(const Linkage *linkage, size_t part_count, size_t body
 
 Coupling *coupling_create_full(size_t count)
 {
-    Maker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
+    CouplingMaker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
     size_t *part_of = zeroed(count, sizeof *part_of);
     Coupling *coupling = make(&maker, count, 1, part_of);
     free(part_of);

@@ -1,4 +1,4 @@
-// When does a contact begin, end or go slack?
+// Finds when a contact begins, ends or goes slack.
 //
 // Each mode holds while its margins are not negative:
 //     apart:    -d             d the penetration
@@ -14,7 +14,7 @@
 // not off it again, a contact that begins and one that ends differ by more than rounding, and no
 // contact can begin and end for ever at one instant. Contacts whose events lie nearer to each other
 // than rounding can resolve change together.
-#include "reference/events.h"
+#include "reference/stepper.h"
 
 #include "base/root.h"
 
@@ -180,7 +180,7 @@ static bool has_been_there(Margin *margin, double first, double last, const Syst
            is_used_up(margin, state, margin_at(*top, margin));
 }
 
-static void look_at(Margin *margin, const EventPoints *points, Event *event)
+static void events_evaluate_at(Margin *margin, const EventPoints *points, Event *event)
 {
     const System *system = margin->system;
     const ContactMode mode = system->contacts[margin->contact].mode;
@@ -212,7 +212,7 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
         Event event = {.time = INFINITY};
         for (int which = 0; which < margins; which++) {
             Margin margin = {system, integrator, i, which};
-            look_at(&margin, points, &event);
+            events_evaluate_at(&margin, points, &event);
         }
         if (event.time < INFINITY) {
             found->events[found->count++] = event;
@@ -242,7 +242,7 @@ static Press press_at_end(const System *system, const Dop853 *integrator, size_t
                                integrator->next);
 }
 
-static void move_end(Dop853 *integrator, double by)
+static void events_move_end(Dop853 *integrator, double by)
 {
     if (integrator->method == NULL && fabs(by) < NEAR * integrator->tried) {
         dop853_shift(integrator, by);
@@ -265,10 +265,10 @@ void events_land(const System *system, Dop853 *integrator, Event *event)
             !(moved >= 0.0 && moved <= longest)) {
             break;
         }
-        move_end(integrator, by);
+        events_move_end(integrator, by);
         const Press now = press_at_end(system, integrator, event->contact);
         if (!(fabs(now.depth) < fabs(press.depth))) {
-            move_end(integrator, -by);
+            events_move_end(integrator, -by);
             break;
         }
         press = now;

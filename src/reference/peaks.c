@@ -1,4 +1,4 @@
-// When do the force and the depth of a contact stop growing?
+// Finds when the force and the depth of a contact stop growing.
 //
 //     F = F_el(d) (1 + chi d'/v0) + c d'
 //     dF/dt = F_el' d' (1 + chi d'/v0) + (F_el chi / v0 + c) d''
@@ -6,8 +6,87 @@
 // of the step.
 #include "reference/peaks.h"
 
+#include "base/curve.h"
 #include "base/root.h"
 #include "base/zeroed.h"
+
+// The maxima of the forces and depths of many joints are found together.
+//
+// To look for each by itself evaluates all bodies for each of many, and to end a part of the step
+// at each hands on all bodies as often. All are looked at together at a few instants instead, and
+// the polynomial through these (base/curve.h) has the maxima: forces are as smooth in a step as the
+// motion that the step has followed to its tolerance.
+
+static PeaksCrowd peaks_crowd_create(const System *system, SystemState *scratch)
+{
+    const size_t count = system->scenario->linkage.joint_count;
+    return (PeaksCrowd){
+        .scratch = scratch,
+        .tops = zeroed(count, sizeof(JointTop)),
+        .joints = zeroed(count, sizeof(JointState)),
+        .space_joints = zeroed(count, sizeof(SpaceJointState)),
+        .forces = zeroed(CURVE_NODES * count, sizeof(double)),
+        .depths = zeroed(CURVE_NODES * count, sizeof(double)),
+    };
+}
+
+static void peaks_crowd_finish(PeaksCrowd *crowd)
+{
+    free(crowd->tops);
+    free(crowd->joints);
+    free(crowd->space_joints);
+    free(crowd->forces);
+    free(crowd->depths);
+}
+
+static void note_node(PeaksCrowd *crowd, const System *system, const SystemState *state,
+                      size_t node)
+{
+    system->kind->joints(system, state, crowd->joints, crowd->space_joints);
+    for (size_t i = 0; i < system->scenario->linkage.joint_count; i++) {
+        crowd->forces[CURVE_NODES * i + node] = crowd->joints[i].force;
+        crowd->depths[CURVE_NODES * i + node] = joint_state_depth(&crowd->joints[i]);
+    }
+}
+
+static JointTop find_top(const PeaksCrowd *crowd, size_t joint, double start_s, double width_s)
+{
+    double force_share = 0.0;
+    double depth_share = 0.0;
+    JointTop top = {
+        .force = curve_top(crowd->forces + CURVE_NODES * joint, &force_share),
+        .depth = curve_top(crowd->depths + CURVE_NODES * joint, &depth_share),
+    };
+    top.force_s = start_s + force_share * width_s;
+    top.depth_s = start_s + depth_share * width_s;
+    return top;
+}
+
+// Writes the tops of all joints between two times of the present step, of which the state at the
+// later one is given. Returns false where the accelerations are not determined in between.
+static bool peaks_crowd_find(PeaksCrowd *crowd, Stepper *stepper, double start_s, double end_s,
+                             const SystemState *state)
+{
+    const System *system = stepper->system;
+    const Linkage *linkage = &system->scenario->linkage;
+    for (size_t node = 0; node + 1 < CURVE_NODES; node++) {
+        const double time_s = start_s + curve_node(node) * (end_s - start_s);
+        const double *y = dop853_dense(&stepper->integrator, time_s);
+        if (!system->kind->evaluate(system, time_s, y, crowd->scratch, NULL)) {
+            return false;
+        }
+        note_node(crowd, system, crowd->scratch, node);
+    }
+    note_node(crowd, system, state, CURVE_NODES - 1);
+    const double since_s = system->kind->time(system, start_s);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        crowd->tops[i] = (JointTop){.force = 0.0};
+        if (linkage_has_play(&linkage->joints[i])) {
+            crowd->tops[i] = find_top(crowd, i, since_s, end_s - start_s);
+        }
+    }
+    return true;
+}
 
 // of a step: a maximum missed by so much is too low by half the square of it, 1e-10 of itself
 static const double NARROW = 1e-5;
@@ -109,8 +188,8 @@ static void pass(Peaks *peaks, const System *system, double time_s)
 }
 
 // What the quantities of a contact that presses are now.
-static void look_at(Peak pair[PEAK_COUNT], const System *system, const SystemState *state,
-                    size_t contact)
+static void peaks_evaluate(Peak pair[PEAK_COUNT], const System *system, const SystemState *state,
+                           size_t contact)
 {
     double values[PEAK_COUNT];
     double rates[PEAK_COUNT];
@@ -122,13 +201,13 @@ static void look_at(Peak pair[PEAK_COUNT], const System *system, const SystemSta
 }
 
 // Looks at all contacts. Returns how many maxima may lie behind where they were left.
-static size_t look_at_all(Peaks *peaks, const System *system, const SystemState *state)
+static size_t peaks_evaluate_all(Peaks *peaks, const System *system, const SystemState *state)
 {
     size_t count = 0;
     for (size_t i = 0; i < system->contact_count; i++) {
         Peak *pair = &peaks->peaks[PEAK_COUNT * i];
         if (system->contacts[i].mode == CONTACT_PRESSING) {
-            look_at(pair, system, state, i);
+            peaks_evaluate(pair, system, state, i);
             count += (has_peak(&pair[PEAK_FORCE]) ? 1 : 0) + (has_peak(&pair[PEAK_DEPTH]) ? 1 : 0);
         }
     }
@@ -156,7 +235,7 @@ double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
                   const SystemState *state)
 {
     const System *system = stepper->system;
-    const size_t count = look_at_all(peaks, system, state);
+    const size_t count = peaks_evaluate_all(peaks, system, state);
     peaks->has_tops =
         count > SOUGHT_MOST && peaks_crowd_find(&peaks->crowd, stepper, start_s, end_s, state);
     if (count > 0 && !peaks->has_tops) {

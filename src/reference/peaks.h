@@ -1,7 +1,19 @@
 // Where do the force and the depth of a contact have their maxima?
 #pragma once
 
-#include "reference/peaks_crowd.h"
+#include "model/solver.h"
+#include "reference/stepper.h"
+
+// The maxima of many contacts in one step, found together.
+
+typedef struct PeaksCrowd {
+    SystemState *scratch; // of the stepper's system, owned by whoever has the crowd
+    JointTop *tops;       // by joint; owned, as are the arrays below
+    JointState *joints;
+    SpaceJointState *space_joints;
+    double *forces; // N, by joint at the nodes of a curve
+    double *depths; // m, likewise
+} PeaksCrowd;
 
 // One quantity of a contact where it was left, and where it is now.
 typedef struct Peak {

@@ -1,4 +1,4 @@
-// What do all equations of motion with contacts share?
+// What all equations of motion with contacts share.
 #include "reference/system.h"
 
 #include "base/zeroed.h"

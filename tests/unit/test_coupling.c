@@ -5,8 +5,8 @@
 #include "mechanism.h"
 
 #include "base/lcg.h"
-#include "reference/dynamics.h"
-#include "reference/radau.h"
+#include "reference/integrators.h"
+#include "reference/plane/dynamics.h"
 
 #include <string.h>
 

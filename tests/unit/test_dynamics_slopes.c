@@ -6,7 +6,7 @@
 #include "slider.h"
 
 #include "base/lcg.h"
-#include "reference/dynamics_slopes.h"
+#include "reference/plane/dynamics.h"
 
 enum { COORDINATES = 16, SIZE = 2 * COORDINATES + SYSTEM_IMPULSES + 8 };
 

@@ -2,7 +2,7 @@
 // smooth?
 #include "close.h"
 
-#include "reference/radau.h"
+#include "reference/integrators.h"
 
 // Couplings: polynomials of degree 6 up to each node; weights: of degree 12, and not of degree 13.
 static void the_coefficients_integrate_polynomials(void **state)

@@ -2,7 +2,7 @@
 #include "close.h"
 
 #include "base/lcg.h"
-#include "reference/radau_newton.h"
+#include "reference/integrators.h"
 
 #include <stdlib.h>
 
