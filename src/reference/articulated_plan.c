@@ -12,7 +12,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
-enum { GROUND = -1 };
+enum { PLAN_GROUND = -1 };
 
 typedef struct PlanMaker {
     const PlanShape *shape;
@@ -28,7 +28,8 @@ typedef struct PlanMaker {
     int *next_end;
     int *first_front; // of fronts that come into one of the node's
     int *next_front;
-    size_t rooms[5]; // for how many fronts, places, loops, children and ends there is room
+    size_t
+        rooms[5]; // for how many fronts, rows of children, loops, children and ends there is room
 } PlanMaker;
 
 static void *plan_widen(void *array, size_t *room, size_t needed, size_t size)
@@ -54,7 +55,7 @@ static int plan_find_meeting(const PlanMaker *maker, int loop)
     int b = node_at(maker, loop, 1);
     while (a != b) {
         if (a < 0 || b < 0) {
-            return GROUND;
+            return PLAN_GROUND;
         }
         if (maker->depths[a] >= maker->depths[b]) {
             a = parents[a];
@@ -150,12 +151,13 @@ static void close_front(PlanMaker *maker, int node)
     for (size_t i = 0; i < front->child_count; i++) {
         PlanChild *child = &plan->children[front->first_child + i];
         const PlanFront *of = &plan->fronts[child->front];
-        child->first_place = plan->place_count;
-        plan->places = plan_widen(plan->places, &maker->rooms[1],
-                                  plan->place_count + of->loop_count, sizeof *plan->places);
+        child->first_child_row = plan->child_row_count;
+        plan->child_rows =
+            plan_widen(plan->child_rows, &maker->rooms[1], plan->child_row_count + of->loop_count,
+                       sizeof *plan->child_rows);
         for (size_t k = of->loop_count - plan_left_of(of); k < of->loop_count; k++) {
             const int loop = plan->loops[of->first_loop + k];
-            plan->places[plan->place_count++] = (size_t)maker->row_of[loop];
+            plan->child_rows[plan->child_row_count++] = (size_t)maker->row_of[loop];
         }
     }
     for (size_t i = 0; i < front->end_count; i++) {
@@ -308,7 +310,7 @@ void articulated_plan_make(const PlanShape *shape, Plan *plan)
         add_body_front(&maker, node);
     }
     plan->fronts_from[0] = plan->front_count;
-    add_loop_fronts(&maker, GROUND);
+    add_loop_fronts(&maker, PLAN_GROUND);
     free(within);
     free(maker.depths);
     int *rooms[] = {maker.row_of,   maker.first_loop,  maker.next_loop,  maker.first_end,
@@ -321,7 +323,7 @@ void articulated_plan_make(const PlanShape *shape, Plan *plan)
 void articulated_plan_finish(Plan *plan)
 {
     free(plan->fronts);
-    free(plan->places);
+    free(plan->child_rows);
     free(plan->loops);
     free(plan->children);
     free(plan->ends);
@@ -337,24 +339,24 @@ void articulated_plan_finish(Plan *plan)
 // Numbers the parts in the order of their first nodes.
 static void number_parts(const PlanShape *shape, ArticulatedParts *parts)
 {
-    size_t *leaders = zeroed(shape->node_count, sizeof *leaders);
-    leaders_start(leaders, shape->node_count);
+    size_t *roots = zeroed(shape->node_count, sizeof *roots);
+    leaders_start(roots, shape->node_count);
     for (size_t i = 0; i < shape->node_count; i++) {
         if (shape->parents[i] >= 0) {
-            leaders_join(leaders, i, (size_t)shape->parents[i]);
+            leaders_join(roots, i, (size_t)shape->parents[i]);
         }
     }
     for (size_t i = 0; i < shape->loop_count; i++) {
         const int *ends = shape->ends[i];
         if (ends[0] >= 0 && ends[1] >= 0) {
-            leaders_join(leaders, (size_t)ends[0], (size_t)ends[1]);
+            leaders_join(roots, (size_t)ends[0], (size_t)ends[1]);
         }
     }
     for (size_t i = 0; i < shape->node_count; i++) {
-        const size_t leader = leaders_find(leaders, i);
-        parts->of_node[i] = leader == i ? parts->count++ : parts->of_node[leader];
+        const size_t root = leaders_find(roots, i);
+        parts->of_node[i] = root == i ? parts->count++ : parts->of_node[root];
     }
-    free(leaders);
+    free(roots);
 }
 
 // The part that a front belongs to, by any of its loops; none of a loop that moves nothing.

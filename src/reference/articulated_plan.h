@@ -21,7 +21,7 @@ typedef struct PlanShape {
 // A front that comes into another, and where its loops are there.
 typedef struct PlanChild {
     int front;
-    size_t first_place; // into Plan.places: by loop of the child, the row in this front
+    size_t first_child_row; // into Plan.child_rows: by loop of the child, the row in this front
 } PlanChild;
 
 // An end of a loop on the body of a front.
@@ -45,8 +45,8 @@ typedef struct PlanFront {
 typedef struct Plan {
     size_t front_count;
     PlanFront *fronts;
-    size_t place_count;
-    size_t *places;
+    size_t child_row_count;
+    size_t *child_rows;
     size_t loop_count;
     int *loops; // in the fronts
     size_t child_count;

@@ -144,7 +144,7 @@ static int compare(const void *a, const void *b)
 
 static size_t coupling_part_size(const Coupling *coupling, size_t part)
 {
-    return coupling->first_member[part + 1] - coupling->first_member[part];
+    return coupling->first_coordinate[part + 1] - coupling->first_coordinate[part];
 }
 
 static void list_columns(const CouplingMaker *maker)
@@ -162,7 +162,7 @@ static void list_columns(const CouplingMaker *maker)
         size_t end = first[i];
         for (size_t k = maker->first_neighbour[i]; k < maker->first_neighbour[i + 1]; k++) {
             const size_t part = maker->neighbours[k];
-            memcpy(columns + end, coupling->members + coupling->first_member[part],
+            memcpy(columns + end, coupling->coordinates + coupling->first_coordinate[part],
                    coupling_part_size(coupling, part) * sizeof *columns);
             end += coupling_part_size(coupling, part);
         }
@@ -216,13 +216,13 @@ static Coupling *make(CouplingMaker *maker, size_t count, size_t part_count, con
     coupling->count = count;
     coupling->part_count = part_count;
     coupling->part_of = zeroed(count, sizeof *coupling->part_of);
-    coupling->first_member = zeroed(part_count + 1, sizeof *coupling->first_member);
-    coupling->members = zeroed(count, sizeof *coupling->members);
+    coupling->first_coordinate = zeroed(part_count + 1, sizeof *coupling->first_coordinate);
+    coupling->coordinates = zeroed(count, sizeof *coupling->coordinates);
     coupling->first_value = zeroed(count + 1, sizeof *coupling->first_value);
     coupling->first_coloured = zeroed(part_count + 1, sizeof *coupling->first_coloured);
     coupling->coloured = zeroed(part_count, sizeof *coupling->coloured);
     memcpy(coupling->part_of, part_of, count * sizeof *part_of);
-    grouped_list(part_count, count, part_of, coupling->first_member, coupling->members);
+    grouped_list(part_count, count, part_of, coupling->first_coordinate, coupling->coordinates);
     find_neighbours(maker);
     list_columns(maker);
     find_colours(maker);
@@ -273,8 +273,8 @@ void coupling_destroy(Coupling *coupling)
         return;
     }
     free(coupling->part_of);
-    free(coupling->first_member);
-    free(coupling->members);
+    free(coupling->first_coordinate);
+    free(coupling->coordinates);
     free(coupling->first_column);
     free(coupling->columns);
     free(coupling->first_value);
@@ -284,7 +284,7 @@ void coupling_destroy(Coupling *coupling)
     free(coupling);
 }
 
-size_t coupling_place(const Coupling *coupling, size_t part, size_t column)
+size_t coupling_column_index(const Coupling *coupling, size_t part, size_t column)
 {
     const size_t *columns = coupling_columns(coupling, part);
     const size_t width = coupling_width(coupling, part);
@@ -304,8 +304,8 @@ size_t coupling_place(const Coupling *coupling, size_t part, size_t column)
 double coupling_entry(const Coupling *coupling, const double *values, size_t row, size_t column)
 {
     const size_t part = coupling->part_of[row];
-    const size_t place = coupling_place(coupling, part, column);
-    return place < coupling_width(coupling, part) ? values[coupling->first_value[row] + place]
+    const size_t index = coupling_column_index(coupling, part, column);
+    return index < coupling_width(coupling, part) ? values[coupling->first_value[row] + index]
                                                   : 0.0;
 }
 

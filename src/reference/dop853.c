@@ -54,7 +54,7 @@ static void set_row(const double *weights, size_t width, Dop853Row *row)
 {
     for (size_t i = 0; i < DOP853_STAGES; i++) {
         if (weights[i] != 0.0) {
-            row->places[row->count] = i * width;
+            row->offsets[row->count] = i * width;
             row->weights[row->count++] = (Pair){weights[i], weights[i]};
         }
     }
@@ -112,7 +112,7 @@ static inline Block add_up(const Dop853 *integrator, const Dop853Row *row, size_
     const double *first = integrator->stages[0] + block;
     for (size_t j = 0; j < row->count; j++) {
         const Pair weight = row->weights[j];
-        const Pair *rates = (const Pair *)(first + row->places[j]);
+        const Pair *rates = (const Pair *)(first + row->offsets[j]);
         total.first += weight * rates[0];
         total.second += weight * rates[1];
     }

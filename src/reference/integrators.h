@@ -27,9 +27,9 @@ typedef struct CouplingJoint {
 typedef struct Coupling {
     size_t count; // of coordinates
     size_t part_count;
-    size_t *part_of;      // by coordinate; owned, like all below
-    size_t *first_member; // by part and one more: where its coordinates begin
-    size_t *members;      // coordinates, part by part, in order
+    size_t *part_of;          // by coordinate; owned, like all below
+    size_t *first_coordinate; // by part and one more: where its coordinates begin
+    size_t *coordinates;      // part by part, in order
     size_t *first_column; // by part and one more: where the coordinates that it depends on begin
     size_t *columns;      // in order
     size_t *first_value;  // by coordinate and one more: where its row begins
@@ -75,7 +75,7 @@ static inline size_t coupling_width(const Coupling *coupling, size_t part)
 }
 
 // Which of the columns of a part's rows a coordinate is; their number where it is none.
-size_t coupling_place(const Coupling *coupling, size_t part, size_t column);
+size_t coupling_column_index(const Coupling *coupling, size_t part, size_t column);
 
 // An entry of a matrix; 0 where it is not in the pattern.
 double coupling_entry(const Coupling *coupling, const double *values, size_t row, size_t column);
@@ -85,7 +85,7 @@ void coupling_multiply(const Coupling *coupling, const double *values, const dou
                        double *product);
 
 // An explicit Runge-Kutta integrator of order 8 with error control and dense output of order 7,
-// made for motion that events interrupt: a step is tried, looked at, shortened, and only then
+// made for motion that events interrupt: a step is tried, checked, shortened, and only then
 // taken. The polynomial through a step is worked out when the first state inside it is asked for.
 
 // The method's coefficients (reference/dop853.c).
@@ -106,7 +106,7 @@ extern const double DOP853_DENSE[DOP853_DENSE_ROWS][DOP853_STAGES];
 typedef void (*Dop853Rates)(double time, const double *y, double *rates, void *context);
 
 // Writes how the second rates of the coordinates change with these and their rates, as matrices of
-// the coupling; see radau.h.
+// the coupling; see below.
 typedef void (*Dop853Slopes)(double time, const double *y, double *by_position, double *by_rate,
                              void *context);
 
@@ -117,7 +117,7 @@ typedef double Dop853Pair __attribute__((vector_size(2 * sizeof(double)), may_al
 // weigh stand behind those of the first stage.
 typedef struct Dop853Row {
     size_t count;
-    size_t places[DOP853_STAGES];
+    size_t offsets[DOP853_STAGES];
     Dop853Pair weights[DOP853_STAGES];
 } Dop853Row;
 
@@ -233,11 +233,11 @@ extern const double RADAU_DENSE[RADAU_DENSE_ROWS][RADAU_STAGES];
 // nothing to do with one another are in separate blocks, each factored by itself; a block whose
 // coordinates meet only their neighbours, as those of a long chain, is banded.
 
-// Coordinates that feel one another, directly or by others.
+// Coordinates that depend on one another, directly or by others.
 typedef struct RadauBlock {
-    size_t size; // of them
-    size_t
-        reach; // how far apart two are at most, in the block's order, of which one feels the other
+    size_t size;  // of them
+    size_t reach; // how far apart two are at most, in the block's order, of which one depends on
+                  // the other
     bool is_banded;
     Banded banded;
 } RadauBlock;
@@ -250,14 +250,14 @@ typedef struct RadauNewton {
     double *by_position[RADAU_STAGES];
     double *by_rate[RADAU_STAGES];
     size_t block_count;
-    RadauBlock *blocks; // as many as there are coordinates
-    size_t *members;    // which they are, block by block
+    RadauBlock *blocks;  // as many as there are coordinates
+    size_t *coordinates; // which they are, block by block
     // room to work in, owned like all of the above
     bool *is_taken;
     double *own;
-    size_t *place;  // of a coordinate in its block
-    double *matrix; // of the blocks, one behind the other; NULL before the first
-    size_t room;    // of it
+    size_t *index_in_block; // by coordinate
+    double *matrix;         // of the blocks, one behind the other; NULL before the first
+    size_t room;            // of it
     size_t *pivots;
 } RadauNewton;
 
@@ -279,13 +279,13 @@ void radau_newton_solve(const RadauNewton *newton, double *change);
 // else as from its own stages.
 
 typedef struct Radau {
-    Dop853Method method; // what a Dop853 takes the steps by; the first member
+    Dop853Method method; // what a Dop853 takes the steps by; the first
     // Changes of the coordinates and their rates by which accelerations are differentiated: small
     // against what they depend on, large against rounding.
     double *nudge;
     Coupling *own_coupling; // owned, of an integrator without one
     RadauNewton newton;
-    double decay;                // 1/s, the largest rate of decay, where it was last looked at
+    double decay;                // 1/s, the largest rate of decay, where it was last found
     double *moved[RADAU_STAGES]; // of the stages since the start of the step
     double *rates[RADAU_STAGES];
     double before_s; // length of the step whose polynomial the integrator has; 0 for none
@@ -306,4 +306,4 @@ void radau_destroy(Radau *radau);
 
 // How fast rates die away where the next step starts: the largest rate of decay, 1/s. The next step
 // takes nothing from one before.
-double radau_look(Radau *radau, Dop853 *integrator);
+double radau_find_decay(Radau *radau, Dop853 *integrator);

@@ -92,9 +92,9 @@ static bool nudge(const Radau *radau, size_t colour, size_t number, size_t behin
     for (size_t i = coupling->first_coloured[colour]; i < coupling->first_coloured[colour + 1];
          i++) {
         const size_t part = coupling->coloured[i];
-        const size_t member = coupling->first_member[part] + number;
-        if (member < coupling->first_member[part + 1]) {
-            const size_t k = coupling->members[member] + behind;
+        const size_t entry = coupling->first_coordinate[part] + number;
+        if (entry < coupling->first_coordinate[part + 1]) {
+            const size_t k = coupling->coordinates[entry] + behind;
             radau->kept[k] = y[k];
             y[k] += radau->nudge[k];
             has_any = true;
@@ -113,19 +113,19 @@ static void take_differences(const Radau *radau, size_t colour, size_t number, s
     for (size_t i = coupling->first_coloured[colour]; i < coupling->first_coloured[colour + 1];
          i++) {
         const size_t part = coupling->coloured[i];
-        const size_t member = coupling->first_member[part] + number;
-        if (member >= coupling->first_member[part + 1]) {
+        const size_t entry = coupling->first_coordinate[part] + number;
+        if (entry >= coupling->first_coordinate[part + 1]) {
             continue;
         }
-        const size_t column = coupling->members[member];
+        const size_t column = coupling->coordinates[entry];
         const double moved = y[column + behind] - radau->kept[column + behind];
         y[column + behind] = radau->kept[column + behind];
         // those that it depends on depend on it
         const size_t *rows = coupling_columns(coupling, part);
         for (size_t k = 0; k < coupling_width(coupling, part); k++) {
             const size_t row = rows[k];
-            const size_t place = coupling_place(coupling, coupling->part_of[row], column);
-            by[coupling->first_value[row] + place] = (changed[row] - before[row]) / moved;
+            const size_t index = coupling_column_index(coupling, coupling->part_of[row], column);
+            by[coupling->first_value[row] + index] = (changed[row] - before[row]) / moved;
         }
     }
 }
@@ -145,7 +145,7 @@ static void differentiate(const Radau *radau, Dop853 *integrator, double time, d
     }
 }
 
-double radau_look(Radau *radau, Dop853 *integrator)
+double radau_find_decay(Radau *radau, Dop853 *integrator)
 {
     memcpy(radau->y, integrator->y, integrator->size * sizeof *radau->y);
     differentiate(radau, integrator, integrator->time, radau->y, integrator->stages[0],
@@ -383,8 +383,8 @@ void radau_newton_init(RadauNewton *newton, const Coupling *coupling)
     newton->by_position[0] = zeroed(2 * RADAU_STAGES * values, sizeof(double));
     newton->own = zeroed(RADAU_STAGES * count, sizeof *newton->own);
     newton->blocks = zeroed(count, sizeof *newton->blocks);
-    newton->members = zeroed(count, sizeof *newton->members);
-    newton->place = zeroed(count, sizeof *newton->place);
+    newton->coordinates = zeroed(count, sizeof *newton->coordinates);
+    newton->index_in_block = zeroed(count, sizeof *newton->index_in_block);
     newton->is_taken = zeroed(count, sizeof *newton->is_taken);
     newton->pivots = zeroed(RADAU_STAGES * count, sizeof *newton->pivots);
     for (size_t i = 0; i < RADAU_STAGES; i++) {
@@ -398,8 +398,8 @@ void radau_newton_finish(RadauNewton *newton)
     free(newton->by_position[0]);
     free(newton->own);
     free(newton->blocks);
-    free(newton->members);
-    free(newton->place);
+    free(newton->coordinates);
+    free(newton->index_in_block);
     free(newton->is_taken);
     free(newton->matrix);
     free(newton->pivots);
@@ -416,14 +416,14 @@ static bool is_felt(const RadauNewton *newton, size_t value)
     return false;
 }
 
-// Whether one of two coordinates feels the other, of which `b` is the column at a place of the rows
-// of the part of `a`.
-static bool are_coupled(const RadauNewton *newton, size_t a, size_t place, size_t b)
+// Whether one of two coordinates depends on the other, of which `b` is the column at an entry of
+// the rows of the part of `a`.
+static bool are_coupled(const RadauNewton *newton, size_t a, size_t entry, size_t b)
 {
     const Coupling *coupling = newton->coupling;
-    return is_felt(newton, coupling->first_value[a] + place) ||
-           is_felt(newton,
-                   coupling->first_value[b] + coupling_place(coupling, coupling->part_of[b], a));
+    return is_felt(newton, coupling->first_value[a] + entry) ||
+           is_felt(newton, coupling->first_value[b] +
+                               coupling_column_index(coupling, coupling->part_of[b], a));
 }
 
 // The unknowns of a block, how far from the diagonal these equations reach, and how many values
@@ -444,8 +444,8 @@ static size_t newton_size_of(const RadauBlock *block)
     return block->is_banded ? banded_size(width, reach_of(block)) : width * width;
 }
 
-// Sorts the coordinates into blocks: each takes in, one after the other, all that its members feel,
-// so that those which feel each other are near to each other.
+// Sorts the coordinates into blocks: each takes in, one after the other, all that its coordinates
+// are coupled with, so that those which feel each other are near to each other.
 static void find_blocks(RadauNewton *newton)
 {
     const Coupling *coupling = newton->coupling;
@@ -462,25 +462,25 @@ static void find_blocks(RadauNewton *newton)
         RadauBlock *block = &newton->blocks[newton->block_count++];
         block->reach = 0;
         is_taken[first] = true;
-        newton->place[first] = 0;
-        newton->members[count++] = first;
+        newton->index_in_block[first] = 0;
+        newton->coordinates[count++] = first;
         for (size_t at = start; at < count; at++) {
-            const size_t part = coupling->part_of[newton->members[at]];
+            const size_t part = coupling->part_of[newton->coordinates[at]];
             const size_t *columns = coupling_columns(coupling, part);
             for (size_t i = 0; i < coupling_width(coupling, part); i++) {
                 const size_t k = columns[i];
-                if (is_taken[k] && newton->place[k] + start <= at) {
+                if (is_taken[k] && newton->index_in_block[k] + start <= at) {
                     continue;
                 }
-                if (!are_coupled(newton, newton->members[at], i, k)) {
+                if (!are_coupled(newton, newton->coordinates[at], i, k)) {
                     continue;
                 }
                 if (!is_taken[k]) {
                     is_taken[k] = true;
-                    newton->place[k] = count - start;
-                    newton->members[count++] = k;
+                    newton->index_in_block[k] = count - start;
+                    newton->coordinates[count++] = k;
                 }
-                const size_t apart = newton->place[k] + start - at;
+                const size_t apart = newton->index_in_block[k] + start - at;
                 block->reach = apart > block->reach ? apart : block->reach;
             }
         }
@@ -563,18 +563,18 @@ static void fill_entries(const RadauNewton *newton, const Filling *filling, size
 }
 
 // Fills Newton's matrix of a block, which is all zeros.
-static void newton_fill(const RadauNewton *newton, const size_t *members, const Filling *filling,
-                        const Matrix *matrix)
+static void newton_fill(const RadauNewton *newton, const size_t *coordinates,
+                        const Filling *filling, const Matrix *matrix)
 {
     const Coupling *coupling = newton->coupling;
     for (size_t row = 0; row < matrix->size; row++) {
-        const size_t part = coupling->part_of[members[row]];
+        const size_t part = coupling->part_of[coordinates[row]];
         const size_t *columns = coupling_columns(coupling, part);
-        const size_t first = coupling->first_value[members[row]];
+        const size_t first = coupling->first_value[coordinates[row]];
         for (size_t i = 0; i < coupling_width(coupling, part); i++) {
-            const size_t column = newton->place[columns[i]];
+            const size_t column = newton->index_in_block[columns[i]];
             // others are those of other blocks, zeros
-            if (column < matrix->size && members[column] == columns[i]) {
+            if (column < matrix->size && coordinates[column] == columns[i]) {
                 fill_entries(newton, filling, row, column, first + i, matrix);
             }
         }
@@ -596,7 +596,7 @@ bool radau_newton_factor(RadauNewton *newton, double step)
     const Filling filling = filling_of(step);
     find_blocks(newton);
     newton_make_room(newton);
-    const size_t *members = newton->members;
+    const size_t *coordinates = newton->coordinates;
     double *matrix = newton->matrix;
     size_t *pivots = newton->pivots;
     for (size_t i = 0; i < newton->block_count; i++) {
@@ -604,20 +604,21 @@ bool radau_newton_factor(RadauNewton *newton, double step)
         const size_t width = width_of(block);
         if (block->is_banded) {
             banded_shape_in(&block->banded, width, reach_of(block), matrix, pivots);
-            newton_fill(newton, members, &filling, &(Matrix){NULL, &block->banded, block->size});
+            newton_fill(newton, coordinates, &filling,
+                        &(Matrix){NULL, &block->banded, block->size});
             if (!banded_factor(&block->banded)) {
                 return false;
             }
         } else {
             memset(matrix, 0, width * width * sizeof *matrix);
-            newton_fill(newton, members, &filling, &(Matrix){matrix, NULL, block->size});
+            newton_fill(newton, coordinates, &filling, &(Matrix){matrix, NULL, block->size});
             if (!dense_factor(width, matrix, pivots)) {
                 return false;
             }
         }
         matrix += newton_size_of(block);
         pivots += width;
-        members += block->size;
+        coordinates += block->size;
     }
     return true;
 }
@@ -625,7 +626,7 @@ bool radau_newton_factor(RadauNewton *newton, double step)
 void radau_newton_solve(const RadauNewton *newton, double *change)
 {
     const size_t n = newton->count;
-    const size_t *members = newton->members;
+    const size_t *coordinates = newton->coordinates;
     const double *matrix = newton->matrix;
     const size_t *pivots = newton->pivots;
     double *own = newton->own;
@@ -635,9 +636,9 @@ void radau_newton_solve(const RadauNewton *newton, double *change)
         const size_t width = width_of(block);
         // strides of stages and of coordinates
         const size_t by_stage = block->is_banded ? 1 : m;
-        const size_t by_member = block->is_banded ? RADAU_STAGES : 1;
+        const size_t by_coordinate = block->is_banded ? RADAU_STAGES : 1;
         for (size_t k = 0; k < width; k++) {
-            own[k / m * by_stage + k % m * by_member] = change[k / m * n + members[k % m]];
+            own[k / m * by_stage + k % m * by_coordinate] = change[k / m * n + coordinates[k % m]];
         }
         if (block->is_banded) {
             banded_substitute(&block->banded, own);
@@ -647,9 +648,9 @@ void radau_newton_solve(const RadauNewton *newton, double *change)
         matrix += newton_size_of(block);
         pivots += width;
         for (size_t k = 0; k < width; k++) {
-            change[k / m * n + members[k % m]] = own[k / m * by_stage + k % m * by_member];
+            change[k / m * n + coordinates[k % m]] = own[k / m * by_stage + k % m * by_coordinate];
         }
-        members += m;
+        coordinates += m;
     }
 }
 

@@ -1,6 +1,6 @@
 // The reference solver: how a linkage with play moves, integrated to its tolerance.
 //
-// Hands on to the solver of one mechanism, or to that of several side by side.
+// Passes on to the solver of one mechanism, or to that of several side by side.
 #include "reference/peaks.h"
 
 #include "base/layout.h"
@@ -27,7 +27,7 @@ static void reference_label(const Scenario *scenario, size_t coordinates,
 //
 // The equations of motion in tree coordinates (reference/system.h), integrated by an explicit
 // method of order 8 (reference/integrators.h); contact begin and end are events, between which the
-// right-hand side is smooth. A step of the integrator is handed on in parts that end where a force
+// right-hand side is smooth. A step of the integrator is passed on in parts that end where a force
 // or a depth has its maximum, so that no peak is missed whatever the step.
 
 typedef struct Mechanism {
@@ -38,12 +38,12 @@ typedef struct Mechanism {
     double since_s; // end of the part of the step that was handed on, from the step's start
     double start_s; // of that part
     double end_s;
-    double *y;      // at end_s; owned, like the next two
-    double *before; // at start_s
-    double *seen;   // at a time that is observed
-    double elastic; // J, stored in the contacts at end_s
-    void *memory;   // owned; where the arrays below are
-    double *omega;  // by body
+    double *y;        // at end_s; owned, like the next two
+    double *before;   // at start_s
+    double *observed; // at a time that is observed
+    double elastic;   // J, stored in the contacts at end_s
+    void *memory;     // owned; where the arrays below are
+    double *omega;    // by body
     double *alpha;
     double *impulse; // by joint
     double *approach;
@@ -96,7 +96,7 @@ static void mechanism_close(void *state)
         free(mechanism->scratch);
         free(mechanism->y);
         free(mechanism->before);
-        free(mechanism->seen);
+        free(mechanism->observed);
         free(mechanism->memory);
         free(mechanism);
     }
@@ -209,8 +209,8 @@ static bool mechanism_open(const Scenario *scenario, void **state, Err *err)
     const size_t size = stepper->integrator.size;
     mechanism->y = calloc(size, sizeof *mechanism->y);
     mechanism->before = calloc(size, sizeof *mechanism->before);
-    mechanism->seen = calloc(size, sizeof *mechanism->seen);
-    assert(mechanism->y != NULL && mechanism->before != NULL && mechanism->seen != NULL);
+    mechanism->observed = calloc(size, sizeof *mechanism->observed);
+    assert(mechanism->y != NULL && mechanism->before != NULL && mechanism->observed != NULL);
     mechanism->scratch = system_state_create(stepper->system);
     mechanism->peaks = peaks_create(stepper->system, mechanism->scratch);
     // the stepper stands at a point; the first call takes its first step
@@ -227,7 +227,7 @@ static bool mechanism_step(void *state, double stop_s, Err *err)
     return advance(mechanism, err) || fail_at(mechanism, mechanism->end_s, err);
 }
 
-// A whole step, without a look for peaks.
+// A whole step, without a search for peaks.
 static bool mechanism_stride(void *state, double stop_s, double *end_s, Err *err)
 {
     (void)stop_s;
@@ -263,7 +263,7 @@ static StepRecord mechanism_record(const void *state)
         .alpha = mechanism->alpha,
         .joints = mechanism->joints,
         .space_joints = is_spatial ? mechanism->space_joints : NULL,
-        .tops = mechanism->peaks.has_tops ? mechanism->peaks.crowd.tops : NULL,
+        .tops = mechanism->peaks.has_tops ? mechanism->peaks.batch.tops : NULL,
         .impulse = mechanism->impulse,
         .approach = mechanism->approach,
         .drive_work = now[SYSTEM_DRIVE_WORK] - then[SYSTEM_DRIVE_WORK],
@@ -280,7 +280,7 @@ static void mechanism_observe(const void *state, double time_s, Sample *sample)
     const System *system = mechanism->stepper->system;
     SystemState *at = mechanism->scratch;
     const double since_s = system->kind->since(system, time_s);
-    double *y = mechanism->seen;
+    double *y = mechanism->observed;
     dop853_dense_all(&mechanism->stepper->integrator, since_s, y);
     system->kind->project(system, since_s, y);
     sample->time_s = time_s;
@@ -301,13 +301,13 @@ static void mechanism_glance(const void *state, double time_s, Sample *sample)
     const Mechanism *mechanism = state;
     const System *system = mechanism->stepper->system;
     const double since_s = system->kind->since(system, time_s);
-    if (system->kind->place == NULL) {
+    if (system->kind->motions == NULL) {
         mechanism_observe(state, time_s, sample);
         return;
     }
-    double *y = mechanism->seen;
+    double *y = mechanism->observed;
     dop853_dense_motion(&mechanism->stepper->integrator, since_s, y);
-    if (!system->kind->place(system, since_s, y, sample)) {
+    if (!system->kind->motions(system, since_s, y, sample)) {
         mechanism_observe(state, time_s, sample);
     }
 }
@@ -350,11 +350,11 @@ static const Solver MECHANISM_SOLVER = {
 // Each by itself (model/several.h): an event of one ends no step of another.
 
 // of a step
-static const double ROUNDING = 1e-9;
+static const double MECHANISMS_ROUNDING_SHARE = 1e-9;
 
 static bool open_each(const Scenario *scenario, void **state, Err *err)
 {
-    return several_open(scenario, &MECHANISM_SOLVER, ROUNDING, state, err);
+    return several_open(scenario, &MECHANISM_SOLVER, MECHANISMS_ROUNDING_SHARE, state, err);
 }
 
 static SolverModel model_of_all(const void *state)

@@ -22,8 +22,8 @@
 // its own time; of a usual one that is some ten thousand steps a turn. Both end by themselves.
 
 // of a turn of the drive, or of a run without one
-static const double INSTANT = 1e-12;
-static const double STEP_LEAST = 5e-8; // twenty million steps a turn: minutes each
+static const double PACE_INSTANT_SHARE = 1e-12;
+static const double PACE_STEP_SHARE = 5e-8; // twenty million steps a turn: minutes each
 
 enum { EVENTS_MOST = 1000, STEPS_COUNTED = 50000 };
 
@@ -61,7 +61,7 @@ static bool refuse_steps(const Pace *pace, const System *system, double time_s, 
 bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err)
 {
     const double turn_s = pace_turn_of(system);
-    if (time_s - pace->instant_s > INSTANT * turn_s) {
+    if (time_s - pace->instant_s > PACE_INSTANT_SHARE * turn_s) {
         pace->instant_s = time_s;
         pace->events = 0;
     }
@@ -74,7 +74,7 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
     }
     pace->steps++;
     if (pace->steps == STEPS_COUNTED) {
-        if (time_s - pace->since_s < STEP_LEAST * STEPS_COUNTED * turn_s) {
+        if (time_s - pace->since_s < PACE_STEP_SHARE * STEPS_COUNTED * turn_s) {
             return refuse_steps(pace, system, time_s, err);
         }
         pace->steps = 0;
@@ -116,22 +116,22 @@ bool pace_undetermined(Err *err)
 // impulse that is still to come, F t. Steps keep to a share of t until that is small enough to be
 // crossed: as small as one was that has been crossed before.
 
-// Of the step that the errors so far allow: an end that is nearer is worth looking at, and one that
+// Of the step that the errors so far allow: an end that is nearer is worth a limit, and one that
 // is nearer than the second number is rounding.
-static const double NEAR = 0.9;
-static const double NEAREST = 1e-6;
+static const double ENDING_STEP_SHARE = 0.9;
+static const double ENDING_ROUNDING_SHARE = 1e-6;
 
 // Of the time to the end: so that it is crossed, and so that it is not. Measured, shares of 0.6 to
 // 0.85 cost the same to one in a hundred.
-static const double ACROSS = 1.05;
-static const double BEFORE = 0.7;
+static const double ENDING_CROSSED_SHARE = 1.05;
+static const double ENDING_AVOIDED_SHARE = 0.7;
 
 // How what can be crossed changes where an end was crossed, and where it could not be.
-static const double MORE = 2.0;
-static const double LESS = 0.25;
+static const double ENDING_GROWTH = 2.0;
+static const double ENDING_DECAY = 0.25;
 
 // of the step: over which the second rate is found
-static const double LITTLE = 1e-3;
+static const double ENDING_DIFFERENCE_SHARE = 1e-3;
 
 // Where nothing has been seen yet.
 static Ending ending_start(void)
@@ -143,7 +143,7 @@ static Ending ending_start(void)
 static double second_rate(const System *system, size_t contact, double closing,
                           const Dop853 *integrator)
 {
-    const double little_s = LITTLE * integrator->step;
+    const double little_s = ENDING_DIFFERENCE_SHARE * integrator->step;
     double *y = integrator->at;
     for (size_t i = 0; i < integrator->size; i++) {
         y[i] = integrator->y[i] + little_s * integrator->stages[0][i];
@@ -174,13 +174,13 @@ static double time_left(const System *system, size_t contact, const Press *press
 static double ending_limit(Ending *ending, const System *system, const SystemState *state,
                            const Dop853 *integrator)
 {
-    double least_s = integrator->step / NEAR;
+    double least_s = integrator->step / ENDING_STEP_SHARE;
     double size = -1.0;
     ending->size = -1.0;
     for (size_t i = 0; integrator->method == NULL && i < system->contact_count; i++) {
         const Press *press = &state->contacts[i];
         const double left_s = time_left(system, i, press, integrator, least_s);
-        if (left_s < least_s && left_s > NEAREST * integrator->step) {
+        if (left_s < least_s && left_s > ENDING_ROUNDING_SHARE * integrator->step) {
             least_s = left_s;
             size = press->elastic * left_s;
         }
@@ -189,25 +189,25 @@ static double ending_limit(Ending *ending, const System *system, const SystemSta
         return INFINITY;
     }
     if (size > ending->crossed) {
-        return BEFORE * least_s;
+        return ENDING_AVOIDED_SHARE * least_s;
     }
     ending->size = size;
-    return ACROSS * least_s;
+    return ENDING_CROSSED_SHARE * least_s;
 }
 
 // Takes note of whether the step was refused.
 static void ending_note(Ending *ending, bool is_refused)
 {
     if (ending->size >= 0.0) {
-        ending->crossed =
-            is_refused ? LESS * ending->size : fmax(ending->crossed, MORE * ending->size);
+        ending->crossed = is_refused ? ENDING_DECAY * ending->size
+                                     : fmax(ending->crossed, ENDING_GROWTH * ending->size);
     }
 }
 
 // Chooses the method that takes the next step.
 //
 // Rates die away in a contact of damping c with the time constant m / c. The explicit method is
-// held to steps of some three of them, however smooth the motion is; that is what is looked for:
+// held to steps of some three of them, however smooth the motion is; that is what is found:
 // the largest eigenvalue of -dA/du. Their sum would not do: of several contacts, none of which
 // holds steps back, it had the implicit method take over at a multiple of the work.
 //
@@ -218,20 +218,20 @@ static void ending_note(Ending *ending, bool is_refused)
 // method is put on trial, and stays where its steps are longer by more than they cost. (Trials of
 // contacts that do oscillate cost up to a tenth of the work and win nothing.)
 
-enum { LOOK_EVERY = 32 }; // explicit steps
+enum { STIFFNESS_CHECK_INTERVAL = 32 }; // explicit steps
 
 // Steps times the largest rate of decay. Above the first the explicit method is held back,
 // below the second it takes the same steps for a fifth of the work.
-static const double STIFF = 2.5;
-static const double EASY = 0.5;
+static const double STIFFNESS_LIMITED = 2.5;
+static const double STIFFNESS_UNLIMITED = 0.5;
 
 // A trial costs the work of some steps. It is worth while from these on, of a contact by itself:
 // steps times its rate of decay, and that rate times c / k.
-static const double DOUBTFUL = 0.02;
-static const double OVERDAMPED = 1.0;
+static const double STIFFNESS_TRIAL_DECAY = 0.02;
+static const double STIFFNESS_TRIAL_DAMPING = 1.0;
 
 // an implicit step takes the work of some eight explicit ones
-static const double WORTH = 8.0;
+static const double STIFFNESS_STEP_COST = 8.0;
 
 // What accelerations are differentiated by: of the fastest speed, and of a depth
 static const double SPEED_SHARE = 1e-7;
@@ -277,7 +277,7 @@ static bool is_doubtful(const System *system, const SystemState *state, double s
             relaxation_s = stiffness > 0.0 ? fmax(relaxation_s, damping / stiffness) : relaxation_s;
         }
     }
-    return step * decay > DOUBTFUL && decay * relaxation_s > OVERDAMPED;
+    return step * decay > STIFFNESS_TRIAL_DECAY && decay * relaxation_s > STIFFNESS_TRIAL_DAMPING;
 }
 
 // Whether the implicit method takes over from the explicit one, or is put on trial.
@@ -285,7 +285,7 @@ static bool takes_over(Stiffness *stiffness, const System *system, const SystemS
                        Dop853 *integrator)
 {
     const double decay = stiffness->radau->decay;
-    if (integrator->step * decay > STIFF) {
+    if (integrator->step * decay > STIFFNESS_LIMITED) {
         return true;
     }
     if (!is_doubtful(system, state, integrator->step, decay)) {
@@ -296,7 +296,7 @@ static bool takes_over(Stiffness *stiffness, const System *system, const SystemS
         return false;
     }
     stiffness->beaten_s = integrator->step;
-    integrator->step *= 2.0 * WORTH;
+    integrator->step *= 2.0 * STIFFNESS_STEP_COST;
     return true;
 }
 
@@ -306,9 +306,9 @@ static bool stays(Stiffness *stiffness, double taken_s, Dop853 *integrator)
     const double beaten_s = stiffness->beaten_s;
     stiffness->beaten_s = 0.0;
     if (beaten_s == 0.0) {
-        return integrator->step * stiffness->radau->decay > EASY;
+        return integrator->step * stiffness->radau->decay > STIFFNESS_UNLIMITED;
     }
-    if (taken_s > WORTH * beaten_s) {
+    if (taken_s > STIFFNESS_STEP_COST * beaten_s) {
         stiffness->pause = 0;
         return true;
     }
@@ -336,7 +336,7 @@ static void stiffness_follow(Stiffness *stiffness, const System *system, const S
         integrator->method = NULL;
         return;
     }
-    if (!is_implicit && stiffness->steps < LOOK_EVERY) {
+    if (!is_implicit && stiffness->steps < STIFFNESS_CHECK_INTERVAL) {
         return;
     }
     stiffness->steps = 0;
@@ -346,7 +346,7 @@ static void stiffness_follow(Stiffness *stiffness, const System *system, const S
     Radau *radau = stiffness->radau;
     set_nudges(system, scale, depth, radau->nudge);
     if (!is_implicit || is_event) {
-        radau_look(radau, integrator);
+        radau_find_decay(radau, integrator);
     }
     const bool is_next = is_implicit ? stays(stiffness, taken_s, integrator)
                                      : takes_over(stiffness, system, state, integrator);
@@ -359,10 +359,10 @@ static void stiffness_finish(Stiffness *stiffness)
 }
 
 // of a step: two events nearer to each other than this are one, seen with rounding
-static const double SAME = 1e-9;
+static const double SIMULTANEOUS_SHARE = 1e-9;
 
 // of the deepest penetration a law knows: a pin that cannot be followed beyond it is at its end
-static const double NEARLY = 0.99;
+static const double DEPTH_LIMIT_SHARE = 0.99;
 
 // Shares of a tolerance that speeds of centres and of furthest joints have: measured, a four-bar
 // with two loose joints then errs by some forty times its tolerance
@@ -375,10 +375,10 @@ static const double POSITION_SHARE = 16.0;
 
 // 1: eight times the rounding of a number, for an estimate of the error that sees as much as it
 // allows lets no step grow
-static const double ROUNDING = 0x1p-50;
+static const double TOLERANCE_LEAST_SHARE = 0x1p-50;
 
 // of the time: below this, rounding of the time would show in a step
-static const double SHORTEST = 16.0 * DBL_EPSILON;
+static const double STEP_SHORTEST_SHARE = 16.0 * DBL_EPSILON;
 
 static const SystemState *state_at_end(const Stepper *stepper)
 {
@@ -431,12 +431,12 @@ static void allow_rounding(Stepper *stepper)
     double moved = 0.0;
     for (size_t i = 0; i < system->contact_count; i++) {
         const Contact *contact = &system->contacts[i];
-        const double rounding = ROUNDING * contact->clearance;
+        const double rounding = TOLERANCE_LEAST_SHARE * contact->clearance;
         // a contact that rounding alone keeps from its end is continued below zero depth
         const double depth = fmax(fabs(state->contacts[i].depth), rounding);
         if (contact->mode == CONTACT_PRESSING) {
             force += rounding * force_law_tangent(&contact->law, depth);
-            damped += ROUNDING * stepper->scale.moving *
+            damped += TOLERANCE_LEAST_SHARE * stepper->scale.moving *
                       press_damping(contact, &state->contacts[i]) / (contact->arm * contact->arm);
         }
         moved = moved > 0.0 ? fmin(moved, rounding) : rounding;
@@ -569,7 +569,7 @@ static void take_over(Stepper *stepper)
     // time and coordinates count from here on
     const bool is_other = system->kind->rebase(system, integrator->time, integrator->y);
     integrator->time = 0.0;
-    integrator->shortest = SHORTEST * system->kind->time(system, 0.0);
+    integrator->shortest = STEP_SHORTEST_SHARE * system->kind->time(system, 0.0);
     if (stepper->events.count > 0) {
         apply_events(stepper);
     }
@@ -587,15 +587,14 @@ static double smooth_limit(const Stepper *stepper)
     const System *system = stepper->system;
     const Linkage *linkage = &stepper->scenario->linkage;
     const double time_s = system->kind->time(system, 0.0);
-    const double least_s = SHORTEST * time_s; // a bend nearer than this has been reached
+    const double least_s = STEP_SHORTEST_SHARE * time_s; // a bend nearer than this has been reached
     const double bend_s = fmin(time_table_next_bend(&linkage->torque.table, time_s + least_s),
                                drive_next_kink(&linkage->driver, time_s + least_s));
     return fmin(stepper->duration_s, bend_s) - time_s;
 }
 
 // The longest step in which no free pin crosses more than its play, nor a stop more than its size:
-// error control alone lets a free
-// flight, which it integrates exactly, be as long as it likes.
+// error control alone lets a free flight, which it integrates exactly, be as long as it likes.
 static double flight_limit(const Stepper *stepper)
 {
     const System *system = stepper->system;
@@ -622,7 +621,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
     if (!system->kind->evaluate(system, integrator->time, integrator->y, state, NULL)) {
         return pace_undetermined(err);
     }
-    if (!system_check_depth(system, state, NEARLY, err)) {
+    if (!system_check_depth(system, state, DEPTH_LIMIT_SHARE, err)) {
         return false;
     }
     return err_set(err, ERR_SOLVER,
@@ -651,17 +650,17 @@ static bool step_to_event(Stepper *stepper, Err *err)
     if (!attempt(stepper)) {
         return fail_to_step(stepper, err);
     }
-    const double same_s = SAME * integrator->tried;
+    const double same_s = SIMULTANEOUS_SHARE * integrator->tried;
     Event landed = {.time = INFINITY};
     stepper->events.count = 0;
     for (size_t i = 0; i <= system->contact_count; i++) {
-        if (!events_look(system, integrator, &stepper->points)) {
+        if (!events_evaluate(system, integrator, &stepper->points)) {
             return pace_undetermined(err);
         }
         // a shorter step sees better: it may show an event before the one it was cut to
         events_find(system, integrator, &stepper->points, &stepper->found);
         const Event *first = events_first(&stepper->found);
-        if (first == NULL || first->time >= landed.time - SAME * integrator->tried) {
+        if (first == NULL || first->time >= landed.time - SIMULTANEOUS_SHARE * integrator->tried) {
             break;
         }
         landed = *first;

@@ -19,7 +19,7 @@ typedef struct EventList {
     Event *events; // owned by the stepper, one a contact
 } EventList;
 
-// A step is looked at in some points, equal parts of it, the last at its end. While nothing presses
+// A step is evaluated in some points, equal parts of it, the last at its end. While nothing presses
 // steps are long, and a pin might reach its wall and leave it within one; while something does some
 // ten steps make a swing, and the end is enough.
 enum { EVENTS_POINTS_MAX = 4 };
@@ -31,7 +31,7 @@ typedef struct EventPoints {
 
 // Evaluates the points of the tried step, and the rates at its end with the last of them. Returns
 // false where the accelerations are not determined.
-bool events_look(const System *system, Dop853 *integrator, EventPoints *points);
+bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *points);
 
 // The time of one point.
 double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
@@ -83,11 +83,11 @@ bool pace_undetermined(Err *err);
 // contact is damped so strongly that explicit steps are far shorter than the motion is smooth?
 
 typedef struct Stiffness {
-    Radau *radau; // owned; NULL before the first look
-    size_t steps; // explicit ones since the last event or look
+    Radau *radau; // owned; NULL before the first check
+    size_t steps; // explicit ones since the last event or check
     // While the implicit method is on trial: the explicit step that it has to beat, s; else 0.
     double beaten_s;
-    size_t wait;  // looks until another trial may follow the last one
+    size_t wait;  // checks until another trial may follow the last one
     size_t pause; // as many were waited for after the last trial that was lost
 } Stiffness;
 
@@ -97,7 +97,7 @@ typedef struct Stepper {
     Dop853 integrator; // its tried step is the present one
     EventPoints points;
     EventList events; // at its end
-    EventList found;  // room for those of a step that is looked at
+    EventList found;  // room for those of a step that is checked
     Pace pace;
     Stiffness stiffness;
     bool has_step;

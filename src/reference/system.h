@@ -35,7 +35,7 @@ typedef struct Contact {
     double clearance;   // m, radial, or of a collar in space axial; 0 of a stop
     double arm;         // m, by which an angle counts as a length and a torque as a force; 1 of
                         // what is a length already
-    double flight;      // m, by which it may come nearer between two looks while it is apart
+    double flight;      // m, by which it may come nearer between two evaluations while it is apart
     double hole_radius; // m, of a pin in space
     bool is_collar;     // of a pin in space: it stops the pin along its axis
     ContactMode mode;
@@ -153,7 +153,7 @@ typedef struct SystemKind {
     void (*bodies)(const System *system, const SystemState *state, Sample *sample);
     // Where the bodies are at a time and how fast they move, without their accelerations: of
     // equations whose accelerations are always determined. NULL, or false, of others.
-    bool (*place)(const System *system, double since_s, const double *y, Sample *sample);
+    bool (*motions)(const System *system, double since_s, const double *y, Sample *sample);
     // Rows of the joints that close loops.
     size_t (*rows)(const System *system);
     void (*destroy)(System *system);

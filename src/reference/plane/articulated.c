@@ -44,17 +44,17 @@ struct FrontRows {
 // as a force at its reference does. Of a loop, whose two rows are the pivot, what is left is the
 // same with S in place of P.
 
-enum { LOOP_ROWS = 2 };
+enum { FRONT_LOOP_ROWS = 2 };
 
 static size_t front_rows_of(const PlanFront *front)
 {
-    return LOOP_ROWS * front->loop_count;
+    return FRONT_LOOP_ROWS * front->loop_count;
 }
 
 // The first row of a front that is not eliminated in it.
 static size_t front_left_of(const PlanFront *front)
 {
-    return front->is_body ? 0 : LOOP_ROWS;
+    return front->is_body ? 0 : FRONT_LOOP_ROWS;
 }
 
 // The fronts at a node are [first, last).
@@ -92,18 +92,18 @@ static void front_add_child(Articulated *articulated, const PlanFront *front,
 {
     const PlanFront *child = &articulated->plan.fronts[entry->front];
     const FrontRows *from = &articulated->fronts[entry->front];
-    const size_t *places = articulated->plan.places + entry->first_place;
+    const size_t *child_rows = articulated->plan.child_rows + entry->first_child_row;
     const size_t count = front_rows_of(child);
     const size_t left = front_left_of(child);
     for (size_t i = left; i < count; i++) {
-        const size_t row = places[(i - left) / LOOP_ROWS] + i % LOOP_ROWS;
+        const size_t row = child_rows[(i - left) / FRONT_LOOP_ROWS] + i % FRONT_LOOP_ROWS;
         if (front->node >= 0) {
             const LoopRow moved = row_inwards(articulated, child, &from->rows[i]);
             to->rows[row].motion = vec2_add(to->rows[row].motion, moved.motion);
             to->rows[row].spin += moved.spin;
         }
         for (size_t k = left; k < count; k++) {
-            const size_t column = places[(k - left) / LOOP_ROWS] + k % LOOP_ROWS;
+            const size_t column = child_rows[(k - left) / FRONT_LOOP_ROWS] + k % FRONT_LOOP_ROWS;
             to->square[row * front_rows_of(front) + column] += from->square[i * count + k];
         }
     }
@@ -248,15 +248,15 @@ static void front_gather_sides(Articulated *articulated, size_t i, ArticulatedLi
     const size_t count = front_rows_of(front);
     for (size_t k = 0; k < count; k++) {
         const bool is_own = k < front_left_of(front) && sides != NULL;
-        at->vector[k] = is_own ? sides[LOOP_ROWS * plan->loops[front->first_loop] + k] : 0.0;
+        at->vector[k] = is_own ? sides[FRONT_LOOP_ROWS * plan->loops[front->first_loop] + k] : 0.0;
     }
     for (size_t k = 0; k < front->child_count; k++) {
         const PlanChild *entry = &plan->children[front->first_child + k];
         const PlanFront *child = &plan->fronts[entry->front];
-        const size_t *places = plan->places + entry->first_place;
+        const size_t *child_rows = plan->child_rows + entry->first_child_row;
         const size_t left = front_left_of(child);
         for (size_t row = left; row < front_rows_of(child); row++) {
-            at->vector[places[(row - left) / LOOP_ROWS] + row % LOOP_ROWS] +=
+            at->vector[child_rows[(row - left) / FRONT_LOOP_ROWS] + row % FRONT_LOOP_ROWS] +=
                 articulated->fronts[entry->front].vector[row];
         }
     }
@@ -323,8 +323,8 @@ static void articulated_add_multipliers(Articulated *articulated, int node,
     const FrontRows *at = &articulated->fronts[number];
     ArticulatedLink *link = &articulated->links[node];
     for (size_t i = 0; i < front_rows_of(front); i++) {
-        const int loop = plan->loops[front->first_loop + i / LOOP_ROWS];
-        const double multiplier = multipliers[LOOP_ROWS * loop + i % LOOP_ROWS];
+        const int loop = plan->loops[front->first_loop + i / FRONT_LOOP_ROWS];
+        const double multiplier = multipliers[FRONT_LOOP_ROWS * loop + i % FRONT_LOOP_ROWS];
         link->own_force -= at->own[i] * multiplier;
         if (link->kind == LINK_FLOATING) {
             link->force = vec2_sub(link->force, vec2_scale(multiplier, at->rows[i].motion));
@@ -347,9 +347,9 @@ static void front_find_multipliers(const Articulated *articulated, size_t i,
         }
         for (size_t k = pivot + 1; k < count; k++) {
             sum -= at->square[pivot * count + k] *
-                   multipliers[LOOP_ROWS * loops[k / LOOP_ROWS] + k % LOOP_ROWS];
+                   multipliers[FRONT_LOOP_ROWS * loops[k / FRONT_LOOP_ROWS] + k % FRONT_LOOP_ROWS];
         }
-        multipliers[LOOP_ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
+        multipliers[FRONT_LOOP_ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
     }
 }
 

@@ -34,18 +34,18 @@ static void dynamics_add_friction(const Dynamics *dynamics, size_t number, const
                                   ContactForce *force)
 {
     const ForceLaw *law = &dynamics->system.contacts[number].law;
-    const int end = 2 * dynamics->places[number].pair;
+    const int end = 2 * dynamics->sites[number].pair;
     const Vec2 tangent = vec2_perp(force->pose.normal);
     Vec2 from_a;
     Vec2 from_b;
-    dynamics_contact_points(&dynamics->places[number], &force->pose, &from_a, &from_b);
+    dynamics_contact_points(&dynamics->sites[number], &force->pose, &from_a, &from_b);
     const Vec2 sliding =
         vec2_sub(dynamics_contact_velocity(&dynamics->tree, state, end + 1, from_b),
                  dynamics_contact_velocity(&dynamics->tree, state, end, from_a));
     const double speed = vec2_dot(tangent, sliding);
-    const double held = law->friction * force->press.normal * tanh(speed / law->friction_speed);
-    force->force = vec2_sub(force->force, vec2_scale(held, tangent));
-    force->press.friction_power = held * speed;
+    const double friction = law->friction * force->press.normal * tanh(speed / law->friction_speed);
+    force->force = vec2_sub(force->force, vec2_scale(friction, tangent));
+    force->press.friction_power = friction * speed;
 }
 
 static TouchPose pose_in_hole(const Contact *contact, const Tree *tree, const TreeState *state,
@@ -59,12 +59,12 @@ static TouchPose pose_in_hole(const Contact *contact, const Tree *tree, const Tr
 
 // A point or disc on body b against a line of body a, or a disc against a disc. The gap has the
 // digits of the way since the base.
-static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlanePlace *place)
+static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlaneSite *site)
 {
-    const int pair = place->pair;
-    const bool is_line = place->touch.shape == TOUCH_LINE;
+    const int pair = site->pair;
+    const bool is_line = site->touch.shape == TOUCH_LINE;
     const Vec2 line = is_line ? tree_normal(tree, state, pair) : (Vec2){0.0, 0.0};
-    TouchPose pose = touch_pose_of(&place->touch, tree_pair_gap(tree, state, pair),
+    TouchPose pose = touch_pose_of(&site->touch, tree_pair_gap(tree, state, pair),
                                    tree_pair_velocity(tree, state, pair), line,
                                    tree_omega(state, tree->end_bodies[2 * pair]));
     pose.gap = tree_distance(tree, state, pair);
@@ -72,57 +72,56 @@ static TouchPose pose_outside(const Tree *tree, const TreeState *state, const Pl
 }
 
 // An end of an angle, or a flank of teeth, which push at right angles to the line of the centres.
-static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const PlanePlace *place)
+static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const PlaneSite *site)
 {
-    const int joint = place->touch.joint;
-    const double sign = place->touch.sign;
-    const Vec2 offset = tree_pair_gap(tree, state, place->pair);
+    const int joint = site->touch.joint;
+    const double sign = site->touch.sign;
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
     TouchPose pose = {
         .offset = offset,
-        .velocity = tree_pair_velocity(tree, state, place->pair),
-        .gap = sign * tree_coordinate(tree, state, joint) - place->end,
+        .velocity = tree_pair_velocity(tree, state, site->pair),
+        .gap = sign * tree_coordinate(tree, state, joint) - site->end,
         .has_normal = true,
         .approach_speed = -sign * tree_coordinate_rate(tree, state, joint),
     };
-    if (place->touch.shape == TOUCH_TEETH) {
+    if (site->touch.shape == TOUCH_TEETH) {
         pose.normal = vec2_scale(sign / sqrt(vec2_dot(offset, offset)), vec2_perp(offset));
     }
     return pose;
 }
 
 static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeState *state,
-                         const PlanePlace *place)
+                         const PlaneSite *site)
 {
-    if (place->touch.shape == TOUCH_HOLE) {
-        return pose_in_hole(contact, tree, state, place->pair);
+    if (site->touch.shape == TOUCH_HOLE) {
+        return pose_in_hole(contact, tree, state, site->pair);
     }
-    return dynamics_contact_is_turn(place) ? pose_of_end(tree, state, place)
-                                           : pose_outside(tree, state, place);
+    return dynamics_contact_is_turn(site) ? pose_of_end(tree, state, site)
+                                          : pose_outside(tree, state, site);
 }
 
 double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
                                const TouchPose *pose)
 {
-    const PlanePlace *place = &dynamics->places[number];
-    if (place->touch.shape == TOUCH_LINE) {
-        return tree_line_second(&dynamics->tree, state, place->pair);
+    const PlaneSite *site = &dynamics->sites[number];
+    if (site->touch.shape == TOUCH_LINE) {
+        return tree_line_second(&dynamics->tree, state, site->pair);
     }
-    if (dynamics_contact_is_turn(place)) {
-        return place->touch.sign *
-               tree_coordinate_second(&dynamics->tree, state, place->touch.joint);
+    if (dynamics_contact_is_turn(site)) {
+        return site->touch.sign * tree_coordinate_second(&dynamics->tree, state, site->touch.joint);
     }
     const double across = vec2_cross(pose->normal, pose->velocity);
     const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
-    return vec2_dot(pose->normal, tree_pair_acceleration(&dynamics->tree, state, place->pair)) +
-           (place->touch.shape == TOUCH_HOLE ? -turning : turning);
+    return vec2_dot(pose->normal, tree_pair_acceleration(&dynamics->tree, state, site->pair)) +
+           (site->touch.shape == TOUCH_HOLE ? -turning : turning);
 }
 
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
                            ContactForce *force)
 {
     const Contact *contact = &dynamics->system.contacts[number];
-    const PlanePlace *place = &dynamics->places[number];
-    force->pose = pose_of(contact, &dynamics->tree, state, place);
+    const PlaneSite *site = &dynamics->sites[number];
+    force->pose = pose_of(contact, &dynamics->tree, state, site);
     force->press = press_find(contact, -force->pose.gap, force->pose.approach_speed);
     force->force = (Vec2){0.0, 0.0};
     force->couple = 0.0;
@@ -130,11 +129,11 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
         return;
     }
     force->force = vec2_scale(force->press.normal, force->pose.normal);
-    if (place->touch.shape == TOUCH_TURN) {
+    if (site->touch.shape == TOUCH_TURN) {
         const Joint *joint = &dynamics->tree.linkage->joints[contact->joint];
-        force->couple = place->touch.sign * coordinate_sense(joint) * force->press.normal;
+        force->couple = site->touch.sign * coordinate_sense(joint) * force->press.normal;
     }
-    if (contact->law.friction > 0.0 && !dynamics_contact_is_turn(place)) {
+    if (contact->law.friction > 0.0 && !dynamics_contact_is_turn(site)) {
         dynamics_add_friction(dynamics, number, state, force);
     }
 }
@@ -142,7 +141,7 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
 // Contact sites: where the bodies of a linkage touch, and how far each may be from touching before
 // it is evaluated again.
 
-// m: a place that is apart is looked at before its bodies have come so much nearer. Of a stop that
+// m: a site that is apart is evaluated before its bodies have come so much nearer. Of a stop that
 // is no play, but how far the body that touches reaches from where it does; of an angle with one
 // stop, rad.
 static double flight_of(const Linkage *linkage, const double *reaches, const Touch *touch)
@@ -174,7 +173,7 @@ static double site_arm(const Linkage *linkage, const double *reaches, const Touc
     return touch->shape == TOUCH_TURN ? arm : 1.0;
 }
 
-// By how many places the one at the other end of a limited coordinate comes later.
+// By how many sites the one at the other end of a limited coordinate comes later.
 static int find_partner(const Scenario *scenario, const Touch *touches, size_t count, size_t number)
 {
     if (scenario->linkage.joints[touches[number].joint].limits.kind == LIMIT_NONE) {
@@ -185,12 +184,12 @@ static int find_partner(const Scenario *scenario, const Touch *touches, size_t c
     return is_low ? 1 : is_high ? -1 : 0;
 }
 
-static PlanePlace site_of(const Dynamics *dynamics, const Touch *touch, size_t of_joint)
+static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of_joint)
 {
     const Joint *joint = &dynamics->tree.linkage->joints[touch->joint];
-    Touch places[TOUCH_CORNERS];
-    const bool has_own = tree_own_pairs(joint, touch->joint, places) > 0;
-    return (PlanePlace){
+    Touch sites[TOUCH_CORNERS];
+    const bool has_own = tree_own_pairs(joint, touch->joint, sites) > 0;
+    return (PlaneSite){
         .touch = *touch,
         .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,
         .acts_beside = touch->shape == TOUCH_LINE || touch->shape == TOUCH_TEETH ||
@@ -199,16 +198,16 @@ static PlanePlace site_of(const Dynamics *dynamics, const Touch *touch, size_t o
     };
 }
 
-// Fills in the contacts and their places, for which there is room. Fails with ERR_CASE where a law
+// Fills in the contacts and their sites, for which there is room. Fails with ERR_CASE where a law
 // does not fit a joint.
-static bool dynamics_places_list(const Scenario *scenario, Dynamics *dynamics, Err *err)
+static bool dynamics_list_sites(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
     System *system = &dynamics->system;
     Touch *touches;
     if (!touch_list(scenario, &touches, &system->contact_count, err)) {
         return false;
     }
-    size_t of_joint = 0; // the number of the place among those of its joint
+    size_t of_joint = 0; // the number of the site among those of its joint
     for (size_t i = 0; i < system->contact_count; i++) {
         const Touch *touch = &touches[i];
         of_joint = i > 0 && touches[i - 1].joint == touch->joint ? of_joint + 1 : 0;
@@ -220,7 +219,7 @@ static bool dynamics_places_list(const Scenario *scenario, Dynamics *dynamics, E
             .arm = site_arm(&scenario->linkage, dynamics->reach, touch),
             .flight = flight_of(&scenario->linkage, dynamics->reach, touch),
         };
-        dynamics->places[i] = site_of(dynamics, touch, of_joint);
+        dynamics->sites[i] = site_of(dynamics, touch, of_joint);
     }
     free(touches);
     return true;
@@ -279,16 +278,16 @@ static void find_held(const Tree *tree, const TreeNode *node, const Loads *loads
 {
     const Body *body = &tree->linkage->bodies[node->body];
     const Motion *motion = &state->tree.motions[node->body];
-    const Vec2 held =
+    const Vec2 reaction =
         vec2_sub(vec2_scale(body->mass, motion->acceleration), loads->pushes[node->body].force);
     const double sign = node->own_end % 2 == 1 ? 1.0 : -1.0;
-    state->reactions[node->joint] = sign > 0.0 ? held : vec2_scale(-1.0, held);
+    state->reactions[node->joint] = sign > 0.0 ? reaction : vec2_scale(-1.0, reaction);
     state->couples[node->joint] = 0.0;
     if (node->is_sliding) {
         const Vec2 arm =
             vec2_add(state->tree.arms[node->own_end], beside(tree, &state->tree, node->own_end));
         const double moment = body->inertia * motion->alpha - loads->pushes[node->body].moment;
-        state->couples[node->joint] = sign * (moment - vec2_cross(arm, held));
+        state->couples[node->joint] = sign * (moment - vec2_cross(arm, reaction));
     }
 }
 
@@ -360,7 +359,7 @@ static void dynamics_lay(Dynamics *dynamics, size_t contact_most, Layout *layout
     DynamicsRoom *room = &dynamics->room;
     system->coordinates = layout_take(layout, n, sizeof *system->coordinates);
     system->contacts = layout_take(layout, contact_most, sizeof *system->contacts);
-    dynamics->places = layout_take(layout, contact_most, sizeof *dynamics->places);
+    dynamics->sites = layout_take(layout, contact_most, sizeof *dynamics->sites);
     dynamics->reach = layout_take(layout, bodies, sizeof *dynamics->reach);
     dynamics->weights = layout_take(layout, bodies, sizeof *dynamics->weights);
     room->loads.pushes = layout_take(layout, bodies, sizeof *room->loads.pushes);
@@ -417,7 +416,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     }
     dynamics_list_coordinates(dynamics);
     dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;
-    if (!dynamics_places_list(scenario, dynamics, err)) {
+    if (!dynamics_list_sites(scenario, dynamics, err)) {
         dynamics_finish(dynamics);
         return false;
     }
@@ -479,7 +478,7 @@ LoopsRoom dynamics_loops(const Dynamics *dynamics)
 static void load_contact(const Dynamics *dynamics, size_t number, const TreeState *state,
                          const ContactForce *force, Loads *loads)
 {
-    const int end = 2 * dynamics->places[number].pair;
+    const int end = 2 * dynamics->sites[number].pair;
     Vec2 from_a;
     Vec2 from_b;
     if (force->couple != 0.0) {
@@ -488,7 +487,7 @@ static void load_contact(const Dynamics *dynamics, size_t number, const TreeStat
         dynamics_load_couple(tree, state, tree->end_bodies[end], -force->couple, loads);
         return;
     }
-    dynamics_contact_points(&dynamics->places[number], &force->pose, &from_a, &from_b);
+    dynamics_contact_points(&dynamics->sites[number], &force->pose, &from_a, &from_b);
     dynamics_load_end(&dynamics->tree, state, end + 1, from_b, force->force, loads);
     dynamics_load_end(&dynamics->tree, state, end, from_a, vec2_scale(-1.0, force->force), loads);
 }
@@ -630,10 +629,10 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     const Tree *tree = &dynamics->tree;
     TreeState *state = &dynamics->room.state->tree;
     const double *u = y + tree->coordinate_count;
-    if (dynamics->places[contact].touch.shape == TOUCH_TEETH) {
+    if (dynamics->sites[contact].touch.shape == TOUCH_TEETH) {
         tree_evaluate(tree, since_s, y, u, state); // their carrier counts, too
     } else {
-        tree_evaluate_pair(tree, dynamics->places[contact].pair, since_s, y, u, state);
+        tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
     }
     ContactForce force;
     dynamics_contact_find(dynamics, contact, state, &force);
@@ -643,10 +642,10 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
 size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates)
 {
     const Dynamics *dynamics = (const Dynamics *)system;
-    const PlanePlace *place = &dynamics->places[contact];
-    return place->touch.shape == TOUCH_TEETH
+    const PlaneSite *site = &dynamics->sites[contact];
+    return site->touch.shape == TOUCH_TEETH
                ? 0
-               : tree_pair_coordinates(&dynamics->tree, place->pair, coordinates);
+               : tree_pair_coordinates(&dynamics->tree, site->pair, coordinates);
 }
 
 // The rates of any mechanism; apart from the shorter way, so that this sets up nothing for it.

@@ -11,13 +11,13 @@
 // The equations of motion of a linkage with play in the plane, and everything at one instant.
 
 // Where a contact's bodies touch.
-typedef struct PlanePlace {
+typedef struct PlaneSite {
     Touch touch;
     int pair;         // of the tree: the ends that its distance is measured between
     bool acts_beside; // whether the force's line may pass beside these ends: on a line, between
                       // teeth, and with friction
-    double end; // rad or m, of a turn or teeth: gap = sign of the place (tree_coordinate) - end
-} PlanePlace;
+    double end; // rad or m, of a turn or teeth: gap = sign of the site (tree_coordinate) - end
+} PlaneSite;
 
 // A contact's quantities at one instant.
 typedef struct ContactForce {
@@ -71,7 +71,7 @@ typedef struct Dynamics {
     Articulated *articulated; // owned
     Hinged *hinged;           // owned; NULL where it has no such rates
     void *memory;             // owned; where all arrays are
-    PlanePlace *places;       // by contact
+    PlaneSite *sites;         // by contact
     double *reach;            // m, of each body's points
     double *weights;          // N, of each body
     bool has_forces;          // whether springs, dampers or a torque act
@@ -89,19 +89,19 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
 
 // The points of body a and of body b at which the force acts, seen from the ends of the contact's
 // pair; of two circles without friction the ends themselves.
-static inline void dynamics_contact_points(const PlanePlace *place, const TouchPose *pose,
+static inline void dynamics_contact_points(const PlaneSite *site, const TouchPose *pose,
                                            Vec2 *from_a, Vec2 *from_b)
 {
     *from_a = *from_b = (Vec2){0.0, 0.0};
-    if (place->acts_beside) {
-        touch_points(&place->touch, pose, from_a, from_b);
+    if (site->acts_beside) {
+        touch_points(&site->touch, pose, from_a, from_b);
     }
 }
 
 // Whether a contact's gap is that of an angle or of teeth.
-static inline bool dynamics_contact_is_turn(const PlanePlace *place)
+static inline bool dynamics_contact_is_turn(const PlaneSite *site)
 {
-    return place->touch.shape == TOUCH_TURN || place->touch.shape == TOUCH_TEETH;
+    return site->touch.shape == TOUCH_TURN || site->touch.shape == TOUCH_TEETH;
 }
 
 // The second rate of a contact's gap, m/s^2, after tree_accelerate.
@@ -199,7 +199,7 @@ void dynamics_slopes(double since_s, const double *y, double *by_position, doubl
 
 // Prepares the rates of these equations, which must outlive it; hinged_destroy frees it, and
 // accepts NULL. Returns NULL where they are of another kind: with loops, slides, springs, dampers
-// or torques, friction, or places that are no pins in holes.
+// or torques, friction, or sites that are no pins in holes.
 Hinged *hinged_create(const Dynamics *dynamics);
 void hinged_destroy(Hinged *hinged);
 
@@ -213,4 +213,4 @@ bool hinged_evaluate(const Hinged *hinged, double since_s, const double *y, Dyna
                      double *rates);
 
 // Shows the bodies' positions and velocities; their accelerations stay as they are.
-void hinged_place(const Hinged *hinged, double since_s, const double *y, Motion *motions);
+void hinged_motions(const Hinged *hinged, double since_s, const double *y, Motion *motions);

@@ -78,41 +78,42 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
                                      size_t number)
 {
     const Contact *contact = &dynamics->system.contacts[number];
-    const PlanePlace *place = &dynamics->places[number];
+    const PlaneSite *site = &dynamics->sites[number];
     const Coupling *coupling = dynamics->system.coupling;
     SlopesPressing pressing = {
-        .touch = &place->touch,
+        .touch = &site->touch,
         .law = &contact->law,
         .bend = INFINITY,
         .centre = dynamics->room.row,
         .arms = dynamics->room.arms,
-        .pair = place->pair,
+        .pair = site->pair,
         .parts = &coupling->joints[contact->joint],
     };
     for (size_t i = 0; i < pressing.parts->count; i++) {
         const size_t part = pressing.parts->parts[i];
-        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
-            pressing.centre[coupling->members[k]] = (Vec2){0.0, 0.0};
-            pressing.arms[coupling->members[k]] = 0.0;
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            pressing.centre[coupling->coordinates[k]] = (Vec2){0.0, 0.0};
+            pressing.arms[coupling->coordinates[k]] = 0.0;
         }
     }
     dynamics_contact_find(dynamics, number, state, &pressing.force);
     const TouchPose *pose = &pressing.force.pose;
     pressing.velocity = pose->velocity;
-    if (place->touch.shape == TOUCH_LINE) {
+    if (site->touch.shape == TOUCH_LINE) {
         // against the point of body a under the circle's centre
-        const double omega = tree_omega(state, dynamics->tree.end_bodies[2 * place->pair]);
+        const double omega = tree_omega(state, dynamics->tree.end_bodies[2 * site->pair]);
         pressing.velocity = vec2_sub(pose->velocity, vec2_scale(omega, vec2_perp(pose->offset)));
     } else {
         const double distance = vec2_length(pose->offset);
-        pressing.bend = place->touch.shape == TOUCH_DISC ? distance : -distance;
+        pressing.bend = site->touch.shape == TOUCH_DISC ? distance : -distance;
     }
     pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
                          force_law_tangent(&contact->law, fabs(pose->gap));
     pressing.damping = press_damping(contact, &pressing.force.press);
-    loops_pair_row(&dynamics->tree, state, place->pair, pressing.centre);
+    loops_pair_row(&dynamics->tree, state, site->pair, pressing.centre);
     if (contact->law.friction > 0.0) {
-        find_friction(dynamics, state, place->pair, &pressing);
+        find_friction(dynamics, state, site->pair, &pressing);
     }
     return pressing;
 }
@@ -128,19 +129,19 @@ static SlopesChange slopes_change_force(const SlopesPressing *pressing, Vec2 mov
     const double deeper = -vec2_dot(normal, moved);
     const double closing = -vec2_dot(normal, faster) - turned * vec2_dot(tangent, velocity);
     const double pressed = pressing->stiffness * deeper + pressing->damping * closing;
-    double held = 0.0;
+    double resisted = 0.0; // N, the friction itself
     double friction = 0.0;
     if (pressing->law->friction > 0.0) {
         const double grip = pressing->grip;
         const double slid =
             vec2_dot(tangent, faster) - turned * vec2_dot(normal, velocity) - rolled;
         const double gripped = (1.0 - grip * grip) * slid / pressing->law->friction_speed;
-        held = pressing->law->friction * pressing->force.press.normal * grip;
+        resisted = pressing->law->friction * pressing->force.press.normal * grip;
         friction =
             pressing->law->friction * (pressed * grip + pressing->force.press.normal * gripped);
     }
     // n turns towards t, and t away from n
-    const double across = pressed + held * turned;
+    const double across = pressed + resisted * turned;
     const double along = pressing->force.press.normal * turned - friction;
     return (SlopesChange){vec2_add(vec2_scale(across, normal), vec2_scale(along, tangent)),
                           friction};
@@ -153,10 +154,11 @@ static void slopes_add_column(const Coupling *coupling, const CouplingJoint *par
 {
     for (size_t k = 0; k < parts->count; k++) {
         const size_t part = parts->parts[k];
-        const size_t place = coupling_place(coupling, part, column);
-        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
-            const size_t i = coupling->members[m];
-            values[coupling->first_value[i] + place] += pushed[0][i] * change.force.x +
+        const size_t index = coupling_column_index(coupling, part, column);
+        for (size_t m = coupling->first_coordinate[part]; m < coupling->first_coordinate[part + 1];
+             m++) {
+            const size_t i = coupling->coordinates[m];
+            values[coupling->first_value[i] + index] += pushed[0][i] * change.force.x +
                                                         pushed[1][i] * change.force.y +
                                                         pushed[2][i] * change.friction;
         }
@@ -235,8 +237,9 @@ static void slopes_add_slopes(const Dynamics *dynamics, const SlopesPressing *pr
     const Coupling *coupling = dynamics->system.coupling;
     for (size_t i = 0; i < pressing->parts->count; i++) {
         const size_t part = pressing->parts->parts[i];
-        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
-            slopes_add_columns(dynamics, pressing, coupling->members[k], by_position, by_rate);
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            slopes_add_columns(dynamics, pressing, coupling->coordinates[k], by_position, by_rate);
         }
     }
 }
@@ -255,12 +258,13 @@ static void slopes_add_turn_column(const Dynamics *dynamics, const CouplingJoint
     const Coupling *coupling = dynamics->system.coupling;
     for (size_t k = 0; k < parts->count; k++) {
         const size_t part = parts->parts[k];
-        const size_t place = coupling_place(coupling, part, of->column);
-        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
-            const size_t i = coupling->members[m];
+        const size_t index = coupling_column_index(coupling, part, of->column);
+        for (size_t m = coupling->first_coordinate[part]; m < coupling->first_coordinate[part + 1];
+             m++) {
+            const size_t i = coupling->coordinates[m];
             const double share = of->share * dynamics->room.pushed[0][i];
-            by_position[coupling->first_value[i] + place] -= share * of->stiffness;
-            by_rate[coupling->first_value[i] + place] -= share * of->damping;
+            by_position[coupling->first_value[i] + index] -= share * of->stiffness;
+            by_rate[coupling->first_value[i] + index] -= share * of->damping;
         }
     }
 }
@@ -315,7 +319,7 @@ void dynamics_slopes(double since_s, const double *y, double *by_position, doubl
         if (dynamics->system.contacts[i].mode != CONTACT_PRESSING) {
             continue;
         }
-        if (dynamics_contact_is_turn(&dynamics->places[i])) {
+        if (dynamics_contact_is_turn(&dynamics->sites[i])) {
             slopes_add_turn_slopes(dynamics, state, i, by_position, by_rate);
         } else {
             const SlopesPressing pressing = slopes_resolve(dynamics, state, i);

@@ -294,11 +294,11 @@ static bool hinged_bodies_solve(HingedBody *bodies, size_t count, double *rates)
 // As reference/plane/hinged.c finds its rates, with what rates do not need: angles and positions,
 // pins that are apart, and the forces of all hinges.
 
-static inline void hold(const HingedBody *body, const HingedBody *driven, HingedLoad *load,
-                        Vec2 held)
+static inline void add_hinge_reaction(const HingedBody *body, const HingedBody *driven,
+                                      HingedLoad *load, Vec2 reaction)
 {
     HingedBody *parent = body->parent;
-    const Vec2 force = vec2_scale(-1.0, held);
+    const Vec2 force = vec2_scale(-1.0, reaction);
     if (parent == NULL) {
         return;
     }
@@ -313,8 +313,8 @@ static inline void hold(const HingedBody *body, const HingedBody *driven, Hinged
 // From second rates: accelerations, the forces of the hinges on the bodies that they hang on, added
 // to these, and on the driven one. Writes the force of each hinge on its body b, N, by joint; NULL:
 // nowhere.
-static void hinged_hold(const Hinged *hinged, const double *rates, HingedLoad *load,
-                        Vec2 *reactions)
+static void hinged_add_reactions(const Hinged *hinged, const double *rates, HingedLoad *load,
+                                 Vec2 *reactions)
 {
     HingedBody *driven = hinged->driven;
     const TreeNode *nodes = hinged->dynamics->tree.nodes;
@@ -329,17 +329,18 @@ static void hinged_hold(const Hinged *hinged, const double *rates, HingedLoad *l
         if (body->is_floating) {
             continue;
         }
-        const Vec2 held = vec2_sub(vec2_scale(body->mass, body->acceleration), body->force);
+        const Vec2 reaction = vec2_sub(vec2_scale(body->mass, body->acceleration), body->force);
         if (reactions != NULL) {
-            reactions[nodes[i].joint] = nodes[i].own_end % 2 == 1 ? held : vec2_scale(-1.0, held);
+            reactions[nodes[i].joint] =
+                nodes[i].own_end % 2 == 1 ? reaction : vec2_scale(-1.0, reaction);
         }
-        hold(body, driven, load, held);
+        add_hinge_reaction(body, driven, load, reaction);
     }
 }
 
 // Shows where a body has moved, and how fast it does.
-static inline void place(const Tree *tree, int number, const HingedBody *body, double turned,
-                         Motion *motions)
+static inline void write_motion(const Tree *tree, int number, const HingedBody *body, double turned,
+                                Motion *motions)
 {
     const Motion *base = &tree->base_motions[number];
     Motion *motion = &motions[number];
@@ -349,22 +350,23 @@ static inline void place(const Tree *tree, int number, const HingedBody *body, d
     motion->omega = body->omega;
 }
 
-static inline void place_all(const Hinged *hinged, double since_s, const double *q, Motion *motions)
+static inline void write_motions(const Hinged *hinged, double since_s, const double *q,
+                                 Motion *motions)
 {
     const Tree *tree = &hinged->dynamics->tree;
     if (hinged->driven != NULL) {
-        place(tree, tree->driven, hinged->driven, hinged->driven->omega * since_s, motions);
+        write_motion(tree, tree->driven, hinged->driven, hinged->driven->omega * since_s, motions);
     }
     for (size_t i = 0; i < hinged->count; i++) {
         const TreeNode *node = &tree->nodes[i];
-        place(tree, node->body, &hinged->bodies[i], q[node->column], motions);
+        write_motion(tree, node->body, &hinged->bodies[i], q[node->column], motions);
     }
 }
 
-void hinged_place(const Hinged *hinged, double since_s, const double *y, Motion *motions)
+void hinged_motions(const Hinged *hinged, double since_s, const double *y, Motion *motions)
 {
     hinged_move(hinged, since_s, y, y + hinged->dynamics->tree.coordinate_count);
-    place_all(hinged, since_s, y, motions);
+    write_motions(hinged, since_s, y, motions);
 }
 
 static inline void show_acceleration(const HingedBody *body, Motion *motion)
@@ -449,15 +451,15 @@ static bool hinged_find_state(const Hinged *hinged, double since_s, const double
     HingedLoad load = {.power = 0.0};
     hinged_move(hinged, since_s, y, y + tree->coordinate_count);
     for (size_t i = 0; i < hinged->pin_count; i++) {
-        hinged_read_pin(&hinged->pins[i], dynamics->places[i].pair, state, &state->contacts[i],
+        hinged_read_pin(&hinged->pins[i], dynamics->sites[i].pair, state, &state->contacts[i],
                         &load);
         state->shared.contacts[i] = state->contacts[i].press;
     }
     if (!hinged_bodies_solve(hinged->bodies, hinged->count, solved)) {
         return false;
     }
-    hinged_hold(hinged, solved, &load, state->reactions);
-    place_all(hinged, since_s, y, state->tree.motions);
+    hinged_add_reactions(hinged, solved, &load, state->reactions);
+    write_motions(hinged, since_s, y, state->tree.motions);
     show_all(hinged, &state->tree);
     state->drive_power = 0.0;
     state->damping_power = 0.0;
@@ -481,8 +483,8 @@ static bool is_hinged(const Dynamics *dynamics)
         is_plain = is_plain && (kind == JOINT_REVOLUTE || kind == JOINT_CLEARANCE);
     }
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        const PlanePlace *place = &dynamics->places[i];
-        is_plain = is_plain && place->touch.shape == TOUCH_HOLE && !place->acts_beside;
+        const PlaneSite *site = &dynamics->sites[i];
+        is_plain = is_plain && site->touch.shape == TOUCH_HOLE && !site->acts_beside;
     }
     return is_plain;
 }
@@ -536,7 +538,7 @@ static void hinged_set_pins(Hinged *hinged)
     const Dynamics *dynamics = hinged->dynamics;
     const Tree *tree = &dynamics->tree;
     for (size_t i = 0; i < hinged->pin_count; i++) {
-        const int pair = dynamics->places[i].pair;
+        const int pair = dynamics->sites[i].pair;
         HingedPin *pin = &hinged->pins[i];
         *pin = (HingedPin){.contact = &dynamics->system.contacts[i], .gap = &tree->base_gaps[pair]};
         for (int side = 0; side < 2; side++) {
@@ -597,7 +599,7 @@ static bool hinged_find_rates(const Hinged *hinged, double since_s, const double
     sums[SYSTEM_DRIVE_WORK] = 0.0;
     if (hinged->driven != NULL) {
         if (tree->is_driven_hung_on) {
-            hinged_hold(hinged, rates + n, &load, NULL);
+            hinged_add_reactions(hinged, rates + n, &load, NULL);
         }
         sums[SYSTEM_DRIVE_WORK] =
             vec2_dot(hinged_needed(hinged), hinged->driven->velocity) - load.power;
@@ -633,9 +635,9 @@ Hinged *hinged_create(const Dynamics *dynamics)
     set_bodies(hinged);
     hinged_set_pins(hinged);
     const bool is_pair = hinged_pair_is(hinged);
-    hinged->rates = is_pair                  ? hinged_pair_rates
-                    : hinged_lone_is(hinged) ? hinged_lone_rates
-                                             : hinged_find_rates;
+    hinged->rates = is_pair                    ? hinged_pair_rates
+                    : hinged_single_is(hinged) ? hinged_single_rates
+                                               : hinged_find_rates;
     hinged->evaluate = is_pair ? hinged_pair_evaluate : hinged_find_state;
     return hinged;
 }

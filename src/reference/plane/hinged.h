@@ -62,7 +62,7 @@ struct Hinged {
     size_t pin_count;
     HingedPin *pins;
     // of a steady drive: of any such mechanism, of a pair (reference/plane/hinged_pair.c) or of a
-    // lone body (reference/plane/hinged_pair.c)
+    // single body (reference/plane/hinged_pair.c)
     bool (*rates)(const Hinged *hinged, double since_s, const double *y, double *rates);
     bool (*evaluate)(const Hinged *hinged, double since_s, const double *y, DynamicsState *state,
                      double *rates);
@@ -82,7 +82,7 @@ bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
 // drops, bounces and rolls.
 
 // Whether a mechanism is such a body.
-bool hinged_lone_is(const Hinged *hinged);
+bool hinged_single_is(const Hinged *hinged);
 
 // As hinged_rates, to the last bit.
-bool hinged_lone_rates(const Hinged *hinged, double since_s, const double *y, double *rates);
+bool hinged_single_rates(const Hinged *hinged, double since_s, const double *y, double *rates);

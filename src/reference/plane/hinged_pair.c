@@ -236,9 +236,9 @@ static inline Vec2 accelerate(const Moving *body, double spin, Vec2 carried)
 }
 
 // The force of a hinge on its body b, from what its outer body needs of it.
-static inline void show_reaction(const TreeNode *node, Vec2 held, Vec2 *reactions)
+static inline void show_reaction(const TreeNode *node, Vec2 reaction, Vec2 *reactions)
 {
-    reactions[node->joint] = node->own_end % 2 == 1 ? held : vec2_scale(-1.0, held);
+    reactions[node->joint] = node->own_end % 2 == 1 ? reaction : vec2_scale(-1.0, reaction);
 }
 
 // Accelerations of both bodies and the forces of their hinges.
@@ -297,7 +297,7 @@ bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
     const Moving outer = move_on(&inner, *bodies[1].outer_base, *bodies[1].own_base, y[columns[1]],
                                  y[2 + columns[1]], &lever_arm);
     ContactForce *at = &state->contacts[0];
-    const size_t pair = 2 * (size_t)hinged->dynamics->places[0].pair;
+    const size_t pair = 2 * (size_t)hinged->dynamics->sites[0].pair;
     const PairPress pressed =
         hinged_pair_read_pin(hinged, &driven, &outer, &state->tree.arms[pair], at);
     state->shared.contacts[0] = at->press;
@@ -318,7 +318,7 @@ bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
 // As reference/plane/hinged.c says it of any such tree, in the same order of operations, with
 // nothing kept in memory between them, as in reference/plane/hinged_pair.c.
 
-bool hinged_lone_is(const Hinged *hinged)
+bool hinged_single_is(const Hinged *hinged)
 {
     if (hinged->driven != NULL || hinged->count != 1 || hinged->pin_count != 1 ||
         !hinged->bodies[0].is_floating) {
@@ -329,18 +329,18 @@ bool hinged_lone_is(const Hinged *hinged)
 }
 
 // What the wall does to the body.
-typedef struct LonePress {
+typedef struct SinglePress {
     Vec2 force;  // N
     double size; // N
     double moment;
     double dissipated;
-} LonePress;
+} SinglePress;
 
-static inline LonePress hinged_single_press(const HingedPin *pin, size_t column, const double *q,
-                                            const double *u)
+static inline SinglePress hinged_single_press(const HingedPin *pin, size_t column, const double *q,
+                                              const double *u)
 {
     const Contact *contact = pin->contact;
-    LonePress press = {.size = 0.0};
+    SinglePress press = {.size = 0.0};
     if (contact->mode == CONTACT_APART) {
         return press;
     }
@@ -368,13 +368,13 @@ static inline LonePress hinged_single_press(const HingedPin *pin, size_t column,
     return press;
 }
 
-bool hinged_lone_rates(const Hinged *hinged, double since_s, const double *y, double *rates)
+bool hinged_single_rates(const Hinged *hinged, double since_s, const double *y, double *rates)
 {
     enum { COORDINATES = 3 };
     (void)since_s; // nothing is driven
     const HingedBody *body = &hinged->bodies[0];
     const double *u = y + COORDINATES;
-    const LonePress pressed = hinged_single_press(&hinged->pins[0], body->column, y, u);
+    const SinglePress pressed = hinged_single_press(&hinged->pins[0], body->column, y, u);
     const Vec2 force = vec2_add((Vec2){0.0, -body->weight}, pressed.force);
     for (size_t i = 0; i < COORDINATES; i++) {
         rates[i] = u[i];

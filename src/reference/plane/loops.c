@@ -15,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PASSES = 2 };
+enum { LOOPS_PASSES = 2 };
 
 // 1, of the arms that a gap is between
-static const double ROUNDINGS = 2.0 * DBL_EPSILON;
+static const double LOOPS_ROUNDING = 2.0 * DBL_EPSILON;
 
 // m, or rad: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
-static const double ROUNDED = 1e-10;
+static const double LOOPS_CLOSED_SHARE = 1e-10;
 
 void loops_pair_row(const Tree *tree, const TreeState *state, int pair, Vec2 *row)
 {
@@ -92,7 +92,7 @@ static bool are_closed(const LoopsRoom *room)
         const int joint = room->loops[loop];
         const double reach = vec2_length(arms[2 * joint]) + vec2_length(arms[2 * joint + 1]);
         const Vec2 gap = loop_gap(tree, room->state, joint, false);
-        if (!(vec2_length(gap) <= ROUNDINGS * reach)) {
+        if (!(vec2_length(gap) <= LOOPS_ROUNDING * reach)) {
             return false;
         }
     }
@@ -107,7 +107,7 @@ double loops_project(const LoopsRoom *room, double since_s, double *q, double *u
     const Tree *tree = room->tree;
     // near a change point the rows turn much in little: each move asks for them anew
     tree_evaluate(tree, since_s, q, u, room->state);
-    for (int pass = 0; pass < PASSES && (pass == 0 || !are_closed(room)); pass++) {
+    for (int pass = 0; pass < LOOPS_PASSES && (pass == 0 || !are_closed(room)); pass++) {
         loops_move_least(room, false, q);
         tree_evaluate(tree, since_s, q, u, room->state);
     }
@@ -126,10 +126,10 @@ static bool starts_rounded(Tree *tree, int joint)
     if (of->kind == JOINT_GUIDE) {
         tree->base_distances[joint] -= of->guide.start.x;
         tree->base_tilts[joint] -= of->guide.start.y;
-        return hypot(tree->base_distances[joint], tree->base_tilts[joint]) <= ROUNDED;
+        return hypot(tree->base_distances[joint], tree->base_tilts[joint]) <= LOOPS_CLOSED_SHARE;
     }
     tree->base_gaps[joint] = vec2_sub(tree->base_gaps[joint], of->clearance.start);
-    return vec2_length(tree->base_gaps[joint]) <= ROUNDED;
+    return vec2_length(tree->base_gaps[joint]) <= LOOPS_CLOSED_SHARE;
 }
 
 // Brings the pins and blocks of a start to their own as loops are closed, with speeds that are not
@@ -156,7 +156,7 @@ static bool loops_bring(Tree *tree, const LoopsRoom *of, double *q)
         pinned.articulated = articulated_create(tree, pinned.loop_count, loops);
         pinned.sides = room;
         pinned.solved = room + 2 * most;
-        are_near = loops_project(&pinned, 0.0, q, room + n + 4 * most) <= ROUNDED;
+        are_near = loops_project(&pinned, 0.0, q, room + n + 4 * most) <= LOOPS_CLOSED_SHARE;
         articulated_destroy(pinned.articulated);
     }
     free(room);

@@ -107,12 +107,11 @@ static void plane_sizes(const System *system, const SystemState *state, size_t c
                         double *length, double *speed)
 {
     const Tree *tree = &plane_dynamics_of(system)->tree;
-    const PlanePlace *place = &plane_dynamics_of(system)->places[contact];
-    const int end = 2 * place->pair;
-    if (dynamics_contact_is_turn(place)) {
-        tree_coordinate_sizes(tree, &plane_state_of(state)->tree, place->touch.joint, length,
-                              speed);
-        *length += fabs(place->end);
+    const PlaneSite *site = &plane_dynamics_of(system)->sites[contact];
+    const int end = 2 * site->pair;
+    if (dynamics_contact_is_turn(site)) {
+        tree_coordinate_sizes(tree, &plane_state_of(state)->tree, site->touch.joint, length, speed);
+        *length += fabs(site->end);
         return;
     }
     add_end_size(tree, &plane_state_of(state)->tree, end, length, speed);
@@ -125,19 +124,19 @@ static double plane_crossing(const System *system, const SystemState *state, siz
     const Tree *tree = &dynamics->tree;
     const TreeState *at = &plane_state_of(state)->tree;
     const Contact *of = &system->contacts[contact];
-    const PlanePlace *place = &dynamics->places[contact];
-    if (dynamics_contact_is_turn(place)) {
-        const int joint = place->touch.joint;
+    const PlaneSite *site = &dynamics->sites[contact];
+    if (dynamics_contact_is_turn(site)) {
+        const int joint = site->touch.joint;
         return fabs(tree_coordinate_rate(tree, at, joint)) +
                sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));
     }
-    if (place->touch.shape == TOUCH_LINE) {
+    if (site->touch.shape == TOUCH_LINE) {
         // along the line it may go as fast as it likes
-        return fabs(tree_line_rate(tree, at, place->pair)) +
-               sqrt(of->flight * fabs(tree_line_second(tree, at, place->pair)));
+        return fabs(tree_line_rate(tree, at, site->pair)) +
+               sqrt(of->flight * fabs(tree_line_second(tree, at, site->pair)));
     }
-    const Vec2 v = tree_pair_velocity(tree, at, place->pair);
-    const Vec2 a = tree_pair_acceleration(tree, at, place->pair);
+    const Vec2 v = tree_pair_velocity(tree, at, site->pair);
+    const Vec2 a = tree_pair_acceleration(tree, at, site->pair);
     return vec2_length(v) + sqrt(of->flight * vec2_length(a));
 }
 
@@ -265,11 +264,11 @@ static void add_corner(const Dynamics *dynamics, const DynamicsState *at, size_t
 {
     const Tree *tree = &dynamics->tree;
     const ContactForce *corner = &at->contacts[number];
-    const int joint = dynamics->places[number].touch.joint;
-    const int pair = dynamics->places[number].pair;
+    const int joint = dynamics->sites[number].touch.joint;
+    const int pair = dynamics->sites[number].pair;
     Vec2 from_a;
     Vec2 from_b;
-    dynamics_contact_points(&dynamics->places[number], &corner->pose, &from_a, &from_b);
+    dynamics_contact_points(&dynamics->sites[number], &corner->pose, &from_a, &from_b);
     // from the anchor of body b to the corner
     const Vec2 arm = vec2_sub(vec2_add(tree_end_point(tree, &at->tree, 2 * pair + 1), from_b),
                               tree_end_point(tree, &at->tree, 2 * joint + 1));
@@ -325,14 +324,14 @@ static void plane_bodies(const System *system, const SystemState *state, Sample 
     memcpy(sample->bodies, plane_state_of(state)->tree.motions, count * sizeof *sample->bodies);
 }
 
-static bool plane_place(const System *system, double since_s, const double *y, Sample *sample)
+static bool plane_motions(const System *system, double since_s, const double *y, Sample *sample)
 {
     const Dynamics *dynamics = plane_dynamics_of(system);
     if (dynamics->tree.loop_count > 0) {
         return false;
     }
     if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
-        hinged_place(dynamics->hinged, since_s, y, sample->bodies);
+        hinged_motions(dynamics->hinged, since_s, y, sample->bodies);
         return true;
     }
     DynamicsState *at = dynamics->room.state;
@@ -376,7 +375,7 @@ static const SystemKind PLANE = {
     .turning = plane_turning,
     .joints = plane_joints,
     .bodies = plane_bodies,
-    .place = plane_place,
+    .motions = plane_motions,
     .rows = plane_rows,
     .destroy = plane_destroy,
 };

@@ -516,9 +516,9 @@ static void settle_sliding(Tree *tree, const TreeNode *node)
 {
     const Joint *joint = &tree->linkage->joints[node->joint];
     const bool is_b = node->own_end % 2 == 1;
-    const long double held = is_b ? joint->held_angle : -(long double)joint->held_angle;
+    const long double slide_angle = is_b ? joint->held_angle : -(long double)joint->held_angle;
     tree->base_angle[node->body] =
-        held + (node->parent == LINKAGE_GROUND ? 0.0L : tree->base_angle[node->parent]);
+        slide_angle + (node->parent == LINKAGE_GROUND ? 0.0L : tree->base_angle[node->parent]);
     tree_base_set_arms(tree, node->body);
     const TreePoint normal = normal_of(tree, node->joint);
     const long double slide = is_b ? tree->base_slide[node->body] : -tree->base_slide[node->body];
@@ -756,39 +756,39 @@ static void tree_list_ends(Tree *tree)
     tree->end_firsts[0] = 0;
 }
 
-size_t tree_own_pairs(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
+size_t tree_own_pairs(const Joint *joint, int number, Touch sites[TOUCH_CORNERS])
 {
     const bool has_own = joint->kind == JOINT_GUIDE || joint->kind == JOINT_PRISMATIC;
-    return has_own ? touch_places(joint, number, places) : 0;
+    return has_own ? touch_places(joint, number, sites) : 0;
 }
 
 static void set_pairs(Tree *tree)
 {
     const Linkage *linkage = tree->linkage;
-    Touch places[TOUCH_CORNERS];
+    Touch sites[TOUCH_CORNERS];
     int corner = (int)linkage->joint_count;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        places[0] = (Touch){
+        sites[0] = (Touch){
             .anchor_a = joint->anchor_a,
             .anchor_b = joint->anchor_b,
             .direction = joint->direction + 0.5 * M_PI,
         };
         TreeMeasure measure = TREE_POINTS;
         if (joint->kind == JOINT_STOP) {
-            touch_places(joint, i, places);
-            measure = places[0].shape == TOUCH_LINE ? TREE_LINE : TREE_DISC;
+            touch_places(joint, i, sites);
+            measure = sites[0].shape == TOUCH_LINE ? TREE_LINE : TREE_DISC;
         } else if (joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE) {
             measure = TREE_LINE;
         }
-        set_pair(tree, i, joint, &places[0], measure);
+        set_pair(tree, i, joint, &sites[0], measure);
     }
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         tree->corners[i] = corner;
-        const size_t own = tree_own_pairs(joint, i, places);
+        const size_t own = tree_own_pairs(joint, i, sites);
         for (size_t k = 0; k < own; k++) {
-            set_pair(tree, corner++, joint, &places[k], TREE_LINE);
+            set_pair(tree, corner++, joint, &sites[k], TREE_LINE);
         }
     }
     tree_list_ends(tree);
@@ -830,9 +830,9 @@ static void tree_make_room(Tree *tree)
 {
     const Linkage *linkage = tree->linkage;
     tree->pair_count = linkage->joint_count;
-    Touch places[TOUCH_CORNERS];
+    Touch sites[TOUCH_CORNERS];
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        tree->pair_count += tree_own_pairs(&linkage->joints[i], (int)i, places);
+        tree->pair_count += tree_own_pairs(&linkage->joints[i], (int)i, sites);
     }
     tree->normals = 2 * (int)tree->pair_count;
     tree->end_count = 3 * tree->pair_count;

@@ -1,6 +1,7 @@
 // The freedoms of a linkage as a tree: one angle for each body that hangs on a revolute joint, one
-// slide for each that hangs on a prismatic joint (its angle is that of the body it hangs on), place
-// and angle for one that floats, and two constraint rows for each ideal joint that closes a loop.
+// slide for each that hangs on a prismatic joint (its angle is that of the body it hangs on),
+// position and angle for one that floats, and two constraint rows for each ideal joint that closes
+// a loop.
 //
 // Ideal joints of the tree hold exactly, by construction. The driven body and the ground are known.
 // Time and coordinates are those since the base: where the linkage stood at the start of the
@@ -271,9 +272,9 @@ double tree_tilt(const Tree *tree, const TreeState *state, int joint);
 
 // The freedoms of a linkage as a tree (reference/plane/tree.h): found, moved and put to use.
 
-// The pairs that the places of a joint have of their own: those of corners and of a slider's stops.
-// Returns how many, with the places.
-size_t tree_own_pairs(const Joint *joint, int number, Touch places[TOUCH_CORNERS]);
+// The pairs that the sites of a joint have of their own: those of corners and of a slider's stops.
+// Returns how many, with the sites.
+size_t tree_own_pairs(const Joint *joint, int number, Touch sites[TOUCH_CORNERS]);
 
 // Finds the tree of the linkage's ideal joints, which must outlive it (reference/plane/tree.c).
 void tree_build(const Linkage *linkage, Tree *tree);

@@ -60,7 +60,7 @@ struct SpaceFront {
     double *square; // what is left of the loops among one another, row by row
     double *own;    // by row: what it had of the freedoms that are eliminated, through their factor
     double *vector; // of a solution
-    double inverse[SPACE_JOINT_ROWS]; // of the rows that are eliminated: 1 / pivot; 0: not held
+    double inverse[SPACE_JOINT_ROWS]; // of the rows that are eliminated: 1 / pivot; 0: not active
 };
 
 // Through the factor of a floating body: L^-1 b, in place.
@@ -79,19 +79,19 @@ static inline void space_link_forward(const SpaceLink *link, double *b)
 // As in the plane (reference/plane/articulated.c), with the freedoms of a body through the factor
 // of their own block: with P = L L', p the row's part of them and y = L^-1 p,
 //     c_i - (h L'^-1) y_i,   S_ik - y_i . y_k,   g_i - y_i . L^-1 f
-// Rows that are not held are zero, and their multipliers too.
+// Rows that are not active are zero, and their multipliers too.
 
-enum { ROWS = SPACE_JOINT_ROWS };
+enum { SPACE_FRONT_ROWS = SPACE_JOINT_ROWS };
 
 static size_t space_front_rows_of(const PlanFront *front)
 {
-    return ROWS * front->loop_count;
+    return SPACE_FRONT_ROWS * front->loop_count;
 }
 
 // The first row of a front that is not eliminated in it.
 static size_t space_front_left_of(const PlanFront *front)
 {
-    return front->is_body ? 0 : ROWS;
+    return front->is_body ? 0 : SPACE_FRONT_ROWS;
 }
 
 // The fronts at a node are [first, last).
@@ -109,7 +109,8 @@ static size_t space_front_last_of(const SpaceArticulated *articulated, int node)
 // Where a row of a front that comes into another stands there.
 static size_t space_front_place_of(const Plan *plan, const PlanChild *entry, size_t row)
 {
-    return plan->places[entry->first_place + row / ROWS] + row % ROWS;
+    return plan->child_rows[entry->first_child_row + row / SPACE_FRONT_ROWS] +
+           row % SPACE_FRONT_ROWS;
 }
 
 static void space_front_add_child(const SpaceArticulated *articulated, const PlanFront *front,
@@ -148,10 +149,10 @@ static void space_front_add_end(const SpaceArticulated *articulated, const PlanF
     const double sign = end->side == 0 ? -1.0 : 1.0;
     const Vec3 lever =
         vec3_add(articulated->links[front->node].centre, state->arms[2 * joint + end->side]);
-    for (size_t k = 0; k < ROWS; k++) {
-        const SpaceLoopRow *row = &rows[ROWS * end->loop + (int)k];
+    for (size_t k = 0; k < SPACE_FRONT_ROWS; k++) {
+        const SpaceLoopRow *row = &rows[SPACE_FRONT_ROWS * end->loop + (int)k];
         SpaceFeel *own = &to->rows[end->row + k];
-        if (!row->is_held) {
+        if (!row->is_active) {
             continue;
         }
         const Vec3 along = vec3_scale(sign, row->direction);
@@ -179,12 +180,12 @@ static void take_from_link(const SpaceFeel *row, double inverse, SpaceLink *link
 }
 
 // Eliminates one row of a loop: out of the rows behind it, and out of what the body resists with.
-static bool space_front_eliminate_row(size_t count, size_t pivot, bool is_held, SpaceFront *at,
+static bool space_front_eliminate_row(size_t count, size_t pivot, bool is_active, SpaceFront *at,
                                       SpaceLink *link)
 {
     const double *own = at->square + pivot * count;
     at->inverse[pivot] = 0.0;
-    if (!is_held) {
+    if (!is_active) {
         return true;
     }
     if (!(fabs(own[pivot]) > 0.0)) {
@@ -230,7 +231,7 @@ static void gather_front(SpaceArticulated *articulated, size_t number, const Spa
 
 // At a body, or at what no coordinate moves (-1), with what hangs there done: gathers its fronts'
 // rows, and eliminates those of loops that come together there. Returns false where one that is
-// held has no pivot.
+// active has no pivot.
 static bool space_fronts_gather(SpaceArticulated *articulated, int node,
                                 const SpaceTreeState *state, const SpaceLoopRow *rows)
 {
@@ -242,8 +243,8 @@ static bool space_fronts_gather(SpaceArticulated *articulated, int node,
         gather_front(articulated, i, state, rows);
         for (size_t pivot = 0; pivot < space_front_left_of(front); pivot++) {
             const int loop = plan->loops[front->first_loop];
-            const bool is_held = rows[ROWS * loop + (int)pivot].is_held;
-            if (!space_front_eliminate_row(space_front_rows_of(front), pivot, is_held,
+            const bool is_active = rows[SPACE_FRONT_ROWS * loop + (int)pivot].is_active;
+            if (!space_front_eliminate_row(space_front_rows_of(front), pivot, is_active,
                                            &articulated->fronts[i], link)) {
                 return false;
             }
@@ -300,7 +301,8 @@ static void space_front_gather_sides(SpaceArticulated *articulated, size_t i, Sp
     const size_t count = space_front_rows_of(front);
     for (size_t k = 0; k < count; k++) {
         const bool is_own = k < space_front_left_of(front) && sides != NULL;
-        at->vector[k] = is_own ? sides[ROWS * plan->loops[front->first_loop] + (int)k] : 0.0;
+        at->vector[k] =
+            is_own ? sides[SPACE_FRONT_ROWS * plan->loops[front->first_loop] + (int)k] : 0.0;
     }
     for (size_t k = 0; k < front->child_count; k++) {
         const PlanChild *entry = &plan->children[front->first_child + k];
@@ -370,8 +372,9 @@ static void space_fronts_add_multipliers(SpaceArticulated *articulated, int node
     const SpaceFront *at = &articulated->fronts[number];
     SpaceLink *link = &articulated->links[node];
     for (size_t i = 0; i < space_front_rows_of(front); i++) {
-        const int loop = plan->loops[front->first_loop + i / ROWS];
-        const double multiplier = multipliers[ROWS * loop + (int)(i % ROWS)];
+        const int loop = plan->loops[front->first_loop + i / SPACE_FRONT_ROWS];
+        const double multiplier =
+            multipliers[SPACE_FRONT_ROWS * loop + (int)(i % SPACE_FRONT_ROWS)];
         for (size_t m = 0; m < link->freedoms; m++) {
             link->gained[m] -= at->own[i * link->freedoms + m] * multiplier;
         }
@@ -394,9 +397,10 @@ static void space_front_find_multipliers(const SpaceArticulated *articulated, si
         }
         for (size_t k = pivot + 1; k < count; k++) {
             sum -= at->square[pivot * count + k] *
-                   multipliers[ROWS * loops[k / ROWS] + (int)(k % ROWS)];
+                   multipliers[SPACE_FRONT_ROWS * loops[k / SPACE_FRONT_ROWS] +
+                               (int)(k % SPACE_FRONT_ROWS)];
         }
-        multipliers[ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
+        multipliers[SPACE_FRONT_ROWS * loops[0] + (int)pivot] = sum * at->inverse[pivot];
     }
 }
 

@@ -16,9 +16,9 @@ typedef struct SpacePush {
 } SpacePush;
 
 // A row of a loop: of its point along a direction of the world, or of its turning about one. One
-// that is not held has no part in the equations.
+// that is not active has no part in the equations.
 typedef struct SpaceLoopRow {
-    bool is_held;
+    bool is_active;
     Vec3 direction;
 } SpaceLoopRow;
 
@@ -46,7 +46,7 @@ bool space_articulated_factor(SpaceArticulated *articulated, const SpaceTreeStat
 
 // Solves them at that state for pushes, by body (NULL: none), and the right sides of the loops'
 // rows (NULL: zeros). Writes the coordinates' rates x, and behind them the negative multipliers of
-// the rows: 0 of one that is not held.
+// the rows: 0 of one that is not active.
 void space_articulated_solve(SpaceArticulated *articulated, const SpaceTreeState *state,
                              const SpacePush *pushes, const double *sides, double *rates);
 
@@ -79,14 +79,14 @@ typedef struct SpaceLoops {
     int *joints;           // owned, like all below
     Vec3 (*base_sides)[2]; // of body a: unit, at right angles to the joint's axis
     SpaceLoopRow *rows;    // SPACE_JOINT_ROWS of each
-    size_t row_count;      // that are held
+    size_t row_count;      // that are active
     SpaceLoopGroups groups;
     SpaceArticulated *articulated;
     double *sides;  // room: by row
     double *solved; // room: by coordinate and by row
 } SpaceLoops;
 
-// For the loops of some joints of a tree, which must outlive them. No row is held yet.
+// For the loops of some joints of a tree, which must outlive them. No row is active yet.
 SpaceLoops *space_loops_create(const SpaceTree *tree, size_t count, const int *joints);
 void space_loops_destroy(SpaceLoops *loops);
 
@@ -104,7 +104,7 @@ static inline int space_loop_groups_end(const SpaceTree *tree, int joint, int si
 // Chooses the rows at the base of the tree; the first time, or anew.
 void space_loops_choose(SpaceLoops *loops, const SpaceTreeState *state, bool is_first);
 
-// Brings the directions of all rows that are held to a state.
+// Brings the directions of all rows that are active to a state.
 void space_loops_turn(SpaceLoops *loops, const SpaceTreeState *state);
 
 // The acceleration in a row, m/s^2 or rad/s^2, while the coordinates' rates are steady. Its

@@ -60,7 +60,7 @@ double space_turn_second(const SpaceTree *tree, const SpaceTreeState *state, int
 static void space_turn_find(const SpaceContact *at, const Contact *contact, const SpaceTree *tree,
                             const SpaceTreeState *state, SpaceForce *force)
 {
-    const int joint = at->place.joint;
+    const int joint = at->site.joint;
     const Vec3 none = {0.0, 0.0, 0.0};
     force->force = force->couple = none;
     force->press =
@@ -97,9 +97,7 @@ static size_t space_turn_list(const Scenario *scenario, const SpaceTree *tree, i
     for (int i = 0; i < 2; i++) {
         if (isfinite(ends[i])) {
             contacts[count] = (SpaceContact){
-                .place = {.joint = joint,
-                          .hole = {.body = of->body_a},
-                          .pin = {.body = of->body_b}},
+                .site = {.joint = joint, .hole = {.body = of->body_a}, .pin = {.body = of->body_b}},
                 .is_turn = true,
                 .sign = i == 0 ? 1.0 : -1.0,
                 .limit = ends[i],
@@ -122,7 +120,7 @@ static size_t space_turn_list(const Scenario *scenario, const SpaceTree *tree, i
 
 // Contact forces: the force with which a pin in space presses on a contact site of its hole.
 //
-// The model is that of contact/pin_space.h, its numbers are told apart from the base: with g the
+// The model is that of contact/pin_space.h, its numbers count from the base: with g the
 // pin's point less the hole's, u the axis of the pin (of a collar: of the hole)
 //     an end:    e = g - (u . g) u,   P = pin's point - (u . g) u
 //     a collar:  e = (u . g) u,       P = the pin's middle
@@ -138,15 +136,15 @@ static size_t space_turn_list(const Scenario *scenario, const SpaceTree *tree, i
 
 void space_contact_rebase(const SpaceTree *tree, SpaceContact *contact)
 {
-    const PinSpace *place = &contact->place;
-    const SpaceEnd *hole = &place->hole;
-    const SpaceEnd *pin = &place->pin;
+    const PinSpace *site = &contact->site;
+    const SpaceEnd *hole = &site->hole;
+    const SpaceEnd *pin = &site->pin;
     const LongVec3 hole_arm = space_tree_base_arm(tree, hole->body, hole->anchor);
     LongVec3 pin_arm = space_tree_base_arm(tree, pin->body, pin->anchor);
     const LongVec3 from = space_tree_base_point(tree, hole->body, hole->anchor);
     const LongVec3 to = space_tree_base_point(tree, pin->body, pin->anchor);
     LongVec3 gap = long_vec3_add(to, long_vec3_scale(-1.0L, from));
-    const bool is_collar = place->place == PIN_SPACE_COLLAR;
+    const bool is_collar = site->place == PIN_SPACE_COLLAR;
     const SpaceEnd *along = is_collar ? hole : pin;
     const LongVec3 axis = space_tree_base_arm(tree, along->body, along->axis);
     if (!is_collar) {
@@ -165,9 +163,9 @@ void space_contact_rebase(const SpaceTree *tree, SpaceContact *contact)
 // Offset, axis and the points of both bodies at which the force acts.
 static void find_pose(const SpaceContact *at, const SpaceTreeState *state, SpaceForce *force)
 {
-    const int a = at->place.hole.body;
-    const int b = at->place.pin.body;
-    const bool is_collar = at->place.place == PIN_SPACE_COLLAR;
+    const int a = at->site.hole.body;
+    const int b = at->site.pin.body;
+    const bool is_collar = at->site.place == PIN_SPACE_COLLAR;
     const SpaceBodyState *body_a = space_tree_body(state, a);
     const SpaceBodyState *body_b = space_tree_body(state, b);
     const Vec3 turned_a = mat3_apply(&body_a->turned, at->base_hole);
@@ -198,19 +196,19 @@ static void space_contact_add_friction(const SpaceContact *at, const Contact *co
     force->force_a = vec3_add(force->from_a, wall);
     force->force_b = vec3_add(force->from_b, vec3_sub(wall, force->offset));
     const Vec3 sliding =
-        vec3_across(vec3_sub(space_tree_velocity(state, at->place.pin.body, force->force_b),
-                             space_tree_velocity(state, at->place.hole.body, force->force_a)),
+        vec3_across(vec3_sub(space_tree_velocity(state, at->site.pin.body, force->force_b),
+                             space_tree_velocity(state, at->site.hole.body, force->force_a)),
                     force->outward);
     const double speed = vec3_length(sliding);
     const double scale = contact->law.friction_speed;
     // tanh(x) / x, which is 1 to the last bit below this speed
     const double share = speed > 1e-9 * scale ? tanh(speed / scale) / speed : 1.0 / scale;
-    const double held = contact->law.friction * force->press.normal * share;
-    force->force = vec3_sub(force->force, vec3_scale(held, sliding));
-    force->press.friction_power = held * speed * speed;
+    const double friction = contact->law.friction * force->press.normal * share;
+    force->force = vec3_sub(force->force, vec3_scale(friction, sliding));
+    force->press.friction_power = friction * speed * speed;
 }
 
-// A place's quantities from the state of the tree. The mode is that of `contact`, the law's.
+// A site's quantities from the state of the tree. The mode is that of `contact`, the law's.
 static void space_contact_find(const SpaceContact *at, const Contact *contact,
                                const SpaceTreeState *state, SpaceForce *force)
 {
@@ -242,14 +240,14 @@ static void space_contact_find(const SpaceContact *at, const Contact *contact,
 double space_contact_second(const SpaceContact *at, const SpaceTreeState *state,
                             const SpaceForce *force)
 {
-    const int a = at->place.hole.body;
-    const int b = at->place.pin.body;
+    const int a = at->site.hole.body;
+    const int b = at->site.pin.body;
     const Vec3 outward = force->outward;
     const Vec3 w = force->relative;
     const Vec3 changing = vec3_sub(space_tree_acceleration(state, b, force->from_b),
                                    space_tree_acceleration(state, a, force->from_a));
     const double pushed = vec3_dot(outward, changing);
-    if (at->place.place == PIN_SPACE_COLLAR) {
+    if (at->site.place == PIN_SPACE_COLLAR) {
         const Vec3 turning = vec3_cross(space_tree_body(state, a)->omega, outward);
         return pushed + 2.0 * vec3_dot(turning, w);
     }
@@ -294,13 +292,13 @@ static void find_pushes(const SpaceDynamics *dynamics, const SpaceTreeState *sta
         const int body = tree->nodes[i].body;
         const SpaceBodyState *at = space_tree_body(state, body);
         const Mat3 inertia = space_tree_inertia(tree, state, body);
-        const Vec3 held = vec3_add(mat3_apply(&inertia, at->spin_bias),
-                                   vec3_cross(at->omega, mat3_apply(&inertia, at->omega)));
+        const Vec3 bias_moment = vec3_add(mat3_apply(&inertia, at->spin_bias),
+                                          vec3_cross(at->omega, mat3_apply(&inertia, at->omega)));
         const double mass = tree->linkage->bodies[body].mass;
         const SpacePush *load = &dynamics->loads[body + 1];
         dynamics->pushes[body] = (SpacePush){
             .force = vec3_sub(load->force, vec3_scale(mass, at->bias)),
-            .moment = vec3_sub(load->moment, held),
+            .moment = vec3_sub(load->moment, bias_moment),
         };
     }
 }
@@ -311,7 +309,7 @@ static void find_sides(const SpaceDynamics *dynamics, const SpaceTreeState *stat
     const SpaceLoops *loops = dynamics->loops;
     for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
         dynamics->sides[i] =
-            loops->rows[i].is_held
+            loops->rows[i].is_active
                 ? -space_loops_bias(loops, state, i / SPACE_JOINT_ROWS, (int)(i % SPACE_JOINT_ROWS))
                 : 0.0;
     }
@@ -326,21 +324,21 @@ static void load_loops(const SpaceDynamics *dynamics, SpaceState *state)
     const double *lambda = dynamics->solved + tree->coordinate_count;
     memset(state->reactions, 0, tree->linkage->joint_count * sizeof *state->reactions);
     for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
-        if (!loops->rows[i].is_held) {
+        if (!loops->rows[i].is_active) {
             continue;
         }
         const int joint = loops->joints[i / SPACE_JOINT_ROWS];
         const int end = 2 * joint;
         const int a = tree->ends[end].body;
         const int b = tree->ends[end + 1].body;
-        const Vec3 held = vec3_scale(-lambda[i], loops->rows[i].direction);
+        const Vec3 reaction = vec3_scale(-lambda[i], loops->rows[i].direction);
         if (i % SPACE_JOINT_ROWS < SPACE_POINT_ROWS) {
-            load_body(dynamics->loads, b, state->tree.arms[end + 1], held);
-            load_body(dynamics->loads, a, state->tree.arms[end], vec3_scale(-1.0, held));
-            state->reactions[joint] = vec3_add(state->reactions[joint], held);
+            load_body(dynamics->loads, b, state->tree.arms[end + 1], reaction);
+            load_body(dynamics->loads, a, state->tree.arms[end], vec3_scale(-1.0, reaction));
+            state->reactions[joint] = vec3_add(state->reactions[joint], reaction);
         } else {
-            load_moment(dynamics->loads, b, held);
-            load_moment(dynamics->loads, a, vec3_scale(-1.0, held));
+            load_moment(dynamics->loads, b, reaction);
+            load_moment(dynamics->loads, a, vec3_scale(-1.0, reaction));
         }
     }
 }
@@ -394,10 +392,10 @@ static void find_reactions(const SpaceTree *tree, SpacePush *loads, SpaceState *
         if (node->joint < 0) {
             continue;
         }
-        const Vec3 held = force_missing(tree, &state->tree, loads, node->body);
+        const Vec3 reaction = force_missing(tree, &state->tree, loads, node->body);
         const bool is_child_b = tree->linkage->joints[node->joint].body_b == node->body;
-        state->reactions[node->joint] = vec3_scale(is_child_b ? 1.0 : -1.0, held);
-        loads[node->parent + 1].force = vec3_sub(loads[node->parent + 1].force, held);
+        state->reactions[node->joint] = vec3_scale(is_child_b ? 1.0 : -1.0, reaction);
+        loads[node->parent + 1].force = vec3_sub(loads[node->parent + 1].force, reaction);
     }
     if (tree->driven >= 0) {
         state->reactions[tree->linkage->driver.joint] =
@@ -431,11 +429,11 @@ static void set_up(const SpaceDynamics *dynamics, double since_s, const double *
         SpaceForce *force = &state->forces[i];
         find_force(dynamics, i, state);
         if (contact->is_turn) {
-            load_moment(dynamics->loads, contact->place.pin.body, force->couple);
-            load_moment(dynamics->loads, contact->place.hole.body, vec3_scale(-1.0, force->couple));
+            load_moment(dynamics->loads, contact->site.pin.body, force->couple);
+            load_moment(dynamics->loads, contact->site.hole.body, vec3_scale(-1.0, force->couple));
         } else if (system->contacts[i].mode == CONTACT_PRESSING) {
-            load_body(dynamics->loads, contact->place.pin.body, force->force_b, force->force);
-            load_body(dynamics->loads, contact->place.hole.body, force->force_a,
+            load_body(dynamics->loads, contact->site.pin.body, force->force_b, force->force);
+            load_body(dynamics->loads, contact->site.hole.body, force->force_a,
                       vec3_scale(-1.0, force->force));
         }
     }
@@ -514,8 +512,8 @@ Press space_dynamics_press(const SpaceDynamics *dynamics, size_t contact, double
 {
     const size_t n = dynamics->tree.coordinate_count;
     SpaceState *state = dynamics->scratch;
-    const PinSpace *place = &dynamics->contacts[contact].place;
-    space_tree_evaluate_pair(&dynamics->tree, place->hole.body, place->pin.body, since_s, y, y + n,
+    const PinSpace *site = &dynamics->contacts[contact].site;
+    space_tree_evaluate_pair(&dynamics->tree, site->hole.body, site->pin.body, since_s, y, y + n,
                              &state->tree);
     find_force(dynamics, contact, state);
     return state->forces[contact].press;
@@ -573,21 +571,21 @@ static void space_dynamics_list_coordinates(SpaceDynamics *dynamics)
     }
 }
 
-static void space_dynamics_set_pins(SpaceDynamics *dynamics, const PinSpace *places, size_t count)
+static void space_dynamics_set_pins(SpaceDynamics *dynamics, const PinSpace *sites, size_t count)
 {
     System *system = &dynamics->system;
     system->contact_count = count;
     for (size_t i = 0; i < count; i++) {
-        const Joint *joint = &system->scenario->linkage.joints[places[i].joint];
-        dynamics->contacts[i].place = places[i];
+        const Joint *joint = &system->scenario->linkage.joints[sites[i].joint];
+        dynamics->contacts[i].site = sites[i];
         system->contacts[i] = (Contact){
-            .joint = places[i].joint,
-            .law = places[i].law,
-            .clearance = places[i].clearance,
+            .joint = sites[i].joint,
+            .law = sites[i].law,
+            .clearance = sites[i].clearance,
             .arm = 1.0,
-            .flight = places[i].clearance,
+            .flight = sites[i].clearance,
             .hole_radius = joint->clearance.hole_radius,
-            .is_collar = places[i].place == PIN_SPACE_COLLAR,
+            .is_collar = sites[i].place == PIN_SPACE_COLLAR,
         };
     }
 }
@@ -630,8 +628,8 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
 {
     const Linkage *linkage = &scenario->linkage;
     size_t count;
-    PinSpace *places = pin_space_list(scenario, &count, err);
-    if (places == NULL) {
+    PinSpace *sites = pin_space_list(scenario, &count, err);
+    if (sites == NULL) {
         return false;
     }
     *dynamics = (SpaceDynamics){.system = {.scenario = scenario, .torn = -1}};
@@ -645,8 +643,8 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
     const size_t most = count + 2 * linkage->joint_count;
     system->contacts = zeroed(most, sizeof *system->contacts);
     dynamics->contacts = zeroed(most, sizeof *dynamics->contacts);
-    space_dynamics_set_pins(dynamics, places, count);
-    free(places);
+    space_dynamics_set_pins(dynamics, sites, count);
+    free(sites);
     if (!add_turns(dynamics, err)) {
         space_dynamics_finish(dynamics);
         return false;

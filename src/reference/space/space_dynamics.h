@@ -7,22 +7,22 @@
 #include "reference/space/space_tree.h"
 #include "reference/system.h"
 
-// The forces at the places where a pin in space presses on its hole, in the coordinates of a tree.
+// The forces at the sites where a pin in space presses on its hole, in the coordinates of a tree.
 
-// A place at the base of the tree.
+// A site at the base of the tree.
 typedef struct SpaceContact {
-    PinSpace place; // of a pin; of an end of a limited angle its joint alone
+    PinSpace site;  // of a pin; of an end of a limited angle its joint alone
     bool is_turn;   // whether it is one
     double sign;    // 1 of its low end, -1 of its high one
     double limit;   // rad, where that is
-    Vec3 base_hole; // m, from the centre of body a to the place's point of the hole
+    Vec3 base_hole; // m, from the centre of body a to the site's point of the hole
     Vec3 base_pin;  // m, from the centre of body b to that point of the pin's axis which is nearest
                     // to it; of a collar to the pin's middle
     Vec3 base_axis; // of the pin; of a collar of the hole
     Vec3 base_gap;  // m, the pin's point less the hole's
 } SpaceContact;
 
-// A place at one instant.
+// A site at one instant.
 typedef struct SpaceForce {
     Press press;
     Vec3 offset;   // e, m
@@ -43,10 +43,10 @@ double space_turn_angle(const SpaceTree *tree, const SpaceTreeState *state, int 
 double space_turn_rate(const SpaceTree *tree, const SpaceTreeState *state, int joint);
 double space_turn_second(const SpaceTree *tree, const SpaceTreeState *state, int joint);
 
-// Puts a place at the base of the tree.
+// Puts a site at the base of the tree.
 void space_contact_rebase(const SpaceTree *tree, SpaceContact *contact);
 
-// The second rate of the depth, m/s^2, of a place whose bodies have accelerations.
+// The second rate of the depth, m/s^2, of a site whose bodies have accelerations.
 double space_contact_second(const SpaceContact *at, const SpaceTreeState *state,
                             const SpaceForce *force);
 

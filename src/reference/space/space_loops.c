@@ -31,18 +31,18 @@ static int space_loop_groups_find_meeting(const SpaceTree *tree, int joint)
 
 // Joins the nodes of every loop. Writes of each loop one of them, or the number of nodes.
 static void join_nodes(const SpaceTree *tree, size_t count, const int *joints, const int *meetings,
-                       size_t *leaders, size_t *members)
+                       size_t *roots, size_t *loop_nodes)
 {
-    leaders_start(leaders, tree->node_count);
+    leaders_start(roots, tree->node_count);
     for (size_t i = 0; i < count; i++) {
-        members[i] = tree->node_count;
+        loop_nodes[i] = tree->node_count;
         for (int side = 0; side < 2; side++) {
             for (int at = space_loop_groups_end(tree, joints[i], side); at != meetings[i];
                  at = tree->nodes[at].parent_node) {
-                if (members[i] < tree->node_count) {
-                    leaders_join(leaders, members[i], (size_t)at);
+                if (loop_nodes[i] < tree->node_count) {
+                    leaders_join(roots, loop_nodes[i], (size_t)at);
                 }
-                members[i] = (size_t)at;
+                loop_nodes[i] = (size_t)at;
             }
         }
     }
@@ -80,22 +80,22 @@ static void space_loop_groups_init(const SpaceTree *tree, size_t count, const in
         .meetings = zeroed(count, sizeof *groups->meetings),
         .columns = zeroed(tree->node_count, sizeof *groups->columns),
     };
-    size_t *leaders = zeroed(tree->node_count, sizeof *leaders);
-    size_t *members = zeroed(count, sizeof *members);
-    size_t *group_of = zeroed(tree->node_count + 1, sizeof *group_of); // by leader, and 1 more
+    size_t *roots = zeroed(tree->node_count, sizeof *roots);
+    size_t *loop_nodes = zeroed(count, sizeof *loop_nodes);
+    size_t *group_of = zeroed(tree->node_count + 1, sizeof *group_of); // by root, and 1 more
     for (size_t i = 0; i < count; i++) {
         groups->meetings[i] = space_loop_groups_find_meeting(tree, joints[i]);
     }
-    join_nodes(tree, count, joints, groups->meetings, leaders, members);
-    // a loop that nothing moves is in no group: members[i] becomes the group, from 1 on
+    join_nodes(tree, count, joints, groups->meetings, roots, loop_nodes);
+    // a loop that nothing moves is in no group: loop_nodes[i] becomes the group, from 1 on
     for (size_t i = 0; i < count; i++) {
-        if (members[i] < tree->node_count) {
-            size_t *group = &group_of[leaders_find(leaders, members[i])];
+        if (loop_nodes[i] < tree->node_count) {
+            size_t *group = &group_of[leaders_find(roots, loop_nodes[i])];
             *group = *group > 0 ? *group : ++groups->count;
-            members[i] = *group;
+            loop_nodes[i] = *group;
             groups->first_loop[*group]++;
         } else {
-            members[i] = 0;
+            loop_nodes[i] = 0;
         }
     }
     size_t *next = zeroed(groups->count + 1, sizeof *next);
@@ -104,15 +104,15 @@ static void space_loop_groups_init(const SpaceTree *tree, size_t count, const in
         next[group] = groups->first_loop[group];
     }
     for (size_t i = 0; i < count; i++) {
-        if (members[i] > 0) {
-            groups->loops[next[members[i] - 1]++] = i;
+        if (loop_nodes[i] > 0) {
+            groups->loops[next[loop_nodes[i] - 1]++] = i;
         }
     }
     number_columns(tree, joints, groups);
     free(next);
     free(group_of);
-    free(members);
-    free(leaders);
+    free(loop_nodes);
+    free(roots);
 }
 
 static void space_loop_groups_finish(SpaceLoopGroups *groups)
@@ -153,10 +153,10 @@ static Vec3 space_loops_direction(const SpaceLoops *loops, const SpaceTreeState 
 // it has a part in.
 
 // What is left of a row, of itself, once everything that others hold is taken out
-static const double INDEPENDENT = 1e-7;
+static const double CHOICE_INDEPENDENT_SHARE = 1e-7;
 
 // A choice stays while its worst row has this share left of what the fittest choice has
-static const double FIT = 0.5;
+static const double CHOICE_KEPT_SHARE = 0.5;
 
 // A row over some of a group's coordinates, in units of length; zero in the others.
 typedef struct Row {
@@ -288,7 +288,7 @@ static Row make_row(const Chooser *chooser, size_t loop, int which)
     return row;
 }
 
-// Makes all rows of the group, or those that are held.
+// Makes all rows of the group, or those that are active.
 static void make_rows(Chooser *chooser, bool only_held)
 {
     const SpaceLoops *loops = chooser->loops;
@@ -298,7 +298,7 @@ static void make_rows(Chooser *chooser, bool only_held)
          i++) {
         for (int which = 0; which < SPACE_JOINT_ROWS; which++) {
             const size_t row = SPACE_JOINT_ROWS * groups->loops[i] + (size_t)which;
-            if (!only_held || loops->rows[row].is_held) {
+            if (!only_held || loops->rows[row].is_active) {
                 chooser->rows[chooser->count++] = make_row(chooser, groups->loops[i], which);
             }
         }
@@ -344,14 +344,14 @@ static size_t choose(Chooser *chooser, size_t *chosen, double *last)
                 take_out(unit, &chooser->rows[i]);
             }
         }
-        least = count == 0 ? INDEPENDENT * most : least;
+        least = count == 0 ? CHOICE_INDEPENDENT_SHARE * most : least;
         chosen[count++] = best;
         *last = most;
     }
     return count;
 }
 
-// Whether the rows that are held still do.
+// Whether the rows that are active still do.
 static bool is_fit(Chooser *chooser, size_t fittest_count, double fittest)
 {
     size_t *chosen = zeroed(chooser->count, sizeof *chosen);
@@ -362,7 +362,7 @@ static bool is_fit(Chooser *chooser, size_t fittest_count, double fittest)
     free_rows(chooser);
     free(chosen);
     // at a dead point fewer are independent, for an instant
-    return (count == held && last > FIT * fittest) || fittest_count < held;
+    return (count == held && last > CHOICE_KEPT_SHARE * fittest) || fittest_count < held;
 }
 
 static void choose_group(SpaceLoops *loops, Chooser *chooser, bool is_first)
@@ -385,11 +385,11 @@ static void choose_group(SpaceLoops *loops, Chooser *chooser, bool is_first)
     if (is_first || !is_fit(chooser, count, fittest)) {
         for (size_t i = groups->first_loop[group]; i < groups->first_loop[group + 1]; i++) {
             for (size_t k = 0; k < SPACE_JOINT_ROWS; k++) {
-                loops->rows[SPACE_JOINT_ROWS * groups->loops[i] + k].is_held = false;
+                loops->rows[SPACE_JOINT_ROWS * groups->loops[i] + k].is_active = false;
             }
         }
         for (size_t i = 0; i < count; i++) {
-            loops->rows[chosen[i]].is_held = true;
+            loops->rows[chosen[i]].is_active = true;
         }
     }
     free(chosen);
@@ -422,17 +422,17 @@ void space_loops_choose(SpaceLoops *loops, const SpaceTreeState *state, bool is_
     }
     loops->row_count = 0;
     for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
-        loops->row_count += loops->rows[i].is_held ? 1 : 0;
+        loops->row_count += loops->rows[i].is_active ? 1 : 0;
     }
 }
 
-enum { PASSES = 2 };
+enum { SPACE_LOOPS_PASSES = 2 };
 
 // rad, or of a body's reach: the lengths and axes of a case have at least five digits
-static const double TORN = 1e-5;
+static const double SPACE_LOOPS_TORN_SHARE = 1e-5;
 
 // m: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
-static const double ROUNDED = 1e-10;
+static const double SPACE_LOOPS_CLOSED_SHARE = 1e-10;
 
 SpaceLoops *space_loops_create(const SpaceTree *tree, size_t count, const int *joints)
 {
@@ -473,7 +473,7 @@ void space_loops_destroy(SpaceLoops *loops)
 void space_loops_turn(SpaceLoops *loops, const SpaceTreeState *state)
 {
     for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
-        if (loops->rows[i].is_held) {
+        if (loops->rows[i].is_active) {
             loops->rows[i].direction = space_loops_direction(loops, state, i / SPACE_JOINT_ROWS,
                                                              (int)(i % SPACE_JOINT_ROWS));
         }
@@ -532,9 +532,10 @@ static void space_loops_move_least(SpaceLoops *loops, const SpaceTreeState *stat
 {
     space_loops_turn(loops, state);
     for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
-        loops->sides[i] = loops->rows[i].is_held ? -opening_of(loops, state, i / SPACE_JOINT_ROWS,
-                                                               (int)(i % SPACE_JOINT_ROWS), is_rate)
-                                                 : 0.0;
+        loops->sides[i] = loops->rows[i].is_active
+                              ? -opening_of(loops, state, i / SPACE_JOINT_ROWS,
+                                            (int)(i % SPACE_JOINT_ROWS), is_rate)
+                              : 0.0;
     }
     if (!space_articulated_factor(loops->articulated, state, loops->rows)) {
         return;
@@ -552,7 +553,7 @@ double space_loops_project(SpaceLoops *loops, double since_s, double *q, double 
     if (loops->row_count == 0) {
         return 0.0;
     }
-    for (int pass = 0; pass < PASSES; pass++) {
+    for (int pass = 0; pass < SPACE_LOOPS_PASSES; pass++) {
         space_tree_evaluate(tree, since_s, q, u, scratch);
         space_loops_move_least(loops, scratch, false, q);
     }
@@ -560,7 +561,7 @@ double space_loops_project(SpaceLoops *loops, double since_s, double *q, double 
     space_loops_move_least(loops, scratch, true, u);
     double largest = 0.0;
     for (size_t i = 0; i < SPACE_JOINT_ROWS * loops->count; i++) {
-        if (loops->rows[i].is_held) {
+        if (loops->rows[i].is_active) {
             largest = fmax(largest, fabs(opening_of(loops, scratch, i / SPACE_JOINT_ROWS,
                                                     (int)(i % SPACE_JOINT_ROWS), false)));
         }
@@ -578,7 +579,7 @@ int space_loops_torn(const SpaceLoops *loops, const SpaceTreeState *state)
             tree->reaches[body == LINKAGE_GROUND ? tree->ends[2 * joint].body : body];
         for (int which = 0; which < SPACE_JOINT_ROWS; which++) {
             const double opening = fabs(opening_of(loops, state, i, which, false));
-            if (!(opening <= TORN * (which < SPACE_POINT_ROWS ? reach : 1.0))) {
+            if (!(opening <= SPACE_LOOPS_TORN_SHARE * (which < SPACE_POINT_ROWS ? reach : 1.0))) {
                 return joint;
             }
         }
@@ -601,7 +602,7 @@ static void space_loops_bring(SpaceTree *tree, double *q, SpaceTreeState *scratc
             const Vec2 start = linkage->joints[i].clearance.start;
             joints[count++] = i;
             tree->base_gaps[i] = vec3_sub(tree->base_gaps[i], (Vec3){start.x, start.y, 0.0});
-            are_near = are_near && vec3_length(tree->base_gaps[i]) <= ROUNDED;
+            are_near = are_near && vec3_length(tree->base_gaps[i]) <= SPACE_LOOPS_CLOSED_SHARE;
         }
     }
     if (are_near) {

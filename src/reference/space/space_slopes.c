@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-// A pressing place and what its force changes with.
+// A pressing site and what its force changes with.
 typedef struct SpaceSlopesPressing {
     const Contact *contact;
     const SpaceForce *force;
@@ -30,24 +30,25 @@ typedef struct SpaceSlopesPressing {
 } SpaceSlopesPressing;
 
 static void find_points(const SpaceDynamics *dynamics, const SpaceTreeState *state,
-                        const PinSpace *place, Vec3 arm_a, Vec3 arm_b, Vec3 *row)
+                        const PinSpace *site, Vec3 arm_a, Vec3 arm_b, Vec3 *row)
 {
     const Coupling *coupling = dynamics->system.coupling;
-    const CouplingJoint *parts = &coupling->joints[place->joint];
+    const CouplingJoint *parts = &coupling->joints[site->joint];
     for (size_t i = 0; i < parts->count; i++) {
         const size_t part = parts->parts[i];
-        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
-            row[coupling->members[k]] = (Vec3){0.0, 0.0, 0.0};
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            row[coupling->coordinates[k]] = (Vec3){0.0, 0.0, 0.0};
         }
     }
-    space_tree_point_row(&dynamics->tree, state, place->hole.body, arm_a, -1.0, row);
-    space_tree_point_row(&dynamics->tree, state, place->pin.body, arm_b, 1.0, row);
+    space_tree_point_row(&dynamics->tree, state, site->hole.body, arm_a, -1.0, row);
+    space_tree_point_row(&dynamics->tree, state, site->pin.body, arm_b, 1.0, row);
 }
 
 static void space_slopes_resolve(const SpaceDynamics *dynamics, const SpaceState *state,
                                  size_t number, SpaceSlopesPressing *pressing)
 {
-    const PinSpace *place = &dynamics->contacts[number].place;
+    const PinSpace *site = &dynamics->contacts[number].site;
     const SpaceForce *force = &state->forces[number];
     const Contact *contact = &dynamics->system.contacts[number];
     pressing->contact = contact;
@@ -55,15 +56,15 @@ static void space_slopes_resolve(const SpaceDynamics *dynamics, const SpaceState
     pressing->stiffness = (1.0 + contact->damping_rate * force->press.closing) *
                           force_law_tangent(&contact->law, fabs(force->press.depth));
     pressing->damping = press_damping(contact, &force->press);
-    pressing->parts = &dynamics->system.coupling->joints[place->joint];
-    find_points(dynamics, &state->tree, place, force->from_a, force->from_b, pressing->centre);
-    find_points(dynamics, &state->tree, place, force->force_a, force->force_b, pressing->wall);
+    pressing->parts = &dynamics->system.coupling->joints[site->joint];
+    find_points(dynamics, &state->tree, site, force->from_a, force->from_b, pressing->centre);
+    find_points(dynamics, &state->tree, site, force->force_a, force->force_b, pressing->wall);
     pressing->share = pressing->share_slope = 0.0;
     if (pressing->contact->law.friction > 0.0 && !contact->is_collar) {
         const double scale = pressing->contact->law.friction_speed;
         pressing->sliding = vec3_across(
-            vec3_sub(space_tree_velocity(&state->tree, place->pin.body, force->force_b),
-                     space_tree_velocity(&state->tree, place->hole.body, force->force_a)),
+            vec3_sub(space_tree_velocity(&state->tree, site->pin.body, force->force_b),
+                     space_tree_velocity(&state->tree, site->hole.body, force->force_a)),
             force->outward);
         const double speed = vec3_length(pressing->sliding);
         const double grip = tanh(speed / scale);
@@ -130,11 +131,12 @@ static void space_slopes_add_column(const Coupling *coupling, const CouplingJoin
                                    change.friction.x, change.friction.y, change.friction.z};
     for (size_t p = 0; p < parts->count; p++) {
         const size_t part = parts->parts[p];
-        const size_t place = coupling_place(coupling, part, column);
-        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
-            const size_t i = coupling->members[m];
+        const size_t index = coupling_column_index(coupling, part, column);
+        for (size_t m = coupling->first_coordinate[part]; m < coupling->first_coordinate[part + 1];
+             m++) {
+            const size_t i = coupling->coordinates[m];
             for (size_t k = 0; k < pushed->count; k++) {
-                values[coupling->first_value[i] + place] += pushed->by[k][i] * forces[k];
+                values[coupling->first_value[i] + index] += pushed->by[k][i] * forces[k];
             }
         }
     }
@@ -163,18 +165,18 @@ static void space_slopes_find_pushed(const SpaceDynamics *dynamics, const SpaceS
 {
     static const Vec3 AXES[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     static const Vec3 NONE = {0.0, 0.0, 0.0};
-    const PinSpace *place = &dynamics->contacts[number].place;
+    const PinSpace *site = &dynamics->contacts[number].site;
     const SpaceForce *force = pressing->force;
     pushed->count = pressing->share > 0.0 ? PUSHES : 3;
     for (size_t k = 0; k < pushed->count; k++) {
         const Vec3 along = AXES[k % 3];
-        set_push(dynamics, place->pin.body, k < 3 ? force->from_b : force->force_b, along);
-        set_push(dynamics, place->hole.body, k < 3 ? force->from_a : force->force_a,
+        set_push(dynamics, site->pin.body, k < 3 ? force->from_b : force->force_b, along);
+        set_push(dynamics, site->hole.body, k < 3 ? force->from_a : force->force_a,
                  vec3_scale(-1.0, along));
         space_slopes_solve_parts(dynamics, pressing->parts, state, pushed->by[k]);
     }
-    set_push(dynamics, place->pin.body, NONE, NONE);
-    set_push(dynamics, place->hole.body, NONE, NONE);
+    set_push(dynamics, site->pin.body, NONE, NONE);
+    set_push(dynamics, site->hole.body, NONE, NONE);
 }
 
 // What a coordinate does to a contact.
@@ -202,9 +204,10 @@ static void space_slopes_add_slopes(const SpaceDynamics *dynamics,
     const Coupling *coupling = dynamics->system.coupling;
     for (size_t i = 0; i < pressing->parts->count; i++) {
         const size_t part = pressing->parts->parts[i];
-        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
-            space_slopes_add_columns(coupling, pressing, pushed, coupling->members[k], by_position,
-                                     by_rate);
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            space_slopes_add_columns(coupling, pressing, pushed, coupling->coordinates[k],
+                                     by_position, by_rate);
         }
     }
 }
@@ -224,10 +227,11 @@ static void space_slopes_add_turn_column(const Coupling *coupling, const TurnCol
     const double felt = of->row[column];
     for (size_t p = 0; felt != 0.0 && p < of->parts->count; p++) {
         const size_t part = of->parts->parts[p];
-        const size_t place = coupling_place(coupling, part, column);
-        for (size_t m = coupling->first_member[part]; m < coupling->first_member[part + 1]; m++) {
-            const size_t i = coupling->members[m];
-            const size_t value = coupling->first_value[i] + place;
+        const size_t index = coupling_column_index(coupling, part, column);
+        for (size_t m = coupling->first_coordinate[part]; m < coupling->first_coordinate[part + 1];
+             m++) {
+            const size_t i = coupling->coordinates[m];
+            const size_t value = coupling->first_value[i] + index;
             by_position[value] -= of->stiffness * felt * of->pushed[i];
             by_rate[value] -= of->damping * felt * of->pushed[i];
         }
@@ -244,13 +248,14 @@ static void space_slopes_add_turn_slopes(const SpaceDynamics *dynamics, const Sp
     const SpaceContact *at = &dynamics->contacts[number];
     const Contact *contact = &dynamics->system.contacts[number];
     const Press *press = &state->forces[number].press;
-    const Vec3 axis = space_tree_axis(tree, &state->tree, 2 * at->place.joint);
-    const int bodies[2] = {at->place.hole.body, at->place.pin.body};
-    const CouplingJoint *parts = &coupling->joints[at->place.joint];
+    const Vec3 axis = space_tree_axis(tree, &state->tree, 2 * at->site.joint);
+    const int bodies[2] = {at->site.hole.body, at->site.pin.body};
+    const CouplingJoint *parts = &coupling->joints[at->site.joint];
     for (size_t i = 0; i < parts->count; i++) {
         const size_t part = parts->parts[i];
-        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
-            row[coupling->members[k]] = 0.0;
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            row[coupling->coordinates[k]] = 0.0;
         }
     }
     for (int side = 0; side < 2; side++) {
@@ -267,8 +272,10 @@ static void space_slopes_add_turn_slopes(const SpaceDynamics *dynamics, const Sp
     const TurnColumns of = {parts, row, pushed, stiffness, damping};
     for (size_t i = 0; i < parts->count; i++) {
         const size_t part = parts->parts[i];
-        for (size_t k = coupling->first_member[part]; k < coupling->first_member[part + 1]; k++) {
-            space_slopes_add_turn_column(coupling, &of, coupling->members[k], by_position, by_rate);
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            space_slopes_add_turn_column(coupling, &of, coupling->coordinates[k], by_position,
+                                         by_rate);
         }
     }
     for (int side = 0; side < 2; side++) {

@@ -55,9 +55,9 @@ static Press space_press(const System *system, size_t contact, double since_s, c
 
 static size_t space_needs(const System *system, size_t contact, size_t *coordinates)
 {
-    const PinSpace *place = &space_dynamics_of(system)->contacts[contact].place;
-    return space_tree_pair_coordinates(&space_dynamics_of(system)->tree, place->hole.body,
-                                       place->pin.body, coordinates);
+    const PinSpace *site = &space_dynamics_of(system)->contacts[contact].site;
+    return space_tree_pair_coordinates(&space_dynamics_of(system)->tree, site->hole.body,
+                                       site->pin.body, coordinates);
 }
 
 static void space_sizes(const System *system, const SystemState *state, size_t contact,
@@ -67,15 +67,15 @@ static void space_sizes(const System *system, const SystemState *state, size_t c
     const SpaceForce *force = &space_state_of(state)->forces[contact];
     const SpaceContact *end = &dynamics->contacts[contact];
     if (end->is_turn) {
-        const int joint = end->place.joint;
+        const int joint = end->site.joint;
         const SpaceTreeState *tree = &space_state_of(state)->tree;
         *length += 2.0 * fabs(dynamics->tree.base_coordinates[joint]) + fabs(end->limit);
-        *speed += vec3_length(space_tree_body(tree, end->place.hole.body)->omega) +
-                  vec3_length(space_tree_body(tree, end->place.pin.body)->omega);
+        *speed += vec3_length(space_tree_body(tree, end->site.hole.body)->omega) +
+                  vec3_length(space_tree_body(tree, end->site.pin.body)->omega);
         return;
     }
-    const int bodies[2] = {dynamics->contacts[contact].place.hole.body,
-                           dynamics->contacts[contact].place.pin.body};
+    const int bodies[2] = {dynamics->contacts[contact].site.hole.body,
+                           dynamics->contacts[contact].site.pin.body};
     const Vec3 arms[2] = {force->from_a, force->from_b};
     for (int side = 0; side < 2; side++) {
         const SpaceBodyState *at = space_tree_body(&space_state_of(state)->tree, bodies[side]);
@@ -93,13 +93,13 @@ static double space_crossing(const System *system, const SystemState *state, siz
     const SpaceForce *force = &space_state_of(state)->forces[number];
     if (contact->is_turn) {
         const SpaceTree *of = &space_dynamics_of(system)->tree;
-        const int joint = contact->place.joint;
+        const int joint = contact->site.joint;
         return fabs(space_turn_rate(of, tree, joint)) +
                sqrt(system->contacts[number].flight * fabs(space_turn_second(of, tree, joint)));
     }
     const Vec3 w = force->relative;
-    const Vec3 a = vec3_sub(space_tree_acceleration(tree, contact->place.pin.body, force->from_b),
-                            space_tree_acceleration(tree, contact->place.hole.body, force->from_a));
+    const Vec3 a = vec3_sub(space_tree_acceleration(tree, contact->site.pin.body, force->from_b),
+                            space_tree_acceleration(tree, contact->site.hole.body, force->from_a));
     const double clearance = system->contacts[number].clearance;
     if (system->contacts[number].is_collar) {
         return fabs(vec3_dot(w, force->axis)) + sqrt(clearance * fabs(vec3_dot(a, force->axis)));
@@ -133,12 +133,12 @@ static void space_peak(const System *system, const SystemState *state, size_t nu
     const SpaceContact *own = &space_dynamics_of(system)->contacts[number];
     if (own->is_turn) {
         const SpaceTree *tree = &space_dynamics_of(system)->tree;
-        const double second = -own->sign * space_turn_second(tree, &at->tree, own->place.joint);
+        const double second = -own->sign * space_turn_second(tree, &at->tree, own->site.joint);
         values[0] = at->forces[number].press.normal;
         rates[0] = press_rate(contact, &at->forces[number].press, second);
         return;
     }
-    // the places of a joint stand together
+    // the sites of a joint stand together
     size_t first = number;
     while (first > 0 && system->contacts[first - 1].joint == contact->joint) {
         first--;
@@ -210,7 +210,7 @@ static void show_ideal(const Vec3 *reaction, Vec3 gap, JointState *joint,
     *space_joint = (SpaceJointState){.force_on_b = *reaction, .offset = gap};
 }
 
-// What a pin's places show of it, beginning with the first end.
+// What a pin's sites show of it, beginning with the first end.
 static void show_pin(const System *system, const SpaceState *at, size_t first, JointState *joint,
                      SpaceJointState *space_joint)
 {
@@ -258,7 +258,7 @@ static void show_end(const System *system, const SpaceState *at, size_t number, 
 {
     const SpaceContact *end = &space_dynamics_of(system)->contacts[number];
     const Press *press = &at->forces[number].press;
-    const Joint *of = &system->scenario->linkage.joints[end->place.joint];
+    const Joint *of = &system->scenario->linkage.joints[end->site.joint];
     const double size = vec3_length(at->forces[number].couple);
     joint->gap = fmin(joint->gap, -press->depth);
     joint->moment_on_b += end->sign * coordinate_sense(of) * size;

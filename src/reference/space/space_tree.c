@@ -5,8 +5,8 @@
 //     w_i = w_p + a q',         v_i = v_p + w_p x s_p - w_i x s_i
 //     al_i = al_p + a q'' + w_p x a q'
 //     a_i = a_p + al_p x s_p + w_p x (w_p x s_p) - al_i x s_i - w_i x (w_i x s_i)
-// The terms without second rates are the bias. A floating body has the place of its centre and the
-// vector of its turn (reference/space/turn.h). Everything is in the world's frame.
+// The terms without second rates are the bias. A floating body has the position of its centre and
+// the vector of its turn (reference/space/turn.h). Everything is in the world's frame.
 #include "reference/space/space_tree.h"
 
 #include "base/zeroed.h"
@@ -270,8 +270,8 @@ Mat3 space_tree_inertia(const SpaceTree *tree, const SpaceTreeState *state, int 
 // The base: where the linkage stands in space at the start of a step, in long double.
 //
 // As in the plane (reference/plane/tree.c) the base is held in long double. A floating body keeps
-// its place and turn, a hanging one the angle of its joint since the start: the ideal joints of the
-// tree hold at every base, however many there have been.
+// its position and turn, a hanging one the angle of its joint since the start: the ideal joints of
+// the tree hold at every base, however many there have been.
 
 static LongQuat product(LongQuat a, LongQuat b)
 {

@@ -1,5 +1,5 @@
 // The freedoms of a linkage in space as a tree: one angle for each body that hangs on an ideal
-// joint, place and turn for one that floats; ideal joints that close loops have constraint rows
+// joint, position and turn for one that floats; ideal joints that close loops have constraint rows
 // (reference/space/space_articulated.h).
 //
 // As in the plane (reference/plane/tree.h) the ideal joints of the tree hold exactly, by
