@@ -1,4 +1,4 @@
-// In which order are the unknowns of a tree with loops eliminated, and what meets in each step?
+// The order in which the unknowns of a tree with loops are eliminated, and what meets in each step.
 // Found once, from the tree alone.
 //
 // A front is one step: the rows of some loops, and what is eliminated is a body's freedom or the

@@ -3,8 +3,8 @@
 //     k_i = f(t + c_i h, y + h sum a_ij k_j),  y' = y + h sum b_j k_j
 //     error = |h| e5^2 / sqrt(e5^2 + 0.01 e3^2)      e5, e3: root mean squares over the components
 //     next step = 0.9 h error^-(1/8 - 0.2 b) error_before^b      b as STEADY
-// Source: Hairer, Norsett, Wanner 1993, section II.10; see reference/dop853.c. The last line
-// is theirs of section II.4 and of their DOP853, which leaves b at 0.
+// Source: Hairer, Norsett, Wanner 1993, section II.10; the coefficients stand at the end of this
+// file. The last line is theirs of section II.4 and of their DOP853, which leaves b at 0.
 #include "reference/integrators.h"
 
 #include <assert.h>
@@ -331,9 +331,8 @@ void dop853_accept(Dop853 *integrator)
     integrator->accepted++;
 }
 
-// Dense output: the motion within a step.
-//
-// On the polynomial through it (dop853_fill), of degree 7 or that of another method.
+// Dense output: the motion within a step lies on the polynomial through it (dop853_fill), of degree
+// 7 or that of another method.
 
 typedef Dop853Pair Pair;
 

@@ -1,9 +1,10 @@
-// Which accelerations can depend on which coordinates and their rates, and sparse matrices of such
-// derivatives.
+// The integrators of the motion, explicit and implicit, and the coupling of its coordinates.
 //
-// Coordinates that ideal joints tie to one another are a part: the acceleration of each depends on
-// all of them. Forces between bodies, of contacts, springs and dampers, couple parts. Where bodies
-// meet only their neighbours everything here is in proportion to the number of coordinates.
+// The coupling says which accelerations can depend on which coordinates and their rates, and gives
+// sparse matrices of such derivatives their pattern. Coordinates that ideal joints tie to one
+// another are a part: the acceleration of each depends on all of them. Forces between bodies, of
+// contacts, springs and dampers, couple parts. Where bodies meet only their neighbours everything
+// here is in proportion to the number of coordinates.
 #pragma once
 
 #include "base/banded.h"

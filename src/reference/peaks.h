@@ -1,11 +1,10 @@
-// Where do the force and the depth of a contact have their maxima?
+// The maxima of the force and the depth of a contact within a step.
 #pragma once
 
 #include "model/solver.h"
 #include "reference/stepper.h"
 
 // The maxima of many contacts in one step, found together.
-
 typedef struct PeaksBatch {
     SystemState *scratch; // of the stepper's system, owned by whoever has the batch
     JointTop *tops;       // by joint; owned, as are the arrays below

@@ -7,7 +7,8 @@
 // q coordinates, u their rates, A accelerations, a the couplings.
 //
 // L-stable: what a strong damper has made die away does not come back, whatever the step.
-// Source: Hairer and Wanner 1996, sections IV.5 and IV.8; see reference/radau.c.
+// Source: Hairer and Wanner 1996, sections IV.5 and IV.8; the coefficients
+// stand at the end of this file.
 #include "reference/integrators.h"
 
 #include "base/dense.h"
@@ -369,11 +370,11 @@ Radau *radau_create(const Dop853 *integrator)
     return radau;
 }
 
-// Newton's method: its equations for all stages of an implicit step fall apart into blocks.
+// The linear equations of Newton's method for all stages of an implicit step, in separate blocks.
 //
 //     (1 - h a D - h^2 a S a) dz = r
 // a the couplings, D and S the derivatives of the accelerations by rates and coordinates at each
-// stage (reference/radau.c). Coordinates that never feel one another make blocks of their own.
+// stage. Coordinates that never depend on one another make blocks of their own.
 
 void radau_newton_init(RadauNewton *newton, const Coupling *coupling)
 {

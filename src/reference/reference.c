@@ -1,6 +1,6 @@
 // The reference solver: how a linkage with play moves, integrated to its tolerance.
 //
-// Passes on to the solver of one mechanism, or to that of several side by side.
+// A linkage whose parts share nothing but the ground is solved part by part, side by side.
 #include "reference/peaks.h"
 
 #include "base/layout.h"

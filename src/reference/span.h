@@ -1,4 +1,4 @@
-// Which ideal joints hold the bodies of a linkage, and which close loops?
+// The tree over the bodies of a linkage: which ideal joints hold them, and which close loops.
 #pragma once
 
 #include "model/linkage.h"

@@ -207,9 +207,9 @@ static void ending_note(Ending *ending, bool is_refused)
 // Chooses the method that takes the next step.
 //
 // Rates die away in a contact of damping c with the time constant m / c. The explicit method is
-// held to steps of some three of them, however smooth the motion is; that is what is found:
-// the largest eigenvalue of -dA/du. Their sum would not do: of several contacts, none of which
-// holds steps back, it had the implicit method take over at a multiple of the work.
+// held to steps of some three of them, however smooth the motion is. The measure of it is the
+// largest eigenvalue of -dA/du. Their sum would not do: of several contacts, none of which holds
+// steps back, it had the implicit method take over at a multiple of the work.
 //
 // At a small tolerance steps are shorter still: the accelerations at the stages, which are of low
 // order, err by c / m of the stages' speeds. Of a contact that does not oscillate for long,

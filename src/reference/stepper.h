@@ -5,7 +5,7 @@
 #include "reference/integrators.h"
 #include "reference/system.h"
 
-// When does a contact begin, end or go slack?
+// Events: a contact begins, ends or goes slack (reference/events.c).
 
 typedef struct Event {
     double time; // s
@@ -54,16 +54,13 @@ void events_gather(const System *system, const Dop853 *integrator, const EventPo
 // Changes the contacts' modes at the end of the step, with their impact speeds.
 void events_apply(System *system, const EventList *events, double time_s, const double *y);
 
-// How long may a step be in which a contact is about to end?
-
 // What the ends of contacts have shown so far.
 typedef struct Ending {
     double crossed; // N s: ends with less than so much impulse to come can be crossed
     double size;    // N s, to come at the end that the present step is to cross; negative: none
 } Ending;
 
-// Does the motion get on, or do steps and events pile up at one instant?
-
+// How far the motion has got, while steps or events might pile up at one instant.
 typedef struct Pace {
     size_t steps; // since
     double since_s;
@@ -80,8 +77,7 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
 bool pace_undetermined(Err *err);
 
 // Which of the two methods takes the next step: the explicit one, or the implicit one where a
-// contact is damped so strongly that explicit steps are far shorter than the motion is smooth?
-
+// contact is damped so strongly that explicit steps are far shorter than the motion is smooth.
 typedef struct Stiffness {
     Radau *radau; // owned; NULL before the first check
     size_t steps; // explicit ones since the last event or check

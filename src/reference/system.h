@@ -199,14 +199,9 @@ Press system_press(const System *system, Dop853 *integrator, size_t contact, dou
 // Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
 bool system_check_depth(const System *system, const SystemState *state, double share, Err *err);
 
-// The plane's equations of motion as a system.
-
-// Makes the equations of motion of a scenario. Returns NULL with ERR_CASE where a contact law does
-// not fit a joint. The caller frees them by
-// their kind.
+// Makes the equations of motion of a scenario in the plane. Returns NULL with ERR_CASE where a
+// contact law does not fit a joint. The caller frees them by their kind.
 System *plane_system_create(const Scenario *scenario, Err *err);
-
-// The equations of motion in space as a system.
 
 // Makes the equations of motion of a scenario in space. Returns NULL with ERR_CASE where a contact
 // law does not fit a joint. The caller frees them by their kind.

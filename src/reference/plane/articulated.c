@@ -8,7 +8,7 @@
 //     p)
 // A revolute joint leaves al free, and nothing but a mass at the pin is left:
 //     al = (t - b x) / J,   A - b b^T / J,   b = 0,   J = 0
-// A slide leaves the motion along it free, in the same way. Loops: reference/plane/articulated.c.
+// A slide leaves the motion along it free, in the same way. Loops: see below.
 #include "reference/plane/articulated.h"
 
 #include "reference/plane/tree.h"
@@ -375,8 +375,8 @@ static void articulated_find_ground_multipliers(Articulated *articulated,
     }
 }
 
-// A tree of hinges and floating bodies without loops accelerates as any other, with
-// nothing worked out that such a tree does not need: most small mechanisms with play are one.
+// A tree of hinges and floating bodies without loops accelerates as any other, with nothing worked
+// out that such a tree does not need: most small mechanisms with play are one.
 //
 // What hangs on a body is gathered in its link, which is empty again once it has been used.
 

@@ -13,8 +13,7 @@
 #include "reference/articulated_plan.h"
 #include "reference/plane/tree.h"
 
-// What the elimination of bodies (reference/plane/articulated.h) works with: a link for each body,
-// and the rows of loops that feel it.
+// What the elimination works with: a link for each body, and the rows of loops that act on it.
 
 typedef enum LinkKind {
     LINK_HINGE,    // hangs on a revolute joint

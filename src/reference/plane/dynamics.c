@@ -3,8 +3,7 @@
 //     M qdd = sum over bodies B^T (F - m a_bias) + moments + J^T lambda,   J qdd = gamma
 // B: velocity of each centre by each coordinate (reference/plane/tree.h), M = sum m B^T B + I; J,
 // gamma: the joints that close loops. Solved body by body: reference/plane/articulated.h. The
-// contacts' forces: reference/plane/dynamics.c; those of springs, dampers and torques:
-// model/forces.c.
+// contacts' forces: see below; those of springs, dampers and torques: model/forces.c.
 #include "reference/plane/dynamics.h"
 
 #include "base/zeroed.h"

@@ -8,8 +8,6 @@
 #include "reference/plane/tree.h"
 #include "reference/system.h"
 
-// The equations of motion of a linkage with play in the plane, and everything at one instant.
-
 // Where a contact's bodies touch.
 typedef struct PlaneSite {
     Touch touch;
@@ -63,7 +61,7 @@ typedef struct DynamicsRoom {
     double *pushed[DYNAMICS_PUSHED];
 } DynamicsRoom;
 
-typedef struct Hinged Hinged; // of reference/plane/dynamics.h
+typedef struct Hinged Hinged; // of reference/plane/hinged.h
 
 typedef struct Dynamics {
     System system; // the first

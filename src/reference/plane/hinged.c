@@ -1,9 +1,9 @@
 // Finds the rates of a mechanism of hinges and pins in holes.
 //
 // Outwards: where bodies have moved and how fast (reference/plane/tree.c). Pins that are not apart
-// press (reference/plane/dynamics.c). Inwards: bodies are eliminated, and outwards again: their
-// second rates (reference/plane/hinged.c). Then the drive's power (reference/plane/dynamics.c),
-// which needs the forces of the hinges on the driven body (reference/plane/dynamics.c).
+// press. Inwards: bodies are eliminated, and outwards again: their second rates. Then the drive's
+// power, which needs the forces of the hinges on the driven body. The equations are those of
+// reference/plane/dynamics.c and reference/plane/articulated.c.
 #include "reference/plane/hinged.h"
 
 #include "contact/pin_hole.h"
@@ -156,7 +156,6 @@ static inline void hinged_move(const Hinged *hinged, double since_s, const doubl
 }
 
 // The elimination of a tree of hinges and floating bodies, as in reference/plane/articulated.c.
-// As in reference/plane/articulated.c.
 
 // What a body resists with, and what hangs on it.
 typedef struct Mass {
@@ -291,8 +290,8 @@ static bool hinged_bodies_solve(HingedBody *bodies, size_t count, double *rates)
 
 // The state of a mechanism of hinges and pins in holes at one instant.
 //
-// As reference/plane/hinged.c finds its rates, with what rates do not need: angles and positions,
-// pins that are apart, and the forces of all hinges.
+// As its rates are found, with what rates do not need: angles and positions, pins that are apart,
+// and the forces of all hinges.
 
 static inline void add_hinge_reaction(const HingedBody *body, const HingedBody *driven,
                                       HingedLoad *load, Vec2 reaction)

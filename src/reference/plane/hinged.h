@@ -1,4 +1,5 @@
-// What reference/plane/hinged.c works with: a body, its hinge and what hangs on it in one place.
+// Mechanisms of hinges and pins in holes: their bodies, each with its hinge and what hangs on it in
+// one place, and the evaluations of the two commonest of them.
 #pragma once
 
 #include "reference/plane/dynamics.h"
@@ -37,9 +38,6 @@ struct HingedBody {
     Vec2 acceleration; // of the centre
 };
 
-// A driven body, a body on a hinge of the ground, one on a hinge of that, and a pin in a hole
-// between the last and the driven one: the commonest mechanism, a four-bar with play in one pin.
-
 // An end of a pair that touches.
 typedef struct HingedEnd {
     HingedBody *body; // NULL: the ground
@@ -61,14 +59,15 @@ struct Hinged {
     size_t count;
     size_t pin_count;
     HingedPin *pins;
-    // of a steady drive: of any such mechanism, of a pair (reference/plane/hinged_pair.c) or of a
-    // single body (reference/plane/hinged_pair.c)
+    // of a steady drive: of any such mechanism, or of a four-bar or a single body
+    // (reference/plane/hinged_pair.c)
     bool (*rates)(const Hinged *hinged, double since_s, const double *y, double *rates);
     bool (*evaluate)(const Hinged *hinged, double since_s, const double *y, DynamicsState *state,
                      double *rates);
 };
 
-// Whether a mechanism is such a pair of bodies.
+// Whether a mechanism is a four-bar with play in one pin: a driven body, a body on a hinge of the
+// ground, one on a hinge of that, and a pin in a hole between the last and the driven one.
 bool hinged_pair_is(const Hinged *hinged);
 
 // As hinged_rates, of a steady drive, to the last bit.
@@ -78,10 +77,8 @@ bool hinged_pair_rates(const Hinged *hinged, double since_s, const double *y, do
 bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
                           DynamicsState *state, double *rates);
 
-// A body on no hinge whose pin is in a hole of the ground, or whose hole is about a pin there: what
-// drops, bounces and rolls.
-
-// Whether a mechanism is such a body.
+// Whether a mechanism is a body on no hinge whose pin is in a hole of the ground, or whose hole is
+// about a pin there: what drops, bounces and rolls.
 bool hinged_single_is(const Hinged *hinged);
 
 // As hinged_rates, to the last bit.

@@ -1,9 +1,9 @@
-// The rates of a four-bar with one pin in a hole.
+// Finds the rates of the two commonest mechanisms of hinges and pins in holes: a four-bar with one
+// pin in a hole, and a single body with one pin in a hole of the ground.
 //
-// As reference/plane/hinged.c and reference/plane/hinged.c say it of any such tree, in the same
-// order of operations, with what they keep for each body in variables instead of memory: an
-// evaluation waits for each value before it has the next, and a value that goes through memory is
-// late.
+// As reference/plane/hinged.c does for any such tree, in the same order of operations, with what it
+// keeps for each body in variables instead of memory: an evaluation waits for each value before it
+// has the next, and a value that goes through memory is late.
 #include "reference/plane/hinged.h"
 
 #include "contact/pin_hole.h"
@@ -313,10 +313,7 @@ bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
     return true;
 }
 
-// The rates of a single body with one pin in a hole of the ground.
-//
-// As reference/plane/hinged.c says it of any such tree, in the same order of operations, with
-// nothing kept in memory between them, as in reference/plane/hinged_pair.c.
+// The rates of a single body with one pin in a hole of the ground, likewise.
 
 bool hinged_single_is(const Hinged *hinged)
 {

@@ -667,9 +667,9 @@ double tree_time(const Tree *tree, double since_s)
 }
 
 // Building: which coordinates move a linkage.
-// Found once: bodies hang on known ones by ideal joints, those
-// that hang on nothing float, and ideal joints that are left over close loops
-// (reference/span.h).
+//
+// Found once: bodies hang on known ones by ideal joints, those that hang on nothing float, and
+// ideal joints that are left over close loops (reference/span.h).
 
 static bool tree_is_driven(const Tree *tree, int body)
 {

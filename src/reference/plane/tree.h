@@ -13,7 +13,7 @@
 #include "base/vec2.h"
 #include "contact/touch.h"
 
-// What the distance between the ends of a pair is measured along (reference/plane/tree.h).
+// What the distance between the ends of a pair is measured along.
 typedef enum TreeMeasure {
     TREE_POINTS, // x and y
     TREE_LINE,   // the normal of a line on body a
@@ -270,7 +270,7 @@ double tree_line_bias(const Tree *tree, const TreeState *state, int pair);
 // The angle of body b of a prismatic joint or a block against the one that is not tilted, rad.
 double tree_tilt(const Tree *tree, const TreeState *state, int joint);
 
-// The freedoms of a linkage as a tree (reference/plane/tree.h): found, moved and put to use.
+// The functions of the tree: it is built, moved and evaluated.
 
 // The pairs that the sites of a joint have of their own: those of corners and of a slider's stops.
 // Returns how many, with the sites.

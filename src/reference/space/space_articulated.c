@@ -8,7 +8,7 @@
 //     J = I - m [e][e] + sum (J_c + [p] (B_c - A_c [p]) - B_c' [p])
 // A hinge leaves the turning about its axis u free: with D = u J u,
 //     A - B u (B u)' / D,   B - B u (J u)' / D,   J - J u (J u)' / D.
-// Source: Featherstone 1983. Loops: reference/space/space_articulated.c.
+// Source: Featherstone 1983. Loops: see below.
 #include "reference/space/space_articulated.h"
 
 #include "base/zeroed.h"

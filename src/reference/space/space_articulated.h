@@ -6,8 +6,7 @@
 #include "reference/articulated_plan.h"
 #include "reference/space/space_tree.h"
 
-// What the elimination of bodies in space (reference/space/space_articulated.h) works with: a link
-// for each body, and the rows of loops that feel it.
+// What the elimination works with: pushes on the bodies, and the rows of the loops.
 
 // A force at a body's centre, N, and the moment about it, N m.
 typedef struct SpacePush {

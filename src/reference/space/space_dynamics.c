@@ -4,9 +4,9 @@
 //     J qdd = gamma,           M = sum  m B' B + W' I W
 // B, W: velocity of each centre and angular velocity of each body by each coordinate
 // (reference/space/space_tree.h); J, gamma: the joints that close loops
-// (reference/space/space_articulated.h); F, N: gravity and the contacts
-// (reference/space/space_dynamics.c), N about the centre. The drive's power is that of what is
-// missing from the equations of all that turns with it, along its axis.
+// (reference/space/space_articulated.h); F, N: gravity and the contacts (see below), N about the
+// centre. The drive's power is that of what is missing from the equations of all that turns with
+// it, along its axis.
 #include "reference/space/space_dynamics.h"
 
 #include "base/zeroed.h"
@@ -82,7 +82,7 @@ static double space_turn_arm_of(const SpaceTree *tree, int joint)
     return arm;
 }
 
-// The ends of a limited angle as contacts (reference/space/space_dynamics.c): which they are of a
+// The ends of a limited angle as contacts: which they are of a
 // joint, each with its law; how many. The pose and the rest are found by the functions below.
 static size_t space_turn_list(const Scenario *scenario, const SpaceTree *tree, int joint,
                               SpaceContact *contacts, Contact *laws, Err *err)
@@ -538,7 +538,7 @@ void space_dynamics_rates(double since_s, const double *y, double *rates, void *
     space_dynamics_fill_rates(dynamics, state, y, rates);
 }
 
-// What the equations of motion in space need, and of which size.
+// Building: what the equations of motion in space need, and of which size.
 
 // What the coordinates of the tree are.
 static void space_dynamics_list_coordinates(SpaceDynamics *dynamics)

@@ -549,8 +549,8 @@ void space_tree_motions(const SpaceTree *tree, const SpaceTreeState *state, Spac
 }
 
 // Building: which coordinates move a linkage in space.
-// Found once, from the same tree over its bodies as in
-// the plane (reference/span.h).
+//
+// Found once, from the same tree over its bodies as in the plane (reference/span.h).
 
 enum { HINGE_COORDINATES = 1, FLOATING_COORDINATES = 6 };
 
