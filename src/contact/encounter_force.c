@@ -1,6 +1,6 @@
 // With which forces do pins and holes act on the rows of their relative motion?
 //
-// Normal force by the law (contact/force_law.h). Friction, as in reference/dynamics_contact.c:
+// Normal force by the law (contact/force_law.h). Friction, as in reference/plane/dynamics.c:
 // mu N tanh(v_t / v_s) against the sliding speed
 //     v_t = t . u_e' + R u_a' - (R - |e|) u_b',   t the normal turned by a quarter turn,
 // R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body

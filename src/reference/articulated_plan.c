@@ -1,16 +1,20 @@
-// In which order are the unknowns of a tree with loops eliminated?
+// Finds the order in which the unknowns of a tree with loops are eliminated.
 //
 // Bodies from the leaves inwards. Before a body go the loops that come together at it: those whose
 // two ends hang on it, or are on it, along different ways. Which of them goes first is chosen by
 // how few others it is coupled with.
 #include "reference/articulated_plan.h"
 
+#include "base/grouped.h"
+#include "base/leaders.h"
+#include "base/zeroed.h"
+
 #include <assert.h>
 #include <stdlib.h>
 
-enum { GROUND = -1 };
+enum { PLAN_GROUND = -1 };
 
-typedef struct Maker {
+typedef struct PlanMaker {
     const PlanShape *shape;
     Plan *plan;
     size_t *depths;   // by node: how many nodes it hangs on, itself among them
@@ -24,10 +28,11 @@ typedef struct Maker {
     int *next_end;
     int *first_front; // of fronts that come into one of the node's
     int *next_front;
-    size_t rooms[5]; // for how many fronts, places, loops, children and ends there is room
-} Maker;
+    size_t
+        rooms[5]; // for how many fronts, rows of children, loops, children and ends there is room
+} PlanMaker;
 
-static void *widen(void *array, size_t *room, size_t needed, size_t size)
+static void *plan_widen(void *array, size_t *room, size_t needed, size_t size)
 {
     if (needed <= *room) {
         return array;
@@ -38,19 +43,19 @@ static void *widen(void *array, size_t *room, size_t needed, size_t size)
     return wide;
 }
 
-static int node_at(const Maker *maker, int loop, int side)
+static int node_at(const PlanMaker *maker, int loop, int side)
 {
     return maker->shape->ends[loop][side];
 }
 
-static int find_meeting(const Maker *maker, int loop)
+static int plan_find_meeting(const PlanMaker *maker, int loop)
 {
     const int *parents = maker->shape->parents;
     int a = node_at(maker, loop, 0);
     int b = node_at(maker, loop, 1);
     while (a != b) {
         if (a < 0 || b < 0) {
-            return GROUND;
+            return PLAN_GROUND;
         }
         if (maker->depths[a] >= maker->depths[b]) {
             a = parents[a];
@@ -62,17 +67,17 @@ static int find_meeting(const Maker *maker, int loop)
 }
 
 // The loops of a front that are not eliminated in it.
-static size_t left_of(const PlanFront *front)
+static size_t plan_left_of(const PlanFront *front)
 {
     return front->loop_count - (front->is_body ? 0 : 1);
 }
 
-static PlanFront *add_front(Maker *maker, int node, bool is_body)
+static PlanFront *add_front(PlanMaker *maker, int node, bool is_body)
 {
     Plan *plan = maker->plan;
     const size_t room = maker->rooms[0];
     plan->fronts =
-        widen(plan->fronts, &maker->rooms[0], plan->front_count + 1, sizeof *plan->fronts);
+        plan_widen(plan->fronts, &maker->rooms[0], plan->front_count + 1, sizeof *plan->fronts);
     if (maker->rooms[0] != room) {
         maker->parent = realloc(maker->parent, maker->rooms[0] * sizeof *maker->parent);
         maker->next_front = realloc(maker->next_front, maker->rooms[0] * sizeof *maker->next_front);
@@ -91,7 +96,7 @@ static PlanFront *add_front(Maker *maker, int node, bool is_body)
 }
 
 // Takes a loop into the front that is made last, unless it is there.
-static void add_loop(Maker *maker, int loop)
+static void add_loop(PlanMaker *maker, int loop)
 {
     Plan *plan = maker->plan;
     PlanFront *front = &plan->fronts[plan->front_count - 1];
@@ -100,31 +105,32 @@ static void add_loop(Maker *maker, int loop)
     }
     maker->row_of[loop] = (int)(maker->shape->rows * front->loop_count);
     front->loop_count++;
-    plan->loops = widen(plan->loops, &maker->rooms[2], plan->loop_count + 1, sizeof *plan->loops);
+    plan->loops =
+        plan_widen(plan->loops, &maker->rooms[2], plan->loop_count + 1, sizeof *plan->loops);
     plan->loops[plan->loop_count++] = loop;
 }
 
 // Takes a front with all its loops into the one that is made last.
-static void add_child(Maker *maker, int number)
+static void plan_add_child(PlanMaker *maker, int number)
 {
     Plan *plan = maker->plan;
     const PlanFront child = plan->fronts[number];
-    const size_t first = child.first_loop + child.loop_count - left_of(&child);
-    for (size_t i = 0; i < left_of(&child); i++) {
+    const size_t first = child.first_loop + child.loop_count - plan_left_of(&child);
+    for (size_t i = 0; i < plan_left_of(&child); i++) {
         add_loop(maker, plan->loops[first + i]);
     }
     maker->parent[number] = (int)plan->front_count - 1;
     plan->children =
-        widen(plan->children, &maker->rooms[3], plan->child_count + 1, sizeof *plan->children);
+        plan_widen(plan->children, &maker->rooms[3], plan->child_count + 1, sizeof *plan->children);
     plan->children[plan->child_count++] = (PlanChild){number, 0};
     plan->fronts[plan->front_count - 1].child_count++;
 }
 
-static void add_end(Maker *maker, int loop, int side)
+static void plan_add_end(PlanMaker *maker, int loop, int side)
 {
     Plan *plan = maker->plan;
     add_loop(maker, loop);
-    plan->ends = widen(plan->ends, &maker->rooms[4], plan->end_count + 1, sizeof *plan->ends);
+    plan->ends = plan_widen(plan->ends, &maker->rooms[4], plan->end_count + 1, sizeof *plan->ends);
     plan->ends[plan->end_count++] = (PlanEnd){loop, side, 0};
     plan->fronts[plan->front_count - 1].end_count++;
 }
@@ -137,7 +143,7 @@ static void put_first(int *first, int *next, int number)
 
 // Writes down the rows of all that has come into the front that is made last, which then has the
 // loops that are left in it, and waits at a node.
-static void close_front(Maker *maker, int node)
+static void close_front(PlanMaker *maker, int node)
 {
     Plan *plan = maker->plan;
     const int number = (int)plan->front_count - 1;
@@ -145,12 +151,13 @@ static void close_front(Maker *maker, int node)
     for (size_t i = 0; i < front->child_count; i++) {
         PlanChild *child = &plan->children[front->first_child + i];
         const PlanFront *of = &plan->fronts[child->front];
-        child->first_place = plan->place_count;
-        plan->places = widen(plan->places, &maker->rooms[1], plan->place_count + of->loop_count,
-                             sizeof *plan->places);
-        for (size_t k = of->loop_count - left_of(of); k < of->loop_count; k++) {
+        child->first_child_row = plan->child_row_count;
+        plan->child_rows =
+            plan_widen(plan->child_rows, &maker->rooms[1], plan->child_row_count + of->loop_count,
+                       sizeof *plan->child_rows);
+        for (size_t k = of->loop_count - plan_left_of(of); k < of->loop_count; k++) {
             const int loop = plan->loops[of->first_loop + k];
-            plan->places[plan->place_count++] = (size_t)maker->row_of[loop];
+            plan->child_rows[plan->child_row_count++] = (size_t)maker->row_of[loop];
         }
     }
     for (size_t i = 0; i < front->end_count; i++) {
@@ -172,35 +179,35 @@ static void close_front(Maker *maker, int node)
 }
 
 // How many loops one is coupled with, counted twice where both its fronts have them.
-static size_t degree_of(const Maker *maker, int loop)
+static size_t degree_of(const PlanMaker *maker, int loop)
 {
     size_t sum = 0;
     for (int k = 0; k < 2; k++) {
         const int front = maker->within[loop][k];
-        sum += front >= 0 ? left_of(&maker->plan->fronts[front]) : 0;
+        sum += front >= 0 ? plan_left_of(&maker->plan->fronts[front]) : 0;
     }
     return sum;
 }
 
-static void add_loop_front(Maker *maker, int node, int loop)
+static void add_loop_front(PlanMaker *maker, int node, int loop)
 {
     add_front(maker, node, false);
     add_loop(maker, loop);
     for (int k = 0; k < 2; k++) {
         if (maker->within[loop][k] >= 0) {
-            add_child(maker, maker->within[loop][k]);
+            plan_add_child(maker, maker->within[loop][k]);
         }
     }
     for (int side = 0; side < 2; side++) {
         if (node >= 0 && node_at(maker, loop, side) == node) {
-            add_end(maker, loop, side);
+            plan_add_end(maker, loop, side);
         }
     }
     close_front(maker, node);
 }
 
 // Eliminates the loops that come together at a node or at the ground. The list becomes shorter.
-static void add_loop_fronts(Maker *maker, int node)
+static void add_loop_fronts(PlanMaker *maker, int node)
 {
     int *first = &maker->first_loop[node + 1];
     while (*first >= 0) {
@@ -215,18 +222,18 @@ static void add_loop_fronts(Maker *maker, int node)
 }
 
 // Eliminates the freedom of a node; no front is needed where no loop feels it.
-static void add_body_front(Maker *maker, int node)
+static void add_body_front(PlanMaker *maker, int node)
 {
     Plan *plan = maker->plan;
     const int number = (int)plan->front_count;
     add_front(maker, node, true);
     for (int i = maker->first_front[node + 1]; i >= 0; i = maker->next_front[i]) {
         if (maker->parent[i] < 0) {
-            add_child(maker, i);
+            plan_add_child(maker, i);
         }
     }
     for (int end = maker->first_end[node + 1]; end >= 0; end = maker->next_end[end]) {
-        add_end(maker, end / 2, end % 2);
+        plan_add_end(maker, end / 2, end % 2);
     }
     const PlanFront *own = &plan->fronts[number];
     if (own->child_count + own->end_count == 0) {
@@ -248,10 +255,10 @@ static int *make_numbers(size_t count)
     return numbers;
 }
 
-static void list_loops(Maker *maker)
+static void plan_list_loops(PlanMaker *maker)
 {
     for (int loop = (int)maker->shape->loop_count - 1; loop >= 0; loop--) {
-        const int meeting = find_meeting(maker, loop);
+        const int meeting = plan_find_meeting(maker, loop);
         put_first(&maker->first_loop[meeting + 1], maker->next_loop, loop);
         for (int side = 0; side < 2; side++) {
             const int node = node_at(maker, loop, side);
@@ -284,7 +291,7 @@ void articulated_plan_make(const PlanShape *shape, Plan *plan)
     for (size_t i = 0; i < loop_count; i++) {
         within[i][0] = within[i][1] = -1;
     }
-    Maker maker = {
+    PlanMaker maker = {
         .shape = shape,
         .plan = plan,
         .depths = find_depths(shape),
@@ -296,14 +303,14 @@ void articulated_plan_make(const PlanShape *shape, Plan *plan)
         .next_end = make_numbers(2 * loop_count),
         .first_front = make_numbers(nodes + 1),
     };
-    list_loops(&maker);
+    plan_list_loops(&maker);
     for (int node = (int)nodes - 1; node >= 0; node--) {
         plan->fronts_from[node + 1] = plan->front_count;
         add_loop_fronts(&maker, node);
         add_body_front(&maker, node);
     }
     plan->fronts_from[0] = plan->front_count;
-    add_loop_fronts(&maker, GROUND);
+    add_loop_fronts(&maker, PLAN_GROUND);
     free(within);
     free(maker.depths);
     int *rooms[] = {maker.row_of,   maker.first_loop,  maker.next_loop,  maker.first_end,
@@ -316,10 +323,78 @@ void articulated_plan_make(const PlanShape *shape, Plan *plan)
 void articulated_plan_finish(Plan *plan)
 {
     free(plan->fronts);
-    free(plan->places);
+    free(plan->child_rows);
     free(plan->loops);
     free(plan->children);
     free(plan->ends);
     free(plan->front_of);
     free(plan->fronts_from);
+}
+
+// Parts of a tree are the bodies that ideal joints tie to one another.
+//
+// A body and what hangs on it, and the bodies at both ends of a loop. The ground and the driven
+// body, which nothing moves, tie nothing.
+
+// Numbers the parts in the order of their first nodes.
+static void number_parts(const PlanShape *shape, ArticulatedParts *parts)
+{
+    size_t *roots = zeroed(shape->node_count, sizeof *roots);
+    leaders_start(roots, shape->node_count);
+    for (size_t i = 0; i < shape->node_count; i++) {
+        if (shape->parents[i] >= 0) {
+            leaders_join(roots, i, (size_t)shape->parents[i]);
+        }
+    }
+    for (size_t i = 0; i < shape->loop_count; i++) {
+        const int *ends = shape->ends[i];
+        if (ends[0] >= 0 && ends[1] >= 0) {
+            leaders_join(roots, (size_t)ends[0], (size_t)ends[1]);
+        }
+    }
+    for (size_t i = 0; i < shape->node_count; i++) {
+        const size_t root = leaders_find(roots, i);
+        parts->of_node[i] = root == i ? parts->count++ : parts->of_node[root];
+    }
+    free(roots);
+}
+
+// The part that a front belongs to, by any of its loops; none of a loop that moves nothing.
+static size_t part_of_front(const PlanShape *shape, const Plan *plan, const PlanFront *front,
+                            const ArticulatedParts *parts)
+{
+    const int *ends = shape->ends[plan->loops[front->first_loop]];
+    const int node = ends[0] >= 0 ? ends[0] : ends[1];
+    return node >= 0 ? parts->of_node[node] : GROUPED_NONE;
+}
+
+void articulated_parts_find(const PlanShape *shape, const Plan *plan, ArticulatedParts *parts)
+{
+    const size_t first_at_ground = plan->fronts_from[0];
+    const size_t at_ground = plan->front_count - first_at_ground;
+    *parts = (ArticulatedParts){.of_node = zeroed(shape->node_count, sizeof *parts->of_node)};
+    number_parts(shape, parts);
+    parts->first_node = zeroed(parts->count + 1, sizeof *parts->first_node);
+    parts->nodes = zeroed(shape->node_count, sizeof *parts->nodes);
+    grouped_list(parts->count, shape->node_count, parts->of_node, parts->first_node, parts->nodes);
+    size_t *of_front = zeroed(at_ground, sizeof *of_front);
+    for (size_t i = 0; i < at_ground; i++) {
+        of_front[i] = part_of_front(shape, plan, &plan->fronts[first_at_ground + i], parts);
+    }
+    parts->first_front = zeroed(parts->count + 1, sizeof *parts->first_front);
+    parts->fronts = zeroed(at_ground, sizeof *parts->fronts);
+    grouped_list(parts->count, at_ground, of_front, parts->first_front, parts->fronts);
+    for (size_t i = 0; i < parts->first_front[parts->count]; i++) {
+        parts->fronts[i] += first_at_ground;
+    }
+    free(of_front);
+}
+
+void articulated_parts_finish(ArticulatedParts *parts)
+{
+    free(parts->of_node);
+    free(parts->first_node);
+    free(parts->nodes);
+    free(parts->first_front);
+    free(parts->fronts);
 }

@@ -1,4 +1,4 @@
-// In which order are the unknowns of a tree with loops eliminated, and what meets in each step?
+// The order in which the unknowns of a tree with loops are eliminated, and what meets in each step.
 // Found once, from the tree alone.
 //
 // A front is one step: the rows of some loops, and what is eliminated is a body's freedom or the
@@ -21,7 +21,7 @@ typedef struct PlanShape {
 // A front that comes into another, and where its loops are there.
 typedef struct PlanChild {
     int front;
-    size_t first_place; // into Plan.places: by loop of the child, the row in this front
+    size_t first_child_row; // into Plan.child_rows: by loop of the child, the row in this front
 } PlanChild;
 
 // An end of a loop on the body of a front.
@@ -45,8 +45,8 @@ typedef struct PlanFront {
 typedef struct Plan {
     size_t front_count;
     PlanFront *fronts;
-    size_t place_count;
-    size_t *places;
+    size_t child_row_count;
+    size_t *child_rows;
     size_t loop_count;
     int *loops; // in the fronts
     size_t child_count;
@@ -60,3 +60,50 @@ typedef struct Plan {
 
 void articulated_plan_make(const PlanShape *shape, Plan *plan);
 void articulated_plan_finish(Plan *plan);
+
+// The bodies of a tree that ideal joints tie to one another, part by part: pushes on one part
+// accelerate that part alone.
+
+typedef struct ArticulatedParts {
+    size_t count;
+    size_t *of_node;     // by node; owned, like all below
+    size_t *first_node;  // by part and one more: where its nodes begin
+    size_t *nodes;       // part by part, in order
+    size_t *first_front; // by part and one more: where its fronts at the ground begin
+    size_t *fronts;      // part by part, in order
+} ArticulatedParts;
+
+// One of them.
+typedef struct ArticulatedPart {
+    size_t node_count;
+    const size_t *nodes; // in order
+    size_t front_count;
+    const size_t *fronts; // at the ground, in order
+} ArticulatedPart;
+
+static inline ArticulatedPart articulated_part(const ArticulatedParts *parts, size_t part)
+{
+    const size_t node = parts->first_node[part];
+    const size_t front = parts->first_front[part];
+    return (ArticulatedPart){
+        .node_count = parts->first_node[part + 1] - node,
+        .nodes = parts->nodes + node,
+        .front_count = parts->first_front[part + 1] - front,
+        .fronts = parts->fronts + front,
+    };
+}
+
+// The nodes of a part, or of a whole tree of so many (NULL).
+static inline size_t articulated_part_count(const ArticulatedPart *part, size_t node_count)
+{
+    return part != NULL ? part->node_count : node_count;
+}
+
+static inline size_t articulated_part_node(const ArticulatedPart *part, size_t number)
+{
+    return part != NULL ? part->nodes[number] : number;
+}
+
+// Of the shape that the plan is made for.
+void articulated_parts_find(const PlanShape *shape, const Plan *plan, ArticulatedParts *parts);
+void articulated_parts_finish(ArticulatedParts *parts);

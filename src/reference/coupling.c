@@ -1,33 +1,34 @@
-// Which parts of a mechanism feel one another, and which can be moved at once to see what they do?
+// Finds which parts of a mechanism act on one another, and which can be displaced at once to
+// differentiate the accelerations by all of them.
 //
 // Two parts are neighbours where a force acts between their bodies. A row has the columns of its
 // part's neighbours and of itself. Parts with a neighbour in common, or neighbours themselves, are
 // of different colours. Source: Curtis, Powell and Reid 1974, differences of sparse Jacobians.
-#include "reference/coupling.h"
+#include "reference/integrators.h"
 
 #include "base/room.h"
 #include "base/zeroed.h"
 
-typedef struct Link {
+typedef struct CouplingLink {
     size_t a;
     size_t b;
-} Link;
+} CouplingLink;
 
 // What is known while a coupling is made.
-typedef struct Maker {
+typedef struct CouplingMaker {
     Coupling *coupling;
     size_t link_count;
     size_t link_room;
-    Link *links;             // of parts, in any order and more than once
+    CouplingLink *links;     // of parts, in any order and more than once
     size_t *first_neighbour; // by part and one more
     size_t *neighbours;      // each once, the part itself the first
-} Maker;
+} CouplingMaker;
 
-static void add_link(Maker *maker, size_t a, size_t b)
+static void add_link(CouplingMaker *maker, size_t a, size_t b)
 {
     maker->links =
         room_grow(maker->links, &maker->link_room, maker->link_count + 1, sizeof *maker->links);
-    maker->links[maker->link_count++] = (Link){a, b};
+    maker->links[maker->link_count++] = (CouplingLink){a, b};
 }
 
 static void add_part(const size_t *part_of_body, int body, CouplingJoint *joint)
@@ -44,7 +45,7 @@ static void add_part(const size_t *part_of_body, int body, CouplingJoint *joint)
     joint->parts[joint->count++] = part;
 }
 
-static void link_all(Maker *maker, const CouplingJoint *joint)
+static void link_all(CouplingMaker *maker, const CouplingJoint *joint)
 {
     for (size_t i = 0; i < joint->count; i++) {
         for (size_t k = 0; k < i; k++) {
@@ -54,7 +55,7 @@ static void link_all(Maker *maker, const CouplingJoint *joint)
 }
 
 // The torque of a drive and springs at joints act between bodies of a joint.
-static void link_bodies(Maker *maker, const Linkage *linkage, const size_t *part_of_body)
+static void link_bodies(CouplingMaker *maker, const Linkage *linkage, const size_t *part_of_body)
 {
     CouplingJoint *joints = zeroed(linkage->joint_count, sizeof *joints);
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -87,7 +88,7 @@ static void begin_each(size_t *counts, size_t count)
 }
 
 // Each part's neighbours, with those that are listed more than once.
-static void gather_neighbours(Maker *maker, size_t *first, size_t *found)
+static void gather_neighbours(CouplingMaker *maker, size_t *first, size_t *found)
 {
     const size_t parts = maker->coupling->part_count;
     size_t *filled = zeroed(parts, sizeof *filled);
@@ -103,14 +104,14 @@ static void gather_neighbours(Maker *maker, size_t *first, size_t *found)
         found[first[i] + filled[i]++] = i;
     }
     for (size_t i = 0; i < maker->link_count; i++) {
-        const Link link = maker->links[i];
+        const CouplingLink link = maker->links[i];
         found[first[link.a] + filled[link.a]++] = link.b;
         found[first[link.b] + filled[link.b]++] = link.a;
     }
     free(filled);
 }
 
-static void find_neighbours(Maker *maker)
+static void find_neighbours(CouplingMaker *maker)
 {
     const size_t parts = maker->coupling->part_count;
     size_t *first = zeroed(parts + 1, sizeof *first);
@@ -141,18 +142,18 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static size_t size_of(const Coupling *coupling, size_t part)
+static size_t coupling_part_size(const Coupling *coupling, size_t part)
 {
-    return coupling->first_member[part + 1] - coupling->first_member[part];
+    return coupling->first_coordinate[part + 1] - coupling->first_coordinate[part];
 }
 
-static void list_columns(const Maker *maker)
+static void list_columns(const CouplingMaker *maker)
 {
     Coupling *coupling = maker->coupling;
     size_t *first = zeroed(coupling->part_count + 1, sizeof *first);
     for (size_t i = 0; i < coupling->part_count; i++) {
         for (size_t k = maker->first_neighbour[i]; k < maker->first_neighbour[i + 1]; k++) {
-            first[i] += size_of(coupling, maker->neighbours[k]);
+            first[i] += coupling_part_size(coupling, maker->neighbours[k]);
         }
     }
     begin_each(first, coupling->part_count);
@@ -161,9 +162,9 @@ static void list_columns(const Maker *maker)
         size_t end = first[i];
         for (size_t k = maker->first_neighbour[i]; k < maker->first_neighbour[i + 1]; k++) {
             const size_t part = maker->neighbours[k];
-            memcpy(columns + end, coupling->members + coupling->first_member[part],
-                   size_of(coupling, part) * sizeof *columns);
-            end += size_of(coupling, part);
+            memcpy(columns + end, coupling->coordinates + coupling->first_coordinate[part],
+                   coupling_part_size(coupling, part) * sizeof *columns);
+            end += coupling_part_size(coupling, part);
         }
         qsort(columns + first[i], end - first[i], sizeof *columns, compare);
     }
@@ -176,7 +177,7 @@ static void list_columns(const Maker *maker)
 }
 
 // Colours each part unlike all before it that have a neighbour in common with it.
-static void find_colours(const Maker *maker)
+static void find_colours(const CouplingMaker *maker)
 {
     Coupling *coupling = maker->coupling;
     const size_t parts = coupling->part_count;
@@ -209,19 +210,19 @@ static void find_colours(const Maker *maker)
 }
 
 // Of parts whose links are known.
-static Coupling *make(Maker *maker, size_t count, size_t part_count, const size_t *part_of)
+static Coupling *make(CouplingMaker *maker, size_t count, size_t part_count, const size_t *part_of)
 {
     Coupling *coupling = maker->coupling;
     coupling->count = count;
     coupling->part_count = part_count;
     coupling->part_of = zeroed(count, sizeof *coupling->part_of);
-    coupling->first_member = zeroed(part_count + 1, sizeof *coupling->first_member);
-    coupling->members = zeroed(count, sizeof *coupling->members);
+    coupling->first_coordinate = zeroed(part_count + 1, sizeof *coupling->first_coordinate);
+    coupling->coordinates = zeroed(count, sizeof *coupling->coordinates);
     coupling->first_value = zeroed(count + 1, sizeof *coupling->first_value);
     coupling->first_coloured = zeroed(part_count + 1, sizeof *coupling->first_coloured);
     coupling->coloured = zeroed(part_count, sizeof *coupling->coloured);
     memcpy(coupling->part_of, part_of, count * sizeof *part_of);
-    grouped_list(part_count, count, part_of, coupling->first_member, coupling->members);
+    grouped_list(part_count, count, part_of, coupling->first_coordinate, coupling->coordinates);
     find_neighbours(maker);
     list_columns(maker);
     find_colours(maker);
@@ -234,7 +235,7 @@ static Coupling *make(Maker *maker, size_t count, size_t part_count, const size_
 Coupling *coupling_create(const Linkage *linkage, size_t part_count, size_t body_count,
                           const CouplingBody *bodies)
 {
-    Maker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
+    CouplingMaker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
     size_t count = 0;
     size_t *part_of_body = zeroed(linkage->body_count, sizeof *part_of_body);
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -259,7 +260,7 @@ Coupling *coupling_create(const Linkage *linkage, size_t part_count, size_t body
 
 Coupling *coupling_create_full(size_t count)
 {
-    Maker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
+    CouplingMaker maker = {.coupling = zeroed(1, sizeof *maker.coupling)};
     size_t *part_of = zeroed(count, sizeof *part_of);
     Coupling *coupling = make(&maker, count, 1, part_of);
     free(part_of);
@@ -272,8 +273,8 @@ void coupling_destroy(Coupling *coupling)
         return;
     }
     free(coupling->part_of);
-    free(coupling->first_member);
-    free(coupling->members);
+    free(coupling->first_coordinate);
+    free(coupling->coordinates);
     free(coupling->first_column);
     free(coupling->columns);
     free(coupling->first_value);
@@ -283,7 +284,7 @@ void coupling_destroy(Coupling *coupling)
     free(coupling);
 }
 
-size_t coupling_place(const Coupling *coupling, size_t part, size_t column)
+size_t coupling_column_index(const Coupling *coupling, size_t part, size_t column)
 {
     const size_t *columns = coupling_columns(coupling, part);
     const size_t width = coupling_width(coupling, part);
@@ -303,8 +304,8 @@ size_t coupling_place(const Coupling *coupling, size_t part, size_t column)
 double coupling_entry(const Coupling *coupling, const double *values, size_t row, size_t column)
 {
     const size_t part = coupling->part_of[row];
-    const size_t place = coupling_place(coupling, part, column);
-    return place < coupling_width(coupling, part) ? values[coupling->first_value[row] + place]
+    const size_t index = coupling_column_index(coupling, part, column);
+    return index < coupling_width(coupling, part) ? values[coupling->first_value[row] + index]
                                                   : 0.0;
 }
 

@@ -1,4 +1,4 @@
-// When does a contact begin, end or go slack?
+// Finds when a contact begins, ends or goes slack.
 //
 // Each mode holds while its margins are not negative:
 //     apart:    -d             d the penetration
@@ -14,24 +14,24 @@
 // not off it again, a contact that begins and one that ends differ by more than rounding, and no
 // contact can begin and end for ever at one instant. Contacts whose events lie nearer to each other
 // than rounding can resolve change together.
-#include "reference/events.h"
+#include "reference/stepper.h"
 
 #include "base/root.h"
 
 #include <float.h>
 #include <math.h>
 
-enum { HALVINGS = 24, LANDINGS = 4, MARGINS = 2 };
+enum { HALVINGS = 24, LANDING_ITERATIONS = 4, MARGINS = 2 };
 
-// a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
-static const double LANDED = 1e-19;
+// m: a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
+static const double LANDING_DEPTH_M = 1e-19;
 
 // of a step: an end that is moved by less moves with its rates, whose square this leaves below
 // rounding; a longer way is a step of its own
-static const double NEAR = 1e-6;
+static const double END_SHIFT_SHARE = 1e-6;
 
 // roundings of a position or a speed that the sum of a handful of terms leaves uncertain
-static const double ROUNDINGS = 4.0 * DBL_EPSILON;
+static const double EVENTS_ROUNDING = 4.0 * DBL_EPSILON;
 
 typedef struct Margin {
     const System *system;
@@ -60,16 +60,16 @@ static double rounding_of(const System *system, const SystemState *state, size_t
     double length = 0.0;
     double speed = 0.0;
     system->kind->sizes(system, state, number, &length, &speed);
-    const double depth = ROUNDINGS * length;
+    const double depth = EVENTS_ROUNDING * length;
     if (mode == CONTACT_APART || which == 0) {
         return depth;
     }
     if (contact->law.viscous > 0.0) {
         const double reached = fmax(state->contacts[number].depth, depth);
         return force_law_tangent(&contact->law, reached) * depth +
-               contact->law.viscous * ROUNDINGS * speed;
+               contact->law.viscous * EVENTS_ROUNDING * speed;
     }
-    return contact->damping_rate * ROUNDINGS * speed;
+    return contact->damping_rate * EVENTS_ROUNDING * speed;
 }
 
 // The contact at a time in the step.
@@ -124,7 +124,7 @@ double events_point_time(const Dop853 *integrator, const EventPoints *points, si
                                       : integrator->time + share * integrator->tried;
 }
 
-bool events_look(const System *system, Dop853 *integrator, EventPoints *points)
+bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *points)
 {
     points->count = EVENTS_POINTS_MAX;
     for (size_t i = 0; i < system->contact_count; i++) {
@@ -171,7 +171,7 @@ static bool is_used_up(const Margin *margin, const SystemState *state, double le
 }
 
 // A free pin that went towards its wall and comes back may have been there in between: where the
-// penetration has its maximum it is looked at once more.
+// penetration has its maximum it is evaluated once more.
 static bool has_been_there(Margin *margin, double first, double last, const SystemState *state,
                            double *top)
 {
@@ -180,7 +180,7 @@ static bool has_been_there(Margin *margin, double first, double last, const Syst
            is_used_up(margin, state, margin_at(*top, margin));
 }
 
-static void look_at(Margin *margin, const EventPoints *points, Event *event)
+static void events_evaluate_at(Margin *margin, const EventPoints *points, Event *event)
 {
     const System *system = margin->system;
     const ContactMode mode = system->contacts[margin->contact].mode;
@@ -212,7 +212,7 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
         Event event = {.time = INFINITY};
         for (int which = 0; which < margins; which++) {
             Margin margin = {system, integrator, i, which};
-            look_at(&margin, points, &event);
+            events_evaluate_at(&margin, points, &event);
         }
         if (event.time < INFINITY) {
             found->events[found->count++] = event;
@@ -242,9 +242,9 @@ static Press press_at_end(const System *system, const Dop853 *integrator, size_t
                                integrator->next);
 }
 
-static void move_end(Dop853 *integrator, double by)
+static void events_move_end(Dop853 *integrator, double by)
 {
-    if (integrator->method == NULL && fabs(by) < NEAR * integrator->tried) {
+    if (integrator->method == NULL && fabs(by) < END_SHIFT_SHARE * integrator->tried) {
         dop853_shift(integrator, by);
     } else {
         dop853_try(integrator, integrator->tried + by);
@@ -257,18 +257,18 @@ void events_land(const System *system, Dop853 *integrator, Event *event)
     const double longest = integrator->tried;
     dop853_try(integrator, fmax(0.0, event->time - integrator->time));
     Press press = press_at_end(system, integrator, event->contact);
-    for (int i = 0; i < LANDINGS && is_at_wall(system, event); i++) {
+    for (int i = 0; i < LANDING_ITERATIONS && is_at_wall(system, event); i++) {
         const double by = -press.depth / press.closing;
         const double moved = integrator->tried + by;
         // an event that the step began with lies at its start and moves nowhere
-        if (fabs(press.depth) <= LANDED || integrator->tried == 0.0 ||
+        if (fabs(press.depth) <= LANDING_DEPTH_M || integrator->tried == 0.0 ||
             !(moved >= 0.0 && moved <= longest)) {
             break;
         }
-        move_end(integrator, by);
+        events_move_end(integrator, by);
         const Press now = press_at_end(system, integrator, event->contact);
         if (!(fabs(now.depth) < fabs(press.depth))) {
-            move_end(integrator, -by);
+            events_move_end(integrator, -by);
             break;
         }
         press = now;

@@ -1,30 +1,397 @@
-// How does the linkage with play really move? (A solver.)
+// The reference solver: how a linkage with play moves, integrated to its tolerance.
 //
-// Hands on to the solver of one mechanism, or to that of several side by side.
+// A linkage whose parts share nothing but the ground is solved part by part, side by side.
+#include "reference/peaks.h"
+
+#include "base/layout.h"
 #include "base/zeroed.h"
 #include "model/members.h"
-#include "reference/mechanisms.h"
+#include "model/several.h"
+#include "model/solver.h"
+#include "reference/stepper.h"
 
+#include <assert.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What the model says of itself.
+static void reference_label(const Scenario *scenario, size_t coordinates,
+                            char label[TRAJECTORY_LABEL_SIZE])
+{
+    snprintf(label, TRAJECTORY_LABEL_SIZE, "order 8, tolerance %.3g, %zu coordinate%s",
+             scenario->reference.tolerance, coordinates, coordinates == 1 ? "" : "s");
+}
+
+// The solver of one mechanism.
+//
+// The equations of motion in tree coordinates (reference/system.h), integrated by an explicit
+// method of order 8 (reference/integrators.h); contact begin and end are events, between which the
+// right-hand side is smooth. A step of the integrator is passed on in parts that end where a force
+// or a depth has its maximum, so that no peak is missed whatever the step.
+
+typedef struct Mechanism {
+    Stepper *stepper; // owned, like the next two
+    Peaks peaks;
+    SystemState *scratch;
+    size_t point;   // of the step that comes next
+    double since_s; // end of the part of the step that was handed on, from the step's start
+    double start_s; // of that part
+    double end_s;
+    double *y;        // at end_s; owned, like the next two
+    double *before;   // at start_s
+    double *observed; // at a time that is observed
+    double elastic;   // J, stored in the contacts at end_s
+    void *memory;     // owned; where the arrays below are
+    double *omega;    // by body
+    double *alpha;
+    double *impulse; // by joint
+    double *approach;
+    double *onset_s; // when its contact under way began
+    JointState *joints;
+    SpaceJointState *space_joints;
+} Mechanism;
+
+// All arrays, from a layout that counts or has the memory.
+static void mechanism_lay(Mechanism *mechanism, const Linkage *linkage, Layout *layout)
+{
+    const size_t bodies = linkage->body_count;
+    const size_t joints = linkage->joint_count;
+    mechanism->omega = layout_take(layout, bodies, sizeof *mechanism->omega);
+    mechanism->alpha = layout_take(layout, bodies, sizeof *mechanism->alpha);
+    mechanism->impulse = layout_take(layout, joints, sizeof *mechanism->impulse);
+    mechanism->approach = layout_take(layout, joints, sizeof *mechanism->approach);
+    mechanism->onset_s = layout_take(layout, joints, sizeof *mechanism->onset_s);
+    mechanism->joints = layout_take(layout, joints, sizeof *mechanism->joints);
+    mechanism->space_joints = layout_take(layout, joints, sizeof *mechanism->space_joints);
+}
+
+static Mechanism *mechanism_create(const Linkage *linkage)
+{
+    Mechanism *mechanism = calloc(1, sizeof *mechanism);
+    assert(mechanism != NULL);
+    Layout layout = {NULL, 0};
+    mechanism_lay(mechanism, linkage, &layout);
+    mechanism->memory = calloc(1, layout.used + 1);
+    assert(mechanism->memory != NULL);
+    mechanism_lay(mechanism, linkage, &(Layout){mechanism->memory, 0});
+    return mechanism;
+}
+
+static bool fail_at(const Mechanism *mechanism, double time_s, Err *err)
+{
+    char where[LINKAGE_INSTANT_SIZE];
+    linkage_describe_instant(&mechanism->stepper->scenario->linkage, time_s, where);
+    err_prefix(err, where);
+    return false;
+}
+
+static void mechanism_close(void *state)
+{
+    Mechanism *mechanism = state;
+    if (mechanism != NULL) {
+        stepper_finish(mechanism->stepper);
+        peaks_finish(&mechanism->peaks);
+        free(mechanism->stepper);
+        free(mechanism->scratch);
+        free(mechanism->y);
+        free(mechanism->before);
+        free(mechanism->observed);
+        free(mechanism->memory);
+        free(mechanism);
+    }
+}
+
+// The closing speed at which each joint's contact under way began: where a pin presses at both ends
+// of its hole, that of the end that came first.
+static void fill_approach(Mechanism *mechanism)
+{
+    const System *system = mechanism->stepper->system;
+    double *since_s = mechanism->onset_s;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        since_s[system->contacts[i].joint] = INFINITY;
+    }
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
+        const bool is_first = contact->onset_s < since_s[contact->joint];
+        if (!contact->is_collar && contact->mode != CONTACT_APART && is_first) {
+            since_s[contact->joint] = contact->onset_s;
+            mechanism->approach[contact->joint] = contact->impact_speed;
+        }
+    }
+}
+
+// Books one part of a step that ends in a state.
+static void fill_record(Mechanism *mechanism, const SystemState *state)
+{
+    const System *system = mechanism->stepper->system;
+    const double *impulses = mechanism->y + system_sum_index(system, SYSTEM_IMPULSES);
+    const double *before = mechanism->before + system_sum_index(system, SYSTEM_IMPULSES);
+    system->kind->turning(system, state, mechanism->omega, mechanism->alpha);
+    system->kind->joints(system, state, mechanism->joints, mechanism->space_joints);
+    mechanism->elastic = 0.0;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        mechanism->impulse[system->contacts[i].joint] = 0.0;
+    }
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
+        if (!contact->is_collar) {
+            mechanism->impulse[contact->joint] += impulses[i] - before[i];
+        }
+        if (contact->mode != CONTACT_APART) {
+            mechanism->elastic += force_law_energy(&contact->law, state->contacts[i].depth);
+        }
+    }
+    fill_approach(mechanism);
+}
+
+// A part of no length where a contact begins: a viscous damper presses hardest at that instant.
+static bool show_onset(Mechanism *mechanism, Err *err)
+{
+    const Stepper *stepper = mechanism->stepper;
+    const System *system = stepper->system;
+    memcpy(mechanism->y, stepper->integrator.y, stepper->integrator.size * sizeof *mechanism->y);
+    memcpy(mechanism->before, mechanism->y, stepper->integrator.size * sizeof *mechanism->y);
+    if (!system->kind->evaluate(system, 0.0, mechanism->y, mechanism->scratch, NULL)) {
+        return pace_undetermined(err);
+    }
+    mechanism->start_s = mechanism->end_s;
+    mechanism->peaks.has_tops = false;
+    fill_record(mechanism, mechanism->scratch);
+    return true;
+}
+
+static bool advance(Mechanism *mechanism, Err *err)
+{
+    Stepper *stepper = mechanism->stepper;
+    if (mechanism->point == stepper->points.count) {
+        if (!stepper_next(stepper, err)) {
+            return false;
+        }
+        mechanism->point = 0;
+        mechanism->since_s = 0.0;
+        if (stepper->is_after_onset) {
+            return show_onset(mechanism, err);
+        }
+    }
+    Dop853 *integrator = &stepper->integrator;
+    const double point_s = events_point_time(integrator, &stepper->points, mechanism->point);
+    const System *system = stepper->system;
+    const SystemState *state = stepper->points.states[mechanism->point];
+    const double end_s = peaks_next(&mechanism->peaks, stepper, mechanism->since_s, point_s, state);
+    const bool is_end = end_s == integrator->time + integrator->tried;
+    const double *y = is_end ? integrator->next : dop853_dense(integrator, end_s);
+    memcpy(mechanism->before, mechanism->y, integrator->size * sizeof *mechanism->y);
+    memcpy(mechanism->y, y, integrator->size * sizeof *mechanism->y);
+    if (end_s < point_s) {
+        system->kind->evaluate(system, end_s, mechanism->y, mechanism->scratch, NULL);
+        state = mechanism->scratch;
+    } else {
+        mechanism->point++;
+    }
+    mechanism->since_s = end_s;
+    mechanism->start_s = mechanism->end_s;
+    mechanism->end_s = system->kind->time(system, end_s);
+    fill_record(mechanism, state);
+    return system_check_depth(system, state, 1.0, err);
+}
+
+static bool mechanism_open(const Scenario *scenario, void **state, Err *err)
+{
+    Mechanism *mechanism = mechanism_create(&scenario->linkage);
+    Stepper *stepper = calloc(1, sizeof *stepper);
+    assert(stepper != NULL);
+    mechanism->stepper = stepper;
+    if (!stepper_init(stepper, scenario, err)) {
+        mechanism_close(mechanism);
+        return false;
+    }
+    const size_t size = stepper->integrator.size;
+    mechanism->y = calloc(size, sizeof *mechanism->y);
+    mechanism->before = calloc(size, sizeof *mechanism->before);
+    mechanism->observed = calloc(size, sizeof *mechanism->observed);
+    assert(mechanism->y != NULL && mechanism->before != NULL && mechanism->observed != NULL);
+    mechanism->scratch = system_state_create(stepper->system);
+    mechanism->peaks = peaks_create(stepper->system, mechanism->scratch);
+    // the stepper stands at a point; the first call takes its first step
+    mechanism->point = stepper->points.count;
+    memcpy(mechanism->y, stepper->integrator.y, size * sizeof *mechanism->y);
+    *state = mechanism;
+    return true;
+}
+
+static bool mechanism_step(void *state, double stop_s, Err *err)
+{
+    (void)stop_s; // samples are looked up inside the step
+    Mechanism *mechanism = state;
+    return advance(mechanism, err) || fail_at(mechanism, mechanism->end_s, err);
+}
+
+// A whole step, without a search for peaks.
+static bool mechanism_stride(void *state, double stop_s, double *end_s, Err *err)
+{
+    (void)stop_s;
+    Mechanism *mechanism = state;
+    Stepper *stepper = mechanism->stepper;
+    const System *system = stepper->system;
+    const Dop853 *integrator = &stepper->integrator;
+    bool is_known = stepper_next(stepper, err);
+    for (size_t i = 0; is_known && i < stepper->points.count; i++) {
+        is_known = system_check_depth(system, stepper->points.states[i], 1.0, err);
+    }
+    if (!is_known) {
+        return fail_at(mechanism, mechanism->end_s, err);
+    }
+    mechanism->end_s = system->kind->time(system, integrator->time + integrator->tried);
+    *end_s = mechanism->end_s;
+    return true;
+}
+
+static StepRecord mechanism_record(const void *state)
+{
+    const Mechanism *mechanism = state;
+    const size_t sums = system_sum_index(mechanism->stepper->system, 0);
+    const bool is_spatial = mechanism->stepper->scenario->linkage.is_spatial;
+    const double *now = mechanism->y + sums;
+    const double *then = mechanism->before + sums;
+    return (StepRecord){
+        .start_s = mechanism->start_s,
+        .end_s = mechanism->end_s,
+        .joint_s = mechanism->end_s,
+        .is_smooth = true,
+        .omega = mechanism->omega,
+        .alpha = mechanism->alpha,
+        .joints = mechanism->joints,
+        .space_joints = is_spatial ? mechanism->space_joints : NULL,
+        .tops = mechanism->peaks.has_tops ? mechanism->peaks.batch.tops : NULL,
+        .impulse = mechanism->impulse,
+        .approach = mechanism->approach,
+        .drive_work = now[SYSTEM_DRIVE_WORK] - then[SYSTEM_DRIVE_WORK],
+        .dissipated = now[SYSTEM_DISSIPATED] - then[SYSTEM_DISSIPATED],
+        .friction = now[SYSTEM_FRICTION] - then[SYSTEM_FRICTION],
+        .elastic = mechanism->elastic,
+    };
+}
+
+static void mechanism_observe(const void *state, double time_s, Sample *sample)
+{
+    const Mechanism *mechanism = state;
+    const Linkage *linkage = &mechanism->stepper->scenario->linkage;
+    const System *system = mechanism->stepper->system;
+    SystemState *at = mechanism->scratch;
+    const double since_s = system->kind->since(system, time_s);
+    double *y = mechanism->observed;
+    dop853_dense_all(&mechanism->stepper->integrator, since_s, y);
+    system->kind->project(system, since_s, y);
+    sample->time_s = time_s;
+    sample->crank_rad = linkage_crank_angle(linkage, time_s);
+    if (!system->kind->evaluate(system, since_s, y, at, NULL)) {
+        // at a change point, where the run ends
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            sample->bodies[i].omega = NAN;
+        }
+        return;
+    }
+    system->kind->bodies(system, at, sample);
+    system->kind->joints(system, at, sample->joints, sample->space_joints);
+}
+
+static void mechanism_glance(const void *state, double time_s, Sample *sample)
+{
+    const Mechanism *mechanism = state;
+    const System *system = mechanism->stepper->system;
+    const double since_s = system->kind->since(system, time_s);
+    if (system->kind->motions == NULL) {
+        mechanism_observe(state, time_s, sample);
+        return;
+    }
+    double *y = mechanism->observed;
+    dop853_dense_motion(&mechanism->stepper->integrator, since_s, y);
+    if (!system->kind->motions(system, since_s, y, sample)) {
+        mechanism_observe(state, time_s, sample);
+    }
+}
+
+static SolverModel mechanism_model(const void *state)
+{
+    const Mechanism *mechanism = state;
+    const Dop853 *integrator = &mechanism->stepper->integrator;
+    const System *system = mechanism->stepper->system;
+    SolverModel model = {
+        .constraint_rows = system->kind->rows(system),
+        .contact_rows = system->contact_count,
+        .steps = integrator->accepted + integrator->rejected,
+        .evaluations = integrator->evaluations,
+    };
+    reference_label(mechanism->stepper->scenario, system->coordinate_count, model.label);
+    return model;
+}
+
+// How many coordinates the equations of a mechanism have.
+static size_t mechanism_coordinates(const void *state)
+{
+    return ((const Mechanism *)state)->stepper->system->coordinate_count;
+}
+
+static const Solver MECHANISM_SOLVER = {
+    .name = "reference",
+    .open = mechanism_open,
+    .step = mechanism_step,
+    .stride = mechanism_stride,
+    .record = mechanism_record,
+    .observe = mechanism_observe,
+    .glance = mechanism_glance,
+    .model = mechanism_model,
+    .close = mechanism_close,
+};
+
+// Mechanisms that share nothing but the ground move side by side.
+//
+// Each by itself (model/several.h): an event of one ends no step of another.
+
+// of a step
+static const double MECHANISMS_ROUNDING_SHARE = 1e-9;
+
+static bool open_each(const Scenario *scenario, void **state, Err *err)
+{
+    return several_open(scenario, &MECHANISM_SOLVER, MECHANISMS_ROUNDING_SHARE, state, err);
+}
+
+static SolverModel model_of_all(const void *state)
+{
+    SolverModel model = several_model(state);
+    size_t coordinates = 0;
+    for (size_t i = 0; i < several_count(state); i++) {
+        coordinates += mechanism_coordinates(several_state(state, i));
+    }
+    reference_label(several_scenario(state), coordinates, model.label);
+    return model;
+}
+
+static const Solver MECHANISMS_SOLVER = {
+    .name = "reference",
+    .open = open_each,
+    .step = several_step,
+    .stride = several_stride,
+    .record = several_record,
+    .observe = several_observe,
+    .observe_part = several_observe_part,
+    .glance = several_glance,
+    .model = model_of_all,
+    .close = several_close,
+};
 
 typedef struct Reference {
     const Solver *solver;
     void *state; // of it
 } Reference;
 
-void reference_label(const Scenario *scenario, size_t coordinates,
-                     char label[TRAJECTORY_LABEL_SIZE])
-{
-    snprintf(label, TRAJECTORY_LABEL_SIZE, "order 8, tolerance %.3g, %zu coordinate%s",
-             scenario->reference.tolerance, coordinates, coordinates == 1 ? "" : "s");
-}
-
 static bool reference_open(const Scenario *scenario, void **state, Err *err)
 {
     Reference *reference = zeroed(1, sizeof *reference);
     const Linkage *linkage = &scenario->linkage;
     const bool is_several = linkage->body_count > 0 && members_count(linkage) > 1;
-    reference->solver = is_several ? &REFERENCE_SEVERAL : &REFERENCE_ONE;
+    reference->solver = is_several ? &MECHANISMS_SOLVER : &MECHANISM_SOLVER;
     if (!reference->solver->open(scenario, &reference->state, err)) {
         free(reference);
         return false;

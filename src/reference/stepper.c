@@ -1,4 +1,4 @@
-// How does the motion get from one event to the next?
+// Takes the motion step by step from one event to the next.
 //
 // Errors are allowed relative to the speed of the fastest point of the mechanism: tolerance times
 // that in the speed of each body's furthest joint, and that times the step in each coordinate, so
@@ -6,8 +6,8 @@
 // is from the pivot that it turns about. Work and losses are allowed the tolerance times m v^2.
 #include "reference/stepper.h"
 
-#include "reference/plane_system.h"
-#include "reference/space_system.h"
+#include "model/forces.h"
+#include "reference/system.h"
 
 #include <assert.h>
 #include <float.h>
@@ -15,11 +15,354 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Ends a run whose steps or events pile up at one instant.
+//
+// Bounces of a pin follow one another ever faster, down to heights of rounding: some hundred of
+// them at the end of 1e-8 s. A contact that is stiff or strongly damped needs steps of a share of
+// its own time; of a usual one that is some ten thousand steps a turn. Both end by themselves.
+
+// of a turn of the drive, or of a run without one
+static const double PACE_INSTANT_SHARE = 1e-12;
+static const double PACE_STEP_SHARE = 5e-8; // twenty million steps a turn: minutes each
+
+enum { EVENTS_MOST = 1000, STEPS_COUNTED = 50000 };
+
+static double pace_turn_of(const System *system)
+{
+    const Scenario *scenario = system->scenario;
+    return drive_is_steady(&scenario->linkage.driver) ? linkage_period(&scenario->linkage)
+                                                      : scenario_duration(scenario);
+}
+
+static const char *joint_name(const System *system, size_t contact)
+{
+    return system->scenario->linkage.joints[system->contacts[contact].joint].name;
+}
+
+static bool refuse_steps(const Pace *pace, const System *system, double time_s, Err *err)
+{
+    const double width_s = time_s - pace->since_s;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        if (system->contacts[i].mode == CONTACT_PRESSING) {
+            return err_set(
+                err, ERR_SOLVER,
+                "%d steps advanced the motion by only %.3g s: the contact of %s is too stiff "
+                "or too strongly damped; use a higher restitution, another damping or a "
+                "lower stiffness",
+                STEPS_COUNTED, width_s, joint_name(system, i));
+        }
+    }
+    return err_set(
+        err, ERR_SOLVER, "%d steps advanced the motion by only %.3g s%s", STEPS_COUNTED, width_s,
+        forces_any(&system->scenario->linkage) ? ": a spring or a damper is too strong; lower it"
+                                               : "");
+}
+
+bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err)
+{
+    const double turn_s = pace_turn_of(system);
+    if (time_s - pace->instant_s > PACE_INSTANT_SHARE * turn_s) {
+        pace->instant_s = time_s;
+        pace->events = 0;
+    }
+    pace->events += events->count;
+    if (pace->events > EVENTS_MOST * system->contact_count) {
+        return err_set(err, ERR_SOLVER,
+                       "the contact of %s keeps beginning and ending: %zu changes within %.3g s",
+                       joint_name(system, events->events[0].contact), pace->events,
+                       time_s - pace->instant_s);
+    }
+    pace->steps++;
+    if (pace->steps == STEPS_COUNTED) {
+        if (time_s - pace->since_s < PACE_STEP_SHARE * STEPS_COUNTED * turn_s) {
+            return refuse_steps(pace, system, time_s, err);
+        }
+        pace->steps = 0;
+        pace->since_s = time_s;
+    }
+    return true;
+}
+
+// An ideal joint cannot be kept closed. Returns false, with ERR_SOLVER.
+static bool pace_astray(Err *err)
+{
+    return err_set(err, ERR_SOLVER,
+                   "the energy is not kept where the ideal joints pass a change point, at which "
+                   "they do not determine how the motion continues; give one of them play, or a "
+                   "looser reference.tolerance");
+}
+
+static bool pace_torn(const System *system, Err *err)
+{
+    return err_set(err, ERR_SOLVER,
+                   "the ideal joint %s cannot be kept closed: the loop that it closes is locked; "
+                   "give one of its joints play, or let its lengths and axes fit",
+                   system->scenario->linkage.joints[system->torn].name);
+}
+
+bool pace_undetermined(Err *err)
+{
+    return err_set(err, ERR_SOLVER,
+                   "the accelerations are not determined: the ideal joints stand at a change "
+                   "point, or are redundant; give one of them play, or start elsewhere");
+}
+
+// Limits the step in which a contact is about to end.
+//
+// Where a contact ends, its force has a corner, as of d^n, and no formula is of its order across
+// it. With depth d, its rate d' < 0 and second rate d'', the contact ends after
+//     t = 2 d / (-d' + sqrt(d'^2 - 2 d d'')),
+// or not at all where the root is of a negative number. What the corner costs grows with the
+// impulse that is still to come, F t. Steps keep to a share of t until that is small enough to be
+// crossed: as small as one was that has been crossed before.
+
+// Of the step that the errors so far allow: an end that is nearer is worth a limit, and one that
+// is nearer than the second number is rounding.
+static const double ENDING_STEP_SHARE = 0.9;
+static const double ENDING_ROUNDING_SHARE = 1e-6;
+
+// Of the time to the end: so that it is crossed, and so that it is not. Measured, shares of 0.6 to
+// 0.85 cost the same to one in a hundred.
+static const double ENDING_CROSSED_SHARE = 1.05;
+static const double ENDING_AVOIDED_SHARE = 0.7;
+
+// How what can be crossed changes where an end was crossed, and where it could not be.
+static const double ENDING_GROWTH = 2.0;
+static const double ENDING_DECAY = 0.25;
+
+// of the step: over which the second rate is found
+static const double ENDING_DIFFERENCE_SHARE = 1e-3;
+
+// Where nothing has been seen yet.
+static Ending ending_start(void)
+{
+    return (Ending){.crossed = INFINITY, .size = -1.0};
+}
+
+// The second rate of a depth.
+static double second_rate(const System *system, size_t contact, double closing,
+                          const Dop853 *integrator)
+{
+    const double little_s = ENDING_DIFFERENCE_SHARE * integrator->step;
+    double *y = integrator->at;
+    for (size_t i = 0; i < integrator->size; i++) {
+        y[i] = integrator->y[i] + little_s * integrator->stages[0][i];
+    }
+    const Press later = system->kind->press(system, contact, integrator->time + little_s, y);
+    return (later.closing - closing) / little_s;
+}
+
+// The time after which a contact ends, if that is below a limit; infinite otherwise.
+static double time_left(const System *system, size_t contact, const Press *press,
+                        const Dop853 *integrator, double limit_s)
+{
+    const double speed = -press->closing;
+    const bool is_pressing = system->contacts[contact].mode == CONTACT_PRESSING;
+    // no acceleration makes it less than half of what the speed alone says, but one that grows
+    if (!is_pressing || !(speed > 0.0 && press->depth > 0.0) ||
+        press->depth > 2.0 * limit_s * speed) {
+        return INFINITY;
+    }
+    const double second = second_rate(system, contact, press->closing, integrator);
+    const double square = speed * speed - 2.0 * press->depth * second;
+    const double left_s = square > 0.0 ? 2.0 * press->depth / (speed + sqrt(square)) : INFINITY;
+    return left_s < limit_s ? left_s : INFINITY;
+}
+
+// The longest step from a state on, which is the integrator's, s; infinite where no contact ends
+// soon. The integrator has the rates there, and its room for a state is used.
+static double ending_limit(Ending *ending, const System *system, const SystemState *state,
+                           const Dop853 *integrator)
+{
+    double least_s = integrator->step / ENDING_STEP_SHARE;
+    double size = -1.0;
+    ending->size = -1.0;
+    for (size_t i = 0; integrator->method == NULL && i < system->contact_count; i++) {
+        const Press *press = &state->contacts[i];
+        const double left_s = time_left(system, i, press, integrator, least_s);
+        if (left_s < least_s && left_s > ENDING_ROUNDING_SHARE * integrator->step) {
+            least_s = left_s;
+            size = press->elastic * left_s;
+        }
+    }
+    if (size < 0.0) {
+        return INFINITY;
+    }
+    if (size > ending->crossed) {
+        return ENDING_AVOIDED_SHARE * least_s;
+    }
+    ending->size = size;
+    return ENDING_CROSSED_SHARE * least_s;
+}
+
+// Takes note of whether the step was refused.
+static void ending_note(Ending *ending, bool is_refused)
+{
+    if (ending->size >= 0.0) {
+        ending->crossed = is_refused ? ENDING_DECAY * ending->size
+                                     : fmax(ending->crossed, ENDING_GROWTH * ending->size);
+    }
+}
+
+// Chooses the method that takes the next step.
+//
+// Rates die away in a contact of damping c with the time constant m / c. The explicit method is
+// held to steps of some three of them, however smooth the motion is. The measure of it is the
+// largest eigenvalue of -dA/du. Their sum would not do: of several contacts, none of which holds
+// steps back, it had the implicit method take over at a multiple of the work.
+//
+// At a small tolerance steps are shorter still: the accelerations at the stages, which are of low
+// order, err by c / m of the stages' speeds. Of a contact that does not oscillate for long,
+//     (c / 2 sqrt(k m))^2 = (c / m) (c / k) / 4  >  1 / 4
+// that costs many times the steps that the motion needs. No rate tells by how many: the implicit
+// method is put on trial, and stays where its steps are longer by more than they cost. (Trials of
+// contacts that do oscillate cost up to a tenth of the work and win nothing.)
+
+enum { STIFFNESS_CHECK_INTERVAL = 32 }; // explicit steps
+
+// Steps times the largest rate of decay. Above the first the explicit method is held back,
+// below the second it takes the same steps for a fifth of the work.
+static const double STIFFNESS_LIMITED = 2.5;
+static const double STIFFNESS_UNLIMITED = 0.5;
+
+// A trial costs the work of some steps. It is worth while from these on, of a contact by itself:
+// steps times its rate of decay, and that rate times c / k.
+static const double STIFFNESS_TRIAL_DECAY = 0.02;
+static const double STIFFNESS_TRIAL_DAMPING = 1.0;
+
+// an implicit step takes the work of some eight explicit ones
+static const double STIFFNESS_STEP_COST = 8.0;
+
+// What accelerations are differentiated by: of the fastest speed, and of a depth
+static const double SPEED_SHARE = 1e-7;
+static const double DEPTH_SHARE = 1e-3;
+
+// The smallest depth that a force depends on in the next step, m; 0 where nothing presses.
+static double smallest_depth(const System *system, const SystemState *state, double step)
+{
+    double smallest = 0.0;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Press *press = &state->contacts[i];
+        if (system->contacts[i].mode == CONTACT_PRESSING) {
+            const double depth =
+                (fabs(press->depth) + step * fabs(press->closing)) * system->contacts[i].arm;
+            smallest = smallest > 0.0 ? fmin(smallest, depth) : depth;
+        }
+    }
+    return smallest;
+}
+
+static void set_nudges(const System *system, const SpeedScale *scale, double depth, double *nudge)
+{
+    const size_t n = system->coordinate_count;
+    for (size_t i = 0; i < n; i++) {
+        const int body = system->coordinates[i].turning;
+        const double moved = DEPTH_SHARE * depth;
+        nudge[i] = body < 0 ? moved : moved * scale->turning[body] / scale->moving;
+        nudge[n + i] = SPEED_SHARE * (body < 0 ? scale->moving : scale->turning[body]);
+    }
+}
+
+// Whether the damping of the contacts outweighs their springs by so much that explicit steps may be
+// far shorter than need be.
+static bool is_doubtful(const System *system, const SystemState *state, double step, double decay)
+{
+    double relaxation_s = 0.0; // the longest time in which a spring moves its damper
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
+        const double depth = fabs(state->contacts[i].depth);
+        const double stiffness = force_law_tangent(&contact->law, depth);
+        if (contact->mode == CONTACT_PRESSING) {
+            const double damping = press_damping(contact, &state->contacts[i]);
+            relaxation_s = stiffness > 0.0 ? fmax(relaxation_s, damping / stiffness) : relaxation_s;
+        }
+    }
+    return step * decay > STIFFNESS_TRIAL_DECAY && decay * relaxation_s > STIFFNESS_TRIAL_DAMPING;
+}
+
+// Whether the implicit method takes over from the explicit one, or is put on trial.
+static bool takes_over(Stiffness *stiffness, const System *system, const SystemState *state,
+                       Dop853 *integrator)
+{
+    const double decay = stiffness->radau->decay;
+    if (integrator->step * decay > STIFFNESS_LIMITED) {
+        return true;
+    }
+    if (!is_doubtful(system, state, integrator->step, decay)) {
+        return false;
+    }
+    if (stiffness->wait > 0) {
+        stiffness->wait--;
+        return false;
+    }
+    stiffness->beaten_s = integrator->step;
+    integrator->step *= 2.0 * STIFFNESS_STEP_COST;
+    return true;
+}
+
+// Whether the implicit method stays: after a trial where its step was worth it.
+static bool stays(Stiffness *stiffness, double taken_s, Dop853 *integrator)
+{
+    const double beaten_s = stiffness->beaten_s;
+    stiffness->beaten_s = 0.0;
+    if (beaten_s == 0.0) {
+        return integrator->step * stiffness->radau->decay > STIFFNESS_UNLIMITED;
+    }
+    if (taken_s > STIFFNESS_STEP_COST * beaten_s) {
+        stiffness->pause = 0;
+        return true;
+    }
+    integrator->step = beaten_s;
+    // the next trials come at ever longer intervals
+    stiffness->pause = 2 * stiffness->pause + 1;
+    stiffness->wait = stiffness->pause;
+    return false;
+}
+
+// To be asked before each step, whether an event has come at its start or not, with the length of
+// the step before it, s; the integrator stands at the state. Sets the method.
+static void stiffness_follow(Stiffness *stiffness, const System *system, const SystemState *state,
+                             const SpeedScale *scale, double taken_s, bool is_event,
+                             Dop853 *integrator)
+{
+    const double depth = smallest_depth(system, state, integrator->step);
+    const bool is_implicit = integrator->method != NULL;
+    stiffness->steps = is_event ? 0 : stiffness->steps + 1;
+    if (is_event || !(depth > 0.0)) {
+        stiffness->beaten_s = 0.0;
+        stiffness->wait = stiffness->pause = 0;
+    }
+    if (!(depth > 0.0)) {
+        integrator->method = NULL;
+        return;
+    }
+    if (!is_implicit && stiffness->steps < STIFFNESS_CHECK_INTERVAL) {
+        return;
+    }
+    stiffness->steps = 0;
+    if (stiffness->radau == NULL) {
+        stiffness->radau = radau_create(integrator);
+    }
+    Radau *radau = stiffness->radau;
+    set_nudges(system, scale, depth, radau->nudge);
+    if (!is_implicit || is_event) {
+        radau_find_decay(radau, integrator);
+    }
+    const bool is_next = is_implicit ? stays(stiffness, taken_s, integrator)
+                                     : takes_over(stiffness, system, state, integrator);
+    integrator->method = is_next ? &radau->method : NULL;
+}
+
+static void stiffness_finish(Stiffness *stiffness)
+{
+    radau_destroy(stiffness->radau);
+}
+
 // of a step: two events nearer to each other than this are one, seen with rounding
-static const double SAME = 1e-9;
+static const double SIMULTANEOUS_SHARE = 1e-9;
 
 // of the deepest penetration a law knows: a pin that cannot be followed beyond it is at its end
-static const double NEARLY = 0.99;
+static const double DEPTH_LIMIT_SHARE = 0.99;
 
 // Shares of a tolerance that speeds of centres and of furthest joints have: measured, a four-bar
 // with two loose joints then errs by some forty times its tolerance
@@ -32,10 +375,10 @@ static const double POSITION_SHARE = 16.0;
 
 // 1: eight times the rounding of a number, for an estimate of the error that sees as much as it
 // allows lets no step grow
-static const double ROUNDING = 0x1p-50;
+static const double TOLERANCE_LEAST_SHARE = 0x1p-50;
 
 // of the time: below this, rounding of the time would show in a step
-static const double SHORTEST = 16.0 * DBL_EPSILON;
+static const double STEP_SHORTEST_SHARE = 16.0 * DBL_EPSILON;
 
 static const SystemState *state_at_end(const Stepper *stepper)
 {
@@ -88,12 +431,12 @@ static void allow_rounding(Stepper *stepper)
     double moved = 0.0;
     for (size_t i = 0; i < system->contact_count; i++) {
         const Contact *contact = &system->contacts[i];
-        const double rounding = ROUNDING * contact->clearance;
+        const double rounding = TOLERANCE_LEAST_SHARE * contact->clearance;
         // a contact that rounding alone keeps from its end is continued below zero depth
         const double depth = fmax(fabs(state->contacts[i].depth), rounding);
         if (contact->mode == CONTACT_PRESSING) {
             force += rounding * force_law_tangent(&contact->law, depth);
-            damped += ROUNDING * stepper->scale.moving *
+            damped += TOLERANCE_LEAST_SHARE * stepper->scale.moving *
                       press_damping(contact, &state->contacts[i]) / (contact->arm * contact->arm);
         }
         moved = moved > 0.0 ? fmin(moved, rounding) : rounding;
@@ -226,7 +569,7 @@ static void take_over(Stepper *stepper)
     // time and coordinates count from here on
     const bool is_other = system->kind->rebase(system, integrator->time, integrator->y);
     integrator->time = 0.0;
-    integrator->shortest = SHORTEST * system->kind->time(system, 0.0);
+    integrator->shortest = STEP_SHORTEST_SHARE * system->kind->time(system, 0.0);
     if (stepper->events.count > 0) {
         apply_events(stepper);
     }
@@ -244,15 +587,14 @@ static double smooth_limit(const Stepper *stepper)
     const System *system = stepper->system;
     const Linkage *linkage = &stepper->scenario->linkage;
     const double time_s = system->kind->time(system, 0.0);
-    const double least_s = SHORTEST * time_s; // a bend nearer than this has been reached
+    const double least_s = STEP_SHORTEST_SHARE * time_s; // a bend nearer than this has been reached
     const double bend_s = fmin(time_table_next_bend(&linkage->torque.table, time_s + least_s),
                                drive_next_kink(&linkage->driver, time_s + least_s));
     return fmin(stepper->duration_s, bend_s) - time_s;
 }
 
 // The longest step in which no free pin crosses more than its play, nor a stop more than its size:
-// error control alone lets a free
-// flight, which it integrates exactly, be as long as it likes.
+// error control alone lets a free flight, which it integrates exactly, be as long as it likes.
 static double flight_limit(const Stepper *stepper)
 {
     const System *system = stepper->system;
@@ -279,7 +621,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
     if (!system->kind->evaluate(system, integrator->time, integrator->y, state, NULL)) {
         return pace_undetermined(err);
     }
-    if (!system_check_depth(system, state, NEARLY, err)) {
+    if (!system_check_depth(system, state, DEPTH_LIMIT_SHARE, err)) {
         return false;
     }
     return err_set(err, ERR_SOLVER,
@@ -308,17 +650,17 @@ static bool step_to_event(Stepper *stepper, Err *err)
     if (!attempt(stepper)) {
         return fail_to_step(stepper, err);
     }
-    const double same_s = SAME * integrator->tried;
+    const double same_s = SIMULTANEOUS_SHARE * integrator->tried;
     Event landed = {.time = INFINITY};
     stepper->events.count = 0;
     for (size_t i = 0; i <= system->contact_count; i++) {
-        if (!events_look(system, integrator, &stepper->points)) {
+        if (!events_evaluate(system, integrator, &stepper->points)) {
             return pace_undetermined(err);
         }
         // a shorter step sees better: it may show an event before the one it was cut to
         events_find(system, integrator, &stepper->points, &stepper->found);
         const Event *first = events_first(&stepper->found);
-        if (first == NULL || first->time >= landed.time - SAME * integrator->tried) {
+        if (first == NULL || first->time >= landed.time - SIMULTANEOUS_SHARE * integrator->tried) {
             break;
         }
         landed = *first;

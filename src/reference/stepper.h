@@ -2,12 +2,90 @@
 #pragma once
 
 #include "model/scale.h"
-#include "reference/dop853.h"
-#include "reference/ending.h"
-#include "reference/events.h"
-#include "reference/pace.h"
-#include "reference/stiffness.h"
+#include "reference/integrators.h"
 #include "reference/system.h"
+
+// Events: a contact begins, ends or goes slack (reference/events.c).
+
+typedef struct Event {
+    double time; // s
+    size_t contact;
+    ContactMode mode; // the mode that begins
+} Event;
+
+// Events of a step, at most one a contact.
+typedef struct EventList {
+    size_t count;
+    Event *events; // owned by the stepper, one a contact
+} EventList;
+
+// A step is evaluated in some points, equal parts of it, the last at its end. While nothing presses
+// steps are long, and a pin might reach its wall and leave it within one; while something does some
+// ten steps make a swing, and the end is enough.
+enum { EVENTS_POINTS_MAX = 4 };
+
+typedef struct EventPoints {
+    size_t count;
+    SystemState *states[EVENTS_POINTS_MAX]; // owned by the stepper
+} EventPoints;
+
+// Evaluates the points of the tried step, and the rates at its end with the last of them. Returns
+// false where the accelerations are not determined.
+bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *points);
+
+// The time of one point.
+double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
+
+// The first event of each contact in the step, as far as there is one.
+void events_find(const System *system, Dop853 *integrator, const EventPoints *points,
+                 EventList *found);
+
+// The earliest of those that were found; NULL where there is none.
+const Event *events_first(const EventList *found);
+
+// Shortens the tried step so that it ends on the event to rounding.
+void events_land(const System *system, Dop853 *integrator, Event *event);
+
+// Keeps of the events that were found the one that the step has landed on and those that nothing
+// but rounding keeps apart from it: within a time, s, of it, or at the wall like it.
+void events_gather(const System *system, const Dop853 *integrator, const EventPoints *points,
+                   const Event *landed, double same_s, EventList *found);
+
+// Changes the contacts' modes at the end of the step, with their impact speeds.
+void events_apply(System *system, const EventList *events, double time_s, const double *y);
+
+// What the ends of contacts have shown so far.
+typedef struct Ending {
+    double crossed; // N s: ends with less than so much impulse to come can be crossed
+    double size;    // N s, to come at the end that the present step is to cross; negative: none
+} Ending;
+
+// How far the motion has got, while steps or events might pile up at one instant.
+typedef struct Pace {
+    size_t steps; // since
+    double since_s;
+    size_t events; // since
+    double instant_s;
+} Pace;
+
+// Counts a step that starts at a time, and the events there. Fails with ERR_SOLVER and the joint to
+// blame where steps or events have come so close together that the run would not end.
+bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err);
+
+// The equations for the accelerations have no solution: joints hold each other up. Returns false,
+// with ERR_SOLVER.
+bool pace_undetermined(Err *err);
+
+// Which of the two methods takes the next step: the explicit one, or the implicit one where a
+// contact is damped so strongly that explicit steps are far shorter than the motion is smooth.
+typedef struct Stiffness {
+    Radau *radau; // owned; NULL before the first check
+    size_t steps; // explicit ones since the last event or check
+    // While the implicit method is on trial: the explicit step that it has to beat, s; else 0.
+    double beaten_s;
+    size_t wait;  // checks until another trial may follow the last one
+    size_t pause; // as many were waited for after the last trial that was lost
+} Stiffness;
 
 typedef struct Stepper {
     const Scenario *scenario;
@@ -15,7 +93,7 @@ typedef struct Stepper {
     Dop853 integrator; // its tried step is the present one
     EventPoints points;
     EventList events; // at its end
-    EventList found;  // room for those of a step that is looked at
+    EventList found;  // room for those of a step that is checked
     Pace pace;
     Stiffness stiffness;
     bool has_step;

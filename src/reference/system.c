@@ -1,4 +1,5 @@
-// What do all equations of motion with contacts share?
+// Implements what all equations of motion with contacts share: the coordinates that each contact
+// depends on, and the limit of its depth.
 #include "reference/system.h"
 
 #include "base/zeroed.h"

@@ -1,17 +1,93 @@
 // Equations of motion with contacts, as those see them who step through them: events, peaks, the
-// stepper and the solver. Those of the plane are in reference/dynamics.c, those of space in
-// reference/space_system.c; each puts a System first in a structure of its own.
+// stepper and the solver. Those of the plane are in reference/plane/dynamics.c, those of space in
+// reference/space/space_system.c; each puts a System first in a structure of its own.
 //
 // The integrator's vector holds the coordinates since the base (where the linkage stood at the
 // start of the present step), their rates, and what is added up over time. Times are those since
 // the base, s.
 #pragma once
 
+#include "contact/force_law.h"
 #include "contact/pin_space.h"
 #include "model/trajectory.h"
-#include "reference/coupling.h"
-#include "reference/dop853.h"
-#include "reference/press.h"
+#include "reference/integrators.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+// How hard a contact presses: its law in the mode that it is in, as a function of depth and closing
+// speed alone. The same in the plane and in space.
+//
+//     N = F_el(d) (1 + chi d'/v0) + c d'
+
+// What a contact is doing. It changes at events only.
+typedef enum ContactMode {
+    CONTACT_APART,    // the pin is within its play
+    CONTACT_PRESSING, // it overlaps the wall and is pressed
+    CONTACT_SLACK,    // it overlaps the wall, but leaves it faster than the spring follows
+} ContactMode;
+
+typedef struct Contact {
+    int joint;
+    int partner; // of a limited coordinate: by how many contacts the one at its other end comes
+                 // later; 0: there is none
+    ForceLaw law;
+    double clearance;   // m, radial, or of a collar in space axial; 0 of a stop
+    double arm;         // m, by which an angle counts as a length and a torque as a force; 1 of
+                        // what is a length already
+    double flight;      // m, by which it may come nearer between two evaluations while it is apart
+    double hole_radius; // m, of a pin in space
+    bool is_collar;     // of a pin in space: it stops the pin along its axis
+    ContactMode mode;
+    double onset_s;      // when the contact under way began
+    double impact_speed; // m/s, closing speed when the contact under way began
+    double damping_rate; // s/m, chi / v0 of it, v0 not below the law's floor
+} Contact;
+
+// A contact's force along its normal at one instant.
+typedef struct Press {
+    double depth;          // m, negative in the free play
+    double closing;        // m/s, rate of the depth
+    double elastic;        // N, of the law's spring, continued as an odd function below zero depth
+    double normal;         // N, what presses in the present mode
+    double pressing;       // N, what would press in the pressing mode, not clamped at zero
+    double release;        // turns negative where a pressing contact goes slack
+    double damping_power;  // W, lost along the normal
+    double friction_power; // W, lost in sliding; friction is added by who knows the geometry
+} Press;
+
+// What the law of a contact makes of a depth and its rate.
+static inline Press press_find(const Contact *contact, double depth, double closing)
+{
+    const ForceLaw *law = &contact->law;
+    Press press = {.depth = depth, .closing = closing};
+    if (contact->mode == CONTACT_APART) {
+        return press;
+    }
+    // odd below zero depth: a step that overshoots the end of a contact stays smooth
+    press.elastic = copysign(force_law_elastic(law, fabs(depth)), depth);
+    const double rise = 1.0 + contact->damping_rate * closing;
+    press.pressing = press.elastic * rise + law->viscous * closing;
+    press.release = law->viscous > 0.0 ? press.pressing : rise;
+    // a slack spring relaxes by itself: what it had stored is lost like the damper's work
+    press.normal = contact->mode == CONTACT_PRESSING ? press.pressing : 0.0;
+    press.damping_power = (press.normal - press.elastic) * closing;
+    return press;
+}
+
+// How strongly a contact is damped, N s/m.
+static inline double press_damping(const Contact *contact, const Press *press)
+{
+    return press->elastic * contact->damping_rate + contact->law.viscous;
+}
+
+// The rate of the normal force, N/s, of a contact that presses, from the second rate of its depth.
+static inline double press_rate(const Contact *contact, const Press *press, double second)
+{
+    const double rise = 1.0 + contact->damping_rate * press->closing;
+    return force_law_tangent(&contact->law, press->depth) * press->closing * rise +
+           press_damping(contact, press) * second;
+}
 
 // What is added up, behind the rates.
 typedef enum SystemSum {
@@ -77,7 +153,7 @@ typedef struct SystemKind {
     void (*bodies)(const System *system, const SystemState *state, Sample *sample);
     // Where the bodies are at a time and how fast they move, without their accelerations: of
     // equations whose accelerations are always determined. NULL, or false, of others.
-    bool (*place)(const System *system, double since_s, const double *y, Sample *sample);
+    bool (*motions)(const System *system, double since_s, const double *y, Sample *sample);
     // Rows of the joints that close loops.
     size_t (*rows)(const System *system);
     void (*destroy)(System *system);
@@ -122,3 +198,11 @@ Press system_press(const System *system, Dop853 *integrator, size_t contact, dou
 
 // Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
 bool system_check_depth(const System *system, const SystemState *state, double share, Err *err);
+
+// Makes the equations of motion of a scenario in the plane. Returns NULL with ERR_CASE where a
+// contact law does not fit a joint. The caller frees them by their kind.
+System *plane_system_create(const Scenario *scenario, Err *err);
+
+// Makes the equations of motion of a scenario in space. Returns NULL with ERR_CASE where a contact
+// law does not fit a joint. The caller frees them by their kind.
+System *space_system_create(const Scenario *scenario, Err *err);

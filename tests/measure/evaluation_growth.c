@@ -5,8 +5,7 @@
 // evaluation_growth KIND N COUNT: so many evaluations, to count their instructions.
 #include "base/clock.h"
 #include "lifted.h"
-#include "reference/plane_system.h"
-#include "reference/space_system.h"
+#include "reference/system.h"
 
 #include <assert.h>
 #include <malloc.h>

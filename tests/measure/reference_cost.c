@@ -10,7 +10,7 @@
 #include "base/clock.h"
 #include "casefile/casefile.h"
 #include "measure/error.h"
-#include "reference/dynamics.h"
+#include "reference/plane/dynamics.h"
 #include "reference/stepper.h"
 #include "run/registry.h"
 #include "run/run.h"

@@ -5,9 +5,9 @@
 #include "base/dense.h"
 #include "base/lcg.h"
 #include "reference/articulated_plan.h"
-#include "reference/loops.h"
-#include "reference/tree_line.h"
-#include "reference/tree_span.h"
+#include "reference/plane/articulated.h"
+#include "reference/plane/tree.h"
+#include "reference/span.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,8 +5,8 @@
 #include "mechanism.h"
 
 #include "base/lcg.h"
-#include "reference/dynamics.h"
-#include "reference/radau.h"
+#include "reference/integrators.h"
+#include "reference/plane/dynamics.h"
 
 #include <string.h>
 
@@ -111,7 +111,7 @@ static double outside(Dynamics *dynamics)
         y[k] = kept;
         for (size_t i = 0; i < n; i++) {
             const size_t part = coupling->part_of[i];
-            if (coupling_place(coupling, part, k % n) == coupling_width(coupling, part)) {
+            if (coupling_column_index(coupling, part, k % n) == coupling_width(coupling, part)) {
                 worst = fmax(worst, fabs(changed[n + i] - before[n + i]));
             }
         }
@@ -164,7 +164,7 @@ static Radau *differentiate(Dynamics *dynamics, const double *y, const Coupling 
         radau->nudge[i] = NUDGE;
     }
     *evaluations = integrator->evaluations;
-    radau_look(radau, integrator);
+    radau_find_decay(radau, integrator);
     *evaluations = integrator->evaluations - *evaluations;
     return radau;
 }

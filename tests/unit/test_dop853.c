@@ -1,7 +1,7 @@
 // Is the integrator of the order it claims, in its steps and in between?
 #include "close.h"
 
-#include "reference/dop853.h"
+#include "reference/integrators.h"
 
 // The order conditions of pure quadrature: sum b_i c_i^(p-1) = 1/p up to p = 8, and not at p = 9.
 static void the_weights_integrate_polynomials_up_to_the_order(void **state)

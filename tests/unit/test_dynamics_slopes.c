@@ -6,7 +6,7 @@
 #include "slider.h"
 
 #include "base/lcg.h"
-#include "reference/dynamics_slopes.h"
+#include "reference/plane/dynamics.h"
 
 enum { COORDINATES = 16, SIZE = 2 * COORDINATES + SYSTEM_IMPULSES + 8 };
 
@@ -50,9 +50,9 @@ static void press(Pressed *pressed, const Scenario *mechanism)
         const TouchPose pose = dynamics_contact(dynamics, i, 0.0, pressed->y).pose;
         contact->clearance = vec2_length(pose.offset) - DEPTH;
         // of lines and discs
-        dynamics->tree.base_distances[dynamics->places[i].pair] -= pose.gap + DEPTH;
+        dynamics->tree.base_distances[dynamics->sites[i].pair] -= pose.gap + DEPTH;
         // of angles and teeth
-        dynamics->places[i].end += pose.gap + DEPTH;
+        dynamics->sites[i].end += pose.gap + DEPTH;
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include "mechanism.h"
 
-#include "reference/dynamics.h"
+#include "reference/plane/dynamics.h"
 #include "reference/stepper.h"
 
 #include <stdlib.h>

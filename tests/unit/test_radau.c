@@ -2,7 +2,7 @@
 // smooth?
 #include "close.h"
 
-#include "reference/radau.h"
+#include "reference/integrators.h"
 
 // Couplings: polynomials of degree 6 up to each node; weights: of degree 12, and not of degree 13.
 static void the_coefficients_integrate_polynomials(void **state)
@@ -78,7 +78,7 @@ static Radau *start_at(Dop853 *integrator, Dop853Rates rates, Stiff *stiff, doub
     radau->nudge[0] = radau->nudge[1] = 1e-7;
     const double y[3] = {place, rate, 0.0};
     dop853_start(integrator, 0.0, y);
-    radau_look(radau, integrator);
+    radau_find_decay(radau, integrator);
     return radau;
 }
 
@@ -204,7 +204,7 @@ static void systems_side_by_side_move_as_each_alone(void **state)
     }
     const double y[7] = {1.0, 2.0, -1.0};
     dop853_start(&integrator, 0.0, y);
-    radau_look(radau, &integrator);
+    radau_find_decay(radau, &integrator);
     for (int i = 0; i < 64; i++) {
         assert_true(dop853_try(&integrator, 2.0 / 64.0) < INFINITY);
         dop853_fill(&integrator);
@@ -218,7 +218,7 @@ static void systems_side_by_side_move_as_each_alone(void **state)
     // neighbours
     assert_int_equal(radau->newton.block_count, 2);
     assert_int_equal(radau->newton.blocks[0].size, 2);
-    assert_int_equal(radau->newton.members[1], 2);
+    assert_int_equal(radau->newton.coordinates[1], 2);
     finish(&integrator, radau);
 }
 
@@ -228,7 +228,7 @@ static void decay_is_measured(void **state)
     Stiff stiff = {1e6};
     Dop853 integrator;
     Radau *radau = start_at(&integrator, held_to_a_sine, &stiff, 0.0, 1.0);
-    assert_close(radau_look(radau, &integrator), 1e6, 1e-6);
+    assert_close(radau_find_decay(radau, &integrator), 1e6, 1e-6);
     finish(&integrator, radau);
 }
 
@@ -258,7 +258,7 @@ static void the_largest_rate_of_decay_counts(void **state)
         radau->nudge[i] = 1e-7;
     }
     dop853_start(&integrator, 0.0, integrator.y);
-    assert_close(radau_look(radau, &integrator), 10.0, 0.01);
+    assert_close(radau_find_decay(radau, &integrator), 10.0, 0.01);
     finish(&integrator, radau);
 }
 

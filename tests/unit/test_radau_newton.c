@@ -2,7 +2,7 @@
 #include "close.h"
 
 #include "base/lcg.h"
-#include "reference/radau_newton.h"
+#include "reference/integrators.h"
 
 #include <stdlib.h>
 
@@ -94,10 +94,12 @@ static void blocks_are_solved_dense_or_banded(void **state)
     assert_near(residual(&newton, x, right), 0.0, 1e-11);
     // control: another derivative, far from where the chain was begun
     newton.by_rate[3][coupling->first_value[CHAIN - 1] +
-                      coupling_place(coupling, coupling->part_of[CHAIN - 1], CHAIN - 1)] += 0.1;
+                      coupling_column_index(coupling, coupling->part_of[CHAIN - 1], CHAIN - 1)] +=
+        0.1;
     assert_true(residual(&newton, x, right) > 1e-5);
     // where they press on one another all are one block
-    newton.by_rate[0][coupling->first_value[0] + coupling_place(coupling, 0, COUNT - 1)] = 0.1;
+    newton.by_rate[0][coupling->first_value[0] + coupling_column_index(coupling, 0, COUNT - 1)] =
+        0.1;
     assert_true(radau_newton_factor(&newton, STEP));
     assert_int_equal(newton.block_count, 1);
     radau_newton_finish(&newton);

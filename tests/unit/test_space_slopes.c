@@ -4,7 +4,7 @@
 #include "mechanism.h"
 
 #include "base/lcg.h"
-#include "reference/space_slopes.h"
+#include "reference/space/space_dynamics.h"
 
 enum {
     BODIES = 3,

@@ -2,7 +2,7 @@
 #include "close.h"
 
 #include "base/lcg.h"
-#include "reference/turn.h"
+#include "reference/space/turn.h"
 
 static Vec3 draw(uint64_t *seed, double size)
 {

@@ -1,0 +1,688 @@
+// Finds the accelerations of a linkage with play in the plane.
+//
+//     M qdd = sum over bodies B^T (F - m a_bias) + moments + J^T lambda,   J qdd = gamma
+// B: velocity of each centre by each coordinate (reference/plane/tree.h), M = sum m B^T B + I; J,
+// gamma: the joints that close loops. Solved body by body: reference/plane/articulated.h. The
+// contacts' forces: see below; those of springs, dampers and torques: model/forces.c.
+#include "reference/plane/dynamics.h"
+
+#include "base/zeroed.h"
+#include "contact/pin_hole.h"
+#include "model/coordinate.h"
+#include "model/forces.h"
+#include "reference/plane/articulated.h"
+#include "reference/plane/tree.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Contact forces: the force with which two bodies press on one another where they touch.
+//
+// Where: contact/touch.h, with distances that keep their digits (reference/plane/tree.h). Along the
+// normal n as its law has it (reference/system.h), never below zero (that is the slack mode), and
+// against the sliding speed v_t of the two bodies at the touching point, across the normal:
+//     mu N tanh(v_t / v_s)
+// tanh makes Coulomb's law smooth. The second rate of the gap of two circles, d from centre to
+// centre, v its rate, + of discs and - of a pin in its hole:
+//     n . d'' +- (v across n)^2 / |d|
+
+// Adds what friction does to a contact that presses.
+static void dynamics_add_friction(const Dynamics *dynamics, size_t number, const TreeState *state,
+                                  ContactForce *force)
+{
+    const ForceLaw *law = &dynamics->system.contacts[number].law;
+    const int end = 2 * dynamics->sites[number].pair;
+    const Vec2 tangent = vec2_perp(force->pose.normal);
+    Vec2 from_a;
+    Vec2 from_b;
+    dynamics_contact_points(&dynamics->sites[number], &force->pose, &from_a, &from_b);
+    const Vec2 sliding =
+        vec2_sub(dynamics_contact_velocity(&dynamics->tree, state, end + 1, from_b),
+                 dynamics_contact_velocity(&dynamics->tree, state, end, from_a));
+    const double speed = vec2_dot(tangent, sliding);
+    const double friction = law->friction * force->press.normal * tanh(speed / law->friction_speed);
+    force->force = vec2_sub(force->force, vec2_scale(friction, tangent));
+    force->press.friction_power = friction * speed;
+}
+
+static TouchPose pose_in_hole(const Contact *contact, const Tree *tree, const TreeState *state,
+                              int pair)
+{
+    const Vec2 velocity = tree_pair_velocity(tree, state, pair);
+    const PinHole pin = pin_hole_pose((Vec2){0.0, 0.0}, tree_pair_gap(tree, state, pair), velocity,
+                                      contact->clearance);
+    return touch_pose_in_hole(&pin, velocity);
+}
+
+// A point or disc on body b against a line of body a, or a disc against a disc. The gap has the
+// digits of the way since the base.
+static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int pair = site->pair;
+    const bool is_line = site->touch.shape == TOUCH_LINE;
+    const Vec2 line = is_line ? tree_normal(tree, state, pair) : (Vec2){0.0, 0.0};
+    TouchPose pose = touch_pose_of(&site->touch, tree_pair_gap(tree, state, pair),
+                                   tree_pair_velocity(tree, state, pair), line,
+                                   tree_omega(state, tree->end_bodies[2 * pair]));
+    pose.gap = tree_distance(tree, state, pair);
+    return pose;
+}
+
+// An end of an angle, or a flank of teeth, which push at right angles to the line of the centres.
+static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int joint = site->touch.joint;
+    const double sign = site->touch.sign;
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    TouchPose pose = {
+        .offset = offset,
+        .velocity = tree_pair_velocity(tree, state, site->pair),
+        .gap = sign * tree_coordinate(tree, state, joint) - site->end,
+        .has_normal = true,
+        .approach_speed = -sign * tree_coordinate_rate(tree, state, joint),
+    };
+    if (site->touch.shape == TOUCH_TEETH) {
+        pose.normal = vec2_scale(sign / sqrt(vec2_dot(offset, offset)), vec2_perp(offset));
+    }
+    return pose;
+}
+
+static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeState *state,
+                         const PlaneSite *site)
+{
+    if (site->touch.shape == TOUCH_HOLE) {
+        return pose_in_hole(contact, tree, state, site->pair);
+    }
+    return dynamics_contact_is_turn(site) ? pose_of_end(tree, state, site)
+                                          : pose_outside(tree, state, site);
+}
+
+double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
+                               const TouchPose *pose)
+{
+    const PlaneSite *site = &dynamics->sites[number];
+    if (site->touch.shape == TOUCH_LINE) {
+        return tree_line_second(&dynamics->tree, state, site->pair);
+    }
+    if (dynamics_contact_is_turn(site)) {
+        return site->touch.sign * tree_coordinate_second(&dynamics->tree, state, site->touch.joint);
+    }
+    const double across = vec2_cross(pose->normal, pose->velocity);
+    const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
+    return vec2_dot(pose->normal, tree_pair_acceleration(&dynamics->tree, state, site->pair)) +
+           (site->touch.shape == TOUCH_HOLE ? -turning : turning);
+}
+
+void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
+                           ContactForce *force)
+{
+    const Contact *contact = &dynamics->system.contacts[number];
+    const PlaneSite *site = &dynamics->sites[number];
+    force->pose = pose_of(contact, &dynamics->tree, state, site);
+    force->press = press_find(contact, -force->pose.gap, force->pose.approach_speed);
+    force->force = (Vec2){0.0, 0.0};
+    force->couple = 0.0;
+    if (contact->mode != CONTACT_PRESSING) {
+        return;
+    }
+    force->force = vec2_scale(force->press.normal, force->pose.normal);
+    if (site->touch.shape == TOUCH_TURN) {
+        const Joint *joint = &dynamics->tree.linkage->joints[contact->joint];
+        force->couple = site->touch.sign * coordinate_sense(joint) * force->press.normal;
+    }
+    if (contact->law.friction > 0.0 && !dynamics_contact_is_turn(site)) {
+        dynamics_add_friction(dynamics, number, state, force);
+    }
+}
+
+// Contact sites: where the bodies of a linkage touch, and how far each may be from touching before
+// it is evaluated again.
+
+// m: a site that is apart is evaluated before its bodies have come so much nearer. Of a stop that
+// is no play, but how far the body that touches reaches from where it does; of an angle with one
+// stop, rad.
+static double flight_of(const Linkage *linkage, const double *reaches, const Touch *touch)
+{
+    const Joint *joint = &linkage->joints[touch->joint];
+    if (joint->limits.kind != LIMIT_NONE) {
+        const double half = coordinate_play(joint);
+        const double beyond =
+            joint->kind == JOINT_PRISMATIC
+                ? reaches[joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b]
+                : 1.0;
+        return isfinite(half) ? half : beyond;
+    }
+    if (joint->kind != JOINT_STOP) {
+        return linkage_radial_clearance(joint);
+    }
+    const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
+    return touch->shape == TOUCH_DISC ? touch->clearance : reaches[body];
+}
+
+// m: the lever of an angle, the shorter of how far its bodies reach; 1 of a length.
+static double site_arm(const Linkage *linkage, const double *reaches, const Touch *touch)
+{
+    double arm = INFINITY;
+    for (int side = 0; touch->shape == TOUCH_TURN && side < 2; side++) {
+        const int body = linkage_end(&linkage->joints[touch->joint], side).body;
+        arm = body == LINKAGE_GROUND ? arm : fmin(arm, reaches[body]);
+    }
+    return touch->shape == TOUCH_TURN ? arm : 1.0;
+}
+
+// By how many sites the one at the other end of a limited coordinate comes later.
+static int find_partner(const Scenario *scenario, const Touch *touches, size_t count, size_t number)
+{
+    if (scenario->linkage.joints[touches[number].joint].limits.kind == LIMIT_NONE) {
+        return 0;
+    }
+    const bool is_low = number + 1 < count && touches[number + 1].joint == touches[number].joint;
+    const bool is_high = number > 0 && touches[number - 1].joint == touches[number].joint;
+    return is_low ? 1 : is_high ? -1 : 0;
+}
+
+static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of_joint)
+{
+    const Joint *joint = &dynamics->tree.linkage->joints[touch->joint];
+    Touch sites[TOUCH_CORNERS];
+    const bool has_own = tree_own_pairs(joint, touch->joint, sites) > 0;
+    return (PlaneSite){
+        .touch = *touch,
+        .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,
+        .acts_beside = touch->shape == TOUCH_LINE || touch->shape == TOUCH_TEETH ||
+                       (touch->law.friction > 0.0 && touch->shape != TOUCH_TURN),
+        .end = touch->clearance - touch->sign * tree_coordinate_origin(joint),
+    };
+}
+
+// Fills in the contacts and their sites, for which there is room. Fails with ERR_CASE where a law
+// does not fit a joint.
+static bool dynamics_list_sites(const Scenario *scenario, Dynamics *dynamics, Err *err)
+{
+    System *system = &dynamics->system;
+    Touch *touches;
+    if (!touch_list(scenario, &touches, &system->contact_count, err)) {
+        return false;
+    }
+    size_t of_joint = 0; // the number of the site among those of its joint
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Touch *touch = &touches[i];
+        of_joint = i > 0 && touches[i - 1].joint == touch->joint ? of_joint + 1 : 0;
+        system->contacts[i] = (Contact){
+            .joint = touch->joint,
+            .partner = find_partner(scenario, touches, system->contact_count, i),
+            .law = touch->law,
+            .clearance = linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
+            .arm = site_arm(&scenario->linkage, dynamics->reach, touch),
+            .flight = flight_of(&scenario->linkage, dynamics->reach, touch),
+        };
+        dynamics->sites[i] = site_of(dynamics, touch, of_joint);
+    }
+    free(touches);
+    return true;
+}
+
+// Reactions: the forces with which the ideal joints hold their bodies.
+//
+// Of joints that close loops the multipliers' negatives. Of those that bodies hang on, children
+// before parents, what the body's own equations leave over:
+//     force  m a - F,   couple about the anchor  I al - M - s x force
+// F, M: the other forces on the body and their moment about its centre; s from the centre to the
+// anchor. A prismatic joint's force acts where the anchor on body b is, on both bodies.
+
+// Where the force of a joint acts on one of its sides: from the end to the anchor on body b.
+static Vec2 beside(const Tree *tree, const TreeState *state, int end)
+{
+    const bool is_on_line = tree->measures[end / 2] == TREE_LINE;
+    return is_on_line && end % 2 == 0 ? tree_pair_gap(tree, state, end / 2) : (Vec2){0.0, 0.0};
+}
+
+// The joint's force and couple on its body b, on its bodies.
+static void load_joint(const Tree *tree, int joint, Loads *loads, DynamicsState *state)
+{
+    for (int side = 0; side < 2; side++) {
+        const double sign = side == 0 ? -1.0 : 1.0;
+        const int end = 2 * joint + side;
+        dynamics_load_end(tree, &state->tree, end, beside(tree, &state->tree, end),
+                          vec2_scale(sign, state->reactions[joint]), loads);
+        if (tree->measures[joint] == TREE_LINE) {
+            dynamics_load_couple(tree, &state->tree, tree->end_bodies[end],
+                                 sign * state->couples[joint], loads);
+        }
+    }
+}
+
+static void find_loops(const Tree *tree, const double *solved, Loads *loads, DynamicsState *state)
+{
+    for (size_t loop = 0; loop < tree->loop_count; loop++) {
+        const int joint = tree->loops[loop];
+        const double *lambda = solved + tree->coordinate_count + 2 * loop;
+        state->reactions[joint] = (Vec2){-lambda[0], -lambda[1]};
+        state->couples[joint] = 0.0;
+        if (tree->measures[joint] == TREE_LINE) {
+            const Vec2 normal = tree_normal(tree, &state->tree, joint);
+            state->reactions[joint] = vec2_scale(-lambda[0], normal);
+            state->couples[joint] = -lambda[1];
+        }
+        load_joint(tree, joint, loads, state);
+    }
+}
+
+// What a body that hangs needs of its joint beyond its other forces, on the body: the force, and
+// the couple where that force acts.
+static void find_held(const Tree *tree, const TreeNode *node, const Loads *loads,
+                      DynamicsState *state)
+{
+    const Body *body = &tree->linkage->bodies[node->body];
+    const Motion *motion = &state->tree.motions[node->body];
+    const Vec2 reaction =
+        vec2_sub(vec2_scale(body->mass, motion->acceleration), loads->pushes[node->body].force);
+    const double sign = node->own_end % 2 == 1 ? 1.0 : -1.0;
+    state->reactions[node->joint] = sign > 0.0 ? reaction : vec2_scale(-1.0, reaction);
+    state->couples[node->joint] = 0.0;
+    if (node->is_sliding) {
+        const Vec2 arm =
+            vec2_add(state->tree.arms[node->own_end], beside(tree, &state->tree, node->own_end));
+        const double moment = body->inertia * motion->alpha - loads->pushes[node->body].moment;
+        state->couples[node->joint] = sign * (moment - vec2_cross(arm, reaction));
+    }
+}
+
+// Fills in the reactions of the joints that bodies hang on.
+static void find_tree(const Tree *tree, Loads *loads, DynamicsState *state)
+{
+    for (size_t i = tree->node_count; i-- > 0;) {
+        const TreeNode *node = &tree->nodes[i];
+        if (node->joint >= 0) {
+            find_held(tree, node, loads, state);
+            const double sign = node->own_end % 2 == 1 ? -1.0 : 1.0;
+            dynamics_load_end(tree, &state->tree, node->parent_end,
+                              beside(tree, &state->tree, node->parent_end),
+                              vec2_scale(sign, state->reactions[node->joint]), loads);
+            if (node->is_sliding) {
+                dynamics_load_couple(tree, &state->tree, node->parent,
+                                     sign * state->couples[node->joint], loads);
+            }
+        }
+    }
+}
+
+// Fills in the accelerations of the bodies from what the equations were solved for, then the
+// reactions of the ideal joints but the drive's; adds those to the loads.
+static void dynamics_reactions_find(const Dynamics *dynamics, const double *solved, Loads *loads,
+                                    DynamicsState *state)
+{
+    tree_accelerate(&dynamics->tree, solved, &state->tree);
+    find_loops(&dynamics->tree, solved, loads, state);
+    find_tree(&dynamics->tree, loads, state);
+}
+
+// What the coordinates of the tree are.
+static void dynamics_list_coordinates(Dynamics *dynamics)
+{
+    const Tree *tree = &dynamics->tree;
+    SystemCoordinate *coordinates = dynamics->system.coordinates;
+    dynamics->system.coordinate_count = tree->coordinate_count;
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        const Body *body = &tree->linkage->bodies[node->body];
+        SystemCoordinate *own = &coordinates[node->column];
+        if (node->is_sliding) {
+            *own = (SystemCoordinate){-1, 1.0, body->mass};
+            continue;
+        }
+        *own = (SystemCoordinate){
+            .turning = node->body,
+            .reach = dynamics->reach[node->body],
+            .inertia = body->inertia,
+        };
+        if (node->joint < 0) {
+            own[-1] = own[-2] = (SystemCoordinate){-1, 1.0, body->mass};
+        } else {
+            const Vec2 arm = tree->anchors[node->own_end];
+            own->inertia += body->mass * vec2_dot(arm, arm);
+        }
+    }
+}
+
+// All arrays, from a layout that counts or has the memory.
+static void dynamics_lay(Dynamics *dynamics, size_t contact_most, Layout *layout)
+{
+    const Linkage *linkage = dynamics->tree.linkage;
+    const size_t bodies = linkage->body_count;
+    const size_t n = dynamics->tree.coordinate_count;
+    const size_t rows = 2 * dynamics->tree.loop_count;
+    System *system = &dynamics->system;
+    DynamicsRoom *room = &dynamics->room;
+    system->coordinates = layout_take(layout, n, sizeof *system->coordinates);
+    system->contacts = layout_take(layout, contact_most, sizeof *system->contacts);
+    dynamics->sites = layout_take(layout, contact_most, sizeof *dynamics->sites);
+    dynamics->reach = layout_take(layout, bodies, sizeof *dynamics->reach);
+    dynamics->weights = layout_take(layout, bodies, sizeof *dynamics->weights);
+    room->loads.pushes = layout_take(layout, bodies, sizeof *room->loads.pushes);
+    room->zeros = layout_take(layout, bodies, sizeof *room->zeros);
+    room->added = layout_take(layout, bodies, sizeof *room->added);
+    room->sides = layout_take(layout, rows, sizeof *room->sides);
+    room->solved = layout_take(layout, n + rows, sizeof *room->solved);
+    room->closed = layout_take(layout, 2 * n, sizeof *room->closed);
+    room->row = layout_take(layout, n, sizeof *room->row);
+    room->arms = layout_take(layout, n, sizeof *room->arms);
+    for (int i = 0; i < DYNAMICS_PUSHED; i++) {
+        room->pushed[i] = layout_take(layout, n + rows, sizeof *room->pushed[i]);
+    }
+}
+
+static void dynamics_make_room(Dynamics *dynamics)
+{
+    const Linkage *linkage = dynamics->tree.linkage;
+    const size_t contact_most = TOUCH_CORNERS * linkage->joint_count;
+    Layout layout = {NULL, 0};
+    dynamics_lay(dynamics, contact_most, &layout);
+    dynamics->memory = calloc(1, layout.used + 1);
+    assert(dynamics->memory != NULL);
+    dynamics_lay(dynamics, contact_most, &(Layout){dynamics->memory, 0});
+}
+
+static Coupling *dynamics_couple(const Dynamics *dynamics)
+{
+    const Tree *tree = &dynamics->tree;
+    const ArticulatedParts *parts = &dynamics->articulated->parts;
+    CouplingBody *bodies = zeroed(tree->node_count, sizeof *bodies);
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const TreeNode *node = &tree->nodes[i];
+        const size_t before = node->joint < 0 ? 2 : 0; // a floating body's x and y
+        bodies[i] =
+            (CouplingBody){node->body, parts->of_node[i], node->column - before, 1 + before};
+    }
+    Coupling *coupling = coupling_create(tree->linkage, parts->count, tree->node_count, bodies);
+    free(bodies);
+    return coupling;
+}
+
+bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
+{
+    *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
+    const Linkage *linkage = &scenario->linkage;
+    Tree *tree = &dynamics->tree;
+    dynamics->has_forces = forces_any(linkage);
+    tree_build(linkage, tree);
+    dynamics_make_room(dynamics);
+    linkage_reaches(linkage, dynamics->reach);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        dynamics->weights[i] = linkage->bodies[i].mass * scenario->gravity;
+    }
+    dynamics_list_coordinates(dynamics);
+    dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;
+    if (!dynamics_list_sites(scenario, dynamics, err)) {
+        dynamics_finish(dynamics);
+        return false;
+    }
+    dynamics->articulated = articulated_create(tree, tree->loop_count, tree->loops);
+    dynamics->system.coupling = dynamics_couple(dynamics);
+    dynamics->hinged = hinged_create(dynamics);
+    dynamics->room.state = dynamics_state_create(dynamics);
+    return true;
+}
+
+void dynamics_finish(Dynamics *dynamics)
+{
+    free(dynamics->room.state);
+    hinged_destroy(dynamics->hinged);
+    coupling_destroy(dynamics->system.coupling);
+    articulated_destroy(dynamics->articulated);
+    free(dynamics->memory);
+    tree_finish(&dynamics->tree);
+}
+
+static void dynamics_lay_state(const Dynamics *dynamics, Layout *layout, DynamicsState *state)
+{
+    const size_t contacts = dynamics->system.contact_count;
+    const size_t joints = dynamics->tree.linkage->joint_count;
+    layout_take(layout, 1, sizeof *state);
+    state->shared.contacts = layout_take(layout, contacts, sizeof *state->shared.contacts);
+    tree_state_lay(&dynamics->tree, layout, &state->tree);
+    state->contacts = layout_take(layout, contacts, sizeof *state->contacts);
+    state->reactions = layout_take(layout, joints, sizeof *state->reactions);
+    state->couples = layout_take(layout, joints, sizeof *state->couples);
+}
+
+DynamicsState *dynamics_state_create(const Dynamics *dynamics)
+{
+    DynamicsState counted;
+    Layout layout = {NULL, 0};
+    dynamics_lay_state(dynamics, &layout, &counted);
+    DynamicsState *state = calloc(1, layout.used);
+    assert(state != NULL);
+    dynamics_lay_state(dynamics, &(Layout){(char *)state, 0}, state);
+    return state;
+}
+
+LoopsRoom dynamics_loops(const Dynamics *dynamics)
+{
+    const DynamicsRoom *room = &dynamics->room;
+    return (LoopsRoom){
+        .tree = &dynamics->tree,
+        .loop_count = dynamics->tree.loop_count,
+        .loops = dynamics->tree.loops,
+        .articulated = dynamics->articulated,
+        .state = &room->state->tree,
+        .pushes = room->zeros,
+        .sides = room->sides,
+        .solved = room->solved,
+    };
+}
+
+static void load_contact(const Dynamics *dynamics, size_t number, const TreeState *state,
+                         const ContactForce *force, Loads *loads)
+{
+    const int end = 2 * dynamics->sites[number].pair;
+    Vec2 from_a;
+    Vec2 from_b;
+    if (force->couple != 0.0) {
+        const Tree *tree = &dynamics->tree;
+        dynamics_load_couple(tree, state, tree->end_bodies[end + 1], force->couple, loads);
+        dynamics_load_couple(tree, state, tree->end_bodies[end], -force->couple, loads);
+        return;
+    }
+    dynamics_contact_points(&dynamics->sites[number], &force->pose, &from_a, &from_b);
+    dynamics_load_end(&dynamics->tree, state, end + 1, from_b, force->force, loads);
+    dynamics_load_end(&dynamics->tree, state, end, from_a, vec2_scale(-1.0, force->force), loads);
+}
+
+// Gravity, and nothing else yet.
+static void dynamics_start_loads(const Dynamics *dynamics, Loads *loads)
+{
+    const Tree *tree = &dynamics->tree;
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const int body = tree->nodes[i].body;
+        loads->pushes[body] = (ArticulatedPush){{0.0, -dynamics->weights[body]}, 0.0};
+    }
+    loads->driven_power = 0.0;
+    loads->driven_force = (Vec2){0.0, 0.0};
+}
+
+// Adds springs, dampers and a torque; fills in their powers.
+static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState *state,
+                        Loads *loads)
+{
+    state->drive_power = 0.0;
+    state->damping_power = 0.0;
+    if (!dynamics->has_forces) {
+        return;
+    }
+    const Tree *tree = &dynamics->tree;
+    const Linkage *linkage = tree->linkage;
+    const Motion *motions = state->tree.motions;
+    const double time_s = tree_time(tree, since_s);
+    BodyLoad *added = dynamics->room.added;
+    forces_loads(linkage, motions, time_s, added);
+    for (int i = 0; i < (int)linkage->body_count; i++) {
+        if (i == tree->driven) {
+            loads->driven_power += forces_load_power(&added[i], &motions[i]);
+            loads->driven_force = vec2_add(loads->driven_force, added[i].force);
+        } else {
+            ArticulatedPush *push = &loads->pushes[i];
+            push->force = vec2_add(push->force, added[i].force);
+            push->moment += added[i].moment;
+        }
+    }
+    state->drive_power = forces_torque_power(linkage, motions, time_s);
+    state->damping_power = forces_damping_power(linkage, motions);
+}
+
+// Solves for the coordinates' second rates (and the loops' multipliers behind them), into the room;
+// where loops have just been closed at these coordinates, by the elimination that closed them.
+static bool dynamics_find_rates(const Dynamics *dynamics, double since_s, const double *y,
+                                bool are_closed, DynamicsState *state, Loads *loads)
+{
+    const Tree *tree = &dynamics->tree;
+    const DynamicsRoom *room = &dynamics->room;
+    tree_evaluate(tree, since_s, y, y + tree->coordinate_count, &state->tree);
+    dynamics_start_loads(dynamics, loads);
+    load_forces(dynamics, since_s, state, loads);
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        dynamics_contact_find(dynamics, i, &state->tree, &state->contacts[i]);
+        if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
+            load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
+        }
+    }
+    for (size_t loop = 0; loop < tree->loop_count; loop++) {
+        const Vec2 bias = loops_bias(tree, &state->tree, loop);
+        room->sides[2 * loop] = -bias.x;
+        room->sides[2 * loop + 1] = -bias.y;
+    }
+    return (are_closed ? articulated_accelerate_again : articulated_accelerate)(
+        dynamics->articulated, &state->tree, loads->pushes, room->sides, room->solved);
+}
+
+// Power of the drive and force of the driven joint, from the driven body's own equations.
+static inline void dynamics_find_drive(const Dynamics *dynamics, const Loads *loads,
+                                       DynamicsState *state)
+{
+    const Tree *tree = &dynamics->tree;
+    if (tree->driven < 0) {
+        return;
+    }
+    const Body *driven = &tree->linkage->bodies[tree->driven];
+    const Motion *motion = &state->tree.motions[tree->driven];
+    const Vec2 upward = {0.0, dynamics->system.scenario->gravity};
+    const Vec2 needed = vec2_scale(driven->mass, vec2_add(motion->acceleration, upward));
+    state->drive_power = vec2_dot(needed, motion->velocity) - loads->driven_power;
+    if (motion->alpha != 0.0) {
+        state->drive_power += driven->inertia * motion->alpha * motion->omega;
+    }
+    state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
+}
+
+static void dynamics_fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
+{
+    sums[SYSTEM_DRIVE_WORK] = state->drive_power;
+    sums[SYSTEM_DISSIPATED] = state->damping_power;
+    sums[SYSTEM_FRICTION] = 0.0;
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        const Vec2 force = state->contacts[i].force;
+        sums[SYSTEM_DISSIPATED] += state->contacts[i].press.damping_power;
+        sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
+        sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force)) + fabs(state->contacts[i].couple);
+    }
+}
+
+// Rates of the integrator's vector, from a state whose equations are solved.
+static void dynamics_fill_rates(const Dynamics *dynamics, const DynamicsState *state,
+                                const double *y, double *rates)
+{
+    const size_t n = dynamics->tree.coordinate_count;
+    for (size_t i = 0; i < n; i++) {
+        rates[i] = y[n + i];
+        rates[n + i] = dynamics->room.solved[i];
+    }
+    dynamics_fill_sums(dynamics, state, rates + 2 * n);
+}
+
+bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
+                       DynamicsState *state, double *rates)
+{
+    if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
+        return hinged_evaluate(dynamics->hinged, since_s, y, state, rates);
+    }
+    Loads loads = dynamics->room.loads;
+    if (!dynamics_find_rates(dynamics, since_s, y, false, state, &loads)) {
+        return false;
+    }
+    dynamics_reactions_find(dynamics, dynamics->room.solved, &loads, state);
+    dynamics_find_drive(dynamics, &loads, state);
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        state->shared.contacts[i] = state->contacts[i].press;
+    }
+    if (rates != NULL) {
+        dynamics_fill_rates(dynamics, state, y, rates);
+    }
+    return true;
+}
+
+ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
+                              const double *y)
+{
+    const Tree *tree = &dynamics->tree;
+    TreeState *state = &dynamics->room.state->tree;
+    const double *u = y + tree->coordinate_count;
+    if (dynamics->sites[contact].touch.shape == TOUCH_TEETH) {
+        tree_evaluate(tree, since_s, y, u, state); // their carrier counts, too
+    } else {
+        tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
+    }
+    ContactForce force;
+    dynamics_contact_find(dynamics, contact, state, &force);
+    return force;
+}
+
+size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates)
+{
+    const Dynamics *dynamics = (const Dynamics *)system;
+    const PlaneSite *site = &dynamics->sites[contact];
+    return site->touch.shape == TOUCH_TEETH
+               ? 0
+               : tree_pair_coordinates(&dynamics->tree, site->pair, coordinates);
+}
+
+// The rates of any mechanism; apart from the shorter way, so that this sets up nothing for it.
+__attribute__((noinline)) static void find_all_rates(const Dynamics *dynamics, double since_s,
+                                                     const double *y, double *rates)
+{
+    const Tree *tree = &dynamics->tree;
+    const size_t n = tree->coordinate_count;
+    DynamicsState *state = dynamics->room.state;
+    Loads loads = dynamics->room.loads;
+    const double *solved = dynamics->room.solved;
+    if (dynamics->may_branch) {
+        // with loops open by the error of a stage, the accelerations are wrong by that over the
+        // distance from a change point
+        double *closed = dynamics->room.closed;
+        const LoopsRoom room = dynamics_loops(dynamics);
+        memcpy(closed, y, 2 * n * sizeof *y);
+        loops_project(&room, since_s, closed, closed + n);
+        y = closed;
+    }
+    if (!dynamics_find_rates(dynamics, since_s, y, dynamics->may_branch, state, &loads)) {
+        for (size_t i = 0; i < system_size(&dynamics->system); i++) {
+            rates[i] = NAN;
+        }
+        return;
+    }
+    // the drive's power needs the reactions only where the driven body carries ideal joints
+    if (tree->is_driven_hung_on) {
+        dynamics_reactions_find(dynamics, solved, &loads, state);
+    }
+    dynamics_find_drive(dynamics, &loads, state);
+    dynamics_fill_rates(dynamics, state, y, rates);
+}
+
+void dynamics_rates(double since_s, const double *y, double *rates, void *context)
+{
+    const Dynamics *dynamics = context;
+    if (dynamics->hinged == NULL || !hinged_rates(dynamics->hinged, since_s, y, rates)) {
+        find_all_rates(dynamics, since_s, y, rates);
+    }
+}

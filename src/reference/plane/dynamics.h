@@ -1,0 +1,214 @@
+// The equations of motion of a linkage with play in the plane, in the coordinates of its tree,
+// contacts as smooth forces while their mode is frozen.
+#pragma once
+
+#include "contact/touch.h"
+#include "model/forces.h"
+#include "reference/plane/articulated.h"
+#include "reference/plane/tree.h"
+#include "reference/system.h"
+
+// Where a contact's bodies touch.
+typedef struct PlaneSite {
+    Touch touch;
+    int pair;         // of the tree: the ends that its distance is measured between
+    bool acts_beside; // whether the force's line may pass beside these ends: on a line, between
+                      // teeth, and with friction
+    double end; // rad or m, of a turn or teeth: gap = sign of the site (tree_coordinate) - end
+} PlaneSite;
+
+// A contact's quantities at one instant.
+typedef struct ContactForce {
+    Press press;
+    TouchPose pose;
+    Vec2 force;    // N, on body b, friction included
+    double couple; // N m, on body b, of a turn, which has no force
+} ContactForce;
+
+// Everything at one instant.
+typedef struct DynamicsState {
+    SystemState shared;     // the first
+    TreeState tree;         // accelerations filled in
+    ContactForce *contacts; // by contact
+    Vec2 *reactions;        // N, on body b, of ideal joints
+    double *couples;        // N m, on body b, of prismatic joints, about its anchor
+    double drive_power;     // W, of drive or torque
+    double damping_power;   // W, that the dampers take
+} DynamicsState;
+
+// The forces on the bodies at one instant, while they are gathered.
+typedef struct Loads {
+    ArticulatedPush *pushes; // by body: at the centre, and the moment about it
+    double driven_power;     // W, of all forces on the driven body but the drive's
+    Vec2 driven_force;       // N, their sum
+} Loads;
+
+// The ways in which a contact pushes: along x, along y, and by friction.
+enum { DYNAMICS_PUSHED = 3 };
+
+// Room to work in.
+typedef struct DynamicsRoom {
+    DynamicsState *state;
+    Loads loads;
+    ArticulatedPush *zeros; // by body
+    BodyLoad *added;        // by body
+    double *sides;          // of the loops' rows
+    double *solved;         // by coordinate, then by row of a loop
+    double *closed;         // an integrator's vector
+    // of the slopes, by coordinate
+    Vec2 *row;
+    double *arms;
+    double *pushed[DYNAMICS_PUSHED];
+} DynamicsRoom;
+
+typedef struct Hinged Hinged; // of reference/plane/hinged.h
+
+typedef struct Dynamics {
+    System system; // the first
+    Tree tree;
+    Articulated *articulated; // owned
+    Hinged *hinged;           // owned; NULL where it has no such rates
+    void *memory;             // owned; where all arrays are
+    PlaneSite *sites;         // by contact
+    double *reach;            // m, of each body's points
+    double *weights;          // N, of each body
+    bool has_forces;          // whether springs, dampers or a torque act
+    bool may_branch;          // whether loops move freely, and may come to a change point
+    double start_energy;      // J, of such a linkage: what it has, less what it was given
+    double greatest_energy;   // J, kinetic, so far
+    DynamicsRoom room;
+} Dynamics;
+
+// The forces of the contacts in the coordinates of a tree.
+
+// One contact's quantities from the state of the tree.
+void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
+                           ContactForce *force);
+
+// The points of body a and of body b at which the force acts, seen from the ends of the contact's
+// pair; of two circles without friction the ends themselves.
+static inline void dynamics_contact_points(const PlaneSite *site, const TouchPose *pose,
+                                           Vec2 *from_a, Vec2 *from_b)
+{
+    *from_a = *from_b = (Vec2){0.0, 0.0};
+    if (site->acts_beside) {
+        touch_points(&site->touch, pose, from_a, from_b);
+    }
+}
+
+// Whether a contact's gap is that of an angle or of teeth.
+static inline bool dynamics_contact_is_turn(const PlaneSite *site)
+{
+    return site->touch.shape == TOUCH_TURN || site->touch.shape == TOUCH_TEETH;
+}
+
+// The second rate of a contact's gap, m/s^2, after tree_accelerate.
+double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
+                               const TouchPose *pose);
+
+// Velocity of the point of an end's body that lies beside the end.
+static inline Vec2 dynamics_contact_velocity(const Tree *tree, const TreeState *state, int end,
+                                             Vec2 beside)
+{
+    const int body = tree->end_bodies[end];
+    if (body == LINKAGE_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Motion *motion = &state->motions[body];
+    const Vec2 arm = vec2_add(state->arms[end], beside);
+    return vec2_add(motion->velocity, vec2_scale(motion->omega, vec2_perp(arm)));
+}
+
+// The forces on the bodies at one instant, while they are gathered.
+
+// A force on the body of an end, beside the end.
+static inline void dynamics_load_end(const Tree *tree, const TreeState *state, int end, Vec2 beside,
+                                     Vec2 force, Loads *loads)
+{
+    const int body = tree->end_bodies[end];
+    if (body == LINKAGE_GROUND) {
+        return;
+    }
+    if (body == tree->driven) {
+        loads->driven_power += vec2_dot(force, dynamics_contact_velocity(tree, state, end, beside));
+        loads->driven_force = vec2_add(loads->driven_force, force);
+        return;
+    }
+    ArticulatedPush *push = &loads->pushes[body];
+    push->force = vec2_add(push->force, force);
+    push->moment += vec2_cross(vec2_add(state->arms[end], beside), force);
+}
+
+// A couple on a body.
+static inline void dynamics_load_couple(const Tree *tree, const TreeState *state, int body,
+                                        double couple, Loads *loads)
+{
+    if (body == tree->driven) {
+        loads->driven_power += couple * tree_omega(state, body);
+    } else if (body != LINKAGE_GROUND) {
+        loads->pushes[body].moment += couple;
+    }
+}
+
+// Fails with ERR_CASE where a contact law does not fit a joint.
+bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err);
+void dynamics_finish(Dynamics *dynamics);
+
+// Room for a state of these equations; the caller frees it.
+DynamicsState *dynamics_state_create(const Dynamics *dynamics);
+
+// Times, s, and coordinates are those since the base of the tree.
+//
+// The state at a time from the integrator's vector, and the rates of that, which may be NULL: those
+// of loops as open as they are. Returns false where the accelerations are not determined.
+bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
+                       DynamicsState *state, double *rates);
+
+// Rates of the integrator's vector; NaN where they are not determined. The context is a Dynamics.
+void dynamics_rates(double since_s, const double *y, double *rates, void *context);
+
+// What closing the loops of the tree needs.
+LoopsRoom dynamics_loops(const Dynamics *dynamics);
+
+// One contact at a time, for events: cheaper than the whole state. Only the bodies that move it are
+// looked at.
+ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
+                              const double *y);
+
+// Writes the coordinates of a Dynamics that this depends on. Returns how many there are; 0 where it
+// depends on all.
+size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates);
+
+// How the contacts' forces change the accelerations with the coordinates and their rates.
+
+// Writes the derivatives of the accelerations at a state by the coordinates, 1/s^2, and by their
+// rates, 1/s, as matrices of its coupling; only those that the forces of pressing contacts cause,
+// with the geometry frozen. What is left out changes as slowly as the mechanism itself moves. NaN
+// where the accelerations are not determined. The context is a Dynamics.
+void dynamics_slopes(double since_s, const double *y, double *by_position, double *by_rate,
+                     void *context);
+
+// The rates of a mechanism whose bodies hang on hinges, or on nothing, and touch at pins in their
+// holes alone: what most mechanisms with play are, and what an integrator asks for most.
+//
+// The same numbers as those of reference/plane/dynamics.c, to the last bit, from the same
+// operations in the same order; but everything of a body stands in one place, and nothing is worked
+// out that rates do not need: no angles and positions, no pin that is apart from its wall.
+
+// Prepares the rates of these equations, which must outlive it; hinged_destroy frees it, and
+// accepts NULL. Returns NULL where they are of another kind: with loops, slides, springs, dampers
+// or torques, friction, or sites that are no pins in holes.
+Hinged *hinged_create(const Dynamics *dynamics);
+void hinged_destroy(Hinged *hinged);
+
+// Writes rates of the integrator's vector. Returns false where they are not determined, or where
+// the drive's speed changes, which is not for here.
+bool hinged_rates(const Hinged *hinged, double since_s, const double *y, double *rates);
+
+// Fills in a state and, where asked for, the rates of the integrator's vector there (else NULL).
+// Returns false where the second rates are not determined. The drive's speed must be steady.
+bool hinged_evaluate(const Hinged *hinged, double since_s, const double *y, DynamicsState *state,
+                     double *rates);
+
+// Shows the bodies' positions and velocities; their accelerations stay as they are.
+void hinged_motions(const Hinged *hinged, double since_s, const double *y, Motion *motions);

@@ -1,0 +1,330 @@
+// Differentiates the accelerations by coordinates and rates where bodies press on one another.
+//
+//     dA = M^-1 (G^T df + s dg),   de = G dq,  dv = G du
+// G: how the circle's centre on body b moves against the circle's on body a, or against the point
+// of body a's line under it, by each coordinate; s: the arms of friction about these points; e
+// offset of the centres, v velocity, M the mass matrix with the loops' rows. Of the force on body b
+//     f = N n - g t,   N = F_el(d) (1 + chi d'/v0) + c d',   g = mu N tanh((t v - s u) / v_s)
+// with d the depth, d' = -n v and t at right angles to n:
+//     dn = +-t (t de) / |e|,   dN = (1 + chi d'/v0) k dd + (chi F_el / v0 + c) dd'
+// + of discs, - of a pin in its hole; a line's normal turns as slowly as the mechanism moves.
+//
+// A limited angle or teeth push along a coordinate q with steady shares w of the bodies' turns, and
+// hold no friction: dA = -M^-1 w ((1 + chi d'/v0) k w dq + (chi F_el / v0 + c) w du).
+#include "reference/plane/dynamics.h"
+
+#include "reference/plane/articulated.h"
+#include "reference/plane/tree.h"
+
+#include <math.h>
+
+// A pressing contact and what its force changes with.
+typedef struct SlopesPressing {
+    const Touch *touch;
+    const ForceLaw *law;
+    ContactForce force;
+    Vec2 velocity;    // m/s, v
+    double bend;      // m, +-|e| over which n turns; infinite of a line
+    double stiffness; // N/m, dN by depth
+    double damping;   // N s/m, dN by closing speed
+    double grip;      // 1, g / (mu N)
+    Vec2 *centre;     // G, by coordinate: of the parts that the contact couples, like all
+    double *arms;     // m, s; 0 without friction
+    int pair;         // of the tree
+    const CouplingJoint *parts;
+} SlopesPressing;
+
+// What small changes make of it.
+typedef struct SlopesChange {
+    Vec2 force;      // N
+    double friction; // N, g
+} SlopesChange;
+
+// The arm of friction about the centre of the circle on body b, or on body a about that of its own
+// circle or the point of its line, m.
+static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
+{
+    switch (touch->shape) {
+    case TOUCH_HOLE:
+        return side == 0 ? -touch->radius_a : touch->radius_a - vec2_length(pose->offset);
+    case TOUCH_DISC:
+        return side == 0 ? touch->radius_a : vec2_length(pose->offset) - touch->radius_a;
+    default:
+        return side == 0 ? -touch->radius_b : touch->radius_b;
+    }
+}
+
+// Arms of friction, and how it grips at a state of the tree.
+static void find_friction(const Dynamics *dynamics, const TreeState *state, int pair,
+                          SlopesPressing *pressing)
+{
+    const Tree *tree = &dynamics->tree;
+    const TouchPose *pose = &pressing->force.pose;
+    double sliding = vec2_dot(vec2_perp(pose->normal), pressing->velocity);
+    for (int side = 0; side < 2; side++) {
+        const int body = tree->end_bodies[2 * pair + side];
+        const double arm = friction_arm(pressing->touch, pose, side);
+        if (body != LINKAGE_GROUND) {
+            sliding -= arm * state->motions[body].omega;
+        }
+        if (body != LINKAGE_GROUND && tree->angle_column[body] >= 0) {
+            pressing->arms[tree->angle_column[body]] += arm;
+        }
+    }
+    pressing->grip = tanh(sliding / pressing->law->friction_speed);
+}
+
+static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *state,
+                                     size_t number)
+{
+    const Contact *contact = &dynamics->system.contacts[number];
+    const PlaneSite *site = &dynamics->sites[number];
+    const Coupling *coupling = dynamics->system.coupling;
+    SlopesPressing pressing = {
+        .touch = &site->touch,
+        .law = &contact->law,
+        .bend = INFINITY,
+        .centre = dynamics->room.row,
+        .arms = dynamics->room.arms,
+        .pair = site->pair,
+        .parts = &coupling->joints[contact->joint],
+    };
+    for (size_t i = 0; i < pressing.parts->count; i++) {
+        const size_t part = pressing.parts->parts[i];
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            pressing.centre[coupling->coordinates[k]] = (Vec2){0.0, 0.0};
+            pressing.arms[coupling->coordinates[k]] = 0.0;
+        }
+    }
+    dynamics_contact_find(dynamics, number, state, &pressing.force);
+    const TouchPose *pose = &pressing.force.pose;
+    pressing.velocity = pose->velocity;
+    if (site->touch.shape == TOUCH_LINE) {
+        // against the point of body a under the circle's centre
+        const double omega = tree_omega(state, dynamics->tree.end_bodies[2 * site->pair]);
+        pressing.velocity = vec2_sub(pose->velocity, vec2_scale(omega, vec2_perp(pose->offset)));
+    } else {
+        const double distance = vec2_length(pose->offset);
+        pressing.bend = site->touch.shape == TOUCH_DISC ? distance : -distance;
+    }
+    pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
+                         force_law_tangent(&contact->law, fabs(pose->gap));
+    pressing.damping = press_damping(contact, &pressing.force.press);
+    loops_pair_row(&dynamics->tree, state, site->pair, pressing.centre);
+    if (contact->law.friction > 0.0) {
+        find_friction(dynamics, state, site->pair, &pressing);
+    }
+    return pressing;
+}
+
+// With small changes of e and v, and of the sliding speed by what bodies turn, s du.
+static SlopesChange slopes_change_force(const SlopesPressing *pressing, Vec2 moved, Vec2 faster,
+                                        double rolled)
+{
+    const Vec2 normal = pressing->force.pose.normal;
+    const Vec2 tangent = vec2_perp(normal);
+    const Vec2 velocity = pressing->velocity;
+    const double turned = vec2_dot(tangent, moved) / pressing->bend;
+    const double deeper = -vec2_dot(normal, moved);
+    const double closing = -vec2_dot(normal, faster) - turned * vec2_dot(tangent, velocity);
+    const double pressed = pressing->stiffness * deeper + pressing->damping * closing;
+    double resisted = 0.0; // N, the friction itself
+    double friction = 0.0;
+    if (pressing->law->friction > 0.0) {
+        const double grip = pressing->grip;
+        const double slid =
+            vec2_dot(tangent, faster) - turned * vec2_dot(normal, velocity) - rolled;
+        const double gripped = (1.0 - grip * grip) * slid / pressing->law->friction_speed;
+        resisted = pressing->law->friction * pressing->force.press.normal * grip;
+        friction =
+            pressing->law->friction * (pressed * grip + pressing->force.press.normal * gripped);
+    }
+    // n turns towards t, and t away from n
+    const double across = pressed + resisted * turned;
+    const double along = pressing->force.press.normal * turned - friction;
+    return (SlopesChange){vec2_add(vec2_scale(across, normal), vec2_scale(along, tangent)),
+                          friction};
+}
+
+// Adds to a column of the rows of the parts what the change does to their accelerations.
+static void slopes_add_column(const Coupling *coupling, const CouplingJoint *parts,
+                              double *const *pushed, SlopesChange change, size_t column,
+                              double *values)
+{
+    for (size_t k = 0; k < parts->count; k++) {
+        const size_t part = parts->parts[k];
+        const size_t index = coupling_column_index(coupling, part, column);
+        for (size_t m = coupling->first_coordinate[part]; m < coupling->first_coordinate[part + 1];
+             m++) {
+            const size_t i = coupling->coordinates[m];
+            values[coupling->first_value[i] + index] += pushed[0][i] * change.force.x +
+                                                        pushed[1][i] * change.force.y +
+                                                        pushed[2][i] * change.friction;
+        }
+    }
+}
+
+// Solves for what the loads push of some parts.
+static void slopes_solve_parts(const Dynamics *dynamics, const CouplingJoint *parts,
+                               const Loads *loads, double *pushed)
+{
+    for (size_t i = 0; i < parts->count; i++) {
+        articulated_solve_part(dynamics->articulated, parts->parts[i], loads->pushes, pushed);
+    }
+}
+
+// The accelerations that unit forces cause: on the circle's centre on body b along x and along y
+// and the other way on body a, and by friction's arms.
+static void slopes_find_pushed(const Dynamics *dynamics, const TreeState *state,
+                               const SlopesPressing *pressing)
+{
+    const Tree *tree = &dynamics->tree;
+    const DynamicsRoom *room = &dynamics->room;
+    Loads loads = {.pushes = room->zeros};
+    const int end = 2 * pressing->pair;
+    // a line is pushed at its point under the circle's centre
+    const Vec2 none = {0.0, 0.0};
+    const bool is_line = tree->measures[pressing->pair] == TREE_LINE;
+    const Vec2 under = is_line ? tree_pair_gap(tree, state, pressing->pair) : none;
+    const bool has_friction = pressing->law->friction > 0.0;
+    // without friction what its arms push stays zero
+    for (int way = 0; way < (has_friction ? DYNAMICS_PUSHED : 2); way++) {
+        const Vec2 force = {way == 0 ? 1.0 : 0.0, way == 1 ? 1.0 : 0.0};
+        if (way < 2) {
+            dynamics_load_end(tree, state, end + 1, none, force, &loads);
+            dynamics_load_end(tree, state, end, under, vec2_scale(-1.0, force), &loads);
+        } else {
+            for (int side = 0; side < 2; side++) {
+                const double arm = friction_arm(pressing->touch, &pressing->force.pose, side);
+                dynamics_load_couple(tree, state, tree->end_bodies[end + side], arm, &loads);
+            }
+        }
+        slopes_solve_parts(dynamics, pressing->parts, &loads, room->pushed[way]);
+        for (int side = 0; side < 2; side++) {
+            const int body = tree->end_bodies[end + side];
+            if (body != LINKAGE_GROUND) {
+                loads.pushes[body] = (ArticulatedPush){none, 0.0};
+            }
+        }
+    }
+}
+
+// What the coordinate does to a contact.
+static void slopes_add_columns(const Dynamics *dynamics, const SlopesPressing *pressing,
+                               size_t coordinate, double *by_position, double *by_rate)
+{
+    static const Vec2 NONE = {0.0, 0.0};
+    const Coupling *coupling = dynamics->system.coupling;
+    double *const *pushed = dynamics->room.pushed;
+    const Vec2 centre = pressing->centre[coordinate];
+    const double arm = pressing->arms[coordinate];
+    const bool moves = centre.x != 0.0 || centre.y != 0.0;
+    if (moves) {
+        slopes_add_column(coupling, pressing->parts, pushed,
+                          slopes_change_force(pressing, centre, NONE, 0.0), coordinate,
+                          by_position);
+    }
+    if (moves || arm != 0.0) {
+        slopes_add_column(coupling, pressing->parts, pushed,
+                          slopes_change_force(pressing, NONE, centre, arm), coordinate, by_rate);
+    }
+}
+
+static void slopes_add_slopes(const Dynamics *dynamics, const SlopesPressing *pressing,
+                              double *by_position, double *by_rate)
+{
+    const Coupling *coupling = dynamics->system.coupling;
+    for (size_t i = 0; i < pressing->parts->count; i++) {
+        const size_t part = pressing->parts->parts[i];
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            slopes_add_columns(dynamics, pressing, coupling->coordinates[k], by_position, by_rate);
+        }
+    }
+}
+
+// A coordinate that turns a body, its share in what presses, and what that changes with.
+typedef struct TurnColumn {
+    size_t column;
+    double share;
+    double stiffness;
+    double damping;
+} TurnColumn;
+
+static void slopes_add_turn_column(const Dynamics *dynamics, const CouplingJoint *parts,
+                                   const TurnColumn *of, double *by_position, double *by_rate)
+{
+    const Coupling *coupling = dynamics->system.coupling;
+    for (size_t k = 0; k < parts->count; k++) {
+        const size_t part = parts->parts[k];
+        const size_t index = coupling_column_index(coupling, part, of->column);
+        for (size_t m = coupling->first_coordinate[part]; m < coupling->first_coordinate[part + 1];
+             m++) {
+            const size_t i = coupling->coordinates[m];
+            const double share = of->share * dynamics->room.pushed[0][i];
+            by_position[coupling->first_value[i] + index] -= share * of->stiffness;
+            by_rate[coupling->first_value[i] + index] -= share * of->damping;
+        }
+    }
+}
+
+// The same of a contact at an end of an angle or of teeth.
+static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *state, size_t number,
+                                   double *by_position, double *by_rate)
+{
+    const Tree *tree = &dynamics->tree;
+    const Contact *contact = &dynamics->system.contacts[number];
+    const Coupling *coupling = dynamics->system.coupling;
+    const CouplingJoint *coupled = &coupling->joints[contact->joint];
+    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
+    ContactForce force;
+    Loads loads = {.pushes = dynamics->room.zeros};
+    dynamics_contact_find(dynamics, number, state, &force);
+    tree_coordinate_parts(&tree->linkage->joints[contact->joint], parts);
+    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
+        dynamics_load_couple(tree, state, parts[i].body, parts[i].share, &loads);
+    }
+    slopes_solve_parts(dynamics, coupled, &loads, dynamics->room.pushed[0]);
+    const double stiffness = (1.0 + contact->damping_rate * force.pose.approach_speed) *
+                             force_law_tangent(&contact->law, fabs(force.pose.gap));
+    const double damping = press_damping(contact, &force.press);
+    for (int part = 0; part < TREE_COORDINATE_PARTS; part++) {
+        const int body = parts[part].body;
+        if (body == LINKAGE_GROUND) {
+            continue;
+        }
+        loads.pushes[body] = (ArticulatedPush){{0.0, 0.0}, 0.0};
+        const int column = tree->angle_column[body];
+        if (column >= 0) {
+            const TurnColumn of = {(size_t)column, parts[part].share, stiffness, damping};
+            slopes_add_turn_column(dynamics, coupled, &of, by_position, by_rate);
+        }
+    }
+}
+
+void dynamics_slopes(double since_s, const double *y, double *by_position, double *by_rate,
+                     void *context)
+{
+    const Dynamics *dynamics = context;
+    const Tree *tree = &dynamics->tree;
+    const size_t n = tree->coordinate_count;
+    TreeState *state = &dynamics->room.state->tree;
+    tree_evaluate(tree, since_s, y, y + n, state);
+    const double start = articulated_factor(dynamics->articulated, state) ? 0.0 : NAN;
+    for (size_t i = 0; i < coupling_value_count(dynamics->system.coupling); i++) {
+        by_position[i] = by_rate[i] = start;
+    }
+    for (size_t i = 0; i < dynamics->system.contact_count; i++) {
+        if (dynamics->system.contacts[i].mode != CONTACT_PRESSING) {
+            continue;
+        }
+        if (dynamics_contact_is_turn(&dynamics->sites[i])) {
+            slopes_add_turn_slopes(dynamics, state, i, by_position, by_rate);
+        } else {
+            const SlopesPressing pressing = slopes_resolve(dynamics, state, i);
+            slopes_find_pushed(dynamics, state, &pressing);
+            slopes_add_slopes(dynamics, &pressing, by_position, by_rate);
+        }
+    }
+}

@@ -1,0 +1,393 @@
+// Presents the equations of motion in the plane as a system to those who step through them.
+#include "reference/plane/dynamics.h"
+
+#include "model/forces.h"
+#include "reference/plane/articulated.h"
+#include "reference/plane/tree.h"
+#include "reference/system.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Dynamics *plane_dynamics_of(const System *system)
+{
+    return (const Dynamics *)system;
+}
+
+static const DynamicsState *plane_state_of(const SystemState *state)
+{
+    return (const DynamicsState *)state;
+}
+
+// What the linkage has of energy less what it was given, J; its kinetic energy apart.
+static double energy_balance(const Dynamics *dynamics, const double *y, double *kinetic)
+{
+    const System *system = &dynamics->system;
+    const Linkage *linkage = dynamics->tree.linkage;
+    const double *sums = y + system_sum_index(system, 0);
+    const TreeState *state = &dynamics->room.state->tree;
+    tree_evaluate(&dynamics->tree, 0.0, y, y + system->coordinate_count,
+                  &dynamics->room.state->tree);
+    *kinetic = linkage_kinetic_energy(linkage, state->motions);
+    double energy = *kinetic + forces_energy(linkage, state->motions) +
+                    linkage_potential_energy(linkage, state->motions, system->scenario->gravity);
+    for (size_t i = 0; i < system->contact_count; i++) {
+        if (system->contacts[i].mode != CONTACT_APART) {
+            ContactForce force;
+            dynamics_contact_find(dynamics, i, state, &force);
+            energy += force_law_energy(&system->contacts[i].law, force.press.depth);
+        }
+    }
+    return energy - sums[SYSTEM_DRIVE_WORK] + sums[SYSTEM_DISSIPATED] + sums[SYSTEM_FRICTION];
+}
+
+// Ideal joints keep the energy; at a change point, where their rows depend on one another, a step
+// that has lost its branch does not.
+static bool has_gone_astray(Dynamics *dynamics, const double *y)
+{
+    // a thousand times what a turn through change points costs at the default tolerance
+    const double share =
+        fmax(1e-6, 1e4 * options_reference_tolerance(&dynamics->system.scenario->reference));
+    double kinetic = 0.0;
+    const double energy = energy_balance(dynamics, y, &kinetic);
+    dynamics->greatest_energy = fmax(dynamics->greatest_energy, kinetic);
+    return !(fabs(energy - dynamics->start_energy) <=
+             share * dynamics->greatest_energy + 1e-9 * fabs(dynamics->start_energy));
+}
+
+static void plane_start(System *system, double *y)
+{
+    Dynamics *dynamics = (Dynamics *)system;
+    Tree *tree = &dynamics->tree;
+    Motion *motions = dynamics->room.state->tree.motions;
+    const LoopsRoom room = dynamics_loops(dynamics);
+    linkage_start(tree->linkage, motions);
+    tree_start(tree, motions, y + tree->coordinate_count);
+    loops_start(tree, &room, y, y + tree->coordinate_count);
+    if (dynamics->may_branch) {
+        dynamics->start_energy = energy_balance(dynamics, y, &dynamics->greatest_energy);
+    }
+}
+
+static bool plane_evaluate(const System *system, double since_s, const double *y,
+                           SystemState *state, double *rates)
+{
+    const Dynamics *dynamics = plane_dynamics_of(system);
+    DynamicsState *at = (DynamicsState *)state;
+    if (rates == NULL || !dynamics->may_branch) {
+        return dynamics_evaluate(dynamics, since_s, y, at, rates);
+    }
+    // the rates are those of closed loops, as at every stage
+    dynamics_rates(since_s, y, rates, (void *)dynamics);
+    return dynamics_evaluate(dynamics, since_s, y, at, NULL);
+}
+
+static Press plane_press(const System *system, size_t contact, double since_s, const double *y)
+{
+    return dynamics_contact(plane_dynamics_of(system), contact, since_s, y).press;
+}
+
+static void add_end_size(const Tree *tree, const TreeState *state, int end, double *length,
+                         double *speed)
+{
+    const int body = tree->end_bodies[end];
+    *length += vec2_length(tree_end_point(tree, state, end));
+    *speed += vec2_length(tree_end_velocity(tree, state, end));
+    if (body != LINKAGE_GROUND) {
+        const Motion *motion = &state->motions[body];
+        const double arm = vec2_length(state->arms[end]);
+        // an angle of many turns has fewer digits left for its direction
+        *length += arm * (1.0 + fabs(motion->angle));
+        *speed += arm * fabs(motion->omega) * (1.0 + fabs(motion->angle));
+    }
+}
+
+static void plane_sizes(const System *system, const SystemState *state, size_t contact,
+                        double *length, double *speed)
+{
+    const Tree *tree = &plane_dynamics_of(system)->tree;
+    const PlaneSite *site = &plane_dynamics_of(system)->sites[contact];
+    const int end = 2 * site->pair;
+    if (dynamics_contact_is_turn(site)) {
+        tree_coordinate_sizes(tree, &plane_state_of(state)->tree, site->touch.joint, length, speed);
+        *length += fabs(site->end);
+        return;
+    }
+    add_end_size(tree, &plane_state_of(state)->tree, end, length, speed);
+    add_end_size(tree, &plane_state_of(state)->tree, end + 1, length, speed);
+}
+
+static double plane_crossing(const System *system, const SystemState *state, size_t contact)
+{
+    const Dynamics *dynamics = plane_dynamics_of(system);
+    const Tree *tree = &dynamics->tree;
+    const TreeState *at = &plane_state_of(state)->tree;
+    const Contact *of = &system->contacts[contact];
+    const PlaneSite *site = &dynamics->sites[contact];
+    if (dynamics_contact_is_turn(site)) {
+        const int joint = site->touch.joint;
+        return fabs(tree_coordinate_rate(tree, at, joint)) +
+               sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));
+    }
+    if (site->touch.shape == TOUCH_LINE) {
+        // along the line it may go as fast as it likes
+        return fabs(tree_line_rate(tree, at, site->pair)) +
+               sqrt(of->flight * fabs(tree_line_second(tree, at, site->pair)));
+    }
+    const Vec2 v = tree_pair_velocity(tree, at, site->pair);
+    const Vec2 a = tree_pair_acceleration(tree, at, site->pair);
+    return vec2_length(v) + sqrt(of->flight * vec2_length(a));
+}
+
+static double plane_fastest(const System *system, const SystemState *state)
+{
+    const Dynamics *dynamics = plane_dynamics_of(system);
+    const Tree *tree = &dynamics->tree;
+    double fastest = 0.0;
+    for (size_t i = 0; i < tree->node_count; i++) {
+        const int body = tree->nodes[i].body;
+        const Motion *motion = &plane_state_of(state)->tree.motions[body];
+        const double speed = sqrt(vec2_dot(motion->velocity, motion->velocity));
+        fastest = fmax(fastest, speed + fabs(motion->omega) * dynamics->reach[body]);
+    }
+    return fastest;
+}
+
+static void plane_peak(const System *system, const SystemState *state, size_t number,
+                       double values[2], double rates[2])
+{
+    const Dynamics *dynamics = plane_dynamics_of(system);
+    const ContactForce *force = &plane_state_of(state)->contacts[number];
+    const double second =
+        -dynamics_contact_second(dynamics, number, &plane_state_of(state)->tree, &force->pose);
+    values[0] = force->press.normal;
+    values[1] = force->press.depth;
+    rates[0] = press_rate(&system->contacts[number], &force->press, second);
+    rates[1] = force->press.closing;
+}
+
+static void plane_project(const System *system, double since_s, double *y)
+{
+    if (plane_dynamics_of(system)->tree.loop_count > 0) {
+        const LoopsRoom room = dynamics_loops(plane_dynamics_of(system));
+        loops_project(&room, since_s, y, y + system->coordinate_count);
+    }
+}
+
+static bool plane_rebase(System *system, double since_s, double *y)
+{
+    Dynamics *dynamics = (Dynamics *)system;
+    Tree *tree = &dynamics->tree;
+    const double alpha = tree->base_drive.alpha;
+    plane_project(system, since_s, y);
+    tree_rebase(tree, since_s, y);
+    system->is_astray = dynamics->may_branch && has_gone_astray(dynamics, y);
+    // the rates jump at a kink of the drive's speed
+    return tree->loop_count > 0 || tree->base_drive.alpha != alpha;
+}
+
+static double plane_time(const System *system, double since_s)
+{
+    return tree_time(&plane_dynamics_of(system)->tree, since_s);
+}
+
+static double plane_since(const System *system, double time_s)
+{
+    return (double)(time_s - plane_dynamics_of(system)->tree.base_time_s);
+}
+
+static void plane_turning(const System *system, const SystemState *state, double *omega,
+                          double *alpha)
+{
+    for (size_t i = 0; i < system->scenario->linkage.body_count; i++) {
+        omega[i] = plane_state_of(state)->tree.motions[i].omega;
+        alpha[i] = plane_state_of(state)->tree.motions[i].alpha;
+    }
+}
+
+// Where body b of a prismatic joint or a block is: along and across the line, and how tilted.
+static void place_on_line(const Tree *tree, const TreeState *state, int joint, JointState *to)
+{
+    const Vec2 normal = tree_normal(tree, state, joint);
+    const Vec2 gap = tree_pair_gap(tree, state, joint);
+    to->eccentricity = (Vec2){vec2_cross(gap, normal), tree_distance(tree, state, joint)};
+    to->tilt = tree_tilt(tree, state, joint);
+}
+
+static void fill_ideal(const Dynamics *dynamics, const DynamicsState *at, int joint, JointState *to)
+{
+    const Tree *tree = &dynamics->tree;
+    const Vec2 a = tree_end_point(tree, &at->tree, 2 * joint);
+    const Vec2 b = tree_end_point(tree, &at->tree, 2 * joint + 1);
+    *to = (JointState){
+        .eccentricity = vec2_sub(b, a),
+        .force_on_b = at->reactions[joint],
+        .force = sqrt(vec2_dot(at->reactions[joint], at->reactions[joint])),
+        .is_touching = true,
+    };
+    if (tree->measures[joint] == TREE_LINE) {
+        place_on_line(tree, &at->tree, joint, to);
+        to->moment_on_b = at->couples[joint];
+    }
+}
+
+// A joint whose coordinate is limited before anything presses at its ends. What an ideal joint
+// holds stays in the force and moment on its body b; its size is that of what presses.
+static void fill_limited(const Dynamics *dynamics, const DynamicsState *at, int joint,
+                         JointState *to)
+{
+    const Joint *of = &dynamics->tree.linkage->joints[joint];
+    if (of->kind == JOINT_GEAR) {
+        *to = (JointState){.eccentricity = {tree_coordinate(&dynamics->tree, &at->tree, joint), 0}};
+    } else if (of->kind == JOINT_REVOLUTE) {
+        to->tilt = tree_coordinate_origin(of) + tree_coordinate(&dynamics->tree, &at->tree, joint);
+    }
+    to->gap = INFINITY;
+    to->force = 0.0;
+    to->is_touching = false;
+}
+
+// Adds what presses at one end.
+static void plane_add_end(const ContactForce *end, bool is_touching, JointState *to)
+{
+    to->gap = fmin(to->gap, end->pose.gap);
+    to->force_on_b = vec2_add(to->force_on_b, end->force);
+    to->moment_on_b += end->couple;
+    to->force += sqrt(vec2_dot(end->force, end->force)) + fabs(end->couple);
+    to->is_touching = to->is_touching || is_touching;
+}
+
+// Adds what presses at one of a block's corners.
+static void add_corner(const Dynamics *dynamics, const DynamicsState *at, size_t number,
+                       JointState *to)
+{
+    const Tree *tree = &dynamics->tree;
+    const ContactForce *corner = &at->contacts[number];
+    const int joint = dynamics->sites[number].touch.joint;
+    const int pair = dynamics->sites[number].pair;
+    Vec2 from_a;
+    Vec2 from_b;
+    dynamics_contact_points(&dynamics->sites[number], &corner->pose, &from_a, &from_b);
+    // from the anchor of body b to the corner
+    const Vec2 arm = vec2_sub(vec2_add(tree_end_point(tree, &at->tree, 2 * pair + 1), from_b),
+                              tree_end_point(tree, &at->tree, 2 * joint + 1));
+    to->gap = fmin(to->gap, corner->pose.gap);
+    to->force_on_b = vec2_add(to->force_on_b, corner->force);
+    to->force += sqrt(vec2_dot(corner->force, corner->force));
+    to->moment_on_b += vec2_cross(arm, corner->force);
+    to->is_touching = to->is_touching || dynamics->system.contacts[number].mode != CONTACT_APART;
+}
+
+static void plane_joints(const System *system, const SystemState *state, JointState *joints,
+                         SpaceJointState *space_joints)
+{
+    (void)space_joints;
+    const Linkage *linkage = &system->scenario->linkage;
+    const Dynamics *dynamics = plane_dynamics_of(system);
+    const DynamicsState *at = plane_state_of(state);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage_kind_is_ideal(linkage->joints[i].kind)) {
+            fill_ideal(dynamics, at, (int)i, &joints[i]);
+        }
+        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
+            fill_limited(dynamics, at, (int)i, &joints[i]);
+        } else if (linkage->joints[i].kind == JOINT_GUIDE) {
+            joints[i] = (JointState){.gap = INFINITY};
+            place_on_line(&dynamics->tree, &at->tree, (int)i, &joints[i]);
+        }
+    }
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const ContactForce *force = &at->contacts[i];
+        JointState *joint = &joints[system->contacts[i].joint];
+        if (linkage->joints[system->contacts[i].joint].kind == JOINT_GUIDE) {
+            add_corner(dynamics, at, i, joint);
+            continue;
+        }
+        if (linkage->joints[system->contacts[i].joint].limits.kind != LIMIT_NONE) {
+            plane_add_end(force, system->contacts[i].mode != CONTACT_APART, joint);
+            continue;
+        }
+        *joint = (JointState){
+            .eccentricity = force->pose.offset,
+            .gap = force->pose.gap,
+            .force_on_b = force->force,
+            .force = sqrt(vec2_dot(force->force, force->force)),
+            .is_touching = system->contacts[i].mode != CONTACT_APART,
+        };
+    }
+}
+
+static void plane_bodies(const System *system, const SystemState *state, Sample *sample)
+{
+    const size_t count = system->scenario->linkage.body_count;
+    memcpy(sample->bodies, plane_state_of(state)->tree.motions, count * sizeof *sample->bodies);
+}
+
+static bool plane_motions(const System *system, double since_s, const double *y, Sample *sample)
+{
+    const Dynamics *dynamics = plane_dynamics_of(system);
+    if (dynamics->tree.loop_count > 0) {
+        return false;
+    }
+    if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
+        hinged_motions(dynamics->hinged, since_s, y, sample->bodies);
+        return true;
+    }
+    DynamicsState *at = dynamics->room.state;
+    tree_evaluate(&dynamics->tree, since_s, y, y + system->coordinate_count, &at->tree);
+    plane_bodies(system, &at->shared, sample);
+    return true;
+}
+
+static size_t plane_rows(const System *system)
+{
+    return 2 * plane_dynamics_of(system)->tree.loop_count;
+}
+
+static SystemState *plane_state_create(const System *system)
+{
+    return &dynamics_state_create(plane_dynamics_of(system))->shared;
+}
+
+static void plane_destroy(System *system)
+{
+    dynamics_finish((Dynamics *)system);
+    free(system);
+}
+
+static const SystemKind PLANE = {
+    .state_create = plane_state_create,
+    .start = plane_start,
+    .evaluate = plane_evaluate,
+    .rates = dynamics_rates,
+    .slopes = dynamics_slopes,
+    .press = plane_press,
+    .needs = dynamics_contact_needs,
+    .sizes = plane_sizes,
+    .crossing = plane_crossing,
+    .fastest = plane_fastest,
+    .peak = plane_peak,
+    .project = plane_project,
+    .rebase = plane_rebase,
+    .time = plane_time,
+    .since = plane_since,
+    .turning = plane_turning,
+    .joints = plane_joints,
+    .bodies = plane_bodies,
+    .motions = plane_motions,
+    .rows = plane_rows,
+    .destroy = plane_destroy,
+};
+
+System *plane_system_create(const Scenario *scenario, Err *err)
+{
+    Dynamics *dynamics = malloc(sizeof *dynamics);
+    assert(dynamics != NULL);
+    if (!dynamics_init(scenario, dynamics, err)) {
+        free(dynamics);
+        return NULL;
+    }
+    dynamics->system.kind = &PLANE;
+    return &dynamics->system;
+}
