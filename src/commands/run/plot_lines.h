@@ -1,8 +1,46 @@
-// Which line, colour and axis stands for what in the picture of a run.
+// Which line, colour and axis each quantity has in the picture of a run, and which bodies and
+// joints it draws.
 #pragma once
 
-#include "commands/run/plot_view.h"
+#include "commands/run/run_report.h"
 #include "write/plot.h"
+
+#include <stdbool.h>
+
+// What of a mechanism a picture draws, and in which colour.
+
+// The bodies or the joints of a mechanism, by their numbers.
+typedef struct PlotSet {
+    size_t drawn;      // in the panels of all; the sum of this and the next is what these are about
+    size_t left_out;   // of them, because there are so many
+    bool *is_shown;    // it is drawn in them; owned, like the four below
+    bool *is_other;    // it is left out of them
+    bool *is_left_out; // from every panel
+    bool *is_named;    // some panel draws it in its colour, which the legend has
+    unsigned *of_palette; // the number of its colour
+} PlotSet;
+
+// Driven bodies are not shown, and ideal joints only where no joint has play. Of many bodies, or of
+// many joints of a kind, those are drawn that have the largest accelerations or forces; in grey
+// what the others do.
+typedef struct PlotView {
+    const RunReport *report;
+    bool turns; // the rotation of the bodies is shown, and not the motion of their centres
+    PlotSet bodies;
+    PlotSet joints;
+} PlotView;
+
+// For plot_view_finish.
+PlotView plot_view_begin(const RunReport *report);
+void plot_view_finish(PlotView *view);
+
+const PlotSet *plot_view_set(const PlotView *view, bool is_joint);
+
+// What most happens to a body or a joint in a complete run: its largest angular acceleration,
+// rad/s^2, or acceleration where nothing turns, m/s^2; its largest force, N.
+double plot_view_most(const PlotView *view, bool is_joint, const Trajectory *run, size_t number);
+
+// Which line, colour and axis stands for what in the picture of a run.
 
 // Something drawn over the crank angle: of a body or a joint, its number in the ranges of a run or,
 // where these do not hold it, its value at a sample.
@@ -66,11 +104,6 @@ typedef struct PlotPath {
 // Draws the path of one joint of one run.
 void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path);
 
-// How the bodies move: which 0 a rate, 1 how that changes. They are the angular velocity and
-// acceleration, or speed and acceleration of the centres where nothing turns. The panel gets its
-// titles.
-void plot_motions_draw(const PlotView *view, int which, PlotPanel panel);
-
 // Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and
 // marks for the spikes of the table.
 void plot_joints_forces(const PlotView *view, PlotPanel panel);
@@ -110,11 +143,6 @@ bool plot_limits_any(const Linkage *linkage, bool is_angle, LimitKind kind);
 // a linkage has that.
 void plot_limits_loop(const PlotView *view, PlotPanel panel);
 bool plot_limits_has_loop(const Linkage *linkage);
-
-// Of a mechanism of which something is left out: the largest value of every body and joint in each
-// run, over their numbers in the case.
-void plot_overview_bodies(const PlotView *view, PlotPanel panel);
-void plot_overview_joints(const PlotView *view, PlotPanel panel);
 
 // Where no joint has play: how far omega is from the run that is taken as the truth.
 void plot_joints_errors(const PlotView *view, PlotPanel panel);
