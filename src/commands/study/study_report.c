@@ -1,11 +1,65 @@
-// How far has a study come, what went wrong, and how are the results distributed?
-#include "commands/study/study_text.h"
-
+// Reports a study: progress and distributions as text, its runs as CSV and JSON.
+#include "commands/study/study.h"
+#include "write/csv.h"
+#include "write/fields.h"
+#include "write/file.h"
+#include "write/json_value.h"
 #include "write/section.h"
+#include "write/settings_json.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+
+// What the study did, in JSON.
+
+#define AT(type, member) type, FIELD_JSON, .offset = offsetof(StudyReport, member)
+
+// What this process did of it.
+static const Field EFFORT_FIELDS[] = {
+    {"made", AT(FIELD_COUNT, state.made)},
+    {"failed", AT(FIELD_COUNT, state.failed)},
+    {"without_truth", AT(FIELD_COUNT, state.without_truth)},
+    {"why_without_truth", AT(FIELD_TEXT, state.no_truth)},
+    {"jobs", AT(FIELD_COUNT, jobs)},
+    {"wall_s", AT(FIELD_NUMBER, state.wall_s)},
+    {"inside_s", AT(FIELD_NUMBER, state.inside_s)},
+    {"inside_share", AT(FIELD_NUMBER, inside_share)},
+    {"children_cpu_s", AT(FIELD_NUMBER, children_cpu_s)},
+    {"own_cpu_s", AT(FIELD_NUMBER, own_cpu_s)},
+    {0},
+};
+
+// Counts of runs are whole numbers, and below 2^53.
+static json_t *whole(uint64_t count)
+{
+    return json_integer((json_int_t)count);
+}
+
+json_t *study_json_build(const StudyReport *report)
+{
+    json_t *outcomes = json_object();
+    for (int i = 0; i < RUN_OUTCOME_COUNT; i++) {
+        json_object_set_new(outcomes, RUN_OUTCOME_WORDS[i], whole(report->count.outcomes[i]));
+    }
+    json_t *object = json_object();
+    json_object_set_new(object, "tool", settings_json_tool());
+    json_object_set_new(object, "study", json_value_text(report->spec->path));
+    json_object_set_new(object, "title", json_value_text(report->spec->title));
+    json_object_set_new(object, "case", json_value_text(report->spec->case_path));
+    json_object_set_new(object, "store", json_value_text(report->store));
+    json_object_set_new(object, "shard",
+                        json_pack("{s:o, s:o}", "index", whole(report->shard.index + 1), "count",
+                                  whole(report->shard.count)));
+    json_object_set_new(object, "runs", whole(report->state.total));
+    json_object_set_new(object, "done", whole(report->state.done));
+    json_object_set_new(object, "outcomes", outcomes);
+    json_value_set(object, "wall_s", report->count.wall_s);
+    json_object_set_new(object, "now", fields_json(EFFORT_FIELDS, FIELD_JSON, report));
+    return object;
+}
+
+// The text.
 
 enum {
     REASONS_SHOWN = 8,
@@ -243,4 +297,141 @@ bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
     text_append(text, "%s", is_read ? section.data : "");
     text_finish(&section);
     return is_read;
+}
+
+// The rows of the store, as CSV and as JSON lines.
+
+enum { HASH_SIZE = 24 };
+
+// 17 digits give back every number as it was
+static const size_t LINE_FLAGS = JSON_REAL_PRECISION(17) | JSON_COMPACT;
+
+static const double WHOLE_MAX = 9007199254740992.0; // 2^53: whole numbers up to it are exact
+
+// In hexadecimal: many readers of JSON know no whole number beyond 2^53. Empty where there is none.
+static void write_hash(uint64_t hash, char words[HASH_SIZE])
+{
+    words[0] = '\0';
+    if (hash != 0) {
+        snprintf(words, HASH_SIZE, "%016" PRIx64, hash);
+    }
+}
+
+static void write_cell(FILE *stream, const RecordField *field, const Record *record)
+{
+    char hash[HASH_SIZE];
+    switch (field->kind) {
+    case COLUMN_RUN:
+        fprintf(stream, "%" PRIu64, record->run);
+        break;
+    case COLUMN_FATE:
+        fputs(RUN_OUTCOME_WORDS[record->outcome], stream);
+        break;
+    case COLUMN_WORD:
+    case COLUMN_REASON:
+        csv_write_word(stream, record_text(record, field));
+        break;
+    case COLUMN_HASH:
+        write_hash(record->hash, hash);
+        fputs(hash, stream);
+        break;
+    case COLUMN_REAL:
+    case COLUMN_WHOLE:
+        csv_write_number(stream, record_number(record, field));
+        break;
+    }
+}
+
+// The names of the columns where there is no record.
+static void write_line(FILE *stream, const Layout *layout, const Record *record)
+{
+    RecordField field;
+    for (size_t i = 0; record_field(layout, i, &field); i++) {
+        if (i > 0) {
+            fputc(',', stream);
+        }
+        if (record == NULL) {
+            csv_write_word(stream, field.name);
+        } else {
+            write_cell(stream, &field, record);
+        }
+    }
+    fputc('\n', stream);
+}
+
+static bool take_csv(const Layout *layout, const Record *record, void *file, Err *err)
+{
+    write_line(((const WholeFile *)file)->stream, layout, record);
+    return file_check(file, err);
+}
+
+static json_t *build_number(ColumnKind kind, double number)
+{
+    const bool is_whole =
+        kind == COLUMN_WHOLE && fabs(number) <= WHOLE_MAX && number == rint(number);
+    return is_whole ? json_integer((json_int_t)number) : json_value_real(number);
+}
+
+static json_t *build_value(const RecordField *field, const Record *record)
+{
+    char hash[HASH_SIZE];
+    switch (field->kind) {
+    case COLUMN_RUN:
+        return json_integer((json_int_t)record->run);
+    case COLUMN_FATE:
+        return json_string(RUN_OUTCOME_WORDS[record->outcome]);
+    case COLUMN_WORD:
+        return json_value_text(record_text(record, field));
+    case COLUMN_REASON:
+        return record->reason[0] == '\0' ? json_null() : json_value_text(record->reason);
+    case COLUMN_HASH:
+        write_hash(record->hash, hash);
+        return hash[0] == '\0' ? json_null() : json_string(hash);
+    case COLUMN_REAL:
+    case COLUMN_WHOLE:
+        break;
+    }
+    return build_number(field->kind, record_number(record, field));
+}
+
+static bool take_jsonl(const Layout *layout, const Record *record, void *file, Err *err)
+{
+    json_t *object = json_object();
+    RecordField field;
+    for (size_t i = 0; record_field(layout, i, &field); i++) {
+        json_object_set_new(object, field.name, build_value(&field, record));
+    }
+    Text line;
+    text_init(&line);
+    json_value_write(object, LINE_FLAGS, &line);
+    json_decref(object);
+    fprintf(((const WholeFile *)file)->stream, "%s\n", line.data);
+    text_finish(&line);
+    return file_check(file, err);
+}
+
+static bool write_rows(Store *store, FileKind kind, const char *path, StoreTaker take, Err *err)
+{
+    WholeFile file;
+    if (!file_begin(&file, kind, path, err)) {
+        return false;
+    }
+    if (kind == FILE_TABLE) {
+        write_line(file.stream, store_layout(store), NULL);
+    }
+    if (!store_each(store, take, &file, err)) {
+        file_abandon(&file);
+        return false;
+    }
+    return file_end(&file, err);
+}
+
+bool study_rows_write_csv(Store *store, const char *path, Err *err)
+{
+    return write_rows(store, FILE_TABLE, path, take_csv, err);
+}
+
+bool study_rows_write_jsonl(Store *store, const char *path, Err *err)
+{
+    return write_rows(store, FILE_ROWS, path, take_jsonl, err);
 }

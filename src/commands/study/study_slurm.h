@@ -1,5 +1,5 @@
-// The scripts that hand the shards of a study to Slurm: a job array, a job that gathers what it
-// leaves, and what submits the two. Slurm schedules; nothing here does.
+// The scripts that hand the shards of a study to Slurm: a job array, and a job that merges its
+// stores.
 #pragma once
 
 #include "base/err.h"

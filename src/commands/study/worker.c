@@ -1,20 +1,78 @@
-// How is the last message of a dying process kept, and kept off the terminal?
-//
-// Both streams go to a file in memory of limited size; what is written beyond it is dropped.
+// Worker slots, and the captured output of a worker process.
 #define _GNU_SOURCE // memfd_create
 
-#include "commands/study/last_words.h"
-
+#include "commands/study/worker.h"
 #include "base/printable.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <unistd.h>
+
+// Each slot lets the next process start at once when the one before it is done.
+//
+// Each slot is a byte of a file in memory, locked by the process that works: the lock ends with the
+// process, however it ends. The time limit counts from the moment the lock is taken; the system's
+// timer measures it, because the parent cannot know that moment.
+
+int slot_open(void)
+{
+    return memfd_create("slots", MFD_CLOEXEC);
+}
+
+void slot_close(int slots)
+{
+    if (slots >= 0) {
+        close(slots);
+    }
+}
+
+static void lock(int slots, size_t slot, short kind)
+{
+    struct flock what = {.l_type = kind, .l_whence = SEEK_SET, .l_start = (off_t)slot, .l_len = 1};
+    while (slots >= 0 && fcntl(slots, F_SETLKW, &what) != 0 && errno == EINTR) {
+    }
+}
+
+// The longest that the system's timer is asked for, s: some thirty years.
+static const double LIMIT_MAX = 1e9;
+
+static void set_timer(double limit_s)
+{
+    const double most = fmin(limit_s, LIMIT_MAX);
+    const double whole = floor(most);
+    struct itimerval timer = {.it_value = {(time_t)whole, (suseconds_t)(1e6 * (most - whole))}};
+    // all zeroes would turn it off
+    timer.it_value.tv_usec += most < 1e-6 ? 1 : 0;
+    signal(SIGALRM, SIG_DFL);
+    setitimer(ITIMER_REAL, &timer, NULL);
+}
+
+void slot_enter(int slots, size_t slot, double limit_s)
+{
+    lock(slots, slot, F_WRLCK);
+    if (limit_s > 0.0) {
+        set_timer(limit_s);
+    }
+}
+
+void slot_leave(int slots, size_t slot)
+{
+    const struct itimerval never = {0};
+    setitimer(ITIMER_REAL, &never, NULL);
+    lock(slots, slot, F_UNLCK);
+}
+
+// The last message of a dying process is kept, and kept off the terminal.
+//
+// Both streams go to a file in memory of limited size; what is written beyond it is dropped.
 
 enum {
     KEPT_MAX = 1 << 18, // bytes of one child: some thousand lines; later ones are dropped
