@@ -1,12 +1,14 @@
-// What is to be said of a contact, of its settings and of its best constants, in JSON, CSV and
-// tables?
-#include "commands/map/mapping_report.h"
+// Writes a mapping as JSON and CSV.
+#include "commands/map/map.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
 #include "write/turned_keys.h"
 #include "write/units.h"
 
 #include <math.h>
+
+// What is to be said of a contact, of its settings and of its best constants, in JSON, CSV and
+// tables?
 
 static const char *const SOURCES[] = {
     [MAPPING_MEDIAN] = "median", [MAPPING_MOST] = "most",   [MAPPING_GIVEN] = "given",

@@ -1,14 +1,16 @@
-// How far is each map off, at which step?
-//
-// The largest errors, wherever the steps fall, relative to what the law asks: left of the
-// restitution, right of the peak force. Lines are predicted, dots delivered; what is valid lies in
-// the pale band.
-#include "commands/map/mapping_report.h"
+// Draws the errors of each map over the step as SVG.
+#include "commands/map/map.h"
 #include "write/plot.h"
 #include "write/units.h"
 
 #include <math.h>
 #include <stdio.h>
+
+// How far is each map off, at which step?
+//
+// The largest errors, wherever the steps fall, relative to what the law asks: left of the
+// restitution, right of the peak force. Lines are predicted, dots delivered; what is valid lies in
+// the pale band.
 
 static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
 static const double HEAD_HEIGHT = 96.0;
