@@ -13,7 +13,7 @@
 #include "commands/check/check_list.h"
 #include "commands/check/check_run.h"
 #include "commands/check/check_work.h"
-#include "measure/truth_child.h"
+#include "measure/task.h"
 #include "write/fields.h"
 #include "write/journal.h"
 #include "write/json_value.h"

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "base/zeroed.h"
 #include "contact/law.h"
-#include "measure/backend_run.h"
+#include "measure/chosen_run.h"
 #include "measure/truth.h"
 #include "model/perturb.h"
 #include "model/shake.h"

@@ -4,10 +4,9 @@
 #include "base/text.h"
 #include "commands/check/check_measure.h"
 #include "commands/check/check_work.h"
-#include "measure/backend_run.h"
-#include "measure/pool.h"
+#include "measure/child.h"
+#include "measure/chosen_run.h"
 #include "measure/task.h"
-#include "measure/truth_child.h"
 
 #include <assert.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "commands/check/check_work.h"
 #include "base/clock.h"
 #include "base/text.h"
-#include "measure/pool.h"
+#include "measure/child.h"
 #include "measure/task.h"
 
 #include <assert.h>

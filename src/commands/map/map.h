@@ -3,10 +3,9 @@
 #pragma once
 
 #include "base/text.h"
-#include "measure/impact.h"
+#include "measure/estimate.h"
 #include "measure/mapping.h"
-#include "measure/mapping_joint.h"
-#include "measure/printed.h"
+#include "measure/mapping_contact.h"
 #include "write/fields.h"
 #include "write/joint_units.h"
 #include "write/style.h"

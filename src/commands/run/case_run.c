@@ -5,7 +5,7 @@
 #include "cli/long_work.h"
 #include "cli/results.h"
 #include "cli/written.h"
-#include "measure/backend_run.h"
+#include "measure/chosen_run.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 #include "write/file.h"

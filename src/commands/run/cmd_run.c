@@ -5,7 +5,7 @@
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/run/case_run.h"
-#include "measure/backend_run.h"
+#include "measure/chosen_run.h"
 #include "write/file.h"
 
 #include <assert.h>

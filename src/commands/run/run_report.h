@@ -4,10 +4,8 @@
 
 #include "analytic/stackup.h"
 #include "analytic/summary.h"
-#include "measure/change_point.h"
 #include "measure/ensemble.h"
 #include "measure/error.h"
-#include "measure/spike_match.h"
 #include "measure/truth.h"
 #include "model/trajectory.h"
 #include "write/fields.h"

@@ -4,7 +4,7 @@
 #include "base/printable.h"
 #include "commands/study/design.h"
 #include "commands/study/worker.h"
-#include "measure/backend_run.h"
+#include "measure/chosen_run.h"
 #include "run/registry.h"
 
 #include <assert.h>

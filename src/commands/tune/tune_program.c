@@ -9,7 +9,7 @@
 #include "base/zeroed.h"
 #include "commands/tune/tune_world.h"
 #include "contact/law.h"
-#include "measure/pool.h"
+#include "measure/child.h"
 #include "model/coordinate.h"
 #include "model/scenario.h"
 #include "ode/engine.h"

@@ -1,8 +1,8 @@
 // Makes the runs of a search side by side, and those of all schemes at one step.
 #include "commands/tune/tune_runs.h"
 #include "base/clock.h"
-#include "measure/mapping_joint.h"
-#include "measure/pool.h"
+#include "measure/child.h"
+#include "measure/mapping_contact.h"
 
 #include <assert.h>
 #include <math.h>

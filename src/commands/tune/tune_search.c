@@ -9,7 +9,7 @@
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_runs.h"
-#include "measure/truth_child.h"
+#include "measure/task.h"
 #include "write/json_value.h"
 #include "write/number.h"
 #include "write/units.h"
