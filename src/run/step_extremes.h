@@ -1,7 +1,9 @@
-// A solver's state at instants inside its last step, where it provides them.
+// The extremes of signals inside a step, from a solver's states there.
 #pragma once
 
 #include "run/recorder.h"
+
+// A solver's state at instants inside its last step, where it provides them.
 
 // of a step; a chord of a quarter of a swing is then off by 1e-3 of its height
 enum { LOOK_PARTS_MAX = 16, LOOK_TOPS_MAX = 8, LOOK_MAX = LOOK_PARTS_MAX + LOOK_TOPS_MAX };
@@ -65,3 +67,23 @@ bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *lo
 // `before` is the start of the step, the looks the ends of its parts, LOOK_PARTS_MAX at most. Those
 // at maxima are put in between; returns how many looks there are then.
 int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX]);
+
+// The extremes of many signals in one step, found together.
+
+// Tells the recorder what the signals of the part reach between two looks at a step's ends, where
+// that may be beyond the run's extremes so far, and lets the looker have the tops.
+void look_at_crowd(Looker *looker, const Look *before, const Look *end);
+
+// A signal at one instant.
+typedef struct LookPoint {
+    double time_s;
+    double value;
+    double omega; // rad/s, of a body
+} LookPoint;
+
+enum { LOOK_PATH_MAX = LOOK_MAX + LOOK_SIGNS };
+
+// Alpha of a body or force of a joint at looks, and at its tops between them where a crowd was
+// looked at since the room was emptied. `before` is when the looks begin.
+size_t look_path(const Looker *looker, RecorderSignal signal, size_t number, double before_s,
+                 int count, const Look *looks, LookPoint path[LOOK_PATH_MAX]);
