@@ -3,7 +3,7 @@
 
 #include "commands/check/check_measure.h"
 #include "measure/rank_test.h"
-#include "write/build_print.h"
+#include "write/settings_json.h"
 
 enum {
     BASELINE_WHY_SIZE = 128,

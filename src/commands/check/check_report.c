@@ -2,8 +2,8 @@
 #include "commands/check/check_report.h"
 #include "casefile/expect_outcome.h"
 #include "write/json_value.h"
-#include "write/section.h"
 #include "write/settings_json.h"
+#include "write/table.h"
 #include "write/units.h"
 
 #include <inttypes.h>

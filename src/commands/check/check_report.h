@@ -3,7 +3,7 @@
 
 #include "base/text.h"
 #include "commands/check/check_judge.h"
-#include "write/style.h"
+#include "write/table.h"
 
 #include <jansson.h>
 

@@ -2,8 +2,8 @@
 #include "commands/compare/compare.h"
 #include "write/json_value.h"
 #include "write/measured_fields.h"
-#include "write/section.h"
 #include "write/settings_json.h"
+#include "write/table.h"
 #include "write/units.h"
 
 #include <math.h>

@@ -4,7 +4,6 @@
 #include "cli/output.h"
 #include "cli/written.h"
 #include "commands/compare/compare.h"
-#include "write/build_print.h"
 #include "write/file.h"
 #include "write/json_value.h"
 #include "write/measured_fields.h"

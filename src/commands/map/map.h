@@ -7,8 +7,8 @@
 #include "measure/mapping.h"
 #include "measure/mapping_contact.h"
 #include "write/fields.h"
-#include "write/joint_units.h"
-#include "write/style.h"
+#include "write/table.h"
+#include "write/units.h"
 
 #include <jansson.h>
 

@@ -2,7 +2,6 @@
 #include "commands/map/map.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
-#include "write/turned_keys.h"
 #include "write/units.h"
 
 #include <math.h>

@@ -2,7 +2,6 @@
 #include "commands/run/plot_lines.h"
 #include "commands/run/run_report.h"
 #include "model/coordinate.h"
-#include "write/joint_units.h"
 #include "write/units.h"
 
 #include <math.h>

@@ -1,7 +1,6 @@
 // Builds the JSON object of the runs of a case.
 #include "commands/run/run_report.h"
 #include "model/coordinate.h"
-#include "write/joint_units.h"
 #include "write/json_value.h"
 #include "write/measured_fields.h"
 #include "write/settings_json.h"

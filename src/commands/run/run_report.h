@@ -9,7 +9,7 @@
 #include "measure/truth.h"
 #include "model/trajectory.h"
 #include "write/fields.h"
-#include "write/style.h"
+#include "write/table.h"
 
 #include <string.h>
 

@@ -1,6 +1,5 @@
 // Writes the spikes of accelerations and forces, as tables and as JSON.
 #include "commands/run/run_report.h"
-#include "write/joint_units.h"
 #include "write/json_value.h"
 #include "write/units.h"
 

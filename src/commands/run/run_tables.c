@@ -2,7 +2,6 @@
 #include "commands/run/run_report.h"
 #include "model/linkage.h"
 #include "write/alike.h"
-#include "write/joint_units.h"
 #include "write/measured_fields.h"
 #include "write/units.h"
 

@@ -7,7 +7,7 @@
 #include "model/kinematics.h"
 #include "model/space_rows.h"
 #include "write/alike.h"
-#include "write/section.h"
+#include "write/table.h"
 #include "write/units.h"
 
 #include <math.h>

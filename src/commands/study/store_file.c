@@ -14,7 +14,7 @@
 
 #include "base/claims.h"
 #include "commands/study/store_inside.h"
-#include "write/work_lock.h"
+#include "write/file.h"
 
 #include <assert.h>
 #include <errno.h>

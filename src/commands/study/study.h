@@ -9,7 +9,7 @@
 #include "commands/study/store.h"
 #include "commands/study/sweep.h"
 #include "write/file.h"
-#include "write/style.h"
+#include "write/table.h"
 
 #include <jansson.h>
 

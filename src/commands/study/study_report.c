@@ -4,8 +4,8 @@
 #include "write/fields.h"
 #include "write/file.h"
 #include "write/json_value.h"
-#include "write/section.h"
 #include "write/settings_json.h"
+#include "write/table.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "commands/study/metrics.h"
 #include "commands/study/study.h"
 #include "version.h"
-#include "write/build_print.h"
+#include "write/settings_json.h"
 
 #include <assert.h>
 #include <inttypes.h>

@@ -13,7 +13,7 @@
 #include "measure/held.h"
 #include "measure/ladder.h"
 #include "measure/truth.h"
-#include "write/style.h"
+#include "write/table.h"
 
 #include <jansson.h>
 

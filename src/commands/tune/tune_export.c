@@ -6,9 +6,8 @@
 #include "contact/law.h"
 #include "contact/map.h"
 #include "measure/chosen_run.h"
-#include "write/joint_units.h"
 #include "write/number.h"
-#include "write/section.h"
+#include "write/table.h"
 #include "write/units.h"
 #include "write/xml.h"
 

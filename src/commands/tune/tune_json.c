@@ -4,7 +4,6 @@
 #include "commands/tune/tune_search.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
-#include "write/turned_keys.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -14,8 +14,8 @@
 #include "model/coordinate.h"
 #include "model/response.h"
 #include "model/space.h"
-#include "write/joint_units.h"
 #include "write/number.h"
+#include "write/units.h"
 #include "write/xml.h"
 
 #include <assert.h>

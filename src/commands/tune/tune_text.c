@@ -2,9 +2,8 @@
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_search.h"
-#include "write/joint_units.h"
 #include "write/number.h"
-#include "write/section.h"
+#include "write/table.h"
 #include "write/units.h"
 
 #include <math.h>
