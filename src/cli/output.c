@@ -2,8 +2,8 @@
 #include "cli/output.h"
 
 #include "base/printable.h"
+#include "write/file.h"
 #include "write/json_value.h"
-#include "write/sink.h"
 
 #include <assert.h>
 #include <errno.h>

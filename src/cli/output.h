@@ -4,7 +4,7 @@
 #include "base/err.h"
 #include "base/text.h"
 #include "write/json_value.h"
-#include "write/style.h"
+#include "write/table.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "cli/common_options.h"
-#include "write/file_kind.h"
+#include "write/file.h"
 #include "write/json_value.h"
-#include "write/style.h"
+#include "write/table.h"
 
 // One file. What it holds comes from one of the three functions; a report and a result without any
 // are the text and the JSON that are printed otherwise.

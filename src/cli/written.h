@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/err.h"
-#include "write/file_kind.h"
+#include "write/file.h"
 #include "write/journal.h"
 
 // Says that a file was written, unless it is a stream; always true.

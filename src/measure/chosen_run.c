@@ -1,4 +1,4 @@
-// Which step gives the error that the user asks for?
+// Chooses the step of ODE that gives the error asked for, and runs it.
 //
 // No error is extrapolated: trials at falling steps are held against the truth at every sample, and
 // the first that holds the tolerance up to the horizon is the run. See docs/stepping.md.
@@ -8,15 +8,338 @@
 // always be had whole. The last trial is as fine as what is left allows, and is not given up: it is
 // the result, up to where it held.
 #include "measure/chosen_run.h"
-
 #include "base/clock.h"
-#include "measure/step_choice.h"
-#include "measure/trial.h"
+#include "base/zeroed.h"
+#include "contact/touch.h"
+#include "measure/truth.h"
+#include "model/distance.h"
 #include "model/lock.h"
+#include "model/scale.h"
+#include "model/scenario.h"
+#include "run/registry.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+typedef struct StepChoice {
+    const Scenario *scenario; // outlives the choice
+    double first_step_s;      // the coarsest worth a trial
+    bool is_smooth;           // whether errors fall as the order says: nothing touches
+    double order;             // of the stepping, where it is
+} StepChoice;
+
+// The part of a run in which a truth is sure enough, and what holds after it.
+typedef struct TrialWindow {
+    double until_s;     // the end of the run, the truth's horizon, or before it
+    double uncertainty; // 1, of the truth up to there
+    bool is_uncertain;  // it ends where the uncertainty grows too large
+    double horizon_s;   // where it does, the truth's horizon or the end of the run
+    double behind;      // 1: up to there, times the tolerance, what a run may be away
+} TrialWindow;
+
+// What a trial is held against, and when it is not worth running on.
+typedef struct TrialRule {
+    const Truth *truth;
+    TrialWindow window; // in which errors count
+    double tolerance;   // 1
+    bool is_last;       // it is run to its end, though it misses the tolerance
+    bool is_smooth;     // likewise, for its largest error says which step is next
+} TrialRule;
+
+typedef struct Trial {
+    double step_s;
+    Trajectory *run;   // owned; incomplete where it failed or was given up
+    bool is_given_up;  // it missed the tolerance
+    double held_error; // 1, largest while it held the tolerance
+    double held_s;     // the last sample up to which it did; 0: not even the first
+    double error;      // 1, at the sample after that; 0 where there is none
+    double worst;      // 1, largest on the whole window, where the trial is run to its end
+    bool holds;        // the tolerance on the whole window, and what is allowed behind it
+} Trial;
+
+// The next step to be tried.
+//
+// One that is a little finer. A trial ends at the first sample that is above the tolerance, which
+// is mostly soon: on random mechanisms a walk in small steps comes to the coarsest step that will
+// do at the cost of little more than that one run. To jump ahead as the order says takes fewer
+// trials and more world steps, for errors do not fall as the order says: grazing impacts come and
+// go. Where all joints are ideal they do: a trial is run to its end, and the next step follows from
+// its largest error and the order.
+
+// the next step over the last one, where that missed at once and where it missed at the end
+static const double FINER_EARLY = 0.8;
+static const double FINER_LATE = 0.7;
+
+// a failed trial gives no hint of the step that succeeds
+static const double AFTER_FAILURE = 0.5;
+
+// The first step is coarser than most that will do: a trial of it costs next to nothing.
+static const double FIRST_STEPS = 20.0;    // of the drive's turn, or of a run without a drive
+static const double FIRST_CONTACTS = 64.0; // half-periods of a contact, if that is less
+static const double LEAST_STEPS = 10.0;    // of any run
+
+// Where the order says it, a step this much shorter than what would just do; and within these
+// shares of the last one, for the coarsest steps are beyond what the order says.
+static const double ORDER_SHARE = 0.9;
+static const double ORDER_LEAST = 0.4;
+static const double ORDER_MOST = 0.9;
+
+// How fast the sides of a place may meet: as the fastest point of the linkage, or at a turn as the
+// faster of its two bodies turns at the most.
+static double meeting_speed(const Scenario *scenario, const Touch *place)
+{
+    SpeedScale scale = scale_speeds(scenario);
+    double speed = place->shape == TOUCH_TURN ? 0.0 : scale.moving;
+    for (int side = 0; place->shape == TOUCH_TURN && side < 2; side++) {
+        const int body = linkage_end(&scenario->linkage.joints[place->joint], side).body;
+        speed = body == LINKAGE_GROUND ? speed : fmax(speed, scale.turning[body]);
+    }
+    scale_free(&scale);
+    return speed;
+}
+
+// A depth of a contact: a tenth of the clearance, or of stops and of the ends of a coordinate what
+// their bodies would press in. Laws of these are powers.
+static double contact_depth(const Scenario *scenario, const Touch *place, double mass)
+{
+    static const double DEPTH = 0.1;
+    const Joint *joint = &scenario->linkage.joints[place->joint];
+    if (joint->kind == JOINT_CLEARANCE || joint->kind == JOINT_GUIDE) {
+        return fmin(DEPTH * linkage_radial_clearance(joint),
+                    0.5 * force_law_depth_limit(&place->law));
+    }
+    const double speed = meeting_speed(scenario, place);
+    const double power = place->law.exponent + 1.0;
+    return pow(0.5 * power * mass * speed * speed / place->law.stiffness, 1.0 / power);
+}
+
+// The shortest half-period of contacts at places that the response has been taken with, s.
+static double shortest_time(const Scenario *scenario, const Response *response, const Touch *places,
+                            size_t count)
+{
+    double shortest_s = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        const size_t row = response_first_row(response, i);
+        // the first row of a line is along its normal
+        const double along = response_mass(response, row, (Vec2){1.0, 0.0});
+        const double mass = touch_is_scalar(&places[i])
+                                ? along
+                                : fmin(along, response_mass(response, row, (Vec2){0.0, 1.0}));
+        const double depth = contact_depth(scenario, &places[i], mass);
+        shortest_s = fmin(shortest_s, M_PI * sqrt(mass / force_law_tangent(&places[i].law, depth)));
+    }
+    return shortest_s;
+}
+
+// The half-period of the stiffest contact, s.
+static double contact_time(const Scenario *scenario)
+{
+    Touch *places;
+    size_t count;
+    Response response;
+    Err unused = {ERR_NONE, ""};
+    if (!touch_list(scenario, &places, &count, &unused)) {
+        return INFINITY; // opening the world says what is wrong
+    }
+    Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
+    linkage_start(&scenario->linkage, motions);
+    touch_response(&scenario->linkage, places, count, false, &response);
+    const double shortest_s = response_place(&response, motions)
+                                  ? shortest_time(scenario, &response, places, count)
+                                  : INFINITY;
+    response_finish(&response);
+    free(motions);
+    free(places);
+    return shortest_s;
+}
+
+static StepChoice step_choice_begin(const Scenario *scenario)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const double duration_s = scenario_duration(scenario);
+    const double turn_s = drive_is_steady(&linkage->driver) ? linkage_period(linkage) : duration_s;
+    const double first_s = fmin(turn_s / FIRST_STEPS, duration_s / LEAST_STEPS);
+    const OdeOptions *ode = &scenario->ode;
+    bool is_smooth = true;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        is_smooth = is_smooth && !linkage_has_play(&linkage->joints[i]);
+    }
+    return (StepChoice){
+        .scenario = scenario,
+        .first_step_s = fmin(first_s, FIRST_CONTACTS * contact_time(scenario)),
+        .is_smooth = is_smooth,
+        .order = ode->stepping == ODE_PLAIN          ? 1.0
+                 : ode->stepping == ODE_EXTRAPOLATED ? (double)ode->levels + 1.0
+                                                     : 2.0,
+    };
+}
+
+// The scenario at that step, stepped as trials are.
+static Scenario step_choice_scenario(const StepChoice *choice, double step_s)
+{
+    return scenario_with_step(choice->scenario, step_s);
+}
+
+static double step_choice_finer(double step_s, double share)
+{
+    return step_s * (FINER_EARLY + (FINER_LATE - FINER_EARLY) * fmin(1.0, share));
+}
+
+// The step after one whose largest error in the whole run was that many times the tolerance, where
+// errors fall as the order says.
+static double step_choice_by_order(const StepChoice *choice, double step_s, double excess)
+{
+    const double share = ORDER_SHARE * pow(excess, -1.0 / choice->order);
+    return step_s * fmin(fmax(share, ORDER_LEAST), ORDER_MOST);
+}
+
+// The step that comes after one that missed the tolerance when it had come through a share of the
+// run, 0 to 1, or after one that the solver failed at.
+static double step_choice_after_failure(double step_s)
+{
+    return AFTER_FAILURE * step_s;
+}
+
+// A trial: whether a run of one step holds the tolerance, and up to when.
+//
+// The error at a sample is that of model/distance.c against the truth's, and with it the truth's
+// own uncertainty with a margin, so that what is held is an upper bound.
+//
+// The truth's uncertainty U belongs to its horizon T and was less before. How it grew shows in the
+// distance to a run of the reference at another tolerance, d(t), the largest so far:
+//     U(t) = U max(d(t) / d(T), 1 / growth)
+// with the growth of the fastest of all perturbations up to T: no error has grown more.
+//
+// Where U(t) grows above a tenth of the tolerance nothing can be said to hold any more. There a run
+// still may not be further away than ten times U: as far as the truth is known it is as good as one
+// for a larger tolerance.
+
+// a reference is rarely off by more than it says, and by three times that hardly ever
+static const double TRUTH_MARGIN = 3.0;
+
+// of the other run's tolerance to the truth's
+static const double OTHER = 1e1;
+
+typedef struct Watcher {
+    const TrialRule *rule;
+    DistanceMeasure measure; // of the truth
+    Trial *trial;
+    bool is_over; // the tolerance was exceeded
+} Watcher;
+
+static bool look(const Trajectory *trajectory, size_t sample, void *context, Err *err)
+{
+    Watcher *watcher = context;
+    const TrialRule *rule = watcher->rule;
+    const Trajectory *truth = rule->truth->trajectory;
+    Trial *trial = watcher->trial;
+    const double time_s = truth->times[sample];
+    const bool is_behind = time_s > rule->window.until_s;
+    const bool is_of_interest =
+        !is_behind || (rule->window.is_uncertain && time_s <= rule->window.horizon_s);
+    if (!is_of_interest || (watcher->is_over && !rule->is_smooth)) {
+        return true;
+    }
+    const double apart = distance_apart(&watcher->measure, distance_motion_at(trajectory, sample),
+                                        distance_motion_at(truth, sample), NULL);
+    if (is_behind && apart <= rule->window.behind * rule->tolerance) {
+        return true;
+    }
+    const double bound = apart + TRUTH_MARGIN * rule->window.uncertainty;
+    trial->worst = is_behind ? trial->worst : fmax(trial->worst, bound);
+    if (watcher->is_over) {
+        return true;
+    }
+    if (!is_behind && bound <= rule->tolerance) {
+        trial->held_s = time_s;
+        trial->held_error = fmax(trial->held_error, bound);
+        return true;
+    }
+    watcher->is_over = true;
+    trial->error = bound;
+    const bool runs_on = rule->is_last || rule->is_smooth;
+    trial->is_given_up = !runs_on;
+    return runs_on || err_set(err, ERR_SOLVER, "the step is too coarse");
+}
+
+static Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch,
+                        const RunProbe *probe)
+{
+    Trial trial = {.step_s = scenario->run.step};
+    Watcher watcher = {
+        .rule = rule,
+        .trial = &trial,
+        .measure = distance_measure(rule->truth->trajectory),
+    };
+    const RunGuard guard = {look, &watcher};
+    trial.run = run_guarded(scenario, registry_solver(BACKEND_ODE), watch, probe, &guard);
+    trial.holds = trial.run->is_complete && !watcher.is_over;
+    distance_finish(&watcher.measure);
+    return trial;
+}
+
+// Runs the scenario, which has its step, and looks at every sample of it. The probe may be NULL.
+static void trial_finish(Trial *trial)
+{
+    trajectory_destroy(trial->run);
+    trial->run = NULL;
+}
+
+static TrialWindow shorten(const Trajectory *truth, const Trajectory *other, double growth,
+                           TrialWindow whole, double most)
+{
+    DistanceMeasure measure = distance_measure(truth);
+    double *so_far = zeroed(truth->sample_count, sizeof *so_far);
+    double largest = 0.0;
+    for (size_t k = 0; k < truth->sample_count && truth->times[k] <= whole.until_s; k++) {
+        largest = fmax(largest, distance_apart(&measure, distance_motion_at(other, k),
+                                               distance_motion_at(truth, k), NULL));
+        so_far[k] = largest;
+    }
+    distance_finish(&measure);
+    TrialWindow window = {.horizon_s = whole.until_s, .behind = whole.uncertainty / most};
+    for (size_t k = 0; largest > 0.0 && k < truth->sample_count; k++) {
+        const double uncertainty = whole.uncertainty * fmax(so_far[k] / largest, 1.0 / growth);
+        window.is_uncertain = truth->times[k] <= whole.until_s && !(uncertainty <= most);
+        if (truth->times[k] > whole.until_s || window.is_uncertain) {
+            break;
+        }
+        window.until_s = truth->times[k];
+        window.uncertainty = uncertainty;
+    }
+    free(so_far);
+    return window;
+}
+
+// The longest window from the start in which the uncertainty of the truth is at most `most`. It is
+// empty, until_s being 0, where the truth is nowhere that sure. Another run of the reference is
+// made only where the truth is not that sure up to its horizon.
+static TrialWindow trial_window(const Scenario *scenario, const Truth *truth, double most,
+                                RunWatch watch)
+{
+    const double duration_s = scenario_duration(scenario);
+    const TrialWindow whole = {
+        .until_s = truth->is_limited ? fmin(truth->horizon_s, duration_s) : duration_s,
+        .uncertainty = truth->uncertainty,
+    };
+    if (truth->uncertainty <= most) {
+        return whole;
+    }
+    if (!isfinite(truth->uncertainty)) {
+        return (TrialWindow){.is_uncertain = true};
+    }
+    Scenario other = *scenario;
+    // looser, or tighter where no run is as loose
+    const double own = options_reference_tolerance(&scenario->reference);
+    other.reference.tolerance = own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER;
+    Trajectory *run = run_motion(&other, registry_solver(BACKEND_REFERENCE), watch);
+    const TrialWindow window = run->is_complete
+                                   ? shorten(truth->trajectory, run, truth->growth, whole, most)
+                                   : (TrialWindow){.is_uncertain = true};
+    trajectory_destroy(run);
+    return window;
+}
 
 // errors below this multiple of the reference's uncertainty are dominated by it
 static const double TRUTH_SHARE = 0.1;
@@ -278,4 +601,20 @@ Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, Chosen
         lacks_truth(&chosen, message, sizeof message) ? fail(&chosen, message) : choose(&chosen);
     truth_finish(&own);
     return run;
+}
+
+// A run on a backend, at its own step or a chosen one.
+
+bool backend_run_is_chosen(const Scenario *scenario, BackendKind backend)
+{
+    return backend == BACKEND_ODE && scenario->run.step == 0.0;
+}
+
+Trajectory *backend_run(const Scenario *scenario, BackendKind backend, const Truth *truth,
+                        ChosenWatch watch, const RunProbe *probe)
+{
+    if (backend_run_is_chosen(scenario, backend)) {
+        return chosen_run_make(scenario, truth, watch, probe);
+    }
+    return run_guarded(scenario, registry_solver(backend), watch.run, probe, NULL);
 }

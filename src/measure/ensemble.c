@@ -1,6 +1,5 @@
 // Measures the distributions of a motion that cannot be predicted.
 #include "measure/ensemble.h"
-
 #include "base/sorted.h"
 #include "base/zeroed.h"
 #include "model/perturb.h"

@@ -63,3 +63,38 @@ bool error_fail_unstable(Trajectory *run, const Trajectory *reference, Trajector
 // array untouched, where the two cannot be compared.
 bool error_series(const Trajectory *trajectory, const Trajectory *reference,
                   const DistanceMeasure *measure, double *distance);
+
+// Which contact of one run is which of another, and how far apart are they?
+
+typedef struct SpikePair {
+    size_t spike;           // number among the run's spikes of the joint
+    size_t reference_spike; // likewise, of the reference
+    double onset_delay_s;   // the run's onset less the reference's
+    double force_error;     // 1: the run's largest force over the reference's, less 1
+    double impulse_error;   // 1: of the impulse, likewise
+} SpikePair;
+
+typedef struct SpikeMatch {
+    size_t pair_count;
+    SpikePair pairs[TRAJECTORY_SPIKE_MAX]; // in the order of the reference's spikes
+    size_t missed;                         // spikes of the reference that nothing answers to
+    size_t extra;                          // spikes of the run that answer to none
+} SpikeMatch;
+
+// Pairs the kept spikes of one joint by their onsets: a pair is nearer to each other than half the
+// distance to the next spike of either run, so that no spike can belong to two, and nearer than
+// the reach, s. Left out are spikes that begin after the horizon, s, with their partners, and
+// spikes without force or impulse. Both trajectories must be complete and of the same scenario.
+SpikeMatch spike_match(const Trajectory *trajectory, const Trajectory *reference, size_t joint,
+                       double horizon_s, double reach_s);
+
+// The reach of a scenario, s: a small part of a turn of its driver, or of the run where that is
+// shorter or there is no driver.
+double spike_match_reach(const Scenario *scenario);
+
+// Whether a motion passes a change point of its ideal joints about a time.
+
+// Whether the ideal joints of a small mechanism in the plane come close to a change point, where
+// their constraints depend on one another, within a hundredth of the run before or after a time, s.
+// An ODE step that opens the joints by little may there go on along the other branch, at any step.
+bool change_point_is_near(const Trajectory *truth, double time_s);

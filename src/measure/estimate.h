@@ -2,7 +2,65 @@
 #pragma once
 
 #include "contact/penalty.h"
-#include "measure/printed.h"
+
+#include <stdbool.h>
+
+// What the paper prints: its tables, cell by cell, and the joint it prints them for.
+
+enum {
+    PRINTED_SPEED_COUNT = 15, // 100 to 1500 rpm
+    PRINTED_PIN_COUNT = 2,
+    PRINTED_TABLE_COUNT = 3,    // Tables I to III
+    PRINTED_QUANTITY_COUNT = 8, // the columns of Tables VII and VIII, side by side
+};
+
+typedef enum PrintedPin { PRINTED_CRANK_COUPLER, PRINTED_COUPLER_FOLLOWER } PrintedPin;
+
+extern const char *const PRINTED_PIN_NAMES[PRINTED_PIN_COUNT]; // as joints of a four-bar
+
+// One of Tables I to III: a row a speed, a column a pin.
+typedef struct PrintedTable {
+    const char *name;
+    const char *title;
+    const char *unit;
+    int decimals; // behind the point, in every cell
+    double cells[PRINTED_SPEED_COUNT][PRINTED_PIN_COUNT];
+} PrintedTable;
+
+extern const PrintedTable PRINTED_TABLES[PRINTED_TABLE_COUNT];
+
+// The input speed of a row, rpm.
+double printed_speed_rpm(int row);
+
+typedef enum PrintedRow {
+    PRINTED_IDEAL_NOMINAL,
+    PRINTED_IDEAL_STACKUP,
+    PRINTED_POISSON,
+    PRINTED_IMPACT,
+    PRINTED_IDEAL_ANALYTICAL,
+    PRINTED_ROW_COUNT,
+} PrintedRow;
+
+// One row of Tables VII and VIII together: coupler omega max, min, follower omega max, min, rad/s
+// (Table VII, 3 decimals), then the same of alpha, rad/s^2 (Table VIII, none).
+typedef struct PrintedExtremes {
+    const char *name;
+    double values[PRINTED_QUANTITY_COUNT];
+} PrintedExtremes;
+
+extern const PrintedExtremes PRINTED_EXTREMES[PRINTED_ROW_COUNT];
+extern const char *const PRINTED_QUANTITY_NAMES[PRINTED_QUANTITY_COUNT];
+
+// Digits behind the point of a quantity's cells.
+int printed_decimals(int quantity);
+
+// Whether a value rounded to so many decimals is the number printed.
+bool printed_agrees(double value, double printed, int decimals);
+
+// The clearance joint: Table IV (largest hole, smallest pin; diameters) and Table VI.
+extern const double PRINTED_HOLE_DIAMETER; // m
+extern const double PRINTED_PIN_DIAMETER;  // m
+extern const double PRINTED_PIN_WIDTH;     // m
 
 typedef struct EstimateCell {
     double printed; // in the table's unit, like the next two

@@ -1,4 +1,4 @@
-// Which constants are best for a contact at a step that cannot be changed?
+// Searches the best constants for a contact at a step that cannot be changed.
 //
 // The search is over (ln k, ln c), k and c the spring and damper that the map makes a row of: a
 // grid wide enough for every contact from the law's own length to one of a hundred steps, then
@@ -8,7 +8,6 @@
 // Constants are rows of the velocity-level model without bounce: F = ((ERP / h) d + d') / (CFM + h
 // / m). That is how they are predicted and how they are run.
 #include "measure/held.h"
-
 #include "model/coordinate.h"
 
 #include <assert.h>

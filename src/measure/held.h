@@ -11,7 +11,7 @@
 // index a for asked: twice and half of a force are as far off.
 #pragma once
 
-#include "measure/mapping_verdict.h"
+#include "measure/mapping_contact.h"
 
 enum { HELD_MAP_COUNT = 3 };
 

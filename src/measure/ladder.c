@@ -1,10 +1,10 @@
-// Which runs does a ladder consist of, and which are still to be made?
+// Lists the runs of a ladder of steps, and concludes from them: order of convergence and frontier.
 //
 // Run number n: the error runs of the P points, step by step, then in each round the timing runs of
 // all points, so that whatever slows the machine down for a while slows all of them. How long the
 // runs still to be made take goes by the finest of their scheme that was made: as 1 / step.
 #include "measure/ladder.h"
-
+#include "base/sorted.h"
 #include "base/text.h"
 
 #include <assert.h>
@@ -250,4 +250,294 @@ size_t ladder_finest(const Ladder *ladder, size_t scheme)
         }
     }
     return finest;
+}
+
+// The power of the step with which an error falls.
+//
+//     p_i = ln(e_i / e_i+1) / ln(h_i / h_i+1)                      from step i to the next
+//     p = sum (x - <x>)(y - <y>) / sum (x - <x>)^2,  x = ln h, y = ln e     over the range
+
+// orders of one and two must never be taken as one range; errors taken as a maximum over samples
+// scatter by some 0.1
+static const double ORDER_AGREEMENT = 0.25;
+// a slower fall is none: a bias that a finer step does not take away
+static const double ORDER_LEAST = 0.25;
+enum { POINTS_LEAST = 3 };
+
+static bool is_above(double error, double floor)
+{
+    return isfinite(error) && error > floor && error > 0.0;
+}
+
+static double local_order(const double *steps, const double *errors, size_t index)
+{
+    return log(errors[index] / errors[index + 1]) / log(steps[index] / steps[index + 1]);
+}
+
+// The longest range that begins at a step; its spread. One point where nothing agrees.
+static size_t extend(size_t count, const double *steps, const double *errors, double floor,
+                     size_t first, double *spread)
+{
+    double low = INFINITY;
+    double high = -INFINITY;
+    size_t last = first;
+    *spread = 0.0;
+    while (last + 1 < count && is_above(errors[last], floor) && is_above(errors[last + 1], floor)) {
+        const double order = local_order(steps, errors, last);
+        low = fmin(low, order);
+        high = fmax(high, order);
+        if (!(high - low <= ORDER_AGREEMENT) || !(low >= ORDER_LEAST)) {
+            break;
+        }
+        *spread = high - low;
+        last++;
+    }
+    return last;
+}
+
+static double slope(size_t first, size_t last, const double *steps, const double *errors)
+{
+    const double count = (double)(last - first + 1);
+    double mean_x = 0.0;
+    double mean_y = 0.0;
+    for (size_t i = first; i <= last; i++) {
+        mean_x += log(steps[i]) / count;
+        mean_y += log(errors[i]) / count;
+    }
+    double mixed = 0.0;
+    double square = 0.0;
+    for (size_t i = first; i <= last; i++) {
+        const double x = log(steps[i]) - mean_x;
+        mixed += x * (log(errors[i]) - mean_y);
+        square += x * x;
+    }
+    return mixed / square;
+}
+
+Order order_fit(size_t count, const double *steps, const double *errors, double floor)
+{
+    Order best = {.is_known = false};
+    for (size_t first = 0; first < count; first++) {
+        double spread;
+        const size_t last = extend(count, steps, errors, floor, first, &spread);
+        const bool is_long = last - first + 1 >= POINTS_LEAST;
+        if (is_long && (!best.is_known || last - first >= best.last - best.first)) {
+            best = (Order){.is_known = true, .first = first, .last = last, .spread = spread};
+        }
+    }
+    if (best.is_known) {
+        best.order = slope(best.first, best.last, steps, errors);
+        best.points = best.last - best.first + 1;
+        best.from_s = steps[best.first];
+        best.to_s = steps[best.last];
+    }
+    return best;
+}
+
+// The points that are worth their time.
+//
+// From the fastest point to the slowest, one belongs to the frontier (Pareto's) where its error is
+// below 0.99 times the least so far. Some hundred points: the next one is looked for among all.
+
+// two solvers that agree in all but rounding are equally accurate
+static const double TIE = 0.01;
+
+static bool is_point(double time, double error)
+{
+    return isfinite(time) && isfinite(error);
+}
+
+// Whether a point comes before another: faster, or as fast and more accurate, or first in the list.
+static bool comes_before(const double *times, const double *errors, size_t a, size_t b)
+{
+    if (times[a] != times[b]) {
+        return times[a] < times[b];
+    }
+    return errors[a] != errors[b] ? errors[a] < errors[b] : a < b;
+}
+
+// The first point behind another (behind none where that is `count`), or `count`.
+static size_t next_point(size_t count, const double *times, const double *errors, size_t last)
+{
+    size_t next = count;
+    for (size_t i = 0; i < count; i++) {
+        if (is_point(times[i], errors[i]) &&
+            (last == count || comes_before(times, errors, last, i)) &&
+            (next == count || comes_before(times, errors, i, next))) {
+            next = i;
+        }
+    }
+    return next;
+}
+
+void frontier_mark(size_t count, const double *times, const double *errors, bool *is_on_frontier)
+{
+    for (size_t i = 0; i < count; i++) {
+        is_on_frontier[i] = false;
+    }
+    double least = INFINITY;
+    for (size_t i = next_point(count, times, errors, count); i < count;
+         i = next_point(count, times, errors, i)) {
+        if (errors[i] < (1.0 - TIE) * least) {
+            is_on_frontier[i] = true;
+            least = errors[i];
+        }
+    }
+}
+
+size_t frontier_cheapest(size_t count, const double *times, const double *errors,
+                         double uncertainty, double target)
+{
+    size_t best = count;
+    for (size_t i = 0; i < count; i++) {
+        if (!is_point(times[i], errors[i]) || !(errors[i] + uncertainty <= target)) {
+            continue;
+        }
+        if (best == count || times[i] < times[best] ||
+            (times[i] == times[best] && errors[i] < errors[best])) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+// Speed against error.
+
+const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
+
+static bool is_truth(const Ladder *ladder, const LadderPoint *point)
+{
+    return strcmp(point->name, ladder->truth.backend) == 0;
+}
+
+static double error_of(const Ladder *ladder, const LadderPoint *point)
+{
+    const LadderTruth *truth = &ladder->truth;
+    // the truth against itself has no error but its uncertainty
+    if (is_truth(ladder, point)) {
+        return truth->uncertainty;
+    }
+    const TrajectoryError *error = &point->run.error;
+    return error_of_run(error, truth->is_limited);
+}
+
+static void explain(LadderPoint *point, const char *reason)
+{
+    snprintf(point->reason, sizeof point->reason, "%s", reason);
+}
+
+static void fail(LadderPoint *point, const char *reason)
+{
+    point->is_failed = true;
+    explain(point, reason);
+}
+
+// Why a run that is complete and finite has no error all the same.
+static const char *why_without_error(const Ladder *ladder, const LadderPoint *point)
+{
+    const LadderTruth *truth = &ladder->truth;
+    if (truth->message[0] != '\0') {
+        return "has no error: the truth could not be certified";
+    }
+    if (is_truth(ladder, point)) {
+        return "has no error: the truth's own uncertainty is not known";
+    }
+    return "has no error: no sample lies within the horizon";
+}
+
+static void judge(const Ladder *ladder, LadderPoint *point)
+{
+    point->is_failed = false;
+    point->reason[0] = '\0';
+    point->error = NAN;
+    const char *unstable = error_is_unstable(&point->run.error, ladder->truth.is_limited);
+    if (!point->is_measured) {
+        fail(point, "not run");
+    } else if (!point->run.is_complete) {
+        fail(point, point->run.message);
+    } else if (point->timing_message[0] != '\0') {
+        fail(point, point->timing_message);
+    } else if (!point->run.error.is_known) {
+        fail(point, "has no error: its numbers are not finite");
+    } else if ((ladder->truth.is_limited || is_truth(ladder, point)) &&
+               !isfinite(error_of(ladder, point))) {
+        explain(point, why_without_error(ladder, point));
+    } else if (unstable != NULL) {
+        fail(point, unstable);
+    } else {
+        point->error = error_of(ladder, point);
+    }
+    point->is_limited_by_truth =
+        !point->is_failed && point->error < ERROR_CLEAR_OF_TRUTH * ladder->truth.uncertainty;
+}
+
+static void time_point(const Ladder *ladder, LadderPoint *point)
+{
+    double sorted[LADDER_REPEAT_MAX];
+    size_t count = 0;
+    for (size_t i = 0; i < ladder->repeats; i++) {
+        if (point->is_timed[i] && isfinite(point->wall_s[i])) {
+            sorted[count++] = point->wall_s[i];
+        }
+    }
+    point->wall_median_s = point->wall_min_s = point->wall_max_s = NAN;
+    if (count == 0 || point->is_failed) {
+        return;
+    }
+    sorted_make(sorted, count);
+    point->wall_median_s = sorted_median(sorted, count);
+    point->wall_min_s = sorted[0];
+    point->wall_max_s = sorted[count - 1];
+}
+
+static void fit_orders(Ladder *ladder)
+{
+    double errors[LADDER_STEP_MAX];
+    for (size_t scheme = 0; scheme < ladder->scheme_count; scheme++) {
+        size_t count = 0;
+        for (size_t i = 0; i < ladder->point_count; i++) {
+            if (ladder->points[i].scheme == scheme && ladder->points[i].step_s > 0.0) {
+                errors[count++] = ladder->points[i].error;
+            }
+        }
+        ladder->orders[scheme] = order_fit(count, ladder->steps, errors,
+                                           ERROR_CLEAR_OF_TRUTH * ladder->truth.uncertainty);
+    }
+}
+
+// The frontier and the cheapest points are ODE's: the other solvers stand beside them.
+static void rank_points(Ladder *ladder)
+{
+    const size_t count = ladder->point_count;
+    double *times = calloc(count + 1, sizeof *times);
+    double *errors = calloc(count + 1, sizeof *errors);
+    bool *marks = calloc(count + 1, sizeof *marks);
+    assert(times != NULL && errors != NULL && marks != NULL);
+    for (size_t i = 0; i < count; i++) {
+        const LadderPoint *point = &ladder->points[i];
+        const bool is_ode = ladder->schemes[point->scheme].backend == BACKEND_ODE;
+        times[i] = is_ode ? point->wall_median_s : NAN;
+        errors[i] = point->error;
+    }
+    frontier_mark(count, times, errors, marks);
+    for (size_t i = 0; i < count; i++) {
+        ladder->points[i].is_on_frontier = marks[i];
+    }
+    for (size_t i = 0; i < LADDER_TARGET_COUNT; i++) {
+        ladder->cheapest[i] =
+            frontier_cheapest(count, times, errors, ladder->truth.uncertainty, LADDER_TARGETS[i]);
+    }
+    free(times);
+    free(errors);
+    free(marks);
+}
+
+void ladder_conclude(Ladder *ladder)
+{
+    for (size_t i = 0; i < ladder->point_count; i++) {
+        judge(ladder, &ladder->points[i]);
+        time_point(ladder, &ladder->points[i]);
+    }
+    fit_orders(ladder);
+    rank_points(ladder);
 }

@@ -4,9 +4,31 @@
 
 #include "measure/ensemble.h"
 #include "measure/error.h"
-#include "measure/order.h"
 #include "measure/scheme.h"
 #include "measure/truth.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+// At which power of the step does an error fall?
+
+typedef struct Order {
+    bool is_known; // false: no three steps in a row fall alike
+    double order;  // 1: error ~ step^order
+    size_t first;  // of the steps the fit is over, in the order given
+    size_t last;   //
+    size_t points; // of the fit
+    double from_s; // its coarsest and its finest step
+    double to_s;   //
+    double spread; // 1: largest less smallest of the orders from one step to the next in there
+} Order;
+
+// Fits the order by least squares of log error on log step, over the asymptotic range: the longest
+// run of consecutive steps, at least three, from each to the next of which the error falls at
+// orders no further apart than ORDER_AGREEMENT and not below ORDER_LEAST. Of two as long, the
+// finer one. Steps, s, come coarse to fine. An error that is not above the floor, or is not
+// finite, belongs to no range and divides those on its two sides.
+Order order_fit(size_t count, const double *steps, const double *errors, double floor);
 
 enum {
     LADDER_STEP_MAX = 32,
@@ -136,3 +158,15 @@ size_t ladder_finest(const Ladder *ladder, size_t scheme);
 
 // Works out failures, errors, medians, the frontier, the orders and the cheapest points.
 void ladder_conclude(Ladder *ladder);
+
+// Which of many points are worth their time?
+
+// Marks the points that are more accurate than every faster one, by more than a hundredth of its
+// error: a smaller difference distinguishes no schemes. A point whose time, s, or error is not
+// finite is no point.
+void frontier_mark(size_t count, const double *times, const double *errors, bool *is_on_frontier);
+
+// The fastest point whose error, the uncertainty of that error included, meets the target; of two
+// as fast the more accurate. Returns `count` where none does.
+size_t frontier_cheapest(size_t count, const double *times, const double *errors,
+                         double uncertainty, double target);

@@ -1,9 +1,8 @@
-// Which ERP, CFM and step for a joint, and what do they deliver?
+// Gives ERP, CFM and step for each joint with play, and what they deliver.
 //
 // Each joint with play under each law is a contact (measure/mapping_contact.h); each map and step
 // of it is a row: predicted, judged, and run in ODE as a lone pin (measure/impact.h).
 #include "measure/mapping.h"
-
 #include "base/text.h"
 
 #include <assert.h>

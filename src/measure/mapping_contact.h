@@ -2,8 +2,51 @@
 // predicted to deliver.
 #pragma once
 
-#include "measure/impact.h"
-#include "measure/mapping_joint.h"
+#include "contact/impact_figures.h"
+#include "model/scenario.h"
+#include "run/run.h"
+
+// One impact of a lone pin on the wall of its hole, or of a corner or stop on its line: what ODE
+// delivers when it is run.
+
+// What a run in ODE delivered.
+typedef struct ImpactDelivered {
+    bool is_measured;
+    char message[ERR_TEXT_SIZE]; // why it could not be
+    ImpactFigures figures;
+} ImpactDelivered;
+
+// Runs a lone pin of a mass, kg, in the hole of a joint of the scenario, or a lone body against a
+// wall where the joint is no pin in a hole, without gravity, at a closing speed, m/s, and the
+// scenario's own step, contact and map, over all phases. `contact_s` is the longest that the
+// contact is expected to last, s. Nothing is measured, and the message says why, where a step takes
+// the pin across the hole, a run would be too long or failed, or had another number of contacts
+// than one.
+ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass, double speed,
+                               double contact_s);
+
+// What the contacts of a joint with play are like in its mechanism: with which mass they press, and
+// how fast pin and wall come together.
+
+typedef struct MappingJoint {
+    int joint;              // number in the linkage
+    double mass_least;      // kg, effective along the normal, over the run and all directions
+    double mass_median;     //
+    double mass_most;       //
+    size_t onsets;          // contacts begun at a closing speed above 0
+    double speed_median;    // m/s, closing, over these; 0 where there are none
+    double speed_most;      //
+    double penetration_max; // m, of the run
+    double force_max;       // N, likewise
+} MappingJoint;
+
+// The joints with play of a scenario, in their order, and their count, from a run of the reference,
+// which the watch follows. The caller frees them. Fails with ERR_SOLVER where the reference does.
+bool mapping_joint_measure(const Scenario *scenario, RunWatch watch, MappingJoint **joints,
+                           size_t *count, Err *err);
+
+// The same joints, of which nothing is known but their numbers.
+MappingJoint *mapping_joint_list(const Scenario *scenario, size_t *count);
 
 enum { MAPPING_MAP_COUNT = ODE_MAP_COUNT };
 
@@ -48,9 +91,6 @@ static inline bool mapping_contact_is_poisson(const MappingContact *contact)
     return contact->scenario.contact.model == CONTACT_POISSON;
 }
 
-// The impact of a contact at a step under a map, as ODE makes it. Not of ODE_MAP_IMPULSE.
-MapImpactCase mapping_case(const MappingContact *contact, OdeMap map, double step_s);
-
 // The prediction, of any map: the impulse map delivers the law. Not tried with more than
 // MAPPING_STEPS_MOST steps to the contact.
 extern const double MAPPING_STEPS_MOST;
@@ -66,3 +106,57 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
 
 // A contact's scenario for a map and step.
 Scenario mapping_scenario(const MappingContact *contact, OdeMap map, double step_s);
+
+// Is a setting right, what is wrong with it, and what would be right?
+
+// What an impact may be off by, of what the law asks, for a setting to be called valid.
+extern const double MAPPING_VALID_SHARE;
+
+typedef enum VerdictKind {
+    VERDICT_VALID,
+    VERDICT_TOO_FINE,     // more steps than are tried
+    VERDICT_PAST_END,     // the pin goes past the end of the law
+    VERDICT_UNSTABLE,     // omega h beyond the map's limit: rows fall back to the textbook's
+    VERDICT_STICKS,       // the contact does not end
+    VERDICT_TOO_COARSE,   // fewer steps than a contact can be seen in
+    VERDICT_GAINS,        // more speed after the impact than before it
+    VERDICT_OVER_DAMPED,  // less restitution than asked for
+    VERDICT_UNDER_DAMPED, // more
+    VERDICT_PEAK,         // another peak force
+    VERDICT_DEPTH,        // another depth
+    VERDICT_SCATTERS,     // right in the mean, but not wherever the steps fall
+    VERDICT_COUNT,
+} VerdictKind;
+
+extern const char *const VERDICT_NAMES[VERDICT_COUNT]; // one word each
+
+enum { VERDICT_TEXT_SIZE = 192 };
+
+typedef struct MappingRow {
+    const MappingContact *contact;
+    OdeMap map;
+    const char *map_name; // "poisson" of CONTACT_POISSON, which has no map
+    OdeStepping stepping;
+    double step_s;
+    ErpCfm soft;            // of the row at the law's deepest point; NAN of ODE_MAP_IMPULSE
+    double stability_limit; // 1, of omega h; NAN where there is none, as the next two
+    double steps_a_contact; // 1, Tc / h
+    double omega_h;         // 1, at the deepest point
+    ImpactFigures predicted;
+    VerdictKind verdict;           // from the prediction
+    char words[VERDICT_TEXT_SIZE]; // with advice where it is not valid
+    ImpactDelivered delivered;
+} MappingRow;
+
+// What figures, predicted or delivered, are to be called beside what the law asks.
+VerdictKind verdict_judge(const MappingContact *contact, OdeMap map, double step_s,
+                          const ImpactFigures *figures);
+
+// Fills in the contact's longest valid steps, found by trying predictions.
+void verdict_find_steps(MappingContact *contact);
+
+// Words for a row whose prediction and verdict stand in it.
+void verdict_describe(const MappingContact *contact, MappingRow *row);
+
+// Of CONTACT_POISSON: the smallest penalty, N s/m, that is valid at a step, s.
+double verdict_least_penalty(const MappingContact *contact, double step_s);

@@ -1,4 +1,4 @@
-// Has a distribution moved?
+// Tests whether a distribution has moved.
 //
 // Ranks R of the n + m values together, ties sharing the mean of theirs; W = sum of R over the
 // first sample. Under the hypothesis that the two are of one distribution each of the C(n+m, n)
@@ -10,7 +10,6 @@
 // Twice the ranks are whole numbers, and of these the ways are counted. They depend on the ties
 // alone: samples without any share them.
 #include "measure/rank_test.h"
-
 #include "base/sorted.h"
 #include "base/zeroed.h"
 

@@ -1,13 +1,11 @@
-// In which order, and how many at a time, are the runs of a ladder made?
+// Makes the runs of a ladder in their order, each in a child process.
 //
 // truth -> error runs -> timing runs, one at a time, round by round -> ensembles. What a ladder
 // already holds is not made again; the truth's trajectory is, where an error run still needs it.
 #include "measure/runner.h"
-
 #include "base/clock.h"
-#include "measure/pool.h"
+#include "measure/child.h"
 #include "measure/task.h"
-#include "measure/truth_child.h"
 
 #include <assert.h>
 

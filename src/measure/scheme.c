@@ -1,6 +1,5 @@
-// Which ways are there to run a scenario?
+// Lists the ways to run a scenario.
 #include "measure/scheme.h"
-
 #include "base/text.h"
 
 #include <assert.h>

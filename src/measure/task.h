@@ -3,7 +3,7 @@
 
 #include "measure/child.h"
 #include "measure/ladder.h"
-#include "measure/truth_pack.h"
+#include "measure/truth.h"
 
 // Bytes of one child: a run keeps its samples, some tens of megabytes; a run that needs more than
 // this is out of control.
@@ -28,9 +28,23 @@ Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, co
 // truth; the same by all processors, where nothing else goes on; an Ensemble.
 void task_measure(const void *task, void *run);
 void task_certify(const void *task, void *packed);
-void task_certify_alone(const void *task, void *packed);
 void task_spread(const void *task, void *ensemble);
 
 // What came of a child that did task_measure: its result, or where it did not come back the run
 // that was asked for, lost.
 LadderRun task_run(LadderRun asked, const LadderRun *result, const Child *child);
+
+// The truth of a scenario, computed in a child process, so that a crash cannot take the program
+// down.
+
+typedef struct TruthChild {
+    const Scenario *scenario;
+    double run_limit_s; // s, of each of the runs that the truth consists of
+    void (*wait)(const char *doing, void *context); // a few times a second
+    bool (*should_stop)(void *context);             // likewise; NULL: never
+    void *context;
+} TruthChild;
+
+// Makes the truth; the caller finishes it. Fails with ERR_SOLVER where there is none or it was
+// stopped, the truth then being zeroed. A truth that could not be certified says so in its message.
+bool truth_child_make(const TruthChild *work, Truth *truth, Err *err);

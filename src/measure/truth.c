@@ -1,4 +1,4 @@
-// Which solution are errors measured against, how sure is it, and how far does it hold?
+// Computes the solution that errors are measured against, its uncertainty and its horizon.
 //
 // Uncertainty: two more runs say what the first one's error may be. The second has a thirtieth of
 // its tolerance. The third has a tenth of it, other steps therefore, and inputs rounded once more:
@@ -15,16 +15,252 @@
 // miss a spike that is less than on the grid, and the uncertainty, which stands beside errors, is
 // therefore taken in it; the horizon, which samples must not move, in that of the grid.
 #include "measure/truth.h"
-
+#include "base/clock.h"
 #include "base/zeroed.h"
 #include "measure/error.h"
-#include "measure/truth_runs.h"
 #include "model/distance.h"
+#include "model/growth.h"
+#include "model/shake.h"
 #include "run/registry.h"
+#include "run/run.h"
 #include "run/tracer.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+typedef struct TruthRuns TruthRuns;
+
+// The runs that make a truth.
+//
+// first, second -> third, perturbed runs beside the second. Whoever has nothing else to do goes on
+// with a perturbed run up to the samples where all of them are looked at (model/growth.c).
+
+// tolerances of the second and third run over the first's
+static const double SECOND = 1.0 / 30.0;
+static const double THIRD = 1.0 / 10.0;
+
+// Tolerance of the perturbed runs over the perturbation: growth is then wrong by some hundredths.
+static const double PERTURBED_SHARE = 1e-3;
+
+enum { THIRD_SEED = 1 }; // of its inputs' rounding
+
+enum { RUN_FIRST, RUN_SECOND, RUN_THIRD, RUN_FINE, RUN_COUNT };
+
+// The perturbed runs, from when they begin.
+typedef struct Perturbed {
+    bool is_begun;
+    Scenario scenario;
+    DistanceMeasure measure;
+    PerturbBasis basis;
+    GrowthRuns *runs; // owned
+    double started_s; // by the clock
+} Perturbed;
+
+struct TruthRuns {
+    Scenario scenarios[RUN_COUNT]; // the third owns its linkage, the others share the caller's
+    Trajectory *trajectories[RUN_COUNT]; // owned, but where two are one
+    size_t count;
+    size_t next;
+    bool is_over[RUN_COUNT];
+    RunWatch watch;
+    Perturbed perturbed;
+};
+
+// The scenario with another tolerance of the reference.
+static Scenario with_tolerance(const Scenario *scenario, double tolerance)
+{
+    Scenario other = *scenario;
+    other.reference.tolerance = tolerance;
+    return other;
+}
+
+// The tolerance of perturbed runs: theirs is the error of the distance to the second.
+static double perturbed_tolerance(const Scenario *scenario)
+{
+    const double first = options_reference_tolerance(&scenario->reference);
+    return fmin(first, fmax(SECOND * first, PERTURBED_SHARE * DISTANCE_PERTURBATION));
+}
+
+static void beat(void *context)
+{
+    const TruthRuns *runs = context;
+    runs->watch.progress(0.0, clock_now_s() - runs->perturbed.started_s, runs->watch.context);
+}
+
+static void begin_perturbed(TruthRuns *runs)
+{
+    Perturbed *perturbed = &runs->perturbed;
+    const Scenario *fine = &runs->scenarios[RUN_FINE];
+    const Trajectory *second = runs->trajectories[RUN_SECOND];
+    perturbed->is_begun = true;
+    for (size_t i = 0; i < runs->count; i++) {
+        if (runs->is_over[i] && !runs->trajectories[i]->is_complete) {
+            return;
+        }
+    }
+    if (fine->linkage.body_count > PERTURB_BODY_MAX) {
+        return;
+    }
+    perturbed->scenario = with_tolerance(fine, perturbed_tolerance(fine));
+    perturbed->started_s = clock_now_s();
+    perturbed->measure = distance_measure(second);
+    PerturbUnit units[PERTURB_BODY_MAX];
+    perturb_units(second, units);
+    perturb_basis(&perturbed->scenario, &perturbed->measure, units, &perturbed->basis);
+    perturbed->runs = growth_begin(&(GrowthWork){
+        .solver = registry_solver(BACKEND_REFERENCE),
+        .scenario = &perturbed->scenario,
+        .beside = second,
+        .measure = &perturbed->measure,
+        .basis = &perturbed->basis,
+        .size = DISTANCE_PERTURBATION,
+        .most = DISTANCE_GROWTH,
+        .until_s = INFINITY,
+        .pulse = {runs->watch.progress != NULL ? beat : NULL, runs},
+    });
+}
+
+static SideBySideNext next_piece(size_t *index, void *context)
+{
+    TruthRuns *runs = context;
+    if (runs->next < runs->count) {
+        *index = runs->next++;
+        return SIDE_BY_SIDE_PIECE;
+    }
+    if (!runs->is_over[RUN_SECOND]) {
+        return SIDE_BY_SIDE_LATER;
+    }
+    if (!runs->perturbed.is_begun) {
+        begin_perturbed(runs);
+    }
+    if (runs->perturbed.runs == NULL) {
+        return SIDE_BY_SIDE_NONE;
+    }
+    const SideBySideNext next = growth_next(index, runs->perturbed.runs);
+    *index += runs->count;
+    return next;
+}
+
+static void make_run(TruthRuns *runs, size_t index, bool is_callers)
+{
+    const Scenario *scenario = &runs->scenarios[index];
+    const Solver *solver = registry_solver(BACKEND_REFERENCE);
+    const RunWatch watch = is_callers ? runs->watch : (RunWatch){NULL, NULL};
+    // the others are there to be compared with
+    runs->trajectories[index] = index == RUN_FIRST ? tracer_run(scenario, solver, watch)
+                                                   : run_motion(scenario, solver, watch);
+}
+
+static void do_piece(size_t index, bool is_callers, void *context)
+{
+    TruthRuns *runs = context;
+    if (index < runs->count) {
+        make_run(runs, index, is_callers);
+    } else {
+        growth_walk(index - runs->count, is_callers, runs->perturbed.runs);
+    }
+}
+
+static void end_piece(size_t index, void *context)
+{
+    TruthRuns *runs = context;
+    if (index < runs->count) {
+        runs->is_over[index] = true;
+    } else {
+        growth_walked(index - runs->count, runs->perturbed.runs);
+    }
+}
+
+// Makes all of them by at most so many threads; truth_runs_finish frees it.
+//
+// The first on the case's own samples; on the fine grid itself, where these are fine enough.
+static TruthRuns *truth_runs_make(const Scenario *scenario, RunWatch watch, size_t threads)
+{
+    TruthRuns *runs = calloc(1, sizeof *runs);
+    assert(runs != NULL);
+    const double tolerance = options_reference_tolerance(&scenario->reference);
+    const Scenario fine = distance_grid(scenario);
+    runs->watch = watch;
+    runs->scenarios[RUN_FIRST] = *scenario;
+    runs->scenarios[RUN_FINE] = fine;
+    runs->scenarios[RUN_SECOND] = with_tolerance(&fine, SECOND * tolerance);
+    const Scenario third = with_tolerance(&fine, THIRD * tolerance);
+    runs->scenarios[RUN_THIRD] = scenario_copy(&third);
+    shake_inputs(&runs->scenarios[RUN_THIRD], THIRD_SEED);
+    const bool is_fine = scenario_sample_count(&fine) == scenario_sample_count(scenario);
+    runs->count = is_fine ? RUN_FINE : RUN_COUNT;
+    const SideBySideTasks tasks = {
+        // most mechanisms have two starts for each joint with play
+        .most = runs->count + 2 * scenario->linkage.joint_count,
+        .next = next_piece,
+        .work = do_piece,
+        .end = end_piece,
+        .context = runs,
+    };
+    side_by_side_tasks(&tasks, threads);
+    if (is_fine) {
+        runs->trajectories[RUN_FINE] = runs->trajectories[RUN_FIRST];
+    }
+    return runs;
+}
+
+static const Trajectory *truth_runs_first(const TruthRuns *runs)
+{
+    return runs->trajectories[RUN_FIRST];
+}
+
+static const Trajectory *truth_runs_fine(const TruthRuns *runs)
+{
+    return runs->trajectories[RUN_FINE];
+}
+
+static const Trajectory *truth_runs_second(const TruthRuns *runs)
+{
+    return runs->trajectories[RUN_SECOND];
+}
+
+// The first at the case's own samples and on the fine grid, and the two that it is compared with,
+// on that; none of them need be complete.
+static const Trajectory *truth_runs_third(const TruthRuns *runs)
+{
+    return runs->trajectories[RUN_THIRD];
+}
+
+static double truth_runs_duration(const TruthRuns *runs)
+{
+    return scenario_duration(&runs->scenarios[RUN_FINE]);
+}
+
+// Of the perturbed runs, up to a time, s; asked once. False where there were none: of mechanisms of
+// more than PERTURB_BODY_MAX bodies, or where another run is not complete.
+static bool truth_runs_growth(TruthRuns *runs, double until_s, Growth *growth)
+{
+    if (runs->perturbed.runs == NULL) {
+        return false;
+    }
+    *growth = growth_end(runs->perturbed.runs, until_s);
+    runs->perturbed.runs = NULL;
+    return true;
+}
+
+// Returns the first run, the caller's from here on, and frees all else.
+static Trajectory *truth_runs_finish(TruthRuns *runs)
+{
+    Growth unused;
+    truth_runs_growth(runs, 0.0, &unused);
+    Trajectory *first = runs->trajectories[RUN_FIRST];
+    for (size_t i = RUN_SECOND; i < RUN_COUNT; i++) {
+        if (runs->trajectories[i] != first) {
+            trajectory_destroy(runs->trajectories[i]);
+        }
+    }
+    distance_finish(&runs->perturbed.measure);
+    scenario_free(&runs->scenarios[RUN_THIRD]);
+    free(runs);
+    return first;
+}
 
 // 1: no speed is held to less than this share of itself
 static const double ROUNDING = 0x1p-53;
@@ -227,4 +463,103 @@ void truth_finish(Truth *truth)
 {
     trajectory_destroy(truth->trajectory);
     *truth = (Truth){.trajectory = NULL};
+}
+
+// A truth as one flat piece of memory, for a pipe.
+//
+// Truth | Trajectory | its arrays, those in space where there are any; the pointers in the first
+// two are replaced on arrival.
+
+// The arrays of a trajectory and their sizes in bytes.
+typedef struct Part {
+    void *start;
+    size_t size;
+} Part;
+
+enum { PART_COUNT = 11 };
+
+static void list_parts(const Trajectory *trajectory, Part parts[PART_COUNT])
+{
+    const size_t samples = trajectory->sample_count;
+    const size_t body_count = trajectory->body_count;
+    const size_t joint_count = trajectory->joint_count;
+    parts[0] = (Part){trajectory->times, samples * sizeof(double)};
+    parts[1] = (Part){trajectory->crank_angles, samples * sizeof(double)};
+    parts[2] = (Part){trajectory->motions, samples * trajectory->body_count * sizeof(Motion)};
+    parts[3] = (Part){trajectory->states, samples * trajectory->joint_count * sizeof(JointState)};
+    const bool is_spatial = trajectory->space_motions != NULL;
+    const size_t bodies = is_spatial ? samples * trajectory->body_count : 0;
+    const size_t joints = is_spatial ? samples * trajectory->joint_count : 0;
+    parts[4] = (Part){trajectory->space_motions, bodies * sizeof(SpaceMotion)};
+    parts[5] = (Part){trajectory->space_states, joints * sizeof(SpaceJointState)};
+    parts[6] = (Part){trajectory->reach, body_count * sizeof(double)};
+    parts[7] = (Part){trajectory->bodies, body_count * sizeof(BodyExtremes)};
+    parts[8] = (Part){trajectory->joints, joint_count * sizeof(JointExtremes)};
+    parts[9] = (Part){trajectory->alpha_spikes, body_count * sizeof(SignalSpikes)};
+    parts[10] = (Part){trajectory->force_spikes, joint_count * sizeof(SignalSpikes)};
+}
+
+size_t truth_pack_size(const Scenario *scenario)
+{
+    const Linkage *linkage = &scenario->linkage;
+    size_t a_sample = 2 * sizeof(double) + linkage->body_count * sizeof(Motion) +
+                      linkage->joint_count * sizeof(JointState);
+    if (linkage->is_spatial) {
+        a_sample += linkage->body_count * sizeof(SpaceMotion) +
+                    linkage->joint_count * sizeof(SpaceJointState);
+    }
+    const size_t once = linkage->body_count * (sizeof(double) + sizeof(BodyExtremes)) +
+                        linkage->joint_count * sizeof(JointExtremes) +
+                        (linkage->body_count + linkage->joint_count) * sizeof(SignalSpikes);
+    return sizeof(Truth) + sizeof(Trajectory) + once + scenario_sample_count(scenario) * a_sample;
+}
+
+void truth_pack_write(const Truth *truth, void *packed)
+{
+    char *target = packed;
+    memcpy(target, truth, sizeof *truth);
+    memcpy(target + sizeof *truth, truth->trajectory, sizeof *truth->trajectory);
+    target += sizeof *truth + sizeof *truth->trajectory;
+    Part parts[PART_COUNT];
+    list_parts(truth->trajectory, parts);
+    for (int i = 0; i < PART_COUNT; i++) {
+        if (parts[i].size > 0) {
+            memcpy(target, parts[i].start, parts[i].size);
+        }
+        target += parts[i].size;
+    }
+}
+
+Truth truth_pack_read(const Scenario *scenario, const void *packed)
+{
+    const char *source = packed;
+    Truth truth;
+    memcpy(&truth, source, sizeof truth);
+    truth.trajectory = trajectory_create(scenario, "");
+    Part parts[PART_COUNT];
+    list_parts(truth.trajectory, parts);
+    const Linkage linkage = truth.trajectory->linkage;
+    memcpy(truth.trajectory, source + sizeof truth, sizeof *truth.trajectory);
+    // ranges are for the pictures and series of `run`, which has its truth in the same process
+    truth.trajectory->ranges = (Ranges){0};
+    truth.trajectory->times = parts[0].start;
+    truth.trajectory->crank_angles = parts[1].start;
+    truth.trajectory->motions = parts[2].start;
+    truth.trajectory->states = parts[3].start;
+    truth.trajectory->space_motions = parts[4].start;
+    truth.trajectory->space_states = parts[5].start;
+    truth.trajectory->reach = parts[6].start;
+    truth.trajectory->linkage = linkage;
+    truth.trajectory->bodies = parts[7].start;
+    truth.trajectory->joints = parts[8].start;
+    truth.trajectory->alpha_spikes = parts[9].start;
+    truth.trajectory->force_spikes = parts[10].start;
+    source += sizeof truth + sizeof *truth.trajectory;
+    for (int i = 0; i < PART_COUNT; i++) {
+        if (parts[i].size > 0) {
+            memcpy(parts[i].start, source, parts[i].size);
+        }
+        source += parts[i].size;
+    }
+    return truth;
 }

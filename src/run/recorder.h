@@ -1,7 +1,18 @@
 // What happens between samples, gathered step by step in memory that does not grow with the steps.
 #pragma once
 
-#include "run/recorder_ranges.h"
+#include "model/solver.h"
+
+// The ranges of a run, gathered step by step where its trajectory has room for them.
+
+typedef struct RecorderRanges {
+    const Scenario *scenario;
+    Trajectory *trajectory;
+    size_t stretch; // under way
+    double stretch_end_s;
+    Range *now;   // of the steps in it, by signal, but for those of parts; owned, like the next
+    Vec2 *forces; // N, on each body in a step; room
+} RecorderRanges;
 
 typedef struct Recorder {
     const Scenario *scenario;

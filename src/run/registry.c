@@ -1,4 +1,4 @@
-// Which solver stands behind which word of a case?
+// Lists the solvers of the program.
 #include "run/registry.h"
 
 #include <assert.h>

@@ -1,19 +1,233 @@
-// How does one scenario on one solver become one trajectory?
+// Runs one scenario on one solver and makes one trajectory of it.
 //
 // open -> (step -> record)* until the next sample -> observe -> ... -> close. The clock runs around
 // the stepping loop alone: steps, contact detection, recording and samples, not the setting up.
 #include "run/run.h"
-
 #include "base/clock.h"
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "contact/pin_space.h"
 #include "contact/touch.h"
 #include "model/forces.h"
 #include "model/lock.h"
-#include "run/part_samples.h"
-#include "run/sample_check.h"
+#include "model/solver.h"
+#include "run/recorder.h"
 
+#include <math.h>
 #include <stdio.h>
+
+typedef struct Turning {
+    const Linkage *linkage;
+    double *told_s; // by body, the end of its last record; owned, like the next two
+    double *angle;  // rad, there
+    double *omega;  // rad/s, there
+} Turning;
+
+typedef struct PartSamples {
+    const Scenario *scenario;
+    const Solver *solver;
+    const void *state; // of the solver
+    Recorder *recorder;
+    const Turning *turning;
+    Trajectory *trajectory;   // receives the samples
+    Sample sample;            // owned, as are the arrays
+    const SolverPart **parts; // by number, as they are met; NULL: not yet
+    size_t *next;             // by number, the sample that is its next
+    size_t part_count;        // numbers so far
+} PartSamples;
+
+// Of a step: one that ends so little before a sample has reached it.
+static const double RUN_ROUNDING = 1e-9;
+
+// Whether the motion is determined at a sample.
+
+// A solver marks a state that the joints do not determine by omegas that are no numbers: whether
+// there are none in a part of a sample (NULL: in all of it).
+static bool run_check_sample(const Linkage *linkage, const SolverPart *part, const Sample *sample,
+                             Err *err)
+{
+    const size_t count = solver_body_count(part, linkage);
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = solver_body(part, k);
+        if (!isfinite(sample->bodies[i].omega)) {
+            char where[LINKAGE_INSTANT_SIZE];
+            linkage_describe_instant(linkage, sample->time_s, where);
+            return err_set(err, ERR_SOLVER,
+                           "%s: the motion of %s is not determined: the ideal joints stand at a "
+                           "change point, or are redundant; give one of them play",
+                           where, linkage->bodies[i].name);
+        }
+    }
+    return true;
+}
+
+// The turn in which a body is.
+
+static const double SAME_TURN = 3.0; // rad, less than half a turn
+
+static Turning turning_start(const Linkage *linkage)
+{
+    const size_t count = linkage->body_count;
+    Turning turning = {
+        .linkage = linkage,
+        .told_s = zeroed(count, sizeof *turning.told_s),
+        .angle = zeroed(count, sizeof *turning.angle),
+        .omega = zeroed(count, sizeof *turning.omega),
+    };
+    for (size_t i = 0; i < count; i++) {
+        turning.angle[i] = linkage->bodies[i].start.angle;
+        turning.omega[i] = linkage->bodies[i].start.omega;
+    }
+    return turning;
+}
+
+// The bodies where they are at time zero.
+static void turning_finish(Turning *turning)
+{
+    free(turning->told_s);
+    free(turning->angle);
+    free(turning->omega);
+}
+
+static void turning_add(Turning *turning, const StepRecord *record)
+{
+    const size_t count = solver_body_count(record->part, turning->linkage);
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = solver_body(record->part, k);
+        const double width_s = record->end_s - turning->told_s[i];
+        turning->angle[i] += 0.5 * width_s * (turning->omega[i] + record->omega[k]);
+        turning->omega[i] = record->omega[k];
+        turning->told_s[i] = record->end_s;
+    }
+}
+
+// Puts the angles of a part of a sample (NULL: of all of it), known but for whole turns, into the
+// turn that the bodies are in.
+static void turning_unwrap(const Turning *turning, const SolverPart *part, Sample *sample)
+{
+    const int driven = linkage_driven_body(turning->linkage);
+    const size_t count = solver_body_count(part, turning->linkage);
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = solver_body(part, k);
+        if ((int)i == driven) {
+            continue;
+        }
+        const double ahead = turning->omega[i] * (turning->told_s[i] - sample->time_s);
+        double *angle = &sample->bodies[i].angle;
+        const double apart = turning->angle[i] - ahead - *angle;
+        // hardly ever is it another turn than that of the solver
+        if (!(fabs(apart) < SAME_TURN)) {
+            *angle += 2.0 * M_PI * round(apart / (2.0 * M_PI));
+        }
+    }
+}
+
+// The samples of mechanisms side by side, one mechanism after the other.
+//
+// All of a sample at once would fetch each mechanism into the cache once more; a thousand do not
+// fit into it.
+
+static PartSamples part_samples_start(Recorder *recorder, const Turning *turning,
+                                      const Solver *solver, const void *state)
+{
+    const Linkage *linkage = &recorder->scenario->linkage;
+    return (PartSamples){
+        .scenario = recorder->scenario,
+        .solver = solver,
+        .state = state,
+        .recorder = recorder,
+        .turning = turning,
+        .trajectory = recorder->trajectory,
+        .sample = sample_create(linkage),
+        .parts = zeroed(linkage->body_count, sizeof(const SolverPart *)),
+        .next = zeroed(linkage->body_count, sizeof(size_t)),
+    };
+}
+
+// The samples go into the recorder's trajectory. All arguments must outlive the result.
+static void part_samples_finish(PartSamples *samples)
+{
+    sample_free(&samples->sample);
+    free(samples->parts);
+    free(samples->next);
+}
+
+static void store(const PartSamples *samples, size_t number, const SolverPart *part)
+{
+    Trajectory *trajectory = samples->trajectory;
+    const Sample *sample = &samples->sample;
+    const size_t bodies = number * trajectory->body_count;
+    const size_t joints = number * trajectory->joint_count;
+    trajectory->times[number] = sample->time_s;
+    trajectory->crank_angles[number] = sample->crank_rad;
+    for (size_t k = 0; k < part->body_count; k++) {
+        const size_t i = (size_t)part->bodies[k];
+        trajectory->motions[bodies + i] = sample->bodies[i];
+        if (trajectory->space_motions != NULL) {
+            trajectory->space_motions[bodies + i] = sample->space_bodies[i];
+        }
+    }
+    for (size_t k = 0; k < part->joint_count; k++) {
+        const size_t i = (size_t)part->joints[k];
+        trajectory->states[joints + i] = sample->joints[i];
+        if (trajectory->space_motions != NULL) {
+            trajectory->space_states[joints + i] = sample->space_joints[i];
+        }
+    }
+}
+
+// Takes the next sample of a part, which has been observed.
+static bool take(PartSamples *samples, const SolverPart *part, Err *err)
+{
+    Sample *sample = &samples->sample;
+    if (!run_check_sample(&samples->scenario->linkage, part, sample, err)) {
+        return false;
+    }
+    turning_unwrap(samples->turning, part, sample);
+    recorder_see(samples->recorder, part, sample);
+    store(samples, samples->next[part->number]++, part);
+    return true;
+}
+
+// Takes the samples of a part that its last record has reached. Fails with ERR_SOLVER where one is
+// not determined.
+static bool part_samples_take(PartSamples *samples, const StepRecord *record, Err *err)
+{
+    const SolverPart *part = record->part;
+    const double near_s = RUN_ROUNDING * (record->end_s - record->start_s);
+    const size_t count = samples->trajectory->sample_count;
+    samples->parts[part->number] = part;
+    samples->part_count =
+        part->number >= samples->part_count ? part->number + 1 : samples->part_count;
+    for (;;) {
+        const size_t next = samples->next[part->number];
+        if (next == count ||
+            scenario_sample_time(samples->scenario, next) > record->end_s + near_s) {
+            return true;
+        }
+        samples->solver->observe_part(samples->state, scenario_sample_time(samples->scenario, next),
+                                      &samples->sample);
+        if (!take(samples, part, err)) {
+            return false;
+        }
+    }
+}
+
+// Takes what rounding has left out of the samples before one that all have been stepped to.
+static bool part_samples_complete(PartSamples *samples, size_t behind, Err *err)
+{
+    for (size_t i = 0; i < samples->part_count; i++) {
+        while (samples->parts[i] != NULL && samples->next[i] < behind) {
+            samples->solver->observe(samples->state,
+                                     scenario_sample_time(samples->scenario, samples->next[i]),
+                                     &samples->sample);
+            if (!take(samples, samples->parts[i], err)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
 
 // steps between two looks at the clock: some 0.1 ms of ODE, up to a second of a large reference
 enum { PROGRESS_EVERY = 64 };
@@ -318,5 +532,88 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     part_samples_finish(&loop.ahead);
     turning_finish(&loop.turning);
     sample_free(&loop.sample);
+    return trajectory;
+}
+
+// The motion alone, for comparing two motions.
+//
+// As above, with nothing recorded at the steps.
+
+typedef struct Way {
+    const Scenario *scenario;
+    const Solver *solver;
+    void *state;
+    RunWatch watch;
+    double started_s; // by the clock
+    size_t steps;
+    double reached_s; // simulated
+    double width_s;   // length of the last step
+} Way;
+
+static bool stride(Way *way, double stop_s, Err *err)
+{
+    double end_s = 0.0;
+    if (!solver_stride(way->solver, way->state, stop_s, &end_s, err)) {
+        return false;
+    }
+    way->width_s = end_s - way->reached_s;
+    way->reached_s = end_s;
+    way->steps++;
+    if (way->watch.progress != NULL && way->steps % PROGRESS_EVERY == 0) {
+        way->watch.progress(way->reached_s / scenario_duration(way->scenario),
+                            clock_now_s() - way->started_s, way->watch.context);
+    }
+    return true;
+}
+
+static bool reach_in_motion(Way *way, double time_s, Err *err)
+{
+    while (way->reached_s < time_s - RUN_ROUNDING * way->width_s) {
+        if (!stride(way, time_s, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool go(Way *way, Sample *sample, Trajectory *trajectory, Err *err)
+{
+    // a first step, so that the sample at zero already stands in one
+    if (!stride(way, scenario_sample_time(way->scenario, 1), err)) {
+        return false;
+    }
+    for (size_t k = 0; k < trajectory->sample_count; k++) {
+        sample->time_s = scenario_sample_time(way->scenario, k);
+        if (!reach_in_motion(way, sample->time_s, err)) {
+            return false;
+        }
+        solver_glance(way->solver, way->state, sample->time_s, sample);
+        if (!run_check_sample(&way->scenario->linkage, NULL, sample, err)) {
+            return false;
+        }
+        trajectory_store_motion(trajectory, k, sample);
+    }
+    return reach_in_motion(way, scenario_duration(way->scenario), err);
+}
+
+Trajectory *run_motion(const Scenario *scenario, const Solver *solver, RunWatch watch)
+{
+    Trajectory *trajectory = trajectory_create_motion(scenario, solver->name);
+    Err err = {ERR_NONE, ""};
+    Way way = {.scenario = scenario, .solver = solver, .watch = watch, .started_s = clock_now_s()};
+    if (trajectory->sample_count == 0) {
+        return trajectory;
+    }
+    if (!solver->open(scenario, &way.state, &err)) {
+        snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
+        return trajectory;
+    }
+    Sample sample = sample_create(&scenario->linkage);
+    trajectory->is_complete = go(&way, &sample, trajectory, &err);
+    trajectory->duration_s = way.reached_s;
+    lock_explain(scenario, way.reached_s, &err);
+    snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
+    solver->close(way.state);
+    sample_free(&sample);
     return trajectory;
 }

@@ -1,4 +1,4 @@
-// Which spikes did a run have, whatever its samples show?
+// Keeps the history of every signal of a run and finds the spikes in it.
 //
 // Every step puts the angular acceleration of each body that is not driven, and the force of each
 // joint, into a trace (run/trace.c). Integrals are the solver's own: omega, and the impulse of the
@@ -8,18 +8,79 @@
 // the integral J known, a parabola stands 3/2 (J / h - (s_0 + s_1) / 2) off its chord at the
 // middle, and n parts bring that down to 1 / n^2 of it.
 #include "run/tracer.h"
-
+#include "base/grouped.h"
+#include "base/leaders.h"
 #include "base/sorted.h"
 #include "base/zeroed.h"
-#include "run/causes.h"
-#include "run/look_crowd.h"
-#include "run/spike_scale.h"
 #include "run/spikes.h"
-#include "run/trace.h"
+#include "run/step_extremes.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
+
+// The joints with play from which a force reaches a body.
+
+// Whether a body hands on forces from one of its joints to another.
+static bool hands_on(const Linkage *linkage, int body)
+{
+    return body != LINKAGE_GROUND && body != linkage_driven_body(linkage);
+}
+
+// By body: the first of those that ideal joints connect with it.
+static size_t *connect(const Linkage *linkage)
+{
+    size_t *leaders = zeroed(linkage->body_count, sizeof *leaders);
+    leaders_start(leaders, linkage->body_count);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (linkage_kind_is_ideal(joint->kind) && hands_on(linkage, joint->body_a) &&
+            hands_on(linkage, joint->body_b)) {
+            leaders_join(leaders, (size_t)joint->body_a, (size_t)joint->body_b);
+        }
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        leaders[i] = leaders_find(leaders, i);
+    }
+    return leaders;
+}
+
+// The set that one end of a joint with play acts on; none where its other end does already.
+static size_t set_of(const Linkage *linkage, const size_t *leaders, size_t end)
+{
+    const Joint *joint = &linkage->joints[end / 2];
+    const bool is_a = end % 2 == 0;
+    const int body = is_a ? joint->body_a : joint->body_b;
+    if (!linkage_has_play(joint) || !hands_on(linkage, body)) {
+        return GROUPED_NONE;
+    }
+    const size_t set = leaders[body];
+    return !is_a && set_of(linkage, leaders, end - 1) == set ? GROUPED_NONE : set;
+}
+
+Causes causes_find(const Linkage *linkage)
+{
+    const size_t ends = 2 * linkage->joint_count;
+    Causes causes = {
+        .set_of = connect(linkage),
+        .firsts = zeroed(linkage->body_count + 1, sizeof *causes.firsts),
+        .ends = zeroed(ends, sizeof *causes.ends),
+    };
+    size_t *sets = zeroed(ends, sizeof *sets);
+    for (size_t i = 0; i < ends; i++) {
+        sets[i] = set_of(linkage, causes.set_of, i);
+    }
+    grouped_list(linkage->body_count, ends, sets, causes.firsts, causes.ends);
+    free(sets);
+    return causes;
+}
+
+void causes_finish(Causes *causes)
+{
+    free(causes->set_of);
+    free(causes->firsts);
+    free(causes->ends);
+}
 
 enum {
     // of a trace: 400 kB each; some 600 impacts of full height

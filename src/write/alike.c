@@ -1,5 +1,5 @@
-#include "write/alike.h"
 
+#include "write/alike.h"
 #include "base/room.h"
 
 enum {

@@ -1,6 +1,5 @@
-// How do words and numbers stand in their cell?
+// Writes words and numbers as cells of CSV.
 #include "write/csv.h"
-
 #include "base/printable.h"
 
 #include <math.h>

@@ -1,9 +1,8 @@
-// How is a record written and read by the rows of its field table?
+// Writes and reads a record by the rows of its field table.
 //
 // A walk goes through the rows that are shown, into groups and parts too, and hands each field with
 // the address of its value, NULL where it is not known, to the function that writes.
 #include "write/fields.h"
-
 #include "write/csv.h"
 #include "write/file.h"
 #include "write/json_value.h"

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/err.h"
-#include "write/section.h"
+#include "write/table.h"
 
 #include <jansson.h>
 #include <stddef.h>

@@ -1,20 +1,355 @@
-// How does a file come to be there whole or not at all?
+// Writes a file whole or not at all, and replaces only files of its own kind.
 //
 // It is written under a temporary name beside its target and renamed when complete. A run that is
 // interrupted meanwhile removes the temporary file. What it replaces must be of its own kind, and
 // not a file that the command reads: checked before the work, and again before the file is begun.
+#define _GNU_SOURCE // memmem
+#define _GNU_SOURCE // locks of an open file
+#define _GNU_SOURCE // fopencookie
+
 #include "write/file.h"
-
 #include "base/claims.h"
-#include "write/file_parts.h"
+#include "base/err.h"
 
+#include <assert.h>
+#include <ctype.h>
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/types.h>
 #include <unistd.h>
+
+// The lock of a process that works on a file.
+
+enum {
+    TRIES = 100, // a second in all: children of a killed process were seen to live on for 0.3 s
+    WAIT_US = 10000,
+};
+
+static struct flock lock_of(short type, off_t byte)
+{
+    return (struct flock){.l_type = type, .l_whence = SEEK_SET, .l_start = byte, .l_len = 1};
+}
+
+int work_lock_take(int file, off_t byte)
+{
+    struct flock lock = lock_of(F_WRLCK, byte);
+    for (int i = 0; fcntl(file, F_OFD_SETLK, &lock) != 0; i++) {
+        if (errno != EACCES && errno != EAGAIN) {
+            return errno;
+        }
+        if (i == TRIES) {
+            return EAGAIN;
+        }
+        usleep(WAIT_US);
+    }
+    return 0;
+}
+
+void work_lock_give(int file, off_t byte)
+{
+    struct flock lock = lock_of(F_UNLCK, byte);
+    fcntl(file, F_OFD_SETLK, &lock);
+}
+
+bool work_lock_is_taken(int file, off_t byte)
+{
+    struct flock lock = lock_of(F_WRLCK, byte);
+    return file >= 0 && fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
+// Files half-written by a process that was killed.
+//
+// A part has its process in its name and is locked by it. The lock alone is not enough, for it ends
+// just before the part takes its target's name; the process alone is not, for on a shared disk it
+// may be one of another machine. A part without either is of no use to anyone.
+
+static const char MARK[] = ".part-";
+
+// The name of the part of this process: <target>.part-<process>. False where it is too long.
+static bool file_parts_name(const char *target, char *part, size_t size)
+{
+    const int length = snprintf(part, size, "%s%s%ld", target, MARK, (long)getpid());
+    return length >= 0 && (size_t)length < size;
+}
+
+// The process that a name says it is a part of; 0 where it is no part of that target.
+static long process_of(const char *name, const char *target)
+{
+    const size_t length = strlen(target);
+    if (strncmp(name, target, length) != 0 || strncmp(name + length, MARK, sizeof MARK - 1) != 0) {
+        return 0;
+    }
+    const char *digits = name + length + sizeof MARK - 1;
+    char *end;
+    errno = 0;
+    const long process = isdigit((unsigned char)digits[0]) ? strtol(digits, &end, 10) : 0;
+    return process > 0 && errno == 0 && *end == '\0' ? process : 0;
+}
+
+static bool is_abandoned(int folder, const char *name, long process)
+{
+    if (kill((pid_t)process, 0) == 0 || errno != ESRCH) {
+        return false;
+    }
+    struct stat status;
+    const int part = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    const bool is_left = part >= 0 && fstat(part, &status) == 0 && S_ISREG(status.st_mode) &&
+                         !work_lock_is_taken(part, 0);
+    if (part >= 0) {
+        close(part);
+    }
+    return is_left;
+}
+
+static void clear(const char *target)
+{
+    const char *slash = strrchr(target, '/');
+    const char *name = slash == NULL ? target : slash + 1;
+    char *path = slash == NULL ? strdup(".") : strndup(target, (size_t)(name - target));
+    DIR *folder = path == NULL ? NULL : opendir(path);
+    free(path);
+    if (folder == NULL) {
+        return;
+    }
+    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) {
+        const long process = process_of(entry->d_name, name);
+        if (process > 0 && is_abandoned(dirfd(folder), entry->d_name, process)) {
+            unlinkat(dirfd(folder), entry->d_name, 0);
+        }
+    }
+    closedir(folder);
+}
+
+// Makes and locks the part, and takes away those that processes which are no more have left of the
+// same target. It is as open to others as the target is, where there is one. Its descriptor; -1,
+// with errno set.
+static int file_parts_make(const char *target, const char *part)
+{
+    struct stat former;
+    const bool is_there = stat(target, &former) == 0;
+    clear(target);
+    // no one else reads the part of a private file while it is written
+    const int file = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_there ? 0600 : 0666);
+    if (file < 0) {
+        return -1;
+    }
+    // a file system without locks, or without modes, is no reason not to write
+    work_lock_take(file, 0);
+    if (is_there && fchmod(file, former.st_mode & 0777) != 0) {
+        errno = 0;
+    }
+    return file;
+}
+
+// The kind of a file, by how it begins.
+//
+// A user's own table, drawing or script is none of ours, whatever its name ends in: only what
+// begins as this program begins such a file is replaced. A new beginning needs a mark here; the old
+// one stays, for the files that have it.
+
+enum {
+    MARK_MAX = 4,        // beginnings of one kind
+    HEAD_SIZE = 1 << 16, // bytes that are looked at: the first line of a study's table is long
+    SHOWN_SIZE = 33,     // of the beginning of a file that is no kind of ours
+};
+
+// How a file begins, blanks and line ends aside, and what stands further down.
+typedef struct Mark {
+    const char *opening;
+    const char *further; // NULL: nothing more is asked
+} Mark;
+
+typedef struct Kind {
+    const char *name; // in a message
+    Mark marks[MARK_MAX];
+} Kind;
+
+static const Kind KINDS[FILE_KIND_COUNT] = {
+    [FILE_TABLE] = {"a table of jointplay (CSV)",
+                    {{"time_s,", NULL},
+                     {"scheme,step_s,", NULL},
+                     {"joint,law,map,step_s,", NULL},
+                     {"run,", ",outcome,reason,"}}},
+    [FILE_PICTURE] = {"a picture of jointplay (SVG)",
+                      {{"<svg xmlns=\"http://www.w3.org/2000/svg\" width=", "<style>text{"}}},
+    [FILE_RESULT] = {"a result of jointplay (JSON)", {{"{\"tool\": {\"version\":", "\"ode\":"}}},
+    [FILE_REPORT] = {"a report of jointplay (text)",
+                     {{"", "\n\n  case    "}, {"A lone contact", "\n\n  valid    "}}},
+    [FILE_CODE] = {"C code of jointplay tune",
+                   {{"// A mechanism with play in its joints in the Open Dynamics Engine,",
+                     "`jointplay tune`"}}},
+    [FILE_SDF] = {"SDF of jointplay tune", {{"<!-- error with these constants, measured:", NULL}}},
+    [FILE_MJCF] = {"MJCF of jointplay tune", {{"<!-- spring ", "not run here; for bodies"}}},
+    [FILE_JUNIT] = {"JUnit XML of jointplay check",
+                    {{"<?xml version=\"1.0\" encoding=\"UTF-8\"?><testsuites name=\"jointplay "
+                      "check\"",
+                      NULL}}},
+    [FILE_COMMENT] = {"a comment of jointplay check (Markdown)", {{"### jointplay check", NULL}}},
+    [FILE_BASELINE] = {"a baseline of jointplay check",
+                       {{"{\"format\": \"jointplay baseline", NULL}}},
+    [FILE_ROWS] = {"rows of a study (JSON Lines)", {{"{\"run\":", "\"outcome\":"}}},
+    [FILE_SCRIPT] = {"a script of jointplay study slurm",
+                     {{"#!/bin/bash", "Written by 'jointplay study slurm'"}}},
+    [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST"}}},
+    [FILE_JOURNAL] = {"a store of a comparison", {{"{\"compare\":", NULL}}},
+};
+
+static bool begins_with(const char *head, size_t size, const char *opening)
+{
+    size_t i = 0;
+    for (; *opening != '\0'; opening++) {
+        if (isspace((unsigned char)*opening)) {
+            continue;
+        }
+        while (i < size && isspace((unsigned char)head[i])) {
+            i++;
+        }
+        if (i == size || head[i] != *opening) {
+            return false;
+        }
+        i++;
+    }
+    return true;
+}
+
+static bool is_of_kind(const Kind *kind, const char *head, size_t size)
+{
+    for (size_t i = 0; i < MARK_MAX && kind->marks[i].opening != NULL; i++) {
+        const char *further = kind->marks[i].further;
+        if (begins_with(head, size, kind->marks[i].opening) &&
+            (further == NULL || memmem(head, size, further, strlen(further)) != NULL)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The first line, or what there is room for of it.
+static void show_head(const char *head, size_t size, char shown[SHOWN_SIZE])
+{
+    size_t start = 0;
+    while (start < size && isspace((unsigned char)head[start])) {
+        start++;
+    }
+    size_t length = 0;
+    for (; start + length < size && length < SHOWN_SIZE - 1; length++) {
+        const char letter = head[start + length];
+        if (letter == '\n' || letter == '\r') {
+            break;
+        }
+        shown[length] = (char)(letter >= ' ' && letter <= '~' ? letter : '?');
+    }
+    shown[length] = '\0';
+}
+
+static bool refuse(const char *user, const char *path, const char *what, const Kind *kind, Err *err)
+{
+    return err_set(err, ERR_FILE,
+                   "%s would replace %s, which %s and is not %s; delete it first or name another "
+                   "file",
+                   user, path, what, kind->name);
+}
+
+static bool refuse_head(const char *user, const char *path, const char *head, size_t size,
+                        const Kind *kind, Err *err)
+{
+    char what[2 * SHOWN_SIZE + 64];
+    for (size_t i = 0; i < FILE_KIND_COUNT; i++) {
+        if (is_of_kind(&KINDS[i], head, size)) {
+            snprintf(what, sizeof what, "is %s", KINDS[i].name);
+            return refuse(user, path, what, kind, err);
+        }
+    }
+    char shown[SHOWN_SIZE];
+    show_head(head, size, shown);
+    snprintf(what, sizeof what, "begins '%s'", shown);
+    return refuse(user, path, what, kind, err);
+}
+
+static bool read_head(const char *path, char *head, size_t *size)
+{
+    FILE *stream = fopen(path, "rb");
+    if (stream == NULL) {
+        return false;
+    }
+    *size = fread(head, 1, HEAD_SIZE, stream);
+    const bool is_read = !ferror(stream);
+    fclose(stream);
+    return is_read;
+}
+
+// Whether a file may be written over with one of a kind: it is not there, is empty, is no regular
+// file or is of that kind. Fails with ERR_FILE, saying what is in it; `user` is what writes it,
+// such as "--plot".
+static bool file_kind_check(FileKind kind, const char *user, const char *path, Err *err)
+{
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode) || status.st_size == 0) {
+        return true;
+    }
+    char *head = malloc(HEAD_SIZE);
+    assert(head != NULL);
+    size_t size = 0;
+    bool is_own = false;
+    if (!read_head(path, head, &size)) {
+        char what[128];
+        snprintf(what, sizeof what, "cannot be read (%s)", strerror(errno));
+        refuse(user, path, what, &KINDS[kind], err);
+    } else {
+        is_own = is_of_kind(&KINDS[kind], head, size) ||
+                 refuse_head(user, path, head, size, &KINDS[kind], err);
+    }
+    free(head);
+    return is_own;
+}
+
+// Whether files of a kind are written in place, by what opens them and knows them for its own.
+static bool file_kind_is_kept(FileKind kind)
+{
+    return kind == FILE_STORE || kind == FILE_JOURNAL;
+}
+
+// A stream that remembers why a write failed.
+
+static ssize_t sink_write(void *context, const char *bytes, size_t size)
+{
+    Sink *sink = context;
+    size_t sent = 0;
+    while (sent < size && sink->reason == 0) {
+        const ssize_t count = write(sink->file, bytes + sent, size - sent);
+        sent += count > 0 ? (size_t)count : 0;
+        if (count < 0 && errno != EINTR) {
+            sink->reason = errno;
+        }
+    }
+    return (ssize_t)sent;
+}
+
+// A network file system may report only now that there was no space.
+static int sink_close(void *context)
+{
+    Sink *sink = context;
+    const int status = close(sink->file);
+    if (status != 0 && sink->reason == 0) {
+        sink->reason = errno;
+    }
+    return status;
+}
+
+FILE *sink_open(Sink *sink, int file)
+{
+    *sink = (Sink){.file = file};
+    const cookie_io_functions_t functions = {.write = sink_write, .close = sink_close};
+    return fopencookie(sink, "w", functions);
+}
 
 enum { DIGIT_MAX = 9 }; // of a descriptor
 

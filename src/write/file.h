@@ -9,10 +9,42 @@
 #pragma once
 
 #include "base/err.h"
-#include "write/file_kind.h"
-#include "write/sink.h"
 
+#include <stdbool.h>
 #include <stdio.h>
+#include <sys/types.h>
+
+// What a file of the program is, known again by how it begins: a file is only replaced by one of
+// its own kind. Every writer says which kind it writes; a new one is a row of the table.
+
+typedef enum FileKind {
+    FILE_TABLE,    // CSV
+    FILE_PICTURE,  // SVG
+    FILE_RESULT,   // JSON
+    FILE_REPORT,   // text for people
+    FILE_CODE,     // of tune: a C program
+    FILE_SDF,      // of tune, for Gazebo
+    FILE_MJCF,     // of tune, for MuJoCo
+    FILE_JUNIT,    // of check: XML
+    FILE_COMMENT,  // of check: Markdown
+    FILE_BASELINE, // of check: JSON
+    FILE_ROWS,     // of a study: JSON Lines
+    FILE_SCRIPT,   // of a study, for Slurm
+    FILE_STORE,    // of a study: SQLite, written in place
+    FILE_JOURNAL,  // of a comparison: JSON Lines, written in place
+    FILE_KIND_COUNT,
+} FileKind;
+
+// A stream into a file descriptor that remembers why a write failed: stdio keeps only that one did.
+
+typedef struct Sink {
+    int file;
+    int reason; // errno of the first write that failed; 0 where none did
+} Sink;
+
+// A stream into an open file. Closing the stream closes the file; the sink must outlive both. What
+// comes after a write that failed is dropped. NULL, with errno set, where there is no memory.
+FILE *sink_open(Sink *sink, int file);
 
 enum { FILE_PATH_SIZE = 4096 };
 
@@ -66,3 +98,18 @@ bool file_make_folder(const char *folder, Err *err);
 
 // The name of a file without its folder and its ending: "k66" of "cases/k66.yaml".
 void file_stem(const char *path, char *name, size_t size);
+
+// A lock that says "somebody works on this file", from opening to closing.
+//
+// It hangs on the open file and not on the process: other code of the process that opens and closes
+// the file does not end it. Children inherit it, and die with their parent, but only just after it:
+// so it is waited for, for a moment, and given up explicitly.
+
+// Takes the lock on one byte of a file open for writing. Returns 0, EAGAIN where another process
+// has it, or the errno of what went wrong.
+int work_lock_take(int file, off_t byte);
+
+void work_lock_give(int file, off_t byte);
+
+// Whether anybody has it. Accepts a file that is not open (-1).
+bool work_lock_is_taken(int file, off_t byte);

@@ -1,14 +1,13 @@
-// How does what is finished survive the end of the program?
+// Stores finished results line by line, so that they survive the end of the program.
 //
 // Each line carries a checksum over the bytes before it: a bit that turned on the disk would be
 // another number.
 #define _GNU_SOURCE // memrchr
 
 #include "write/journal.h"
-
 #include "base/hash.h"
 #include "base/text.h"
-#include "write/work_lock.h"
+#include "write/file.h"
 
 #include <assert.h>
 #include <errno.h>

@@ -1,4 +1,4 @@
-// What are errors and distributions called, and in which units?
+// The field tables of errors and distributions.
 #include "write/measured_fields.h"
 
 #define ERROR(member)  .offset = offsetof(TrajectoryError, member)

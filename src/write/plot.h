@@ -2,9 +2,35 @@
 #pragma once
 
 #include "base/text.h"
-#include "write/axis.h"
 
 #include <stdbool.h>
+#include <stddef.h>
+
+// An axis: a range of values on a linear or logarithmic scale, and its ticks.
+
+enum { AXIS_TICK_MAX = 64 };
+
+typedef enum AxisScale {
+    AXIS_LINEAR,
+    AXIS_LOG,    // what is not positive lies on the lower edge
+    AXIS_SYMLOG, // linear up to the threshold, a decade a tick beyond it, on both sides of zero
+} AxisScale;
+
+typedef struct Axis {
+    const char *title; // with its unit
+    AxisScale scale;
+    double low; // at the left or lower edge
+    double high;
+    double threshold; // of AXIS_SYMLOG
+    double tick;      // of AXIS_LINEAR: distance of the ticks; 0: chosen
+} Axis;
+
+// Widens a range to whole ticks, so that nothing touches the edges.
+void axis_round(double *low, double *high);
+
+// Widens a range of a logarithmic axis to 1, 2 or 5 times powers of ten, and so far that at least
+// two powers of ten stand in it.
+void axis_round_log(double *low, double *high);
 
 // A rectangle of the picture, in pixels, with the axes it shows.
 typedef struct PlotPanel {

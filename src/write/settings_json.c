@@ -1,10 +1,12 @@
-// With which versions and settings was a result made?
+// Builds the JSON of versions and settings with which a result was made.
 #include "write/settings_json.h"
-
+#include "base/hash.h"
 #include "casefile/casefile.h"
 #include "version.h"
 #include "write/json_value.h"
 
+#include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 json_t *settings_json_tool(void)
@@ -105,4 +107,27 @@ json_t *settings_json_all(const Scenario *scenario)
         json_object_set_new(settings, setting.key, setting_value(&setting));
     }
     return settings;
+}
+
+// The fingerprint of the program.
+
+enum { CHUNK_WORDS = 1 << 13 };
+
+void build_print(char text[BUILD_PRINT_SIZE])
+{
+    uint64_t chunk[CHUNK_WORDS] = {0};
+    uint64_t hash = HASH_START;
+    FILE *stream = fopen("/proc/self/exe", "rb");
+    size_t count;
+    while (stream != NULL && (count = fread(chunk, 1, sizeof chunk, stream)) > 0) {
+        // by words, for the program has millions of bytes; those behind the last are of the chunk
+        // before
+        for (size_t i = 0; i < (count + sizeof *chunk - 1) / sizeof *chunk; i++) {
+            hash = hash_word(hash, chunk[i]);
+        }
+    }
+    if (stream != NULL) {
+        fclose(stream);
+    }
+    snprintf(text, BUILD_PRINT_SIZE, "%016" PRIx64, hash);
 }

@@ -14,3 +14,10 @@ void settings_json_begin(json_t *object, const Scenario *scenario);
 
 // New reference: every setting, used or not, without units.
 json_t *settings_json_all(const Scenario *scenario);
+
+// A fingerprint of the very program that runs: another build of one version may give other numbers.
+
+enum { BUILD_PRINT_SIZE = 17 };
+
+// Writes 16 hexadecimal digits.
+void build_print(char text[BUILD_PRINT_SIZE]);

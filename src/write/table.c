@@ -1,10 +1,11 @@
-// How are numbers set out for people, each under its heading and its unit?
+// Sets out numbers in tables and sections for people.
 #include "write/table.h"
-
 #include "base/printable.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,4 +105,403 @@ void table_rule(Table *table)
     }
     table->rules[table->rule_count] = table->cell_count;
     table->rule_count++;
+}
+
+// The columns there is room for, and how the table looks.
+//
+// A table no wider than its limit is written as it is. One that is wider gives up columns by their
+// importance, then breaks the words of columns that may be broken, then is written in parts.
+
+enum {
+    TABLE_INDENT = 2,
+    TABLE_GUTTER = 2,
+    TABLE_WRAP_LEAST = 20, // characters: broken into shorter lines, words are hard to read
+};
+
+// Columns that are written side by side, in their order.
+typedef struct Part {
+    size_t count;
+    size_t *columns; // their numbers
+    size_t *widths;  // characters
+} Part;
+
+static size_t least_width(const TableColumn *column)
+{
+    const bool is_broken = (column->align & TABLE_WRAP) != 0 && column->width > TABLE_WRAP_LEAST;
+    return is_broken ? TABLE_WRAP_LEAST : column->width;
+}
+
+static bool is_aligned(const TableColumn *column, TableAlign align)
+{
+    return (column->align & align) != 0;
+}
+
+static Part part_create(const Table *table)
+{
+    const size_t count = table->column_count;
+    Part part = {.columns = calloc(count, sizeof *part.columns),
+                 .widths = calloc(count, sizeof *part.widths)};
+    assert(part.columns != NULL && part.widths != NULL);
+    return part;
+}
+
+static void part_finish(Part *part)
+{
+    free(part->columns);
+    free(part->widths);
+}
+
+// The characters of a line of the part, with its words broken as far as they may be.
+static size_t least_line(const Table *table, const Part *part)
+{
+    size_t width = TABLE_INDENT + TABLE_GUTTER * (part->count - 1);
+    for (size_t i = 0; i < part->count; i++) {
+        width += least_width(&table->columns[part->columns[i]]);
+    }
+    return width;
+}
+
+static bool fits(const Table *table, const Part *part)
+{
+    return table->fit == 0 || least_line(table, part) <= table->fit;
+}
+
+static void part_remove(Part *part, size_t index)
+{
+    part->count--;
+    for (size_t i = index; i < part->count; i++) {
+        part->columns[i] = part->columns[i + 1];
+    }
+}
+
+static void take_all(const Table *table, Part *part)
+{
+    part->count = table->column_count;
+    for (size_t i = 0; i < part->count; i++) {
+        part->columns[i] = i;
+    }
+}
+
+// Takes out columns of an importance from the right until the rest fits, and says whether it does.
+static bool drop_columns(const Table *table, TableAlign importance, Part *part, bool *is_dropped)
+{
+    for (size_t i = part->count; i-- > 0 && !fits(table, part);) {
+        const size_t column = part->columns[i];
+        if (is_aligned(&table->columns[column], importance)) {
+            part_remove(part, i);
+            is_dropped[column] = true;
+        }
+    }
+    return fits(table, part);
+}
+
+// Words between which a line is broken share what room there is.
+static void set_widths(const Table *table, Part *part)
+{
+    const size_t line = least_line(table, part);
+    size_t room = table->fit > line ? table->fit - line : 0;
+    for (size_t i = 0; i < part->count; i++) {
+        const TableColumn *column = &table->columns[part->columns[i]];
+        const size_t least = least_width(column);
+        const size_t wanted = column->width - least;
+        const size_t given = table->fit == 0 || wanted < room ? wanted : room;
+        part->widths[i] = least + given;
+        room -= table->fit == 0 ? 0 : given;
+    }
+}
+
+// The bytes of the first line of a text that is broken at a width, without the space behind it.
+static size_t first_line(const char *text, size_t width)
+{
+    size_t used = 0;
+    size_t last_word = 0;
+    for (size_t i = 0; text[i] != '\0'; i++) {
+        used += ((unsigned char)text[i] & 0xc0u) != 0x80u ? 1 : 0;
+        if (text[i] == ' ' && used <= width + 1) {
+            last_word = i;
+        }
+        if (used > width && last_word > 0) {
+            return last_word;
+        }
+    }
+    return strlen(text);
+}
+
+// One line of texts, each from where the last one ended: spaces are owed and only paid before a
+// text, so that no line ends in spaces. Returns whether any text has more lines.
+static bool write_line(const Table *table, const Part *part, const char **texts, Text *text)
+{
+    size_t owed = TABLE_INDENT;
+    bool has_more = false;
+    for (size_t i = 0; i < part->count; i++) {
+        const size_t number = part->columns[i];
+        const TableColumn *column = &table->columns[number];
+        const char *cell = texts[number] == NULL ? "" : texts[number];
+        const bool is_broken = is_aligned(column, TABLE_WRAP);
+        const size_t size = is_broken ? first_line(cell, part->widths[i]) : strlen(cell);
+        const size_t used = text_width(cell, size);
+        const size_t missing = part->widths[i] > used ? part->widths[i] - used : 0;
+        owed += is_aligned(column, TABLE_RIGHT) ? missing : 0;
+        if (size > 0) {
+            text_append(text, "%*s%.*s", (int)owed, "", (int)size, cell);
+            owed = 0;
+        }
+        owed += TABLE_GUTTER + (is_aligned(column, TABLE_RIGHT) ? 0 : missing);
+        texts[number] = cell + size + strspn(cell + size, " ");
+        has_more = has_more || texts[number][0] != '\0';
+    }
+    text_append(text, "\n");
+    return has_more;
+}
+
+static void write_row(const Table *table, const Part *part, const char *const *cells, Text *text)
+{
+    const char **texts = calloc(table->column_count, sizeof *texts);
+    assert(texts != NULL);
+    memcpy(texts, cells, table->column_count * sizeof *texts);
+    while (write_line(table, part, texts, text)) {
+    }
+    free(texts);
+}
+
+static void write_rule(const Part *part, Text *text)
+{
+    text_append(text, "%*s", TABLE_INDENT, "");
+    size_t width = TABLE_GUTTER * (part->count - 1);
+    for (size_t i = 0; i < part->count; i++) {
+        width += part->widths[i];
+    }
+    for (size_t i = 0; i < width; i++) {
+        text_append(text, "-");
+    }
+    text_append(text, "\n");
+}
+
+static void write_head(const Table *table, const Part *part, Text *text)
+{
+    const char **titles = calloc(table->column_count, sizeof *titles);
+    const char **units = calloc(table->column_count, sizeof *units);
+    assert(titles != NULL && units != NULL);
+    bool has_titles = false;
+    bool has_units = false;
+    for (size_t i = 0; i < part->count; i++) {
+        const size_t number = part->columns[i];
+        titles[number] = table->columns[number].title;
+        units[number] = table->columns[number].unit;
+        has_titles = has_titles || titles[number] != NULL;
+        has_units = has_units || (units[number] != NULL && units[number][0] != '\0');
+    }
+    if (has_titles) {
+        write_row(table, part, titles, text);
+    }
+    if (has_units) {
+        write_row(table, part, units, text);
+    }
+    if (has_titles) {
+        write_rule(part, text);
+    }
+    free(titles);
+    free(units);
+}
+
+// Of a table of more rows than anyone reads, as of a thousand bodies, the first are shown where
+// lines have a width; without one, in files and by --wide, all.
+enum { ROWS_MOST = 400, ROWS_SHOWN = 100 };
+
+static size_t shown_cells(const Table *table)
+{
+    const size_t rows = table->cell_count / table->column_count;
+    return table->fit > 0 && rows > ROWS_MOST ? ROWS_SHOWN * table->column_count
+                                              : table->cell_count;
+}
+
+static void write_left_out(const Table *table, Text *text)
+{
+    const size_t left = (table->cell_count - shown_cells(table)) / table->column_count;
+    if (left > 0) {
+        text_append(text, "  ... and %zu rows more, which --wide shows and --json has\n", left);
+    }
+}
+
+static void write_part(const Table *table, Part *part, Text *text)
+{
+    set_widths(table, part);
+    write_head(table, part, text);
+    size_t rule = 0;
+    const size_t end = shown_cells(table);
+    for (size_t cell = 0; cell <= end; cell += table->column_count) {
+        for (; rule < table->rule_count && table->rules[rule] == cell; rule++) {
+            write_rule(part, text);
+        }
+        if (cell < end) {
+            write_row(table, part, (const char *const *)&table->cells[cell], text);
+        }
+    }
+}
+
+// The first column always says what a row is of.
+static bool is_key(const Table *table, size_t number)
+{
+    size_t words = 0;
+    while (words < table->column_count &&
+           (table->columns[words].align & ~TABLE_KEY) == TABLE_LEFT) {
+        words++;
+    }
+    return number == 0 || number < words || is_aligned(&table->columns[number], TABLE_KEY);
+}
+
+// The key columns, and of the others the ones of a part.
+static void fill_part(const Table *table, const Part *all, size_t from, size_t to, Part *part)
+{
+    size_t others = 0;
+    part->count = 0;
+    for (size_t i = 0; i < all->count; i++) {
+        const bool is_shown = is_key(table, all->columns[i]) || (others >= from && others < to);
+        others += is_key(table, all->columns[i]) ? 0 : 1;
+        if (is_shown) {
+            part->columns[part->count++] = all->columns[i];
+        }
+    }
+}
+
+// The largest number of columns a part, alike in all but the last, at which every part fits.
+static size_t columns_a_part(const Table *table, const Part *all, size_t others, Part *part)
+{
+    for (size_t parts = 2; parts < others; parts++) {
+        const size_t each = (others + parts - 1) / parts;
+        bool is_narrow = true;
+        for (size_t from = 0; from < others; from += each) {
+            fill_part(table, all, from, from + each, part);
+            is_narrow = is_narrow && fits(table, part);
+        }
+        if (is_narrow) {
+            return each;
+        }
+    }
+    return 1;
+}
+
+static void write_parts(const Table *table, const Part *all, Text *text)
+{
+    Part part = part_create(table);
+    size_t others = 0;
+    for (size_t i = 0; i < all->count; i++) {
+        others += is_key(table, all->columns[i]) ? 0 : 1;
+    }
+    const size_t each = columns_a_part(table, all, others, &part);
+    size_t to;
+    for (size_t from = 0; from < others || from == 0; from = to) {
+        to = from + each;
+        // where one wide column is in the way of all others, each part takes what it has room for
+        for (bool has_room = each == 1; has_room && to < others; to += has_room ? 1 : 0) {
+            fill_part(table, all, from, to + 1, &part);
+            has_room = fits(table, &part);
+        }
+        fill_part(table, all, from, to, &part);
+        text_append(text, "%s", from > 0 ? "\n" : "");
+        write_part(table, &part, text);
+    }
+    part_finish(&part);
+}
+
+// Names the columns that were left out, each title once.
+static void write_dropped(const Table *table, const bool *is_dropped, Text *text)
+{
+    bool has_any = false;
+    for (size_t i = 0; i < table->column_count; i++) {
+        const char *title = table->columns[i].title;
+        bool is_new = is_dropped[i] && title != NULL && title[0] != '\0';
+        for (size_t k = 0; k < i && is_new; k++) {
+            is_new = !is_dropped[k] || strcmp(table->columns[k].title, title) != 0;
+        }
+        if (is_new) {
+            text_append(text, "%s%s",
+                        has_any ? ", " : "  Columns left out, --wide shows them: ", title);
+            has_any = true;
+        }
+    }
+    text_append(text, has_any ? ".\n" : "");
+}
+
+void table_write(const Table *table, Text *text)
+{
+    assert(table->cell_count % table->column_count == 0);
+    bool *is_dropped = calloc(table->column_count, sizeof *is_dropped);
+    assert(is_dropped != NULL);
+    Part all = part_create(table);
+    take_all(table, &all);
+    const bool is_narrow = drop_columns(table, TABLE_DETAIL, &all, is_dropped) ||
+                           drop_columns(table, TABLE_MINOR, &all, is_dropped);
+    if (is_narrow) {
+        write_part(table, &all, text);
+        write_dropped(table, is_dropped, text);
+    } else {
+        // in parts there is room for all of them
+        take_all(table, &all);
+        write_parts(table, &all, text);
+    }
+    write_left_out(table, text);
+    part_finish(&all);
+    free(is_dropped);
+}
+
+// A section: a heading and a table.
+
+void section_heading(const char *heading, const Style *style, Text *text)
+{
+    text_append(text, "\n%s", style->heading);
+    text_append_shown(text, heading);
+    text_append(text, "%s\n", style->end);
+}
+
+void section_title(const char *title, const char *path, const Style *style, Text *text)
+{
+    text_append(text, "%s%s%s\n\n", style->heading,
+                title[0] != '\0' ? title : "A case without a title", style->end);
+    if (path[0] != '\0') {
+        text_append(text, "  case        ");
+        text_append_shown(text, path);
+        text_append(text, "\n");
+    }
+}
+
+Table *section_begin(const char *heading, size_t columns, const SectionHead *heads,
+                     const Style *style, Text *text)
+{
+    section_heading(heading, style, text);
+    text_append(text, "\n");
+    Table *table = table_create(columns);
+    table_fit(table, style->width);
+    for (size_t i = 0; i < columns; i++) {
+        table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
+    }
+    return table;
+}
+
+void section_end(Table *table, Text *text)
+{
+    table_write(table, text);
+    table_destroy(table);
+}
+
+void section_number(Table *table, double value)
+{
+    const bool is_long = fabs(value) >= 1e4 && fabs(value) < 1e8;
+    table_cell(table, is_long ? "%.0f" : "%.4g", value);
+}
+
+void section_number_or_dash(Table *table, bool is_known, double value)
+{
+    if (is_known) {
+        section_number(table, value);
+    } else {
+        table_cell(table, "-");
+    }
+}
+
+void section_finite(Table *table, const char *format, double value)
+{
+    char text[32];
+    snprintf(text, sizeof text, format, value);
+    table_cell(table, "%s", isfinite(value) ? text : "-");
 }

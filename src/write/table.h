@@ -1,8 +1,10 @@
-// Text tables for people: columns under headings with units, numbers to the right, words to the
-// left, no wider than a terminal.
+// Text tables and sections for people.
 #pragma once
 
 #include "base/text.h"
+
+#include <stdbool.h>
+#include <stddef.h>
 
 // How a column is set, and what becomes of it in a table that is too wide. One of the first three,
 // and any of the others: TABLE_RIGHT | TABLE_DETAIL.
@@ -58,3 +60,46 @@ void table_rule(Table *table);
 
 // Appends the table to the text, each line indented by two spaces. The last row must be full.
 void table_write(const Table *table, Text *text);
+
+// What a heading and a failure look like, as they are or marked for a terminal, and how wide a line
+// may be.
+
+typedef struct Style {
+    const char *heading; // put in front of a heading
+    const char *failure; // put in front of what failed
+    const char *end;     // put behind either
+    size_t width;        // the most characters of a line; 0: any number
+} Style;
+
+enum { STYLE_WIDTH = 80 }; // characters, where no terminal says another number
+
+static const Style STYLE_PLAIN = {"", "", "", 0};
+static const Style STYLE_TERMINAL = {"\x1b[1m", "\x1b[31m", "\x1b[0m", 0};
+
+// A section of the report for people: a heading and a table under it.
+
+typedef struct SectionHead {
+    const char *title;
+    const char *unit;
+    TableAlign align;
+} SectionHead;
+
+// Appends a heading on a line of its own, behind an empty one. It may be a path.
+void section_heading(const char *heading, const Style *style, Text *text);
+
+// Begins a report: the title of a case and its path, where it has them.
+void section_title(const char *title, const char *path, const Style *style, Text *text);
+
+// Begins a section; the caller fills the table and hands it to section_end, which frees it.
+Table *section_begin(const char *heading, size_t columns, const SectionHead *heads,
+                     const Style *style, Text *text);
+void section_end(Table *table, Text *text);
+
+// Four digits; a number that would need an exponent for them gets all of its own instead.
+void section_number(Table *table, double value);
+
+// The same, or a dash where it is not known.
+void section_number_or_dash(Table *table, bool is_known, double value);
+
+// A number in a format of its own, or a dash where it is not finite.
+void section_finite(Table *table, const char *format, double value);

@@ -1,6 +1,5 @@
-// How do words stand in XML?
+// Writes words in XML.
 #include "write/xml.h"
-
 #include "base/printable.h"
 
 #include <stdlib.h>

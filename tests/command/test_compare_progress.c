@@ -1,5 +1,5 @@
 // Does a long comparison say how far it has come, without leaving anything behind on a terminal?
-#include "commands/compare/compare_progress.h"
+#include "commands/compare/compare.h"
 
 #include "close.h"
 

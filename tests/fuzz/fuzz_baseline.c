@@ -1,6 +1,6 @@
 // Does any text bring the reader of baselines down, or pass it and then not be written back, or
 // differ from itself?
-#include "commands/check/baseline_json.h"
+#include "commands/check/baseline.h"
 #include "commands/check/check_judge.h"
 #include "commands/check/check_report.h"
 

@@ -4,8 +4,7 @@
 // The first line, which holds the key, is put in front of the input, unless that begins with one.
 // Lines that end like a whole one are given their checksum, or hardly any would be looked into.
 #include "base/hash.h"
-#include "commands/compare/compare_report.h"
-#include "commands/compare/ladder_json.h"
+#include "commands/compare/compare.h"
 #include "write/journal.h"
 
 #include "fuzz_check.h"

@@ -8,7 +8,7 @@
 
 #include "casefile/casefile.h"
 #include "casefile/schema.h"
-#include "measure/backend_run.h"
+#include "measure/chosen_run.h"
 #include "run/registry.h"
 
 #include <math.h>

@@ -10,7 +10,7 @@
 #include "mechanism.h"
 
 #include "contact/damping.h"
-#include "measure/impact.h"
+#include "measure/mapping_contact.h"
 
 const double ONE_IMPACT_MASS = 0.1;
 const double ONE_IMPACT_SPEED = 0.5;

@@ -6,7 +6,7 @@
 #include "load_case.h"
 #include "scratch.h"
 
-#include "commands/check/baseline_json.h"
+#include "commands/check/baseline.h"
 #include "commands/check/check_judge.h"
 #include "commands/check/check_report.h"
 #include "kept.h"

@@ -1,5 +1,5 @@
 // From which joints with play does a force reach a body of a four-bar?
-#include "run/causes.h"
+#include "run/tracer.h"
 
 #include "mechanism.h"
 

@@ -1,5 +1,5 @@
 // Is a change point of ideal joints found where a motion passes one, and nowhere else?
-#include "measure/change_point.h"
+#include "measure/error.h"
 
 #include "load_case.h"
 #include "scratch.h"

@@ -1,5 +1,5 @@
 // Is everything about a comparison told, in words, numbers and a picture?
-#include "commands/compare/compare_report.h"
+#include "commands/compare/compare.h"
 #include "write/file.h"
 
 #include "close.h"

@@ -2,7 +2,7 @@
 //
 // Seeds are fixed: a test that passes passes always. Bounds are those that true randomness breaks
 // with a chance of 1e-6 or less.
-#include "commands/study/draw.h"
+#include "commands/study/design.h"
 
 #include "close.h"
 

@@ -1,7 +1,7 @@
 // Which numbers are within a limit of a case, and which case says what of which run?
 #include "commands/check/baseline.h"
-#include "commands/check/check_limits.h"
-#include "commands/check/expect_value.h"
+#include "commands/check/check_judge.h"
+#include "commands/check/check_measure.h"
 #include "load_case.h"
 
 #include <float.h>

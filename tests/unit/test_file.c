@@ -3,8 +3,6 @@
 
 #include "scratch.h"
 
-#include "write/work_lock.h"
-
 #include <fcntl.h>
 #include <signal.h>
 #include <string.h>

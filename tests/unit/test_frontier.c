@@ -1,5 +1,5 @@
 // Is what nothing beats on the frontier, and nothing else?
-#include "measure/frontier.h"
+#include "measure/ladder.h"
 
 #include "close.h"
 

@@ -1,7 +1,7 @@
 // Does a store give back what was put in, and refuse what is not its own?
 #include "write/journal.h"
 
-#include "commands/compare/ladder_json.h"
+#include "commands/compare/compare.h"
 
 #include "close.h"
 #include "mechanism.h"

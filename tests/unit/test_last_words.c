@@ -1,5 +1,5 @@
 // Are the last words of a process heard, and only the last?
-#include "commands/study/last_words.h"
+#include "commands/study/worker.h"
 
 #include "close.h"
 #include "measure/child.h"

@@ -2,7 +2,7 @@
 #include "close.h"
 #include "mechanism.h"
 
-#include "commands/map/mapping_inverse.h"
+#include "commands/map/map.h"
 #include "contact/damping.h"
 #include "measure/mapping.h"
 #include "model/kinematics.h"

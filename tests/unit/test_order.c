@@ -1,5 +1,5 @@
 // Is the order of a power law found, and none where there is none?
-#include "measure/order.h"
+#include "measure/ladder.h"
 
 #include "close.h"
 

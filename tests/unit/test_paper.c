@@ -1,7 +1,6 @@
 // Do the paper's numbers come out again, and for the right reasons?
 #include "close.h"
 
-#include "commands/paper/embedded.h"
 #include "commands/paper/paper.h"
 #include "contact/law.h"
 #include "kept.h"

@@ -1,5 +1,5 @@
 // Does the picture show of a pin in space what is across its hole's axis, and nothing else?
-#include "commands/run/plot_look.h"
+#include "commands/run/plot_lines.h"
 
 #include "close.h"
 

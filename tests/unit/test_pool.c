@@ -1,5 +1,5 @@
 // Is every piece of work done once, at most so many at a time, and does a lost one stop no other?
-#include "measure/pool.h"
+#include "measure/child.h"
 
 #include "close.h"
 

@@ -3,7 +3,7 @@
 
 #include "mechanism.h"
 
-#include "run/look.h"
+#include "run/step_extremes.h"
 
 #include <string.h>
 

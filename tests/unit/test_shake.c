@@ -2,7 +2,7 @@
 #include "kept.h"
 #include "load_case.h"
 #include "model/shake.h"
-#include "run/spike_scale.h"
+#include "run/spikes.h"
 
 #include <string.h>
 

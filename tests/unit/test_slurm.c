@@ -1,6 +1,6 @@
 // Do the scripts for Slurm say what was asked for, whatever the names, and is what Slurm would not
 // take refused?
-#include "commands/study/slurm.h"
+#include "commands/study/study_slurm.h"
 
 // cmocka.h needs these before it
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 // Is each contact held beside the right one of the other run?
-#include "measure/spike_match.h"
+#include "measure/error.h"
 
 #include "close.h"
 #include "mechanism.h"

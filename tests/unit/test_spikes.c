@@ -7,7 +7,6 @@
 #include "mechanism.h"
 
 #include "analytic/fourbar_motion.h"
-#include "run/spike_scale.h"
 #include "run/spikes.h"
 
 #include <stdlib.h>

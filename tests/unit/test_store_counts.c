@@ -1,5 +1,5 @@
 // Are counts, reasons, values, quantiles and points of a store those of its rows?
-#include "commands/study/study_points.h"
+#include "commands/study/study_plot.h"
 
 #include "base/sorted.h"
 

@@ -1,7 +1,7 @@
 // Do the bars of a picture stand about the numbers that they count?
 #include "close.h"
 
-#include "commands/study/study_histogram.h"
+#include "commands/study/study_plot.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,6 @@
 // Do the exports, the tables and the pictures of a study say what is in its store?
+#include "commands/study/study.h"
 #include "commands/study/study_plot.h"
-#include "commands/study/study_rows.h"
-#include "commands/study/study_text.h"
 
 #include "scratch.h"
 #include "study_store.h"

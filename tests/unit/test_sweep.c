@@ -2,9 +2,8 @@
 //
 // The work of the processes is put in their place: each run does, by its number, what a run must
 // not do.
-#include "commands/study/sweep_work.h"
-
 #include "commands/study/sweep.h"
+
 #include "complete_run.h"
 #include "measure/child.h"
 #include "scratch.h"

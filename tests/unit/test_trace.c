@@ -1,7 +1,7 @@
 // Does a trace tell what the signal did, in few points?
 #include "close.h"
 
-#include "run/trace.h"
+#include "run/spikes.h"
 
 #include <stdlib.h>
 

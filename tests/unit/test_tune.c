@@ -1,6 +1,5 @@
 // Does a search take the right settings from the errors it is given?
 #include "commands/tune/tune.h"
-#include "commands/tune/tune_left.h"
 
 #include "close.h"
 #include "kept.h"

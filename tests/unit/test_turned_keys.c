@@ -1,5 +1,5 @@
 // Do keys of what turns end in its units, and no others change?
-#include "write/turned_keys.h"
+#include "write/json_value.h"
 
 #include "close.h"
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 
 #include "commands/check/check_measure.h"
 #include "measure/rank_test.h"
-#include "write/build_print.h"
+#include "write/settings_json.h"
 
 enum {
     BASELINE_WHY_SIZE = 128,
@@ -94,3 +94,14 @@ bool baseline_set_sample(Baseline *baseline, const CheckMeasure *members, size_t
 // The number of a metric in a measure, or its count. It is looked for at a number first, where it
 // is as long as nothing was added or left out.
 size_t baseline_find(const CheckMeasure *measure, const char *name, size_t near);
+
+// Baselines as files: one metric a line, so that a change shows in a diff.
+
+// Reads a baseline; the caller finishes it. Fails with ERR_FILE where the file is missing, of
+// another format, or damaged - no JSON, a key missing, unknown or doubled, a number that is none or
+// not finite, a negative band, a sample that is not that of its median and mean - and says which.
+// The baseline is then zeroed.
+bool baseline_json_read(const char *path, Baseline *baseline, Err *err);
+
+// Writes it, whole or not at all. ERR_FILE.
+bool baseline_json_write(const char *path, const Baseline *baseline, Err *err);

@@ -1,4 +1,4 @@
-// What does a CI system read of a regression check?
+// Writes a check as JUnit XML for a CI system.
 //
 // testsuites > testsuite, one a case > testcase: first one for the runs, whose time is theirs, then
 // one an outcome or a limit of the case and one a number, which take none. A number out is a
@@ -8,7 +8,6 @@
 // Jenkins takes what stands before the last dot of a class name for its package: the class of
 // cases/paper/impact-k66.yaml is cases.paper.impact-k66, and no other dot stands in a name.
 #include "commands/check/check_report.h"
-
 #include "write/xml.h"
 
 #include <math.h>

@@ -1,7 +1,6 @@
-// How is a regression check shown as a comment on a change?
-#include "commands/check/check_report.h"
-
+// Writes a check as a comment on a change, in Markdown.
 #include "base/printable.h"
+#include "commands/check/check_report.h"
 #include "write/units.h"
 
 #include <stdlib.h>

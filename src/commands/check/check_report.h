@@ -2,9 +2,8 @@
 #pragma once
 
 #include "base/text.h"
-#include "commands/check/check_limits.h"
-#include "commands/check/check_outcome.h"
-#include "write/style.h"
+#include "commands/check/check_judge.h"
+#include "write/table.h"
 
 #include <jansson.h>
 
@@ -70,9 +69,6 @@ void check_report_outcomes(const CheckReport *report, Text *text);
 
 // Cases of which the new baseline is that to the one before.
 size_t check_report_changes(const CheckReport *report, CheckChange change);
-
-// The change of a case in words: "new baseline: 114 numbers", "replaced: 3 of 114 numbers moved".
-void check_report_change(const CheckCase *item, Text *text);
 
 // Whether a row, a limit or an outcome of the case is out.
 bool check_report_is_out(const CheckCase *item);

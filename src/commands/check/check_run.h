@@ -3,6 +3,7 @@
 
 #include "commands/check/check_list.h"
 #include "commands/check/check_report.h"
+#include "commands/check/check_work.h"
 
 typedef struct CheckRun {
     CheckReport report;
@@ -19,3 +20,12 @@ bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t cou
 void check_run_bless(const CheckOptions *options, CheckItem *items, size_t count, CheckRun *run);
 
 void check_run_finish(CheckRun *run);
+
+// Makes the runs whose outcome a case expects.
+
+typedef struct OutcomeWork {
+    const CheckItem *item;
+    size_t jobs;         // runs at a time
+    double time_limit_s; // of one run
+    CheckProgress *progress;
+} OutcomeWork;

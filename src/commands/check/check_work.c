@@ -1,11 +1,12 @@
-// How are the runs of a check made side by side, and none at another's risk?
+// Makes the runs of a check side by side in child processes, and shows their progress.
 #include "commands/check/check_work.h"
-
 #include "base/clock.h"
-#include "measure/pool.h"
+#include "base/text.h"
+#include "measure/child.h"
 #include "measure/task.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -134,4 +135,42 @@ bool check_work_do(const CheckWorkers *workers, CheckWork *works, size_t count, 
     const bool is_going = pool_run(&pool, err);
     free(doing.is_begun);
     return is_going;
+}
+
+// The progress.
+
+CheckProgress check_progress_start(const char *doing, bool is_quiet)
+{
+    return (CheckProgress){.doing = doing, .line = status_line_start(is_quiet)};
+}
+
+void check_progress_show(CheckProgress *progress, const CheckWorkState *state)
+{
+    const double wall_s = status_line_time(&progress->line);
+    // what is left is that of this case alone
+    const bool is_last = progress->case_number >= progress->case_count;
+    const double left_s = is_last && state->left_s > 0.0 ? state->left_s : INFINITY;
+    if (!status_line_is_due(&progress->line, wall_s, left_s)) {
+        return;
+    }
+    Text words;
+    text_init(&words);
+    if (progress->case_count > 1) {
+        text_append(&words, "case %zu of %zu, ", progress->case_number, progress->case_count);
+    }
+    text_append(&words, "%s: ", progress->doing);
+    if (state->total == 0) {
+        text_append(&words, "making and certifying the reference");
+    } else {
+        text_append(&words, "%zu of %zu starts", state->done, state->total);
+    }
+    text_append(&words, ", %.0f s", wall_s);
+    status_line_append_left(&words, state->left_s);
+    status_line_show(&progress->line, words.data);
+    text_finish(&words);
+}
+
+void check_progress_end(CheckProgress *progress)
+{
+    status_line_end(&progress->line);
 }

@@ -1,6 +1,7 @@
 // The runs of a check, each start in a child process.
 #pragma once
 
+#include "cli/status_line.h"
 #include "commands/check/check_measure.h"
 
 // One start of one case, and what came of it.
@@ -33,3 +34,20 @@ typedef struct CheckWorkers {
 // that is not complete and says so. Where it was stopped, works are left that are not over. Fails
 // with ERR_SOLVER where the system has no process left, or as `keep` does.
 bool check_work_do(const CheckWorkers *workers, CheckWork *works, size_t count, Err *err);
+
+// How far a check has come: a line on standard error, gone at its end.
+
+typedef struct CheckProgress {
+    const char *doing;  // lives as long as this
+    size_t case_number; // of the one at work, from 1; 0: all at once
+    size_t case_count;
+    StatusLine line;
+} CheckProgress;
+
+CheckProgress check_progress_start(const char *doing, bool is_quiet);
+
+// Says how much is done and how long the rest will take, if it is time for a line. Without a
+// total it says that the reference is computed.
+void check_progress_show(CheckProgress *progress, const CheckWorkState *state);
+
+void check_progress_end(CheckProgress *progress);

@@ -1,7 +1,7 @@
-// Have the numbers of any case moved by more than they may?
+// The command `jointplay check`: its flow and its output.
 #include "cli/interrupt.h"
 #include "cli/results.h"
-#include "commands/check/check_options.h"
+#include "commands/check/check_list.h"
 #include "commands/check/check_report.h"
 #include "commands/check/check_run.h"
 #include "commands/commands.h"

@@ -1,9 +1,9 @@
-// What does speed against error look like?
+// Draws speed against error as SVG.
 //
 // Both axes are logarithmic. Colour shows stepping and map, solid or dashed line the solver, full
 // or hollow dots the collider. What is faster and more accurate than all else lies on the wide
 // pale line. The axes are ODE's: a solver far below their edge is an arrow there.
-#include "commands/compare/compare_report.h"
+#include "commands/compare/compare.h"
 #include "write/plot.h"
 #include "write/units.h"
 

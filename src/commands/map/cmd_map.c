@@ -1,4 +1,8 @@
-// Which ERP, CFM and step for a joint with play, and what do they deliver?
+// The command `jointplay map`: its options, the contact they ask for, and its output.
+#include "base/shell.h"
+#include "casefile/casefile.h"
+#include "casefile/quantity.h"
+#include "cli/common_options.h"
 #include "cli/long_work.h"
 #include "cli/option_values.h"
 #include "cli/output.h"
@@ -6,14 +10,526 @@
 #include "cli/status_line.h"
 #include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/map/map_options.h"
-#include "commands/map/mapping_inverse.h"
-#include "commands/map/mapping_report.h"
+#include "commands/map/map.h"
+#include "contact/law.h"
+#include "contact/map_impact.h"
+#include "measure/mapping.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+typedef struct MapOptions {
+    CommonOptions common; // without a path where a row alone is to be read
+    const char *steps;    // as given, or NULL; likewise the next eight
+    const char *maps;
+    const char *laws;
+    const char *mass;
+    const char *speed;
+    const char *stiffness; // of a contact without a case
+    const char *restitution;
+    const char *damping;
+    const char *clearance;
+    bool with_penalty;
+    bool is_inverse;       // ERP and CFM, or kp and kd, are to be read
+    bool has_erp, has_cfm; // which of them were given
+    bool has_kp, has_kd;   //
+    double erp, cfm;       // 1, m/(N s)
+    double kp, kd;         // N/m, N s/m
+    double step_s;         // of --step; 0 where it was not given
+    double at_step_s;      // of --at-step, likewise
+    const char *csv;
+    const char *plot;
+} MapOptions;
+
+// The options.
+
+// A plain number is in SI.
+static bool read_number(const char *name, const char *text, bool *is_given, double *value, Err *err)
+{
+    Complaint complaint;
+    if (!quantity_number(text, value, &complaint)) {
+        return err_set(err, ERR_USAGE, "--%s: %s%s%s", name, complaint.text,
+                       complaint.allowed[0] != '\0' ? "; allowed: " : "", complaint.allowed);
+    }
+    *is_given = true;
+    return true;
+}
+
+static bool read_erp(const char *text, void *target, Err *err)
+{
+    MapOptions *options = target;
+    return read_number("erp", text, &options->has_erp, &options->erp, err);
+}
+
+static bool read_cfm(const char *text, void *target, Err *err)
+{
+    MapOptions *options = target;
+    return read_number("cfm", text, &options->has_cfm, &options->cfm, err);
+}
+
+static bool read_kp(const char *text, void *target, Err *err)
+{
+    MapOptions *options = target;
+    Complaint complaint;
+    double exponent = 1.0;
+    if (!quantity_number(text, &options->kp, &complaint) &&
+        !quantity_stiffness(text, DIMENSION_STIFFNESS, &options->kp, &exponent, &complaint)) {
+        return err_set(err, ERR_USAGE, "--kp: %s; allowed: a stiffness such as 1e7 N/m",
+                       complaint.text);
+    }
+    options->has_kp = true;
+    return exponent == 1.0 ||
+           err_set(err, ERR_USAGE, "--kp: a row is a linear spring; allowed: N/m or N/mm");
+}
+
+static bool read_kd(const char *text, void *target, Err *err)
+{
+    MapOptions *options = target;
+    Complaint complaint;
+    if (!quantity_number(text, &options->kd, &complaint) &&
+        !quantity_parse(text, DIMENSION_DAMPING, &options->kd, &complaint)) {
+        return err_set(err, ERR_USAGE, "--kd: %s; allowed: a damper such as 10 N s/m",
+                       complaint.text);
+    }
+    options->has_kd = true;
+    return true;
+}
+
+#define AT(field) .offset = offsetof(MapOptions, field)
+
+static const OptionRow OPTIONS[] = {
+    {"steps", "LIST",
+     "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.1 us and the case's own)", 1,
+     OPTION_TEXT, AT(steps)},
+    {"at-step", "TIME",
+     "A step that cannot be changed: also the best ERP and CFM, and kp and kd, at it", 1,
+     OPTION_QUANTITY, AT(at_step_s), .dimension = DIMENSION_TIME},
+    {"maps", "LIST", "Only these of textbook, corrected, midpoint, exact, impulse", 1, OPTION_TEXT,
+     AT(maps)},
+    {"laws", "LIST",
+     "These elastic laws in place of the case's, with its damping; 'all' for every one", 1,
+     OPTION_TEXT, AT(laws)},
+    {"mass", "MASS",
+     "The effective mass: 'median' (default) or 'most' of the case's run, or such as '0.1 kg'", 1,
+     OPTION_TEXT, AT(mass)},
+    {"speed", "SPEED",
+     "The closing speed: 'median' (default) or 'most' of the case's contacts, or '0.1 m/s'", 1,
+     OPTION_TEXT, AT(speed)},
+    COMMON_SET(1),
+    {"penalty", NULL, "Also the paper's penalty parameter over its 15 speeds, read both ways", 1,
+     OPTION_FLAG, AT(with_penalty)},
+    {"erp", "X", "With --cfm and --step: which spring and damper is that?", 2, OPTION_READ,
+     .read = read_erp},
+    {"cfm", "X", "The CFM of --erp, m/(N s)", 2, OPTION_READ, .read = read_cfm},
+    {"kp", "K", "With --kd and --step: a spring as Gazebo has it, such as '1e7 N/m'", 2,
+     OPTION_READ, .read = read_kp},
+    {"kd", "C", "The damper of --kp, such as '10 N s/m'", 2, OPTION_READ, .read = read_kd},
+    {"step", "TIME", "The step of --erp or --kp; else the only step of the mapping", 2,
+     OPTION_QUANTITY, AT(step_s), .dimension = DIMENSION_TIME},
+    {"stiffness", "K",
+     "Without a case, with --mass: a lone contact of F = K d^n, such as '1e9 N/m^1.5'", 3,
+     OPTION_TEXT, AT(stiffness)},
+    {"restitution", "E", "Of --stiffness (default: 0.9)", 3, OPTION_TEXT, AT(restitution)},
+    {"damping", "LAW",
+     "Of --stiffness: a damping law (default: lankarani-nikravesh), or a damper '10 N s/m'", 3,
+     OPTION_TEXT, AT(damping)},
+    {"clearance", "C", "Of --stiffness: the radial clearance (default: as wide as the steps need)",
+     3, OPTION_TEXT, AT(clearance)},
+    COMMON_JSON(4),
+    COMMON_WIDE(4),
+    {"csv", "FILE.csv", "Write one row per joint, law, map and step", 4, OPTION_TEXT, AT(csv)},
+    {"plot", "FILE.svg", "Draw the errors of restitution and peak force", 4, OPTION_PICTURE,
+     AT(plot)},
+    COMMON_OUT(4, "Write <case>-map.txt, .csv, .svg and .json there"),
+    COMMON_QUIET(4),
+};
+
+// What reading a row needs, and what it has no use for.
+static bool check_inverse(const MapOptions *options, Err *err)
+{
+    const bool is_row = options->has_erp || options->has_cfm;
+    const bool is_pair = options->has_kp || options->has_kd;
+    if (is_row && is_pair) {
+        return err_set(err, ERR_USAGE, "--erp and --cfm, or --kp and --kd, and not of both");
+    }
+    if (is_row && !(options->has_erp && options->has_cfm)) {
+        return err_set(err, ERR_USAGE, "--erp and --cfm are read together; --%s is missing",
+                       options->has_erp ? "cfm" : "erp");
+    }
+    if (is_pair && !(options->has_kp && options->has_kd)) {
+        return err_set(err, ERR_USAGE, "--kp and --kd are read together; --%s is missing",
+                       options->has_kp ? "kd" : "kp");
+    }
+    if (!(options->step_s > 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "a row stands for a spring and damper at one step only; "
+                       "give it, such as --step '1 ms'");
+    }
+    if (options->at_step_s > 0.0 || options->steps != NULL || options->maps != NULL ||
+        options->laws != NULL || options->speed != NULL || options->stiffness != NULL ||
+        options->restitution != NULL || options->damping != NULL || options->clearance != NULL ||
+        options->with_penalty || options->csv != NULL || options->plot != NULL ||
+        options->common.folder != NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--%s reads one row: of the other options only --step, --mass, --set, "
+                       "--json and --quiet go with it",
+                       is_row ? "erp" : "kp");
+    }
+    return true;
+}
+
+static bool refuse_stiffness(const char *stiffness, Err *err)
+{
+    Text setting;
+    Text word;
+    text_init(&setting);
+    text_init(&word);
+    text_append(&setting, "contact.stiffness=%s", stiffness);
+    shell_append_word(&word, setting.data);
+    err_set(err, ERR_USAGE, "--stiffness is of a contact without a case; of a case: --set %s",
+            word.data);
+    text_finish(&setting);
+    text_finish(&word);
+    return false;
+}
+
+// What a contact without a case needs, and what goes with nothing else.
+static bool check_lone(const MapOptions *options, Err *err)
+{
+    if (options->stiffness == NULL) {
+        return (options->restitution == NULL && options->damping == NULL &&
+                options->clearance == NULL) ||
+               err_set(err, ERR_USAGE,
+                       "--restitution, --damping and --clearance are of a contact without a case, "
+                       "with --stiffness; of a case --set replaces them, such as --set "
+                       "contact.restitution=0.8");
+    }
+    if (options->common.path != NULL) {
+        return refuse_stiffness(options->stiffness, err);
+    }
+    if (options->mass == NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--stiffness needs the effective mass, such as --mass '0.1 kg'");
+    }
+    return (options->laws == NULL && !options->with_penalty) ||
+           err_set(err, ERR_USAGE, "%s needs a case: a stiffness has no pin and hole",
+                   options->laws != NULL ? "--laws" : "--penalty");
+}
+
+static bool check(void *target, Err *err)
+{
+    MapOptions *options = target;
+    options->is_inverse =
+        options->has_erp || options->has_cfm || options->has_kp || options->has_kd;
+    if (options->is_inverse) {
+        return check_inverse(options, err);
+    }
+    if (options->at_step_s > 0.0 && (options->steps != NULL || options->step_s > 0.0)) {
+        return err_set(err, ERR_USAGE,
+                       "--at-step is the only step; it goes with neither --step nor "
+                       "--steps");
+    }
+    if (options->steps != NULL && options->step_s > 0.0) {
+        return err_set(err, ERR_USAGE, "--step is one of --steps; give either");
+    }
+    if (!check_lone(options, err)) {
+        return false;
+    }
+    return options->common.path != NULL || options->stiffness != NULL ||
+           err_set(err, ERR_USAGE,
+                   "no case given: jointplay map CASE.yaml, or --stiffness K --mass M --step TIME, "
+                   "or --erp X --cfm Y --step TIME");
+}
+
+static const Arguments MAP_ARGUMENTS = {
+    .program = "jointplay map",
+    .usage = "CASE\n--stiffness K --mass MASS [--step TIME]\n--erp X --cfm Y --step TIME "
+             "[--mass MASS] [CASE]\n"
+             "--kp K --kd C --step TIME [--mass MASS] [CASE]",
+    .doc = "Finds the ERP, CFM and step to use for each joint with play, and what they deliver, "
+           "predicted and measured in ODE; or the spring, damper and restitution that an ERP and a "
+           "CFM stand for.",
+    .argument = COMMON_PATH("map takes one case"),
+    OPTION_ROWS(OPTIONS),
+    .check = check,
+};
+
+// What the options ask for beside the case.
+
+enum { PART_SIZE = 64 };
+
+// from where a steel contact is hardly seen to where the textbook map sees it right
+static const double DEFAULT_STEPS[] = {3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7};
+
+// Reads a list of words of the choices; each one once.
+static bool read_words(const char *name, const char *list, const char *const *choices, int *words,
+                       size_t room, size_t *count, Err *err)
+{
+    *count = 0;
+    while (*list != '\0') {
+        char part[PART_SIZE];
+        list += strspn(list, " ");
+        const size_t length = strcspn(list, ",");
+        size_t end = length;
+        for (; end > 0 && list[end - 1] == ' '; end--) {
+        }
+        snprintf(part, sizeof part, "%.*s", (int)end, list);
+        list += length + (list[length] == ',' ? 1 : 0);
+        int word = 0;
+        while (choices[word] != NULL && strcmp(choices[word], part) != 0) {
+            word++;
+        }
+        bool is_twice = false;
+        for (size_t i = 0; i < *count; i++) {
+            is_twice = is_twice || words[i] == word;
+        }
+        if (choices[word] == NULL || is_twice || *count == room) {
+            Text allowed;
+            text_init(&allowed);
+            for (int i = 0; choices[i] != NULL; i++) {
+                text_append(&allowed, "%s%s", i == 0 ? "" : ", ", choices[i]);
+            }
+            err_set(err, ERR_USAGE, "--%s: '%s' %s; allowed: %s", name, part,
+                    is_twice ? "is given twice" : "is none of them", allowed.data);
+            text_finish(&allowed);
+            return false;
+        }
+        words[(*count)++] = word;
+    }
+    return *count > 0 || err_set(err, ERR_USAGE, "--%s: the list is empty", name);
+}
+
+// A source by its word, or a value of its own.
+static bool read_source(const char *name, const char *text, Dimension dimension,
+                        MappingSource *source, double *value, Err *err)
+{
+    *source = MAPPING_MEDIAN;
+    if (text == NULL || strcmp(text, "median") == 0) {
+        return true;
+    }
+    if (strcmp(text, "most") == 0) {
+        *source = MAPPING_MOST;
+        return true;
+    }
+    *source = MAPPING_GIVEN;
+    return option_values_read_quantity(name, text, dimension, value, err);
+}
+
+static bool read_steps(const MapOptions *options, const Scenario *scenario,
+                       MappingSettings *settings, Err *err)
+{
+    if (options->steps != NULL) {
+        return option_values_read_times("steps", options->steps, MAPPING_STEP_MAX, settings->steps,
+                                        &settings->step_count, err);
+    }
+    if (options->step_s > 0.0) {
+        settings->steps[settings->step_count++] = options->step_s;
+        return true;
+    }
+    if (options->at_step_s > 0.0) {
+        settings->steps[settings->step_count++] = options->at_step_s;
+        settings->is_held = true;
+        return true;
+    }
+    // the usual ones, coarse to fine, with the case's own in order
+    double own = scenario->run.step;
+    for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof *DEFAULT_STEPS; i++) {
+        const double usual = DEFAULT_STEPS[i];
+        const bool is_same = fabs(own - usual) < 1e-9 * usual;
+        if (own > 0.0 && (own > usual || is_same)) {
+            settings->steps[settings->step_count++] = own;
+            own = 0.0;
+        }
+        if (!is_same) {
+            settings->steps[settings->step_count++] = usual;
+        }
+    }
+    if (own > 0.0) {
+        settings->steps[settings->step_count++] = own;
+    }
+    return true;
+}
+
+// Whether all that touches in a case turns: masses are then inertias, and speeds angular.
+static bool is_torsional(const Linkage *linkage)
+{
+    size_t turning = 0;
+    size_t loose = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        turning += linkage_is_torsional(&linkage->joints[i]) ? 1 : 0;
+        loose += linkage_has_play(&linkage->joints[i]) ? 1 : 0;
+    }
+    return loose > 0 && turning == loose;
+}
+
+// The settings that the options ask for. Fails with ERR_USAGE.
+static bool map_options_settings(const MapOptions *options, const Scenario *scenario,
+                                 MappingSettings *settings, Err *err)
+{
+    *settings = (MappingSettings){0};
+    int words[MAPPING_LAW_MAX];
+    const bool is_poisson = scenario->contact.model == CONTACT_POISSON;
+    if (is_poisson && (options->maps != NULL || options->laws != NULL)) {
+        return err_set(err, ERR_USAGE,
+                       "--%s: the case's contact model is poisson, whose rows know no map and no "
+                       "elastic law; --set contact.model=impact has them",
+                       options->maps != NULL ? "maps" : "laws");
+    }
+    if (options->maps == NULL) {
+        settings->map_count = MAPPING_MAP_COUNT;
+    } else if (!read_words("maps", options->maps, OPTIONS_ODE_MAPS, words, MAPPING_MAP_COUNT,
+                           &settings->map_count, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < settings->map_count; i++) {
+        settings->maps[i] = options->maps == NULL ? (OdeMap)i : (OdeMap)words[i];
+    }
+    if (options->laws != NULL && strcmp(options->laws, "all") == 0) {
+        for (int i = 0; OPTIONS_LAWS[i] != NULL; i++) {
+            settings->laws[settings->law_count++] = (LawKind)i;
+        }
+    } else if (options->laws != NULL) {
+        if (!read_words("laws", options->laws, OPTIONS_LAWS, words, MAPPING_LAW_MAX,
+                        &settings->law_count, err)) {
+            return false;
+        }
+        for (size_t i = 0; i < settings->law_count; i++) {
+            settings->laws[i] = (LawKind)words[i];
+        }
+    }
+    const bool is_turning = is_torsional(&scenario->linkage);
+    return read_steps(options, scenario, settings, err) &&
+           read_source("mass", options->mass, is_turning ? DIMENSION_INERTIA : DIMENSION_MASS,
+                       &settings->mass_source, &settings->mass, err) &&
+           read_source("speed", options->speed,
+                       is_turning ? DIMENSION_ANGULAR_SPEED : DIMENSION_SPEED,
+                       &settings->speed_source, &settings->speed, err);
+}
+
+// The scenario of a contact of which only stiffness, mass and step are known.
+
+enum { OVERRIDE_SIZE = 128, OWN_MOST = 4 };
+
+// of the longer of a step and the contact's depth at its speed: room for flight, contact and flight
+static const double ROOM_STEPS = 20.0;
+static const double ROOM_DEPTHS = 100.0;
+
+// m/s, where no speed is given: a pin of an ordinary mechanism
+static const double USUAL_SPEED = 0.1;
+
+// of the play: no depth is too deep for a contact that has no size
+static const double PIN_PLAYS = 10.0;
+
+static const char CASE[] = "title: A lone contact\n"
+                           "bodies:\n"
+                           "  pin: {mass: 1 kg, inertia: 1 kg m^2, at: [0 mm, 0 mm]}\n"
+                           "joints:\n"
+                           "  contact: {between: [ground, pin], at: [0 mm, 0 mm], hole: 2 m, "
+                           "pin: 1 m, width: 1 m}\n"
+                           "contact: {stiffness: 1 N/m, damping: lankarani-nikravesh, "
+                           "restitution: 0.9}\n"
+                           "run: {duration: 1 s, samples: 2, step: 1 us}\n";
+
+typedef struct Overrides {
+    char own[OWN_MOST][OVERRIDE_SIZE];
+    const char *list[OPTION_SETTING_MAX + OWN_MOST];
+    size_t count;
+} Overrides;
+
+static void add_own(Overrides *overrides, const char *key, const char *value)
+{
+    if (value != NULL) {
+        char *own = overrides->own[overrides->count];
+        snprintf(own, OVERRIDE_SIZE, "%s=%s", key, value);
+        overrides->list[overrides->count++] = own;
+    }
+}
+
+static bool is_word(const char *text, const char *const *words)
+{
+    for (size_t i = 0; words[i] != NULL; i++) {
+        if (strcmp(text, words[i]) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The options in the words of a case file; --set comes behind them.
+static void list_overrides(const MapOptions *options, Overrides *overrides)
+{
+    add_own(overrides, "contact.stiffness", options->stiffness);
+    add_own(overrides, "contact.restitution", options->restitution);
+    if (options->damping != NULL && !is_word(options->damping, OPTIONS_DAMPINGS)) {
+        add_own(overrides, "contact.damping", "viscous");
+        add_own(overrides, "contact.viscous-coefficient", options->damping);
+    } else {
+        add_own(overrides, "contact.damping", options->damping);
+    }
+    for (size_t i = 0; i < options->common.override_count; i++) {
+        overrides->list[overrides->count++] = options->common.overrides[i];
+    }
+}
+
+// A hole about the pin: as wide as it was given, else as flight and contact need.
+static bool fit_hole(const MapOptions *options, const MappingSettings *settings, Scenario *scenario,
+                     Err *err)
+{
+    Joint *joint = &scenario->linkage.joints[0];
+    MapImpactCase impact = {.mass = settings->mass, .speed = settings->speed};
+    if (!law_of_joint(scenario, joint, &impact.law, err)) {
+        return false;
+    }
+    // the steps are sorted, the longest first
+    const double room = ROOM_STEPS * settings->speed * settings->steps[0] +
+                        ROOM_DEPTHS * map_impact_depth(&impact); // m
+    double play = room;
+    if (options->clearance != NULL && !option_values_read_quantity("clearance", options->clearance,
+                                                                   DIMENSION_LENGTH, &play, err)) {
+        return false;
+    }
+    joint->clearance.pin_radius = PIN_PLAYS * fmax(play, room);
+    joint->clearance.hole_radius = joint->clearance.pin_radius + play;
+    return isfinite(room) || err_set(err, ERR_USAGE,
+                                     "--stiffness, --mass, --speed and the steps make a contact "
+                                     "whose depth is no finite number");
+}
+
+// Makes the scenario of one pin at its wall from the options, with the same words and checks as a
+// case file, and puts mass, speed and steps into the settings. Without --clearance the hole is as
+// wide as the steps need. Fails with ERR_USAGE.
+static bool map_lone_make(const MapOptions *options, Scenario *scenario, MappingSettings *settings,
+                          Err *err)
+{
+    Overrides overrides = {.count = 0};
+    list_overrides(options, &overrides);
+    if (!casefile_load_text("a lone contact", CASE, sizeof CASE - 1, overrides.list,
+                            overrides.count, scenario, err)) {
+        return false;
+    }
+    scenario_set_path(scenario, ""); // there is no file
+    scenario->run.step = 0.0;        // nor a step but those of the options
+    if (!map_options_settings(options, scenario, settings, err)) {
+        return false;
+    }
+    if (settings->mass_source != MAPPING_GIVEN ||
+        (options->speed != NULL && settings->speed_source != MAPPING_GIVEN)) {
+        return err_set(err, ERR_USAGE,
+                       "a contact without a case has no run to take the %s from; give a quantity, "
+                       "such as --%s",
+                       settings->mass_source != MAPPING_GIVEN ? "mass" : "speed",
+                       settings->mass_source != MAPPING_GIVEN ? "mass '0.1 kg'"
+                                                              : "speed '0.1 m/s'");
+    }
+    if (options->speed == NULL) {
+        settings->speed = USUAL_SPEED;
+        settings->speed_source = MAPPING_USUAL;
+    }
+    return fit_hole(options, settings, scenario, err);
+}
 
 // What is reported during the work.
 typedef struct Watching {

@@ -1,4 +1,4 @@
-// What did the paper compute, and what comes out when it is computed again?
+// The command `jointplay paper`.
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "commands/commands.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "measure/estimate.h"
+#include "model/scenario.h"
 #include "model/trajectory.h"
 #include "run/run.h"
 #include "write/fields.h"
@@ -23,17 +24,9 @@ typedef struct ExtremesRow {
     double force_max; // N, largest in it
 } ExtremesRow;
 
-// Makes the row that takes longest, PRINTED_POISSON; the watch follows it. Fails where an embedded
-// case cannot be loaded; of a run that fails the row says so.
-bool extremes_longest(RunWatch watch, ExtremesRow *row, Err *err);
-
-// Makes the other rows, likewise.
-bool extremes_others(ExtremesRow rows[PRINTED_ROW_COUNT], Err *err);
-
 // Over the target rows: the largest relative difference, and how many of their cells are as
 // printed (and how many cells there are).
 double extremes_difference_max(const ExtremesRow rows[PRINTED_ROW_COUNT]);
-int extremes_as_printed(const ExtremesRow rows[PRINTED_ROW_COUNT], int *cell_count);
 
 // What physics gives where the paper estimates (physical.c): a pin at one speed, under the largest
 // force that inverse dynamics finds over a turn.
@@ -124,3 +117,17 @@ extern const Field PAPER_PIN_FIELDS[];
 // physics gives, and the typos that concern it; or JSON, a new reference, with units in the keys.
 void paper_text_write(const void *result, const Style *style, Text *text);
 json_t *paper_json_make(const void *result);
+
+// The paper's cases, inside the program: `jointplay paper` needs no file.
+
+typedef enum EmbeddedCase {
+    EMBEDDED_IDEAL_NOMINAL,
+    EMBEDDED_IDEAL_STACKUP,
+    EMBEDDED_STACKUP_POISSON,
+    EMBEDDED_STACKUP_IMPACT,
+    EMBEDDED_COUNT,
+} EmbeddedCase;
+
+// Loads one of them with the crank turning clockwise at 1000 rpm, as the paper's does. The scenario
+// is untouched on failure.
+bool embedded_load(EmbeddedCase which, Scenario *scenario, Err *err);

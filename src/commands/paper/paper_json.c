@@ -1,4 +1,4 @@
-// What does the paper print, recomputed, and what does physics give, for programs?
+// Builds the JSON object of the paper's numbers and the recomputed ones.
 //
 // {"tables": [{"name", "quantity", "unit", "cells": [{"rpm", "pin", "printed", "recomputed",
 //    "value", "as_printed"}...], "cells_as_printed", "cell_count", "difference_max"}...],

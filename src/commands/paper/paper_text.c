@@ -1,4 +1,4 @@
-// What does the paper print, does it come out again, and what does physics give instead?
+// Writes the paper's numbers beside the recomputed ones as text.
 #include "commands/paper/paper.h"
 #include "write/units.h"
 

@@ -1,12 +1,11 @@
-// What do the backends of a case make of it?
+// Runs a case on each of its backends and prints what came out.
 #include "casefile/casefile.h"
 #include "cli/output.h"
 #include "cli/results.h"
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/run/case_run.h"
-#include "commands/run/run_files.h"
-#include "measure/backend_run.h"
+#include "measure/chosen_run.h"
 #include "write/file.h"
 
 #include <assert.h>

@@ -1,14 +1,252 @@
-// What do other programs read of the runs of a case?
+// Builds the JSON object of the runs of a case.
 #include "commands/run/run_report.h"
-#include "commands/run/slide_range.h"
 #include "model/coordinate.h"
-#include "write/joint_units.h"
 #include "write/json_value.h"
+#include "write/measured_fields.h"
 #include "write/settings_json.h"
 #include "write/units.h"
 
 #include <inttypes.h>
 #include <stdio.h>
+
+// The reference and what was measured against it.
+
+static json_t *message_of(const Truth *truth)
+{
+    return truth->is_uncertified ? json_string("is not certified: --uncertified")
+                                 : json_value_not_certified(truth->message);
+}
+
+static json_t *run_truth_json_truth(const RunReport *report)
+{
+    const Truth *truth = report->truth;
+    if (truth == NULL) {
+        return json_null();
+    }
+    json_t *object = json_object();
+    json_object_set_new(object, "backend", json_string(truth->trajectory->backend));
+    json_object_set_new(object, "status",
+                        json_string(truth->trajectory->is_complete ? "ok" : "failed"));
+    const bool is_certified = truth->message[0] == '\0';
+    json_object_set_new(object, "message",
+                        truth->trajectory->is_complete
+                            ? message_of(truth)
+                            : json_value_text(truth->trajectory->message));
+    if (truth->trajectory->is_complete) {
+        json_value_set(object, "uncertainty", truth->uncertainty);
+        json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);
+        json_value_set(object, "growth", is_certified ? truth->growth : NAN);
+        json_object_set_new(object, "other_contact_model",
+                            json_boolean(run_report_mixes_models(report)));
+        json_object_set_new(object, "is_limited", json_boolean(truth->is_limited));
+    }
+    return object;
+}
+
+static json_t *run_truth_json_error(const RunReport *report, size_t run)
+{
+    const TrajectoryError *error = &report->errors[run];
+    if (!error->is_known) {
+        return json_null();
+    }
+    const bool is_certified = run_report_is_certified(report, error);
+    const Truth *truth = report->truth;
+    json_t *object = json_object();
+    json_object_set_new(object, "against", json_string(error->against));
+    fields_json_set(ERROR_FIELDS, FIELD_JSON, error, object);
+    json_object_set_new(object, "includes_play",
+                        json_boolean(run_report_includes_play(report, run)));
+    json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);
+    json_value_set(object, "reference_uncertainty", is_certified ? truth->uncertainty : NAN);
+    json_object_set_new(object, "limited_by_reference",
+                        json_boolean(run_report_is_limited_by_reference(report, error)));
+    return object;
+}
+
+static json_t *match_object(const SpikeMatch *match, const JointExtremes *truth)
+{
+    json_t *pairs = json_array();
+    for (size_t i = 0; i < match->pair_count; i++) {
+        const SpikePair *pair = &match->pairs[i];
+        json_t *object = json_object();
+        json_object_set_new(object, "spike", json_integer((json_int_t)pair->spike));
+        json_object_set_new(object, "reference_spike",
+                            json_integer((json_int_t)pair->reference_spike));
+        json_value_set(object, "reference_onset_s", truth->spikes[pair->reference_spike].onset_s);
+        json_value_set(object, "onset_delay_s", pair->onset_delay_s);
+        json_value_set(object, "force_error", pair->force_error);
+        json_value_set(object, "impulse_error", pair->impulse_error);
+        json_array_append_new(pairs, object);
+    }
+    json_t *object = json_object();
+    json_object_set_new(object, "pairs", pairs);
+    json_object_set_new(object, "missed", json_integer((json_int_t)match->missed));
+    json_object_set_new(object, "extra", json_integer((json_int_t)match->extra));
+    return object;
+}
+
+static json_t *run_truth_json_matches(const RunReport *report, size_t run)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    json_t *joints = json_object();
+    for (size_t i = 0; report->matches != NULL && i < linkage->joint_count; i++) {
+        const SpikeMatch *match = &report->matches[run].joints[i];
+        if (match->pair_count + match->missed + match->extra > 0) {
+            json_object_set_new(joints, linkage->joints[i].name,
+                                match_object(match, &report->truth->trajectory->joints[i]));
+        }
+    }
+    if (json_object_size(joints) == 0) {
+        json_decref(joints);
+        return json_null();
+    }
+    return joints;
+}
+
+static json_t *run_truth_json_ensemble(const RunReport *report, size_t run)
+{
+    const Ensemble *ensemble = report->ensembles != NULL ? &report->ensembles[run] : NULL;
+    if (ensemble == NULL || ensemble->members + ensemble->failed == 0) {
+        return json_null();
+    }
+    json_t *object = json_object();
+    json_object_set_new(object, "members", json_integer((json_int_t)ensemble->members));
+    json_object_set_new(object, "failed", json_integer((json_int_t)ensemble->failed));
+    json_object_set_new(object, "message", json_value_text(ensemble->message));
+    json_object_set_new(object, "joints",
+                        ensemble_joints_json(&report->scenario->linkage, ensemble));
+    return object;
+}
+
+// The closed form of the mechanism.
+
+static void set_follower(json_t *object, const AnalyticSummary *summary)
+{
+    json_value_set(object, "follower_angle_min_rad", summary->follower_low);
+    json_value_set(object, "follower_angle_max_rad", summary->follower_high);
+}
+
+static void set_slider(json_t *object, const AnalyticSummary *summary)
+{
+    json_value_set(object, "slider_position_min_m", summary->slide.low);
+    json_value_set(object, "slider_position_max_m", summary->slide.high);
+    json_value_set(object, "slider_velocity_min_m_s", summary->velocity.low);
+    json_value_set(object, "slider_velocity_min_crank_deg",
+                   units_wrapped_deg(summary->velocity.low_angle));
+    json_value_set(object, "slider_velocity_max_m_s", summary->velocity.high);
+    json_value_set(object, "slider_velocity_max_crank_deg",
+                   units_wrapped_deg(summary->velocity.high_angle));
+    json_value_set(object, "slider_acceleration_min_m_s2", summary->acceleration.low);
+    json_value_set(object, "slider_acceleration_min_crank_deg",
+                   units_wrapped_deg(summary->acceleration.low_angle));
+    json_value_set(object, "slider_acceleration_max_m_s2", summary->acceleration.high);
+    json_value_set(object, "slider_acceleration_max_crank_deg",
+                   units_wrapped_deg(summary->acceleration.high_angle));
+}
+
+static json_t *analytic_json_kinematics(const RunReport *report)
+{
+    const AnalyticSummary *summary = report->summary;
+    const bool has_slider = report->scenario->has_slidercrank;
+    json_t *object = json_object();
+    json_object_set_new(
+        object, "class",
+        json_string(has_slider ? "slider-crank" : FOURBAR_GRASHOF_NAMES[summary->grashof]));
+    json_value_set(object, "transmission_angle_min_rad", summary->transmission_low);
+    json_value_set(object, "transmission_angle_max_rad", summary->transmission_high);
+    json_value_set(object, "transmission_angle_min_crank_deg",
+                   units_wrapped_deg(summary->transmission_low_crank));
+    json_value_set(object, "transmission_angle_max_crank_deg",
+                   units_wrapped_deg(summary->transmission_high_crank));
+    if (has_slider) {
+        set_slider(object, summary);
+    } else {
+        set_follower(object, summary);
+    }
+    if (summary->has_limits) {
+        json_value_set(object, "limit_stretched_crank_deg",
+                       units_wrapped_deg(summary->limit_extended));
+        json_value_set(object, "limit_folded_crank_deg", units_wrapped_deg(summary->limit_folded));
+    }
+    return object;
+}
+
+static json_t *range_object(Extreme high, Extreme low, const char *high_key, const char *low_key)
+{
+    json_t *object = json_object();
+    json_value_set(object, high_key, high.value);
+    json_value_set(object, "max_crank_deg", units_wrapped_deg(high.crank_rad));
+    json_value_set(object, low_key, low.value);
+    json_value_set(object, "min_crank_deg", units_wrapped_deg(low.crank_rad));
+    return object;
+}
+
+static json_t *analytic_json_forces(const RunReport *report)
+{
+    const AnalyticSummary *summary = report->summary;
+    const Linkage *linkage = &report->scenario->linkage;
+    json_t *object = json_object();
+    json_object_set_new(
+        object, "drive_torque",
+        range_object(summary->torque_max, summary->torque_min, "max_N_m", "min_N_m"));
+    json_t *reactions = json_object();
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        json_object_set_new(
+            reactions, linkage->joints[i].name,
+            range_object(summary->reaction_max[i], summary->reaction_min[i], "max_N", "min_N"));
+    }
+    json_object_set_new(object, "reactions", reactions);
+    json_value_set(object, "power_residual", summary->power_residual);
+    return object;
+}
+
+// One end of a quantity: nominal, worst case, the corner it stands in, each source alone.
+static json_t *bound_object(const Stackup *stackup, const StackupBound *bound, double nominal)
+{
+    json_t *object = json_object();
+    json_value_set(object, "nominal", nominal);
+    json_value_set(object, "worst", bound->value);
+    json_t *corner = json_object();
+    json_t *alone = json_object();
+    for (int i = 0; i < STACKUP_SOURCES; i++) {
+        if (!stackup->is_source[i]) {
+            continue;
+        }
+        json_value_set(alone, STACKUP_SOURCE_NAMES[i], bound->alone[i]);
+        if (i < STACKUP_LENGTHS) {
+            const int side = bound->combination.length_side[i];
+            json_object_set_new(corner, STACKUP_SOURCE_NAMES[i],
+                                json_string(side > 0   ? "largest"
+                                            : side < 0 ? "smallest"
+                                                       : "nominal"));
+            continue;
+        }
+        const int link = bound->combination.play_link[i - STACKUP_LENGTHS];
+        const int sign = bound->combination.play_sign[i - STACKUP_LENGTHS];
+        json_object_set_new(corner, STACKUP_SOURCE_NAMES[i],
+                            link < 0 ? json_string("none")
+                                     : json_sprintf("%s %s", sign > 0 ? "stretches" : "shortens",
+                                                    STACKUP_LENGTH_NAMES[link]));
+    }
+    json_object_set_new(object, "corner", corner);
+    json_object_set_new(object, "alone", alone);
+    return object;
+}
+
+static json_t *analytic_json_stackup(const RunReport *report)
+{
+    const Stackup *stackup = report->stackup;
+    json_t *rows = json_array();
+    for (int i = 0; i < FOURBAR_QUANTITY_COUNT; i++) {
+        const StackupRow *row = &stackup->rows[i];
+        json_t *object = json_object();
+        json_object_set_new(object, "quantity", json_string(STACKUP_QUANTITY_NAMES[i]));
+        json_object_set_new(object, "min", bound_object(stackup, &row->low, row->nominal_low));
+        json_object_set_new(object, "max", bound_object(stackup, &row->high, row->nominal_high));
+        json_array_append_new(rows, object);
+    }
+    return rows;
+}
 
 // A number whose key ends in its unit.
 static void set_in(json_t *object, const char *name, const char *unit, double value)

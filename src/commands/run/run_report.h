@@ -1,16 +1,15 @@
-// Everything there is to say about the runs of one case, plain pointers, nothing owned; and the
-// forms in which it is said.
+// Everything that is reported of the runs of one case, plain pointers, nothing owned; and the forms
+// of the report.
 #pragma once
 
 #include "analytic/stackup.h"
 #include "analytic/summary.h"
-#include "measure/change_point.h"
 #include "measure/ensemble.h"
 #include "measure/error.h"
-#include "measure/spike_match.h"
 #include "measure/truth.h"
+#include "model/trajectory.h"
 #include "write/fields.h"
-#include "write/style.h"
+#include "write/table.h"
 
 #include <string.h>
 
@@ -150,10 +149,6 @@ void plot_run_write(const void *report, Text *svg);
 void run_when_head(Table *table, size_t column, const RunReport *report);
 void run_when_cell(Table *table, const RunReport *report, double time_s, double crank_rad);
 
-// What pushes the mechanism beside its joints: springs, dampers, a torque or force that drives it.
-// Nothing where there is none.
-void run_loads_write(const RunReport *report, size_t width, Text *text);
-
 // The parts of the text, each of which appends nothing where it has nothing to say. Extremes of
 // each body that is not driven; how sliders move along their lines; the contacts of each joint
 // with play, how its pin tilts and slides in space, how its block tilts, and at most `limit` of the
@@ -181,21 +176,9 @@ void run_truth_matches(const RunReport *report, const Style *style, Text *text);
 void run_truth_ensembles(const RunReport *report, const Style *style, Text *text);
 void run_truth_energy(const RunReport *report, const Style *style, Text *text);
 
-// What the closed form says of a four-bar: kinematics, forces, tolerance stack-up.
-void analytic_text_kinematics(const RunReport *report, const Style *style, Text *text);
-void analytic_text_forces(const RunReport *report, const Style *style, Text *text);
-void analytic_text_stackup(const RunReport *report, const Style *style, Text *text);
-
 // The same in JSON, where the report has a summary or a stack-up; what was measured against the
 // truth, null where nothing was; and the bands of the crank angle with their spikes. New
 // references.
-json_t *analytic_json_kinematics(const RunReport *report);
-json_t *analytic_json_forces(const RunReport *report);
-json_t *analytic_json_stackup(const RunReport *report);
-json_t *run_truth_json_truth(const RunReport *report);
-json_t *run_truth_json_error(const RunReport *report, size_t run);
-json_t *run_truth_json_matches(const RunReport *report, size_t run);
-json_t *run_truth_json_ensemble(const RunReport *report, size_t run);
 json_t *spike_json_bands(const RunReport *report, const Trajectory *run);
 
 // Puts the spikes of a signal into an object: <name>_spikes, their count, threshold and resolution.
@@ -216,11 +199,46 @@ typedef struct SpikeBandSums {
     SignalSector outside;
 } SpikeBandSums;
 
-SpikeBandSums spike_bands_sums(const SignalSpikes *spikes);
+// Below which size is a number of a run nothing but rounding?
 
-// Whether the bands mean anything: in the paper's four-bar with the paper's play, and in no other.
-bool spike_bands_apply(const RunReport *report);
+// Of each quantity what one rounding is of the largest that the mechanism has of it, or gravity
+// makes of it: tables for people show what is below as 0. Files keep their numbers.
+typedef struct RunFloor {
+    double turning;      // rad/s
+    double spinning_up;  // rad/s^2
+    double length;       // m
+    double speed;        // m/s
+    double acceleration; // m/s^2
+    double force;        // N
+    double energy;       // J, and N m
+} RunFloor;
 
-// The two ends of a band, degrees.
-double spike_bands_first_deg(size_t band);
-double spike_bands_last_deg(size_t band);
+// Of every run of a report, all zero of one that is not complete; the caller frees it.
+RunFloor *run_floor_list(const RunReport *report);
+
+// The value, or 0 where it is below the floor.
+double run_floor_cut(double value, double floor);
+
+// The numbers of a body, a joint and of the energy of a run as tables show them.
+BodyExtremes run_floor_body(const BodyExtremes *body, const RunFloor *floor);
+RunJoint run_floor_joint(const RunJoint *joint, bool is_torsional, const RunFloor *floor);
+Energy run_floor_energy(const Energy *energy, const RunFloor *floor);
+
+// How far and how fast the slider of a prismatic joint or of a block between guides went along its
+// line, at the samples of a run.
+
+typedef struct SlideRange {
+    Extreme position[2];     // m, least and most, along the line from its point on body a
+    Extreme velocity[2];     // m/s, likewise, of the slider against the line's body
+    Extreme acceleration[2]; // m/s^2, of the slider's centre of mass, along the line
+    Extreme resultant;       // N, largest size of the vector sum of all forces on the slider in it
+} SlideRange;
+
+// Whether a joint has a slider.
+bool slide_range_has(const Joint *joint);
+
+SlideRange slide_range_find(const Linkage *linkage, const Trajectory *run, size_t joint);
+
+// The acceleration of the slider's centre of mass along the line at a sample, m/s^2.
+double slide_range_acceleration(const Linkage *linkage, const Trajectory *run, size_t sample,
+                                size_t joint);

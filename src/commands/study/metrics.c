@@ -1,9 +1,8 @@
-// Which numbers of a run does a study keep?
+// The numbers of a run that a study keeps, by name.
 //
 // The names are those of the JSON output, joined: bodies.follower.omega_max_rad_s becomes
 // follower_omega_max_rad_s. What was not measured, or is not finite, is NAN.
 #include "commands/study/metrics.h"
-
 #include "base/text.h"
 
 #include <assert.h>

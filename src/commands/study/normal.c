@@ -1,4 +1,4 @@
-// Which value of a normal distribution has a given share of it below?
+// Quantiles of the normal distribution, whole and between two limits.
 //
 // Between limits a and b:  z = P^-1(P(a) + u (P(b) - P(a))), P the distribution and u the share.
 // Above 0, where P is next to 1 and has lost its digits, the mirror image is taken.

@@ -1,4 +1,4 @@
-// Which columns does a row have, in which order?
+// Lists the columns of a row of a study, in their order.
 #include "commands/study/record.h"
 
 const char *const RUN_OUTCOME_WORDS[RUN_OUTCOME_COUNT] = {

@@ -1,4 +1,5 @@
-// How is the file of a store opened, by one writer at a time?
+// Opens the file of a store: one writer at a time, complete after a crash, and no other file
+// touched.
 //
 // SQLite provides the transactions, with a rollback journal: a write-ahead log needs memory shared
 // between processes, which network file systems do not have. synchronous = EXTRA also removes the
@@ -9,10 +10,13 @@
 // SQLite's locks last for a transaction, and one that lasted longer would block readers. The lock
 // belongs to the open file and not to the process, because SQLite releases all of its process's
 // locks on the file after each transaction.
+#define _GNU_SOURCE // locks of an open file
+
 #include "base/claims.h"
 #include "commands/study/store_inside.h"
-#include "write/work_lock.h"
+#include "write/file.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <sqlite3.h>
@@ -21,6 +25,255 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+static bool store_file_connect(Store *store, const char *path, bool is_to_work, Err *err);
+
+// The files next to a store that would make SQLite write or delete a file that is not the store's.
+//
+// SQLite finds its files by name and obeys their contents. A journal may end with the name of
+// a super-journal, that of a transaction over several databases, which SQLite deletes when nothing
+// refers to it any more, whatever file it is:
+//
+//     ... | name | length of the name: 4 | sum of its bytes: 4 | magic: 8
+//
+// A journal that is a link redirects writes. A write-ahead log is merged into the database whether
+// the database uses one or not. A store of ours never has such a file next to it: whoever sent one
+// may mean harm.
+
+enum { MAGIC_SIZE = 8 };
+
+// The first bytes of a journal, and the last ones of the name of a super-journal.
+static const unsigned char STORE_BESIDE_MAGIC[MAGIC_SIZE] = {0xd9, 0xd5, 0x05, 0xf9,
+                                                             0x20, 0xa1, 0x63, 0xd7};
+// Those of a journal that is not in use.
+static const unsigned char NOTHING[MAGIC_SIZE] = {0};
+
+static bool refuse(const Store *store, const char *beside, const char *why, Err *err)
+{
+    return err_set(err, ERR_FILE,
+                   "the store %s is not opened: the file %s next to it %s; move it away",
+                   store->path, beside, why);
+}
+
+// What is wrong with a journal of that size; NULL where it can only change the store.
+static const char *find_fault(int journal, off_t size)
+{
+    unsigned char first[MAGIC_SIZE];
+    unsigned char last[MAGIC_SIZE];
+    if (size == 0) {
+        return NULL;
+    }
+    if (size < MAGIC_SIZE || pread(journal, first, MAGIC_SIZE, 0) != MAGIC_SIZE ||
+        (memcmp(first, STORE_BESIDE_MAGIC, MAGIC_SIZE) != 0 &&
+         memcmp(first, NOTHING, MAGIC_SIZE) != 0)) {
+        return "is not its journal, and would be deleted as one";
+    }
+    if (size > MAGIC_SIZE && (pread(journal, last, MAGIC_SIZE, size - MAGIC_SIZE) != MAGIC_SIZE ||
+                              memcmp(last, STORE_BESIDE_MAGIC, MAGIC_SIZE) == 0)) {
+        return "names another file that would be deleted (a super-journal)";
+    }
+    return NULL;
+}
+
+static bool check_journal(const Store *store, const char *path, Err *err)
+{
+    struct stat status;
+    const int journal = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (journal < 0) {
+        // a journal may end while a store in use is read
+        return errno == ENOENT ||
+               refuse(store, path, errno == ELOOP ? "is a link" : "cannot be read", err);
+    }
+    const char *fault = "is not a file of a single name";
+    if (fstat(journal, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1) {
+        fault = status.st_nlink == 0 ? NULL : find_fault(journal, status.st_size);
+    }
+    // a journal that has been deleted since is none
+    struct stat later;
+    const bool is_wrong = fault != NULL && (fstat(journal, &later) != 0 || later.st_nlink != 0);
+    close(journal);
+    return !is_wrong || refuse(store, path, fault, err);
+}
+
+// Refuses files that would make SQLite write or delete another file than the store and its journal.
+// Call it before SQLite opens the file of that resolved path.
+static bool store_beside_check(const Store *store, const char *resolved, Err *err)
+{
+    struct stat status;
+    Text path;
+    text_init(&path);
+    text_append(&path, "%s-wal", resolved);
+    bool is_right = lstat(path.data, &status) != 0 ||
+                    refuse(store, path.data, "is a write-ahead log, which no store has", err);
+    text_finish(&path);
+    text_init(&path);
+    text_append(&path, "%s-journal", resolved);
+    is_right = is_right && check_journal(store, path.data, err);
+    text_finish(&path);
+    return is_right;
+}
+
+// Reads a store whose last writer was killed in mid-write.
+//
+// SQLite undoes an interrupted write when it opens the file to work, from the journal next to it. A
+// reader writes nothing, so that SQLite undoes it in a copy of both files, in a folder of its own
+// that is gone again as soon as the copy is open. While it copies, the reader holds the lock that
+// SQLite's readers hold: nobody may write to the file or undo anything in it. A journal that is at
+// work then belongs to a write that has not yet reached the file, and undoing it changes nothing.
+
+enum {
+    SHARED_FIRST = 0x40000002, // SQLite's lock of readers (sqlite.org/lockingv3.html)
+    SHARED_SIZE = 510,
+    LOCK_WAIT_US = 10000,
+    BLOCK_SIZE = 1 << 16,
+};
+
+// The copy of a store: its folder and files.
+typedef struct Copy {
+    Text folder;
+    Text file;
+    Text journal;
+    off_t size; // bytes of both
+} Copy;
+
+static bool fail_copy(const Store *store, const Copy *copy, int reason, Err *err)
+{
+    return err_set(err, ERR_FILE,
+                   "the last write to the store %s was interrupted, and it cannot be copied to %s "
+                   "(TMPDIR) to be read as it was before: %s",
+                   store->path, copy->folder.data, strerror(reason));
+}
+
+// Takes the lock of readers; closing the file gives it up. Returns 0 or an errno.
+static int lock_shared(int file)
+{
+    struct flock lock = {
+        .l_type = F_RDLCK, .l_whence = SEEK_SET, .l_start = SHARED_FIRST, .l_len = SHARED_SIZE};
+    for (int waited_us = 0; fcntl(file, F_OFD_SETLK, &lock) != 0; waited_us += LOCK_WAIT_US) {
+        if ((errno != EACCES && errno != EAGAIN) || waited_us >= STORE_VIEW_WAIT_MS * 1000) {
+            return errno;
+        }
+        usleep(LOCK_WAIT_US);
+    }
+    return 0;
+}
+
+// Writes all of one open file into another. Returns 0 or an errno.
+static int pour(int from, int to, off_t *size)
+{
+    char block[BLOCK_SIZE];
+    ssize_t count;
+    while ((count = read(from, block, sizeof block)) > 0) {
+        if (write(to, block, (size_t)count) != count) {
+            return errno != 0 ? errno : ENOSPC;
+        }
+        *size += count;
+    }
+    return count < 0 ? errno : 0;
+}
+
+// Copies an open file to a new one. Returns 0 or an errno.
+static int copy_open_file(int from, const char *path, off_t *size)
+{
+    const int to = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (to < 0) {
+        return errno;
+    }
+    errno = 0;
+    const int reason = pour(from, to, size);
+    const bool is_closed = close(to) == 0;
+    return reason != 0 || is_closed ? reason : errno;
+}
+
+// Copies the journal of that path, if there still is one. Returns 0 or an errno.
+static int copy_journal(const char *path, Copy *copy)
+{
+    const int journal = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (journal < 0) {
+        return errno == ENOENT ? 0 : errno;
+    }
+    const int reason = copy_open_file(journal, copy->journal.data, &copy->size);
+    close(journal);
+    return reason;
+}
+
+// Copies the store of that path and its journal under the lock. Returns 0 or an errno.
+static int copy_files(const char *path, Copy *copy)
+{
+    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    if (file < 0) {
+        return errno;
+    }
+    Text journal;
+    text_init(&journal);
+    text_append(&journal, "%s-journal", path);
+    int reason = lock_shared(file);
+    if (reason == 0) {
+        reason = copy_open_file(file, copy->file.data, &copy->size);
+    }
+    if (reason == 0) {
+        reason = copy_journal(journal.data, copy);
+    }
+    text_finish(&journal);
+    close(file);
+    return reason;
+}
+
+static bool make_folder(Copy *copy)
+{
+    const char *parent = getenv("TMPDIR");
+    text_append(&copy->folder, "%s/jointplay-store-XXXXXX",
+                parent != NULL && parent[0] != '\0' ? parent : "/tmp");
+    if (mkdtemp(copy->folder.data) == NULL) {
+        return false;
+    }
+    text_append(&copy->file, "%s/store", copy->folder.data);
+    text_append(&copy->journal, "%s-journal", copy->file.data);
+    return true;
+}
+
+// Has SQLite undo the write in the copy, which is not worth waiting for a disk.
+static bool undo(Store *store, const Copy *copy, Err *err)
+{
+    struct stat status;
+    if (sqlite3_exec(store->base, "PRAGMA synchronous = OFF; PRAGMA schema_version", NULL, NULL,
+                     NULL) != SQLITE_OK) {
+        return store_fail(store, "read", err);
+    }
+    // no page may be missing: those that the file had lost were in the journal
+    if (stat(copy->file.data, &status) != 0 || status.st_size > copy->size) {
+        return store_fail_damaged(store, "its journal is that of a larger file", err);
+    }
+    return store_run_sql(store, "PRAGMA query_only = ON", err);
+}
+
+static void delete_files(const Copy *copy)
+{
+    unlink(copy->file.data);
+    unlink(copy->journal.data);
+    rmdir(copy->folder.data);
+}
+
+// Opens a copy of the store of that resolved path, in which the interrupted write is undone.
+static bool store_copy_view(Store *store, const char *resolved, Err *err)
+{
+    Copy copy = {.size = 0};
+    text_init(&copy.folder);
+    text_init(&copy.file);
+    text_init(&copy.journal);
+    bool is_right = make_folder(&copy) || fail_copy(store, &copy, errno, err);
+    if (is_right) {
+        const int reason = copy_files(resolved, &copy);
+        is_right = (reason == 0 || fail_copy(store, &copy, reason, err)) &&
+                   store_file_connect(store, copy.file.data, true, err) && undo(store, &copy, err);
+        // SQLite reads on in the file that it has open
+        delete_files(&copy);
+    }
+    text_finish(&copy.folder);
+    text_finish(&copy.file);
+    text_finish(&copy.journal);
+    return is_right;
+}
 
 enum {
     HEADER_SIZE = 100, // of an SQLite file, which the root of its schema follows
@@ -36,7 +289,7 @@ enum {
     VALUE_MAX = 1 << 20,    // bytes of a row or of SQL; a row of all columns has some 10 kB
 };
 
-static const char MAGIC[16] = "SQLite format 3";
+static const char STORE_FILE_MAGIC[16] = "SQLite format 3";
 
 bool store_fail_damaged(const Store *store, const char *how, Err *err)
 {
@@ -117,7 +370,7 @@ static uint32_t read_big_endian(const unsigned char *bytes)
 static bool is_blank(const unsigned char *header)
 {
     const unsigned char *root = header + HEADER_SIZE;
-    return memcmp(header, MAGIC, sizeof MAGIC) == 0 &&
+    return memcmp(header, STORE_FILE_MAGIC, sizeof STORE_FILE_MAGIC) == 0 &&
            read_big_endian(header + HEADER_APPLICATION) == 0 &&
            read_big_endian(header + HEADER_PAGES) == 1 && root[ROOT_CELLS] == 0 &&
            root[ROOT_CELLS + 1] == 0;
@@ -136,7 +389,7 @@ static bool check_header(const Store *store, int file, bool is_empty_right, bool
     if (is_empty_right && (count == 0 || (count == (ssize_t)sizeof header && is_blank(header)))) {
         return true;
     }
-    if (count < HEADER_SIZE || memcmp(header, MAGIC, sizeof MAGIC) != 0 ||
+    if (count < HEADER_SIZE || memcmp(header, STORE_FILE_MAGIC, sizeof STORE_FILE_MAGIC) != 0 ||
         read_big_endian(header + HEADER_APPLICATION) != STORE_APPLICATION) {
         return err_set(err, ERR_FILE, "%s is not the store of a study", store->path);
     }
@@ -204,7 +457,9 @@ static void harden(sqlite3 *base)
     sqlite3_limit(base, SQLITE_LIMIT_TRIGGER_DEPTH, 1);
 }
 
-bool store_file_connect(Store *store, const char *path, bool is_to_work, Err *err)
+// Has SQLite open the file of that path, to work on it or to read it, after a look at what stands
+// beside it.
+static bool store_file_connect(Store *store, const char *path, bool is_to_work, Err *err)
 {
     const int flags = is_to_work ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY;
     if (!store_beside_check(store, path, err)) {
@@ -221,7 +476,7 @@ bool store_file_connect(Store *store, const char *path, bool is_to_work, Err *er
 
 // By the path with all links resolved, as SQLite resolves it: the files next to it are checked by
 // that path, too. It begins with a slash, so that it is not a special name such as ":memory:".
-static bool open_to_work(Store *store, Err *err)
+static bool store_file_open_to_work(Store *store, Err *err)
 {
     char *path = realpath(store->path, NULL);
     const bool is_open = path != NULL ? store_file_connect(store, path, true, err)
@@ -275,7 +530,10 @@ static bool claim(Store *store, bool is_made, Err *err)
     return true;
 }
 
-bool store_file_open(Store *store, bool is_fresh, Err *err)
+// Opens the file of a store whose path is set, for writing: locked against other writers, created
+// where there is none, refused where it is some other file. With `is_fresh` it may be of any
+// version or damaged, and is emptied.
+static bool store_file_open(Store *store, bool is_fresh, Err *err)
 {
     if (!check_kind(store, err)) {
         return false;
@@ -289,7 +547,7 @@ bool store_file_open(Store *store, bool is_fresh, Err *err)
         return fail_system(store, "open", errno, err);
     }
     return claim(store, is_made, err) && check_header(store, store->lock, true, is_fresh, err) &&
-           open_to_work(store, err) && (!is_fresh || reset(store, err)) &&
+           store_file_open_to_work(store, err) && (!is_fresh || reset(store, err)) &&
            store_run_sql(store, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA", err);
 }
 
@@ -347,4 +605,101 @@ bool store_file_check(Store *store, Err *err)
                                       err);
     }
     return is_whole;
+}
+
+// Opens a store for reading or writing.
+
+static Store *make_store(const char *path)
+{
+    Store *store = calloc(1, sizeof *store);
+    assert(store != NULL);
+    store->lock = -1;
+    store->path = strdup(path);
+    assert(store->path != NULL);
+    return store;
+}
+
+static void destroy(Store *store)
+{
+    sqlite3_finalize(store->add_run);
+    sqlite3_finalize(store->add_effort);
+    sqlite3_finalize(store->find);
+    sqlite3_finalize(store->rows);
+    store_file_close(store);
+    store_schema_finish(store);
+    free(store->path);
+    free(store);
+}
+
+// Creates the tables where there are none, and compares those that exist with what is expected.
+static bool settle(Store *store, const StoreHead *head, const char *source, Err *err)
+{
+    bool is_there = false;
+    if (!store_shape_is_there(store, &is_there, err) ||
+        (!is_there && !store_schema_make(store, head, err))) {
+        return false;
+    }
+    return store_schema_read(store, err) && store_schema_check(store, head, source, err) &&
+           (!is_there || store_file_check(store, err));
+}
+
+static Store *store_open_open_to_work(const char *path, const StoreHead *head, bool is_fresh,
+                                      const char *source, Err *err)
+{
+    assert(head->key_count <= STORE_KEY_MAX);
+    Store *store = make_store(path);
+    if (store_file_open(store, is_fresh, err) && settle(store, head, source, err)) {
+        return store;
+    }
+    // a file that was not there before and did not become a store is deleted
+    if (store->is_made) {
+        unlink(path);
+    }
+    destroy(store);
+    return NULL;
+}
+
+Store *store_open(const char *path, const StoreHead *head, bool is_fresh, Err *err)
+{
+    return store_open_open_to_work(path, head, is_fresh, NULL, err);
+}
+
+Store *store_open_target(const char *path, const StoreHead *head, const char *source, Err *err)
+{
+    return store_open_open_to_work(path, head, false, source, err);
+}
+
+Store *store_view(const char *path, Err *err)
+{
+    Store *store = make_store(path);
+    if (store_file_view(store, err) && store_schema_read(store, err)) {
+        return store;
+    }
+    destroy(store);
+    return NULL;
+}
+
+bool store_close(Store *store, Err *err)
+{
+    if (store == NULL) {
+        return true;
+    }
+    const bool is_committed = store_commit(store, err);
+    destroy(store);
+    return is_committed;
+}
+
+const Layout *store_layout(const Store *store)
+{
+    return store->layout;
+}
+
+const char *store_key(const Store *store, const char *name)
+{
+    for (size_t i = 0; i < store->key_count; i++) {
+        if (strcmp(store->keys[i].name, name) == 0) {
+            return store->keys[i].value;
+        }
+    }
+    return NULL;
 }

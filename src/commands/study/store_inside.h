@@ -46,18 +46,9 @@ Store *store_open_target(const char *path, const StoreHead *head, const char *so
 bool store_fail(const Store *store, const char *what, Err *err);
 bool store_fail_damaged(const Store *store, const char *how, Err *err);
 
-// Opens the file of a store whose path is set, for writing: locked against other writers, created
-// where there is none, refused where it is some other file. With `is_fresh` it may be of any
-// version or damaged, and is emptied.
-bool store_file_open(Store *store, bool is_fresh, Err *err);
-
 // Opens it for reading: no file is written or deleted, and what an interrupted write has changed is
 // read as it was before.
 bool store_file_view(Store *store, Err *err);
-
-// Has SQLite open the file of that path, to work on it or to read it, after a look at what stands
-// beside it.
-bool store_file_connect(Store *store, const char *path, bool is_to_work, Err *err);
 
 // Closes the file and releases its lock.
 void store_file_close(Store *store);
@@ -79,33 +70,18 @@ bool store_step(Store *store, struct sqlite3_stmt **statement, bool *is_good, Er
 
 // store_beside.c: what stands beside the file
 
-// Refuses files that would make SQLite write or delete another file than the store and its journal.
-// Call it before SQLite opens the file of that resolved path.
-bool store_beside_check(const Store *store, const char *resolved, Err *err);
-
 // store_copy.c: reading what an interrupted write has left
-
-// Opens a copy of the store of that resolved path, in which the interrupted write is undone.
-bool store_copy_view(Store *store, const char *resolved, Err *err);
 
 // store_shape.c: the tables
 
 // Whether there is anything in the schema of the file.
 bool store_shape_is_there(Store *store, bool *is_there, Err *err);
 
-// Appends the SQL that makes the tables.
-void store_shape_append(const Layout *layout, Text *sql);
-
-// Reads the columns, after checking that the file has the tables of a store and nothing else. No
-// other query may come before.
-bool store_shape_read(Store *store, Layout *layout, Err *err);
-
 // Appends the name of a column as SQL writes it.
 void store_shape_quote(Text *sql, const char *name);
 
 // The text of a value, cut to so many bytes, or a copy of it; empty for NULL.
 void store_take_words(struct sqlite3_stmt *row, int column, char *words, size_t size);
-char *store_copy_column(struct sqlite3_stmt *statement, int column);
 
 // store_schema.c: whose rows they are
 
@@ -123,12 +99,6 @@ bool store_schema_check(const Store *store, const StoreHead *head, const char *s
 void store_schema_finish(Store *store);
 
 // store_row.c: the rows
-
-// Binds all columns of a row to the statement that adds one.
-void store_row_bind(const Layout *layout, struct sqlite3_stmt *statement, const Record *record);
-
-// The checksum of what differs each time.
-int32_t store_row_effort_checksum(uint64_t run, double wall_s);
 
 // The statement that reads rows by rising number: parameter 1 is the number before the first, 2 the
 // most that are wanted (-1: all).

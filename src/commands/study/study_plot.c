@@ -1,18 +1,337 @@
-// What does one column of a study look like over another?
+// Draws one column of a study over another as SVG.
 //
 // Where x takes a few values that runs share, as on a grid, the median of each is a point of a
 // line, and the band about it holds nine runs of ten. Else each run is a dot.
 #include "commands/study/study_plot.h"
-
-#include "commands/study/study_histogram.h"
-#include "commands/study/study_points.h"
+#include "base/sorted.h"
+#include "base/text.h"
 #include "write/plot.h"
+#include "write/units.h"
 
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+// The points of the picture.
+
+enum { FIRST_ROOM = 1024 };
+
+typedef struct Gathering {
+    StudyPoints *points;
+    size_t room;
+    size_t x;
+    size_t y;
+    bool has_y;
+    bool has_by;
+} Gathering;
+
+static double number_of(const Layout *layout, const Record *record, size_t column)
+{
+    return column < layout->setting_count ? record->settings[column].number
+                                          : record->results[column - layout->setting_count];
+}
+
+static size_t group_of(const StudyPoints *points, const Layout *layout, const Record *record)
+{
+    const Cell *value = &record->settings[points->by];
+    const bool is_word = layout->settings[points->by].kind == COLUMN_WORD;
+    for (size_t i = 0; i < points->group_count; i++) {
+        if (is_word ? strcmp(value->word, points->groups[i].word) == 0
+                    : value->number == points->groups[i].number) {
+            return i;
+        }
+    }
+    return points->group_count;
+}
+
+static bool take_row(const Layout *layout, const Record *record, void *context, Err *err)
+{
+    (void)err;
+    Gathering *gathering = context;
+    StudyPoints *points = gathering->points;
+    const StudyPoint point = {
+        .x = number_of(layout, record, gathering->x),
+        .y = gathering->has_y ? number_of(layout, record, gathering->y) : 0.0,
+        .group = gathering->has_by ? group_of(points, layout, record) : 0,
+    };
+    const bool is_point = record->outcome == RUN_OUTCOME_OK && isfinite(point.x) &&
+                          isfinite(point.y) && point.group < points->group_count;
+    if (!is_point) {
+        points->left_out++;
+        return true;
+    }
+    if (points->count == gathering->room) {
+        gathering->room = gathering->room == 0 ? FIRST_ROOM : 2 * gathering->room;
+        points->points = realloc(points->points, gathering->room * sizeof *points->points);
+        assert(points->points != NULL);
+    }
+    points->points[points->count++] = point;
+    return true;
+}
+
+static int compare_points(const void *a, const void *b)
+{
+    const StudyPoint *left = a;
+    const StudyPoint *right = b;
+    if (left->group != right->group) {
+        return left->group < right->group ? -1 : 1;
+    }
+    const int by_x = sorted_compare(&left->x, &right->x);
+    return by_x != 0 ? by_x : sorted_compare(&left->y, &right->y);
+}
+
+static size_t count_x(const StudyPoints *points)
+{
+    double *x = malloc((points->count + 1) * sizeof *x);
+    assert(x != NULL);
+    for (size_t i = 0; i < points->count; i++) {
+        x[i] = points->points[i].x;
+    }
+    sorted_make(x, points->count);
+    size_t count = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        count += i == 0 || x[i] != x[i - 1] ? 1 : 0;
+    }
+    free(x);
+    return count;
+}
+
+static void put_in_order(StudyPoints *points)
+{
+    qsort(points->points, points->count, sizeof *points->points, compare_points);
+    size_t i = 0;
+    for (size_t group = 0; group < points->group_count; group++) {
+        points->first[group] = i;
+        while (i < points->count && points->points[i].group == group) {
+            i++;
+        }
+    }
+    points->first[points->group_count] = i;
+    points->x_count = count_x(points);
+}
+
+typedef enum Wanted {
+    NUMBER,  // a column of settings or results, not of words
+    SETTING, // a column of settings alone
+} Wanted;
+
+// Finds a column by name. Fails with ERR_USAGE, naming the one that may have been meant.
+static bool find_column(const Layout *layout, const char *name, Wanted wanted, size_t *column,
+                        Err *err)
+{
+    const char *names[RECORD_SETTING_MAX + RECORD_RESULT_MAX];
+    const size_t all = layout->setting_count + layout->result_count;
+    const size_t count = wanted == SETTING ? layout->setting_count : all;
+    for (size_t i = 0; i < count; i++) {
+        names[i] = store_column_at(layout, i)->name;
+    }
+    *column = store_column(layout, name);
+    if (*column >= count) {
+        const char *nearest = text_nearest(name, names, count);
+        return err_set(err, ERR_USAGE, "the study has no %s '%s'%s%s%s",
+                       wanted == SETTING ? "setting" : "column", name,
+                       nearest == NULL ? "" : "; did you mean '", nearest == NULL ? "" : nearest,
+                       nearest == NULL ? "" : "'?");
+    }
+    return wanted == SETTING || store_column_at(layout, *column)->kind != COLUMN_WORD ||
+           err_set(err, ERR_USAGE, "the column %s holds words, and numbers are wanted", name);
+}
+
+static bool find_groups(Store *store, const char *by, StudyPoints *points, Err *err)
+{
+    points->group_count = 1;
+    if (by == NULL) {
+        return true;
+    }
+    return find_column(store_layout(store), by, SETTING, &points->by, err) &&
+           store_values(store, points->by, STUDY_GROUP_MAX, points->groups, &points->group_count,
+                        err) &&
+           (points->group_count <= STUDY_GROUP_MAX ||
+            err_set(err, ERR_USAGE, "%s has more than %d values, too many to tell apart", by,
+                    STUDY_GROUP_MAX));
+}
+
+bool study_points_read(Store *store, const char *x, const char *y, const char *by,
+                       StudyPoints *points, Err *err)
+{
+    const Layout *layout = store_layout(store);
+    *points = (StudyPoints){0};
+    Gathering gathering = {.points = points, .has_y = y != NULL, .has_by = by != NULL};
+    bool is_read = find_column(layout, x, NUMBER, &gathering.x, err) &&
+                   (y == NULL || find_column(layout, y, NUMBER, &gathering.y, err)) &&
+                   find_groups(store, by, points, err) &&
+                   store_each(store, take_row, &gathering, err);
+    if (is_read && points->count == 0) {
+        is_read = err_set(err, ERR_USAGE, "no run of the study has a number in %s%s%s", x,
+                          y == NULL ? "" : " and in ", y == NULL ? "" : y);
+    }
+    if (!is_read) {
+        study_points_finish(points);
+        return false;
+    }
+    put_in_order(points);
+    return true;
+}
+
+void study_points_finish(StudyPoints *points)
+{
+    free(points->points);
+    *points = (StudyPoints){0};
+}
+
+// The points from a number on that share its x and its group: the number of the first that does
+// not.
+static size_t study_points_pile(const StudyPoints *points, size_t first)
+{
+    const StudyPoint *point = &points->points[first];
+    size_t end = first + 1;
+    while (end < points->count && points->points[end].group == point->group &&
+           points->points[end].x == point->x) {
+        end++;
+    }
+    return end;
+}
+
+// The value that a group has in its column, in words.
+static void study_points_group_name(const StudyPoints *points, const Layout *layout, size_t group,
+                                    char words[RECORD_WORD_SIZE])
+{
+    if (layout->settings[points->by].kind == COLUMN_WORD) {
+        text_copy(words, RECORD_WORD_SIZE, points->groups[group].word);
+    } else {
+        snprintf(words, RECORD_WORD_SIZE, "%.4g", points->groups[group].number);
+    }
+}
+
+// The histogram of a column.
+//
+// Bars of one width on the scale of the axis, their number twice the cubic root of that of the
+// runs (Rice's rule); of whole numbers that are few, one bar each.
+
+enum { BAR_LEAST = 8, BAR_MOST = 60 };
+
+typedef struct Bars {
+    size_t count;
+    double low; // on the scale of the axis: the value, or its logarithm
+    double width;
+    bool is_log;
+    double shares[STUDY_GROUP_MAX][BAR_MOST]; // percent of the group
+} Bars;
+
+static double scaled(const Bars *bars, double value)
+{
+    return bars->is_log ? log10(value) : value;
+}
+
+static double edge(const Bars *bars, size_t i)
+{
+    const double value = bars->low + bars->width * (double)i;
+    return bars->is_log ? pow(10.0, value) : value;
+}
+
+static void choose_bars(const StudyPoints *points, const Column *column, const Axis *axis,
+                        Bars *bars)
+{
+    bars->is_log = axis->scale == AXIS_LOG;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < points->count; i++) {
+        low = fmin(low, scaled(bars, points->points[i].x));
+        high = fmax(high, scaled(bars, points->points[i].x));
+    }
+    const bool is_whole =
+        column->kind == COLUMN_WHOLE && !bars->is_log && high - low < BAR_MOST - 1;
+    const double wanted = ceil(2.0 * cbrt((double)points->count));
+    bars->count = is_whole             ? (size_t)(high - low) + 1
+                  : wanted < BAR_LEAST ? BAR_LEAST
+                  : wanted > BAR_MOST  ? BAR_MOST
+                                       : (size_t)wanted;
+    if (is_whole || !(high > low)) {
+        bars->low = low - 0.5;
+        bars->width = 1.0;
+        bars->count = is_whole ? bars->count : 1;
+    } else {
+        bars->low = low;
+        bars->width = (high - low) / (double)bars->count;
+    }
+}
+
+static void fill_bars(const StudyPoints *points, Bars *bars)
+{
+    for (size_t group = 0; group < points->group_count; group++) {
+        const size_t runs = points->first[group + 1] - points->first[group];
+        for (size_t i = points->first[group]; i < points->first[group + 1]; i++) {
+            const double place = (scaled(bars, points->points[i].x) - bars->low) / bars->width;
+            const size_t bar =
+                place < (double)bars->count ? (size_t)fmax(place, 0.0) : bars->count - 1;
+            bars->shares[group][bar] += UNITS_PERCENT / (double)runs;
+        }
+    }
+}
+
+// One outline about the bars of a group, filled so faintly that groups show through each other.
+static void draw_outline(const PlotPanel *panel, const Bars *bars, size_t group, PlotStyle style)
+{
+    text_append(panel->svg,
+                "<path fill=\"%s\" fill-opacity=\"0.16\" stroke=\"%s\" stroke-width=\"%g\" "
+                "d=\"M%.1f %.1f",
+                style.colour, style.colour, style.width, plot_x(panel, edge(bars, 0)),
+                plot_y(panel, 0.0));
+    for (size_t i = 0; i < bars->count; i++) {
+        text_append(panel->svg, "V%.1fH%.1f", plot_y(panel, bars->shares[group][i]),
+                    plot_x(panel, edge(bars, i + 1)));
+    }
+    text_append(panel->svg, "V%.1f\"/>\n", plot_y(panel, 0.0));
+}
+
+// The points of one group are in the order of x.
+static void draw_quantile(const PlotPanel *panel, const StudyPoints *points, double share,
+                          const char *name)
+{
+    static const PlotStyle STYLE = {"#555555", 1.2, 1.0, "5 4"};
+    const double rank = fmax(1.0, ceil(share * (double)points->count));
+    const double value = points->points[(size_t)rank - 1].x;
+    const double x[] = {value, value};
+    const double y[] = {panel->y.low, panel->y.high};
+    char words[64];
+    plot_line(panel, 2, x, y, STYLE);
+    snprintf(words, sizeof words, "%s %.4g", name, value);
+    // one label above the other, for they may stand close together
+    plot_text(panel->svg, plot_x(panel, value) + 4.0, panel->top + 16.0 + 32.0 * fabs(share - 0.5),
+              "start", "note", words);
+}
+
+void study_histogram_draw(const StudyPoints *points, const Column *column, PlotPanel *panel,
+                          PlotStyle (*style_of)(size_t group))
+{
+    Bars bars = {0};
+    choose_bars(points, column, &panel->x, &bars);
+    fill_bars(points, &bars);
+    double most = 0.0;
+    for (size_t group = 0; group < points->group_count; group++) {
+        for (size_t i = 0; i < bars.count; i++) {
+            most = fmax(most, bars.shares[group][i]);
+        }
+    }
+    panel->y = (Axis){.title = "share of the runs, %", .high = most};
+    axis_round(&panel->y.low, &panel->y.high);
+    panel->y.low = 0.0;
+    // the outer bars are whole, even where all values are one
+    panel->x.low = fmin(panel->x.low, edge(&bars, 0));
+    panel->x.high = fmax(panel->x.high, edge(&bars, bars.count));
+    plot_enter(panel);
+    for (size_t group = 0; group < points->group_count; group++) {
+        draw_outline(panel, &bars, group, style_of(group));
+    }
+    if (points->group_count == 1) {
+        draw_quantile(panel, points, 0.05, "5 %:");
+        draw_quantile(panel, points, 0.5, "median");
+        draw_quantile(panel, points, 0.95, "95 %:");
+    }
+    plot_leave(panel);
+}
 
 static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
 static const double PICTURE_HEIGHT = 640.0;

@@ -1,15 +1,12 @@
-// Which runs of a study are missing, and what comes of them?
-#include "commands/study/study_commands.h"
-
+// Makes the runs of a study that are missing in its store.
 #include "base/clock.h"
 #include "cli/interrupt.h"
 #include "cli/output.h"
 #include "cli/status_line.h"
 #include "commands/study/metrics.h"
-#include "commands/study/study_json.h"
-#include "commands/study/study_text.h"
+#include "commands/study/study.h"
 #include "version.h"
-#include "write/build_print.h"
+#include "write/settings_json.h"
 
 #include <assert.h>
 #include <inttypes.h>

@@ -4,6 +4,7 @@
 #include "commands/study/design.h"
 #include "commands/study/metrics.h"
 #include "commands/study/store.h"
+#include "measure/task.h"
 
 enum { SWEEP_JOB_MAX = 256 };
 
@@ -33,10 +34,43 @@ typedef struct Sweep {
     void (*report)(const SweepState *state, void *context);
     bool (*should_stop)(void *context); // asked often: true ends it in good order
     void *context;
-    const SweepWork *work; // what the processes do; NULL for the usual: study/sweep_work.h
+    const SweepWork *work; // what the processes do; NULL for SWEEP_WORK
 } Sweep;
 
 // Fails with ERR_FILE where the store fails, with ERR_SOLVER where the system has no process left
 // for a single run. A run that fails, hangs or dies is a row. The state is that at the end. Runs in
 // progress at an early end are killed, and made when the study is resumed.
 bool sweep_execute(const Sweep *sweep, SweepEnd *end, SweepState *state, Err *err);
+
+// What the processes of a sweep do: one run, one truth. Tests replace it.
+
+// The worker slot of a process, and what it needs there.
+typedef struct SweepSlot {
+    const SweepWork *work;
+    int words;      // where its output goes: commands/study/worker.h
+    int slots;      // commands/study/worker.h
+    size_t number;  // of the slot
+    double limit_s; // of its work
+} SweepSlot;
+
+// A run as its process sees it.
+typedef struct SweepRun {
+    SweepSlot slot;
+    const Spec *spec;
+    const Layout *layout;
+    const Truth *truth; // NULL where there is none
+    uint64_t run;
+} SweepRun;
+
+// A truth as its process sees it.
+typedef struct SweepTruth {
+    SweepSlot slot;
+    Task task; // its scenario alone
+} SweepTruth;
+
+struct SweepWork {
+    void (*run)(const SweepRun *task, Record *record);
+    void (*certify)(const SweepTruth *task, void *packed);
+};
+
+extern const SweepWork SWEEP_WORK;

@@ -1,4 +1,4 @@
-// Which setting is to be tried next, and what do the trials say?
+// The state of a search for the cheapest setting: its grid, its trials, costs and time left.
 //
 // Values of the grid: the R10 series of ISO 3, v(n) = 10^(-n/10) in preferred numbers. A trial at
 // index n with error e > X rules out those m that would need a higher order than p:
@@ -7,8 +7,11 @@
 // the first two neighbours that meet X are the cheapest of the scheme on the grid, however unevenly
 // the errors fall.
 #include "commands/tune/tune.h"
-
+#include "base/shell.h"
 #include "base/sorted.h"
+#include "casefile/input.h"
+#include "write/number.h"
+#include "write/units.h"
 
 #include <assert.h>
 #include <math.h>
@@ -16,10 +19,137 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STEPS_A_DECADE = 10 };
+// The cost of a setting on a machine that does other things as well.
+//
+// Times of single runs are noise; work is not:
+//     work = N + E / 20 + S / 4,   N world steps, E evaluations of contact forces, S samples
+// and a scheme's rate, s of the processor per unit of work, is the least of its runs. Cost = work *
+// rate.
 
-static const double PREFERRED[STEPS_A_DECADE] = {1.0,  8.0, 6.3, 5.0, 4.0,
-                                                 3.15, 2.5, 2.0, 1.6, 1.25};
+// what else a run does beside world steps, in steps of some 1.3 us, as measured
+static const double WORK_OF_EVALUATION = 0.05;
+static const double WORK_OF_SAMPLE = 0.25;
+
+// with more than this multiple of its samples' work a run is mostly steps
+static const double TELLING_WORK = 3.0;
+
+// no scheme takes longer for its work than this times what the fastest takes for its own
+static const double RATE_SPREAD = 2.5;
+
+static double work_of(const Tune *tune, double steps, double evaluations)
+{
+    return steps + WORK_OF_EVALUATION * evaluations + WORK_OF_SAMPLE * (double)tune->samples;
+}
+
+// The least time per unit of work among the runs of a scheme, or of all (TUNE_NONE), s: whatever
+// else the machine does only adds to it. Of a scheme's own, runs that mostly set up and sample are
+// left out.
+static double least_rate(const Tune *tune, int scheme)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        const LadderRun *run = &tune->trials[i].run;
+        const double work = work_of(tune, (double)run->steps, (double)run->evaluations);
+        const bool is_telling = work > TELLING_WORK * WORK_OF_SAMPLE * (double)tune->samples;
+        if (run->is_complete &&
+            (scheme == TUNE_NONE || ((int)tune->trials[i].scheme == scheme && is_telling))) {
+            least = fmin(least, run->processor_s / work);
+        }
+    }
+    return least;
+}
+
+static double rate_of(const Tune *tune, size_t scheme)
+{
+    const double own = least_rate(tune, (int)scheme);
+    const double all = least_rate(tune, TUNE_NONE);
+    return isinf(own) ? all : fmin(own, RATE_SPREAD * all);
+}
+
+static bool tune_cost_is_timed(const Tune *tune, const TuneTrial *trial)
+{
+    const TuneScheme *owner = &tune->schemes[trial->scheme];
+    return owner->best != TUNE_NONE && trial == &tune->trials[owner->best] &&
+           isfinite(owner->processor_least_s);
+}
+
+// The time of a run, s: the least where it was timed, or what its work comes to.
+static double time_of(const Tune *tune, const TuneTrial *trial)
+{
+    if (tune_cost_is_timed(tune, trial)) {
+        return tune->schemes[trial->scheme].processor_least_s;
+    }
+    // one that chooses its step makes a reference first, which is no work of world steps
+    const bool has_step = scheme_has_step(&tune->schemes[trial->scheme].scheme);
+    return has_step && trial->run.is_complete
+               ? rate_of(tune, trial->scheme) *
+                     work_of(tune, (double)trial->run.steps, (double)trial->run.evaluations)
+               : trial->run.processor_s;
+}
+
+double tune_trial_cost(const Tune *tune, const TuneTrial *trial)
+{
+    return tune->cost == TUNE_LENGTH  ? 1.0 / trial->value
+           : tune->cost == TUNE_STEPS ? (double)trial->run.steps
+                                      : time_of(tune, trial);
+}
+
+// The finest trial of a scheme that ended whole, or NULL. What is unstable, and so has no error,
+// costs what it likes: many a finer step costs less.
+static const TuneTrial *find_finest(const Tune *tune, size_t scheme)
+{
+    const TuneTrial *finest = NULL;
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        const TuneTrial *trial = &tune->trials[i];
+        if (trial->scheme == scheme && trial->run.is_complete && isfinite(trial->error) &&
+            (finest == NULL || trial->index > finest->index)) {
+            finest = trial;
+        }
+    }
+    return finest;
+}
+
+// World steps of a setting, at the least: from a tolerance they cannot be known.
+static double steps_at(const Tune *tune, const TuneTrial *finest, int index)
+{
+    const bool has_step = scheme_has_step(&tune->schemes[finest->scheme].scheme);
+    return (double)finest->run.steps * (has_step ? finest->value / tune_value(index) : 1.0);
+}
+
+double tune_time(const Tune *tune, size_t scheme, int index)
+{
+    const TuneTrial *finest = find_finest(tune, scheme);
+    if (finest != NULL && !scheme_has_step(&tune->schemes[scheme].scheme)) {
+        return finest->run.processor_s;
+    }
+    return finest == NULL ? 0.0
+                          : rate_of(tune, scheme) * work_of(tune, steps_at(tune, finest, index),
+                                                            (double)finest->run.evaluations);
+}
+
+double tune_cost(const Tune *tune, size_t scheme, int index)
+{
+    if (tune->cost == TUNE_LENGTH) {
+        return 1.0 / tune_value(index);
+    }
+    const TuneTrial *finest = find_finest(tune, scheme);
+    if (tune->cost == TUNE_TIME || finest == NULL) {
+        return tune_time(tune, scheme, index);
+    }
+    return steps_at(tune, finest, index);
+}
+
+bool tune_is_within(const Tune *tune, const TuneTrial *trial)
+{
+    const TuneLimit *limit = &tune->limit;
+    return (limit->steps == 0 || trial->run.steps <= limit->steps) &&
+           (limit->time_s == 0.0 || time_of(tune, trial) <= limit->time_s);
+}
+
+enum { TUNE_STEPS_A_DECADE = 10 };
+
+static const double PREFERRED[TUNE_STEPS_A_DECADE] = {1.0,  8.0, 6.3, 5.0, 4.0,
+                                                      3.15, 2.5, 2.0, 1.6, 1.25};
 
 // the coarsest step: this many in a run or in a turn of the drive, whichever is shorter
 static const double COARSEST_STEPS = 20.0;
@@ -50,8 +180,8 @@ static const double STALL_S = 0.5;
 
 double tune_value(int index)
 {
-    const int within = ((index % STEPS_A_DECADE) + STEPS_A_DECADE) % STEPS_A_DECADE;
-    const int decade = (index - within) / STEPS_A_DECADE + (within > 0 ? 1 : 0);
+    const int within = ((index % TUNE_STEPS_A_DECADE) + TUNE_STEPS_A_DECADE) % TUNE_STEPS_A_DECADE;
+    const int decade = (index - within) / TUNE_STEPS_A_DECADE + (within > 0 ? 1 : 0);
     char digits[64];
     // from its decimal digits, so that a reader of them gets the same number
     snprintf(digits, sizeof digits, "%.4ge%d", PREFERRED[within], -decade);
@@ -60,7 +190,7 @@ double tune_value(int index)
 
 int tune_index_below(double value)
 {
-    int index = (int)floor(-STEPS_A_DECADE * log10(value)) - 1;
+    int index = (int)floor(-TUNE_STEPS_A_DECADE * log10(value)) - 1;
     while (tune_value(index) > value) {
         index++;
     }
@@ -168,15 +298,15 @@ static int indices_ahead(const Tune *tune, const TuneScheme *scheme, double erro
     if (isnan(error)) {
         return 1;
     }
-    const double ahead = STEPS_A_DECADE / order * log10(error / (SLACK * tune->target));
+    const double ahead = TUNE_STEPS_A_DECADE / order * log10(error / (SLACK * tune->target));
     return ahead > 1.0 ? (int)floor(ahead) : 1;
 }
 
 // Whether the trials of the last decade are hardly better than those of the decade before.
 static bool has_stalled(const Tune *tune, const TuneTrial *last)
 {
-    double before[STEPS_A_DECADE];
-    double since[STEPS_A_DECADE];
+    double before[TUNE_STEPS_A_DECADE];
+    double since[TUNE_STEPS_A_DECADE];
     size_t before_count = 0;
     size_t since_count = 0;
     for (size_t i = 0; i < tune->trial_count; i++) {
@@ -185,9 +315,9 @@ static bool has_stalled(const Tune *tune, const TuneTrial *last)
         if (trial->scheme != last->scheme || !isfinite(trial->error) || back < 0) {
             continue;
         }
-        if (back < STEPS_A_DECADE && since_count < STEPS_A_DECADE) {
+        if (back < TUNE_STEPS_A_DECADE && since_count < TUNE_STEPS_A_DECADE) {
             since[since_count++] = trial->error;
-        } else if (back < 2 * STEPS_A_DECADE && before_count < STEPS_A_DECADE) {
+        } else if (back < 2 * TUNE_STEPS_A_DECADE && before_count < TUNE_STEPS_A_DECADE) {
             before[before_count++] = trial->error;
         }
     }
@@ -353,4 +483,222 @@ void tune_conclude(Tune *tune, const Scenario *scenario)
             tune->within = i;
         }
     }
+}
+
+// The time that a search will still take.
+//
+// Of a scheme with the errors e1, e2 at the values v1 > v2 the target is met at
+//     v = v2 (target / e2)^(1/p),   p = log(e1 / e2) / log(v1 / v2)
+// and the settings from its next one to v, and one more that confirms it, are still to be run,
+// unless they cost more than the best that meets the target, or than the best that is to be
+// expected.
+
+static const double ORDER_AT_FIRST = 1.0; // of one error alone
+static const double ORDER_LEAST = 0.5;    // what falls more slowly has stalled, or will fall
+static const double ORDER_MOST = 6.0;
+static const double TUNE_LEFT_STEPS_A_DECADE = 10.0; // of the grid, tune_value
+static const double FINER_MOST = 60.0;               // of them: six decades
+
+// The finest trial of a scheme with an error, above an index; NULL where there is none.
+static const TuneTrial *find_trial(const Tune *tune, size_t scheme, int below)
+{
+    const TuneTrial *finest = NULL;
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        const TuneTrial *trial = &tune->trials[i];
+        if (trial->scheme == scheme && trial->index < below && trial->error > 0.0 &&
+            (finest == NULL || trial->index > finest->index)) {
+            finest = trial;
+        }
+    }
+    return finest;
+}
+
+// The index of the last setting of a scheme that has to be run.
+static int last_index(const Tune *tune, size_t scheme)
+{
+    const TuneScheme *owner = &tune->schemes[scheme];
+    const TuneTrial *fine = find_trial(tune, scheme, owner->next + 1);
+    if (fine == NULL) {
+        return owner->next;
+    }
+    const TuneTrial *coarse = find_trial(tune, scheme, fine->index);
+    double order = ORDER_AT_FIRST;
+    if (coarse != NULL) {
+        order = log(coarse->error / fine->error) / log(coarse->value / fine->value);
+        order = fmin(fmax(order, ORDER_LEAST), ORDER_MOST);
+    }
+    const double decades = log10(fmax(fine->error / tune->target, 1.0)) / order;
+    return fine->index + (int)ceil(fmin(TUNE_LEFT_STEPS_A_DECADE * decades, FINER_MOST)) + 1;
+}
+
+static bool goes_on(const TuneScheme *scheme, const TuneLeft *left)
+{
+    return scheme->trials > 0 && (scheme->outcome == TUNE_OPEN ||
+                                  (left->is_reopened && scheme->outcome == TUNE_COSTLIER));
+}
+
+// The cost of the best setting that is to be expected.
+static double expected_best(const Tune *tune, const TuneLeft *left)
+{
+    double best = left->best;
+    for (size_t i = 0; i < tune->scheme_count; i++) {
+        if (left->is_in[i] && goes_on(&tune->schemes[i], left)) {
+            const int last = last_index(tune, i);
+            if (tune_time(tune, i, last) <= left->limit_s) {
+                best = fmin(best, tune_cost(tune, i, last));
+            }
+        }
+    }
+    return best;
+}
+
+// How much longer than the processor's time runs take by the clock, where other work goes on beside
+// them: 1 on an idle machine.
+static double slowness(const Tune *tune)
+{
+    double wall_s = 0.0;
+    double processor_s = 0.0;
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        wall_s += tune->trials[i].run.wall_s;
+        processor_s += tune->trials[i].run.processor_s;
+    }
+    return processor_s > 0.0 ? fmax(1.0, wall_s / processor_s) : 1.0;
+}
+
+double tune_left(const Tune *tune, const TuneLeft *left)
+{
+    const double most = left->margin * expected_best(tune, left);
+    double left_s = 0.0;
+    for (size_t i = 0; i < tune->scheme_count; i++) {
+        const bool is_going = left->is_in[i] && goes_on(&tune->schemes[i], left);
+        const int last = is_going ? last_index(tune, i) : 0;
+        for (int index = tune->schemes[i].next; is_going && index <= last; index++) {
+            const double time_s = tune_time(tune, i, index);
+            if (time_s > left->limit_s || tune_cost(tune, i, index) > most) {
+                break;
+            }
+            left_s += time_s;
+        }
+    }
+    return slowness(tune) * left_s;
+}
+
+// A setting in words.
+
+// The collider, where it is another than the case's.
+static void write_collider(const TuneReport *report, const Scheme *scheme, const char *separator,
+                           Text *text)
+{
+    if (scheme->collider != report->scenario->ode.collider) {
+        text_append(text, "%sode.collider=%s", separator, OPTIONS_ODE_COLLIDERS[scheme->collider]);
+    }
+}
+
+void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const char *separator,
+                       Text *text)
+{
+    const Scheme *scheme = &report->tune->schemes[trial->scheme].scheme;
+    if (!scheme_has_step(scheme)) {
+        text_append(text, "run.step=auto%srun.tolerance=", separator);
+        text_append(text, "%s", number_shortest(trial->value).text);
+        write_collider(report, scheme, separator, text);
+        return;
+    }
+    text_append(text, "run.step=");
+    text_append(text, "%s", number_shortest(trial->value).text);
+    text_append(text, " s%sode.solver=%s%sode.stepping=%s", separator,
+                OPTIONS_ODE_SOLVERS[scheme->solver], separator,
+                OPTIONS_ODE_STEPPINGS[scheme->stepping]);
+    if (scenario_has_clearance(report->scenario)) {
+        text_append(text, "%sode.map=%s", separator, OPTIONS_ODE_MAPS[scheme->map]);
+    }
+    write_collider(report, scheme, separator, text);
+}
+
+bool tune_setting_replaces(const char *override)
+{
+    static const char *const KEYS[] = {"run.step",   "run.tolerance", "run.backends",
+                                       "ode.solver", "ode.stepping",  "ode.map"};
+    const size_t length = strcspn(override, "=");
+    for (size_t i = 0; i < sizeof KEYS / sizeof KEYS[0]; i++) {
+        if (strlen(KEYS[i]) == length && strncmp(KEYS[i], override, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void tune_setting_command(const TuneReport *report, const TuneTrial *trial, const char *separator,
+                          Text *text)
+{
+    text_append(text, "jointplay run ");
+    const char *path = scenario_path(report->scenario);
+    shell_append_path(text, strcmp(path, INPUT_STDIN) == 0 ? "-" : path);
+    for (size_t i = 0; i < report->override_count; i++) {
+        if (!tune_setting_replaces(report->overrides[i])) {
+            text_append(text, "%s--set ", separator);
+            shell_append_word(text, report->overrides[i]);
+        }
+    }
+    // with the reference, which the error is against
+    const bool is_ideal = !scenario_has_clearance(report->scenario);
+    text_append(text, "%s--set run.backends=%s", separator,
+                is_ideal && scenario_has_closed_form(report->scenario)
+                    ? "'[analytic, reference, ode]'"
+                    : "'[reference, ode]'");
+    // the program's own words, which hold no quote
+    char between[TUNE_SEPARATOR_SIZE + 16];
+    snprintf(between, sizeof between, "'%s--set '", separator);
+    text_append(text, "%s--set '", separator);
+    tune_setting_keys(report, trial, between, text);
+    text_append(text, "'");
+}
+
+void tune_setting_words(const TuneReport *report, const TuneTrial *trial, Text *text)
+{
+    const Scheme *scheme = &report->tune->schemes[trial->scheme].scheme;
+    if (scheme_has_step(scheme)) {
+        text_append(text, "%s, step %.4g us", scheme->name, trial->value * UNITS_US);
+    } else {
+        text_append(text, "%s, step chosen for a tolerance of %.3g", scheme->name, trial->value);
+    }
+}
+
+static bool tune_setting_is_timed(const Tune *tune, const TuneTrial *trial)
+{
+    return trial == tune_best(tune, (int)trial->scheme) &&
+           isfinite(tune->schemes[trial->scheme].processor_median_s);
+}
+
+double tune_setting_time(const Tune *tune, const TuneTrial *trial)
+{
+    return tune_setting_is_timed(tune, trial) ? tune->schemes[trial->scheme].processor_median_s
+                                              : trial->run.processor_s;
+}
+
+static void write_cost(const Tune *tune, const TuneTrial *trial, Text *text)
+{
+    const TuneScheme *scheme = &tune->schemes[trial->scheme];
+    text_append(text, "%zu world steps, %.4g ms of the processor", trial->run.steps,
+                tune_setting_time(tune, trial) * UNITS_MS);
+    if (tune_setting_is_timed(tune, trial)) {
+        text_append(text, ", %.4g ms by the clock (medians of %zu runs taken in turn)",
+                    scheme->wall_median_s * UNITS_MS, scheme->timed);
+    } else {
+        text_append(text, " (one run)");
+    }
+}
+
+void tune_setting_write(const TuneReport *report, const TuneTrial *trial, Text *text)
+{
+    text_append(text, "  setting     ");
+    tune_setting_words(report, trial, text);
+    text_append(text, "\n  error       %.3g\n  cost        ", trial->error);
+    write_cost(report->tune, trial, text);
+    text_append(text, "\n  in a case   ");
+    tune_setting_keys(report, trial, "\n              ", text);
+    // lines of their own, a setting each: so far in that no line is broken, which may be in a name
+    text_append(text, "\n  run it\n    ");
+    tune_setting_command(report, trial, " \\\n      ", text);
+    text_append(text, "\n");
 }

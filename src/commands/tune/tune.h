@@ -1,4 +1,5 @@
-// The cheapest setting of ODE whose error, found by running it, meets a target.
+// The cheapest setting of ODE whose error, found by running it, meets a target; its search, its
+// words and its report.
 //
 // Steps and tolerances come from a grid of preferred numbers, ten to a decade. A setting counts
 // only where the next finer one of its scheme meets the target as well: an error that is small by
@@ -8,9 +9,13 @@
 // where it does not meet the target, which is the longest step that does.
 #pragma once
 
+#include "base/text.h"
 #include "measure/held.h"
 #include "measure/ladder.h"
 #include "measure/truth.h"
+#include "write/table.h"
+
+#include <jansson.h>
 
 enum {
     TUNE_REPEATS = LADDER_REPEAT_LEAST, // timing runs of each finalist
@@ -196,3 +201,94 @@ void tune_conclude(Tune *tune, const Scenario *scenario);
 
 // The trial of the best setting of a scheme, or NULL.
 const TuneTrial *tune_best(const Tune *tune, int scheme);
+
+// How long a search will still take.
+
+// The settings of some schemes that a search may still run.
+typedef struct TuneLeft {
+    bool is_in[SCHEME_MAX];
+    double best;      // cost of the best setting that meets the target; INFINITY where none does
+    double margin;    // settings that cost more than this times the best are not run
+    double limit_s;   // nor settings that take longer
+    bool is_reopened; // schemes that were ended because they cost more go on
+} TuneLeft;
+
+// The time by the clock, s, of the runs that are to be expected one after another. Errors are taken
+// to go on falling as between the last two settings of a scheme; schemes that have not been run are
+// left out.
+double tune_left(const Tune *tune, const TuneLeft *left);
+
+// Everything there is to tell about a search for the cheapest setting: plain pointers, nothing
+// owned.
+
+typedef struct TuneReport {
+    const Scenario *scenario;
+    const Tune *tune;             // concluded
+    const char *const *overrides; // that were given with --set
+    size_t override_count;
+    double time_limit_s; // of one run
+} TuneReport;
+
+// Whether the error asked for is met by a setting that costs no more than what was allowed, or at
+// the step that is held.
+static inline bool tune_report_is_met(const TuneReport *report)
+{
+    const TuneTrial *best = tune_best(report->tune, report->tune->winner);
+    if (report->tune->held_s > 0.0) {
+        return tune_is_met_held(report->tune);
+    }
+    return best != NULL && tune_is_within(report->tune, best);
+}
+
+// Whether a cost was set that nothing may exceed.
+static inline bool tune_report_has_limit(const TuneReport *report)
+{
+    return report->tune->limit.steps > 0 || report->tune->limit.time_s > 0.0;
+}
+
+// Each is of a TuneReport: for other programs, a new reference; and for people.
+json_t *tune_json_build(const void *report);
+void tune_text_write(const void *report, const Style *style, Text *text);
+
+// What can be had at a step that is held, for people.
+
+// Appends the constants that were run in the whole mechanism, each with its error.
+void tune_held_text_constants(const TuneReport *report, const Style *style, Text *text);
+
+// Appends what one ERP and one CFM for all depths come to.
+void tune_held_text_row(const Tune *tune, Text *text);
+
+// Fails with ERR_DIFFERS: nothing at the step meets the error, how near it comes, and the longest
+// step that does.
+bool tune_held_text_unmet(const TuneReport *report, Err *err);
+
+// Where constants come from, such as "law at 1.2 um".
+void tune_held_text_source(const TuneReport *report, const TuneLinear *linear, Text *text);
+
+// A setting in words: its keys of a case, and the command line that runs it.
+
+// Whether a setting replaces what a --set KEY=VALUE gives for its key.
+bool tune_setting_replaces(const char *override);
+
+// Appends what a case says for the setting of a trial, each KEY=VALUE by itself, and a separator in
+// between.
+void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const char *separator,
+                       Text *text);
+
+enum { TUNE_SEPARATOR_SIZE = 64 };
+
+// Appends the command line that runs the setting of a trial and reports its error, as a shell takes
+// it; a separator, a blank at least, stands in front of each option.
+void tune_setting_command(const TuneReport *report, const TuneTrial *trial, const char *separator,
+                          Text *text);
+
+// The scheme and its step or tolerance, for people.
+void tune_setting_words(const TuneReport *report, const TuneTrial *trial, Text *text);
+
+// What a setting takes of the processor, s: a median where it was timed, else the one run that
+// found its error.
+double tune_setting_time(const Tune *tune, const TuneTrial *trial);
+
+// Appends the setting of a trial: its words, error and cost, its keys of a case, and its command
+// line.
+void tune_setting_write(const TuneReport *report, const TuneTrial *trial, Text *text);

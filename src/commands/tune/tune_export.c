@@ -1,20 +1,441 @@
-// How can a setting be used outside this program?
+// Writes a setting for use elsewhere: C code, a loop of the user's own, Gazebo, MuJoCo.
 #include "commands/tune/tune_export.h"
-
-#include "commands/tune/tune_limit.h"
+#include "commands/tune/tune.h"
 #include "commands/tune/tune_linear.h"
-#include "commands/tune/tune_report.h"
-#include "commands/tune/tune_setting.h"
 #include "commands/tune/tune_world.h"
+#include "contact/law.h"
+#include "contact/map.h"
 #include "measure/chosen_run.h"
-#include "write/joint_units.h"
-#include "write/section.h"
+#include "write/number.h"
+#include "write/table.h"
 #include "write/units.h"
+#include "write/xml.h"
 
 #include <assert.h>
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+// kp and kd with which Gazebo makes the linear contact.
+//
+// Gazebo classic, ODEPhysics::Collide, of two surfaces 1 and 2 at step h:
+//     kp = 1 / (1/kp1 + 1/kp2),  kd = kd1 + kd2
+//     soft_erp = h kp / (h kp + kd),  soft_cfm = 1 / (h kp + kd)          (the textbook map)
+// so that each of two equal surfaces has 2 kp and kd / 2. The soft_erp and soft_cfm of a surface
+// are read and not used. The stop of a joint is one row by itself (tune_limit.c). max_vel bounds
+// the speed at which a contact pushes apart, 0.01 m/s unless said otherwise; min_depth is the
+// overlap that is left alone.
+
+// m/s: far above any speed at which a pin leaves its wall, so that it bounds nothing
+static const double MAX_VEL = 1e6;
+
+bool tune_gazebo_find(const Tune *tune, TuneGazebo *gazebo)
+{
+    if (tune->linear == TUNE_NONE) {
+        return false;
+    }
+    const TuneLinear *linear = &tune->linears[tune->linear];
+    const bool is_limit = tune->contact.is_limit;
+    const double sum = linear->step_s * linear->stiffness + linear->damping;
+    *gazebo = (TuneGazebo){
+        .kp = is_limit ? linear->stiffness : 2.0 * linear->stiffness,
+        .kd = is_limit ? linear->damping : 0.5 * linear->damping,
+        .soft_erp = linear->step_s * linear->stiffness / sum,
+        .soft_cfm = 1.0 / sum,
+        .max_vel = MAX_VEL,
+        .step_s = linear->step_s,
+        .error = linear->error,
+    };
+    return true;
+}
+
+static void tune_gazebo_write_surface(const TuneReport *report, const TuneGazebo *gazebo,
+                                      const TuneLinear *linear, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    const Joint *joint = &scenario->linkage.joints[report->tune->contact.joint];
+    const double friction = law_options(&scenario->contact, joint).friction;
+    text_append(text,
+                "<!-- in the collision of the pin, and the same in that of the hole -->\n"
+                "<surface>\n"
+                "  <contact>\n"
+                "    <ode>\n"
+                "      <soft_erp>%s</soft_erp> <!-- not used -->\n"
+                "      <soft_cfm>%s</soft_cfm>\n"
+                "      <kp>%s</kp> <!-- two in a row make %.4g N/m -->\n"
+                "      <kd>%s</kd> <!-- two together make %.4g N s/m -->\n"
+                "      <min_depth>%s</min_depth>\n"
+                "      <max_vel>%s</max_vel>\n"
+                "    </ode>\n"
+                "  </contact>\n"
+                "  <friction><ode><mu>%s</mu><mu2>%s</mu2></ode></friction>\n"
+                "</surface>\n",
+                number_shortest(gazebo->soft_erp).text, number_shortest(gazebo->soft_cfm).text,
+                number_shortest(gazebo->kp).text, linear->stiffness,
+                number_shortest(gazebo->kd).text, linear->damping,
+                number_shortest(gazebo->min_depth).text, number_shortest(gazebo->max_vel).text,
+                number_shortest(friction).text, number_shortest(friction).text);
+}
+
+void tune_gazebo_write(const TuneReport *report, Text *text)
+{
+    TuneGazebo gazebo;
+    if (!tune_gazebo_find(report->tune, &gazebo)) {
+        return;
+    }
+    const TuneLinear *linear = &report->tune->linears[report->tune->linear];
+    Text source;
+    text_init(&source);
+    tune_held_text_source(report, linear, &source);
+    text_append(text,
+                "<!-- error with these constants, measured: %.2g;\n"
+                "     best for: %s -->\n",
+                gazebo.error, source.data);
+    text_finish(&source);
+    Text parts;
+    text_init(&parts);
+    text_append(&parts,
+                "<physics type=\"ode\">\n"
+                "  <max_step_size>%s</max_step_size>\n"
+                "  <ode>\n"
+                "    <solver><type>world</type></solver>\n"
+                "    <constraints>\n"
+                "      <cfm>0</cfm>\n"
+                "      <erp>%s</erp>\n"
+                "      <contact_max_correcting_vel>%s</contact_max_correcting_vel>\n"
+                "      <contact_surface_layer>0</contact_surface_layer>\n"
+                "    </constraints>\n"
+                "  </ode>\n"
+                "</physics>\n",
+                number_shortest(gazebo.step_s).text,
+                number_shortest(report->scenario->ode.erp).text,
+                number_shortest(gazebo.max_vel).text);
+    if (report->tune->contact.is_limit) {
+        tune_limit_sdf(report, (ErpCfm){.erp = gazebo.soft_erp, .cfm = gazebo.soft_cfm}, &parts);
+    } else {
+        tune_gazebo_write_surface(report, &gazebo, linear, &parts);
+    }
+    text_append(text, "<!-- physics belongs into the world%s -->\n",
+                report->tune->contact.is_limit ? ", joint into the model" : "");
+    xml_append_element("sdf version=\"1.6\"", parts.data, text);
+    text_finish(&parts);
+}
+
+// solref and solimp with which MuJoCo makes the linear contact.
+//
+// One row of MuJoCo, r < 0 the gap, v its rate, a0 its acceleration without the force, W the true
+// and A the approximate inverse mass of the row (documentation, "Computation" and "Modeling"):
+//     f = (a_ref - a0) / (W + R) >= 0,  R = A (1 - d) / d,  a_ref = -b v - k r
+//     direct format, d constant: solref = (-s, -c'), b = c' / d, k = s / d
+// For d -> 0, R outweighs W and   f = (d / A) (-b v - k r - a0) = -(s r + c' v) / A  - d a0 / A:
+// a spring s / A and a damper c' / A, whatever the mass that is met, but for a share d of a0. So
+//     s = A K,  c' = A C,  d as small as is allowed, 1e-4
+// A is what the compiler of MuJoCo finds at qpos0: the sum of both bodies' body_invweight0, 1/m of
+// a body with a free joint and 0 of one that is welded to the world or moved as mocap. f and the
+// forces here: N; K N/m; C N s/m.
+//
+// r and v are those before the step: the spring is explicit, where the textbook's row in ODE is
+// implicit and stable at any step. So omega h and C h / m, m the effective mass, stay below a
+// tenth.
+
+enum { FRICTION_SIZE = 128 };
+
+static const double LEAST_IMPEDANCE = 1e-4; // mjMINIMP
+
+// of the explicit limit 2 for the effective mass at the deepest contact: the lightest that a pin of
+// a linkage meets was seen to be a sixth of that, where omega h is then 0.25
+static const double STEP_SHARE = 0.1;
+
+static double inverse_mass(const Linkage *linkage, int body)
+{
+    return body == LINKAGE_GROUND || body == linkage_driven_body(linkage)
+               ? 0.0
+               : 1.0 / linkage->bodies[body].mass;
+}
+
+bool tune_mujoco_find(const TuneReport *report, TuneMujoco *mujoco)
+{
+    const Tune *tune = report->tune;
+    if (tune->linear == TUNE_NONE ||
+        (tune->contact.is_limit &&
+         tune_limit_lacks_range(report->scenario, tune->contact.joint) != NULL)) {
+        return false;
+    }
+    const Linkage *linkage = &report->scenario->linkage;
+    const Joint *joint = &linkage->joints[tune->contact.joint];
+    const TuneLinear *linear = &tune->linears[tune->linear];
+    const double weight = tune->contact.is_limit ? 1.0 / tune->contact.mass
+                                                 : inverse_mass(linkage, joint->body_a) +
+                                                       inverse_mass(linkage, joint->body_b);
+    *mujoco = (TuneMujoco){
+        .weight = weight,
+        .impedance = LEAST_IMPEDANCE,
+        .solref = {-weight * linear->stiffness, -weight * linear->damping},
+        .stiffness = linear->stiffness,
+        .damping = linear->damping,
+        .step_s = fmin(linear->step_s,
+                       STEP_SHARE * fmin(sqrt(tune->contact.mass / linear->stiffness),
+                                         tune->contact.mass / fmax(linear->damping, DBL_MIN))),
+    };
+    return weight > 0.0;
+}
+
+bool tune_mujoco_is_finer(const TuneReport *report, const TuneMujoco *mujoco)
+{
+    return mujoco->step_s < report->tune->held_s;
+}
+
+// Appends the words above the document to `text`, and its elements to `parts`.
+static void write_pair(const TuneReport *report, const TuneMujoco *mujoco, Text *text, Text *parts)
+{
+    const Scenario *scenario = report->scenario;
+    const Joint *joint = &scenario->linkage.joints[report->tune->contact.joint];
+    const double friction = law_options(&scenario->contact, joint).friction;
+    char slides[FRICTION_SIZE] = "";
+    if (friction > 0.0) {
+        // both directions of sliding; MuJoCo's own numbers for torsion and rolling, which a planar
+        // pin does not do
+        snprintf(slides, sizeof slides, "\n        friction=\"%s %s 0.005 0.0001 0.0001\"",
+                 number_shortest(friction).text, number_shortest(friction).text);
+    }
+    text_append(text,
+                "<!-- spring %.4g N/m, damper %.4g N s/m, not run here; for bodies\n"
+                "     with free joints, held by connect equalities: A = %.6g 1/kg. In any\n"
+                "     other model multiply solref by (invweight0 of both bodies) / A. -->\n",
+                mujoco->stiffness, mujoco->damping, mujoco->weight);
+    text_append(parts,
+                "<option timestep=\"%s\"\n        integrator=\"Euler\" cone=\"elliptic\"/>\n"
+                "<contact>\n"
+                "  <pair geom1=\"pin\" geom2=\"hole\" condim=\"%d\" margin=\"0\" gap=\"0\"%s\n"
+                "        solref=\"%s %s\"\n"
+                "        solimp=\"%s %s 1 0.5 1\"/>\n"
+                "</contact>\n",
+                number_shortest(mujoco->step_s).text, friction > 0.0 ? 3 : 1, slides,
+                number_shortest(mujoco->solref[0]).text, number_shortest(mujoco->solref[1]).text,
+                number_shortest(mujoco->impedance).text, number_shortest(mujoco->impedance).text);
+}
+
+// The limit of a joint, in radians or metres.
+static void write_limit(const TuneReport *report, const TuneMujoco *mujoco, Text *text, Text *parts)
+{
+    const Joint *joint = &report->scenario->linkage.joints[report->tune->contact.joint];
+    const JointUnits *units = joint_units(joint);
+    text_append(text,
+                "<!-- spring %.4g %s, damper %.4g %s, not run here; for bodies\n"
+                "     in a tree of joints: A = %.6g 1/(%s). In any other model multiply\n"
+                "     solreflimit by the joint's dof_invweight0 / A. -->\n",
+                mujoco->stiffness, units->stiffness, mujoco->damping, units->damping,
+                mujoco->weight, units->mass);
+    text_append(parts,
+                "<compiler angle=\"radian\"/>\n"
+                "<option timestep=\"%s\" integrator=\"Euler\"/>\n",
+                number_shortest(mujoco->step_s).text);
+    tune_limit_mjcf(report, mujoco->solref, mujoco->impedance, parts);
+}
+
+void tune_mujoco_write(const TuneReport *report, Text *text)
+{
+    TuneMujoco mujoco;
+    if (!tune_mujoco_find(report, &mujoco)) {
+        return;
+    }
+    Text parts;
+    text_init(&parts);
+    if (report->tune->contact.is_limit) {
+        write_limit(report, &mujoco, text, &parts);
+    } else {
+        write_pair(report, &mujoco, text, &parts);
+    }
+    xml_append_element("mujoco", parts.data, text);
+    text_finish(&parts);
+}
+
+// Lines for a loop of the user's own that do what the setting does.
+//
+// The row that ODE makes of a contact, at the depth d found before the step:
+//     k = F(d) / d,  c = chi F(d) / v0 (or the constant damper)
+// and from them soft_erp and soft_cfm by the map of the setting, as contact/map.c.
+
+static void write_elastic(const ForceLaw *law, bool is_angle, Text *text)
+{
+    const char *unit = is_angle ? "N m/rad" : "N/m";
+    if (law->family == FORCE_LAW_POWER && law->exponent == 1.0) {
+        text_append(text, "    const double k = %s; // %s\n", number_shortest(law->stiffness).text,
+                    unit);
+    } else if (law->family == FORCE_LAW_POWER) {
+        text_append(text, "    const double k = %s * pow(depth, %s); // F(depth) / depth, %s\n",
+                    number_shortest(law->stiffness).text, number_shortest(law->exponent - 1.0).text,
+                    unit);
+    } else {
+        text_append(text,
+                    "    double force = depth / %s; // N: depth = A F (B - ln F)\n"
+                    "    for (int i = 0; i < 60; i++) {\n"
+                    "        force = depth / (%s * (%s - log(force)));\n"
+                    "    }\n"
+                    "    const double k = force / depth; // N/m\n",
+                    number_shortest(law->compliance * (law->offset > 1.0 ? law->offset : 1.0)).text,
+                    number_shortest(law->compliance).text, number_shortest(law->offset).text);
+    }
+}
+
+static void write_damping(const ForceLaw *law, bool is_angle, Text *text)
+{
+    const char *unit = is_angle ? "N m s/rad" : "N s/m";
+    if (law->hysteresis > 0.0) {
+        text_append(text,
+                    "    // %s; v0: closing speed when this contact began, %s, which you keep\n"
+                    "    const double c =\n        %s * k * depth / fmax(v0, %s);\n",
+                    unit, is_angle ? "rad/s" : "m/s", number_shortest(law->hysteresis).text,
+                    number_shortest(law->impact_speed_floor).text);
+    } else {
+        text_append(text, "    const double c = %s; // %s\n    (void)v0;\n",
+                    number_shortest(law->viscous).text, unit);
+    }
+}
+
+// ERP and CFM of the row, as two lines that end each in its own way.
+typedef struct RowLines {
+    const char *erp;
+    const char *cfm;
+    const char *end;
+} RowLines;
+
+static void write_map(const ForceLaw *law, OdeMap map, RowLines lines, Text *text)
+{
+    const bool has_damper = law->hysteresis > 0.0 || law->viscous > 0.0;
+    const char *erp = "H * k / c";
+    const char *cfm = "1.0 / c";
+    if (map == ODE_MAP_TEXTBOOK) {
+        erp = "H * k / (H * k + c)";
+        cfm = "1.0 / (H * k + c)";
+    } else if (has_damper) {
+        text_append(text, "    // stable for H < 2 / sqrt(slope / m), m the mass met, slope "
+                          "dF/ddepth\n    // ERP may exceed 1\n");
+    } else {
+        text_append(text, "    // without a damper a tiny one stands in\n");
+        erp = "1e10";
+        cfm = "1e10 / (H * k)";
+    }
+    text_append(text, "    %s%s%s;\n    %s%s%s;\n", lines.erp, erp, lines.end, lines.cfm, cfm,
+                lines.end);
+}
+
+// The name of a joint as a part of that of a function.
+static void write_name(const Joint *joint, Text *text)
+{
+    for (const char *letter = joint->name; *letter != '\0'; letter++) {
+        const bool is_plain = (*letter >= 'a' && *letter <= 'z') ||
+                              (*letter >= 'A' && *letter <= 'Z') ||
+                              (*letter >= '0' && *letter <= '9');
+        text_append(text, "%c", is_plain ? *letter : '_');
+    }
+}
+
+// The stop of ODE's own hinge or slider is the same row.
+static void write_stop(const Joint *joint, const ForceLaw *law, OdeMap map, Text *text)
+{
+    static const RowLines HINGE = {"dJointSetHingeParam(hinge, dParamStopERP, ",
+                                   "dJointSetHingeParam(hinge, dParamStopCFM, ", ")"};
+    static const RowLines SLIDER = {"dJointSetSliderParam(slider, dParamStopERP, ",
+                                    "dJointSetSliderParam(slider, dParamStopCFM, ", ")"};
+    const bool is_hinge = joint->kind == JOINT_REVOLUTE;
+    const char *name = is_hinge ? "hinge" : "slider";
+    text_append(text,
+                "// %s: between dParamLoStop and dParamHiStop of ODE's %s;\n"
+                "// depth > 0 beyond one of them, in %s\nstatic void set_stop_",
+                joint->name, name, is_hinge ? "rad" : "metres");
+    write_name(joint, text);
+    text_append(text, "(dJointID %s, double depth, double v0)\n{\n", name);
+    write_elastic(law, is_hinge, text);
+    write_damping(law, is_hinge, text);
+    write_map(law, map, is_hinge ? HINGE : SLIDER, text);
+    text_append(text, "}\n\n");
+}
+
+static void tune_snippet_write_surface(const Joint *joint, const ForceLaw *law, OdeMap map,
+                                       Text *text)
+{
+    static const RowLines SURFACE = {"surface->soft_erp = ", "surface->soft_cfm = ", ""};
+    if (joint->kind == JOINT_GEAR) {
+        text_append(
+            text,
+            "// %s: a contact of yours where the pitch circles touch, along their tangent;\n"
+            "// depth > 0 in metres of the pitch circles beyond the backlash\n",
+            joint->name);
+    } else {
+        text_append(text, "// %s: depth > 0 in metres, as dContactGeom has it\n", joint->name);
+    }
+    text_append(text, "static void set_surface_");
+    write_name(joint, text);
+    text_append(text, "(\n    dSurfaceParameters *surface, double depth, double v0)\n{\n");
+    write_elastic(law, false, text);
+    write_damping(law, false, text);
+    if (law->friction > 0.0 && joint->kind != JOINT_GEAR) {
+        text_append(text,
+                    "    surface->mode = dContactSoftERP | dContactSoftCFM | dContactApprox1;\n"
+                    "    surface->mu = %s;\n",
+                    number_shortest(law->friction).text);
+    } else {
+        text_append(text, "    surface->mode = dContactSoftERP | dContactSoftCFM;\n"
+                          "    surface->mu = 0.0; // one row, along the normal\n");
+    }
+    write_map(law, map, SURFACE, text);
+    text_append(text, "}\n\n");
+}
+
+// Whether the ends of a joint are stops of ODE's own hinge or slider.
+static bool has_stops(const Joint *joint)
+{
+    return linkage_kind_is_ideal(joint->kind) && joint->limits.kind != LIMIT_NONE;
+}
+
+static void tune_snippet_write_loop(const Scenario *scenario, Text *text)
+{
+    text_append(text, "// once\n");
+    text_append(text, "dWorldSetERP(world, %s); // of the ideal joints\n",
+                number_shortest(scenario->ode.erp).text);
+    text_append(text, "dWorldSetCFM(world, %s);\n", number_shortest(scenario->ode.cfm).text);
+    text_append(text, "dWorldSetContactSurfaceLayer(world, 0.0);\n"
+                      "dWorldSetContactMaxCorrectingVel(world, dInfinity);\n"
+                      "// of each body\ndBodySetFiniteRotationMode(body, 1);\n"
+                      "// each step; a driven body is kinematic and put on its path first\n"
+                      "// calls set_surface_..., one point a joint; set_stop_... beyond a stop\n"
+                      "dSpaceCollide(space, NULL, near_callback);\n"
+                      "dWorldStep(world, H);\n"
+                      "dJointGroupEmpty(contacts);\n");
+}
+
+bool tune_snippet_write(const TuneReport *report, const TuneTrial *trial, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    const OdeMap map = report->tune->schemes[trial->scheme].scheme.map;
+    Text lines;
+    text_init(&lines);
+    text_append(&lines, "static const double H = %s; // step, s\n\n",
+                number_shortest(trial->value).text);
+    bool fits = map == ODE_MAP_TEXTBOOK || map == ODE_MAP_CORRECTED;
+    for (size_t i = 0; i < linkage->joint_count && fits; i++) {
+        ForceLaw law;
+        Err unused = {ERR_NONE, ""};
+        if (linkage_has_play(&linkage->joints[i])) {
+            fits = law_of_joint(scenario, &linkage->joints[i], &law, &unused);
+            if (has_stops(&linkage->joints[i])) {
+                write_stop(&linkage->joints[i], &law, map, &lines);
+            } else {
+                tune_snippet_write_surface(&linkage->joints[i], &law, map, &lines);
+            }
+        }
+    }
+    if (fits) {
+        tune_snippet_write_loop(scenario, &lines);
+        text_append(text, "%s", lines.data);
+    }
+    text_finish(&lines);
+    return fits;
+}
 
 const TuneTrial *tune_export_trial(const TuneReport *report)
 {
@@ -167,7 +588,7 @@ const TuneTrial *tune_export_plain(const Tune *tune)
 }
 
 // The best setting for a loop that cannot be changed, and what it costs.
-static void write_loop(const TuneReport *report, const Style *style, Text *text)
+static void tune_export_write_loop(const TuneReport *report, const Style *style, Text *text)
 {
     const Tune *tune = report->tune;
     const TuneTrial *plain = tune_export_plain(tune);
@@ -320,7 +741,7 @@ static void write_mujoco(const TuneReport *report, const Style *style, Text *tex
 void tune_export_write(const TuneReport *report, const Style *style, Text *text)
 {
     write_code(report, style, text);
-    write_loop(report, style, text);
+    tune_export_write_loop(report, style, text);
     write_gazebo(report, style, text);
     write_mujoco(report, style, text);
 }

@@ -1,7 +1,7 @@
 // Where else a setting can go: C code, a loop of one's own, Gazebo, MuJoCo.
 #pragma once
 
-#include "commands/tune/tune_report.h"
+#include "commands/tune/tune.h"
 
 // The setting to hand on: the cheapest that meets the error, or what comes nearest to it; NULL
 // where no run has an error.

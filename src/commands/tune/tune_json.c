@@ -1,11 +1,9 @@
-// What do other programs read of a search?
-#include "commands/tune/tune_reference.h"
-
+// Builds the JSON object of a search.
+#include "commands/tune/tune.h"
 #include "commands/tune/tune_export.h"
-#include "commands/tune/tune_setting.h"
+#include "commands/tune/tune_search.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
-#include "write/turned_keys.h"
 
 #include <inttypes.h>
 #include <string.h>

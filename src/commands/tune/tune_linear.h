@@ -1,6 +1,7 @@
 // What can a contact with constant spring and damper deliver, as Gazebo and MuJoCo have it?
 #pragma once
 
+#include "commands/tune/tune.h"
 #include "commands/tune/tune_runs.h"
 #include "contact/force_law.h"
 
@@ -23,3 +24,13 @@ const char *tune_linear_lacks(const Scenario *scenario, const Tune *tune);
 // Looks up the deepest contact in the truth, runs constants taken from it at several depths and
 // steps against the truth, and chooses among them. Does nothing where no joint has play.
 bool tune_linear_run(const TuneSearch *search, Err *err);
+
+// The stops or the backlash of one pivot or slider as limits of a joint of Gazebo and MuJoCo.
+
+// The same where MuJoCo alone could not have it.
+const char *tune_limit_lacks_range(const Scenario *scenario, size_t joint);
+
+// Append the joint: of SDF with the constants as stop, of MJCF with solref and solimp of the limit.
+void tune_limit_sdf(const TuneReport *report, ErpCfm row, Text *text);
+void tune_limit_mjcf(const TuneReport *report, const double solref[2], double impedance,
+                     Text *text);

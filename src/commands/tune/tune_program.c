@@ -1,21 +1,426 @@
-// What is the error of the program that --code writes?
+// Measures the error of the program that --code writes.
 //
 // libjointplay steps a world that knows no more than ODE says: its ideal joints drift and its
 // impacts fall otherwise between the steps than in a run of the case. So the world of the program
 // is built with the same calls in a process of its own, and held against the reference at exactly
 // the times that the program prints.
 #include "commands/tune/tune_program.h"
-
-#include "commands/tune/library_world.h"
+#include "base/err.h"
+#include "base/zeroed.h"
 #include "commands/tune/tune_world.h"
-#include "measure/pool.h"
+#include "contact/law.h"
+#include "measure/child.h"
+#include "model/coordinate.h"
+#include "model/scenario.h"
+#include "ode/engine.h"
 #include "run/registry.h"
 
 #include <assert.h>
+#include <jointplay/jointplay.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+typedef struct LibraryWorld {
+    const Scenario *scenario;
+    dWorldID world;
+    dBodyID *bodies;   // owned; by body
+    dJointID *joints;  // owned; by joint, NULL where it is none of ODE's
+    dJointID *dampers; // owned; by spring, NULL where it has none
+    JpWorld *play;
+    size_t steps;
+} LibraryWorld;
+
+static void library_world_close(LibraryWorld *world);
+
+// Builds a case as a user of libjointplay would.
+//
+// The same calls, in the same order and with the same numbers, as tune_world.c, _joints.c and
+// _forces.c write into a program: what is measured here is what the program does.
+
+static dBodyID body_of(const LibraryWorld *world, int body)
+{
+    return body == LINKAGE_GROUND ? NULL : world->bodies[body];
+}
+
+static void make_body(LibraryWorld *world, int number)
+{
+    const Linkage *linkage = &world->scenario->linkage;
+    const Body *body = &linkage->bodies[number];
+    const bool is_led = tune_world_is_led(linkage, number);
+    const Motion *start = &body->start;
+    const Vec2 at = is_led ? linkage->joints[linkage->driver.joint].anchor_a : start->position;
+    const Vec2 speed = is_led ? (Vec2){0.0, 0.0} : start->velocity;
+    const dBodyID made = dBodyCreate(world->world);
+    dMass in_plane;
+    dMassSetParameters(&in_plane, body->mass, 0, 0, 0, body->inertia, body->inertia, body->inertia,
+                       0, 0, 0);
+    dBodySetMass(made, &in_plane);
+    dBodySetPosition(made, at.x, at.y, 0);
+    const dQuaternion turn = {cos(0.5 * start->angle), 0, 0, sin(0.5 * start->angle)};
+    dBodySetQuaternion(made, turn);
+    dBodySetLinearVel(made, speed.x, speed.y, 0);
+    dBodySetAngularVel(made, 0, 0, start->omega);
+    dBodySetFiniteRotationMode(made, 1);
+    world->bodies[number] = made;
+}
+
+static void make_ideal(LibraryWorld *world, int number, const Motion *motions)
+{
+    const Linkage *linkage = &world->scenario->linkage;
+    const Joint *joint = &linkage->joints[number];
+    int turned;
+    int against;
+    if (!tune_world_is_ideal(linkage, number)) {
+        return;
+    }
+    linkage_turning(linkage, number, &turned, &against);
+    dJointID made;
+    if (joint->kind == JOINT_PRISMATIC) {
+        const Vec2 along =
+            vec2_scale(coordinate_sense(joint), joint_rows_along(linkage, motions, number));
+        made = dJointCreateSlider(world->world, 0);
+        dJointAttach(made, body_of(world, turned), body_of(world, against));
+        dJointSetSliderAxis(made, along.x, along.y, 0);
+    } else {
+        const Vec2 at = linkage_point(motions, joint->body_a, joint->anchor_a);
+        made = dJointCreateHinge(world->world, 0);
+        dJointAttach(made, body_of(world, turned), body_of(world, against));
+        dJointSetHingeAnchor(made, at.x, at.y, 0);
+        dJointSetHingeAxis(made, 0, 0, 1);
+    }
+    world->joints[number] = made;
+}
+
+// The distance joint whose row a spring's damper is.
+static void make_damper(LibraryWorld *world, size_t number, const Motion *motions)
+{
+    const Spring *spring = &world->scenario->linkage.springs[number];
+    const int bodies[2] = {spring->body_a, spring->body_b};
+    const Vec2 ends[2] = {spring->anchor_a, spring->anchor_b};
+    const int first = spring->body_a == LINKAGE_GROUND ? 1 : 0;
+    const dJointID made = dJointCreateDBall(world->world, 0);
+    dJointAttach(made, body_of(world, bodies[first]), body_of(world, bodies[1 - first]));
+    const Vec2 from = linkage_point(motions, bodies[first], ends[first]);
+    const Vec2 to = linkage_point(motions, bodies[1 - first], ends[1 - first]);
+    dJointSetDBallAnchor1(made, from.x, from.y, 0);
+    dJointSetDBallAnchor2(made, to.x, to.y, 0);
+    world->dampers[number] = made;
+}
+
+static void make_motors(LibraryWorld *world, const Motion *motions)
+{
+    const Linkage *linkage = &world->scenario->linkage;
+    const Driver *driver = &linkage->driver;
+    const int driven = linkage_driven_body(linkage);
+    if (tune_world_is_led(linkage, driven)) {
+        dBodySetKinematic(world->bodies[driven]);
+    } else if (driver->is_present) {
+        dJointSetHingeParam(world->joints[driver->joint], dParamFMax, dInfinity);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        if (tune_world_has_effect(linkage, spring) && spring->damping > 0.0) {
+            dJointSetHingeParam(world->joints[spring->joint], dParamFMax, dInfinity);
+            dJointSetHingeParam(world->joints[spring->joint], dParamCFM, 2.0 / spring->damping);
+        }
+    }
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        if (linkage->springs[i].damping > 0.0) {
+            make_damper(world, i, motions);
+        }
+    }
+}
+
+// A point of a body, NULL being the world, and its velocity.
+static void find_end(dBodyID body, Vec2 local, dVector3 at, dVector3 velocity)
+{
+    memset(velocity, 0, sizeof(dVector3));
+    at[0] = local.x;
+    at[1] = local.y;
+    if (body != NULL) {
+        dBodyGetRelPointPos(body, local.x, local.y, 0, at);
+        dBodyGetRelPointVel(body, local.x, local.y, 0, velocity);
+    }
+}
+
+static void pull(const LibraryWorld *world, size_t number)
+{
+    const Linkage *linkage = &world->scenario->linkage;
+    const Spring *spring = &linkage->springs[number];
+    const dBodyID a = body_of(world, spring->body_a);
+    const dBodyID b = body_of(world, spring->body_b);
+    dVector3 from;
+    dVector3 to;
+    dVector3 v;
+    dVector3 w;
+    find_end(a, tune_world_local(linkage, spring->body_a, spring->anchor_a), from, v);
+    find_end(b, tune_world_local(linkage, spring->body_b, spring->anchor_b), to, w);
+    const double distance = hypot(to[0] - from[0], to[1] - from[1]);
+    const double x = (to[0] - from[0]) / distance;
+    const double y = (to[1] - from[1]) / distance;
+    const double force = spring->stiffness * (distance - spring->length);
+    if (a != NULL) {
+        dBodyAddForceAtPos(a, force * x, force * y, 0, from[0], from[1], 0);
+    }
+    if (b != NULL) {
+        dBodyAddForceAtPos(b, -force * x, -force * y, 0, to[0], to[1], 0);
+    }
+    const dJointID row = world->dampers[number];
+    if (row != NULL) {
+        const double rate = x * (w[0] - v[0]) + y * (w[1] - v[1]);
+        const double gain = fmax(1, 2 * fabs(rate) / distance);
+        dJointSetDBallParam(row, dParamERP, gain * world->scenario->run.step);
+        dJointSetDBallParam(row, dParamCFM, 2 / spring->damping);
+        dJointSetDBallDistance(row, distance - rate / gain);
+    }
+}
+
+// Springs and a torque, where the step evaluates forces.
+static void push(dWorldID pushed, void *data)
+{
+    (void)pushed;
+    const LibraryWorld *world = data;
+    const Linkage *linkage = &world->scenario->linkage;
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        pull(world, i);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        const dJointID joint = world->joints[spring->joint];
+        if (tune_world_has_effect(linkage, spring) && spring->stiffness > 0.0) {
+            const double angle = spring->angle - tune_world_angle_at_start(linkage, spring->joint);
+            dJointAddHingeTorque(joint, spring->stiffness * (angle - dJointGetHingeAngle(joint)));
+        }
+    }
+    const Torque *torque = &linkage->torque;
+    if (torque->table.count > 0) {
+        const double middle_s = ((double)world->steps + 0.5) * world->scenario->run.step;
+        const double value = time_table_at(&torque->table, middle_s);
+        const dJointID joint = world->joints[torque->joint];
+        if (linkage->joints[torque->joint].kind == JOINT_REVOLUTE) {
+            dJointAddHingeTorque(joint, value);
+        } else {
+            dJointAddSliderForce(joint, value);
+        }
+    }
+}
+
+// What is set before each step.
+static void drive(const LibraryWorld *world)
+{
+    const Linkage *linkage = &world->scenario->linkage;
+    const double end_s = ((double)world->steps + 1.0) * world->scenario->run.step;
+    if (linkage->driver.speeds.count > 0) {
+        dJointSetHingeParam(world->joints[linkage->driver.joint], dParamVel,
+                            time_table_at(&linkage->driver.speeds, end_s));
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        const dJointID joint = world->joints[spring->joint];
+        if (tune_world_has_effect(linkage, spring) && spring->damping > 0.0) {
+            dJointSetHingeParam(joint, dParamVel, -dJointGetHingeAngleRate(joint));
+        }
+    }
+}
+
+// A coarse step is no failure: the search judges by the error of the whole run.
+static bool accept(JpStatus status, const JpError *error, Err *err)
+{
+    return status <= JP_OK || err_set(err, ERR_SOLVER, "libjointplay: %s", error->text);
+}
+
+static bool fill_contact(const Scenario *scenario, const Joint *joint, JpContact *contact, Err *err)
+{
+#define LIBRARY_DAMPING(name, word, factor) JP_DAMPING_##name,
+    static const JpDamping DAMPINGS[] = {OPTIONS_DAMPING_LIST(LIBRARY_DAMPING)};
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    ForceLaw law;
+    if (!law_of_joint(scenario, joint, &law, err)) {
+        return false;
+    }
+    if (law.family == FORCE_LAW_POWER) {
+        contact->stiffness = law.stiffness;
+        contact->exponent = law.exponent;
+    } else {
+        contact->compliance = law.compliance;
+        contact->offset = law.offset;
+    }
+    contact->damping = DAMPINGS[own.damping];
+    if (own.damping == DAMPING_VISCOUS) {
+        contact->damper = law.viscous;
+    } else if (own.damping != DAMPING_NONE) {
+        contact->restitution = own.restitution;
+    }
+    contact->speed_floor = law.impact_speed_floor;
+    return true;
+}
+
+static bool make_pin(LibraryWorld *world, int number, Err *err)
+{
+    const Scenario *scenario = world->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    const Joint *joint = &linkage->joints[number];
+    const Vec2 hole = tune_world_local(linkage, joint->body_a, joint->anchor_a);
+    const Vec2 centre = tune_world_local(linkage, joint->body_b, joint->anchor_b);
+    JpPinInHole pin = jp_pin_default();
+    pin.hole_radius = joint->clearance.hole_radius;
+    pin.pin_radius = joint->clearance.pin_radius;
+    pin.hole[0] = hole.x;
+    pin.hole[1] = hole.y;
+    pin.pin[0] = centre.x;
+    pin.pin[1] = centre.y;
+    const ContactOptions contact = law_options(&scenario->contact, joint);
+    if (contact.friction > 0.0) {
+        pin.friction = contact.friction;
+        pin.friction_speed = contact.friction_speed;
+    }
+    JpError error;
+    JpJoint *made;
+    return fill_contact(scenario, joint, &pin.contact, err) &&
+           accept(jp_pin_create(world->play, body_of(world, joint->body_a),
+                                body_of(world, joint->body_b), &pin, &made, &error),
+                  &error, err);
+}
+
+static bool make_limits(LibraryWorld *world, int number, const Motion *motions, Err *err)
+{
+    const Scenario *scenario = world->scenario;
+    const Joint *joint = &scenario->linkage.joints[number];
+    const double start = coordinate_position(&scenario->linkage, motions, number);
+    JpError error;
+    JpJoint *made;
+    if (joint->limits.kind == LIMIT_BACKLASH) {
+        JpBacklash backlash = jp_backlash_default();
+        backlash.gap = joint->limits.backlash;
+        backlash.offset = joint->limits.middle - start;
+        return fill_contact(scenario, joint, &backlash.tooth, err) &&
+               accept(
+                   jp_backlash_create(world->play, world->joints[number], &backlash, &made, &error),
+                   &error, err);
+    }
+    JpStops stops = jp_stops_default();
+    stops.low = joint->limits.low - start;
+    stops.high = joint->limits.high - start;
+    return fill_contact(scenario, joint, &stops.contact, err) &&
+           accept(jp_stops_create(world->play, world->joints[number], &stops, &made, &error),
+                  &error, err);
+}
+
+static bool make_play(LibraryWorld *world, const Motion *motions, Err *err)
+{
+    const Scenario *scenario = world->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    const bool is_impulse = scenario_integrates_contacts(scenario);
+    JpWorldOptions options = jp_world_options_default();
+    options.stepping = is_impulse                            ? JP_STEPPING_IMPULSE
+                       : scenario->ode.stepping == ODE_PLAIN ? JP_STEPPING_PLAIN
+                                                             : JP_STEPPING_STAGGERED;
+    if (scenario->ode.solver == ODE_QUICK && !is_impulse) {
+        options.is_quick = true;
+        dWorldSetQuickStepNumIterations(world->world, (int)scenario->ode.iterations);
+        dWorldSetQuickStepW(world->world, scenario->ode.over_relaxation);
+    }
+    if (tune_world_pushes(linkage)) {
+        options.collide = push;
+        options.collide_data = world;
+    }
+    JpError error;
+    bool is_made =
+        accept(jp_world_create(world->world, &options, &world->play, &error), &error, err);
+    for (int i = 0; i < (int)linkage->joint_count && is_made; i++) {
+        const Joint *joint = &linkage->joints[i];
+        is_made = joint->kind == JOINT_CLEARANCE     ? make_pin(world, i, err)
+                  : joint->limits.kind != LIMIT_NONE ? make_limits(world, i, motions, err)
+                                                     : true;
+    }
+    for (size_t i = 0; i < linkage->body_count && is_made; i++) {
+        is_made = accept(jp_world_add_body(world->play, world->bodies[i], &error), &error, err);
+    }
+    return is_made;
+}
+
+// The world of a planar scenario that tune_world_lacks finds nothing wrong with, at its start.
+// Fails with ERR_CASE where a law does not fit its joint, and with ERR_SOLVER where the library
+// refuses; closed all the same.
+static bool library_world_open(const Scenario *scenario, LibraryWorld *world, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    engine_start();
+    engine_seed(0); // that of a process which has just begun
+    *world = (LibraryWorld){
+        .scenario = scenario,
+        .world = dWorldCreate(),
+        .bodies = zeroed(linkage->body_count, sizeof(dBodyID)),
+        .joints = zeroed(linkage->joint_count, sizeof(dJointID)),
+        .dampers = zeroed(linkage->spring_count, sizeof(dJointID)),
+    };
+    dWorldSetGravity(world->world, 0, 0.0 - scenario->gravity, 0);
+    dWorldSetERP(world->world,
+                 scenario->ode.stepping == ODE_PLAIN ? scenario->ode.erp : TUNE_WORLD_ERP);
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    linkage_start(linkage, motions);
+    for (int i = 0; i < (int)linkage->body_count; i++) {
+        make_body(world, i);
+    }
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        make_ideal(world, i, motions);
+    }
+    make_motors(world, motions);
+    const bool is_made = make_play(world, motions, err);
+    free(motions);
+    if (!is_made) {
+        library_world_close(world);
+    }
+    return is_made;
+}
+
+// Steps by the scenario's step. Fails with ERR_SOLVER.
+static bool library_world_step(LibraryWorld *world, Err *err)
+{
+    JpError error;
+    drive(world);
+    if (!accept(jp_world_step(world->play, world->scenario->run.step, &error), &error, err)) {
+        return false;
+    }
+    world->steps++;
+    return true;
+}
+
+// Where all bodies stand and how fast they move, without accelerations.
+static void library_world_motions(const LibraryWorld *world, Motion *motions)
+{
+    const Linkage *linkage = &world->scenario->linkage;
+    for (int i = 0; i < (int)linkage->body_count; i++) {
+        const dReal *at = dBodyGetPosition(world->bodies[i]);
+        const dReal *velocity = dBodyGetLinearVel(world->bodies[i]);
+        const dReal *turn = dBodyGetQuaternion(world->bodies[i]);
+        motions[i] = (Motion){
+            .position = {at[0], at[1]},
+            .angle = 2.0 * atan2(turn[3], turn[0]),
+            .velocity = {velocity[0], velocity[1]},
+            .omega = dBodyGetAngularVel(world->bodies[i])[2],
+        };
+        if (tune_world_is_led(linkage, i)) {
+            // from its pivot to its centre
+            const Vec2 arm =
+                vec2_rotate(motions[i].angle, tune_world_local(linkage, i, (Vec2){0.0, 0.0}));
+            motions[i].position = vec2_add(motions[i].position, arm);
+            motions[i].velocity = vec2_scale(motions[i].omega, vec2_perp(arm));
+        }
+    }
+}
+
+static void library_world_close(LibraryWorld *world)
+{
+    jp_world_destroy(world->play);
+    dWorldDestroy(world->world);
+    free(world->bodies);
+    free(world->joints);
+    free(world->dampers);
+    *world = (LibraryWorld){.scenario = NULL};
+}
 
 // shorter steps that are tried: a decade of the grid and a half
 enum { SHORTER_MOST = 15 };

@@ -35,3 +35,13 @@ typedef struct TuneRuns {
 
 // Makes the runs until none is left. Fails with ERR_SOLVER where the system has no process left.
 bool tune_runs_make(const TuneSearch *search, const TuneRuns *runs, Err *err);
+
+// What can be had at a step that is held: every scheme, and the best constants.
+
+// Runs every scheme at the step that is held, and takes in what comes of it.
+bool tune_held_run(const TuneSearch *search, Err *err);
+
+// Adds constants to those that are to be run: the best for an impact of median mass and speed, and
+// for the hardest, as kp and kd and as ERP and CFM. Adds nothing where the law has no such impact.
+// Fails with ERR_SOLVER where the reference does.
+bool tune_held_constants(const TuneSearch *search, Err *err);

@@ -1,17 +1,608 @@
-// How is a setting written as a program against libjointplay, as short as a user would write it?
+// Writes a setting as a short program against libjointplay.
 //
 // Bodies, hinges, sliders, motors and forces are ODE's; what has play is a joint of the library,
 // and jp_world_step steps them. A body that is driven at a speed has a motor without a bound.
 // Springs, and a torque over time, push where the step evaluates forces.
 #include "commands/tune/tune_world.h"
-
+#include "base/shell.h"
 #include "base/zeroed.h"
-#include "commands/tune/tune_code_text.h"
-#include "commands/tune/tune_world_forces.h"
-#include "commands/tune/tune_world_joints.h"
+#include "contact/law.h"
+#include "model/coordinate.h"
+#include "model/forces.h"
+#include "version.h"
 #include "write/number.h"
 
 #include <math.h>
+#include <string.h>
+
+// The head of every program, and its strings.
+
+// Appends a string constant; what is not plain ASCII is written by its octal number.
+static void tune_code_string(const char *string, Text *text)
+{
+    text_append(text, "\"");
+    for (; *string != '\0'; string++) {
+        const unsigned char letter = (unsigned char)*string;
+        if (letter == '"' || letter == '\\' || letter == '?') {
+            text_append(text, "\\%c", letter);
+        } else if (letter < 0x20 || letter > 0x7e) {
+            text_append(text, "\\%03o", letter);
+        } else {
+            text_append(text, "%c", letter);
+        }
+    }
+    text_append(text, "\"");
+}
+
+// Appends the comment in front: what this is, how it is compiled (as a shell takes it), of which
+// case, setting and error, and the command that does the same.
+static void tune_code_head(const TuneCode *code, const char *what, const char *compile, Text *text)
+{
+    text_append(text,
+                "// A mechanism with play in its joints in the Open Dynamics Engine, with the "
+                "setting that\n// `jointplay tune` found%s. Written by jointplay %s (ODE %s).\n//\n"
+                "//   cc THIS_FILE.c -o run %s && ./run > series.csv\n//\n// case     ",
+                what, JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION, compile);
+    // as in the command below: a name never ends the comment, nor joins the next line to it
+    shell_append_word(text, scenario_path(code->scenario));
+    text_append(text, "\n// setting  %s\n// error    %.3g measured", code->words, code->error);
+    if (isfinite(code->target)) {
+        text_append(text, ", %.3g asked for", code->target);
+    }
+    text_append(text, "\n// same as  %s\n", code->command);
+}
+
+// The joints of a case as joints of ODE and of libjointplay.
+//
+// A revolute joint is ODE's hinge about z at its pivot, turned body first, so that ODE's angle is
+// the joint's coordinate less what that is at the start (model/coordinate.h); a prismatic joint is
+// ODE's slider along its line, with the same sign.
+
+static void write_plain(const char *name, Text *text)
+{
+    for (const char *letter = name; *letter != '\0'; letter++) {
+        const bool is_plain = (*letter >= 'a' && *letter <= 'z') ||
+                              (*letter >= 'A' && *letter <= 'Z') ||
+                              (*letter >= '0' && *letter <= '9');
+        text_append(text, "%c", is_plain ? *letter : '_');
+    }
+}
+
+// Whether two names are one where all but letters and digits is one sign.
+static bool are_alike(const char *a, const char *b)
+{
+    Text first;
+    Text second;
+    text_init(&first);
+    text_init(&second);
+    write_plain(a, &first);
+    write_plain(b, &second);
+    const bool is_same =
+        first.length == second.length && strncmp(first.data, second.data, first.length) == 0;
+    text_finish(&first);
+    text_finish(&second);
+    return is_same;
+}
+
+typedef enum Named { BODIES, JOINTS } Named;
+
+static const char *name_of(const Linkage *linkage, Named named, int number)
+{
+    return named == BODIES ? linkage->bodies[number].name : linkage->joints[number].name;
+}
+
+// The name in letters and digits, with the number behind it where another would be the same.
+static void write_unique(const Linkage *linkage, Named named, int number, Text *text)
+{
+    const size_t count = named == BODIES ? linkage->body_count : linkage->joint_count;
+    const char *name = name_of(linkage, named, number);
+    write_plain(name, text);
+    for (int i = 0; i < (int)count; i++) {
+        if (i != number && are_alike(name_of(linkage, named, i), name)) {
+            text_append(text, "_%d", number);
+            return;
+        }
+    }
+}
+
+static void tune_world_body(const Linkage *linkage, int body, Text *text)
+{
+    if (body == LINKAGE_GROUND) {
+        text_append(text, "NULL");
+        return;
+    }
+    text_append(text, "body_");
+    write_unique(linkage, BODIES, body, text);
+}
+
+// Appends the name in C of a body or joint: no keyword, and no other's.
+static void tune_world_joint(const Linkage *linkage, int joint, Text *text)
+{
+    text_append(text, "joint_");
+    write_unique(linkage, JOINTS, joint, text);
+}
+
+// The number of a joint with play among those that have some.
+static size_t tune_world_number(const Linkage *linkage, int joint)
+{
+    size_t number = 0;
+    for (int i = 0; i < joint; i++) {
+        number += linkage_has_play(&linkage->joints[i]) ? 1 : 0;
+    }
+    return number;
+}
+
+bool tune_world_is_led(const Linkage *linkage, int body)
+{
+    return body != LINKAGE_GROUND && body == linkage_driven_body(linkage) &&
+           drive_is_steady(&linkage->driver);
+}
+
+Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local)
+{
+    const int joint = linkage->driver.joint;
+    return tune_world_is_led(linkage, body)
+               ? vec2_sub(local, linkage_end(&linkage->joints[joint], 1).anchor)
+               : local;
+}
+
+bool tune_world_is_ideal(const Linkage *linkage, int joint)
+{
+    const bool is_led = linkage->driver.is_present && drive_is_steady(&linkage->driver) &&
+                        linkage->driver.joint == joint;
+    return linkage_kind_is_ideal(linkage->joints[joint].kind) && !is_led;
+}
+
+// The positions at the start.
+static Motion *motions_of(const Linkage *linkage)
+{
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    linkage_start(linkage, motions);
+    return motions;
+}
+
+// Both bodies and two numbers.
+static void write_call(const Linkage *linkage, const char *name, const int bodies[2], Vec2 at,
+                       Text *text)
+{
+    text_append(text, "%s(", name);
+    tune_world_body(linkage, bodies[0], text);
+    text_append(text, ", ");
+    tune_world_body(linkage, bodies[1], text);
+    text_append(text, ", %s, %s);\n", number_shortest(at.x).text, number_shortest(at.y).text);
+}
+
+// Appends what makes an ideal joint of ODE; nothing of a joint that is none, or that a body that is
+// led turns about.
+static void tune_world_ideal(const Linkage *linkage, int number, Text *text)
+{
+    const Joint *joint = &linkage->joints[number];
+    if (!tune_world_is_ideal(linkage, number)) {
+        return;
+    }
+    int bodies[2];
+    linkage_turning(linkage, number, &bodies[0], &bodies[1]);
+    Motion *motions = motions_of(linkage);
+    text_append(text, "    ");
+    tune_world_joint(linkage, number, text);
+    text_append(text, " = ");
+    if (joint->kind == JOINT_PRISMATIC) {
+        const Vec2 along = joint_rows_along(linkage, motions, number);
+        write_call(linkage, "make_slider", bodies, vec2_scale(coordinate_sense(joint), along),
+                   text);
+    } else {
+        write_call(linkage, "make_hinge", bodies,
+                   linkage_point(motions, joint->body_a, joint->anchor_a), text);
+    }
+    free(motions);
+}
+
+// One field of a struct that is filled in.
+static void write_field(const char *name, const char *field, double value, const char *unit,
+                        Text *text)
+{
+    text_append(text, "    %s.%s = %s;%s%s\n", name, field,
+                isfinite(value) ? number_shortest(value).text
+                : value < 0.0   ? "-INFINITY"
+                                : "INFINITY",
+                unit[0] != '\0' ? " // " : "", unit);
+}
+
+// A point in the frame of its body, where it is not at the centre.
+static void tune_world_joints_write_point(const char *name, const char *field, Vec2 at, Text *text)
+{
+    const double numbers[2] = {at.x, at.y};
+    for (int i = 0; i < 2; i++) {
+        if (numbers[i] != 0.0) {
+            text_append(text, "    %s.%s[%d] = %s; // m, in the frame of its body\n", name, field,
+                        i, number_shortest(numbers[i]).text);
+        }
+    }
+}
+
+// The contact of a struct of which `name` is a member that is a contact.
+static bool write_contact(const Scenario *scenario, const Joint *joint, const char *name,
+                          Text *text, Err *err)
+{
+#define WRITTEN_DAMPING(name, word, factor) "JP_DAMPING_" #name,
+    static const char *const DAMPINGS[] = {OPTIONS_DAMPING_LIST(WRITTEN_DAMPING)};
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    const bool is_turn = linkage_is_torsional(joint);
+    ForceLaw law;
+    if (!law_of_joint(scenario, joint, &law, err)) {
+        return false;
+    }
+    if (law.family == FORCE_LAW_POWER) {
+        const bool is_linear = law.exponent == 1.0;
+        write_field(name, "stiffness", law.stiffness,
+                    !is_linear ? "N/m^exponent"
+                    : is_turn  ? "N m/rad"
+                               : "N/m",
+                    text);
+        if (!is_linear) {
+            write_field(name, "exponent", law.exponent, "", text);
+        }
+    } else {
+        write_field(name, "compliance", law.compliance, "m/N: depth = A F (B - ln F)", text);
+        write_field(name, "offset", law.offset, "", text);
+    }
+    text_append(text, "    %s.damping = %s;\n", name, DAMPINGS[own.damping]);
+    if (own.damping == DAMPING_VISCOUS) {
+        write_field(name, "damper", law.viscous, is_turn ? "N m s/rad" : "N s/m", text);
+    } else if (own.damping != DAMPING_NONE) {
+        write_field(name, "restitution", own.restitution, "", text);
+    }
+    write_field(name, "speed_floor", law.impact_speed_floor, is_turn ? "rad/s" : "m/s", text);
+    return true;
+}
+
+// What a joint of the library is made from: the name of its options, of the contact in these, and
+// what it is made on.
+typedef struct Made {
+    Text options;
+    Text contact;
+    Text on;
+} Made;
+
+// Begins with the joint's name and "    JpStops stops_0 = jp_stops_default();".
+static Made begin_made(const Linkage *linkage, int joint, const char *type, const char *what,
+                       const char *contact, Text *text)
+{
+    Made made;
+    text_init(&made.options);
+    text_init(&made.contact);
+    text_init(&made.on);
+    text_append(&made.options, "%s_%zu", what, tune_world_number(linkage, joint));
+    text_append(&made.contact, "%s.%s", made.options.data, contact);
+    text_append(text, "\n    // ");
+    tune_code_string(linkage->joints[joint].name, text);
+    text_append(text, "\n    %s %s = jp_%s_default();\n", type, made.options.data, what);
+    return made;
+}
+
+// Ends with the call that makes the joint.
+static void end_made(Made *made, const Linkage *linkage, int joint, const char *what, Text *text)
+{
+    text_append(text, "    check(jp_%s_create(play, %s, &%s, &plays[%zu], &error), &error);\n",
+                what, made->on.data, made->options.data, tune_world_number(linkage, joint));
+    text_finish(&made->options);
+    text_finish(&made->contact);
+    text_finish(&made->on);
+}
+
+static bool write_pin(const Scenario *scenario, int number, Text *text, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const Joint *joint = &linkage->joints[number];
+    const ContactOptions contact = law_options(&scenario->contact, joint);
+    Made made = begin_made(linkage, number, "JpPinInHole", "pin", "contact", text);
+    const char *pin = made.options.data;
+    write_field(pin, "hole_radius", joint->clearance.hole_radius, "m", text);
+    write_field(pin, "pin_radius", joint->clearance.pin_radius, "m", text);
+    tune_world_joints_write_point(pin, "hole",
+                                  tune_world_local(linkage, joint->body_a, joint->anchor_a), text);
+    tune_world_joints_write_point(pin, "pin",
+                                  tune_world_local(linkage, joint->body_b, joint->anchor_b), text);
+    const bool is_done = write_contact(scenario, joint, made.contact.data, text, err);
+    if (contact.friction > 0.0) {
+        write_field(pin, "friction", contact.friction, "", text);
+        write_field(pin, "friction_speed", contact.friction_speed, "m/s", text);
+    }
+    tune_world_body(linkage, joint->body_a, &made.on);
+    text_append(&made.on, ", ");
+    tune_world_body(linkage, joint->body_b, &made.on);
+    end_made(&made, linkage, number, "pin", text);
+    return is_done;
+}
+
+// Flanks with a gap, or stops, on an ideal joint of ODE.
+static bool write_limits(const Scenario *scenario, int number, Text *text, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const Joint *joint = &linkage->joints[number];
+    const bool is_backlash = joint->limits.kind == LIMIT_BACKLASH;
+    const char *what = is_backlash ? "backlash" : "stops";
+    const char *unit = joint->kind == JOINT_REVOLUTE ? "rad" : "m";
+    Motion *motions = motions_of(linkage);
+    const double start = coordinate_position(linkage, motions, number);
+    free(motions);
+    Made made = begin_made(linkage, number, is_backlash ? "JpBacklash" : "JpStops", what,
+                           is_backlash ? "tooth" : "contact", text);
+    const char *limits = made.options.data;
+    if (is_backlash) {
+        write_field(limits, "gap", joint->limits.backlash, unit, text);
+        write_field(limits, "offset", joint->limits.middle - start, unit, text);
+    } else {
+        write_field(limits, "low", joint->limits.low - start, unit, text);
+        write_field(limits, "high", joint->limits.high - start, unit, text);
+    }
+    const bool is_done = write_contact(scenario, joint, made.contact.data, text, err);
+    tune_world_joint(linkage, number, &made.on);
+    end_made(&made, linkage, number, what, text);
+    return is_done;
+}
+
+// Appends what makes a joint of the library of one with play; nothing of others. Fails with
+// ERR_CASE where a law does not fit its joint.
+static bool tune_world_play(const Scenario *scenario, int joint, Text *text, Err *err)
+{
+    const Joint *of = &scenario->linkage.joints[joint];
+    if (of->kind == JOINT_CLEARANCE) {
+        return write_pin(scenario, joint, text, err);
+    }
+    return of->limits.kind == LIMIT_NONE || write_limits(scenario, joint, text, err);
+}
+
+// Springs, dampers and drives in a world of ODE that libjointplay steps.
+//
+// A body that is driven at constant speed has no dynamics in ODE. A drive at a speed over time is a
+// hinge's motor without a bound, at the speed at the step's end. A damper
+// acts on the mean of the speeds before and after the step, -c (r + r') / 2, as a row
+//     r' + (2/c) f = -r
+// of a hinge's motor or, along a line, of a distance joint, whose right-hand side is ERP/h (wanted
+// distance - distance). Springs and a torque push at mid-step, where the world calls `collide`.
+
+bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring)
+{
+    return !linkage->driver.is_present || linkage->driver.joint != spring->joint;
+}
+
+bool tune_world_pushes(const Linkage *linkage)
+{
+    bool is_any = linkage->spring_count > 0 || linkage->torque.table.count > 0;
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        is_any = is_any || (tune_world_has_effect(linkage, spring) && spring->stiffness > 0.0);
+    }
+    return is_any;
+}
+
+static void write_table(const char *name, const TimeTable *table, const char *unit, Text *text)
+{
+    text_append(text, "\nstatic const double %s[][2] = { // s, %s\n   ", name, unit);
+    for (size_t i = 0; i < table->count; i++) {
+        text_append(text, " {%s, %s},", number_shortest(table->times[i]).text,
+                    number_shortest(table->values[i]).text);
+    }
+    text_append(text, "\n};\n");
+}
+
+static const char AT[] =
+    "\n// linear between the points of a table\n"
+    "static double at(const double (*points)[2], size_t count, double time)\n{\n"
+    "    size_t i = 1;\n"
+    "    while (i + 1 < count && time > points[i][0]) {\n        i++;\n    }\n"
+    "    if (count == 1 || time <= points[0][0] || time >= points[i][0]) {\n"
+    "        return points[count == 1 || time <= points[0][0] ? 0 : i][1];\n    }\n"
+    "    const double share = (time - points[i - 1][0]) / (points[i][0] - points[i - 1][0]);\n"
+    "    return (1 - share) * points[i - 1][1] + share * points[i][1];\n}\n";
+
+static const char SPRING[] =
+    "\n// A spring with a damper between two points: N/m, m, N s/m. The row is a distance joint.\n"
+    "static void pull(dJointID row, dBodyID a, double xa, double ya, dBodyID b, double xb, "
+    "double yb,\n"
+    "                 double stiffness, double length, double damping)\n{\n"
+    "    dVector3 from = {xa, ya}, to = {xb, yb}, v = {0}, w = {0};\n"
+    "    if (a != NULL) {\n"
+    "        dBodyGetRelPointPos(a, xa, ya, 0, from);\n"
+    "        dBodyGetRelPointVel(a, xa, ya, 0, v);\n    }\n"
+    "    if (b != NULL) {\n"
+    "        dBodyGetRelPointPos(b, xb, yb, 0, to);\n"
+    "        dBodyGetRelPointVel(b, xb, yb, 0, w);\n    }\n"
+    "    const double distance = hypot(to[0] - from[0], to[1] - from[1]);\n"
+    "    const double x = (to[0] - from[0]) / distance, y = (to[1] - from[1]) / distance;\n"
+    "    const double force = stiffness * (distance - length);\n"
+    "    if (a != NULL) {\n"
+    "        dBodyAddForceAtPos(a, force * x, force * y, 0, from[0], from[1], 0);\n    }\n"
+    "    if (b != NULL) {\n"
+    "        dBodyAddForceAtPos(b, -force * x, -force * y, 0, to[0], to[1], 0);\n    }\n"
+    "    if (row != NULL) {\n"
+    "        const double rate = x * (w[0] - v[0]) + y * (w[1] - v[1]);\n"
+    "        const double gain = fmax(1, 2 * fabs(rate) / distance);\n"
+    "        dJointSetDBallParam(row, dParamERP, gain * STEP);\n"
+    "        dJointSetDBallParam(row, dParamCFM, 2 / damping);\n"
+    "        dJointSetDBallDistance(row, distance - rate / gain);\n    }\n}\n";
+
+static void tune_world_forces_write_point(const Linkage *linkage, int body, Vec2 at, Text *text)
+{
+    const Vec2 local = tune_world_local(linkage, body, at);
+    tune_world_body(linkage, body, text);
+    text_append(text, ", %s, %s, ", number_shortest(local.x).text, number_shortest(local.y).text);
+}
+
+static void write_springs(const Linkage *linkage, Text *text)
+{
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        if (spring->damping > 0.0) {
+            text_append(text, "    pull(damper_%zu, ", i);
+        } else {
+            text_append(text, "    pull(NULL, ");
+        }
+        tune_world_forces_write_point(linkage, spring->body_a, spring->anchor_a, text);
+        tune_world_forces_write_point(linkage, spring->body_b, spring->anchor_b, text);
+        text_append(text, "%s, %s, %s);\n", number_shortest(spring->stiffness).text,
+                    number_shortest(spring->length).text, number_shortest(spring->damping).text);
+    }
+}
+
+double tune_world_angle_at_start(const Linkage *linkage, int joint)
+{
+    int turned;
+    int against;
+    linkage_turning(linkage, joint, &turned, &against);
+    const double other = against == LINKAGE_GROUND ? 0.0 : linkage->bodies[against].start.angle;
+    return linkage->bodies[turned].start.angle - other;
+}
+
+static void write_torsions(const Linkage *linkage, Text *text)
+{
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        if (!tune_world_has_effect(linkage, spring) || !(spring->stiffness > 0.0)) {
+            continue;
+        }
+        text_append(text, "    dJointAddHingeTorque(");
+        tune_world_joint(linkage, spring->joint, text);
+        text_append(
+            text, ", %s * (%s - dJointGetHingeAngle(", number_shortest(spring->stiffness).text,
+            number_shortest(spring->angle - tune_world_angle_at_start(linkage, spring->joint))
+                .text);
+        tune_world_joint(linkage, spring->joint, text);
+        text_append(text, "))); // within half a turn\n");
+    }
+}
+
+static void write_torque(const Linkage *linkage, Text *text)
+{
+    const Torque *torque = &linkage->torque;
+    if (torque->table.count == 0) {
+        return;
+    }
+    const bool is_hinge = linkage->joints[torque->joint].kind == JOINT_REVOLUTE;
+    text_append(text, "    %s(", is_hinge ? "dJointAddHingeTorque" : "dJointAddSliderForce");
+    tune_world_joint(linkage, torque->joint, text);
+    text_append(text, ", at(DRIVE, sizeof DRIVE / sizeof *DRIVE, middle));\n");
+}
+
+// Appends the function that pushes there, with what it needs; and the tables over time.
+static void tune_world_push(const Linkage *linkage, Text *text)
+{
+    const TimeTable *speeds = &linkage->driver.speeds;
+    const TimeTable *torques = &linkage->torque.table;
+    if (speeds->count > 0) {
+        write_table("DRIVE", speeds, "rad/s", text);
+    }
+    if (torques->count > 0) {
+        const bool is_hinge = linkage->joints[linkage->torque.joint].kind == JOINT_REVOLUTE;
+        write_table("DRIVE", torques, is_hinge ? "N m" : "N", text);
+        text_append(text, "static double middle; // s, of the step under way\n");
+    }
+    text_append(text, "%s", speeds->count + torques->count > 0 ? AT : "");
+    text_append(text, "%s", linkage->spring_count > 0 ? SPRING : "");
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        if (linkage->springs[i].damping > 0.0) {
+            text_append(text, "\nstatic dJointID damper_%zu;\n", i);
+        }
+    }
+    if (tune_world_pushes(linkage)) {
+        text_append(text, "\n// where the step evaluates forces\n"
+                          "static void push(dWorldID pushed, void *data)\n{\n"
+                          "    (void)pushed;\n    (void)data;\n");
+        write_springs(linkage, text);
+        write_torsions(linkage, text);
+        write_torque(linkage, text);
+        text_append(text, "}\n");
+    }
+}
+
+static void write_param(const Linkage *linkage, int joint, const char *param, const char *value,
+                        Text *text)
+{
+    text_append(text, "    dJointSetHingeParam(");
+    tune_world_joint(linkage, joint, text);
+    text_append(text, ", %s, %s);\n", param, value);
+}
+
+// The distance joint of a damper, whose first body is not the world.
+static void write_damper(const Linkage *linkage, size_t number, Text *text)
+{
+    const Spring *spring = &linkage->springs[number];
+    const int bodies[2] = {spring->body_a, spring->body_b};
+    const Vec2 ends[2] = {spring->anchor_a, spring->anchor_b};
+    const int first = spring->body_a == LINKAGE_GROUND ? 1 : 0;
+    text_append(text,
+                "    damper_%zu = dJointCreateDBall(world, 0);\n    dJointAttach(damper_%zu, ",
+                number, number);
+    tune_world_body(linkage, bodies[first], text);
+    text_append(text, ", ");
+    tune_world_body(linkage, bodies[1 - first], text);
+    text_append(text, ");\n");
+    for (int i = 0; i < 2; i++) {
+        const int side = i == 0 ? first : 1 - first;
+        const Vec2 local = ends[side];
+        const Vec2 at =
+            bodies[side] == LINKAGE_GROUND
+                ? local
+                : vec2_add(linkage->bodies[bodies[side]].start.position,
+                           vec2_rotate(linkage->bodies[bodies[side]].start.angle, local));
+        text_append(text, "    dJointSetDBallAnchor%d(damper_%zu, %s, %s, 0);\n", i + 1, number,
+                    number_shortest(at.x).text, number_shortest(at.y).text);
+    }
+}
+
+// Appends what is set once, when bodies and hinges are made.
+static void tune_world_motors(const Linkage *linkage, Text *text)
+{
+    const Driver *driver = &linkage->driver;
+    const int driven = linkage_driven_body(linkage);
+    if (tune_world_is_led(linkage, driven)) {
+        text_append(text, "    dBodySetKinematic(");
+        tune_world_body(linkage, driven, text);
+        text_append(text, "); // at its pivot, and at constant speed\n");
+    } else if (driver->is_present) {
+        write_param(linkage, driver->joint, "dParamFMax", "dInfinity", text);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        if (tune_world_has_effect(linkage, spring) && spring->damping > 0.0) {
+            write_param(linkage, spring->joint, "dParamFMax", "dInfinity", text);
+            write_param(linkage, spring->joint, "dParamCFM",
+                        number_shortest(2.0 / spring->damping).text, text);
+        }
+    }
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        if (linkage->springs[i].damping > 0.0) {
+            write_damper(linkage, i, text);
+        }
+    }
+}
+
+// Appends what is set before each step.
+static void tune_world_drive(const Linkage *linkage, Text *text)
+{
+    if (linkage->driver.speeds.count > 0) {
+        text_append(text, "    ");
+        write_param(linkage, linkage->driver.joint, "dParamVel",
+                    "at(DRIVE, sizeof DRIVE / sizeof *DRIVE, (i + 1) * STEP)", text);
+    }
+    if (linkage->torque.table.count > 0) {
+        text_append(text, "        middle = (i + 0.5) * STEP;\n");
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        if (tune_world_has_effect(linkage, spring) && spring->damping > 0.0) {
+            Text rate;
+            text_init(&rate);
+            text_append(&rate, "-dJointGetHingeAngleRate(");
+            tune_world_joint(linkage, spring->joint, &rate);
+            text_append(&rate, ")");
+            text_append(text, "    ");
+            write_param(linkage, spring->joint, "dParamVel", rate.data, text);
+            text_finish(&rate);
+        }
+    }
+}
 
 static const char *lacks_setting(const Scenario *scenario)
 {

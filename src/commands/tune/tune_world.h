@@ -1,7 +1,21 @@
 // A setting as a short C program against libjointplay: a world of ODE as its user would make it.
 #pragma once
 
-#include "commands/tune/tune_code_text.h"
+#include "base/text.h"
+#include "model/linkage.h"
+#include "model/scenario.h"
+
+// What programs that are written have in common.
+
+typedef struct TuneCode {
+    const Scenario *scenario; // with the setting applied
+    const char *words;        // what the setting is, in one line
+    const char *command;      // the command line that does the same, as a shell takes it
+    double error;             // 1, measured
+    double target;            // 1; INFINITY where none was asked for
+    double step_first_s;      // of the setting: a program may need a shorter step
+    double error_first;       // 1, of the program with that step; NAN where it has none
+} TuneCode;
 
 // Of ODE's joints per step: what they stay open by costs the least there (docs/library.md).
 static const double TUNE_WORLD_ERP = 1.5;
@@ -17,3 +31,25 @@ const char *tune_world_lacks(const Scenario *scenario);
 // and how fast they turn, at steps that are about a sample apart. Fails with ERR_CASE where a law
 // does not fit its joint.
 bool tune_world_write(const TuneCode *code, Text *text, Err *err);
+
+// The bodies, joints and forces of a case as lines of a C program against libjointplay.
+
+// Whether a joint is one of ODE's in the program.
+bool tune_world_is_ideal(const Linkage *linkage, int joint);
+
+// Whether a body is driven at constant speed: it is one of ODE's without dynamics, whose origin is
+// the pivot about which it turns, so that it stays exactly on its path. And a point of a body where
+// its origin is.
+bool tune_world_is_led(const Linkage *linkage, int body);
+Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local);
+
+// What drives and pushes the bodies of a case as lines of a C program against libjointplay.
+
+// Whether a spring at a joint moves anything: not where a drive says how the joint turns.
+bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring);
+
+// The angle, rad, at which a hinge of ODE's, which counts from where it starts, is at 0.
+double tune_world_angle_at_start(const Linkage *linkage, int joint);
+
+// Whether anything pushes where a step evaluates forces: springs, or a torque over time.
+bool tune_world_pushes(const Linkage *linkage);

@@ -1,0 +1,510 @@
+// Writes the text of a mapping: the settings of each contact and what they deliver.
+#include "commands/map/map.h"
+#include "contact/law.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// The settings of a contact, what is wrong with them, and what they deliver.
+
+enum { FAULT_KEY_SIZE = 64 };
+
+static void write_settings(const MappingContact *contact, const MappingRow *rows,
+                           const Style *style, Text *text)
+{
+    const ForceLaw *law = &contact->impact.law;
+    mapping_rows_write_table(rows, contact->row_count, style, text);
+    if (!mapping_contact_is_poisson(contact)) {
+        text_append(text, "  ERP and CFM at the law's deepest point%s\n",
+                    law->family == FORCE_LAW_POWER && law->exponent == 1.0 && law->hysteresis == 0.0
+                        ? "; of a linear spring and damper they hold at any depth, but for the "
+                          "midpoint's ERP."
+                        : "; the engine gets them recomputed at the depth of each step.");
+    }
+}
+
+// What is wrong with each setting that is not valid, and what would be right.
+static void write_faults(const MappingContact *contact, const MappingRow *rows, const Style *style,
+                         Text *text)
+{
+    bool is_begun = false;
+    for (size_t i = 0; i < contact->row_count; i++) {
+        if (rows[i].verdict == VERDICT_VALID) {
+            continue;
+        }
+        if (!is_begun) {
+            text_append(text, "\n%sWhat is wrong, and what would be right%s\n\n", style->heading,
+                        style->end);
+            is_begun = true;
+        }
+        char key[FAULT_KEY_SIZE];
+        snprintf(key, sizeof key, "%s, %.4g us", rows[i].map_name, rows[i].step_s * UNITS_US);
+        text_append(text, "  %s: %s\n", key, rows[i].words);
+    }
+}
+
+// Two cells: predicted, and delivered where it was measured.
+static void pair_cells(Table *table, const MappingRow *row, const ImpactSpread *predicted,
+                       const ImpactSpread *delivered, double unit)
+{
+    section_finite(table, "%.4g", row->predicted.is_ended ? unit * predicted->mean : NAN);
+    section_finite(table, "%.4g", row->delivered.is_measured ? unit * delivered->mean : NAN);
+}
+
+static void write_figures(const MappingContact *contact, const MappingRow *rows, const Style *style,
+                          Text *text)
+{
+    // the length of the contact is in the JSON and the CSV: 80 columns have no room for it
+    const JointUnits *units = mapping_report_units(contact);
+    const double depth_scale = units_per_si(units->length);
+    char peak[32];
+    char depth[32];
+    snprintf(peak, sizeof peak, "peak, %s", units->force);
+    snprintf(depth, sizeof depth, "depth, %s", units->length);
+    const SectionHead heads[] = {
+        {"map", "", TABLE_LEFT},
+        {"step", "us", TABLE_RIGHT | TABLE_KEY},
+        {"restitution", "predicted", TABLE_RIGHT},
+        {"", "in ODE", TABLE_RIGHT},
+        {peak, "predicted", TABLE_RIGHT},
+        {"", "in ODE", TABLE_RIGHT},
+        {depth, "predicted", TABLE_RIGHT},
+        {"", "in ODE", TABLE_RIGHT},
+    };
+    Table *table = section_begin("Predicted and delivered", 8, heads, style, text);
+    if (!mapping_contact_is_poisson(contact)) {
+        const MapImpact *asked = &contact->asked;
+        const double values[] = {asked->restitution, asked->force_max,
+                                 asked->penetration_max * depth_scale};
+        table_cell(table, "asked");
+        table_cell(table, "-");
+        for (int i = 0; i < 3; i++) {
+            table_cell(table, "%.4g", values[i]);
+            table_cell(table, "%s", "");
+        }
+        table_rule(table);
+    }
+    for (size_t i = 0; i < contact->row_count; i++) {
+        const ImpactFigures *predicted = &rows[i].predicted;
+        const ImpactFigures *delivered = &rows[i].delivered.figures;
+        mapping_rows_begin(rows, i, table);
+        pair_cells(table, &rows[i], &predicted->restitution, &delivered->restitution, 1.0);
+        pair_cells(table, &rows[i], &predicted->force_max, &delivered->force_max, 1.0);
+        pair_cells(table, &rows[i], &predicted->penetration_max, &delivered->penetration_max,
+                   depth_scale);
+    }
+    section_end(table, text);
+}
+
+// Why rows could not be run; the same reason of neighbours is given once.
+static void write_unmeasured(const MappingContact *contact, const MappingRow *rows, Text *text)
+{
+    const char *last = "";
+    for (size_t i = 0; i < contact->row_count; i++) {
+        const MappingRow *row = &rows[i];
+        if (!row->delivered.is_measured && strcmp(row->delivered.message, last) != 0) {
+            text_append(text, "  not run in ODE: %s at %.4g us: %s\n", row->map_name,
+                        row->step_s * UNITS_US, row->delivered.message);
+        }
+        last = row->delivered.is_measured ? "" : row->delivered.message;
+    }
+}
+
+static void mapping_settings_text_write(const MappingReport *report, const MappingContact *contact,
+                                        const Style *style, Text *text)
+{
+    const MappingRow *rows = &report->mapping->rows[contact->first_row];
+    write_settings(contact, rows, style, text);
+    write_faults(contact, rows, style, text);
+    write_figures(contact, rows, style, text);
+    write_unmeasured(contact, rows, text);
+}
+
+// The best constants at a step that cannot be changed.
+
+enum { HEADING_SIZE = 64, SHARE_SIZE = 64 };
+
+static double share_of(const ImpactSpread *spread, double asked)
+{
+    return spread->mean / asked;
+}
+
+static void setting_row(const MappingContact *contact, const HeldSetting *setting, Table *table)
+{
+    const ImpactFigures *predicted = &setting->predicted;
+    const bool is_ended = predicted->is_ended;
+    const bool is_run = setting->delivered.is_measured;
+    table_cell(table, "%s", OPTIONS_ODE_MAPS[setting->map]);
+    section_finite(table, "%.4g", setting->row.erp);
+    section_finite(table, "%.4g", setting->row.cfm);
+    section_finite(table, "%.4g", setting->stiffness);
+    section_finite(table, "%.4g", setting->damping);
+    section_finite(table, "%.3f", is_run ? setting->delivered.figures.restitution.mean : NAN);
+    section_finite(table, "%.3g",
+                   is_ended ? share_of(&predicted->force_max, contact->asked.force_max) : NAN);
+    section_finite(table, "%.3g",
+                   is_ended ? share_of(&predicted->penetration_max, contact->asked.penetration_max)
+                            : NAN);
+}
+
+static void write_table(const MappingContact *contact, const Style *style, Text *text)
+{
+    const JointUnits *units = mapping_report_units(contact);
+    char cfm[32];
+    snprintf(cfm, sizeof cfm, "1/(%s)", units->damping);
+    const SectionHead heads[] = {
+        {"map", "", TABLE_LEFT},
+        {"ERP", "1", TABLE_RIGHT},
+        {"CFM", cfm, TABLE_RIGHT},
+        {"spring", units->stiffness, TABLE_RIGHT},
+        {"damper", units->damping, TABLE_RIGHT},
+        {"restit.", "in ODE", TABLE_RIGHT},
+        {"peak", "of law", TABLE_RIGHT},
+        {"depth", "of law", TABLE_RIGHT},
+    };
+    char heading[HEADING_SIZE];
+    snprintf(heading, sizeof heading, "Best constants at %.4g us",
+             contact->held->step_s * UNITS_US);
+    Table *table = section_begin(heading, 8, heads, style, text);
+    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+        setting_row(contact, &contact->held->settings[i], table);
+    }
+    section_end(table, text);
+    text_append(text, "  textbook: ERP at most 1, Gazebo's kp and kd; corrected: any ERP and CFM; "
+                      "midpoint: with staggered stepping, its ERP follows the closing speed.\n");
+}
+
+// A number beside the one asked for: within the share that is valid it is right.
+static void share_words(double share, const char *name, char words[SHARE_SIZE])
+{
+    if (fabs(share - 1.0) <= MAPPING_VALID_SHARE) {
+        snprintf(words, SHARE_SIZE, "%s right", name);
+    } else {
+        snprintf(words, SHARE_SIZE, "%s %.3g times the law's", name, share);
+    }
+}
+
+// What a setting is worth, and by how much it is off.
+static void write_worth(const MappingContact *contact, const HeldSetting *setting,
+                        const char *constants, const char *values, Text *text)
+{
+    const MapImpact *asked = &contact->asked;
+    const ImpactFigures *predicted = &setting->predicted;
+    const double step_us = contact->held->step_s * UNITS_US;
+    if (setting->verdict == VERDICT_VALID) {
+        text_append(text,
+                    "  %s: %s is right at %.4g us: restitution %.3g to %.3g where %.3g is asked, "
+                    "peak and depth within %.0f %%.\n",
+                    constants, values, step_us, predicted->restitution.least,
+                    predicted->restitution.most, asked->restitution,
+                    MAPPING_VALID_SHARE * UNITS_PERCENT);
+        return;
+    }
+    char peak[SHARE_SIZE];
+    char depth[SHARE_SIZE];
+    share_words(share_of(&predicted->force_max, asked->force_max), "the peak", peak);
+    share_words(share_of(&predicted->penetration_max, asked->penetration_max), "the depth", depth);
+    text_append(
+        text,
+        "  %s: nothing is right at %.4g us, where the contact lasts %.3g us, %.3g steps. The best, "
+        "%s, gives restitution %.3g to %.3g where %.3g is asked (%s), %s and %s.\n",
+        constants, step_us, asked->duration * UNITS_US, asked->duration / contact->held->step_s,
+        values, predicted->restitution.least, predicted->restitution.most, asked->restitution,
+        setting->is_restitution_met ? "right" : "off", peak, depth);
+}
+
+// What else there is to know: the way to the wall, and what is right.
+static void write_beside(const MappingContact *contact, Text *text)
+{
+    const Held *held = contact->held;
+    const JointUnits *units = mapping_report_units(contact);
+    const double length = units_per_si(units->length);
+    const double step_us = held->step_s * UNITS_US;
+    if (held->flight > held->play) {
+        text_append(text,
+                    "  In a step of %.4g us the pin flies %.3g %s and has %.3g %s from wall to "
+                    "wall: whatever the constants, it can pass through the wall undetected.\n",
+                    step_us, held->flight * length, units->length, held->play * length,
+                    units->length);
+    }
+    Text maps;
+    text_init(&maps);
+    for (int i = ODE_MAP_TEXTBOOK; i <= ODE_MAP_IMPULSE; i++) {
+        if (held->step_s <= contact->largest_s[i]) {
+            text_append(&maps, "%s%s", maps.length > 0 ? ", " : "", OPTIONS_ODE_MAPS[i]);
+        }
+    }
+    if (maps.length > 0) {
+        text_append(text, "  With constants recomputed at each depth it is right by: %s.\n",
+                    maps.data);
+    }
+    text_finish(&maps);
+}
+
+static void mapping_held_text(const MappingContact *contact, const Style *style, Text *text)
+{
+    const HeldSetting *pair = &contact->held->settings[0];
+    const HeldSetting *row = &contact->held->settings[1];
+    const JointUnits *units = mapping_report_units(contact);
+    char values[HEADING_SIZE];
+    write_table(contact, style, text);
+    text_append(text, "\n");
+    snprintf(values, sizeof values, "kp = %.5g %s, kd = %.4g %s", pair->stiffness, units->stiffness,
+             pair->damping, units->damping);
+    write_worth(contact, pair, "Gazebo", values, text);
+    snprintf(values, sizeof values, "ERP = %.5g, CFM = %.5g %s", row->row.erp, row->row.cfm,
+             units->cfm);
+    write_worth(contact, row, "ERP and CFM", values, text);
+    if (!linkage_is_torsional(mapping_report_joint(contact))) {
+        text_append(
+            text,
+            "  Of two equal surfaces in Gazebo each has 2 kp = %.5g N/m and kd / 2 = %.4g N s/m.\n",
+            2.0 * pair->stiffness, 0.5 * pair->damping);
+    }
+    write_beside(contact, text);
+    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+        const HeldSetting *setting = &contact->held->settings[i];
+        if (!setting->delivered.is_measured) {
+            text_append(text, "  not run in ODE: %s: %s\n", OPTIONS_ODE_MAPS[setting->map],
+                        setting->delivered.message);
+        }
+    }
+}
+
+// Which ERP, CFM and step for this joint, and what do they deliver?
+
+enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 96 };
+
+void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_LAW_SIZE])
+{
+    const ForceLaw *built = &contact->impact.law;
+    const char *unit = mapping_report_units(contact)->stiffness;
+    if (strcmp(contact->law_name, "stiffness") == 0 && !(built->stiffness > 0.0)) {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "given stiffness");
+    } else if (strcmp(contact->law_name, "stiffness") == 0 && built->exponent == 1.0) {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g %s", built->stiffness, unit);
+    } else if (strcmp(contact->law_name, "stiffness") == 0) {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "K = %.4g %s^%.3g", built->stiffness, unit,
+                 built->exponent);
+    } else {
+        snprintf(law, MAPPING_REPORT_LAW_SIZE, "%s", contact->law_name);
+    }
+}
+
+// Whether a joint with play is no pin in its hole.
+static bool has_lines(const Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (linkage_has_play(joint) && joint->kind != JOINT_CLEARANCE) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void write_head(const MappingReport *report, const Style *style, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    section_title(scenario->title, scenario_path(scenario), style, text);
+    text_append(
+        text,
+        "  valid       restitution%s within %.0f %% of what is asked, wherever the steps fall\n",
+        mapping_report_is_poisson(report) ? "" : ", peak force and depth each",
+        MAPPING_VALID_SHARE * UNITS_PERCENT);
+    text_append(text,
+                "  delivered   by ODE: a lone pin of the joint's effective mass in its hole, means "
+                "over %d phases; other joints that are hit or hold meanwhile are left out\n",
+                MAP_IMPACT_PHASES);
+    if (has_lines(&scenario->linkage)) {
+        text_append(text,
+                    "  at a line   the corner of a block, a stop, or an end of a coordinate is run "
+                    "as a disc against a line; a block's other corners are left out\n");
+    }
+    if (scenario->linkage.is_spatial) {
+        text_append(text, "  in space    the pin is taken to stand straight: both ends of its hole "
+                          "together. An end that it hits alone has half of the stiffness and the "
+                          "damping, and the pin gives way to it by tilting\n");
+    }
+}
+
+// Where else than in one position a joint's mass was looked up.
+static const char *mass_words(const Joint *joint)
+{
+    return joint->kind == JOINT_GUIDE       ? " and all corners"
+           : joint->kind == JOINT_CLEARANCE ? " and all directions"
+                                            : "";
+}
+
+static const char *source_words(MappingSource source)
+{
+    static const char *const WORDS[] = {
+        [MAPPING_MEDIAN] = "the median",
+        [MAPPING_MOST] = "the largest",
+        [MAPPING_GIVEN] = "as given",
+        [MAPPING_USUAL] = "where none is given",
+        [MAPPING_FLOOR] = "the floor of the damping laws",
+    };
+    return WORDS[source];
+}
+
+static void write_sources(const MappingReport *report, const MappingContact *contact, Text *text)
+{
+    const MappingSettings *settings = &report->mapping->settings;
+    const MappingJoint *joint = &contact->joint;
+    const JointUnits *units = mapping_report_units(contact);
+    Text words;
+    text_init(&words);
+    if (joint->mass_most > 0.0) {
+        text_append(&words, "%s %.4g to %.4g %s over the run%s",
+                    settings->mass_source == MAPPING_GIVEN ? "; the joint's is" : " of",
+                    joint->mass_least, joint->mass_most, units->mass,
+                    mass_words(&report->scenario->linkage.joints[joint->joint]));
+    }
+    text_append(text, "  mass        %.4g %s, %s%s\n", contact->impact.mass, units->mass,
+                source_words(settings->mass_source), words.data);
+    text_finish(&words);
+    text_init(&words);
+    if (joint->onsets > 0) {
+        static const char *const LINKS[] = {
+            [MAPPING_MEDIAN] = " of",        [MAPPING_MOST] = " of",
+            [MAPPING_GIVEN] = "; beside it", [MAPPING_USUAL] = "; beside it",
+            [MAPPING_FLOOR] = ":",
+        };
+        const bool is_most = contact->speed_source == MAPPING_MOST;
+        text_append(&words, "%s %zu contact%s of the reference's run, %.4g %s %s",
+                    LINKS[contact->speed_source], joint->onsets, joint->onsets == 1 ? "" : "s",
+                    is_most ? joint->speed_median : joint->speed_most, units->rate,
+                    is_most ? "in the median" : "at most");
+    }
+    text_append(text, "  speed       %.4g %s, %s%s\n", contact->impact.speed, units->rate,
+                source_words(contact->speed_source), words.data);
+    text_finish(&words);
+}
+
+static void write_law(const MappingReport *report, const MappingContact *contact, Text *text)
+{
+    const ContactOptions own =
+        law_options(&contact->scenario.contact, mapping_report_joint(contact));
+    const ContactOptions *options = &own;
+    const MapImpact *asked = &contact->asked;
+    if (mapping_report_is_poisson(report)) {
+        text_append(text,
+                    "  asks        restitution %.4g; F = p d' with p = %.4g N s/mm: no spring, so "
+                    "force and depth are the step's\n",
+                    asked->restitution, options->penalty / 1e3);
+        return;
+    }
+    char damping[LAW_DAMPING_SIZE] = "";
+    if (options->damping != DAMPING_VISCOUS && options->damping != DAMPING_NONE) {
+        snprintf(damping, sizeof damping, " (%s for %.4g)", OPTIONS_DAMPINGS[options->damping],
+                 options->restitution);
+    }
+    const JointUnits *units = mapping_report_units(contact);
+    text_append(
+        text, "  asks        restitution %.4g, peak %.4g %s, depth %.4g %s, %.4g us of contact%s\n",
+        asked->restitution, asked->force_max, units->force,
+        asked->penetration_max * units_per_si(units->length), units->length,
+        asked->duration * UNITS_US, damping);
+    text_append(text,
+                "  stiffness   k = %.4g %s at that depth (secant; tangent %.4g), Tc = %.4g us "
+                "without damping\n",
+                contact->secant, units->stiffness, contact->tangent,
+                contact->half_period_s * UNITS_US);
+    text_append(text,
+                "  damping     c = %.4g %s at that depth; a viscous damper of %.4g beside "
+                "that k loses as much\n",
+                contact->damping, units->damping, contact->equivalent);
+}
+
+// How much harder the linkage's own load presses, and what that does to stability.
+static void write_run(const MappingContact *contact, Text *text)
+{
+    const MappingJoint *joint = &contact->joint;
+    if (!(joint->penetration_max > 0.0)) {
+        return;
+    }
+    char stable[STABLE_SIZE] = "";
+    const JointUnits *units = mapping_report_units(contact);
+    const double tangent = force_law_tangent(&contact->impact.law, joint->penetration_max);
+    if (isfinite(tangent) && tangent > 0.0) {
+        snprintf(stable, sizeof stable, "; omega h = 2 there at h = %.3g us, for the least mass",
+                 2.0 * sqrt(joint->mass_least / tangent) * UNITS_US);
+    }
+    text_append(
+        text,
+        "  the run     %.4g %s and %.4g %s at most: these include the linkage's load, which "
+        "the impact does not%s\n",
+        joint->force_max, units->force, joint->penetration_max * units_per_si(units->length),
+        units->length, stable);
+}
+
+static void write_longest(const MappingReport *report, const MappingContact *contact,
+                          const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"map", "", TABLE_LEFT},
+        {"step", "us", TABLE_RIGHT},
+        {"Tc / h", "1", TABLE_RIGHT},
+        {"hardest", "us", TABLE_RIGHT},
+    };
+    const MappingSettings *settings = &report->mapping->settings;
+    const MappingJoint *joint = &contact->joint;
+    Table *table = section_begin("Longest valid step", 4, HEADS, style, text);
+    for (size_t i = 0; i < settings->map_count; i++) {
+        const double step_s = contact->largest_s[settings->maps[i]];
+        const double hardest_s = contact->hardest_s[settings->maps[i]];
+        table_cell(table, "%s", OPTIONS_ODE_MAPS[settings->maps[i]]);
+        if (isinf(step_s) || step_s == 0.0) {
+            table_cell(table, "%s", isinf(step_s) ? "any" : "none");
+            table_cell(table, "-");
+        } else {
+            section_finite(table, "%.3g", step_s * UNITS_US);
+            section_finite(table, "%.3g", contact->half_period_s / step_s);
+        }
+        section_finite(table, "%.3g", hardest_s > 0.0 ? hardest_s * UNITS_US : NAN);
+    }
+    section_end(table, text);
+    if (joint->onsets > 0) {
+        text_append(text,
+                    "  hardest: %.4g %s at %.4g %s, the lightest mass and the fastest contact of "
+                    "the run, together.\n",
+                    joint->mass_least, mapping_report_units(contact)->mass,
+                    fmax(joint->speed_most, contact->impact.law.impact_speed_floor),
+                    mapping_report_units(contact)->rate);
+    }
+}
+
+void mapping_text_write(const void *of, const Style *style, Text *text)
+{
+    const MappingReport *report = of;
+    write_head(report, style, text);
+    for (size_t i = 0; i < report->mapping->contact_count; i++) {
+        const MappingContact *contact = &report->mapping->contacts[i];
+        char law[MAPPING_REPORT_LAW_SIZE];
+        mapping_report_law(contact, law);
+        text_append(text, "\n%s%s, %s%s\n\n", style->heading, mapping_report_joint(contact)->name,
+                    law, style->end);
+        if (contact->impact.speed > 0.0) {
+            write_sources(report, contact, text);
+        }
+        if (contact->lack[0] != '\0') {
+            text_append(text, "  not mapped  %s\n", contact->lack);
+            continue;
+        }
+        write_law(report, contact, text);
+        if (!mapping_report_is_poisson(report)) {
+            write_run(contact, text);
+            write_longest(report, contact, style, text);
+        }
+        mapping_settings_text_write(report, contact, style, text);
+        if (contact->held != NULL) {
+            mapping_held_text(contact, style, text);
+        }
+    }
+    if (report->penalty != NULL) {
+        mapping_penalty_text_write(report->penalty, style, text);
+    }
+}

@@ -1,0 +1,410 @@
+// Chooses line, colour and axis of each quantity in the picture of a run, and which bodies and
+// joints it draws.
+#include "commands/run/plot_lines.h"
+#include "base/zeroed.h"
+#include "commands/run/run_report.h"
+#include "write/units.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// The bodies and joints that a picture draws.
+//
+// All of them, up to some twenty: more lines cannot be told apart. Of more those that most happens
+// to, in any of the runs.
+
+enum { DRAWN_MOST = 24, DRAWN_OF_MANY = 12 };
+
+const PlotSet *plot_view_set(const PlotView *view, bool is_joint)
+{
+    return is_joint ? &view->joints : &view->bodies;
+}
+
+// Does any body turn by more than rounding? A body without friction in a round hole does not, and
+// its angular velocity would be a picture of noise. Its energy of rotation is held against its
+// energy of translation: speeds that differ by 1e-10 are rounding over many steps.
+static bool any_turns(const RunReport *report)
+{
+    const double turning = 1e-10 * 1e-10;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        for (size_t body = 0; run->is_complete && body < run->body_count; body++) {
+            const Body *shape = &report->scenario->linkage.bodies[body];
+            double rotation = 0.0;
+            double translation = 0.0;
+            for (size_t sample = 0; sample < run->sample_count; sample++) {
+                const Motion *motion = trajectory_motion(run, sample, body);
+                const double speed = hypot(motion->velocity.x, motion->velocity.y);
+                rotation = fmax(rotation, shape->inertia * motion->omega * motion->omega);
+                translation = fmax(translation, shape->mass * speed * speed);
+            }
+            if (rotation > turning * translation) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static double largest_acceleration(const Trajectory *run, size_t body)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        const Vec2 acceleration = trajectory_motion(run, i, body)->acceleration;
+        most = fmax(most, hypot(acceleration.x, acceleration.y));
+    }
+    return most;
+}
+
+double plot_view_most(const PlotView *view, bool is_joint, const Trajectory *run, size_t number)
+{
+    if (is_joint) {
+        return run->joints[number].force_max.value;
+    }
+    const BodyExtremes *body = &run->bodies[number];
+    return view->turns ? fmax(body->alpha_max.value, -body->alpha_min.value)
+                       : largest_acceleration(run, number);
+}
+
+typedef struct Ranked {
+    size_t number;
+    double most;
+} Ranked;
+
+// The largest first, and of equal ones the first of the case.
+static int compare_ranked(const void *a, const void *b)
+{
+    const Ranked *left = a;
+    const Ranked *right = b;
+    if (left->most != right->most) {
+        return left->most < right->most ? 1 : -1;
+    }
+    return (left->number > right->number) - (left->number < right->number);
+}
+
+// Leaves out all but the first of many.
+static void choose(const PlotView *view, bool is_joint, Ranked *ranked, size_t count)
+{
+    const RunReport *report = view->report;
+    if (count <= DRAWN_MOST) {
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        ranked[i].most = 0.0;
+        for (size_t k = 0; k < report->run_count; k++) {
+            const Trajectory *run = report->runs[k];
+            if (run->is_complete) {
+                const double most = plot_view_most(view, is_joint, run, ranked[i].number);
+                ranked[i].most = fmax(ranked[i].most, most);
+            }
+        }
+    }
+    qsort(ranked, count, sizeof *ranked, compare_ranked);
+    for (size_t i = DRAWN_OF_MANY; i < count; i++) {
+        plot_view_set(view, is_joint)->is_left_out[ranked[i].number] = true;
+    }
+}
+
+static PlotSet set_create(size_t count)
+{
+    return (PlotSet){
+        .is_shown = zeroed(count, sizeof(bool)),
+        .is_other = zeroed(count, sizeof(bool)),
+        .is_left_out = zeroed(count, sizeof(bool)),
+        .is_named = zeroed(count, sizeof(bool)),
+        .of_palette = zeroed(count, sizeof(unsigned)),
+    };
+}
+
+static void set_free(PlotSet *set)
+{
+    free(set->is_shown);
+    free(set->is_other);
+    free(set->is_left_out);
+    free(set->is_named);
+    free(set->of_palette);
+}
+
+// Takes out of those that are shown or named what is left out. Colours go by the order of the case,
+// from the one given on.
+static void settle(PlotSet *set, size_t count, unsigned first_colour)
+{
+    unsigned colour = first_colour;
+    for (size_t i = 0; i < count; i++) {
+        set->is_other[i] = set->is_shown[i] && set->is_left_out[i];
+        set->is_shown[i] = set->is_shown[i] && !set->is_left_out[i];
+        set->left_out += set->is_other[i] ? 1 : 0;
+        set->drawn += set->is_shown[i] ? 1 : 0;
+        set->is_named[i] = set->is_shown[i] || (set->is_named[i] && !set->is_left_out[i]);
+        set->of_palette[i] = colour;
+        colour += set->is_named[i] ? 1 : 0;
+    }
+}
+
+static void choose_bodies(PlotView *view)
+{
+    const Linkage *linkage = &view->report->scenario->linkage;
+    Ranked *ranked = zeroed(linkage->body_count, sizeof *ranked);
+    size_t count = 0;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        view->bodies.is_shown[i] = (int)i != linkage_driven_body(linkage);
+        if (view->bodies.is_shown[i]) {
+            ranked[count++].number = i;
+        }
+    }
+    choose(view, false, ranked, count);
+    free(ranked);
+    settle(&view->bodies, linkage->body_count, 0);
+}
+
+// Of each kind by itself, since there are panels for some kinds alone.
+static void choose_joints(PlotView *view)
+{
+    const Scenario *scenario = view->report->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    const bool has_clearance = scenario_has_clearance(scenario);
+    Ranked *ranked = zeroed(linkage->joint_count, sizeof *ranked);
+    for (JointKind kind = 0; kind <= JOINT_GEAR; kind++) {
+        size_t count = 0;
+        for (size_t i = 0; i < linkage->joint_count; i++) {
+            if (linkage->joints[i].kind == kind) {
+                ranked[count++].number = i;
+                view->joints.is_shown[i] = !has_clearance || linkage_has_play(&linkage->joints[i]);
+                view->joints.is_named[i] = slide_range_has(&linkage->joints[i]);
+            }
+        }
+        choose(view, true, ranked, count);
+    }
+    free(ranked);
+    settle(&view->joints, linkage->joint_count, (unsigned)view->bodies.drawn);
+}
+
+PlotView plot_view_begin(const RunReport *report)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    PlotView view = {
+        .report = report,
+        .turns = linkage->driver.is_present || !space_has_plane(linkage) || any_turns(report),
+        .bodies = set_create(linkage->body_count),
+        .joints = set_create(linkage->joint_count),
+    };
+    choose_bodies(&view);
+    choose_joints(&view);
+    return view;
+}
+
+void plot_view_finish(PlotView *view)
+{
+    set_free(&view->bodies);
+    set_free(&view->joints);
+    *view = (PlotView){.report = NULL};
+}
+
+// The kind of line, the colour and the axis of each quantity.
+//
+// A backend has a kind of line, a body or joint a colour. The first backend is drawn wide and
+// pale, the next thin over it: where the two agree, the thin line lies in the middle of the pale.
+
+bool plot_look_shows(const PlotView *view, bool is_joint, size_t index)
+{
+    return plot_view_set(view, is_joint)->is_shown[index];
+}
+
+size_t plot_look_colour(const PlotView *view, bool is_joint, size_t index)
+{
+    return plot_view_set(view, is_joint)->of_palette[index];
+}
+
+Axis plot_look_x_axis(const PlotView *view)
+{
+    const Scenario *scenario = view->report->scenario;
+    if (!drive_is_steady(&scenario->linkage.driver)) {
+        return (Axis){.title = "time, ms", .high = scenario_duration(scenario) * UNITS_MS};
+    }
+    const double turns = scenario->run.revolutions;
+    return (Axis){
+        .title = "crank angle from the start, deg",
+        .high = 360.0 * turns,
+        .tick = turns <= 1.0   ? 60.0
+                : turns <= 2.0 ? 90.0
+                               : 0.0,
+    };
+}
+
+double plot_look_x(const PlotView *view, double crank_rad, double time_s)
+{
+    const Linkage *linkage = &view->report->scenario->linkage;
+    return drive_is_steady(&linkage->driver) ? fabs(crank_rad - linkage->driver.start) * UNITS_DEG
+                                             : time_s * UNITS_MS;
+}
+
+static const char *name_of(const RunReport *report, PlotQuantity quantity, size_t index)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    return quantity.is_joint ? linkage->joints[index].name : linkage->bodies[index].name;
+}
+
+static bool has_ranges(const Trajectory *run, PlotQuantity quantity)
+{
+    return quantity.signal >= 0 && run->ranges.count > 0;
+}
+
+size_t plot_look_stretch_count(const Trajectory *run, PlotQuantity quantity)
+{
+    return has_ranges(run, quantity) ? run->ranges.count : run->sample_count;
+}
+
+PlotStretch plot_look_stretch(const RunReport *report, const Trajectory *run, PlotQuantity quantity,
+                              size_t stretch, size_t index)
+{
+    if (!has_ranges(run, quantity)) {
+        const double value = quantity.at(report, run, stretch, index);
+        return (PlotStretch){run->times[stretch], {value, value}};
+    }
+    const Ranges *ranges = &run->ranges;
+    const size_t signal = quantity.is_joint ? ranges_of_joint(ranges, index, quantity.signal)
+                                            : ranges_of_body(index, quantity.signal);
+    // the last stretches may reach beyond the end
+    return (PlotStretch){fmin(((double)stretch + 0.5) * ranges->width_s, run->duration_s),
+                         ranges_over(ranges, signal, stretch, stretch + 1)};
+}
+
+void plot_look_shade(const PlotView *view, const PlotPanel *panel)
+{
+    const double from_s = scenario_report_from(view->report->scenario);
+    if (from_s > 0.0) {
+        const double crank = linkage_crank_angle(&view->report->scenario->linkage, from_s);
+        plot_shade(panel, panel->x.low, plot_look_x(view, crank, from_s));
+    }
+}
+
+const Trajectory *plot_look_spike_run(const PlotView *view)
+{
+    const RunReport *report = view->report;
+    const Trajectory *last = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        for (size_t k = 0; run->is_complete && k < run->body_count; k++) {
+            last = run->alpha_spikes[k].is_known && run->alpha_spikes[k].kept > 0 ? run : last;
+        }
+        for (size_t k = 0; run->is_complete && k < run->joint_count; k++) {
+            last = run->force_spikes[k].is_known && run->force_spikes[k].kept > 0 ? run : last;
+        }
+    }
+    return last;
+}
+
+void plot_look_marks(const PlotView *view, const PlotPanel *panel, const SignalSpikes *spikes,
+                     PlotQuantity quantity, size_t index, const char *unit)
+{
+    for (size_t i = 0; spikes->is_known && i < spikes->kept; i++) {
+        const SignalSpike *spike = &spikes->spikes[i];
+        char title[2 * LINKAGE_NAME_SIZE + 96];
+        snprintf(title, sizeof title, "%s %s: %.6g %s at %.7g ms", quantity.name,
+                 name_of(view->report, quantity, index), spike->value, unit,
+                 spike->time_s * UNITS_MS);
+        plot_mark(panel, plot_look_x(view, spike->crank_rad, spike->time_s), spike->value,
+                  spike->value < 0.0, title,
+                  plot_style(1, plot_look_colour(view, quantity.is_joint, index)));
+    }
+}
+
+// What a band is drawn through: by stretch with values, where it is and from where to where.
+typedef struct Curve {
+    size_t count;
+    double *x; // owned, with the two below
+    double *low;
+    double *high;
+} Curve;
+
+static Curve curve_begin(size_t most)
+{
+    double *x = calloc(3 * most, sizeof *x);
+    assert(x != NULL);
+    return (Curve){0, x, x + most, x + 2 * most};
+}
+
+static void curve_add(const PlotView *view, double time_s, Range range, Curve *curve)
+{
+    const double crank = linkage_crank_angle(&view->report->scenario->linkage, time_s);
+    if (range.least <= range.most) {
+        curve->x[curve->count] = plot_look_x(view, crank, time_s);
+        curve->low[curve->count] = range.least;
+        curve->high[curve->count++] = range.most;
+    }
+}
+
+void plot_look_draw(const PlotView *view, const PlotPanel *panel, size_t run, PlotQuantity quantity,
+                    size_t index)
+{
+    const RunReport *report = view->report;
+    const Trajectory *trajectory = report->runs[run];
+    const size_t most = plot_look_stretch_count(trajectory, quantity);
+    Curve curve = curve_begin(most);
+    for (size_t i = 0; i < most; i++) {
+        const PlotStretch stretch = plot_look_stretch(report, trajectory, quantity, i, index);
+        curve_add(view, stretch.time_s, stretch.range, &curve);
+    }
+    char title[TRAJECTORY_LABEL_SIZE + 2 * LINKAGE_NAME_SIZE];
+    snprintf(title, sizeof title, "%s: %s %s", trajectory->backend, quantity.name,
+             name_of(report, quantity, index));
+    plot_band(panel, curve.count, curve.x, curve.low, curve.high, title,
+              plot_style(run, plot_look_colour(view, quantity.is_joint, index)));
+    free(curve.x);
+}
+
+void plot_look_others(const PlotView *view, const PlotPanel *panel, PlotQuantity quantity)
+{
+    const RunReport *report = view->report;
+    const PlotSet *set = plot_view_set(view, quantity.is_joint);
+    const Trajectory *last = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        last = report->runs[i]->is_complete ? report->runs[i] : last;
+    }
+    if (last == NULL || set->left_out == 0) {
+        return;
+    }
+    const size_t most = plot_look_stretch_count(last, quantity);
+    const size_t count = quantity.is_joint ? last->joint_count : last->body_count;
+    Curve curve = curve_begin(most);
+    for (size_t i = 0; i < most; i++) {
+        Range range = RANGE_EMPTY;
+        double time_s = 0.0;
+        for (size_t k = 0; k < count; k++) {
+            if (set->is_other[k]) {
+                const PlotStretch stretch = plot_look_stretch(report, last, quantity, i, k);
+                time_s = stretch.time_s;
+                range_join(&range, &stretch.range);
+            }
+        }
+        curve_add(view, time_s, range, &curve);
+    }
+    char title[TRAJECTORY_LABEL_SIZE + LINKAGE_NAME_SIZE];
+    snprintf(title, sizeof title, "%s: %s of all others", last->backend, quantity.name);
+    plot_band(panel, curve.count, curve.x, curve.low, curve.high, title,
+              (PlotStyle){"#d0d0d0", 1.3, 1.0, NULL});
+    free(curve.x);
+}
+
+void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path)
+{
+    const RunReport *report = view->report;
+    const Trajectory *trajectory = report->runs[run];
+    const size_t count = trajectory->sample_count;
+    double *x = calloc(2 * count, sizeof *x);
+    assert(x != NULL);
+    double *y = x + count;
+    for (size_t i = 0; i < count; i++) {
+        const Vec2 place = path->at(report, trajectory, i, path);
+        x[i] = place.x;
+        y[i] = place.y;
+    }
+    PlotStyle style = plot_style(1, plot_look_colour(view, true, path->joint));
+    style.width = 1.0;
+    style.opacity = 0.8;
+    style.dash = path->end == 0 ? NULL : "3 2";
+    plot_line(panel, count, x, y, style);
+    free(x);
+}
