@@ -9,7 +9,7 @@
 //     n . d'' +- (v across n)^2 / |d|
 #include "reference/dynamics_contact.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "reference/tree_coordinate.h"
 #include "reference/tree_line.h"

@@ -6,7 +6,7 @@
 // the forces of the hinges on the driven body (reference/dynamics_reactions.c).
 #include "reference/hinged.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 #include "reference/hinged_lone.h"
 #include "reference/hinged_state.h"
 

@@ -4,7 +4,7 @@
 // kept in memory between them, as in reference/hinged_pair.c.
 #include "reference/hinged_lone.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 
 bool hinged_lone_is(const Hinged *hinged)
 {

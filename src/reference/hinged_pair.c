@@ -5,7 +5,7 @@
 // for each value before it has the next, and a value that goes through memory is late.
 #include "reference/hinged_pair.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 
 // A body in motion.
 typedef struct Moving {

@@ -4,7 +4,7 @@
 // that are apart, and the forces of all hinges.
 #include "reference/hinged_state.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 
 static inline void hold(const HingedBody *body, const HingedBody *driven, HingedLoad *load,
                         Vec2 held)

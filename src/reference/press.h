@@ -4,7 +4,7 @@
 //     N = F_el(d) (1 + chi d'/v0) + c d'
 #pragma once
 
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 
 #include <math.h>
 #include <stdbool.h>
