@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/err.h"
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 #include "model/scenario.h"
 
 // A pin in a hole, both of one material.

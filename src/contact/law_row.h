@@ -2,8 +2,8 @@
 // What differs between these is who knows the mass.
 #pragma once
 
-#include "contact/force_law.h"
 #include "contact/map.h"
+#include "kernel/force_law.h"
 
 // A contact as a step finds it. Of an angle torques and inertias are meant.
 typedef struct LawRow {

@@ -1,8 +1,8 @@
 // One impact of a mass on ODE's contact row, stepped as ODE steps it, and on the law itself.
 #pragma once
 
-#include "contact/force_law.h"
 #include "contact/map.h"
+#include "kernel/force_law.h"
 
 // How ODE is to make its rows.
 typedef struct MapImpactRows {

@@ -2,7 +2,7 @@
 // mid-step.
 #pragma once
 
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 
 // How much of a step a contact is overlapped in.
 typedef struct Overlap {

@@ -13,7 +13,7 @@
 // No matter how the pin turns about its own axis, none of this changes.
 #pragma once
 
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 #include "model/trajectory.h"
 
 enum {

@@ -1,5 +1,5 @@
 // The rows in which a pin in space moves against one place of its hole, as the linkage's response
-// and an encounter take them (model/space_response.h, contact/encounter.h).
+// and a kernel take them (model/space_response.h, kernel/kernel.h).
 //
 // Of an end: the pin's axis against the end's centre along two directions across the axis, and
 // with friction the turns of the hole's and the pin's body about the axis, the sliding along the

@@ -3,7 +3,7 @@
 // (contact/pin_space_rows.h).
 #pragma once
 
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 #include "model/scenario.h"
 #include "model/space_coordinate.h"
 

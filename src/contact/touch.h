@@ -16,8 +16,8 @@
 // angles at a turn, and forces torques.
 #pragma once
 
-#include "contact/force_law.h"
-#include "contact/pin_hole.h"
+#include "kernel/force_law.h"
+#include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "model/response.h"
 #include "model/scenario.h"

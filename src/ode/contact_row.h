@@ -2,9 +2,9 @@
 // it.
 #pragma once
 
-#include "contact/force_law.h"
 #include "contact/onset.h"
 #include "contact/tops.h"
+#include "kernel/force_law.h"
 #include "ode/world.h"
 
 typedef struct ContactRow {

@@ -1,7 +1,7 @@
 // How does ODE learn of a pin in a hole?
 #include "ode/hole_geom.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 
 #include <assert.h>
 

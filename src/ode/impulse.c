@@ -18,8 +18,8 @@ typedef struct Impulse {
     ImpulseIslands *islands; // where the step has them; owned
     Motion *motions;         // by body; owned, as the next two
     JointState *joints;
-    double *depths;     // m, by place
-    EncounterSums sums; // at the time that is asked for
+    double *depths;  // m, by place
+    KernelSums sums; // at the time that is asked for
 } Impulse;
 
 static void impulse_close(void *state)
@@ -32,7 +32,7 @@ static void impulse_close(void *state)
         free(impulse->motions);
         free(impulse->joints);
         free(impulse->depths);
-        encounter_sums_free(&impulse->sums);
+        kernel_sums_free(&impulse->sums);
         free(impulse);
     }
 }
@@ -52,7 +52,7 @@ static double mean_of(const void *context, size_t joint)
 
 // Looks at a scope of the step, and tells how its bodies turn.
 static void look_at_impulse(void *context, const ImpulseScope *scope, ImpulseTime at,
-                            const EncounterSums *sums)
+                            const KernelSums *sums)
 {
     Impulse *impulse = context;
     impulse_step_inside(&impulse->step, scope, at, sums, impulse->motions, impulse->joints,
@@ -87,9 +87,9 @@ static bool impulse_open(const Scenario *scenario, void **state, Err *err)
     assert(impulse != NULL);
     if (impulse_step_init(scenario, &impulse->step, err)) {
         const Linkage *linkage = &scenario->linkage;
-        const size_t rows = encounter_rows(&impulse->step.encounter);
+        const size_t rows = kernel_rows(&impulse->step.kernel);
         impulse_part_init(&impulse->part, linkage, rows);
-        impulse->sums = encounter_sums(rows);
+        impulse->sums = kernel_sums(rows);
         impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
         impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
         impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
@@ -123,11 +123,11 @@ static void take_part(Impulse *impulse)
 {
     const ImpulseStep *step = &impulse->step;
     ImpulsePart *part = &impulse->part;
-    const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
+    const Mark *mark = impulse_part_next(part, &step->kernel, step->start_s, step->end_s);
     const ImpulseTime at = {mark->time_s, mark->node, !part->is_last};
     look_at_impulse(impulse, &step->whole, at, &part->sums);
     impulse_part_record(part, &step->scenario->linkage, impulse->joints);
-    impulse_part_add_contacts(part, &step->encounter, mark, impulse->depths, NULL);
+    impulse_part_add_contacts(part, &step->kernel, mark, impulse->depths, NULL);
     part->record.drive_work = part->is_last ? step->drive_work : 0.0;
     part->record.dissipated += part->is_last ? step->damped : 0.0;
 }
@@ -141,7 +141,7 @@ static bool begin_step_of(Impulse *impulse, Err *err)
     if (impulse->islands != NULL) {
         impulse_islands_begin(impulse->islands, &impulse->part);
     } else {
-        impulse_part_begin(&impulse->part, &impulse->step.encounter, impulse->step.start_s);
+        impulse_part_begin(&impulse->part, &impulse->step.kernel, impulse->step.start_s);
     }
     return true;
 }
@@ -180,15 +180,15 @@ static StepRecord impulse_record(const void *state)
 static void impulse_observe(const void *state, double time_s, Sample *sample)
 {
     const Impulse *impulse = state;
-    EncounterSums sums = impulse->sums; // which owns the arrays
+    KernelSums sums = impulse->sums; // which owns the arrays
     const Linkage *linkage = &impulse->step.scenario->linkage;
     const double since_s = fmin(fmax(time_s - impulse->step.start_s, 0.0), impulse->step.width_s);
     ImpulseTime at = {since_s, 0, true};
     if (impulse->islands != NULL) {
-        encounter_islands_look(impulse->step.islands, since_s, &sums);
+        kernel_islands_look(impulse->step.islands, since_s, &sums);
     } else {
-        at.node = encounter_node(&impulse->step.encounter, since_s);
-        encounter_at(&impulse->step.encounter, at.node, since_s, &sums);
+        at.node = kernel_node(&impulse->step.kernel, since_s);
+        kernel_at(&impulse->step.kernel, at.node, since_s, &sums);
     }
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
@@ -204,7 +204,7 @@ static SolverModel impulse_model(const void *state)
         .constraint_rows = impulse->step.world.constraint_rows,
         .contact_rows = impulse->part.most_rows,
         .steps = impulse->step.count,
-        .evaluations = impulse->step.encounter.evaluations,
+        .evaluations = impulse->step.kernel.evaluations,
     };
     stepping_label(impulse->step.scenario, "staggered", "impulse", model.label);
     return model;

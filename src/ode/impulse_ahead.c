@@ -34,7 +34,7 @@ static void move_middle(const ImpulseStep *step, double width_before_s, Motion *
     double *mean = step->work->rows[0];
     double *pressed = step->work->changes[0];
     double *speeds = step->work->changes[1];
-    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
         mean[i] = step->total.impulse[i] / width_before_s;
     }
     impulse_step_press_bodies(step, 0.0, mean, pressed);
@@ -81,7 +81,7 @@ void impulse_step_find_free(ImpulseStep *step, const Motion *middle)
         motions[i].omega += half_s * ahead[2];
     }
     response_free(&step->response, motions, step->scenario->gravity,
-                  applied->is_any ? applied->loads : NULL, step->encounter.free);
+                  applied->is_any ? applied->loads : NULL, step->kernel.free);
 }
 
 // Lets what the rows of play feel change in the step: their mobility with the bodies, the free
@@ -89,20 +89,20 @@ void impulse_step_find_free(ImpulseStep *step, const Motion *middle)
 // it by 2 S P.
 void impulse_step_set_drift(ImpulseStep *step, const double *free_before)
 {
-    Encounter *encounter = &step->encounter;
+    Kernel *kernel = &step->kernel;
     const bool is_known = step->steady > 1 && step->is_calm;
     const double apart_s = step->middles_s[0] - step->middles_s[1];
-    for (size_t i = 0; i < encounter_rows(encounter); i++) {
-        encounter->free_rate[i] = is_known ? (encounter->free[i] - free_before[i]) / apart_s : 0.0;
+    for (size_t i = 0; i < kernel_rows(kernel); i++) {
+        kernel->free_rate[i] = is_known ? (kernel->free[i] - free_before[i]) / apart_s : 0.0;
     }
-    encounter_set_drift(encounter, step->drift.drift, step->width_s);
+    kernel_set_drift(kernel, step->drift.drift, step->width_s);
 }
 
 // The free accelerations in the step before, with what its contacts did to them; whether that was
 // so little that they say how these change by themselves.
 void impulse_step_keep_free(ImpulseStep *step, double *free_before)
 {
-    const size_t rows = encounter_rows(&step->encounter);
+    const size_t rows = kernel_rows(&step->kernel);
     double size = 0.0;
     double pushed = 0.0;
     for (size_t i = 0; i < rows; i++) {
@@ -110,8 +110,8 @@ void impulse_step_keep_free(ImpulseStep *step, double *free_before)
         for (size_t k = 0; k < rows; k++) {
             change += 2.0 * step->drift.drift[i * rows + k] * step->total.impulse[k];
         }
-        free_before[i] = step->encounter.free[i] + change;
-        size = fmax(size, fabs(step->encounter.free[i]));
+        free_before[i] = step->kernel.free[i] + change;
+        size = fmax(size, fabs(step->kernel.free[i]));
         pushed = fmax(pushed, fabs(change));
     }
     step->is_calm = pushed <= CALM * size;

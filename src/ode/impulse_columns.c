@@ -19,7 +19,7 @@ void impulse_step_find_columns(ImpulseStep *step, const Motion *middle)
     response_drift_find(&step->response, middle, 0.5 * step->width_s, &step->drift);
 }
 
-void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const EncounterSums *sums,
+void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const KernelSums *sums,
                               double *speeds, double *positions)
 {
     if (!step->has_few_rows) {
@@ -28,7 +28,7 @@ void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const Enc
         return;
     }
     const size_t count = 3 * step->scenario->linkage.body_count;
-    const size_t rows = encounter_rows(&step->encounter);
+    const size_t rows = kernel_rows(&step->kernel);
     const double off_s = since_s - 0.5 * step->width_s;
     memset(speeds, 0, count * sizeof *speeds);
     memset(positions, 0, count * sizeof *positions);
@@ -50,7 +50,7 @@ void impulse_step_turn_bodies(const ImpulseStep *step, double *speeds)
 {
     const size_t count = 3 * step->scenario->linkage.body_count;
     memset(speeds, 0, count * sizeof *speeds);
-    for (size_t row = 0; step->has_few_rows && row < encounter_rows(&step->encounter); row++) {
+    for (size_t row = 0; step->has_few_rows && row < kernel_rows(&step->kernel); row++) {
         const double turned =
             0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
         for (size_t i = 0; i < count; i++) {

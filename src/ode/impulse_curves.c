@@ -47,24 +47,24 @@ void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *b
     }
 }
 
-void impulse_curves_set_places(ImpulseCurves *curves, const Encounter *encounter)
+void impulse_curves_set_places(ImpulseCurves *curves, const Kernel *kernel)
 {
     const size_t rows = curves->row_count;
     for (size_t place = 0; place < curves->place_count; place++) {
         ImpulseCurve *curve = &curves->places[place];
         for (size_t i = 0; i < 2; i++) {
-            const size_t row = encounter->joints[place].first_row + i;
-            const double bent = 0.5 * curves->width_s * encounter->free_rate[row];
-            curve->position[i] = encounter->position[row];
-            curve->speed[i] = encounter->speed[row];
-            curve->bend[i] = 0.5 * (encounter->free[row] - bent);
-            curve->acceleration[i] = encounter->free[row] - bent;
-            curve->rate[i] = encounter->free_rate[row];
+            const size_t row = kernel->contacts[place].first_row + i;
+            const double bent = 0.5 * curves->width_s * kernel->free_rate[row];
+            curve->position[i] = kernel->position[row];
+            curve->speed[i] = kernel->speed[row];
+            curve->bend[i] = 0.5 * (kernel->free[row] - bent);
+            curve->acceleration[i] = kernel->free[row] - bent;
+            curve->rate[i] = kernel->free_rate[row];
             for (size_t k = 0; k < rows; k++) {
                 ImpulsePlaceColumn *column = &curves->place_columns[place * rows + k];
-                const double drift = encounter->drift[row * rows + k];
-                const double rate = encounter->mobility_rate[row * rows + k];
-                column->middle[i] = *encounter_mobility(encounter, row, k);
+                const double drift = kernel->drift[row * rows + k];
+                const double rate = kernel->mobility_rate[row * rows + k];
+                column->middle[i] = *kernel_mobility(kernel, row, k);
                 column->rate[i] = rate;
                 column->late[i] = 2.0 * drift - rate;
                 column->second[i] = 2.0 * (drift - rate);
@@ -98,7 +98,7 @@ void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[IMP
 }
 
 // Whether the contacts have done anything so far, or do now.
-static bool has_pushed(const EncounterSums *sums, size_t rows)
+static bool has_pushed(const KernelSums *sums, size_t rows)
 {
     for (size_t row = 0; row < rows; row++) {
         if (sums->impulse[row] != 0.0 || sums->moment[row] != 0.0 || sums->force[row] != 0.0) {
@@ -121,7 +121,7 @@ static inline Double2 speed_on(const ImpulseCurve *curve, double since_s)
 
 // How one body moves under so many rows, all or none.
 static inline Motion body_at(const ImpulseCurve *curve, const ImpulseColumn *columns, size_t rows,
-                             double since_s, double off_s, const EncounterSums *sums)
+                             double since_s, double off_s, const KernelSums *sums)
 {
     Double2 q[IMPULSE_HALVES];
     Double2 v[IMPULSE_HALVES];
@@ -153,7 +153,7 @@ static inline Motion body_at(const ImpulseCurve *curve, const ImpulseColumn *col
     };
 }
 
-void impulse_curves_at(const ImpulseCurves *curves, double since_s, const EncounterSums *sums,
+void impulse_curves_at(const ImpulseCurves *curves, double since_s, const KernelSums *sums,
                        Motion *motions)
 {
     const double off_s = since_s - 0.5 * curves->width_s;
@@ -168,7 +168,7 @@ void impulse_curves_at(const ImpulseCurves *curves, double since_s, const Encoun
 }
 
 void impulse_curves_place_at(const ImpulseCurves *curves, size_t place, double since_s,
-                             const EncounterSums *sums, double position[2], double speed[2])
+                             const KernelSums *sums, double position[2], double speed[2])
 {
     const size_t rows = curves->row_count;
     const double off_s = since_s - 0.5 * curves->width_s;

@@ -2,17 +2,17 @@
 // step: samples and parts of the step are then looked up at the cost of a few products.
 //
 // With t since the step's start, s since its middle, and by row the contacts' impulse P, its
-// integral Q, that one's R and the force f at t (contact/encounter.h),
+// integral Q, that one's R and the force f at t (kernel/kernel.h),
 //     q = position + speed t + bend t^2 + rate t^3 / 6 + sum of A Q + A' (s Q - 2 R)
 //     v = speed + acceleration t + rate t^2 / 2        + sum of A P + A' (s P - Q)
 //     a = acceleration + rate t                        + sum of (A + B s + C s^2) f
-// The rows of a place at which a joint touches go likewise (contact/encounter_drift.c),
+// The rows of a place at which a joint touches go likewise (kernel/motion.c),
 //     u  = position + speed t + bend t^2 + rate t^3 / 6 + sum of (W + W' s) Q - 2 S^T R
 //     u' = speed + acceleration t + rate t^2 / 2        + sum of (W + W' s) P + (S - S^T) Q
 #pragma once
 
 #include "base/double2.h"
-#include "contact/encounter.h"
+#include "kernel/kernel.h"
 #include "model/linkage.h"
 
 enum {
@@ -76,16 +76,16 @@ void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *b
 void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[IMPULSE_COLUMNS],
                                 const double middles_s[IMPULSE_COLUMNS], const double *rates);
 
-// Sets how the places go, from an encounter that has run.
-void impulse_curves_set_places(ImpulseCurves *curves, const Encounter *encounter);
+// Sets how the places go, from a kernel that has run.
+void impulse_curves_set_places(ImpulseCurves *curves, const Kernel *kernel);
 
 // Writes where the first two rows of a place are at a time since the step's start, m, and how fast
 // they go, with the contacts' sums up to then.
 void impulse_curves_place_at(const ImpulseCurves *curves, size_t place, double since_s,
-                             const EncounterSums *sums, double position[2], double speed[2]);
+                             const KernelSums *sums, double position[2], double speed[2]);
 
 // Writes how the bodies move at a time since the step's start, with the contacts' sums up to then.
-void impulse_curves_at(const ImpulseCurves *curves, double since_s, const EncounterSums *sums,
+void impulse_curves_at(const ImpulseCurves *curves, double since_s, const KernelSums *sums,
                        Motion *motions);
 
 // Writes what forces in the rows do to the speeds of all bodies, per second, three each, at a time

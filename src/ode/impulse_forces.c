@@ -32,7 +32,7 @@ void impulse_step_push_late(ImpulseStep *step, const Motion *middle)
     Motion *motions = step->work->motions;
     BodyLoad *loads = step->work->loads;
     memset(loads, 0, linkage->body_count * sizeof *loads);
-    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
         late[i] = step->total.moment[i] / step->width_s - 0.5 * step->total.impulse[i];
     }
     response_apply(&step->response, late, moved);

@@ -32,12 +32,12 @@ static void make_arrays(ImpulseStep *step)
     work->loads = zeroed(bodies, sizeof *work->loads);
     work->offsets = zeroed(joints, sizeof *work->offsets);
     work->joints = zeroed(joints, sizeof *work->joints);
-    const size_t rows = encounter_rows(&step->encounter);
+    const size_t rows = kernel_rows(&step->kernel);
     step->pressing = zeroed(rows, sizeof *step->pressing);
     step->has_few_rows =
         step->islands == NULL && rows <= IMPULSE_FEW_ROWS && !step->scenario->ode.is_frozen;
     if (step->has_few_rows) {
-        encounter_make_drift(&step->encounter);
+        kernel_make_drift(&step->kernel);
         step->drift = response_drift_create(&step->response);
         step->columns[0] = step->drift.columns;
         step->curves = impulse_curves_create(step->place_count, rows, bodies, step->driven);
@@ -88,28 +88,30 @@ static void free_arrays(ImpulseStep *step)
 
 void impulse_step_finish(ImpulseStep *step)
 {
-    encounter_islands_destroy(step->islands);
+    kernel_islands_destroy(step->islands);
     response_groups_finish(&step->groups);
     impulse_scope_finish(&step->whole);
-    encounter_finish(&step->encounter);
-    encounter_sums_free(&step->total);
+    kernel_finish(&step->kernel);
+    kernel_sums_free(&step->total);
     response_finish(&step->response);
     world_finish(&step->world);
     free_arrays(step);
     free(step->places);
 }
 
-// What an encounter is given of a place.
-static EncounterJoint joint_of(const ImpulseStep *step, const Touch *place)
+// What a kernel is given of a place.
+static KernelContact joint_of(const ImpulseStep *step, const Touch *place)
 {
     // a disc outside is a hole of negative size; of what is a coordinate by itself the rows are
     // those of a line
     const double sign = place->shape == TOUCH_DISC ? -1.0 : 1.0;
     const bool is_line = touch_is_scalar(place);
     const bool has_corners = step->scenario->linkage.joints[place->joint].kind == JOINT_GUIDE;
-    return (EncounterJoint){
+    return (KernelContact){
         .law = place->law,
-        .shape = is_line ? TOUCH_LINE : place->shape,
+        .shape = is_line                      ? KERNEL_LINE
+                 : place->shape == TOUCH_DISC ? KERNEL_DISC
+                                              : KERNEL_HOLE,
         .radial_clearance = is_line ? 0.0 : sign * place->clearance,
         .hole_radius = is_line ? 0.0 : sign * place->radius_a,
         .joint = place->joint,
@@ -123,9 +125,9 @@ static const double *block_of(const void *context, size_t place, size_t other)
     return response_block(context, place, other);
 }
 
-EncounterCoupling impulse_step_coupling(const Response *response)
+KernelCoupling impulse_step_coupling(const Response *response)
 {
-    return (EncounterCoupling){
+    return (KernelCoupling){
         .first_partner = response->first_partner,
         .partners = response->partners,
         .block = block_of,
@@ -133,10 +135,10 @@ EncounterCoupling impulse_step_coupling(const Response *response)
     };
 }
 
-static bool init_encounter(ImpulseStep *step, Err *err)
+static bool init_kernel(ImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
-    step->encounter = encounter_start(scenario->ode.contact_phase);
+    step->kernel = kernel_start(scenario->ode.contact_phase);
     if (!touch_list(scenario, &step->places, &step->place_count, err)) {
         return false;
     }
@@ -144,19 +146,19 @@ static bool init_encounter(ImpulseStep *step, Err *err)
     touch_response(&scenario->linkage, step->places, step->place_count, has_friction,
                    &step->response);
     for (size_t i = 0; i < step->place_count; i++) {
-        const EncounterJoint added = joint_of(step, &step->places[i]);
+        const KernelContact added = joint_of(step, &step->places[i]);
         const size_t rows = response_place_rows(&step->response.places[i]);
-        encounter_add(&step->encounter, &added, rows);
+        kernel_add(&step->kernel, &added, rows);
     }
-    const size_t rows = encounter_rows(&step->encounter);
-    step->total = encounter_sums(rows);
+    const size_t rows = kernel_rows(&step->kernel);
+    step->total = kernel_sums(rows);
     if (step->place_count <= IMPULSE_FEW_PLACES) {
-        encounter_make_room(&step->encounter, rows);
+        kernel_make_room(&step->kernel, rows);
         return true;
     }
-    const EncounterCoupling coupling = impulse_step_coupling(&step->response);
-    encounter_make_rows(&step->encounter);
-    step->islands = encounter_islands_create(&step->encounter, &coupling);
+    const KernelCoupling coupling = impulse_step_coupling(&step->response);
+    kernel_make_rows(&step->kernel);
+    step->islands = kernel_islands_create(&step->kernel, &coupling);
     response_groups_init(&step->response, &step->groups);
     return true;
 }
@@ -166,7 +168,7 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
     step->scenario = scenario;
     step->driven = linkage_driven_body(&scenario->linkage);
     step->tick_s = scenario->run.step / (double)scenario->ode.gear;
-    if (!init_encounter(step, err)) {
+    if (!init_kernel(step, err)) {
         return false;
     }
     make_arrays(step);

@@ -6,7 +6,7 @@
 // joints answer what the contacts do beyond theirs.
 #include "ode/impulse_step.h"
 
-#include "contact/encounter_motion.h"
+#include "kernel/internal.h"
 #include "ode/stepping.h"
 
 #include <string.h>
@@ -23,7 +23,7 @@ static void push_scope(const ImpulseStep *step, const ImpulseScope *scope, const
 
 // What the contacts have done to the speeds and the positions of a scope's bodies up to a time.
 static void push_bodies(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
-                        const EncounterSums *sums, double *speeds, double *positions)
+                        const KernelSums *sums, double *speeds, double *positions)
 {
     if (scope->is_whole) {
         impulse_step_push_bodies(step, since_s, sums, speeds, positions);
@@ -41,7 +41,7 @@ static Motion driven_at(const ImpulseStep *step, double since_s)
 
 // How the bodies move at a time within the step, from the contacts' sums up to then.
 static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
-                         const EncounterSums *sums, Motion *motions)
+                         const KernelSums *sums, Motion *motions)
 {
     if (since_s == step->width_s && scope->is_whole) {
         memcpy(motions, step->after, step->scenario->linkage.body_count * sizeof *motions);
@@ -75,7 +75,7 @@ static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, dou
 }
 
 // The same and the accelerations, from the curves of a step of few rows.
-static void follow_curves(const ImpulseStep *step, double since_s, const EncounterSums *sums,
+static void follow_curves(const ImpulseStep *step, double since_s, const KernelSums *sums,
                           Motion *motions)
 {
     impulse_curves_at(&step->curves, since_s, sums, motions);
@@ -94,7 +94,7 @@ static void follow_curves(const ImpulseStep *step, double since_s, const Encount
 // What the contacts' forces do to all speeds, by the response where the bodies are, at a peak, or
 // at mid-step.
 static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scope, bool is_peak,
-                               const EncounterSums *sums, const Motion *motions, double *rates)
+                               const KernelSums *sums, const Motion *motions, double *rates)
 {
     if (!scope->is_whole) {
         push_scope(step, scope, sums->force, rates);
@@ -106,7 +106,7 @@ static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scop
 
 // Fills in the accelerations: those beside the contacts', linear in time, and the contacts'.
 static void find_accelerations(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
-                               bool is_peak, const EncounterSums *sums, Motion *motions)
+                               bool is_peak, const KernelSums *sums, Motion *motions)
 {
     double *rates = step->work->changes[0];
     const double off_middle_s = since_s - 0.5 * step->width_s;
@@ -155,7 +155,7 @@ void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pre
 
 // Adds one place at an end of a coordinate to the state of its joint, which has what holds the
 // joint beside it.
-static void add_end(const Linkage *linkage, const Touch *place, const EncounterPose *pose,
+static void add_end(const Linkage *linkage, const Touch *place, const KernelPose *pose,
                     bool is_first, const Motion *motions, JointState *state)
 {
     if (is_first) {
@@ -169,7 +169,7 @@ static void add_end(const Linkage *linkage, const Touch *place, const EncounterP
 }
 
 // Adds one place at a line to the state of its joint.
-static void add_line(const Linkage *linkage, const Touch *place, const EncounterPose *pose,
+static void add_line(const Linkage *linkage, const Touch *place, const KernelPose *pose,
                      const Motion *motions, JointState *state)
 {
     const Joint *joint = &linkage->joints[place->joint];
@@ -188,34 +188,34 @@ static void add_line(const Linkage *linkage, const Touch *place, const Encounter
 }
 
 // How a place is, and what presses there.
-static EncounterPose look_at_place(const ImpulseStep *step, size_t place, ImpulseTime at,
-                                   const EncounterSums *sums)
+static KernelPose look_at_place(const ImpulseStep *step, size_t place, ImpulseTime at,
+                                const KernelSums *sums)
 {
-    const Encounter *encounter = &step->encounter;
+    const Kernel *kernel = &step->kernel;
     if (!impulse_step_has_curves(step)) {
-        return impulse_scope_pose(encounter, step->islands, place, at, sums);
+        return impulse_scope_pose(kernel, step->islands, place, at, sums);
     }
-    const size_t row = encounter->joints[place].first_row;
+    const size_t row = kernel->contacts[place].first_row;
     double position[2];
     double speed[2];
     impulse_curves_place_at(&step->curves, place, at.since_s, sums, position, speed);
-    return (EncounterPose){
-        .pose = encounter_motion_pose_of(encounter, place, position, speed),
+    return (KernelPose){
+        .pose = kernel_motion_pose_of(kernel, place, position, speed),
         .force = {sums->force[row], sums->force[row + 1]},
-        .is_touching = encounter_touches(encounter, at.node, place),
+        .is_touching = kernel_touches(kernel, at.node, place),
     };
 }
 
 // The states of the joints with play, and how deep each place is.
 static void find_places(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
-                        const EncounterSums *sums, const Motion *motions, JointState *joints,
+                        const KernelSums *sums, const Motion *motions, JointState *joints,
                         double *depths)
 {
     const Linkage *linkage = &step->scenario->linkage;
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
         const Touch *place = &step->places[i];
-        const EncounterPose pose = look_at_place(step, i, at, sums);
+        const KernelPose pose = look_at_place(step, i, at, sums);
         depths[i] = pose.pose.penetration;
         if (linkage->joints[place->joint].limits.kind != LIMIT_NONE) {
             const bool is_first = i == 0 || step->places[i - 1].joint != place->joint;
@@ -241,12 +241,12 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
 
 // What the ideal joints do beside their mean forces: they answer what the contacts do beyond
 // theirs.
-static void add_answers(const ImpulseStep *step, const EncounterSums *sums, const Motion *motions,
+static void add_answers(const ImpulseStep *step, const KernelSums *sums, const Motion *motions,
                         JointState *joints)
 {
     double *beyond = step->work->rows[0];
     double *reactions = step->work->rows[1];
-    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
         beyond[i] = sums->force[i] - step->pressing[i];
     }
     response_react(&step->response, beyond, reactions);
@@ -257,10 +257,10 @@ static void add_answers(const ImpulseStep *step, const EncounterSums *sums, cons
 }
 
 // The same of few rows, of which it is known what each is answered with.
-static void add_few_answers(const ImpulseStep *step, const EncounterSums *sums,
-                            const Motion *motions, JointState *joints)
+static void add_few_answers(const ImpulseStep *step, const KernelSums *sums, const Motion *motions,
+                            JointState *joints)
 {
-    const size_t rows = encounter_rows(&step->encounter);
+    const size_t rows = kernel_rows(&step->kernel);
     double beyond[IMPULSE_FEW_ROWS];
     for (size_t i = 0; i < rows; i++) {
         beyond[i] = sums->force[i] - step->pressing[i];
@@ -279,12 +279,12 @@ static void add_few_answers(const ImpulseStep *step, const EncounterSums *sums,
 
 // The same of the joints that hold the groups of an island.
 static void add_island_answers(const ImpulseStep *step, const ImpulseScope *scope,
-                               const EncounterSums *sums, const Motion *motions, JointState *joints)
+                               const KernelSums *sums, const Motion *motions, JointState *joints)
 {
-    const Encounter *encounter = &step->encounter;
+    const Kernel *kernel = &step->kernel;
     double *beyond = step->work->rows[0];
     for (size_t n = 0; n < scope->part.place_count; n++) {
-        const EncounterJoint *joint = &encounter->joints[scope->part.places[n]];
+        const KernelContact *joint = &kernel->contacts[scope->part.places[n]];
         for (size_t i = joint->first_row; i < joint->first_row + joint->row_count; i++) {
             beyond[i] = sums->force[i] - step->pressing[i];
         }
@@ -302,8 +302,8 @@ static void add_island_answers(const ImpulseStep *step, const ImpulseScope *scop
     }
 }
 
-static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope,
-                       const EncounterSums *sums, const Motion *motions, JointState *joints)
+static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope, const KernelSums *sums,
+                       const Motion *motions, JointState *joints)
 {
     if (step->has_few_rows) {
         add_few_answers(step, sums, motions, joints);
@@ -316,7 +316,7 @@ static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope,
 
 // The states of the joints at a time within the step.
 static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
-                        const EncounterSums *sums, const Motion *motions, JointState *joints,
+                        const KernelSums *sums, const Motion *motions, JointState *joints,
                         double *depths)
 {
     const Linkage *linkage = &step->scenario->linkage;
@@ -342,7 +342,7 @@ static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, Impu
 }
 
 void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
-                         const EncounterSums *sums, Motion *motions, JointState *joints,
+                         const KernelSums *sums, Motion *motions, JointState *joints,
                          double *depths)
 {
     if (impulse_step_has_curves(step)) {

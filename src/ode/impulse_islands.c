@@ -26,7 +26,7 @@ struct ImpulseIslands {
     size_t next; // the first mark that has not been handed on; `count` of the step's end
     bool is_ended;
     IslandMark *order; // of all islands; owned, as are all arrays
-    EncounterSums sums;
+    KernelSums sums;
     double *before;       // by row: impulses at the last part
     double (*losses)[2];  // by island: J, likewise
     double *elastic;      // J, by place: what is stored there
@@ -43,12 +43,12 @@ struct ImpulseIslands {
 ImpulseIslands *impulse_islands_create(const ImpulseIslandsOf *of)
 {
     const Linkage *linkage = of->linkage;
-    const size_t rows = encounter_rows(of->islands->all);
-    const size_t places = of->islands->all->joint_count;
+    const size_t rows = kernel_rows(of->islands->all);
+    const size_t places = of->islands->all->contact_count;
     ImpulseIslands *islands = zeroed(1, sizeof *islands);
     islands->of = *of;
     islands->is_ended = true;
-    islands->sums = encounter_sums(rows);
+    islands->sums = kernel_sums(rows);
     islands->before = zeroed(rows, sizeof *islands->before);
     islands->losses = zeroed(places, sizeof *islands->losses);
     islands->elastic = zeroed(places, sizeof *islands->elastic);
@@ -71,7 +71,7 @@ void impulse_islands_destroy(ImpulseIslands *islands)
     }
     marks_finish(&islands->marks);
     free(islands->order);
-    encounter_sums_free(&islands->sums);
+    kernel_sums_free(&islands->sums);
     free(islands->before);
     free(islands->losses);
     free(islands->elastic);
@@ -100,8 +100,8 @@ static int compare_marks(const void *a, const void *b)
 // Lists the marks of an island but for that of the step's end.
 static void list_marks(ImpulseIslands *islands, size_t number)
 {
-    const EncounterIsland *island = islands->of.islands->islands[number];
-    marks_find(&islands->marks, &island->encounter);
+    const KernelIsland *island = islands->of.islands->islands[number];
+    marks_find(&islands->marks, &island->kernel);
     const size_t count = islands->marks.count - 1;
     if (islands->count + count > islands->room) {
         islands->room = 2 * (islands->count + count);
@@ -118,7 +118,7 @@ static void list_marks(ImpulseIslands *islands, size_t number)
 
 void impulse_islands_begin(ImpulseIslands *islands, ImpulsePart *part)
 {
-    const EncounterIslands *all = islands->of.islands;
+    const KernelIslands *all = islands->of.islands;
     islands->span = islands->of.span(islands->of.context);
     islands->count = islands->next = 0;
     islands->is_ended = false;
@@ -129,7 +129,7 @@ void impulse_islands_begin(ImpulseIslands *islands, ImpulsePart *part)
     if (islands->count > 0) {
         qsort(islands->order, islands->count, sizeof *islands->order, compare_marks);
     }
-    memset(islands->before, 0, encounter_rows(all->all) * sizeof *islands->before);
+    memset(islands->before, 0, kernel_rows(all->all) * sizeof *islands->before);
     part->end_s = islands->span.start_s;
 }
 
@@ -168,7 +168,7 @@ static void add_group(ImpulseIslands *islands, size_t group)
 static void add_place(ImpulseIslands *islands, size_t place)
 {
     const ResponseGroups *groups = islands->of.groups;
-    const size_t number = (size_t)islands->of.islands->all->joints[place].joint;
+    const size_t number = (size_t)islands->of.islands->all->contacts[place].joint;
     const Joint *joint = &islands->of.linkage->joints[number];
     const int driven = linkage_driven_body(islands->of.linkage);
     const int bodies[2] = {joint->body_a, joint->body_b};
@@ -214,7 +214,7 @@ static void add_neighbours(ImpulseIslands *islands)
 }
 
 // Makes the scope that of an island.
-static void set_scope(ImpulseIslands *islands, const EncounterIsland *island)
+static void set_scope(ImpulseIslands *islands, const KernelIsland *island)
 {
     ImpulseScope *scope = &islands->scope;
     for (size_t i = 0; i < scope->body_count; i++) {
@@ -232,22 +232,22 @@ static void set_scope(ImpulseIslands *islands, const EncounterIsland *island)
     scope->has_drive = false;
     scope->body_count = scope->joint_count = 0;
     scope->part.group_count = scope->part.place_count = 0;
-    for (size_t i = 0; i < island->encounter.joint_count; i++) {
-        add_place(islands, island->places[i]);
+    for (size_t i = 0; i < island->kernel.contact_count; i++) {
+        add_place(islands, island->members[i]);
     }
     scope->place_count = scope->part.place_count;
-    if (islands->of.islands->is_divided[island->places[0]]) {
+    if (islands->of.islands->is_divided[island->members[0]]) {
         add_neighbours(islands);
     }
 }
 
 // Writes the sums of an island's rows among those of all.
-static void scatter(ImpulseIslands *islands, const EncounterIsland *island)
+static void scatter(ImpulseIslands *islands, const KernelIsland *island)
 {
-    const Encounter *all = islands->of.islands->all;
-    for (size_t i = 0; i < island->encounter.joint_count; i++) {
-        const EncounterJoint *joint = &island->encounter.joints[i];
-        const size_t row = all->joints[island->places[i]].first_row;
+    const Kernel *all = islands->of.islands->all;
+    for (size_t i = 0; i < island->kernel.contact_count; i++) {
+        const KernelContact *joint = &island->kernel.contacts[i];
+        const size_t row = all->contacts[island->members[i]].first_row;
         const size_t size = joint->row_count * sizeof(double);
         memcpy(islands->sums.impulse + row, island->sums.impulse + joint->first_row, size);
         memcpy(islands->sums.moment + row, island->sums.moment + joint->first_row, size);
@@ -258,17 +258,16 @@ static void scatter(ImpulseIslands *islands, const EncounterIsland *island)
 // Looks at the scope's island, and at others that move its bodies, and writes their sums.
 static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
 {
-    const EncounterIslands *all = islands->of.islands;
+    const KernelIslands *all = islands->of.islands;
     const ImpulseScope *scope = &islands->scope;
-    encounter_island_look(all->islands[mark->island], mark->node, mark->time_s);
+    kernel_island_look(all->islands[mark->island], mark->node, mark->time_s);
     scatter(islands, all->islands[mark->island]);
     size_t looked = mark->island;
     for (size_t i = scope->place_count; i < scope->part.place_count; i++) {
         const size_t number = all->island_of[scope->part.places[i]];
         if (number != looked) {
-            EncounterIsland *other = all->islands[number];
-            encounter_island_look(other, encounter_node(&other->encounter, mark->time_s),
-                                  mark->time_s);
+            KernelIsland *other = all->islands[number];
+            kernel_island_look(other, kernel_node(&other->kernel, mark->time_s), mark->time_s);
             scatter(islands, other);
             looked = number;
         }
@@ -279,18 +278,17 @@ static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
 static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const ImpulseScope *scope,
                          double since_s)
 {
-    const EncounterIslands *all = islands->of.islands;
+    const KernelIslands *all = islands->of.islands;
     const bool *counts = islands->of.counts;
     for (size_t n = 0; n < scope->joint_count; n++) {
         part->is_known[scope->joints[n]] = false;
     }
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
-        const EncounterJoint *place = &all->all->joints[i];
+        const KernelContact *place = &all->all->contacts[i];
         const double *impulse = islands->sums.impulse + place->first_row;
         double *before = islands->before + place->first_row;
-        const bool is_touching =
-            encounter_islands_pose(all, i, since_s, &islands->sums).is_touching;
+        const bool is_touching = kernel_islands_pose(all, i, since_s, &islands->sums).is_touching;
         const double elastic =
             is_touching ? force_law_energy(&place->law, islands->of.depths[i]) : 0.0;
         const double pushed = hypot(impulse[0] - before[0], impulse[1] - before[1]);
@@ -312,7 +310,7 @@ static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const Impul
 // The part up to a mark of an island.
 static void take_island(ImpulseIslands *islands, ImpulsePart *part, const IslandMark *mark)
 {
-    EncounterIsland *island = islands->of.islands->islands[mark->island];
+    KernelIsland *island = islands->of.islands->islands[mark->island];
     double *losses = islands->losses[mark->island];
     set_scope(islands, island);
     look_at_scope(islands, mark);
@@ -329,10 +327,10 @@ static void take_island(ImpulseIslands *islands, ImpulsePart *part, const Island
 // The part up to the end of the step.
 static void take_end(ImpulseIslands *islands, ImpulsePart *part)
 {
-    const EncounterIslands *all = islands->of.islands;
+    const KernelIslands *all = islands->of.islands;
     const ImpulseScope *whole = islands->of.whole;
     const ImpulseSpan *span = &islands->span;
-    encounter_islands_look(islands->of.islands, span->width_s, &islands->sums);
+    kernel_islands_look(islands->of.islands, span->width_s, &islands->sums);
     part->end_s = span->end_s;
     const ImpulseTime at = {span->width_s, 0, false};
     islands->of.inside(islands->of.context, whole, at, &islands->sums);
@@ -348,7 +346,7 @@ static void take_end(ImpulseIslands *islands, ImpulsePart *part)
         part->impulse[i] = islands->of.mean(islands->of.context, i) * span->width_s;
     }
     // what rounding left of sums of differences ends here
-    memset(islands->elastic, 0, all->all->joint_count * sizeof *islands->elastic);
+    memset(islands->elastic, 0, all->all->contact_count * sizeof *islands->elastic);
     islands->elastic_total = 0.0;
     add_contacts(islands, part, whole, span->width_s);
     islands->is_ended = true;

@@ -2,7 +2,7 @@
 // islands in order of time, and the end of the step of all. In the plane and in space.
 #pragma once
 
-#include "contact/encounter_islands.h"
+#include "kernel/kernel.h"
 #include "ode/impulse_part.h"
 #include "ode/impulse_scope.h"
 
@@ -20,7 +20,7 @@ typedef struct ImpulseSpan {
 // What the islands are of. It is kept as it is given.
 typedef struct ImpulseIslandsOf {
     const Linkage *linkage;
-    EncounterIslands *islands;
+    KernelIslands *islands;
     const ResponseGroups *groups;
     const ImpulseScope *whole;
     const bool *counts;       // by place: whether it is a contact of its joint; NULL: all
@@ -31,7 +31,7 @@ typedef struct ImpulseIslandsOf {
     ImpulseSpan (*span)(const void *context);
     // looks at a scope, from the contacts' sums up to then: joints, depths, how the bodies turn
     void (*inside)(void *context, const ImpulseScope *scope, ImpulseTime at,
-                   const EncounterSums *sums);
+                   const KernelSums *sums);
     double (*mean)(const void *context, size_t joint); // N: mean force of an ideal joint
 } ImpulseIslandsOf;
 

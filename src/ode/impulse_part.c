@@ -9,8 +9,8 @@
 
 void impulse_part_init(ImpulsePart *part, const Linkage *linkage, size_t rows)
 {
-    part->sums = encounter_sums(rows);
-    part->before = encounter_sums(rows);
+    part->sums = kernel_sums(rows);
+    part->before = kernel_sums(rows);
     part->omega = zeroed(linkage->body_count, sizeof *part->omega);
     part->alpha = zeroed(linkage->body_count, sizeof *part->alpha);
     part->impulse = zeroed(linkage->joint_count, sizeof *part->impulse);
@@ -24,26 +24,26 @@ bool impulse_part_needs_step(const ImpulsePart *part)
     return part->marks.next == part->marks.count;
 }
 
-void impulse_part_begin(ImpulsePart *part, const Encounter *encounter, double start_s)
+void impulse_part_begin(ImpulsePart *part, const Kernel *kernel, double start_s)
 {
-    marks_find(&part->marks, encounter);
-    const size_t rows = encounter_rows(encounter);
+    marks_find(&part->marks, kernel);
+    const size_t rows = kernel_rows(kernel);
     memset(part->sums.impulse, 0, rows * sizeof *part->sums.impulse);
     part->sums.dissipated = part->sums.friction = 0.0;
     part->end_s = start_s;
 }
 
-const Mark *impulse_part_next(ImpulsePart *part, const Encounter *encounter, double step_start_s,
+const Mark *impulse_part_next(ImpulsePart *part, const Kernel *kernel, double step_start_s,
                               double step_end_s)
 {
     const Mark *mark = &part->marks.marks[part->marks.next++];
     part->is_last = part->marks.next == part->marks.count;
     part->start_s = part->end_s;
     part->end_s = part->is_last ? step_end_s : step_start_s + mark->time_s;
-    const EncounterSums before = part->before;
+    const KernelSums before = part->before;
     part->before = part->sums;
     part->sums = before;
-    encounter_at(encounter, mark->node, mark->time_s, &part->sums);
+    kernel_at(kernel, mark->node, mark->time_s, &part->sums);
     return mark;
 }
 
@@ -66,7 +66,7 @@ void impulse_part_record(ImpulsePart *part, const Linkage *linkage, const JointS
     }
 }
 
-void impulse_part_add_place(ImpulsePart *part, const EncounterJoint *place, bool is_touching,
+void impulse_part_add_place(ImpulsePart *part, const KernelContact *place, bool is_touching,
                             double pushed)
 {
     const int joint = place->joint;
@@ -79,16 +79,16 @@ void impulse_part_add_place(ImpulsePart *part, const EncounterJoint *place, bool
     part->is_known[joint] = true;
 }
 
-void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, const Mark *mark,
+void impulse_part_add_contacts(ImpulsePart *part, const Kernel *kernel, const Mark *mark,
                                const double *depths, const bool *counts)
 {
     size_t touching = 0;
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        part->is_known[encounter->joints[i].joint] = false;
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        part->is_known[kernel->contacts[i].joint] = false;
     }
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        const EncounterJoint *place = &encounter->joints[i];
-        const bool is_touching = encounter_touches(encounter, mark->node, i);
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        const KernelContact *place = &kernel->contacts[i];
+        const bool is_touching = kernel_touches(kernel, mark->node, i);
         const size_t row = place->first_row;
         if (is_touching) {
             part->record.elastic += force_law_energy(&place->law, depths[i]);
@@ -107,8 +107,8 @@ void impulse_part_add_contacts(ImpulsePart *part, const Encounter *encounter, co
 void impulse_part_finish(ImpulsePart *part)
 {
     marks_finish(&part->marks);
-    encounter_sums_free(&part->sums);
-    encounter_sums_free(&part->before);
+    kernel_sums_free(&part->sums);
+    kernel_sums_free(&part->before);
     free(part->omega);
     free(part->alpha);
     free(part->impulse);

@@ -36,9 +36,9 @@ void impulse_scope_finish(ImpulseScope *scope)
     *scope = (ImpulseScope){.body_count = 0};
 }
 
-EncounterPose impulse_scope_pose(const Encounter *encounter, const EncounterIslands *islands,
-                                 size_t place, ImpulseTime at, const EncounterSums *sums)
+KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands, size_t place,
+                              ImpulseTime at, const KernelSums *sums)
 {
-    return islands != NULL ? encounter_islands_pose(islands, place, at.since_s, sums)
-                           : encounter_pose(encounter, place, at.node, at.since_s, sums);
+    return islands != NULL ? kernel_islands_pose(islands, place, at.since_s, sums)
+                           : kernel_pose(kernel, place, at.node, at.since_s, sums);
 }

@@ -2,7 +2,7 @@
 // space.
 #pragma once
 
-#include "contact/encounter_islands.h"
+#include "kernel/kernel.h"
 #include "model/response_groups.h"
 
 // places up to which all are integrated together: what islands save they cost as well
@@ -24,7 +24,7 @@ typedef struct ImpulseScope {
 // A time within a step.
 typedef struct ImpulseTime {
     double since_s; // since the step's start
-    size_t node;    // of the encounter; islands have been looked at then
+    size_t node;    // of the kernel; islands have been looked at then
     bool is_peak;   // whether accelerations are worked out where the bodies are, not at mid-step
 } ImpulseTime;
 
@@ -33,6 +33,6 @@ ImpulseScope impulse_scope_whole(const Linkage *linkage, size_t place_count);
 void impulse_scope_finish(ImpulseScope *scope);
 
 // How a place is at a time within the step, from the sums then: by its island, or where the islands
-// are NULL by the encounter of all.
-EncounterPose impulse_scope_pose(const Encounter *encounter, const EncounterIslands *islands,
-                                 size_t place, ImpulseTime at, const EncounterSums *sums);
+// are NULL by the kernel of all.
+KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands, size_t place,
+                              ImpulseTime at, const KernelSums *sums);

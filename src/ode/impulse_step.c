@@ -3,7 +3,7 @@
 // A step from t to t + h, positions q and speeds v both known at t:
 //     q_m = q + (h/2) v                               positions at mid-step
 //     W, g at q_m                                     the linkage as its joints with play feel it
-//     P, Q = impulse of the contacts and its integral over the step, by contact/encounter_run.c
+//     P, Q = impulse of the contacts and its integral over the step, by kernel/run.c
 //     v' from dWorldStep at q_m under the mean force P / h, the driven body at its speed of t + h
 //     q' = q_m + (h/2) v' + A (Q - (h/2) P)           A P = what P does to the speeds
 //     and where A' is known (ode/impulse_columns.c), R the integral of Q
@@ -37,13 +37,13 @@ static size_t body_count(const ImpulseStep *step)
 // Where the rows of play are at the start of the step, and how fast they go.
 static void fill_rows(ImpulseStep *step)
 {
-    Encounter *encounter = &step->encounter;
+    Kernel *kernel = &step->kernel;
     const Linkage *linkage = &step->scenario->linkage;
     for (size_t i = 0; i < step->place_count; i++) {
         const Touch *place = &step->places[i];
         const Joint *joint = &linkage->joints[place->joint];
-        double *position = encounter->position + encounter->joints[i].first_row;
-        double *speed = encounter->speed + encounter->joints[i].first_row;
+        double *position = kernel->position + kernel->contacts[i].first_row;
+        double *speed = kernel->speed + kernel->contacts[i].first_row;
         if (touch_is_scalar(place)) {
             const TouchPose pose = touch_pose(linkage, place, step->before);
             position[0] = pose.gap;
@@ -57,7 +57,7 @@ static void fill_rows(ImpulseStep *step)
         position[1] = gap.position.y;
         speed[0] = gap.velocity.x;
         speed[1] = gap.velocity.y;
-        if (encounter->joints[i].row_count == RESPONSE_ROWS_A_JOINT) {
+        if (kernel->contacts[i].row_count == RESPONSE_ROWS_A_JOINT) {
             const int bodies[2] = {joint->body_a, joint->body_b};
             for (size_t k = 0; k < 2; k++) {
                 speed[2 + k] = bodies[k] == LINKAGE_GROUND ? 0.0 : step->before[bodies[k]].omega;
@@ -67,25 +67,25 @@ static void fill_rows(ImpulseStep *step)
 }
 
 // The gap of a place at a position in its first two rows.
-static double gap_at(const EncounterJoint *joint, Vec2 position)
+static double gap_at(const KernelContact *joint, Vec2 position)
 {
-    return joint->shape == TOUCH_LINE   ? position.x
-           : joint->shape == TOUCH_HOLE ? joint->radial_clearance - vec2_length(position)
-                                        : joint->radial_clearance + vec2_length(position);
+    return joint->shape == KERNEL_LINE   ? position.x
+           : joint->shape == KERNEL_HOLE ? joint->radial_clearance - vec2_length(position)
+                                         : joint->radial_clearance + vec2_length(position);
 }
 
 // Whether a place touches or will have come near its wall at the end of a step of that length.
 static bool is_near_wall(const ImpulseStep *step, double width_s)
 {
-    const Encounter *encounter = &step->encounter;
+    const Kernel *kernel = &step->kernel;
     for (size_t i = 0; i < step->place_count; i++) {
-        const EncounterJoint *joint = &encounter->joints[i];
+        const KernelContact *joint = &kernel->contacts[i];
         const size_t row = joint->first_row;
         // the free acceleration of the step before will do
-        const Vec2 now = {encounter->position[row], encounter->position[row + 1]};
+        const Vec2 now = {kernel->position[row], kernel->position[row + 1]};
         const Vec2 moved = {
-            width_s * (encounter->speed[row] + 0.5 * width_s * encounter->free[row]),
-            width_s * (encounter->speed[row + 1] + 0.5 * width_s * encounter->free[row + 1]),
+            width_s * (kernel->speed[row] + 0.5 * width_s * kernel->free[row]),
+            width_s * (kernel->speed[row + 1] + 0.5 * width_s * kernel->free[row + 1]),
         };
         const double near =
             NEAR * linkage_radial_clearance(&step->scenario->linkage.joints[joint->joint]);
@@ -98,9 +98,9 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
 }
 
 // Lets the contacts run through the step by themselves.
-static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
+static bool run_kernel(ImpulseStep *step, const Motion *middle, Err *err)
 {
-    Encounter *encounter = &step->encounter;
+    Kernel *kernel = &step->kernel;
     if (!response_place(&step->response, middle)) {
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant here: give one joint of the loop some play");
@@ -113,23 +113,23 @@ static bool run_encounter(ImpulseStep *step, const Motion *middle, Err *err)
     impulse_step_find_free(step, middle);
     bool is_run;
     if (step->islands != NULL) {
-        is_run = encounter_islands_run(step->islands, step->width_s);
+        is_run = kernel_islands_run(step->islands, step->width_s);
     } else {
-        const EncounterCoupling coupling = impulse_step_coupling(&step->response);
-        encounter_fill(encounter, &coupling, NULL);
+        const KernelCoupling coupling = impulse_step_coupling(&step->response);
+        kernel_fill(kernel, &coupling, NULL);
         if (step->has_few_rows) {
             impulse_step_set_drift(step, free_before);
         }
-        is_run = encounter_run(encounter, step->width_s);
+        is_run = kernel_run(kernel, step->width_s);
     }
     if (!is_run) {
         return err_set(err, ERR_SOLVER,
                        "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
     }
     if (step->islands != NULL) {
-        encounter_islands_look(step->islands, step->width_s, &step->total);
+        kernel_islands_look(step->islands, step->width_s, &step->total);
     } else {
-        encounter_at(encounter, encounter->node_count - 1, step->width_s, &step->total);
+        kernel_at(kernel, kernel->node_count - 1, step->width_s, &step->total);
     }
     return true;
 }
@@ -262,7 +262,7 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
                 p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - positions[n] + bent;
         }
     }
-    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
         step->pressing[i] = step->total.impulse[i] / width_s;
     }
 }
@@ -276,7 +276,7 @@ static void find_curves(ImpulseStep *step)
                                 step->free_rate + 3 * i, step->rest + 3 * i);
     }
     impulse_curves_set_columns(&step->curves, step->columns, step->middles_s, step->drift.rates);
-    impulse_curves_set_places(&step->curves, &step->encounter);
+    impulse_curves_set_places(&step->curves, &step->kernel);
 }
 
 void impulse_step_add_sliding(const Linkage *linkage, int joint, const double *values,
@@ -342,7 +342,7 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     impulse_step_look_ahead(step);
     impulse_step_find_middle(step, width_before_s, middle);
     impulse_step_push(step, middle);
-    if (!run_encounter(step, middle, err) || !step_world(step, middle, err)) {
+    if (!run_kernel(step, middle, err) || !step_world(step, middle, err)) {
         return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
     }
     find_end(step);

@@ -1,8 +1,8 @@
 // One step of the world with the contacts integrated inside it, and the state at any time in it.
 #pragma once
 
-#include "contact/encounter_islands.h"
 #include "contact/touch.h"
+#include "kernel/kernel.h"
 #include "model/response_drift.h"
 #include "model/trajectory.h"
 #include "ode/impulse_curves.h"
@@ -25,10 +25,10 @@ typedef struct ImpulseWork {
 typedef struct ImpulseStep {
     const Scenario *scenario;
     World world;
-    Response response;         // at mid-step
-    Encounter encounter;       // a joint of it is a place
-    EncounterIslands *islands; // of the encounter's places; NULL where they are few
-    ResponseGroups groups;     // where there are islands
+    Response response;      // at mid-step
+    Kernel kernel;          // a joint of it is a place
+    KernelIslands *islands; // of the kernel's places; NULL where they are few
+    ResponseGroups groups;  // where there are islands
     ImpulseScope whole;
     size_t place_count;
     Touch *places; // owned, as are all arrays here
@@ -40,20 +40,20 @@ typedef struct ImpulseStep {
     size_t count;
     double start_s; // of the last step
     double width_s;
-    Motion *before;      // at its start
-    Motion *middle;      // at mid-step, with the speeds of its start
-    Motion *after;       // at its end
-    SteppingArm arm;     // of the driven body, at mid-step
-    double *free;        // mean acceleration beside the contacts', three a body
-    double *free_rate;   // its rate of change
-    double *ahead;       // of few rows, what it will be at mid-step, from the steps before, or zero
-    size_t steady;       // steps before this one since the start, or since a kink
-    bool is_calm;        // whether the contacts did not change the accelerations much in the last
-    double *rest;        // of the end's positions, beyond the formula for inside
-    double drive_work;   // J, in the whole step
-    double damped;       // J, in dampers, likewise
-    EncounterSums total; // of the contacts, in the whole step
-    bool has_few_rows;   // what each of them does, and how that changes, is worked out in each step
+    Motion *before;    // at its start
+    Motion *middle;    // at mid-step, with the speeds of its start
+    Motion *after;     // at its end
+    SteppingArm arm;   // of the driven body, at mid-step
+    double *free;      // mean acceleration beside the contacts', three a body
+    double *free_rate; // its rate of change
+    double *ahead;     // of few rows, what it will be at mid-step, from the steps before, or zero
+    size_t steady;     // steps before this one since the start, or since a kink
+    bool is_calm;      // whether the contacts did not change the accelerations much in the last
+    double *rest;      // of the end's positions, beyond the formula for inside
+    double drive_work; // J, in the whole step
+    double damped;     // J, in dampers, likewise
+    KernelSums total;  // of the contacts, in the whole step
+    bool has_few_rows; // what each of them does, and how that changes, is worked out in each step
     // of few rows: what 1 N s in each does to all speeds, three a body, in this step and in those
     // before it, and when these had their middles; this step's belong to `drift`
     ResponseDrift drift;
@@ -80,7 +80,7 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);
 void impulse_step_finish(ImpulseStep *step);
 
 // How the places of a response move each other.
-EncounterCoupling impulse_step_coupling(const Response *response);
+KernelCoupling impulse_step_coupling(const Response *response);
 
 // Adds what a prismatic joint does to its body b: the values of its two rows, N and N m; a
 // linkage's bodies are where the motions say.
@@ -140,7 +140,7 @@ void impulse_step_find_columns(ImpulseStep *step, const Motion *middle);
 
 // Writes what the contacts have done up to a time in the step to the speeds and to the positions of
 // all bodies, three each, from their sums.
-void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const EncounterSums *sums,
+void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const KernelSums *sums,
                               double *speeds, double *positions);
 
 // Writes what the turning of the rows does in the whole step to the speeds of all bodies, three
@@ -170,5 +170,5 @@ void impulse_step_push_late(ImpulseStep *step, const Motion *middle);
 // How the bodies of a scope move and what its joints do then, from the contacts' sums up to then,
 // and how deep each place is, m.
 void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
-                         const EncounterSums *sums, Motion *motions, JointState *joints,
+                         const KernelSums *sums, Motion *motions, JointState *joints,
                          double *depths);

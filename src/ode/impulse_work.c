@@ -25,7 +25,7 @@ static Vec2 arm_acceleration(const Motion *driven, Vec2 arm)
 static void add_mean(const ImpulseStep *step, size_t number, const Motion *middle, JointState *mean)
 {
     const Touch *place = &step->places[number];
-    const double *sum = step->total.impulse + step->encounter.joints[number].first_row;
+    const double *sum = step->total.impulse + step->kernel.contacts[number].first_row;
     const Vec2 force = {sum[0] / step->width_s, sum[1] / step->width_s};
     if (step->scenario->linkage.joints[place->joint].limits.kind != LIMIT_NONE) {
         impulse_step_add_end(&step->scenario->linkage, place, force.x, middle, mean);
@@ -77,7 +77,7 @@ static void find_play_means(ImpulseStep *step, const Motion *middle, Vec2 *offse
 static double work_at_point(const ImpulseStep *step, size_t number, const Motion *driven,
                             bool is_on_a)
 {
-    const EncounterJoint *at = &step->encounter.joints[number];
+    const KernelContact *at = &step->kernel.contacts[number];
     const Touch *place = &step->places[number];
     const double *sum = step->total.impulse + at->first_row;
     const double *moment = step->total.moment + at->first_row;
@@ -92,7 +92,7 @@ static double work_at_point(const ImpulseStep *step, size_t number, const Motion
 static double work_of_turn(const ImpulseStep *step, size_t number, const Motion *driven,
                            bool is_on_a)
 {
-    const EncounterJoint *at = &step->encounter.joints[number];
+    const KernelContact *at = &step->kernel.contacts[number];
     const double *sum = step->total.impulse + at->first_row;
     return at->row_count == RESPONSE_ROWS_A_JOINT ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
 }
@@ -104,7 +104,7 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     const Linkage *linkage = &step->scenario->linkage;
     const Touch *place = &step->places[number];
     const Joint *joint = &linkage->joints[place->joint];
-    const size_t row = step->encounter.joints[number].first_row;
+    const size_t row = step->kernel.contacts[number].first_row;
     const Motion *driven = &motions[step->driven];
     const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
     const TouchPose pose = touch_pose(linkage, place, motions);
@@ -133,7 +133,7 @@ static double work_at_end(const ImpulseStep *step, size_t number, const Motion *
 {
     const Touch *place = &step->places[number];
     const Joint *joint = &step->scenario->linkage.joints[place->joint];
-    const size_t row = step->encounter.joints[number].first_row;
+    const size_t row = step->kernel.contacts[number].first_row;
     const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
     const double turn = place->shape == TOUCH_TEETH
                             ? -(is_on_a ? place->radius_a : place->radius_b)

@@ -32,27 +32,25 @@ static void add_mark(Marks *marks, double time_s, size_t node, bool is_top)
 }
 
 // The square of a joint's force at a node.
-static double force_squared(const Encounter *encounter, size_t joint, size_t node)
+static double force_squared(const Kernel *kernel, size_t joint, size_t node)
 {
-    const double *force =
-        encounter_node_forces(encounter, node) + encounter->joints[joint].first_row;
+    const double *force = kernel_node_forces(kernel, node) + kernel->contacts[joint].first_row;
     return force[0] * force[0] + force[1] * force[1];
 }
 
 // The time of a maximum of the force that node `middle` is nearest to, or NAN.
-static double force_peak(const Encounter *encounter, size_t joint, size_t middle)
+static double force_peak(const Kernel *kernel, size_t joint, size_t middle)
 {
-    if (middle == 0 || middle + 1 >= encounter->node_count ||
-        !encounter_touches(encounter, middle - 1, joint) ||
-        !encounter_touches(encounter, middle, joint)) {
+    if (middle == 0 || middle + 1 >= kernel->node_count ||
+        !kernel_touches(kernel, middle - 1, joint) || !kernel_touches(kernel, middle, joint)) {
         return NAN;
     }
     const double squares[3] = {
-        force_squared(encounter, joint, middle - 1),
-        force_squared(encounter, joint, middle),
-        force_squared(encounter, joint, middle + 1),
+        force_squared(kernel, joint, middle - 1),
+        force_squared(kernel, joint, middle),
+        force_squared(kernel, joint, middle + 1),
     };
-    const double *t = encounter->times + middle - 1;
+    const double *t = kernel->times + middle - 1;
     if (!(squares[1] > squares[0] && squares[1] >= squares[2] && t[1] > t[0] && t[2] > t[1])) {
         return NAN;
     }
@@ -65,18 +63,17 @@ static double force_peak(const Encounter *encounter, size_t joint, size_t middle
 }
 
 // The maxima of one joint in the interval behind a node.
-static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, size_t node)
+static void mark_maxima(Marks *marks, const Kernel *kernel, size_t joint, size_t node)
 {
-    const double start_s = encounter->times[node];
-    const double end_s = encounter->times[node + 1];
-    const size_t count = encounter->joint_count;
-    const double before = encounter->closings[node * count + joint];
-    const double behind = encounter->closings[(node + 1) * count + joint];
+    const double start_s = kernel->times[node];
+    const double end_s = kernel->times[node + 1];
+    const size_t count = kernel->contact_count;
+    const double before = kernel->closings[node * count + joint];
+    const double behind = kernel->closings[(node + 1) * count + joint];
     if (before > 0.0 && behind <= 0.0) {
         add_mark(marks, start_s + (end_s - start_s) * before / (before - behind), node, true);
     }
-    const double peaks[2] = {force_peak(encounter, joint, node),
-                             force_peak(encounter, joint, node + 1)};
+    const double peaks[2] = {force_peak(kernel, joint, node), force_peak(kernel, joint, node + 1)};
     for (int i = 0; i < 2; i++) {
         if (peaks[i] >= start_s && peaks[i] < end_s) {
             add_mark(marks, peaks[i], node, true);
@@ -85,10 +82,10 @@ static void mark_maxima(Marks *marks, const Encounter *encounter, size_t joint, 
 }
 
 // Whether a joint touches from a node on that did not from another on.
-static bool is_any_new(const Encounter *encounter, size_t behind, size_t node)
+static bool is_any_new(const Kernel *kernel, size_t behind, size_t node)
 {
-    for (size_t i = 0; i < encounter->joint_count; i++) {
-        if (encounter_touches(encounter, behind, i) && !encounter_touches(encounter, node, i)) {
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        if (kernel_touches(kernel, behind, i) && !kernel_touches(kernel, node, i)) {
             return true;
         }
     }
@@ -96,23 +93,22 @@ static bool is_any_new(const Encounter *encounter, size_t behind, size_t node)
 }
 
 // The maxima in the interval behind a node.
-static void mark_interval(Marks *marks, const Encounter *encounter, size_t node)
+static void mark_interval(Marks *marks, const Kernel *kernel, size_t node)
 {
-    if (!encounter_touches_any(encounter, node)) {
+    if (!kernel_touches_any(kernel, node)) {
         return;
     }
-    for (size_t joint = 0; joint < encounter->joint_count; joint++) {
-        if (encounter_touches(encounter, node, joint)) {
-            mark_maxima(marks, encounter, joint, node);
+    for (size_t joint = 0; joint < kernel->contact_count; joint++) {
+        if (kernel_touches(kernel, node, joint)) {
+            mark_maxima(marks, kernel, joint, node);
         }
     }
 }
 
 // The last of the nodes at one time.
-static size_t last_at_once(const Encounter *encounter, size_t node)
+static size_t last_at_once(const Kernel *kernel, size_t node)
 {
-    while (node + 1 < encounter->node_count &&
-           encounter->times[node + 1] == encounter->times[node]) {
+    while (node + 1 < kernel->node_count && kernel->times[node + 1] == kernel->times[node]) {
         node++;
     }
     return node;
@@ -134,32 +130,32 @@ static void thin(Marks *marks, double alike_s)
     marks->count = kept;
 }
 
-void marks_find(Marks *marks, const Encounter *encounter)
+void marks_find(Marks *marks, const Kernel *kernel)
 {
     marks->count = 0;
     marks->next = 0;
-    const size_t last = encounter->node_count - 1;
+    const size_t last = kernel->node_count - 1;
     for (size_t node = 0; node < last; node++) {
-        const size_t behind = last_at_once(encounter, node);
+        const size_t behind = last_at_once(kernel, node);
         if (behind > node) {
             // contacts end or begin, maybe several: the part before them ends here, and at an onset
             // a damper may press hardest
-            add_mark(marks, encounter->times[node], node > 0 ? node - 1 : node, false);
-            if (is_any_new(encounter, behind, node)) {
-                add_mark(marks, encounter->times[node], behind, false);
+            add_mark(marks, kernel->times[node], node > 0 ? node - 1 : node, false);
+            if (is_any_new(kernel, behind, node)) {
+                add_mark(marks, kernel->times[node], behind, false);
             }
             if (behind == last) {
                 break;
             }
             node = behind;
         }
-        mark_interval(marks, encounter, node);
+        mark_interval(marks, kernel, node);
     }
     // what begins or ends at the very end has done so
-    const bool is_inside = last > 0 && encounter->times[last - 1] < encounter->times[last];
-    add_mark(marks, encounter->times[last], is_inside ? last - 1 : last, false);
+    const bool is_inside = last > 0 && kernel->times[last - 1] < kernel->times[last];
+    add_mark(marks, kernel->times[last], is_inside ? last - 1 : last, false);
     if (marks->count > MARKS_FEW) {
-        thin(marks, ALIKE * (encounter->times[last] - encounter->times[0]));
+        thin(marks, ALIKE * (kernel->times[last] - kernel->times[0]));
     }
 }
 

@@ -2,11 +2,11 @@
 // depths have their maxima, the step ends.
 #pragma once
 
-#include "contact/encounter.h"
+#include "kernel/kernel.h"
 
 typedef struct Mark {
     double time_s; // since the start of the step
-    size_t node;   // of the encounter: the state there is that of the interval behind it
+    size_t node;   // of the kernel: the state there is that of the interval behind it
     bool is_top;   // whether it is there for a maximum alone
 } Mark;
 
@@ -17,7 +17,7 @@ typedef struct Marks {
     Mark *marks; // in order of time; owned
 } Marks;
 
-// Finds the marks of an encounter that has run. The last is the step's end. Of many maxima those
+// Finds the marks of a kernel that has run. The last is the step's end. Of many maxima those
 // that others nearly coincide with have no mark of their own.
-void marks_find(Marks *marks, const Encounter *encounter);
+void marks_find(Marks *marks, const Kernel *kernel);
 void marks_finish(Marks *marks);

@@ -1,7 +1,7 @@
 // Where do the bodies of a joint with play touch in ODE's world, and at which speed?
 #include "ode/pair.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 #include "ode/hole_geom.h"
 #include "ode/snapshot.h"
 #include "world/pressing_row.h"

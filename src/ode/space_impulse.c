@@ -21,7 +21,7 @@ typedef struct SpaceImpulse {
     SpaceMotion *motions; // owned, like the next two
     double *depths;       // m, by place
     bool *are_ends;       // whether a place is one, and no collar
-    EncounterSums sums;   // at the time that is asked for
+    KernelSums sums;      // at the time that is asked for
 } SpaceImpulse;
 
 static void space_impulse_close(void *state)
@@ -31,7 +31,7 @@ static void space_impulse_close(void *state)
         impulse_part_finish(&impulse->part);
         impulse_islands_destroy(impulse->islands);
         space_impulse_step_finish(&impulse->step);
-        encounter_sums_free(&impulse->sums);
+        kernel_sums_free(&impulse->sums);
         space_joints_free(&impulse->joints);
         space_joints_free(&impulse->seen);
         free(impulse->motions);
@@ -56,7 +56,7 @@ static double depth_at(const SpaceImpulse *impulse, size_t place)
 
 // Looks at a scope of the step, and tells how its bodies turn.
 static void look_inside(void *context, const ImpulseScope *scope, ImpulseTime at,
-                        const EncounterSums *sums)
+                        const KernelSums *sums)
 {
     SpaceImpulse *impulse = context;
     space_impulse_step_inside(&impulse->step, scope, at, sums, impulse->motions, &impulse->joints);
@@ -110,9 +110,9 @@ static bool space_impulse_open(const Scenario *scenario, void **state, Err *err)
     SpaceImpulse *impulse = zeroed(1, sizeof *impulse);
     if (space_impulse_step_init(scenario, &impulse->step, err)) {
         const size_t places = impulse->step.place_count;
-        const size_t rows = encounter_rows(&impulse->step.encounter);
+        const size_t rows = kernel_rows(&impulse->step.kernel);
         impulse_part_init(&impulse->part, &scenario->linkage, rows);
-        impulse->sums = encounter_sums(rows);
+        impulse->sums = kernel_sums(rows);
         impulse->joints = space_joints_create(&scenario->linkage);
         impulse->seen = space_joints_create(&scenario->linkage);
         impulse->motions = zeroed(scenario->linkage.body_count, sizeof *impulse->motions);
@@ -139,7 +139,7 @@ static bool check_depths(const SpaceImpulse *impulse, Err *err)
         impulse->islands != NULL ? impulse_islands_scope(impulse->islands) : &step->whole;
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
-        const EncounterJoint *place = &step->encounter.joints[i];
+        const KernelContact *place = &step->kernel.contacts[i];
         if (!law_check_depth(&place->law, &step->scenario->linkage.joints[place->joint],
                              impulse->depths[i], 1.0, err)) {
             return false;
@@ -153,12 +153,12 @@ static void take_part(SpaceImpulse *impulse)
 {
     const SpaceImpulseStep *step = &impulse->step;
     ImpulsePart *part = &impulse->part;
-    const Mark *mark = impulse_part_next(part, &step->encounter, step->start_s, step->end_s);
+    const Mark *mark = impulse_part_next(part, &step->kernel, step->start_s, step->end_s);
     const ImpulseTime at = {mark->time_s, mark->node, !part->is_last};
     look_inside(impulse, &step->whole, at, &part->sums);
     impulse_part_record(part, &step->scenario->linkage, impulse->joints.plane);
     part->record.space_joints = impulse->joints.space;
-    impulse_part_add_contacts(part, &step->encounter, mark, impulse->depths, impulse->are_ends);
+    impulse_part_add_contacts(part, &step->kernel, mark, impulse->depths, impulse->are_ends);
     part->record.drive_work = part->is_last ? step->drive_work : 0.0;
 }
 
@@ -173,7 +173,7 @@ static bool begin_step_of(SpaceImpulse *impulse, Err *err)
     if (impulse->islands != NULL) {
         impulse_islands_begin(impulse->islands, &impulse->part);
     } else {
-        impulse_part_begin(&impulse->part, &step->encounter, step->start_s);
+        impulse_part_begin(&impulse->part, &step->kernel, step->start_s);
     }
     return true;
 }
@@ -210,13 +210,13 @@ static void space_impulse_observe(const void *state, double time_s, Sample *samp
     const Linkage *linkage = &step->scenario->linkage;
     const double since_s = fmin(fmax(time_s - step->start_s, 0.0), step->width_s);
     ImpulseTime at = {since_s, 0, true};
-    EncounterSums sums = impulse->sums; // which owns the arrays
+    KernelSums sums = impulse->sums;    // which owns the arrays
     SpaceJoints joints = impulse->seen; // likewise
     if (step->islands != NULL) {
-        encounter_islands_look(step->islands, since_s, &sums);
+        kernel_islands_look(step->islands, since_s, &sums);
     } else {
-        at.node = encounter_node(&step->encounter, since_s);
-        encounter_at(&step->encounter, at.node, since_s, &sums);
+        at.node = kernel_node(&step->kernel, since_s);
+        kernel_at(&step->kernel, at.node, since_s, &sums);
     }
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
@@ -236,7 +236,7 @@ static SolverModel space_impulse_model(const void *state)
         .constraint_rows = impulse->step.world.constraint_rows,
         .contact_rows = impulse->part.most_rows,
         .steps = impulse->step.count,
-        .evaluations = impulse->step.encounter.evaluations,
+        .evaluations = impulse->step.kernel.evaluations,
     };
     stepping_label(impulse->step.scenario, "staggered", "impulse", model.label);
     return model;

@@ -4,16 +4,16 @@
 
 void space_impulse_step_finish(SpaceImpulseStep *step)
 {
-    encounter_islands_destroy(step->islands);
+    kernel_islands_destroy(step->islands);
     response_groups_finish(&step->groups);
     impulse_scope_finish(&step->whole);
-    encounter_finish(&step->encounter);
+    kernel_finish(&step->kernel);
     space_response_finish(step->response);
     space_response_finish(step->there);
     space_hold_free(step->hold);
     free(step->response);
     free(step->there);
-    encounter_sums_free(&step->total);
+    kernel_sums_free(&step->total);
     world_finish(&step->world);
     void *const arrays[] = {step->places,     step->stops,     step->angles,     step->rows,
                             step->before,     step->after,     step->free,       step->free_rate,
@@ -26,10 +26,10 @@ void space_impulse_step_finish(SpaceImpulseStep *step)
     }
 }
 
-static bool init_encounter(SpaceImpulseStep *step, Err *err)
+static bool init_kernel(SpaceImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
-    step->encounter = encounter_start(scenario->ode.contact_phase);
+    step->kernel = kernel_start(scenario->ode.contact_phase);
     step->places = pin_space_list(scenario, &step->place_count, err);
     if (step->places == NULL) {
         return false;
@@ -45,21 +45,21 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
         const PinSpace *place = &step->places[i];
         const size_t rows = pin_space_row_count(place);
         const Joint *joint = &scenario->linkage.joints[place->joint];
-        const EncounterJoint added = {
+        const KernelContact added = {
             .law = place->law,
             .radial_clearance = place->clearance,
             .hole_radius = joint->clearance.hole_radius,
             .joint = place->joint,
             .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
         };
-        encounter_add(&step->encounter, &added, rows);
+        kernel_add(&step->kernel, &added, rows);
     }
     for (size_t i = 0; i < stop_count; i++) {
         const StopSpace *stop = &step->stops[i];
-        const EncounterJoint added = {.law = stop->law, .shape = TOUCH_LINE, .joint = stop->joint};
-        encounter_add(&step->encounter, &added, PIN_SPACE_PLAIN_ROWS);
+        const KernelContact added = {.law = stop->law, .shape = KERNEL_LINE, .joint = stop->joint};
+        kernel_add(&step->kernel, &added, PIN_SPACE_PLAIN_ROWS);
     }
-    step->total = encounter_sums(encounter_rows(&step->encounter));
+    step->total = kernel_sums(kernel_rows(&step->kernel));
     return true;
 }
 
@@ -67,9 +67,9 @@ static bool init_encounter(SpaceImpulseStep *step, Err *err)
 static void make_room(SpaceImpulseStep *step)
 {
     if (step->place_count > IMPULSE_FEW_PLACES) {
-        const EncounterCoupling coupling = space_impulse_step_coupling(step->response);
-        encounter_make_rows(&step->encounter);
-        step->islands = encounter_islands_create(&step->encounter, &coupling);
+        const KernelCoupling coupling = space_impulse_step_coupling(step->response);
+        kernel_make_rows(&step->kernel);
+        step->islands = kernel_islands_create(&step->kernel, &coupling);
         space_response_groups_init(step->response, &step->groups);
         return;
     }
@@ -77,9 +77,8 @@ static void make_room(SpaceImpulseStep *step)
     for (size_t i = 0; i < step->place_count; i++) {
         places[i] = i;
     }
-    const EncounterCoupling coupling = space_impulse_step_coupling(step->response);
-    encounter_make_room(&step->encounter,
-                        encounter_coupling_reach(&coupling, &step->encounter, places));
+    const KernelCoupling coupling = space_impulse_step_coupling(step->response);
+    kernel_make_room(&step->kernel, kernel_coupling_reach(&coupling, &step->kernel, places));
     free(places);
 }
 
@@ -87,7 +86,7 @@ static void make_arrays(SpaceImpulseStep *step)
 {
     const size_t bodies = step->scenario->linkage.body_count;
     const size_t joints = step->scenario->linkage.joint_count;
-    const size_t rows = encounter_rows(&step->encounter);
+    const size_t rows = kernel_rows(&step->kernel);
     const size_t ideal = SPACE_JOINT_ROWS * joints;
     step->response = zeroed(1, sizeof *step->response);
     step->there = zeroed(1, sizeof *step->there);
@@ -126,7 +125,7 @@ static bool build(SpaceImpulseStep *step, Err *err)
     SpaceResponsePlace *places = zeroed(count, sizeof *places);
     for (size_t i = 0; i < count; i++) {
         places[i] = (SpaceResponsePlace){space_impulse_step_joint(step, i),
-                                         step->encounter.joints[i].row_count};
+                                         step->kernel.contacts[i].row_count};
     }
     const bool is_built =
         space_world_build(scenario, step->after, places, count, &step->world, step->response,
@@ -141,7 +140,7 @@ bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, E
     step->scenario = scenario;
     step->driven = linkage_driven_body(&scenario->linkage);
     step->tick_s = scenario->run.step / (double)scenario->ode.gear;
-    if (!init_encounter(step, err)) {
+    if (!init_kernel(step, err)) {
         return false;
     }
     make_arrays(step);

@@ -31,7 +31,7 @@ static void apply(const SpaceImpulseStep *step, const ImpulseScope *scope, const
 
 // How the bodies move at a time within the step, from the contacts' sums up to then.
 static void find_motions(const SpaceImpulseStep *step, const ImpulseScope *scope, double since_s,
-                         const EncounterSums *sums, SpaceMotion *motions)
+                         const KernelSums *sums, SpaceMotion *motions)
 {
     const Linkage *linkage = &step->scenario->linkage;
     const double share = since_s / step->width_s;
@@ -70,7 +70,7 @@ static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions
         } else {
             pin_space_rows_move(&step->places[i], motions, &moved);
         }
-        memcpy(rows + step->encounter.joints[i].first_row, moved.rows, moved.count * sizeof *rows);
+        memcpy(rows + step->kernel.contacts[i].first_row, moved.rows, moved.count * sizeof *rows);
     }
     return space_response_place(step->there, motions, rows);
 }
@@ -78,7 +78,7 @@ static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions
 // Fills in the accelerations: those beside the contacts', linear in time, and the contacts'. At a
 // peak the response is taken where the bodies are; else, and of an island, at mid-step.
 static void find_accelerations(const SpaceImpulseStep *step, const ImpulseScope *scope,
-                               double since_s, bool is_peak, const EncounterSums *sums,
+                               double since_s, bool is_peak, const KernelSums *sums,
                                SpaceMotion *motions)
 {
     SpaceChange *rates = step->changes[0];
@@ -106,9 +106,9 @@ static Vec3 in_world(const PinSpaceRows *rows, Vec2 a)
     return vec3_add(vec3_scale(a.x, rows->across[0]), vec3_scale(a.y, rows->across[1]));
 }
 
-// The states of the joints with play, from the encounter.
+// The states of the joints with play, from the kernel.
 static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
-                      const EncounterSums *sums, SpaceJoints *joints)
+                      const KernelSums *sums, SpaceJoints *joints)
 {
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
@@ -119,14 +119,14 @@ static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, I
         const PinSpaceRows *rows = &step->rows[i];
         JointState *plane = &joints->plane[place->joint];
         SpaceJointState *space = &joints->space[place->joint];
-        const EncounterPose pose = impulse_scope_pose(&step->encounter, step->islands, i, at, sums);
+        const KernelPose pose = impulse_scope_pose(&step->kernel, step->islands, i, at, sums);
         Vec3 force = in_world(rows, pose.force);
         if (place->place == PIN_SPACE_COLLAR) {
             space_joints_press(joints, place, force, rows->across[0]);
             continue;
         }
         if (rows->count == PIN_SPACE_ROWS) {
-            const double axial = sums->force[step->encounter.joints[i].first_row + 4];
+            const double axial = sums->force[step->kernel.contacts[i].first_row + 4];
             force = vec3_add(force, vec3_scale(axial, rows->axis));
         }
         plane->is_touching = (place->place > 0 && plane->is_touching) || pose.is_touching;
@@ -147,7 +147,7 @@ static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, I
 // The states of limited joints: what presses at their ends, for what holds them beside is not told
 // of them.
 static void find_stops(const SpaceImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
-                       const EncounterSums *sums, SpaceJoints *joints)
+                       const KernelSums *sums, SpaceJoints *joints)
 {
     const Linkage *linkage = &step->scenario->linkage;
     for (size_t n = 0; n < scope->place_count; n++) {
@@ -156,7 +156,7 @@ static void find_stops(const SpaceImpulseStep *step, const ImpulseScope *scope, 
         if (stop == NULL) {
             continue;
         }
-        const EncounterPose pose = impulse_scope_pose(&step->encounter, step->islands, i, at, sums);
+        const KernelPose pose = impulse_scope_pose(&step->kernel, step->islands, i, at, sums);
         JointState *state = &joints->plane[stop->joint];
         if (i == step->pin_count || stop[-1].joint != stop->joint) {
             state->gap = INFINITY;
@@ -173,13 +173,13 @@ static void find_stops(const SpaceImpulseStep *step, const ImpulseScope *scope, 
 
 // How the ideal joints of an island answer what its contacts do beyond their means.
 static void add_answers(const SpaceImpulseStep *step, const ImpulseScope *scope,
-                        const EncounterSums *sums, Vec3 *forces)
+                        const KernelSums *sums, Vec3 *forces)
 {
     const SpaceResponse *response = step->response;
     const ResponseGroups *groups = &step->groups;
     double *beyond = step->play[0];
     for (size_t n = 0; n < scope->part.place_count; n++) {
-        const EncounterJoint *joint = &step->encounter.joints[scope->part.places[n]];
+        const KernelContact *joint = &step->kernel.contacts[scope->part.places[n]];
         for (size_t i = joint->first_row; i < joint->first_row + joint->row_count; i++) {
             beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
         }
@@ -198,7 +198,7 @@ static void add_answers(const SpaceImpulseStep *step, const ImpulseScope *scope,
 }
 
 // The force of the drive: what the ideal joints' answer and the contacts leave to it.
-static void find_drive(const SpaceImpulseStep *step, const EncounterSums *sums,
+static void find_drive(const SpaceImpulseStep *step, const KernelSums *sums,
                        const double *reactions, const SpaceMotion *motions, SpaceJoints *joints)
 {
     SpaceChange *loads = step->changes[0];
@@ -215,7 +215,7 @@ static void find_drive(const SpaceImpulseStep *step, const EncounterSums *sums,
 // The forces of the ideal joints and of the drive: the means of the step, and how the joints answer
 // what the contacts do beyond theirs. That of the drive hangs on all of them.
 static void find_forces(const SpaceImpulseStep *step, const ImpulseScope *scope,
-                        const EncounterSums *sums, const SpaceMotion *motions, SpaceJoints *joints)
+                        const KernelSums *sums, const SpaceMotion *motions, SpaceJoints *joints)
 {
     const Linkage *linkage = &step->scenario->linkage;
     double *beyond = step->play[0];
@@ -224,7 +224,7 @@ static void find_forces(const SpaceImpulseStep *step, const ImpulseScope *scope,
     const bool is_of_all = scope->is_whole || scope->has_drive;
     if (is_of_all) {
         memcpy(forces, step->mean, linkage->joint_count * sizeof *forces);
-        for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+        for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
             beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
         }
         space_response_react(step->response, beyond, reactions);
@@ -246,7 +246,7 @@ static void find_forces(const SpaceImpulseStep *step, const ImpulseScope *scope,
 }
 
 void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope *scope,
-                               ImpulseTime at, const EncounterSums *sums, SpaceMotion *motions,
+                               ImpulseTime at, const KernelSums *sums, SpaceMotion *motions,
                                SpaceJoints *joints)
 {
     find_motions(step, scope, at.since_s, sums, motions);

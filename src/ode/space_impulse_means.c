@@ -42,7 +42,7 @@ static double work_of_stop(const SpaceImpulseStep *step, size_t place)
     const Linkage *linkage = &step->scenario->linkage;
     const StopSpace *stop = space_impulse_step_stop(step, place);
     const Joint *joint = &linkage->joints[stop->joint];
-    const size_t row = step->encounter.joints[place].first_row;
+    const size_t row = step->kernel.contacts[place].first_row;
     if (joint->body_b != step->driven || joint->body_a == LINKAGE_GROUND) {
         return 0.0;
     }
@@ -61,7 +61,7 @@ static double work_beyond(const SpaceImpulseStep *step, size_t place)
     const PinSpaceRows *rows = &step->rows[place];
     double work = 0.0;
     for (size_t k = 0; k < PIN_SPACE_PLAIN_ROWS; k++) {
-        const size_t row = step->encounter.joints[place].first_row + k;
+        const size_t row = step->kernel.contacts[place].first_row + k;
         const SpaceRow *of = &rows->rows[k];
         const double early =
             0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];

@@ -27,9 +27,9 @@ static const double *block_of(const void *context, size_t place, size_t other)
     return space_response_block(context, place, other);
 }
 
-EncounterCoupling space_impulse_step_coupling(const SpaceResponse *response)
+KernelCoupling space_impulse_step_coupling(const SpaceResponse *response)
 {
-    return (EncounterCoupling){
+    return (KernelCoupling){
         .first_partner = response->first_partner,
         .partners = response->partners,
         .block = block_of,
@@ -42,26 +42,26 @@ static void fill_stop(SpaceImpulseStep *step, size_t place)
 {
     const Linkage *linkage = &step->scenario->linkage;
     const StopSpace *stop = space_impulse_step_stop(step, place);
-    const size_t row = step->encounter.joints[place].first_row;
+    const size_t row = step->kernel.contacts[place].first_row;
     double *angle = &step->angles[stop->joint];
     *angle = space_coordinate_near(linkage, step->before, stop->joint, *angle);
     const SpaceRow opening = stop_space_row(stop, linkage, step->before);
-    step->encounter.position[row] = stop_space_gap(stop, *angle);
-    step->encounter.speed[row] = space_row_speed(&opening, step->before);
-    step->encounter.position[row + 1] = step->encounter.speed[row + 1] = 0.0;
+    step->kernel.position[row] = stop_space_gap(stop, *angle);
+    step->kernel.speed[row] = space_row_speed(&opening, step->before);
+    step->kernel.position[row + 1] = step->kernel.speed[row + 1] = 0.0;
 }
 
 // Where the rows of play are at the start of the step, and how fast they go.
 static void fill_rows(SpaceImpulseStep *step)
 {
-    Encounter *encounter = &step->encounter;
+    Kernel *kernel = &step->kernel;
     for (size_t i = step->pin_count; i < step->place_count; i++) {
         fill_stop(step, i);
     }
     for (size_t i = 0; i < step->pin_count; i++) {
-        const size_t row = encounter->joints[i].first_row;
-        pin_space_rows_state(&step->places[i], &step->rows[i], step->before,
-                             encounter->position + row, encounter->speed + row);
+        const size_t row = kernel->contacts[i].first_row;
+        pin_space_rows_state(&step->places[i], &step->rows[i], step->before, kernel->position + row,
+                             kernel->speed + row);
     }
 }
 
@@ -78,7 +78,7 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
         const double moved = width_s * space_row_speed(&opening, step->before);
         const double play = coordinate_play(&linkage->joints[stop->joint]);
         const double limit = isfinite(play) ? NEAR * play : 0.0;
-        if (step->encounter.joints[i].is_touching || gap < limit || gap + moved < limit) {
+        if (step->kernel.contacts[i].is_touching || gap < limit || gap + moved < limit) {
             return true;
         }
     }
@@ -87,7 +87,7 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
         // the speed alone: what it may gain meanwhile is less than the margin
         const double limit = NEAR * step->places[i].clearance;
         const double moved = width_s * pose.approach_speed;
-        if (step->encounter.joints[i].is_touching || pose.gap < limit || pose.gap - moved < limit) {
+        if (step->kernel.contacts[i].is_touching || pose.gap < limit || pose.gap - moved < limit) {
             return true;
         }
     }
@@ -117,12 +117,12 @@ static void find_middle(const SpaceImpulseStep *step, SpaceMotion *middle)
 // Freezes the rows and the linkage's response at mid-step, and finds how fast the rows move freely.
 static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
 {
-    Encounter *encounter = &step->encounter;
+    Kernel *kernel = &step->kernel;
     double *play_drift = step->play[0];
     double *ideal_drift = step->ideal[0];
     SpaceMotion *loose = step->motions;
     for (size_t i = 0; i < step->place_count; i++) {
-        const EncounterJoint *joint = &encounter->joints[i];
+        const KernelContact *joint = &kernel->contacts[i];
         const StopSpace *stop = space_impulse_step_stop(step, i);
         if (stop != NULL) {
             step->rows[i].count = PIN_SPACE_PLAIN_ROWS;
@@ -141,7 +141,7 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
     space_response_loosen(step->response, step->scenario->gravity, loose);
     for (size_t i = 0; i < step->place_count; i++) {
         const StopSpace *stop = space_impulse_step_stop(step, i);
-        double *drift = play_drift + encounter->joints[i].first_row;
+        double *drift = play_drift + kernel->contacts[i].first_row;
         if (stop != NULL) {
             drift[0] = stop_space_drift(stop, &step->scenario->linkage, loose);
             drift[1] = 0.0;
@@ -150,36 +150,36 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
         }
     }
     space_response_drift(step->response, loose, ideal_drift);
-    const EncounterCoupling coupling = space_impulse_step_coupling(step->response);
+    const KernelCoupling coupling = space_impulse_step_coupling(step->response);
     if (step->islands != NULL) {
         // other rows may have been chosen
         step->islands->coupling = coupling;
     } else {
-        encounter_fill(encounter, &coupling, NULL);
+        kernel_fill(kernel, &coupling, NULL);
     }
-    space_response_free(step->response, ideal_drift, play_drift, encounter->free);
+    space_response_free(step->response, ideal_drift, play_drift, kernel->free);
     return true;
 }
 
 // Lets the contacts run through the step by themselves.
-static bool run_encounter(SpaceImpulseStep *step, const SpaceMotion *middle, SpaceChange *pushed,
-                          Err *err)
+static bool run_kernel(SpaceImpulseStep *step, const SpaceMotion *middle, SpaceChange *pushed,
+                       Err *err)
 {
-    Encounter *encounter = &step->encounter;
+    Kernel *kernel = &step->kernel;
     if (!place_linkage(step, middle)) {
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant here: give one joint of the loop some play");
     }
     fill_rows(step);
-    if (!(step->islands != NULL ? encounter_islands_run(step->islands, step->width_s)
-                                : encounter_run(encounter, step->width_s))) {
+    if (!(step->islands != NULL ? kernel_islands_run(step->islands, step->width_s)
+                                : kernel_run(kernel, step->width_s))) {
         return err_set(err, ERR_SOLVER,
                        "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
     }
     if (step->islands != NULL) {
-        encounter_islands_look(step->islands, step->width_s, &step->total);
+        kernel_islands_look(step->islands, step->width_s, &step->total);
     } else {
-        encounter_at(encounter, encounter->node_count - 1, step->width_s, &step->total);
+        kernel_at(kernel, kernel->node_count - 1, step->width_s, &step->total);
     }
     space_response_apply(step->response, step->total.impulse, pushed);
     return true;
@@ -267,7 +267,7 @@ static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
     SpaceChange *positions = step->changes[1];
     // when in the step the impulse came
     double *late = step->play[0];
-    for (size_t i = 0; i < encounter_rows(&step->encounter); i++) {
+    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
         late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
     }
     space_response_apply(step->response, late, positions);
@@ -350,7 +350,7 @@ bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
     SpaceChange *pushed = step->changes[0]; // what the contacts change of the speeds
     begin_step(step);
     find_middle(step, middle);
-    if (!run_encounter(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {
+    if (!run_kernel(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {
         return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
     }
     find_end(step, middle);

@@ -2,9 +2,9 @@
 // it: ode/impulse_step.h in space.
 #pragma once
 
-#include "contact/encounter_islands.h"
 #include "contact/pin_space_rows.h"
 #include "contact/stop_space.h"
+#include "kernel/kernel.h"
 #include "model/space_response_groups.h"
 #include "ode/impulse_scope.h"
 #include "ode/space_joints.h"
@@ -15,11 +15,11 @@ enum { SPACE_IMPULSE_ROOMS = 3 };
 typedef struct SpaceImpulseStep {
     const Scenario *scenario;
     World world;
-    SpaceResponse *response;   // at mid-step; owned
-    SpaceResponse *there;      // at whatever time is looked at; owned
-    Encounter encounter;       // a joint of it is a place
-    EncounterIslands *islands; // of the encounter's places; NULL where they are few
-    ResponseGroups groups;     // where there are islands
+    SpaceResponse *response; // at mid-step; owned
+    SpaceResponse *there;    // at whatever time is looked at; owned
+    Kernel kernel;           // a joint of it is a place
+    KernelIslands *islands;  // of the kernel's places; NULL where they are few
+    ResponseGroups groups;   // where there are islands
     ImpulseScope whole;
     size_t place_count;
     size_t pin_count; // of them the first, which are of pins; the others are stops
@@ -43,7 +43,7 @@ typedef struct SpaceImpulseStep {
     SpaceMotion *middle;    // at mid-step, with the speeds of the start
     double drive_work;      // J, in the whole step
     SpaceHold *hold;        // owned; NULL where the ideal joints are rows of ODE
-    EncounterSums total;    // of the contacts, in the whole step
+    KernelSums total;       // of the contacts, in the whole step
     double *closing;        // N s, of the ideal rows, beside the step of the world
     Vec3 *mean;             // N, by joint: mean forces of the ideal ones on bodies b
     SpaceChange on_driven;  // N, N m: mean of what they do to the driven body
@@ -70,7 +70,7 @@ void space_impulse_step_finish(SpaceImpulseStep *step);
 // The joint that a place is of.
 static inline int space_impulse_step_joint(const SpaceImpulseStep *step, size_t place)
 {
-    return step->encounter.joints[place].joint;
+    return step->kernel.contacts[place].joint;
 }
 
 // The stop that a place is; NULL of a pin's.
@@ -80,7 +80,7 @@ static inline const StopSpace *space_impulse_step_stop(const SpaceImpulseStep *s
 }
 
 // How the places of a response move each other.
-EncounterCoupling space_impulse_step_coupling(const SpaceResponse *response);
+KernelCoupling space_impulse_step_coupling(const SpaceResponse *response);
 
 // Takes the next step: all but its mean forces and the work of the drive, which
 // ode/space_impulse_means.h finds.
@@ -89,5 +89,5 @@ bool space_impulse_step_take(SpaceImpulseStep *step, Err *err);
 // How the bodies of a scope move and what its joints do at a time within the step, from the
 // contacts' sums up to then.
 void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope *scope,
-                               ImpulseTime at, const EncounterSums *sums, SpaceMotion *motions,
+                               ImpulseTime at, const KernelSums *sums, SpaceMotion *motions,
                                SpaceJoints *joints);

@@ -7,8 +7,8 @@
 // the base, s.
 #pragma once
 
-#include "contact/force_law.h"
 #include "contact/pin_space.h"
+#include "kernel/force_law.h"
 #include "model/trajectory.h"
 #include "reference/integrators.h"
 

@@ -20,7 +20,7 @@ static const double EVALUATIONS_LEAST = 100.0;
 // of the rate of a row, in pairs of rows
 static const double RATE_WORK = 30.0;
 
-enum { BODY_NUMBERS = 6, INSIDE_ROWS = 4 /* of the encounter, at most, to one here */ };
+enum { BODY_NUMBERS = 6, INSIDE_ROWS = 4 /* of the kernel, at most, to one here */ };
 
 static void count(const JpWorld *world, Answer *answer)
 {
@@ -71,7 +71,7 @@ static bool make_room(Answer *answer)
 void answer_free(Answer *answer)
 {
     free(answer->memory);
-    encounter_sums_free(&answer->sums);
+    kernel_sums_free(&answer->sums);
     closing_free(&answer->closing);
     *answer = (Answer){0};
 }

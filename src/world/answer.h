@@ -25,22 +25,22 @@ typedef struct Answer {
     size_t row_count;
     AnswerPlace *places; // all, in the world's order
     const Direction **rows;
-    double *frozen;     // rates with the velocities of the step's start
-    double *base;       // after the base
-    double *found;      // after the step
-    double *pushed;     // impulses of the base
-    double *net;        // impulses of the contacts in the step
-    double *moment;     // integrals of the impulses so far over the step
-    double *rotors;     // 1/kg or 1/(kg m^2): mobility of the rotor, 0 where there is none
-    double *free;       // accelerations while nothing presses, less those of rotors
-    double *columns;    // by row: rates of all rows for an impulse of 1 in it
-    double *bodies;     // by row: speeds of all bodies for an impulse of 1 in it
-    double *speeds;     // of all bodies after the base
-    size_t *inside;     // of rows of the encounter: which row it is, and 1; 0 of one that is still
-    double *signs;      // likewise
-    void *memory;       // owned, of all of the above
-    EncounterSums sums; // owned: of the encounter, at a time within the step
-    Closing closing;    // owned, of a linear world
+    double *frozen;  // rates with the velocities of the step's start
+    double *base;    // after the base
+    double *found;   // after the step
+    double *pushed;  // impulses of the base
+    double *net;     // impulses of the contacts in the step
+    double *moment;  // integrals of the impulses so far over the step
+    double *rotors;  // 1/kg or 1/(kg m^2): mobility of the rotor, 0 where there is none
+    double *free;    // accelerations while nothing presses, less those of rotors
+    double *columns; // by row: rates of all rows for an impulse of 1 in it
+    double *bodies;  // by row: speeds of all bodies for an impulse of 1 in it
+    double *speeds;  // of all bodies after the base
+    size_t *inside;  // of rows of the kernel: which row it is, and 1; 0 of one that is still
+    double *signs;   // likewise
+    void *memory;    // owned, of all of the above
+    KernelSums sums; // owned: of the kernel, at a time within the step
+    Closing closing; // owned, of a linear world
 } Answer;
 
 // Lists the places and rows of a step, with their rates as they are; false where there is no

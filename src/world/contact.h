@@ -1,7 +1,7 @@
 // A caller's contact as the laws of contact/ know it.
 #pragma once
 
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 #include "world/refusal.h"
 
 // Fails as jp_contact_check does.

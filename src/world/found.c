@@ -75,7 +75,7 @@ void found_put_back(JpWorld *world, Answer *answer)
     world->settling = NULL;
     recall_free(world->recall);
     world->recall = NULL;
-    if (world->encounter != NULL) {
-        encounter_finish(world->encounter);
+    if (world->kernel != NULL) {
+        kernel_finish(world->kernel);
     }
 }

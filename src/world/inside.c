@@ -1,6 +1,6 @@
 // What do the contacts of joints with play do within a step of the world?
 //
-// An active place is one joint of an encounter (contact/encounter.h), or two: each side of a line
+// An active place is one joint of a kernel (kernel/kernel.h), or two: each side of a line
 // meets a line of its own, whose gap is s (q - limit), s the side's sign, so that what acts in it
 // acts in the place's row times s. The mobility between rows is what the trials gave, and of a line
 // with a rotor of inertia J another s s' / J.
@@ -11,8 +11,7 @@
 #include "world/inside.h"
 
 #include "base/memory.h"
-#include "contact/encounter_force.h"
-#include "contact/encounter_quintic.h"
+#include "kernel/internal.h"
 #include "world/coarse.h"
 #include "world/joints.h"
 
@@ -42,7 +41,7 @@ static bool has_side(const Place *place, size_t side)
 
 static size_t rows_of_side(const Place *place)
 {
-    return place->shape == PLACE_LINE ? ENCOUNTER_ROWS_PLAIN : place->row_count;
+    return place->shape == PLACE_LINE ? KERNEL_ROWS_PLAIN : place->row_count;
 }
 
 // Calls a function for the active sides, in order, until it says no.
@@ -62,19 +61,19 @@ static bool visit_sides(Answer *answer, SideVisit visit)
     return true;
 }
 
-// Whether a side is of the same form as a joint of the encounter.
+// Whether a side is of the same form as a joint of the kernel.
 static bool is_laid_out(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
 {
     (void)side;
-    const Encounter *encounter = answer->world->encounter;
-    return number < encounter->joint_count &&
-           encounter->joints[number].row_count == rows_of_side(of->place);
+    const Kernel *kernel = answer->world->kernel;
+    return number < kernel->contact_count &&
+           kernel->contacts[number].row_count == rows_of_side(of->place);
 }
 
 static bool lay_out(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
 {
     (void)number;
-    encounter_add(answer->world->encounter, &of->place->inside[side], rows_of_side(of->place));
+    kernel_add(answer->world->kernel, &of->place->inside[side], rows_of_side(of->place));
     return true;
 }
 
@@ -86,28 +85,28 @@ static bool count_side(Answer *answer, const AnswerPlace *of, size_t side, size_
     return true;
 }
 
-// The world's encounter with a joint for each active side. What it keeps is laid out by its rows.
-static Encounter *make_encounter(Answer *answer)
+// The world's kernel with a joint for each active side. What it keeps is laid out by its rows.
+static Kernel *make_kernel(Answer *answer)
 {
     JpWorld *world = answer->world;
-    if (world->encounter == NULL) {
-        world->encounter = memory_zeroed(1, sizeof *world->encounter);
+    if (world->kernel == NULL) {
+        world->kernel = memory_zeroed(1, sizeof *world->kernel);
     }
-    Encounter *encounter = world->encounter;
+    Kernel *kernel = world->kernel;
     visit_sides(answer, count_side);
-    if (encounter->joint_count != answer->side_count || !visit_sides(answer, is_laid_out)) {
-        encounter_finish(encounter);
-        *encounter = encounter_start(LOCAL_PHASE);
+    if (kernel->contact_count != answer->side_count || !visit_sides(answer, is_laid_out)) {
+        kernel_finish(kernel);
+        *kernel = kernel_start(LOCAL_PHASE);
         visit_sides(answer, lay_out);
-        encounter_make_room(encounter, encounter->row_count);
+        kernel_make_room(kernel, kernel->row_count);
     }
-    return encounter;
+    return kernel;
 }
 
 // Fills in the rows of a side, of which a line's second moves nothing.
 static void fill_rows(Answer *answer, const AnswerPlace *of, size_t number, size_t first)
 {
-    Encounter *encounter = answer->world->encounter;
+    Kernel *kernel = answer->world->kernel;
     const Place *place = of->place;
     const Side *side = &place->sides[number];
     const bool is_line = place->shape == PLACE_LINE;
@@ -115,31 +114,31 @@ static void fill_rows(Answer *answer, const AnswerPlace *of, size_t number, size
         const size_t row = first + own;
         if (is_line && own > 0) {
             answer->inside[row] = 0;
-            encounter->position[row] = encounter->speed[row] = encounter->free[row] = 0.0;
+            kernel->position[row] = kernel->speed[row] = kernel->free[row] = 0.0;
             continue;
         }
         const double sign = is_line ? side->sign : 1.0;
         answer->inside[row] = of->first_row + own + 1;
         answer->signs[row] = sign;
-        encounter->speed[row] = sign * place->start_rate[own];
-        encounter->free[row] = sign * answer->free[of->first_row + own];
-        encounter->position[row] = is_line                  ? side_gap(side, place->start[0])
-                                   : own < PLACE_ROWS_PLANE ? place->start[own]
-                                                            : 0.0;
+        kernel->speed[row] = sign * place->start_rate[own];
+        kernel->free[row] = sign * answer->free[of->first_row + own];
+        kernel->position[row] = is_line                  ? side_gap(side, place->start[0])
+                                : own < PLACE_ROWS_PLANE ? place->start[own]
+                                                         : 0.0;
     }
 }
 
 // Fills in one side, as the step before left it.
 static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
 {
-    EncounterJoint *joint = &answer->world->encounter->joints[number];
-    const EncounterJoint laid_out = *joint;
+    KernelContact *joint = &answer->world->kernel->contacts[number];
+    const KernelContact laid_out = *joint;
     const Place *place = of->place;
     const Side *from = &place->sides[side];
     *joint = place->inside[side];
     joint->law = force_law_with_friction(from->law, place->friction,
                                          place->friction > 0.0 ? place->friction_speed : 1.0);
-    joint->shape = place->shape == PLACE_LINE ? TOUCH_LINE : TOUCH_HOLE;
+    joint->shape = place->shape == PLACE_LINE ? KERNEL_LINE : KERNEL_HOLE;
     joint->radial_clearance = place->clearance;
     joint->hole_radius = place->hole_radius;
     joint->has_friction = place->friction > 0.0;
@@ -156,7 +155,7 @@ static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t
     return true;
 }
 
-// The mobility between two rows of the encounter.
+// The mobility between two rows of the kernel.
 static double mobility_between(const Answer *answer, size_t i, size_t k)
 {
     const size_t n = answer->row_count;
@@ -173,23 +172,23 @@ static double mobility_between(const Answer *answer, size_t i, size_t k)
 
 static void fill_mobility(Answer *answer)
 {
-    Encounter *encounter = answer->world->encounter;
-    for (size_t i = 0; i < encounter->row_count; i++) {
-        for (size_t k = 0; k < encounter->row_count; k++) {
-            *encounter_mobility(encounter, i, k) = mobility_between(answer, i, k);
+    Kernel *kernel = answer->world->kernel;
+    for (size_t i = 0; i < kernel->row_count; i++) {
+        for (size_t k = 0; k < kernel->row_count; k++) {
+            *kernel_mobility(kernel, i, k) = mobility_between(answer, i, k);
         }
     }
 }
 
-// Sums what the encounter's rows did by row here.
+// Sums what the kernel's rows did by row here.
 static void add_totals(Answer *answer, double step)
 {
-    const Encounter *encounter = answer->world->encounter;
-    const EncounterSums *total = &answer->sums;
-    encounter_at(encounter, encounter->node_count - 1, step, &answer->sums);
+    const Kernel *kernel = answer->world->kernel;
+    const KernelSums *total = &answer->sums;
+    kernel_at(kernel, kernel->node_count - 1, step, &answer->sums);
     memset(answer->net, 0, answer->row_count * sizeof(double));
     memset(answer->moment, 0, answer->row_count * sizeof(double));
-    for (size_t i = 0; i < encounter->row_count; i++) {
+    for (size_t i = 0; i < kernel->row_count; i++) {
         if (answer->inside[i] > 0) {
             answer->net[answer->inside[i] - 1] += answer->signs[i] * total->impulse[i];
             answer->moment[answer->inside[i] - 1] += answer->signs[i] * total->moment[i];
@@ -209,32 +208,31 @@ static bool are_in_range(const double *numbers, size_t count)
     return sum <= LARGEST_NUMBER;
 }
 
-static bool is_in_range(const Encounter *encounter)
+static bool is_in_range(const Kernel *kernel)
 {
-    const size_t rows = encounter->row_count;
-    return are_in_range(encounter->position, rows) && are_in_range(encounter->speed, rows) &&
-           are_in_range(encounter->free, rows) && are_in_range(encounter->mobility, rows * rows);
+    const size_t rows = kernel->row_count;
+    return are_in_range(kernel->position, rows) && are_in_range(kernel->speed, rows) &&
+           are_in_range(kernel->free, rows) && are_in_range(kernel->mobility, rows * rows);
 }
 
 // Of a side between two nodes and a row: read at some instants, with searches now and then.
 static const double READING_WORK = 80.0;
 
-// What needs memory: all of it belongs to the world's encounter or to the answer.
+// What needs memory: all of it belongs to the world's kernel or to the answer.
 static bool run(Answer *answer, double step)
 {
-    Encounter *encounter = make_encounter(answer);
+    Kernel *kernel = make_kernel(answer);
     visit_sides(answer, fill_side);
     fill_mobility(answer);
-    encounter_sums_free(&answer->sums);
-    answer->sums = encounter_sums(encounter->row_count);
+    kernel_sums_free(&answer->sums);
+    answer->sums = kernel_sums(kernel->row_count);
     JpWorld *world = answer->world;
-    encounter->work_done = 0.0;
-    encounter->work_most = world->work_most - world->work;
-    bool is_done =
-        encounter->work_most > 0.0 && is_in_range(encounter) && encounter_run(encounter, step);
-    const double reading = READING_WORK * (double)encounter->node_count *
-                           (double)encounter->joint_count * (double)encounter->row_count;
-    world->work += encounter->work_done;
+    kernel->work_done = 0.0;
+    kernel->work_most = world->work_most - world->work;
+    bool is_done = kernel->work_most > 0.0 && is_in_range(kernel) && kernel_run(kernel, step);
+    const double reading = READING_WORK * (double)kernel->node_count *
+                           (double)kernel->contact_count * (double)kernel->row_count;
+    world->work += kernel->work_done;
     is_done = is_done && world->work + reading <= world->work_most;
     if (is_done) {
         add_totals(answer, step);
@@ -245,8 +243,8 @@ static bool run(Answer *answer, double step)
 // What was under way is of no use, and the next step begins anew.
 static JpStatus forget(JpWorld *world, JpError *error)
 {
-    if (world->encounter != NULL) {
-        encounter_finish(world->encounter);
+    if (world->kernel != NULL) {
+        kernel_finish(world->kernel);
     }
     return refusal(error, JP_ERROR_MEMORY, "there is no memory for the contacts of a step");
 }
@@ -275,8 +273,8 @@ typedef struct Instant {
 
 // A side while what happened to it in the step is read.
 typedef struct Reading {
-    const Encounter *encounter;
-    EncounterSums *sums;
+    const Kernel *kernel;
+    KernelSums *sums;
     size_t number; // of its joint there
     Side *side;
     double impulse;
@@ -286,13 +284,13 @@ typedef struct Reading {
 // What friction takes: what all rows take less what the normal does.
 static double slipping_power(const Reading *reading, double time, double normal)
 {
-    const EncounterJoint *joint = &reading->encounter->joints[reading->number];
+    const KernelContact *joint = &reading->kernel->contacts[reading->number];
     double power = 0.0;
     for (size_t i = 0; joint->has_friction && i < joint->row_count; i++) {
         const size_t row = joint->first_row + i;
-        power += reading->sums->force[row] * encounter_motion_speed(reading->encounter, row, time,
-                                                                    reading->sums->impulse,
-                                                                    reading->sums->moment);
+        power += reading->sums->force[row] * kernel_motion_speed(reading->kernel, row, time,
+                                                                 reading->sums->impulse,
+                                                                 reading->sums->moment);
     }
     return joint->has_friction ? normal - power : 0.0;
 }
@@ -302,9 +300,9 @@ static double slipping_power(const Reading *reading, double time, double normal)
 static Instant read_at(Reading *reading, size_t node, double time)
 {
     Side *side = reading->side;
-    encounter_at(reading->encounter, node, time, reading->sums);
+    kernel_at(reading->kernel, node, time, reading->sums);
     const PinHole pose =
-        encounter_pose(reading->encounter, reading->number, node, time, reading->sums).pose;
+        kernel_pose(reading->kernel, reading->number, node, time, reading->sums).pose;
     side->inside = fmax(pose.penetration, 0.0);
     Instant at = {.time = time, .closing = pose.approach_speed};
     at.force =
@@ -383,10 +381,10 @@ static void read_interval(Reading *reading, size_t node)
     static const double SHARES[READ_COUNT] = {0.0, 0.27639320225002103, 0.72360679774997897, 1.0};
     static const double WEIGHTS[READ_COUNT] = {1.0 / 12.0, 5.0 / 12.0, 5.0 / 12.0, 1.0 / 12.0};
     static const double ENDS[READ_COUNT] = {0.5, 0.0, 0.0, 0.5};
-    const Encounter *encounter = reading->encounter;
-    const double start = encounter->times[node];
-    const double width = encounter->times[node + 1] - start;
-    const bool is_short = width < ENCOUNTER_NARROW * encounter->times[encounter->node_count - 1];
+    const Kernel *kernel = reading->kernel;
+    const double start = kernel->times[node];
+    const double width = kernel->times[node + 1] - start;
+    const bool is_short = width < KERNEL_LINEAR_WIDTH * kernel->times[kernel->node_count - 1];
     const double *weights = is_short ? ENDS : WEIGHTS;
     Instant at[READ_COUNT];
     double work = 0.0;
@@ -408,38 +406,37 @@ static void read_interval(Reading *reading, size_t node)
 
 static void read_side(Reading *reading)
 {
-    const Encounter *encounter = reading->encounter;
+    const Kernel *kernel = reading->kernel;
     Side *side = reading->side;
-    for (size_t node = 0; node < encounter->node_count; node++) {
-        const double start = encounter->times[node];
+    for (size_t node = 0; node < kernel->node_count; node++) {
+        const double start = kernel->times[node];
         const bool was_touching = side->is_touching;
-        side->is_touching = encounter_touches(encounter, node, reading->number);
+        side->is_touching = kernel_touches(kernel, node, reading->number);
         if (side->is_touching && !was_touching) {
             // the very speed by which the contact was damped
-            side_begin(side, encounter->closings[node * encounter->joint_count + reading->number]);
+            side_begin(side, kernel->closings[node * kernel->contact_count + reading->number]);
         }
-        if (side->is_touching && node + 1 < encounter->node_count &&
-            encounter->times[node + 1] > start) {
+        if (side->is_touching && node + 1 < kernel->node_count && kernel->times[node + 1] > start) {
             read_interval(reading, node);
         }
     }
 }
 
-// A side of a place, from its joint in the encounter.
+// A side of a place, from its joint in the kernel.
 static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size_t joint)
 {
-    const Encounter *encounter = answer->world->encounter;
+    const Kernel *kernel = answer->world->kernel;
     Side *side = &of->place->sides[number];
-    EncounterSums *sums = &answer->sums;
-    Reading reading = {.encounter = encounter, .sums = sums, .number = joint, .side = side};
-    of->place->inside[number] = encounter->joints[joint];
+    KernelSums *sums = &answer->sums;
+    Reading reading = {.kernel = kernel, .sums = sums, .number = joint, .side = side};
+    of->place->inside[number] = kernel->contacts[joint];
     side->step_force = 0.0;
     read_side(&reading);
     if (of->place->shape == PLACE_LINE) {
         // to rounding
-        const double end = encounter->times[encounter->node_count - 1];
-        encounter_at(encounter, encounter->node_count - 1, end, sums);
-        reading.impulse = sums->impulse[encounter->joints[joint].first_row];
+        const double end = kernel->times[kernel->node_count - 1];
+        kernel_at(kernel, kernel->node_count - 1, end, sums);
+        reading.impulse = sums->impulse[kernel->contacts[joint].first_row];
     }
     of->place->slid += reading.slid;
     side->impulse += reading.impulse;
@@ -477,11 +474,11 @@ static Vec3 axis_of_row(const Direction *row)
 static void find_drift(const Answer *answer, const AnswerPlace *of, size_t number, double end,
                        double drift[2])
 {
-    const Encounter *encounter = answer->world->encounter;
+    const Kernel *kernel = answer->world->kernel;
     const Place *place = of->place;
-    const size_t row = encounter->joints[number].first_row;
+    const size_t row = kernel->contacts[number].first_row;
     const PinHole pose =
-        encounter_pose(encounter, number, encounter->node_count - 1, end, &answer->sums).pose;
+        kernel_pose(kernel, number, kernel->node_count - 1, end, &answer->sums).pose;
     double at[2];
     double rate[2];
     joints_now(of->joint, place, at, rate);
@@ -491,11 +488,11 @@ static void find_drift(const Answer *answer, const AnswerPlace *of, size_t numbe
         const double before =
             is_line ? place->line_before : vec3_dot(axis_of_row(&place->rows[i]), place->offset);
         const double moved =
-            is_line ? answer->signs[row] * (-pose.penetration - encounter->position[row])
+            is_line ? answer->signs[row] * (-pose.penetration - kernel->position[row])
                     : (i == 0 ? pose.eccentricity.x : pose.eccentricity.y) - place->start[i];
-        const double speed = answer->signs[row + i] *
-                             encounter_motion_speed(encounter, row + i, end, answer->sums.impulse,
-                                                    answer->sums.moment);
+        const double speed =
+            answer->signs[row + i] *
+            kernel_motion_speed(kernel, row + i, end, answer->sums.impulse, answer->sums.moment);
         drift[0] = hypot(drift[0], at[i] - before - moved);
         drift[1] = hypot(drift[1], rate[i] - speed);
     }
@@ -504,16 +501,16 @@ static void find_drift(const Answer *answer, const AnswerPlace *of, size_t numbe
 static bool judge_side(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
 {
     JpWorld *world = answer->world;
-    const Encounter *encounter = world->encounter;
-    const EncounterJoint *joint = &encounter->joints[number];
+    const Kernel *kernel = world->kernel;
+    const KernelContact *joint = &kernel->contacts[number];
     const Side *judged = &of->place->sides[side];
     if (judged->step_force == 0.0) {
         return true;
     }
-    const size_t last = encounter->node_count - 1;
-    const double end = encounter->times[last];
+    const size_t last = kernel->node_count - 1;
+    const double end = kernel->times[last];
     double drift[2];
-    encounter_at(encounter, last, end, &answer->sums);
+    kernel_at(kernel, last, end, &answer->sums);
     find_drift(answer, of, number, end, drift);
     const double slope =
         judged->is_touching ? force_law_tangent(&judged->law, judged->inside) : 0.0;

@@ -137,7 +137,7 @@ static void add_turn(const JpJoint *joint, int body, Vec3 axis, Place *place)
     place->rows[place->row_count++] = row;
 }
 
-// The rows in which friction acts besides, in the order of contact/encounter_force.h.
+// The rows in which friction acts besides, in the order of kernel/force.c.
 static void find_friction_rows(const JpJoint *joint, const End *end, const Vec3 across[2],
                                Place *place)
 {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/vec3.h"
-#include "contact/encounter.h"
+#include "kernel/kernel.h"
 #include "world/direction.h"
 #include "world/side.h"
 
@@ -29,13 +29,13 @@ typedef struct PlaceRow {
 
 typedef struct Place {
     PlaceShape shape;
-    double clearance;                  // m, of a hole
-    double hole_radius;                // m, of a hole
-    double friction;                   // 1, likewise: mu N tanh(v / v_s) against the sliding
-    double friction_speed;             // m/s, v_s
-    double slid;                       // J, lost in that
-    Side sides[SIDE_COUNT];            // the position of a hole's is the gap
-    EncounterJoint inside[SIDE_COUNT]; // as steps with contacts inside them left it
+    double clearance;                 // m, of a hole
+    double hole_radius;               // m, of a hole
+    double friction;                  // 1, likewise: mu N tanh(v / v_s) against the sliding
+    double friction_speed;            // m/s, v_s
+    double slid;                      // J, lost in that
+    Side sides[SIDE_COUNT];           // the position of a hole's is the gap
+    KernelContact inside[SIDE_COUNT]; // as steps with contacts inside them left it
     PlaceRow row;
     // of the step under way
     double position; // where the step evaluates forces: of a line, less the rotor's, or the gap
@@ -50,7 +50,7 @@ typedef struct Place {
     Direction slide[2];       // at the wall, of a hole with friction: round it, and along the axis
     double sliding_before[2]; // m/s, before a step with a row
     bool slides_along;        // whether friction acts along the axis, too
-    // where contacts are integrated within the step, as contact/encounter.h has them
+    // where contacts are integrated within the step, as kernel/kernel.h has them
     size_t row_count;
     Direction rows[PLACE_ROWS_MOST];
     double start[PLACE_ROWS_PLANE];     // where these are at the step's start, m or rad

@@ -42,7 +42,7 @@ typedef struct JointFound {
     double last; // rad, of the coordinate
     struct {
         Side sides[SIDE_COUNT];
-        EncounterJoint inside[SIDE_COUNT];
+        KernelContact inside[SIDE_COUNT];
         double slid;
     } places[PLACES_MOST];
 } JointFound;
@@ -88,7 +88,7 @@ struct JpWorld {
     JpJoint *joints;
     dJointGroupID rows;     // contacts of the step under way
     dJointGroupID contacts; // of the geoms of the caller's space, likewise
-    Encounter *encounter;   // owned, NULL before the first
+    Kernel *kernel;         // owned, NULL before the first
     RecallPause pause;
     struct Recall *recall; // owned, NULL before the first (world/recall.h)
     JpWorldStats stats;

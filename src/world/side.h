@@ -1,10 +1,10 @@
 // One side of a joint with play: where it touches, how hard, and what came of it since it was made.
 #pragma once
 
-#include "contact/force_law.h"
 #include "contact/law_row.h"
 #include "contact/overlap.h"
 #include "contact/tops.h"
+#include "kernel/force_law.h"
 
 #include <stdbool.h>
 #include <stddef.h>

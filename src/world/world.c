@@ -58,10 +58,10 @@ void jp_world_destroy(JpWorld *world)
     dJointGroupDestroy(world->contacts);
     bodies_finish(&world->bodies);
     recall_free(world->recall);
-    if (world->encounter != NULL) {
-        encounter_finish(world->encounter);
+    if (world->kernel != NULL) {
+        kernel_finish(world->kernel);
     }
-    free(world->encounter);
+    free(world->kernel);
     threads_end(world);
     fault_release();
     free(world);

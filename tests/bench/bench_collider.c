@@ -4,7 +4,7 @@
 // is each against the geometry, from the same run.
 #include "base/clock.h"
 #include "base/sorted.h"
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 #include "ode/engine.h"
 #include "ode/hole_geom.h"
 

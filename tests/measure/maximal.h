@@ -4,7 +4,7 @@
 // of a linkage, the places where bodies touch and the force laws are those of the program.
 #pragma once
 
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 #include "model/trajectory.h"
 
 typedef long double Real;

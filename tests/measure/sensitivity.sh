@@ -94,7 +94,7 @@ build
 expect 0 "the sources as they are"
 
 echo "# faults in the sources"
-fault "stiffness off by 1 %" src/contact/force_law.c \
+fault "stiffness off by 1 %" src/kernel/force_law.c \
     's/^        \.stiffness = stiffness,/        .stiffness = 1.01 * stiffness,/'
 fault "restitution off by 0.01" src/contact/damping.c \
     's/factor(restitution);/factor(restitution - 0.01);/'

@@ -6,9 +6,9 @@
 
 #include "one_impact.h"
 
-#include "contact/force_law.h"
 #include "contact/law.h"
 #include "kept.h"
+#include "kernel/force_law.h"
 
 // Speed after one impact over the speed before, the mean over where the steps fall.
 static double delivered(const Scenario *scenario, double steps_a_contact)

@@ -18,23 +18,23 @@ static ForceLaw sticking(double restitution)
 static const double BESIDE = 1e-13; // m, next to nothing
 
 // The pin at rest beside its wall.
-static Encounter resting(double restitution)
+static Kernel resting(double restitution)
 {
-    Encounter pin = lone_pin(sticking(restitution), LONE_PIN_PHASE);
+    Kernel pin = lone_pin(sticking(restitution), LONE_PIN_PHASE);
     pin.position[0] = ONE_IMPACT_CLEARANCE - BESIDE;
     pin.speed[0] = 0.0;
     pin.free[0] = WEIGHT;
     return pin;
 }
 
-static double depth_at_end(const Encounter *pin)
+static double depth_at_end(const Kernel *pin)
 {
     const size_t last = pin->node_count - 1;
     return pin_pose_at(pin, 0, last, pin->times[last]).pose.penetration;
 }
 
 // Contacts that begin, of the only joint.
-static size_t count_contacts(const Encounter *pin)
+static size_t count_contacts(const Kernel *pin)
 {
     size_t count = 0;
     for (size_t node = 1; node < pin->node_count; node++) {
@@ -44,7 +44,7 @@ static size_t count_contacts(const Encounter *pin)
 }
 
 // How far a weight's depth after a time is from its closed form, relative.
-static double sinking_error(const Encounter *pin, double restitution, double duration_s)
+static double sinking_error(const Kernel *pin, double restitution, double duration_s)
 {
     const double at_rest = pow(ONE_IMPACT_MASS * WEIGHT / ONE_IMPACT_HERTZ, 1.0 / 1.5);
     const double rate = 1e-3 / damping_factor(DAMPING_FLORES, restitution);
@@ -57,20 +57,20 @@ static void a_weight_sinks_into_its_damper(void **state)
     (void)state;
     for (int digits = 6; digits <= 12; digits += 3) {
         const double restitution = pow(10.0, -digits);
-        Encounter pin = resting(restitution);
-        assert_true(encounter_run(&pin, 0.1));
+        Kernel pin = resting(restitution);
+        assert_true(kernel_run(&pin, 0.1));
         assert_true(sinking_error(&pin, restitution, 0.1) < 1e-5);
-        assert_true(pin.joints[0].is_touching);
+        assert_true(pin.contacts[0].is_touching);
         assert_true(pin.node_count < 400);
         assert_close(lone_pin_end(&pin).force[0], -ONE_IMPACT_MASS * WEIGHT, 1e-5);
-        encounter_finish(&pin);
+        kernel_finish(&pin);
     }
     // control: explicit steps throw the weight off the wall again and again, or are too many
-    Encounter pin = resting(1e-9);
+    Kernel pin = resting(1e-9);
     pin.stable = INFINITY;
-    assert_true(!encounter_run(&pin, 1e-3) || count_contacts(&pin) > 10 ||
+    assert_true(!kernel_run(&pin, 1e-3) || count_contacts(&pin) > 10 ||
                 sinking_error(&pin, 1e-9, 1e-3) > 0.1);
-    encounter_finish(&pin);
+    kernel_finish(&pin);
 }
 
 static void next_to_no_restitution_is_delivered(void **state)
@@ -81,11 +81,11 @@ static void next_to_no_restitution_is_delivered(void **state)
         const double chi = damping_factor(DAMPING_FLORES, asked);
         const double depth =
             damping_depth_max(ONE_IMPACT_HERTZ, 1.5, chi, ONE_IMPACT_MASS, ONE_IMPACT_SPEED);
-        Encounter pin = lone_pin(sticking(asked), LONE_PIN_PHASE);
+        Kernel pin = lone_pin(sticking(asked), LONE_PIN_PHASE);
         // the flight, and three times what the way back takes at the speed given back
         const double duration_s = 1e-4 + 3.0 * depth / (asked * ONE_IMPACT_SPEED);
-        assert_true(encounter_run(&pin, duration_s));
-        assert_false(pin.joints[0].is_touching);
+        assert_true(kernel_run(&pin, duration_s));
+        assert_false(pin.contacts[0].is_touching);
         const double given_back = -lone_pin_speed_after(&pin) / ONE_IMPACT_SPEED;
         assert_near(given_back, damping_delivered(chi), 1e-8);
         double deepest = 0.0;
@@ -99,7 +99,7 @@ static void next_to_no_restitution_is_delivered(void **state)
         const double kinetic = 0.5 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED * ONE_IMPACT_SPEED;
         assert_close(lone_pin_end(&pin).dissipated, kinetic * (1.0 - given_back * given_back),
                      1e-6);
-        encounter_finish(&pin);
+        kernel_finish(&pin);
     }
 }
 
@@ -109,23 +109,23 @@ static void what_dies_away_at_once_is_not_in_the_forces(void **state)
 {
     (void)state;
     for (int way = -1; way <= 1; way += 2) {
-        Encounter pin = resting(1e-9);
-        assert_true(encounter_run(&pin, 1e-3));
+        Kernel pin = resting(1e-9);
+        assert_true(kernel_run(&pin, 1e-3));
         const double settled = depth_at_end(&pin);
         pin.position[0] = ONE_IMPACT_CLEARANCE + settled;
         pin.speed[0] = way * 1e-8; // 1e-2 N s/m and more: 1e5 times that speed in N
-        assert_true(encounter_run(&pin, 1e-3));
-        assert_true(pin.joints[0].is_touching);
+        assert_true(kernel_run(&pin, 1e-3));
+        assert_true(pin.contacts[0].is_touching);
         for (int i = 0; i <= 20; i++) {
             const double time_s = 5e-5 * i;
             PinSums sums;
-            pin_sums_at(&pin, encounter_node(&pin, time_s), time_s, &sums);
+            pin_sums_at(&pin, kernel_node(&pin, time_s), time_s, &sums);
             // a pin on its way out is let go for a nanosecond
             assert_true(way < 0 && i == 0
                             ? sums.force[0] > -ONE_IMPACT_MASS * WEIGHT
                             : fabs(sums.force[0] / (ONE_IMPACT_MASS * WEIGHT) + 1.0) < 1e-3);
         }
-        encounter_finish(&pin);
+        kernel_finish(&pin);
     }
 }
 
@@ -138,8 +138,8 @@ static void a_damper_presses_hardest_at_its_onset(void **state)
     (void)state;
     ForceLaw law = force_law_power(2e7, 1.0);
     law.viscous = 4e3;
-    Encounter pin = lone_pin(law, LONE_PIN_PHASE);
-    assert_true(encounter_run(&pin, 4e-5));
+    Kernel pin = lone_pin(law, LONE_PIN_PHASE);
+    assert_true(kernel_run(&pin, 4e-5));
     const double most = law.viscous * ONE_IMPACT_SPEED;
     double highest = 0.0;
     size_t looked_at = 0;
@@ -149,7 +149,7 @@ static void a_damper_presses_hardest_at_its_onset(void **state)
             const double time_s = (1.0 - share) * pin.times[node] + share * pin.times[node + 1];
             PinSums sums;
             pin_sums_at(&pin, node, time_s, &sums);
-            const EncounterPose pose = pin_pose_at(&pin, 0, node, time_s);
+            const KernelPose pose = pin_pose_at(&pin, 0, node, time_s);
             const double depth = fmax(pose.pose.penetration, 0.0);
             const double truth = law.stiffness * depth + law.viscous * pose.pose.approach_speed;
             assert_close(vec2_length(pose.force), truth, 1e-4);
@@ -159,7 +159,7 @@ static void a_damper_presses_hardest_at_its_onset(void **state)
     }
     assert_true(looked_at > 100);
     assert_close(highest, most, 1e-9);
-    encounter_finish(&pin);
+    kernel_finish(&pin);
 }
 
 static void a_pressed_disc_is_braked_by_friction(void **state)
@@ -171,21 +171,21 @@ static void a_pressed_disc_is_braked_by_friction(void **state)
     const double friction = 0.1;
     const double sideways = 0.3;
     const double duration_s = 2e-4;
-    Encounter pin = encounter_start(LONE_PIN_PHASE);
-    const EncounterJoint joint = {
+    Kernel pin = kernel_start(LONE_PIN_PHASE);
+    const KernelContact joint = {
         .law = force_law_with_friction(sticking(1e-9), friction, 5e-4),
         .radial_clearance = clearance,
         .hole_radius = clearance + radius,
     };
-    encounter_add(&pin, &joint, RESPONSE_ROWS_A_JOINT);
-    encounter_make_room(&pin, pin.row_count);
+    kernel_add(&pin, &joint, KERNEL_ROWS_PLANE);
+    kernel_make_room(&pin, pin.row_count);
     pin.mobility[0] = pin.mobility[5] = 1.0 / ONE_IMPACT_MASS;
     pin.mobility[15] = 2.0 / (ONE_IMPACT_MASS * radius * radius);
     pin.position[0] = clearance - BESIDE;
     pin.free[0] = load;
     pin.speed[1] = sideways;
-    assert_true(encounter_run(&pin, duration_s));
-    assert_true(pin.joints[0].is_touching);
+    assert_true(kernel_run(&pin, duration_s));
+    assert_true(pin.contacts[0].is_touching);
     assert_true(pin.node_count < 400);
     const PinSums end = lone_pin_end(&pin);
     const double braking = friction * load;
@@ -195,23 +195,23 @@ static void a_pressed_disc_is_braked_by_friction(void **state)
     assert_close(end.impulse[3], -radius * ONE_IMPACT_MASS * braking * duration_s, within);
     const double slid_m = duration_s * (sideways - 1.5 * braking * duration_s);
     assert_close(end.friction, ONE_IMPACT_MASS * braking * slid_m, within);
-    encounter_finish(&pin);
+    kernel_finish(&pin);
 }
 
 static void usual_contacts_take_no_implicit_step(void **state)
 {
     (void)state;
     for (double asked = 0.5; asked < 1.0; asked += 0.1) {
-        Encounter pin = lone_pin(sticking(asked), LONE_PIN_PHASE);
-        assert_true(encounter_run(&pin, 2e-4));
+        Kernel pin = lone_pin(sticking(asked), LONE_PIN_PHASE);
+        assert_true(kernel_run(&pin, 2e-4));
         assert_true(pin.stages == NULL);
-        encounter_finish(&pin);
+        kernel_finish(&pin);
     }
     // control: the same with next to no restitution
-    Encounter pin = lone_pin(sticking(1e-6), LONE_PIN_PHASE);
-    assert_true(encounter_run(&pin, 2e-4));
+    Kernel pin = lone_pin(sticking(1e-6), LONE_PIN_PHASE);
+    assert_true(kernel_run(&pin, 2e-4));
     assert_true(pin.stages != NULL);
-    encounter_finish(&pin);
+    kernel_finish(&pin);
 }
 
 // A pin slides round its hole under its weight. Its mobility is constant: steps of the world as

@@ -3,7 +3,7 @@
 # shows in its own place alone. Prints TAP.
 set -u
 root=$1
-library="base model contact world casefile analytic reference ode run"
+library="base kernel model contact world casefile analytic reference ode run"
 layers="$library measure write cli commands"
 
 # Lines 'file included' for every include of one source tree.

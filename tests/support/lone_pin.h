@@ -1,11 +1,11 @@
-// The pin of one_impact.h flying along x against the wall, by itself, for contact/encounter.h.
+// The pin of one_impact.h flying along x against the wall, by itself, for kernel/kernel.h.
 #pragma once
 
 #include "close.h"
 #include "one_impact.h"
 
 #include "contact/damping.h"
-#include "contact/encounter.h"
+#include "kernel/kernel.h"
 
 static const double LONE_PIN_GAP = 1e-5;   // m, to the wall at the start: 20 us of flight
 static const double LONE_PIN_PHASE = 0.05; // rad, the program's default
@@ -18,20 +18,20 @@ static inline ForceLaw lone_pin_hertz(double chi)
     return law;
 }
 
-static inline Encounter lone_pin(ForceLaw law, double phase)
+static inline Kernel lone_pin(ForceLaw law, double phase)
 {
-    Encounter encounter = encounter_start(phase);
-    const EncounterJoint joint = {
+    Kernel kernel = kernel_start(phase);
+    const KernelContact joint = {
         .law = law,
         .radial_clearance = ONE_IMPACT_CLEARANCE,
         .hole_radius = ONE_IMPACT_CLEARANCE + 5e-3,
     };
-    encounter_add(&encounter, &joint, ENCOUNTER_ROWS_PLAIN);
-    encounter_make_room(&encounter, encounter.row_count);
-    encounter.mobility[0] = encounter.mobility[3] = 1.0 / ONE_IMPACT_MASS;
-    encounter.position[0] = ONE_IMPACT_CLEARANCE - LONE_PIN_GAP;
-    encounter.speed[0] = ONE_IMPACT_SPEED;
-    return encounter;
+    kernel_add(&kernel, &joint, KERNEL_ROWS_PLAIN);
+    kernel_make_room(&kernel, kernel.row_count);
+    kernel.mobility[0] = kernel.mobility[3] = 1.0 / ONE_IMPACT_MASS;
+    kernel.position[0] = ONE_IMPACT_CLEARANCE - LONE_PIN_GAP;
+    kernel.speed[0] = ONE_IMPACT_SPEED;
+    return kernel;
 }
 
 // The undamped impact's closed forms: depth, m, and duration, s, 2.943275 d / v.
@@ -49,7 +49,7 @@ static inline double lone_pin_duration(void)
 
 enum { LONE_PIN_ROWS = 9 };
 
-// An encounter's sums at a time, by themselves.
+// A kernel's sums at a time, by themselves.
 typedef struct PinSums {
     double impulse[LONE_PIN_ROWS];    // N s
     double moment[2 * LONE_PIN_ROWS]; // N s^2, then N s^3
@@ -58,36 +58,34 @@ typedef struct PinSums {
     double friction;                  // J
 } PinSums;
 
-static inline void pin_sums_at(const Encounter *encounter, size_t node, double time_s,
-                               PinSums *sums)
+static inline void pin_sums_at(const Kernel *kernel, size_t node, double time_s, PinSums *sums)
 {
-    EncounterSums found = {.impulse = sums->impulse, .moment = sums->moment, .force = sums->force};
-    assert_true(encounter_rows(encounter) <= LONE_PIN_ROWS);
-    encounter_at(encounter, node, time_s, &found);
+    KernelSums found = {.impulse = sums->impulse, .moment = sums->moment, .force = sums->force};
+    assert_true(kernel_rows(kernel) <= LONE_PIN_ROWS);
+    kernel_at(kernel, node, time_s, &found);
     sums->dissipated = found.dissipated;
     sums->friction = found.friction;
 }
 
 // How a joint is then.
-static inline EncounterPose pin_pose_at(const Encounter *encounter, size_t joint, size_t node,
-                                        double time_s)
+static inline KernelPose pin_pose_at(const Kernel *kernel, size_t joint, size_t node, double time_s)
 {
     PinSums sums;
-    pin_sums_at(encounter, node, time_s, &sums);
-    const EncounterSums at = {.impulse = sums.impulse, .moment = sums.moment, .force = sums.force};
-    return encounter_pose(encounter, joint, node, time_s, &at);
+    pin_sums_at(kernel, node, time_s, &sums);
+    const KernelSums at = {.impulse = sums.impulse, .moment = sums.moment, .force = sums.force};
+    return kernel_pose(kernel, joint, node, time_s, &at);
 }
 
 // The sums at the end of what has run, and a row's speed there.
-static inline PinSums lone_pin_end(const Encounter *encounter)
+static inline PinSums lone_pin_end(const Kernel *kernel)
 {
     PinSums sums;
-    const size_t last = encounter->node_count - 1;
-    pin_sums_at(encounter, last, encounter->times[last], &sums);
+    const size_t last = kernel->node_count - 1;
+    pin_sums_at(kernel, last, kernel->times[last], &sums);
     return sums;
 }
 
-static inline double lone_pin_speed_after(const Encounter *encounter)
+static inline double lone_pin_speed_after(const Kernel *kernel)
 {
-    return ONE_IMPACT_SPEED + lone_pin_end(encounter).impulse[0] / ONE_IMPACT_MASS;
+    return ONE_IMPACT_SPEED + lone_pin_end(kernel).impulse[0] / ONE_IMPACT_MASS;
 }

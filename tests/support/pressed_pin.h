@@ -1,23 +1,22 @@
-// A contact of one place that is under way, for contact/encounter_*.h.
+// A contact of one place that is under way, for contact/kernel_*.h.
 #pragma once
 
 #include "base/lcg.h"
-#include "contact/encounter_force.h"
+#include "kernel/internal.h"
 
 static const double PRESSED_CLEARANCE = 1e-4; // m
 static const double PRESSED_DEPTH = 1e-7;     // m
 
 // A pin in its wall, somewhere round the hole, sliding and turning and on its way in.
-static inline Encounter pressed_pin(uint64_t *seed, double friction, size_t rows)
+static inline Kernel pressed_pin(uint64_t *seed, double friction, size_t rows)
 {
-    Encounter pin = encounter_start(0.05);
+    Kernel pin = kernel_start(0.05);
     ForceLaw law = force_law_power(6.6e10, 1.5);
     law.hysteresis = 0.7;
     law.viscous = 30.0;
-    encounter_add(&pin, &(EncounterJoint){.law = force_law_with_friction(law, friction, 5e-3)},
-                  rows);
-    encounter_make_room(&pin, rows);
-    EncounterJoint *joint = &pin.joints[0];
+    kernel_add(&pin, &(KernelContact){.law = force_law_with_friction(law, friction, 5e-3)}, rows);
+    kernel_make_room(&pin, rows);
+    KernelContact *joint = &pin.contacts[0];
     joint->radial_clearance = PRESSED_CLEARANCE;
     joint->hole_radius = 5e-3;
     joint->is_touching = true;
@@ -28,16 +27,16 @@ static inline Encounter pressed_pin(uint64_t *seed, double friction, size_t rows
     pin.speed[0] = 0.02 * cos(angle) + 5e-3 * lcg_draw(seed);
     pin.speed[1] = 0.02 * sin(angle) + 5e-3 * lcg_draw(seed);
     for (size_t i = 2; i < pin.row_count; i++) {
-        pin.speed[i] = (i == ENCOUNTER_ROW_AXIAL ? 5e-3 : 1.0) * lcg_draw(seed);
+        pin.speed[i] = (i == KERNEL_ROW_AXIAL ? 5e-3 : 1.0) * lcg_draw(seed);
     }
     return pin;
 }
 
 // Makes of it a circle on a line, or a disc as deep in the other disc as the pin was in its wall.
-static inline void press_elsewhere(Encounter *pin, bool is_line, double friction)
+static inline void press_elsewhere(Kernel *pin, bool is_line, double friction)
 {
-    EncounterJoint *joint = &pin->joints[0];
-    joint->shape = is_line ? TOUCH_LINE : TOUCH_DISC;
+    KernelContact *joint = &pin->contacts[0];
+    joint->shape = is_line ? KERNEL_LINE : KERNEL_DISC;
     joint->has_friction = friction > 0.0;
     if (is_line) {
         pin->position[0] = -PRESSED_DEPTH;

@@ -2,7 +2,7 @@
 #include "close.h"
 
 #include "contact/damping.h"
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 
 typedef struct Impact {
     double restitution;

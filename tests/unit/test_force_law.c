@@ -1,7 +1,7 @@
 // Is the force law what its equations say, in both families, at every depth?
 #include "close.h"
 
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 
 #include <stdbool.h>
 

@@ -49,9 +49,9 @@ static ImpulseCurves make_curves(void)
 }
 
 // Sums of a force in each row that is constant since the start of the step.
-static EncounterSums sums_of(const double forces[ROWS], double since_s)
+static KernelSums sums_of(const double forces[ROWS], double since_s)
 {
-    EncounterSums sums = encounter_sums(ROWS);
+    KernelSums sums = kernel_sums(ROWS);
     for (size_t i = 0; i < ROWS; i++) {
         sums.force[i] = forces[i];
         sums.impulse[i] = forces[i] * since_s;
@@ -63,12 +63,12 @@ static EncounterSums sums_of(const double forces[ROWS], double since_s)
 
 static Motion motion_at(const ImpulseCurves *curves, const double forces[ROWS], double since_s)
 {
-    EncounterSums sums = sums_of(forces, since_s);
+    KernelSums sums = sums_of(forces, since_s);
     Motion motions[BODIES] = {{.angle = 7.0}};
     impulse_curves_at(curves, since_s, &sums, motions);
     // the driven body is left alone
     assert_true(motions[DRIVEN].angle == 7.0);
-    encounter_sums_free(&sums);
+    kernel_sums_free(&sums);
     return motions[1];
 }
 

@@ -6,11 +6,11 @@
 static const double DURATION_S = 2e-4;
 
 // The state at a mark.
-static EncounterPose pose_at(const Encounter *encounter, const Mark *mark)
+static KernelPose pose_at(const Kernel *kernel, const Mark *mark)
 {
     PinSums sums;
-    pin_sums_at(encounter, mark->node, mark->time_s, &sums);
-    return pin_pose_at(encounter, 0, mark->node, mark->time_s);
+    pin_sums_at(kernel, mark->node, mark->time_s, &sums);
+    return pin_pose_at(kernel, 0, mark->node, mark->time_s);
 }
 
 static void the_greatest_force_and_depth_are_marked(void **state)
@@ -24,14 +24,14 @@ static void the_greatest_force_and_depth_are_marked(void **state)
         const double true_force = one_impact_law_force(&impact);
         const double true_depth =
             damping_depth_max(ONE_IMPACT_HERTZ, 1.5, chi, ONE_IMPACT_MASS, ONE_IMPACT_SPEED);
-        Encounter pin = lone_pin(lone_pin_hertz(chi), LONE_PIN_PHASE);
+        Kernel pin = lone_pin(lone_pin_hertz(chi), LONE_PIN_PHASE);
         Marks marks = {.count = 0};
-        assert_true(encounter_run(&pin, DURATION_S));
+        assert_true(kernel_run(&pin, DURATION_S));
         marks_find(&marks, &pin);
         double force = 0.0;
         double depth = 0.0;
         for (size_t i = 0; i < marks.count; i++) {
-            const EncounterPose pose = pose_at(&pin, &marks.marks[i]);
+            const KernelPose pose = pose_at(&pin, &marks.marks[i]);
             force = fmax(force, vec2_length(pose.force));
             depth = fmax(depth, pose.pose.penetration);
         }
@@ -46,7 +46,7 @@ static void the_greatest_force_and_depth_are_marked(void **state)
         }
         worst_node = fmax(worst_node, 1.0 - at_nodes / true_force);
         marks_finish(&marks);
-        encounter_finish(&pin);
+        kernel_finish(&pin);
     }
     assert_true(worst_node > 1e-4);
 }
@@ -54,9 +54,9 @@ static void the_greatest_force_and_depth_are_marked(void **state)
 static void marks_come_in_order_and_the_last_is_the_end(void **state)
 {
     (void)state;
-    Encounter pin = lone_pin(lone_pin_hertz(0.3), LONE_PIN_PHASE);
+    Kernel pin = lone_pin(lone_pin_hertz(0.3), LONE_PIN_PHASE);
     Marks marks = {.count = 0};
-    assert_true(encounter_run(&pin, DURATION_S));
+    assert_true(kernel_run(&pin, DURATION_S));
     marks_find(&marks, &pin);
     // before and behind the onset, greatest force, greatest depth, before the end, the step's end
     assert_int_equal(marks.count, 6);
@@ -71,7 +71,7 @@ static void marks_come_in_order_and_the_last_is_the_end(void **state)
     assert_int_equal(changes, 2);
     assert_near(marks.marks[marks.count - 1].time_s, DURATION_S, 1e-14 * DURATION_S);
     marks_finish(&marks);
-    encounter_finish(&pin);
+    kernel_finish(&pin);
 }
 
 // A contact that begins where the step ends has begun: the next step does not begin it again.
@@ -82,18 +82,18 @@ static void a_contact_that_begins_at_the_very_end_is_touching_there(void **state
     (void)state;
     size_t at_the_end = 0;
     for (int bits = 0; bits < 16; bits++) {
-        Encounter pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+        Kernel pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
         Marks marks = {.count = 0};
-        pin.joints[0].radial_clearance = 0x1p-10;
+        pin.contacts[0].radial_clearance = 0x1p-10;
         pin.position[0] = 0x1p-10 - 0x1p-14;
-        assert_true(encounter_run(&pin, 0x1p-13 + bits * 0x1p-63));
+        assert_true(kernel_run(&pin, 0x1p-13 + bits * 0x1p-63));
         marks_find(&marks, &pin);
         const size_t last = pin.node_count - 1;
         const Mark *end = &marks.marks[marks.count - 1];
-        assert_int_equal(pose_at(&pin, end).is_touching, pin.joints[0].is_touching);
+        assert_int_equal(pose_at(&pin, end).is_touching, pin.contacts[0].is_touching);
         at_the_end += pin.times[last - 1] == pin.times[last] ? 1 : 0;
         marks_finish(&marks);
-        encounter_finish(&pin);
+        kernel_finish(&pin);
     }
     assert_true(at_the_end > 0);
 }

@@ -1,7 +1,7 @@
 // Is the gap between a pin and its hole what geometry says, seen without the same formula?
 #include "close.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 
 #include <stdbool.h>
 

@@ -3,7 +3,7 @@
 
 #include "base/lcg.h"
 #include "close.h"
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 #include "mechanism.h"
 
 #include <stdio.h>

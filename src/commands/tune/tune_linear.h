@@ -3,7 +3,7 @@
 
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_runs.h"
-#include "contact/force_law.h"
+#include "kernel/force_law.h"
 
 // The damper, N s/m, beside a spring, N/m, that gives an effective mass, kg, the restitution asked
 // for in a free impact.

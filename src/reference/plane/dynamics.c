@@ -7,7 +7,7 @@
 #include "reference/plane/dynamics.h"
 
 #include "base/zeroed.h"
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "model/forces.h"
 #include "reference/plane/articulated.h"

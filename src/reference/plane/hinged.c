@@ -6,7 +6,7 @@
 // reference/plane/dynamics.c and reference/plane/articulated.c.
 #include "reference/plane/hinged.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 #include "reference/plane/dynamics.h"
 
 #include <assert.h>

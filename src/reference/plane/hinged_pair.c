@@ -6,7 +6,7 @@
 // has the next, and a value that goes through memory is late.
 #include "reference/plane/hinged.h"
 
-#include "contact/pin_hole.h"
+#include "kernel/pin_hole.h"
 
 // A body in motion.
 typedef struct Moving {
