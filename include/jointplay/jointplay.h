@@ -13,9 +13,10 @@
  *
  * No function prints, or ends your program. ODE does both where its own numbers go wrong. From the
  * first jp_world_create to the last jp_world_destroy the library has handlers of its own for that
- * (dSetDebugHandler, dSetErrorHandler), which turn what ODE finds wrong in jp_world_step into a
- * JpStatus, and hand on all else to the handlers that were there before. If you set handlers of
- * your own, set them before the first world. Nothing else is kept outside what you hand over.
+ * (dSetDebugHandler, dSetErrorHandler, dSetMessageHandler), which turn what ODE finds wrong in
+ * jp_world_step into a JpStatus, and hand on all else to the handlers that were there before. If
+ * you set handlers of your own, set them before the first world. Nothing else is kept outside what
+ * you hand over.
  *
  * Threads: a thread may use one world while others use other worlds, each with the ODE data of its
  * own (dAllocateODEDataForThread). Worlds that share a space of geoms, and handlers of ODE, belong
@@ -282,6 +283,11 @@ JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
  *  - a row of a contact is beyond the limit of its map and presses as the textbook's;
  *  - with rows, an impact or half an oscillation of a contact lasts less than three steps;
  *  - with rows, a joint crosses its play within the step;
+ *  - but with JP_STEPPING_PLAIN, before a step that is longer than the one before, or the first,
+ *    ODE's joints are open or forbid the speeds of bodies, so that they correct more than a
+ *    hundredth of the kinetic energy at once. Speeds that you give to bodies are to be those that
+ *    your joints allow: later on, nothing tells them from those of an impact;
+ *  - ODE's solver says that it did not find all forces ("LCP internal error");
  *  - with JP_STEPPING_IMPULSE, the response of the world was not found in four rounds, or at the
  *    step's end the bodies are so far from where its contacts have brought them that a force is
  *    uncertain by a hundredth, or the contacts take more than the limit of work or local steps than

@@ -7,63 +7,107 @@
 #include <ode/ode.h>
 #include <pthread.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
 static _Thread_local Fault *innermost;
 
+typedef enum Kind {
+    KIND_DEBUG,   // an assertion; without a handler ODE ends the program
+    KIND_ERROR,   // likewise
+    KIND_MESSAGE, // without a handler ODE prints it and goes on
+    KIND_COUNT
+} Kind;
+
 static struct {
     pthread_mutex_t lock;
     size_t world_count;
-    dMessageFunction *debug; // the handlers before
-    dMessageFunction *error;
+    dMessageFunction *before[KIND_COUNT];
 } handlers = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-// Leaves the step that is under way in this thread, if there is one.
-static void leave(const char *message, va_list arguments)
+// Leaves the step that is under way in this thread, or notes the message in it. Returns whether
+// there is one.
+static bool take(Kind kind, const char *message, va_list arguments)
 {
     Fault *fault = innermost;
-    if (fault != NULL) {
-        vsnprintf(fault->text, sizeof fault->text, message, arguments);
-        longjmp(fault->left, 1);
+    if (fault == NULL) {
+        return false;
+    }
+    if (kind == KIND_MESSAGE) {
+        if (fault->message_count++ == 0) {
+            vsnprintf(fault->message, sizeof fault->message, message, arguments);
+        }
+        return true;
+    }
+    vsnprintf(fault->text, sizeof fault->text, message, arguments);
+    longjmp(fault->left, 1);
+}
+
+// What ODE does where there is no handler.
+static void do_as_ode(Kind kind, int number, const char *message, va_list arguments)
+{
+    char text[FAULT_TEXT_SIZE];
+    vsnprintf(text, sizeof text, message, arguments);
+    switch (kind) {
+    case KIND_DEBUG:
+        dSetDebugHandler(NULL);
+        dDebug(number, "%s", text);
+        break;
+    case KIND_ERROR:
+        dSetErrorHandler(NULL);
+        dError(number, "%s", text);
+        break;
+    default:
+        fprintf(stderr, "\nODE Message %d: %s\n", number, text);
     }
 }
 
-// Without a handler before, ODE's own says what is wrong and ends the program.
-static void on_debug(int number, const char *message, va_list arguments)
+static void handle(Kind kind, int number, const char *message, va_list arguments)
 {
-    leave(message, arguments);
-    if (handlers.debug != NULL) {
-        handlers.debug(number, message, arguments);
+    if (take(kind, message, arguments)) {
         return;
     }
-    char text[FAULT_TEXT_SIZE];
-    vsnprintf(text, sizeof text, message, arguments);
-    dSetDebugHandler(NULL);
-    dDebug(number, "%s", text);
+    if (handlers.before[kind] != NULL) {
+        handlers.before[kind](number, message, arguments);
+    } else {
+        do_as_ode(kind, number, message, arguments);
+    }
+}
+
+static void on_debug(int number, const char *message, va_list arguments)
+{
+    handle(KIND_DEBUG, number, message, arguments);
 }
 
 static void on_error(int number, const char *message, va_list arguments)
 {
-    leave(message, arguments);
-    if (handlers.error != NULL) {
-        handlers.error(number, message, arguments);
-        return;
-    }
-    char text[FAULT_TEXT_SIZE];
-    vsnprintf(text, sizeof text, message, arguments);
-    dSetErrorHandler(NULL);
-    dError(number, "%s", text);
+    handle(KIND_ERROR, number, message, arguments);
 }
+
+static void on_message(int number, const char *message, va_list arguments)
+{
+    handle(KIND_MESSAGE, number, message, arguments);
+}
+
+static const struct {
+    dMessageFunction *(*get)(void);
+    void (*set)(dMessageFunction *handler);
+    dMessageFunction *own;
+} KINDS[KIND_COUNT] = {
+    [KIND_DEBUG] = {dGetDebugHandler, dSetDebugHandler, on_debug},
+    [KIND_ERROR] = {dGetErrorHandler, dSetErrorHandler, on_error},
+    [KIND_MESSAGE] = {dGetMessageHandler, dSetMessageHandler, on_message},
+};
 
 void fault_hold(void)
 {
     pthread_mutex_lock(&handlers.lock);
     if (handlers.world_count++ == 0) {
-        handlers.debug = dGetDebugHandler();
-        handlers.error = dGetErrorHandler();
-        dSetDebugHandler(on_debug);
-        dSetErrorHandler(on_error);
+        for (int kind = 0; kind < KIND_COUNT; kind++) {
+            handlers.before[kind] = KINDS[kind].get();
+            KINDS[kind].set(KINDS[kind].own);
+        }
     }
     pthread_mutex_unlock(&handlers.lock);
 }
@@ -73,11 +117,10 @@ void fault_release(void)
 {
     pthread_mutex_lock(&handlers.lock);
     if (--handlers.world_count == 0) {
-        if (dGetDebugHandler() == on_debug) {
-            dSetDebugHandler(handlers.debug);
-        }
-        if (dGetErrorHandler() == on_error) {
-            dSetErrorHandler(handlers.error);
+        for (int kind = 0; kind < KIND_COUNT; kind++) {
+            if (KINDS[kind].get() == KINDS[kind].own) {
+                KINDS[kind].set(handlers.before[kind]);
+            }
         }
     }
     pthread_mutex_unlock(&handlers.lock);
@@ -86,7 +129,8 @@ void fault_release(void)
 void fault_begin(Fault *fault)
 {
     fault->outer = innermost;
-    fault->text[0] = '\0';
+    fault->text[0] = fault->message[0] = '\0';
+    fault->message_count = 0;
     innermost = fault;
 }
 

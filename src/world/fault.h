@@ -4,6 +4,9 @@
 // the program. The first world of the library puts a handler of its own there, and the last one
 // takes it away. In a step of the library it leaves the step; else it hands on to the handler that
 // was there before.
+//
+// Messages, such as "LCP internal error", ODE prints and goes on, with forces that are not those
+// asked for. In a step of the library they are noted and not printed.
 #pragma once
 
 #include <setjmp.h>
@@ -11,8 +14,10 @@
 enum { FAULT_TEXT_SIZE = 128 };
 
 typedef struct Fault {
-    jmp_buf left;               // where to go on
-    char text[FAULT_TEXT_SIZE]; // what ODE says
+    jmp_buf left;                  // where to go on
+    char text[FAULT_TEXT_SIZE];    // what ODE says
+    unsigned message_count;        // after which ODE went on
+    char message[FAULT_TEXT_SIZE]; // the first of them
     struct Fault *outer;
 } Fault;
 

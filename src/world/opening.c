@@ -12,8 +12,14 @@
 // - a first step, with closed joints, would have Phi = h^2 c / 8; one after steps of h0
 //   (1 - e/4) h0^2 c / 2 e + h^2 c / 8. The bodies are opened to what is wanted before it.
 // Joints that have an ERP of their own (ball, fixed) show nothing of it and stay as they are.
+//
+// Bodies may come with speeds that joints forbid. ODE corrects these within a step, however short:
+//     v' = v + u + h a,   so   u = 2 (v'(h/2) - v) - (v'(h) - v)
+// They open joints by (h/2) u until mid-step, which is not to be taken for h^2 c / 8 and
+// multiplied.
 #include "world/opening.h"
 
+#include "world/coarse.h"
 #include "world/trial.h"
 
 #include <math.h>
@@ -101,6 +107,83 @@ static bool is_any_moving(const Bodies *bodies)
     return false;
 }
 
+// Of the kinetic energy: what ODE's joints may correct at once. With speeds that joints allow it is
+// the square of half the angle by which bodies turn in the step, for arms are those of mid-step.
+static const double CORRECTED_SHARE = 1e-2;
+
+static double kinetic(dBodyID body, const double *speeds)
+{
+    dMass mass;
+    dVector3 spin;
+    dVector3 momentum;
+    dBodyGetMass(body, &mass);
+    dBodyVectorFromWorld(body, speeds[3], speeds[4], speeds[5], spin);
+    dMultiply0_331(momentum, mass.I, spin);
+    const double square = speeds[0] * speeds[0] + speeds[1] * speeds[1] + speeds[2] * speeds[2];
+    return 0.5 * mass.mass * square + 0.5 * dCalcVectorDot3(spin, momentum);
+}
+
+// Whether the joints correct more of the speeds than that, from those after a whole step.
+static JpStatus find_correction(JpWorld *world, double step, const double *speeds, bool *is_large,
+                                JpError *error)
+{
+    double whole = 0.0;
+    double corrected = 0.0;
+    const JpStatus status = trial_step(world, 0.5 * step, error);
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        const BodyRecord *record = &world->bodies.records[i];
+        double before[BODY_NUMBERS];
+        double by[BODY_NUMBERS];
+        memcpy(before, record->velocity, 3 * sizeof *before);
+        memcpy(before + 3, record->omega, 3 * sizeof *before);
+        read_speeds(record, by);
+        for (int k = 0; k < BODY_NUMBERS; k++) {
+            by[k] = 2.0 * by[k] - before[k] - speeds[BODY_NUMBERS * i + k];
+        }
+        if (!dBodyIsKinematic(record->id)) {
+            whole += kinetic(record->id, before);
+            corrected += kinetic(record->id, by);
+        }
+    }
+    bodies_put_back(&world->bodies);
+    *is_large = !(corrected <= CORRECTED_SHARE * whole);
+    return status;
+}
+
+// Finds what the joints are open by, and moves the bodies.
+static JpStatus open_joints(JpWorld *world, double step, const double *speeds, JpError *error)
+{
+    REFUSAL_TRY(opening_find(world, step, speeds, error));
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        BodyRecord *record = &world->bodies.records[i];
+        move_kept(record, record->opening, open_too_little(world, step));
+    }
+    bodies_put_back_positions(&world->bodies);
+    return JP_OK;
+}
+
+// Opens them where they came closed, to bodies whose speeds they allow.
+static JpStatus settle(JpWorld *world, double step, double *speeds, JpError *error)
+{
+    bool is_large = false;
+    REFUSAL_TRY(trial_step(world, step, error));
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        read_speeds(&world->bodies.records[i], &speeds[BODY_NUMBERS * i]);
+    }
+    bodies_put_back(&world->bodies);
+    if (step > world->last_step) {
+        REFUSAL_TRY(find_correction(world, step, speeds, &is_large, error));
+    }
+    if (is_large) {
+        coarse_note(world,
+                    "ODE's joints are open or forbid the speeds of bodies, and correct that in "
+                    "the step of %g s; close them, and give bodies speeds that they allow",
+                    step);
+        return JP_OK;
+    }
+    return open_joints(world, step, speeds, error);
+}
+
 JpStatus opening_settle(JpWorld *world, double step, JpError *error)
 {
     const bool can_try = !world->options.is_quick && dWorldGetERP(world->id) > 0.0 &&
@@ -113,18 +196,8 @@ JpStatus opening_settle(JpWorld *world, double step, JpError *error)
     if (speeds == NULL) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the first step");
     }
-    JpStatus status = trial_step(world, step, error);
-    for (size_t i = 0; i < world->bodies.moving; i++) {
-        read_speeds(&world->bodies.records[i], &speeds[BODY_NUMBERS * i]);
-    }
-    bodies_put_back(&world->bodies);
-    status = status == JP_OK ? opening_find(world, step, speeds, error) : status;
+    const JpStatus status = settle(world, step, speeds, error);
     free(speeds);
     world->settling = NULL;
-    for (size_t i = 0; i < world->bodies.moving && status == JP_OK; i++) {
-        BodyRecord *record = &world->bodies.records[i];
-        move_kept(record, record->opening, open_too_little(world, step));
-    }
-    bodies_put_back_positions(&world->bodies);
     return status;
 }

@@ -441,6 +441,17 @@ static JpStatus make_step(JpWorld *world, double step, Answer *answer, JpError *
     return check_joints_after(world, step, error);
 }
 
+// ODE's solver goes on after such a message with some forces left at 0.
+static void note_messages(JpWorld *world, const Fault *fault, double step)
+{
+    if (fault->message_count > 0) {
+        coarse_note(world,
+                    "ODE's solver did not find all forces of the step of %g s: \"%.60s\"; joints "
+                    "may contradict each other",
+                    step, fault->message);
+    }
+}
+
 // A step that ODE cannot make fails, and no more.
 static JpStatus make_step_guarded(JpWorld *world, double step, Answer *answer, JpError *error)
 {
@@ -449,6 +460,7 @@ static JpStatus make_step_guarded(JpWorld *world, double step, Answer *answer, J
     if (setjmp(fault.left) == 0) {
         const JpStatus status = make_step(world, step, answer, error);
         fault_end(&fault);
+        note_messages(world, &fault, step);
         return status;
     }
     fault_end(&fault);
