@@ -23,11 +23,13 @@ report() {
 # Whether the errors of run.json, with the scale's least share, are those of the series.
 agrees() {
     python3 - "$recompute" <<'END'
-import json, math, subprocess, sys
+import contextlib, io, json, math, runpy, sys
 error = json.load(open("run.json"))["runs"][1]["error"]
 horizon = str(error["horizon_s"] or math.inf)
-words = [sys.executable, sys.argv[1], "s-ode.csv", "s-reference.csv", horizon, "1e-12"]
-found = [float(x) for x in subprocess.run(words, capture_output=True, text=True).stdout.split()]
+sys.argv = [sys.argv[1], "s-ode.csv", "s-reference.csv", horizon, "1e-12"]
+with contextlib.redirect_stdout(io.StringIO()) as words:
+    runpy.run_path(sys.argv[0])
+found = [float(x) for x in words.getvalue().split()]
 printed = [error["max"], error["max_in_horizon"]]
 # sums of squares may be rounded in another order
 sys.exit(any(not abs(a - b) <= 1e-12 * b + 1e-18 for a, b in zip(found, printed, strict=True)))
