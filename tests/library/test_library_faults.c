@@ -171,6 +171,35 @@ static void what_ode_asserts_is_an_error(void **state)
     assert_true(ends);
 }
 
+// ---- speeds that joints forbid ----------------------------------------------------------------
+
+// A door that turns about its centre, of inertia J, has J / (J + m r^2) of that speed left when the
+// hinge at r has corrected it.
+static void speeds_that_a_joint_forbids_are_corrected_and_coarse(void **state)
+{
+    (void)state;
+    const double inertia = (0.3 * 0.3 + 0.02 * 0.02) / 12.0; // kg m^2, of 1 kg
+    const double left = inertia / (inertia + 0.15 * 0.15);
+    for (int stepping = JP_STEPPING_STAGGERED; stepping <= JP_STEPPING_IMPULSE; stepping++) {
+        Door door = door_make((JpStepping)stepping);
+        JpError error;
+        dBodySetLinearVel(door.body, 0, 0, 0);
+        assert_int_equal(jp_world_step(door.play, 1e-4, &error), JP_COARSE);
+        assert_non_null(strstr(error.text, "forbid the speeds"));
+        // what the hinge is open by then is closed by a fifth a step
+        for (int i = 0; i < 40; i++) {
+            assert_int_equal(jp_world_step(door.play, 1e-4, &error), JP_OK);
+        }
+        assert_close(dBodyGetAngularVel(door.body)[2], left, 1e-3);
+        door_finish(&door);
+        // the control: speeds that it allows
+        door = door_make((JpStepping)stepping);
+        assert_int_equal(jp_world_step(door.play, 1e-4, &error), JP_OK);
+        assert_close(dBodyGetAngularVel(door.body)[2], 1.0, 1e-6);
+        door_finish(&door);
+    }
+}
+
 // ---- random worlds ----------------------------------------------------------------------------
 
 enum { LINKS_MOST = 6, WORLDS = 193, WORLD_STEPS = 150 };
@@ -441,6 +470,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_out_of_range_are_refused),
         cmocka_unit_test(what_ode_asserts_is_an_error),
+        cmocka_unit_test(speeds_that_a_joint_forbids_are_corrected_and_coarse),
         cmocka_unit_test(random_worlds_at_long_steps_end_in_a_sentence),
         cmocka_unit_test(joints_with_any_numbers_end_in_finite_numbers_or_a_sentence),
         cmocka_unit_test(a_body_destroyed_under_its_joint_is_noticed),
