@@ -221,7 +221,7 @@ static void add_loop_fronts(PlanMaker *maker, int node)
     }
 }
 
-// Eliminates the freedom of a node; no front is needed where no loop feels it.
+// Eliminates the freedom of a node; no front is needed where no loop depends on it.
 static void add_body_front(PlanMaker *maker, int node)
 {
     Plan *plan = maker->plan;

@@ -32,7 +32,7 @@ typedef struct PlanEnd {
 } PlanEnd;
 
 typedef struct PlanFront {
-    int node;           // whose motion its rows feel; -1: none
+    int node;           // whose motion its rows depend on; -1: none
     bool is_body;       // whether that node's freedom is eliminated, else the first loop
     size_t first_loop;  // into Plan.loops; each loop has PlanShape.rows
     size_t loop_count;  //
@@ -53,7 +53,7 @@ typedef struct Plan {
     PlanChild *children;
     size_t end_count;
     PlanEnd *ends;
-    int *front_of;       // by node: the front that eliminates its freedom; -1: no loop feels that
+    int *front_of; // by node: the front that eliminates its freedom; -1: no loop depends on that
     size_t *fronts_from; // by node + 1, the ground before the first: where the fronts there begin;
                          // those of the last node are the first, those of the ground the last
 } Plan;

@@ -97,7 +97,7 @@ static const double PEAK_OVERSHOOT = 1.5;
 // Which of the quantities of a contact.
 enum { PEAK_FORCE, PEAK_DEPTH, PEAK_COUNT };
 
-// Maxima that a step is handed on in parts for; more are found together.
+// Maxima that a step is passed on in parts for; more are found together.
 enum { PEAKS_SOUGHT_MOST = 8 };
 
 typedef struct Search {

@@ -407,7 +407,7 @@ void radau_newton_finish(RadauNewton *newton)
 }
 
 // Whether an entry of the derivatives is other than zero at any stage.
-static bool is_felt(const RadauNewton *newton, size_t value)
+static bool has_derivative(const RadauNewton *newton, size_t value)
 {
     for (size_t i = 0; i < RADAU_STAGES; i++) {
         if (newton->by_position[i][value] != 0.0 || newton->by_rate[i][value] != 0.0) {
@@ -422,9 +422,9 @@ static bool is_felt(const RadauNewton *newton, size_t value)
 static bool are_coupled(const RadauNewton *newton, size_t a, size_t entry, size_t b)
 {
     const Coupling *coupling = newton->coupling;
-    return is_felt(newton, coupling->first_value[a] + entry) ||
-           is_felt(newton, coupling->first_value[b] +
-                               coupling_column_index(coupling, coupling->part_of[b], a));
+    return has_derivative(newton, coupling->first_value[a] + entry) ||
+           has_derivative(newton, coupling->first_value[b] +
+                                      coupling_column_index(coupling, coupling->part_of[b], a));
 }
 
 // The unknowns of a block, how far from the diagonal these equations reach, and how many values
@@ -446,7 +446,7 @@ static size_t newton_size_of(const RadauBlock *block)
 }
 
 // Sorts the coordinates into blocks: each takes in, one after the other, all that its coordinates
-// are coupled with, so that those which feel each other are near to each other.
+// are coupled with, so that those which depend on each other are near to each other.
 static void find_blocks(RadauNewton *newton)
 {
     const Coupling *coupling = newton->coupling;

@@ -35,7 +35,7 @@ typedef struct Mechanism {
     Peaks peaks;
     SystemState *scratch;
     size_t point;   // of the step that comes next
-    double since_s; // end of the part of the step that was handed on, from the step's start
+    double since_s; // end of the part of the step that was passed on, from the step's start
     double start_s; // of that part
     double end_s;
     double *y;        // at end_s; owned, like the next two
@@ -146,7 +146,7 @@ static void fill_record(Mechanism *mechanism, const SystemState *state)
 }
 
 // A part of no length where a contact begins: a viscous damper presses hardest at that instant.
-static bool show_onset(Mechanism *mechanism, Err *err)
+static bool record_onset(Mechanism *mechanism, Err *err)
 {
     const Stepper *stepper = mechanism->stepper;
     const System *system = stepper->system;
@@ -171,7 +171,7 @@ static bool advance(Mechanism *mechanism, Err *err)
         mechanism->point = 0;
         mechanism->since_s = 0.0;
         if (stepper->is_after_onset) {
-            return show_onset(mechanism, err);
+            return record_onset(mechanism, err);
         }
     }
     Dop853 *integrator = &stepper->integrator;

@@ -319,7 +319,7 @@ static bool stays(Stiffness *stiffness, double taken_s, Dop853 *integrator)
     return false;
 }
 
-// To be asked before each step, whether an event has come at its start or not, with the length of
+// To be called before each step, whether an event has come at its start or not, with the length of
 // the step before it, s; the integrator stands at the state. Sets the method.
 static void stiffness_follow(Stiffness *stiffness, const System *system, const SystemState *state,
                              const SpeedScale *scale, double taken_s, bool is_event,
@@ -416,7 +416,7 @@ static void set_tolerances(Stepper *stepper)
 }
 
 // Allows the errors that no step can avoid: rounding of a pin's position in its hole, times the
-// stiffness that it presses on there, is a force, and the rates feel it for as long as the step.
+// stiffness that it presses on there, is a force, and the rates have it for as long as the step.
 static void allow_rounding(Stepper *stepper)
 {
     const System *system = stepper->system;

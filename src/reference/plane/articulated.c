@@ -17,7 +17,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-// How a row of a loop feels the motion of a body's reference, and its spin.
+// How a row of a loop depends on the motion of a body's reference, and its spin.
 typedef struct LoopRow {
     Vec2 motion;
     double spin;
@@ -34,11 +34,11 @@ struct FrontRows {
     double inverse[2]; // of the two rows that are eliminated: 1 / pivot
 };
 
-// Loops are eliminated with the bodies that their rows feel.
+// Loops are eliminated with the bodies that their rows depend on.
 //
-// A row c of a loop feels the motion x of a body's reference, c x = g, and its multiplier mu pushes
-// the body by c. With P, h the pivot of a body's freedom and what couples that with x, p what it
-// has of c, rows i and k become
+// A row c of a loop depends on the motion x of a body's reference, c x = g, and its multiplier mu
+// pushes the body by c. With P, h the pivot of a body's freedom and what couples that with x, p
+// what it has of c, rows i and k become
 //     c_i - p_i h / P,   S_ik - p_i p_k / P,   g_i - p_i f / P
 // with S the rows among one another, 0 to begin with. A row goes from a body to the one it hangs on
 // as a force at its reference does. Of a loop, whose two rows are the pivot, what is left is the
@@ -69,7 +69,7 @@ static size_t front_last_of(const Articulated *articulated, int node)
     return node < 0 ? plan->front_count : plan->fronts_from[node];
 }
 
-static double felt(const LoopRow *row, Vec2 motion, double spin)
+static double row_value(const LoopRow *row, Vec2 motion, double spin)
 {
     return vec2_dot(row->motion, motion) + row->spin * spin;
 }
@@ -81,7 +81,7 @@ static LoopRow row_inwards(const Articulated *articulated, const PlanFront *fron
     if (!front->is_body) {
         return *row;
     }
-    // a hinge has nothing left that feels its spin
+    // a hinge has nothing left that depends on its spin
     const ArticulatedLink *link = &articulated->links[front->node];
     const double own = link->kind == LINK_SLIDE ? row->spin : 0.0;
     return (LoopRow){row->motion, own + vec2_dot(link->lever, row->motion)};
@@ -109,7 +109,7 @@ static void front_add_child(Articulated *articulated, const PlanFront *front,
     }
 }
 
-// Adds what a loop feels at one of its ends.
+// Adds what a loop has at one of its ends.
 static void front_add_end(const Articulated *articulated, const PlanFront *front,
                           const PlanEnd *end, const TreeState *state, FrontRows *to)
 {
@@ -343,7 +343,7 @@ static void front_find_multipliers(const Articulated *articulated, size_t i,
     for (size_t pivot = front_left_of(front); pivot-- > 0;) {
         double sum = at->vector[pivot];
         if (link != NULL) {
-            sum -= felt(&at->rows[pivot], link->motion, link->spin);
+            sum -= row_value(&at->rows[pivot], link->motion, link->spin);
         }
         for (size_t k = pivot + 1; k < count; k++) {
             sum -= at->square[pivot * count + k] *
@@ -405,8 +405,8 @@ static inline void plain_take_gathered(ArticulatedLink *link, double *j)
 }
 
 // Eliminates the turning of a body, and gathers what is left of it where it hangs.
-static inline void plain_hand_on(ArticulatedLink *link, ArticulatedLink *parent,
-                                 const TreeState *state)
+static inline void plain_pass_inwards(ArticulatedLink *link, ArticulatedLink *parent,
+                                      const TreeState *state)
 {
     const Vec2 b = link->b;
     const Vec2 share = vec2_scale(link->inverse, b);
@@ -487,7 +487,7 @@ static bool articulated_tree_accelerate(Articulated *articulated, const TreeStat
         link->inverse = 1.0 / j;
         is_solved = j > 0.0 && is_solved;
         if (link->parent >= 0) {
-            plain_hand_on(link, &links[link->parent], state);
+            plain_pass_inwards(link, &links[link->parent], state);
         }
     }
     for (size_t i = 0; i < count; i++) {
@@ -684,7 +684,7 @@ static inline bool articulated_eliminate(ArticulatedLink *link)
 }
 
 // Adds what is left of a body to the one it hangs on.
-static inline void articulated_hand_on(const ArticulatedLink *link, ArticulatedLink *parent)
+static inline void articulated_pass_inwards(const ArticulatedLink *link, ArticulatedLink *parent)
 {
     const Vec2 moved = resisted(link, link->lever);
     parent->xx += link->xx;
@@ -773,7 +773,7 @@ static inline bool sweep_inwards(Articulated *articulated, const ArticulatedPart
                 articulated_take_out(articulated, (int)i);
             }
             if (parent != NULL) {
-                articulated_hand_on(link, parent);
+                articulated_pass_inwards(link, parent);
             }
         }
         if (has_forces) {

@@ -171,7 +171,7 @@ void dynamics_rates(double since_s, const double *y, double *rates, void *contex
 LoopsRoom dynamics_loops(const Dynamics *dynamics);
 
 // One contact at a time, for events: cheaper than the whole state. Only the bodies that move it are
-// looked at.
+// evaluated.
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y);
 
@@ -210,5 +210,5 @@ bool hinged_rates(const Hinged *hinged, double since_s, const double *y, double 
 bool hinged_evaluate(const Hinged *hinged, double since_s, const double *y, DynamicsState *state,
                      double *rates);
 
-// Shows the bodies' positions and velocities; their accelerations stay as they are.
+// Writes the bodies' positions and velocities; their accelerations stay as they are.
 void hinged_motions(const Hinged *hinged, double since_s, const double *y, Motion *motions);

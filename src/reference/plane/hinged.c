@@ -181,8 +181,8 @@ static inline void hinged_take_gathered(HingedBody *body, Mass *mass, Vec2 *forc
 }
 
 // Gathers what is left of a body without its turning where it hangs.
-static inline void hinged_hand_on(const Mass *mass, Vec2 force, double moment, double inverse,
-                                  HingedBody *body)
+static inline void hinged_pass_inwards(const Mass *mass, Vec2 force, double moment, double inverse,
+                                       HingedBody *body)
 {
     const HingedBody *parent = body->eliminated;
     const Vec2 b = mass->b;
@@ -249,7 +249,7 @@ static inline bool hinged_eliminate(HingedBody *body)
     }
     const double inverse = 1.0 / mass.j;
     if (body->eliminated != NULL) {
-        hinged_hand_on(&mass, force, moment, inverse, body);
+        hinged_pass_inwards(&mass, force, moment, inverse, body);
     }
     body->inverse = inverse;
     body->own_moment = moment;
@@ -337,7 +337,7 @@ static void hinged_add_reactions(const Hinged *hinged, const double *rates, Hing
     }
 }
 
-// Shows where a body has moved, and how fast it does.
+// Writes where a body has moved, and how fast it does.
 static inline void write_motion(const Tree *tree, int number, const HingedBody *body, double turned,
                                 Motion *motions)
 {
@@ -368,24 +368,24 @@ void hinged_motions(const Hinged *hinged, double since_s, const double *y, Motio
     write_motions(hinged, since_s, y, motions);
 }
 
-static inline void show_acceleration(const HingedBody *body, Motion *motion)
+static inline void write_acceleration(const HingedBody *body, Motion *motion)
 {
     motion->acceleration = body->acceleration;
     motion->alpha = body->spin;
 }
 
-// Shows accelerations, and the arms of hinges.
-static inline void show_all(const Hinged *hinged, TreeState *state)
+// Writes accelerations, and the arms of hinges.
+static inline void write_accelerations(const Hinged *hinged, TreeState *state)
 {
     const Tree *tree = &hinged->dynamics->tree;
     if (hinged->driven != NULL) {
         state->arms[2 * tree->linkage->driver.joint + 1] = hinged->driven->arm;
-        show_acceleration(hinged->driven, &state->motions[tree->driven]);
+        write_acceleration(hinged->driven, &state->motions[tree->driven]);
     }
     for (size_t i = 0; i < hinged->count; i++) {
         const TreeNode *node = &tree->nodes[i];
         const HingedBody *body = &hinged->bodies[i];
-        show_acceleration(body, &state->motions[node->body]);
+        write_acceleration(body, &state->motions[node->body]);
         if (body->is_floating) {
             continue;
         }
@@ -459,7 +459,7 @@ static bool hinged_find_state(const Hinged *hinged, double since_s, const double
     }
     hinged_add_reactions(hinged, solved, &load, state->reactions);
     write_motions(hinged, since_s, y, state->tree.motions);
-    show_all(hinged, &state->tree);
+    write_accelerations(hinged, &state->tree);
     state->drive_power = 0.0;
     state->damping_power = 0.0;
     if (hinged->driven != NULL) {

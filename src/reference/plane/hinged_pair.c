@@ -181,8 +181,8 @@ bool hinged_pair_rates(const Hinged *hinged, double since_s, const double *y, do
 }
 
 // A body as a state has it, with its acceleration and how far it has turned since the base.
-static inline void show(const Tree *tree, int number, const Moving *body, double turned,
-                        Vec2 acceleration, double spin, Motion *motions)
+static inline void write_body(const Tree *tree, int number, const Moving *body, double turned,
+                              Vec2 acceleration, double spin, Motion *motions)
 {
     const Motion *base = &tree->base_motions[number];
     motions[number] = (Motion){
@@ -236,15 +236,15 @@ static inline Vec2 accelerate(const Moving *body, double spin, Vec2 carried)
 }
 
 // The force of a hinge on its body b, from what its outer body needs of it.
-static inline void show_reaction(const TreeNode *node, Vec2 reaction, Vec2 *reactions)
+static inline void write_reaction(const TreeNode *node, Vec2 reaction, Vec2 *reactions)
 {
     reactions[node->joint] = node->own_end % 2 == 1 ? reaction : vec2_scale(-1.0, reaction);
 }
 
 // Accelerations of both bodies and the forces of their hinges.
-static inline void show_bodies(const Hinged *hinged, const Moving *inner, const Moving *outer,
-                               Vec2 lever_arm, const double *y, const double spins[2],
-                               const PairPress *pressed, DynamicsState *state)
+static inline void write_bodies(const Hinged *hinged, const Moving *inner, const Moving *outer,
+                                Vec2 lever_arm, const double *y, const double spins[2],
+                                const PairPress *pressed, DynamicsState *state)
 {
     const HingedBody *bodies = hinged->bodies;
     const Tree *tree = &hinged->dynamics->tree;
@@ -253,31 +253,31 @@ static inline void show_bodies(const Hinged *hinged, const Moving *inner, const 
                                  vec2_scale(inner->omega * inner->omega, lever_arm));
     const Vec2 outer_acceleration =
         accelerate(outer, spins[1], vec2_add(inner_acceleration, turned));
-    show(tree, tree->nodes[0].body, inner, y[bodies[0].column], inner_acceleration, spins[0],
-         state->tree.motions);
-    show(tree, tree->nodes[1].body, outer, y[bodies[1].column], outer_acceleration, spins[1],
-         state->tree.motions);
+    write_body(tree, tree->nodes[0].body, inner, y[bodies[0].column], inner_acceleration, spins[0],
+               state->tree.motions);
+    write_body(tree, tree->nodes[1].body, outer, y[bodies[1].column], outer_acceleration, spins[1],
+               state->tree.motions);
     const Vec2 outer_force = vec2_add((Vec2){0.0, -bodies[1].weight}, pressed->force);
     const Vec2 outer_held = vec2_sub(vec2_scale(bodies[1].mass, outer_acceleration), outer_force);
     const Vec2 inner_force = vec2_add((Vec2){0.0, -bodies[0].weight}, vec2_scale(-1.0, outer_held));
     const Vec2 inner_held = vec2_sub(vec2_scale(bodies[0].mass, inner_acceleration), inner_force);
-    show_reaction(&tree->nodes[1], outer_held, state->reactions);
-    show_reaction(&tree->nodes[0], inner_held, state->reactions);
+    write_reaction(&tree->nodes[1], outer_held, state->reactions);
+    write_reaction(&tree->nodes[0], inner_held, state->reactions);
     state->tree.arms[tree->nodes[0].own_end] = inner->arm;
     state->tree.arms[tree->nodes[1].own_end] = outer->arm;
     state->tree.arms[tree->nodes[1].parent_end] = lever_arm;
 }
 
 // The driven body, with the drive's power and its joint's force.
-static inline void show_driven(const Hinged *hinged, const Moving *driven, double since_s,
-                               const PairPress *pressed, DynamicsState *state)
+static inline void write_driven(const Hinged *hinged, const Moving *driven, double since_s,
+                                const PairPress *pressed, DynamicsState *state)
 {
     const Tree *tree = &hinged->dynamics->tree;
     const int joint = tree->linkage->driver.joint;
     const Vec2 upward = {0.0, hinged->dynamics->system.scenario->gravity};
     const Vec2 needed = vec2_scale(hinged->driven->mass, vec2_add(driven->bias, upward));
-    show(tree, tree->driven, driven, driven->omega * since_s, driven->bias, 0.0,
-         state->tree.motions);
+    write_body(tree, tree->driven, driven, driven->omega * since_s, driven->bias, 0.0,
+               state->tree.motions);
     state->tree.arms[2 * joint + 1] = driven->arm;
     state->reactions[joint] = vec2_add(needed, pressed->force);
     state->drive_power = vec2_dot(needed, driven->velocity) - pressed->power;
@@ -305,8 +305,8 @@ bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
     if (!hinged_pair_solve(bodies, &inner, &outer, lever_arm, &pressed, spins)) {
         return false;
     }
-    show_bodies(hinged, &inner, &outer, lever_arm, y, spins, &pressed, state);
-    show_driven(hinged, &driven, since_s, &pressed, state);
+    write_bodies(hinged, &inner, &outer, lever_arm, y, spins, &pressed, state);
+    write_driven(hinged, &driven, since_s, &pressed, state);
     if (rates != NULL) {
         hinged_pair_fill_rates(columns, y, spins, &pressed, state->drive_power, rates);
     }

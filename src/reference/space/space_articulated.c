@@ -48,15 +48,15 @@ struct SpaceLink {
     Vec3 turning;
 };
 
-// How a row of a loop feels the motion of a body's reference, and its turning.
-typedef struct SpaceFeel {
+// How a row of a loop depends on the motion of a body's reference, and its turning.
+typedef struct SpaceFrontRow {
     Vec3 motion;
     Vec3 turning;
-} SpaceFeel;
+} SpaceFrontRow;
 
 // The rows of a front.
 struct SpaceFront {
-    SpaceFeel *rows;
+    SpaceFrontRow *rows;
     double *square; // what is left of the loops among one another, row by row
     double *own;    // by row: what it had of the freedoms that are eliminated, through their factor
     double *vector; // of a solution
@@ -74,7 +74,7 @@ static inline void space_link_forward(const SpaceLink *link, double *b)
     }
 }
 
-// Loops in space are eliminated with the bodies that their rows feel.
+// Loops in space are eliminated with the bodies that their rows depend on.
 //
 // As in the plane (reference/plane/articulated.c), with the freedoms of a body through the factor
 // of their own block: with P = L L', p the row's part of them and y = L^-1 p,
@@ -124,7 +124,7 @@ static void space_front_add_child(const SpaceArticulated *articulated, const Pla
     for (size_t i = left; i < count; i++) {
         const size_t row = space_front_place_of(plan, entry, i - left);
         if (front->node >= 0) {
-            SpaceFeel moved = from->rows[i];
+            SpaceFrontRow moved = from->rows[i];
             if (child->is_body) {
                 // from the reference of the child to that of what it hangs on
                 const Vec3 lever = articulated->links[child->node].lever;
@@ -140,7 +140,7 @@ static void space_front_add_child(const SpaceArticulated *articulated, const Pla
     }
 }
 
-// Adds what a loop feels at one of its ends.
+// Adds what a loop has at one of its ends.
 static void space_front_add_end(const SpaceArticulated *articulated, const PlanFront *front,
                                 const PlanEnd *end, const SpaceTreeState *state,
                                 const SpaceLoopRow *rows, SpaceFront *to)
@@ -151,7 +151,7 @@ static void space_front_add_end(const SpaceArticulated *articulated, const PlanF
         vec3_add(articulated->links[front->node].centre, state->arms[2 * joint + end->side]);
     for (size_t k = 0; k < SPACE_FRONT_ROWS; k++) {
         const SpaceLoopRow *row = &rows[SPACE_FRONT_ROWS * end->loop + (int)k];
-        SpaceFeel *own = &to->rows[end->row + k];
+        SpaceFrontRow *own = &to->rows[end->row + k];
         if (!row->is_active) {
             continue;
         }
@@ -166,7 +166,7 @@ static void space_front_add_end(const SpaceArticulated *articulated, const PlanF
 }
 
 // Takes a row of a loop out of what a body resists with.
-static void take_from_link(const SpaceFeel *row, double inverse, SpaceLink *link)
+static void take_from_link(const SpaceFrontRow *row, double inverse, SpaceLink *link)
 {
     const Vec3 motion = vec3_scale(-inverse, row->motion);
     const Vec3 turning = vec3_scale(-inverse, row->turning);
@@ -193,7 +193,7 @@ static bool space_front_eliminate_row(size_t count, size_t pivot, bool is_active
     }
     const double inverse = 1.0 / own[pivot];
     at->inverse[pivot] = inverse;
-    const SpaceFeel *row = &at->rows[pivot];
+    const SpaceFrontRow *row = &at->rows[pivot];
     for (size_t i = pivot + 1; i < count; i++) {
         const double share = own[i] * inverse;
         at->rows[i].motion = vec3_sub(at->rows[i].motion, vec3_scale(share, row->motion));
@@ -216,7 +216,7 @@ static void gather_front(SpaceArticulated *articulated, size_t number, const Spa
     SpaceFront *at = &articulated->fronts[number];
     const size_t count = space_front_rows_of(front);
     for (size_t k = 0; k < count; k++) {
-        at->rows[k] = (SpaceFeel){{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+        at->rows[k] = (SpaceFrontRow){{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     }
     for (size_t k = 0; k < count * count; k++) {
         at->square[k] = 0.0;
@@ -254,13 +254,13 @@ static bool space_fronts_gather(SpaceArticulated *articulated, int node,
 }
 
 // Takes a freedom out of a row; what it had of it is given.
-static void take_row(const SpaceLink *link, SpaceFeel *row, double *own)
+static void take_row(const SpaceLink *link, SpaceFrontRow *row, double *own)
 {
     if (link->is_floating) {
-        const double felt[SPACE_LINK_FREEDOMS] = {row->motion.x,  row->motion.y,  row->motion.z,
-                                                  row->turning.x, row->turning.y, row->turning.z};
+        const double parts[SPACE_LINK_FREEDOMS] = {row->motion.x,  row->motion.y,  row->motion.z,
+                                                   row->turning.x, row->turning.y, row->turning.z};
         for (int k = 0; k < SPACE_LINK_FREEDOMS; k++) {
-            own[k] = felt[k];
+            own[k] = parts[k];
         }
         space_link_forward(link, own);
         return;
@@ -319,7 +319,7 @@ static void space_front_gather_sides(SpaceArticulated *articulated, size_t i, Sp
             at->vector[k] -= at->square[pivot * count + k] * solved;
         }
         if (link != NULL) {
-            const SpaceFeel *row = &at->rows[pivot];
+            const SpaceFrontRow *row = &at->rows[pivot];
             link->force = vec3_sub(link->force, vec3_scale(solved, row->motion));
             link->moment = vec3_sub(link->moment, vec3_scale(solved, row->turning));
         }
@@ -603,7 +603,7 @@ static bool eliminate_floating(SpaceLink *link)
 }
 
 // Adds what is left of a body to the one it hangs on.
-static void space_articulated_hand_on(const SpaceLink *link, SpaceLink *parent)
+static void space_articulated_pass_inwards(const SpaceLink *link, SpaceLink *parent)
 {
     const Vec3 p = link->lever;
     const Vec3 *b = link->b.row;
@@ -706,7 +706,7 @@ bool space_articulated_factor(SpaceArticulated *articulated, const SpaceTreeStat
             space_fronts_take_out(articulated, (int)i);
         }
         if (link->parent >= 0) {
-            space_articulated_hand_on(link, &links[link->parent]);
+            space_articulated_pass_inwards(link, &links[link->parent]);
         }
     }
     return space_fronts_gather(articulated, -1, state, rows);

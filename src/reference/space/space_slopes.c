@@ -212,7 +212,7 @@ static void space_slopes_add_slopes(const SpaceDynamics *dynamics,
     }
 }
 
-// What an end of a limited angle feels, and does.
+// What an end of a limited angle depends on, and pushes.
 typedef struct TurnColumns {
     const CouplingJoint *parts;
     const double *row;    // by coordinate: how its rate changes the angle's
@@ -224,16 +224,16 @@ typedef struct TurnColumns {
 static void space_slopes_add_turn_column(const Coupling *coupling, const TurnColumns *of,
                                          size_t column, double *by_position, double *by_rate)
 {
-    const double felt = of->row[column];
-    for (size_t p = 0; felt != 0.0 && p < of->parts->count; p++) {
+    const double moved = of->row[column];
+    for (size_t p = 0; moved != 0.0 && p < of->parts->count; p++) {
         const size_t part = of->parts->parts[p];
         const size_t index = coupling_column_index(coupling, part, column);
         for (size_t m = coupling->first_coordinate[part]; m < coupling->first_coordinate[part + 1];
              m++) {
             const size_t i = coupling->coordinates[m];
             const size_t value = coupling->first_value[i] + index;
-            by_position[value] -= of->stiffness * felt * of->pushed[i];
-            by_rate[value] -= of->damping * felt * of->pushed[i];
+            by_position[value] -= of->stiffness * moved * of->pushed[i];
+            by_rate[value] -= of->damping * moved * of->pushed[i];
         }
     }
 }

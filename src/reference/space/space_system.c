@@ -198,8 +198,8 @@ static void space_turning(const System *system, const SystemState *state, double
     }
 }
 
-static void show_ideal(const Vec3 *reaction, Vec3 gap, JointState *joint,
-                       SpaceJointState *space_joint)
+static void fill_ideal_joint(const Vec3 *reaction, Vec3 gap, JointState *joint,
+                             SpaceJointState *space_joint)
 {
     *joint = (JointState){
         .eccentricity = {gap.x, gap.y},
@@ -210,9 +210,9 @@ static void show_ideal(const Vec3 *reaction, Vec3 gap, JointState *joint,
     *space_joint = (SpaceJointState){.force_on_b = *reaction, .offset = gap};
 }
 
-// What a pin's sites show of it, beginning with the first end.
-static void show_pin(const System *system, const SpaceState *at, size_t first, JointState *joint,
-                     SpaceJointState *space_joint)
+// What a pin's sites say of it, beginning with the first end.
+static void fill_pin_joint(const System *system, const SpaceState *at, size_t first,
+                           JointState *joint, SpaceJointState *space_joint)
 {
     const SpaceTree *tree = &space_dynamics_of(system)->tree;
     const int number = system->contacts[first].joint;
@@ -245,7 +245,8 @@ static void show_pin(const System *system, const SpaceState *at, size_t first, J
 
 // A joint whose angle is limited: what it holds stays in the force on its body b; its size is that
 // of what presses.
-static void show_limited(const System *system, const SpaceState *at, int number, JointState *joint)
+static void fill_limited_joint(const System *system, const SpaceState *at, int number,
+                               JointState *joint)
 {
     joint->tilt = space_turn_angle(&space_dynamics_of(system)->tree, &at->tree, number);
     joint->gap = INFINITY;
@@ -254,7 +255,7 @@ static void show_limited(const System *system, const SpaceState *at, int number,
 }
 
 // Adds what one of its ends does.
-static void show_end(const System *system, const SpaceState *at, size_t number, JointState *joint)
+static void fill_limit(const System *system, const SpaceState *at, size_t number, JointState *joint)
 {
     const SpaceContact *end = &space_dynamics_of(system)->contacts[number];
     const Press *press = &at->forces[number].press;
@@ -274,18 +275,18 @@ static void space_joints(const System *system, const SystemState *state, JointSt
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         if (linkage->joints[i].kind == JOINT_REVOLUTE) {
             const Vec3 gap = space_tree_gap(&space_dynamics_of(system)->tree, &at->tree, i);
-            show_ideal(&at->reactions[i], gap, &joints[i], &space_joints[i]);
+            fill_ideal_joint(&at->reactions[i], gap, &joints[i], &space_joints[i]);
         }
         if (linkage->joints[i].limits.kind != LIMIT_NONE) {
-            show_limited(system, at, i, &joints[i]);
+            fill_limited_joint(system, at, i, &joints[i]);
         }
     }
     for (size_t i = 0; i < system->contact_count; i++) {
         const int joint = system->contacts[i].joint;
         if (space_dynamics_of(system)->contacts[i].is_turn) {
-            show_end(system, at, i, &joints[joint]);
+            fill_limit(system, at, i, &joints[joint]);
         } else if (i == 0 || system->contacts[i - 1].joint != joint) {
-            show_pin(system, at, i, &joints[joint], &space_joints[joint]);
+            fill_pin_joint(system, at, i, &joints[joint], &space_joints[joint]);
         }
     }
 }
