@@ -42,7 +42,7 @@ static const double STEPS_ENOUGH = 40.0;
 static const double LONGEST_SHARE = 20.0;
 static const double LONGEST_STEPS = 400.0;
 
-// the hole of the pin that is run, as map_lone.c's: play for this many of the longer of a step and
+// the hole of the pin that is run, as cmd_map.c's: play for this many of the longer of a step and
 // a contact, and a pin for which no depth is too deep
 static const double ROOM = 20.0;
 static const double PIN_PLAYS = 10.0;

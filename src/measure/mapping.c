@@ -1,7 +1,7 @@
 // Gives ERP, CFM and step for each joint with play, and what they deliver.
 //
 // Each joint with play under each law is a contact (measure/mapping_contact.h); each map and step
-// of it is a row: predicted, judged, and run in ODE as a lone pin (measure/impact.h).
+// of it is a row: predicted, judged, and run in ODE as a lone pin (measure/mapping_contact.h).
 #include "measure/mapping.h"
 #include "base/text.h"
 

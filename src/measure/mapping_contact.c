@@ -1,7 +1,7 @@
 // What an impact on a joint asks for, what ODE makes of it, and whether that is valid.
 //
 // Asked is the law's own impact at the mass and speed of the joint's contacts; predicted, the same
-// impact on ODE's row (contact/map_impact.h); delivered, a lone pin run in ODE (measure/impact.h).
+// impact on ODE's row (contact/map_impact.h); delivered, a lone pin run in ODE.
 //
 // k = F(d)/d, dF/dd and c are those at the law's deepest point d of that impact: the row that ODE
 // has there is the one whose ERP and CFM are shown. omega = sqrt((dF/dd) / m). Tc is the length of

@@ -1,4 +1,4 @@
-
+// Writes sentences about many things: what holds of several is said once, with their names.
 #include "write/alike.h"
 #include "base/room.h"
 

@@ -1,6 +1,6 @@
 // Measures a scenario: the numbers of its runs that a check compares.
 //
-// On each of its backends, as check_add.c lists. A motion that cannot be predicted to its end is
+// On each of its backends, as listed below. A motion that cannot be predicted to its end is
 // measured twice, to its end and up to the horizon; errors are then measured up to the horizon.
 #include "commands/check/check_measure.h"
 #include "base/printable.h"
@@ -635,7 +635,7 @@ CheckMeasure check_measure_copy(const CheckMeasure *measure)
 
 size_t check_measure_packed_size(const Scenario *scenario)
 {
-    // as check_add.c has them: extremes and spikes; forces, contacts and spikes; energy, cost,
+    // in the same order: extremes and spikes; forces, contacts and spikes; energy, cost,
     // errors and orders
     enum { OF_BODY = 6, OF_JOINT = 7, OF_RUN = 16, GROUPS = 2 };
     const Linkage *linkage = &scenario->linkage;

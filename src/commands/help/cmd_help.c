@@ -1,4 +1,4 @@
-// How is a command used, and how is a case file written?
+// The command `jointplay help`: the use of a command, and the keys of a case.
 #include "casefile/casefile.h"
 #include "cli/arguments.h"
 #include "commands/commands.h"

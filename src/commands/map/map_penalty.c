@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// What does the paper's penalty parameter P become in ODE, and how deep do pins go with it?
+// The paper's penalty parameter P as ODE has it, and how deep pins go with it.
 //
 // P (Table II) is K_c C^e, printed without a unit; its two uses give it one:
 //   a stiffness, N/mm              k = P, F = k d; ERP and CFM by the case's map, with the viscous

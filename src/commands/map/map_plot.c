@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-// How far is each map off, at which step?
+// The error of each map at each step.
 //
 // The largest errors, wherever the steps fall, relative to what the law asks: left of the
 // restitution, right of the peak force. Lines are predicted, dots delivered; what is valid lies in

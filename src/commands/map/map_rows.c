@@ -6,8 +6,8 @@
 
 #include <math.h>
 
-// What is to be said of a contact, of its settings and of its best constants, in JSON, CSV and
-// tables?
+// The numbers of a contact, of its settings and of its best constants, in JSON, CSV and
+// tables.
 
 static const char *const SOURCES[] = {
     [MAPPING_MEDIAN] = "median", [MAPPING_MOST] = "most",   [MAPPING_GIVEN] = "given",

@@ -273,7 +273,7 @@ static void mapping_held_text(const MappingContact *contact, const Style *style,
     }
 }
 
-// Which ERP, CFM and step for this joint, and what do they deliver?
+// ERP, CFM and step for each contact, and what they deliver.
 
 enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 96 };
 

@@ -24,7 +24,7 @@
 //     kp = 1 / (1/kp1 + 1/kp2),  kd = kd1 + kd2
 //     soft_erp = h kp / (h kp + kd),  soft_cfm = 1 / (h kp + kd)          (the textbook map)
 // so that each of two equal surfaces has 2 kp and kd / 2. The soft_erp and soft_cfm of a surface
-// are read and not used. The stop of a joint is one row by itself (tune_limit.c). max_vel bounds
+// are read and not used. The stop of a joint is one row by itself (tune_linear.c). max_vel bounds
 // the speed at which a contact pushes apart, 0.01 m/s unless said otherwise; min_depth is the
 // overlap that is left alone.
 

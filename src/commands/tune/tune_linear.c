@@ -28,7 +28,7 @@
 // reads `stiffness` and `dissipation` of a limit for Simbody; with ODE it hands cfm and erp of
 // physics/ode/limit to dParamStopCFM and dParamStopERP (ODEJoint::Load), the row of a stop:
 //     erp = h k / (h k + c),  cfm = 1 / (h k + c)
-// The row of a limit of MuJoCo is that of a contact (tune_mujoco.c), where A is the joint's
+// The row of a limit of MuJoCo is that of a contact (tune_export.c), where A is the joint's
 // dof_invweight0: the mobility of its coordinate, of a tree of joints at qpos0.
 
 // where there is no stop: MuJoCo's range has two ends, and nothing gets that far
