@@ -221,7 +221,7 @@ bool child_order(Child *child, const void *context)
 
 // Whether a process is gone, or is so within a moment. Where the kernel cannot be asked it is
 // taken to be.
-static bool is_leaving(pid_t process)
+static bool child_is_leaving(pid_t process)
 {
     const int handle = pidfd_open(process, 0);
     if (handle < 0) {
@@ -258,7 +258,7 @@ static void bury(Child *child)
 // here there is nothing left that could: a busy machine has not let the process end yet.
 static void see_off(Child *child)
 {
-    if (is_leaving(child->process)) {
+    if (child_is_leaving(child->process)) {
         bury(child);
     } else {
         child_kill(child);
@@ -286,7 +286,7 @@ static bool is_running(const Child *child)
     return child->end == CHILD_RUNNING && child->process > 0;
 }
 
-static double time_left(const Child *child, double clock_s)
+static double child_time_left(const Child *child, double clock_s)
 {
     const double limit_s = child->limits.time_s;
     return limit_s > 0.0 ? child->started_s + limit_s - clock_s : INFINITY;
@@ -303,7 +303,7 @@ static bool wait_once(Child *children, size_t count, double wait_s)
             assert(watched_count < WATCHED_MAX);
             owners[watched_count] = &children[i];
             watched[watched_count++] = (struct pollfd){.fd = children[i].channel, .events = POLLIN};
-            wait_s = fmin(wait_s, time_left(&children[i], clock_now_s()));
+            wait_s = fmin(wait_s, child_time_left(&children[i], clock_now_s()));
         }
     }
     if (watched_count == 0) {
@@ -315,7 +315,7 @@ static bool wait_once(Child *children, size_t count, double wait_s)
         if (ready > 0 && watched[i].revents != 0) {
             receive(owners[i]);
         }
-        if (is_running(owners[i]) && time_left(owners[i], clock_now_s()) <= 0.0) {
+        if (is_running(owners[i]) && child_time_left(owners[i], clock_now_s()) <= 0.0) {
             child_kill(owners[i]);
             owners[i]->end = CHILD_TIMED_OUT;
         }
@@ -409,7 +409,7 @@ static void close_slots(const Pool *pool, Slots *slots)
     free(slots->children);
 }
 
-static bool fill(const Pool *pool, Slots *slots, Err *err)
+static bool child_fill(const Pool *pool, Slots *slots, Err *err)
 {
     for (size_t i = 0; i < pool->jobs; i++) {
         Slot *slot = &slots->slots[i];
@@ -430,7 +430,7 @@ static bool fill(const Pool *pool, Slots *slots, Err *err)
     return true;
 }
 
-static bool take(const Pool *pool, Slots *slots, Err *err)
+static bool child_take(const Pool *pool, Slots *slots, Err *err)
 {
     for (size_t i = 0; i < pool->jobs; i++) {
         Slot *slot = &slots->slots[i];
@@ -452,10 +452,10 @@ bool pool_run(const Pool *pool, Err *err)
     assert(pool->jobs >= 1);
     Slots slots;
     open_slots(pool, &slots);
-    bool is_going = fill(pool, &slots, err);
+    bool is_going = child_fill(pool, &slots, err);
     while (is_going && slots.busy > 0 && pool->wait(pool->owner)) {
         child_wait(slots.children, pool->jobs, PAUSE_S);
-        is_going = take(pool, &slots, err) && fill(pool, &slots, err);
+        is_going = child_take(pool, &slots, err) && child_fill(pool, &slots, err);
     }
     close_slots(pool, &slots);
     return is_going;

@@ -228,7 +228,7 @@ typedef struct Watcher {
     bool is_over; // the tolerance was exceeded
 } Watcher;
 
-static bool look(const Trajectory *trajectory, size_t sample, void *context, Err *err)
+static bool chosen_run_look(const Trajectory *trajectory, size_t sample, void *context, Err *err)
 {
     Watcher *watcher = context;
     const TrialRule *rule = watcher->rule;
@@ -272,7 +272,7 @@ static Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatc
         .trial = &trial,
         .measure = distance_measure(rule->truth->trajectory),
     };
-    const RunGuard guard = {look, &watcher};
+    const RunGuard guard = {chosen_run_look, &watcher};
     trial.run = run_guarded(scenario, registry_solver(BACKEND_ODE), watch, probe, &guard);
     trial.holds = trial.run->is_complete && !watcher.is_over;
     distance_finish(&watcher.measure);
@@ -380,7 +380,7 @@ Scenario chosen_run_scenario(const Scenario *scenario, double step_s)
 }
 
 // A failed run.
-static Trajectory *fail(const Chosen *chosen, const char *message)
+static Trajectory *chosen_run_fail(const Chosen *chosen, const char *message)
 {
     Trajectory *none = trajectory_create(chosen->scenario, OPTIONS_BACKENDS[BACKEND_ODE]);
     snprintf(none->message, sizeof none->message, "%s", message);
@@ -405,7 +405,7 @@ static RunWatch watch_of(Chosen *chosen)
 }
 
 // Reports what begins.
-static RunWatch begin(Chosen *chosen, size_t trial, double step_s)
+static RunWatch chosen_run_begin(Chosen *chosen, size_t trial, double step_s)
 {
     if (chosen->watch.begin != NULL) {
         chosen->watch.begin(trial, step_s, chosen->watch.run.context);
@@ -446,7 +446,7 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
 }
 
 // What the trial was made for, and what it cost, is known.
-static void count(Chosen *chosen, const Trial *trial)
+static void chosen_run_count(Chosen *chosen, const Trial *trial)
 {
     const Trajectory *run = trial->run;
     chosen->steps += run->steps;
@@ -502,9 +502,9 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
         .is_last = is_last,
         .is_smooth = chosen->choice.is_smooth,
     };
-    const Trial trial =
-        trial_make(&scenario, &rule, begin(chosen, ++chosen->trials, step_s), chosen->probe);
-    count(chosen, &trial);
+    const Trial trial = trial_make(
+        &scenario, &rule, chosen_run_begin(chosen, ++chosen->trials, step_s), chosen->probe);
+    chosen_run_count(chosen, &trial);
     return trial;
 }
 
@@ -550,12 +550,12 @@ static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
                 : "no trial was complete within run.most-steps",
             trial->run->message);
     }
-    Trajectory *none = fail(chosen, message);
+    Trajectory *none = chosen_run_fail(chosen, message);
     trial_finish(trial);
     return none;
 }
 
-static Trajectory *choose(Chosen *chosen)
+static Trajectory *chosen_run_choose(Chosen *chosen)
 {
     const double duration_s = scenario_duration(chosen->scenario);
     double step_s = chosen->choice.first_step_s;
@@ -589,7 +589,7 @@ Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, Chosen
     };
     Truth own = {.trajectory = NULL};
     if (truth == NULL) {
-        own = truth_make(scenario, begin(&chosen, 0, 0.0));
+        own = truth_make(scenario, chosen_run_begin(&chosen, 0, 0.0));
         chosen.truth = &own;
     }
     if (chosen.truth->trajectory->is_complete) {
@@ -597,8 +597,9 @@ Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, Chosen
                                      watch_of(&chosen));
     }
     char message[ERR_TEXT_SIZE];
-    Trajectory *run =
-        lacks_truth(&chosen, message, sizeof message) ? fail(&chosen, message) : choose(&chosen);
+    Trajectory *run = lacks_truth(&chosen, message, sizeof message)
+                          ? chosen_run_fail(&chosen, message)
+                          : chosen_run_choose(&chosen);
     truth_finish(&own);
     return run;
 }

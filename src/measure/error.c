@@ -94,8 +94,8 @@ static double fastest_change(const Trajectory *reference)
 }
 
 // Accelerations and angles, which stand beside the error.
-static void add_beside(const Trajectory *trajectory, const Trajectory *reference,
-                       TrajectoryError *error)
+static void error_add_beside(const Trajectory *trajectory, const Trajectory *reference,
+                             TrajectoryError *error)
 {
     const double fastest = fastest_change(reference);
     for (size_t i = 0; i < reference->body_count; i++) {
@@ -207,7 +207,7 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
     }
     DistanceMeasure measure = distance_measure(reference);
     add_rates(trajectory, reference, horizon_s, &measure, &error);
-    add_beside(trajectory, reference, &error);
+    error_add_beside(trajectory, reference, &error);
     distance_finish(&measure);
     // a horizon without a sample beyond the start gives no error
     if (reference->sample_count > 1 && !(reference->times[1] <= horizon_s)) {
@@ -247,8 +247,8 @@ static double gap(const JointExtremes *joint, size_t spike)
 }
 
 // The number of the other run's spike that answers to one of this run's, or -1.
-static int find_partner(const JointExtremes *own, size_t spike, const JointExtremes *other,
-                        double reach_s)
+static int error_find_partner(const JointExtremes *own, size_t spike, const JointExtremes *other,
+                              double reach_s)
 {
     const double limit = fmin(0.5 * gap(own, spike), reach_s);
     for (size_t i = 0; i < other->spike_count; i++) {
@@ -267,7 +267,7 @@ static size_t count_alone(const JointExtremes *own, const JointExtremes *other, 
     size_t count = 0;
     for (size_t i = 0; i < own->spike_count; i++) {
         const bool counts = is_contact(&own->spikes[i]) && own->spikes[i].onset_s <= horizon_s;
-        count += counts && find_partner(own, i, other, reach_s) < 0 ? 1 : 0;
+        count += counts && error_find_partner(own, i, other, reach_s) < 0 ? 1 : 0;
     }
     return count;
 }
@@ -288,7 +288,7 @@ SpikeMatch spike_match(const Trajectory *trajectory, const Trajectory *reference
     for (size_t k = 0; k < truth->spike_count; k++) {
         const Spike *other = &truth->spikes[k];
         const bool is_early = is_contact(other) && other->onset_s <= horizon_s;
-        const int partner = is_early ? find_partner(truth, k, run, reach_s) : -1;
+        const int partner = is_early ? error_find_partner(truth, k, run, reach_s) : -1;
         if (partner < 0 || run->spikes[partner].onset_s > horizon_s) {
             continue;
         }

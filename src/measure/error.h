@@ -1,4 +1,4 @@
-// How far is one trajectory from another that is taken as the truth?
+// Measures how far a trajectory is from another that is taken as the truth.
 //
 // In the rates of model/distance.h: every body's angular velocity and velocity, and in joints with
 // play those of the pin relative to its hole.
@@ -64,7 +64,7 @@ bool error_fail_unstable(Trajectory *run, const Trajectory *reference, Trajector
 bool error_series(const Trajectory *trajectory, const Trajectory *reference,
                   const DistanceMeasure *measure, double *distance);
 
-// Which contact of one run is which of another, and how far apart are they?
+// Matches the contacts of one run with those of another, and measures the differences.
 
 typedef struct SpikePair {
     size_t spike;           // number among the run's spikes of the joint

@@ -42,7 +42,7 @@ static const double STEPS_ENOUGH = 40.0;
 static const double LONGEST_SHARE = 20.0;
 static const double LONGEST_STEPS = 400.0;
 
-// the hole of the pin that is run, as map_lone.c's: play for this many of the longer of a step and
+// the hole of the pin that is run, as cmd_map.c's: play for this many of the longer of a step and
 // a contact, and a pin for which no depth is too deep
 static const double ROOM = 20.0;
 static const double PIN_PLAYS = 10.0;
@@ -73,8 +73,8 @@ static double square_of_log(double value, double asked)
 }
 
 // Makes the row and predicts it; the search gives up early, the prediction that is shown does not.
-static HeldSetting predict(const MappingContact *contact, double step_s, OdeMap map,
-                           double stiffness, double damping, size_t step_most)
+static HeldSetting held_predict(const MappingContact *contact, double step_s, OdeMap map,
+                                double stiffness, double damping, size_t step_most)
 {
     const MapImpact *asked = &contact->asked;
     HeldSetting setting = {.map = map, .stiffness = stiffness, .damping = damping};
@@ -112,7 +112,7 @@ static HeldSetting predict(const MappingContact *contact, double step_s, OdeMap 
 HeldSetting held_setting(const MappingContact *contact, double step_s, OdeMap map, double stiffness,
                          double damping)
 {
-    HeldSetting setting = predict(contact, step_s, map, stiffness, damping, 0);
+    HeldSetting setting = held_predict(contact, step_s, map, stiffness, damping, 0);
     setting.verdict = verdict_judge(contact, map, step_s, &setting.predicted);
     return setting;
 }
@@ -138,15 +138,15 @@ typedef struct Point {
     HeldSetting setting;
 } Point;
 
-static Point look(const Search *search, double log_stiffness, double log_damping)
+static Point held_look(const Search *search, double log_stiffness, double log_damping)
 {
     return (Point){log_stiffness, log_damping,
-                   predict(search->contact, search->step_s, search->map, exp(log_stiffness),
-                           exp(log_damping), search->step_most)};
+                   held_predict(search->contact, search->step_s, search->map, exp(log_stiffness),
+                                exp(log_damping), search->step_most)};
 }
 
 // Keeps a point among the best, the best first.
-static void keep(Point best[STARTS], size_t *count, const Point *point)
+static void held_keep(Point best[STARTS], size_t *count, const Point *point)
 {
     size_t index = *count;
     while (index > 0 && held_is_better(&point->setting, &best[index - 1].setting)) {
@@ -185,8 +185,8 @@ static void look_closer(const Search *search, double across_k, double across_c, 
         for (int i = -CLOSER; i <= CLOSER; i++) {
             for (int k = -CLOSER; k <= CLOSER; k++) {
                 const Point tried =
-                    look(search, middle.log_stiffness + share * across_k * i / CLOSER,
-                         middle.log_damping + share * across_c * k / CLOSER);
+                    held_look(search, middle.log_stiffness + share * across_k * i / CLOSER,
+                              middle.log_damping + share * across_c * k / CLOSER);
                 if (held_is_better(&tried.setting, &point->setting)) {
                     *point = tried;
                     is_moved = true;
@@ -216,13 +216,13 @@ static void find_constants(const Search *search, double *stiffness, double *damp
     assert(grid != NULL);
     for (int i = 0; i < GRID * GRID; i++) {
         grid[i] =
-            look(search, log(low) + across_k * (i / GRID), log(low_c) + across_c * (i % GRID));
+            held_look(search, log(low) + across_k * (i / GRID), log(low_c) + across_c * (i % GRID));
     }
     Point best[STARTS];
     size_t count = 0;
     for (int i = 0; i < GRID * GRID; i++) {
         if (is_local_best(grid, i)) {
-            keep(best, &count, &grid[i]);
+            held_keep(best, &count, &grid[i]);
         }
     }
     free(grid);
@@ -303,7 +303,7 @@ static HeldSetting search_setting(const MappingContact *contact, double step_s, 
 
 // With many steps in a contact the corrected map's constants are good at any step, and the
 // textbook's, which adds a damper h k, takes that off.
-static HeldSetting find_setting(const MappingContact *contact, double step_s, OdeMap map)
+static HeldSetting held_find_setting(const MappingContact *contact, double step_s, OdeMap map)
 {
     const double searched_s = contact->asked.duration / STEPS_ENOUGH;
     if (step_s >= searched_s) {
@@ -327,7 +327,7 @@ void held_find(const MappingContact *contact, double step_s, Held *held)
     };
     for (int i = 0; i < HELD_MAP_COUNT; i++) {
         HeldSetting *setting = &held->settings[i];
-        *setting = find_setting(contact, step_s, HELD_MAPS[i]);
+        *setting = held_find_setting(contact, step_s, HELD_MAPS[i]);
         setting->delivered = deliver(contact, step_s, setting);
     }
 }

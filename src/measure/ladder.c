@@ -29,7 +29,7 @@ LadderTruth ladder_truth_of(const Truth *truth, double wall_s)
 }
 
 // Numbers the error runs: the coarsest steps of all schemes, what has no step, then the next steps.
-static void put_in_order(Ladder *ladder)
+static void ladder_put_in_order(Ladder *ladder)
 {
     size_t count = 0;
     for (size_t row = 0; count < ladder->point_count; row++) {
@@ -71,7 +71,7 @@ Ladder *ladder_create(const Scheme *schemes, size_t scheme_count, const double *
             };
         }
     }
-    put_in_order(ladder);
+    ladder_put_in_order(ladder);
     return ladder;
 }
 
@@ -275,8 +275,8 @@ static double local_order(const double *steps, const double *errors, size_t inde
 }
 
 // The longest range that begins at a step; its spread. One point where nothing agrees.
-static size_t extend(size_t count, const double *steps, const double *errors, double floor,
-                     size_t first, double *spread)
+static size_t ladder_extend(size_t count, const double *steps, const double *errors, double floor,
+                            size_t first, double *spread)
 {
     double low = INFINITY;
     double high = -INFINITY;
@@ -319,7 +319,7 @@ Order order_fit(size_t count, const double *steps, const double *errors, double 
     Order best = {.is_known = false};
     for (size_t first = 0; first < count; first++) {
         double spread;
-        const size_t last = extend(count, steps, errors, floor, first, &spread);
+        const size_t last = ladder_extend(count, steps, errors, floor, first, &spread);
         const bool is_long = last - first + 1 >= POINTS_LEAST;
         if (is_long && (!best.is_known || last - first >= best.last - best.first)) {
             best = (Order){.is_known = true, .first = first, .last = last, .spread = spread};
@@ -342,7 +342,7 @@ Order order_fit(size_t count, const double *steps, const double *errors, double 
 // two solvers that agree in all but rounding are equally accurate
 static const double TIE = 0.01;
 
-static bool is_point(double time, double error)
+static bool ladder_is_point(double time, double error)
 {
     return isfinite(time) && isfinite(error);
 }
@@ -357,11 +357,12 @@ static bool comes_before(const double *times, const double *errors, size_t a, si
 }
 
 // The first point behind another (behind none where that is `count`), or `count`.
-static size_t next_point(size_t count, const double *times, const double *errors, size_t last)
+static size_t ladder_next_point(size_t count, const double *times, const double *errors,
+                                size_t last)
 {
     size_t next = count;
     for (size_t i = 0; i < count; i++) {
-        if (is_point(times[i], errors[i]) &&
+        if (ladder_is_point(times[i], errors[i]) &&
             (last == count || comes_before(times, errors, last, i)) &&
             (next == count || comes_before(times, errors, i, next))) {
             next = i;
@@ -376,8 +377,8 @@ void frontier_mark(size_t count, const double *times, const double *errors, bool
         is_on_frontier[i] = false;
     }
     double least = INFINITY;
-    for (size_t i = next_point(count, times, errors, count); i < count;
-         i = next_point(count, times, errors, i)) {
+    for (size_t i = ladder_next_point(count, times, errors, count); i < count;
+         i = ladder_next_point(count, times, errors, i)) {
         if (errors[i] < (1.0 - TIE) * least) {
             is_on_frontier[i] = true;
             least = errors[i];
@@ -390,7 +391,7 @@ size_t frontier_cheapest(size_t count, const double *times, const double *errors
 {
     size_t best = count;
     for (size_t i = 0; i < count; i++) {
-        if (!is_point(times[i], errors[i]) || !(errors[i] + uncertainty <= target)) {
+        if (!ladder_is_point(times[i], errors[i]) || !(errors[i] + uncertainty <= target)) {
             continue;
         }
         if (best == count || times[i] < times[best] ||
@@ -421,15 +422,15 @@ static double error_of(const Ladder *ladder, const LadderPoint *point)
     return error_of_run(error, truth->is_limited);
 }
 
-static void explain(LadderPoint *point, const char *reason)
+static void ladder_explain(LadderPoint *point, const char *reason)
 {
     snprintf(point->reason, sizeof point->reason, "%s", reason);
 }
 
-static void fail(LadderPoint *point, const char *reason)
+static void ladder_fail(LadderPoint *point, const char *reason)
 {
     point->is_failed = true;
-    explain(point, reason);
+    ladder_explain(point, reason);
 }
 
 // Why a run that is complete and finite has no error all the same.
@@ -445,25 +446,25 @@ static const char *why_without_error(const Ladder *ladder, const LadderPoint *po
     return "has no error: no sample lies within the horizon";
 }
 
-static void judge(const Ladder *ladder, LadderPoint *point)
+static void ladder_judge(const Ladder *ladder, LadderPoint *point)
 {
     point->is_failed = false;
     point->reason[0] = '\0';
     point->error = NAN;
     const char *unstable = error_is_unstable(&point->run.error, ladder->truth.is_limited);
     if (!point->is_measured) {
-        fail(point, "not run");
+        ladder_fail(point, "not run");
     } else if (!point->run.is_complete) {
-        fail(point, point->run.message);
+        ladder_fail(point, point->run.message);
     } else if (point->timing_message[0] != '\0') {
-        fail(point, point->timing_message);
+        ladder_fail(point, point->timing_message);
     } else if (!point->run.error.is_known) {
-        fail(point, "has no error: its numbers are not finite");
+        ladder_fail(point, "has no error: its numbers are not finite");
     } else if ((ladder->truth.is_limited || is_truth(ladder, point)) &&
                !isfinite(error_of(ladder, point))) {
-        explain(point, why_without_error(ladder, point));
+        ladder_explain(point, why_without_error(ladder, point));
     } else if (unstable != NULL) {
-        fail(point, unstable);
+        ladder_fail(point, unstable);
     } else {
         point->error = error_of(ladder, point);
     }
@@ -535,7 +536,7 @@ static void rank_points(Ladder *ladder)
 void ladder_conclude(Ladder *ladder)
 {
     for (size_t i = 0; i < ladder->point_count; i++) {
-        judge(ladder, &ladder->points[i]);
+        ladder_judge(ladder, &ladder->points[i]);
         time_point(ladder, &ladder->points[i]);
     }
     fit_orders(ladder);

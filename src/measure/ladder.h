@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// At which power of the step does an error fall?
+// The power of the step with which an error falls.
 
 typedef struct Order {
     bool is_known; // false: no three steps in a row fall alike
@@ -159,7 +159,7 @@ size_t ladder_finest(const Ladder *ladder, size_t scheme);
 // Works out failures, errors, medians, the frontier, the orders and the cheapest points.
 void ladder_conclude(Ladder *ladder);
 
-// Which of many points are worth their time?
+// The points that are worth their time.
 
 // Marks the points that are more accurate than every faster one, by more than a hundredth of its
 // error: a smaller difference distinguishes no schemes. A point whose time, s, or error is not

@@ -1,7 +1,7 @@
 // Gives ERP, CFM and step for each joint with play, and what they deliver.
 //
 // Each joint with play under each law is a contact (measure/mapping_contact.h); each map and step
-// of it is a row: predicted, judged, and run in ODE as a lone pin (measure/impact.h).
+// of it is a row: predicted, judged, and run in ODE as a lone pin (measure/mapping_contact.h).
 #include "measure/mapping.h"
 #include "base/text.h"
 
@@ -29,7 +29,7 @@ static void find_hardest(const MappingContact *contact, double *steps)
     free(hardest);
 }
 
-static double choose(MappingSource source, double given, double median, double most)
+static double mapping_choose(MappingSource source, double given, double median, double most)
 {
     return source == MAPPING_GIVEN || source == MAPPING_USUAL ? given
            : source == MAPPING_MOST                           ? most
@@ -44,9 +44,9 @@ static bool has_laws(const Mapping *mapping)
 
 // Makes a contact of a joint whose pin closes in at some speed. Limits of a pivot have a stiffness
 // of their own, which no law replaces.
-static bool make_contact(const Mapping *mapping, const Scenario *scenario,
-                         const MappingJoint *joint, double mass, double speed,
-                         MappingContact *contact, Err *lack)
+static bool mapping_make_contact(const Mapping *mapping, const Scenario *scenario,
+                                 const MappingJoint *joint, double mass, double speed,
+                                 MappingContact *contact, Err *lack)
 {
     const Joint *at = &scenario->linkage.joints[joint->joint];
     const bool is_torsional = linkage_is_torsional(at);
@@ -63,13 +63,14 @@ static bool make_contact(const Mapping *mapping, const Scenario *scenario,
 }
 
 // The contact of a joint under a law, or why there is none.
-static void add_contact(Mapping *mapping, const Scenario *scenario, const MappingJoint *joint,
-                        double mass, double speed, MappingSource speed_source)
+static void mapping_add_contact(Mapping *mapping, const Scenario *scenario,
+                                const MappingJoint *joint, double mass, double speed,
+                                MappingSource speed_source)
 {
     MappingContact *contact = &mapping->contacts[mapping->contact_count++];
     const Joint *at = &scenario->linkage.joints[joint->joint];
     Err lack = {ERR_NONE, ""};
-    if (!make_contact(mapping, scenario, joint, mass, speed, contact, &lack)) {
+    if (!mapping_make_contact(mapping, scenario, joint, mass, speed, contact, &lack)) {
         *contact = (MappingContact){
             .joint = *joint,
             .law_name = has_laws(mapping) ? OPTIONS_LAWS[scenario->contact.law]
@@ -90,13 +91,13 @@ static size_t law_count(const Mapping *mapping)
 }
 
 // The contacts of one joint, a law each.
-static void add_joint(Mapping *mapping, const MappingJoint *joint)
+static void mapping_add_joint(Mapping *mapping, const MappingJoint *joint)
 {
     const MappingSettings *settings = &mapping->settings;
     const double mass =
-        choose(settings->mass_source, settings->mass, joint->mass_median, joint->mass_most);
-    double speed =
-        choose(settings->speed_source, settings->speed, joint->speed_median, joint->speed_most);
+        mapping_choose(settings->mass_source, settings->mass, joint->mass_median, joint->mass_most);
+    double speed = mapping_choose(settings->speed_source, settings->speed, joint->speed_median,
+                                  joint->speed_most);
     MappingSource speed_source = settings->speed_source;
     const double floor = mapping->scenario->contact.impact_speed_floor;
     if (speed > 0.0 && speed < floor && speed_source != MAPPING_GIVEN &&
@@ -111,7 +112,7 @@ static void add_joint(Mapping *mapping, const MappingJoint *joint)
             scenario_set_stiffness(&scenario, 0.0, scenario.contact.exponent);
             scenario.contact.law = settings->laws[i];
         }
-        add_contact(mapping, &scenario, joint, mass, speed, speed_source);
+        mapping_add_contact(mapping, &scenario, joint, mass, speed, speed_source);
     }
 }
 
@@ -123,8 +124,8 @@ static bool needs_run(const MappingSettings *settings)
 
 // The joints with play, measured in a run where masses or speeds come from there; the caller frees
 // them.
-static bool find_joints(const Mapping *mapping, MappingWatch watch, MappingJoint **joints,
-                        size_t *count, Err *err)
+static bool mapping_find_joints(const Mapping *mapping, MappingWatch watch, MappingJoint **joints,
+                                size_t *count, Err *err)
 {
     if (!needs_run(&mapping->settings)) {
         *joints = mapping_joint_list(mapping->scenario, count);
@@ -142,14 +143,14 @@ static bool make_contacts(Mapping *mapping, MappingWatch watch, Err *err)
 {
     MappingJoint *joints = NULL;
     size_t count = 0;
-    if (!find_joints(mapping, watch, &joints, &count, err)) {
+    if (!mapping_find_joints(mapping, watch, &joints, &count, err)) {
         return false;
     }
     const size_t room = count * law_count(mapping);
     mapping->contacts = calloc(room + 1, sizeof *mapping->contacts);
     assert(mapping->contacts != NULL);
     for (size_t i = 0; i < count; i++) {
-        add_joint(mapping, &joints[i]);
+        mapping_add_joint(mapping, &joints[i]);
     }
     free(joints);
     for (size_t i = 0; i < mapping->contact_count; i++) {
@@ -184,7 +185,7 @@ static void fill_soft(const MappingContact *contact, MappingRow *row)
     }
 }
 
-static void fill_row(const MappingContact *contact, MappingRow *row)
+static void mapping_fill_row(const MappingContact *contact, MappingRow *row)
 {
     const Scenario scenario = mapping_scenario(contact, row->map, row->step_s);
     row->contact = contact;
@@ -224,7 +225,7 @@ static double count_steps(const Mapping *mapping, size_t map_count)
     return steps;
 }
 
-static void make_rows(Mapping *mapping, MappingWatch watch)
+static void mapping_make_rows(Mapping *mapping, MappingWatch watch)
 {
     const MappingSettings *settings = &mapping->settings;
     // rows of POISSON contacts know no map
@@ -252,7 +253,7 @@ static void make_rows(Mapping *mapping, MappingWatch watch)
             MappingRow *row = &mapping->rows[mapping->row_count++];
             row->map = has_maps ? settings->maps[k / settings->step_count] : ODE_MAP_TEXTBOOK;
             row->step_s = settings->steps[k % settings->step_count];
-            fill_row(contact, row);
+            mapping_fill_row(contact, row);
         }
         if (settings->is_held && has_maps) {
             contact->held = malloc(sizeof *contact->held);
@@ -287,7 +288,7 @@ bool mapping_make(const Scenario *scenario, const MappingSettings *settings, Map
     if (!make_contacts(mapping, watch, err)) {
         return false;
     }
-    make_rows(mapping, watch);
+    mapping_make_rows(mapping, watch);
     return true;
 }
 

@@ -1,7 +1,7 @@
 // What an impact on a joint asks for, what ODE makes of it, and whether that is valid.
 //
 // Asked is the law's own impact at the mass and speed of the joint's contacts; predicted, the same
-// impact on ODE's row (contact/map_impact.h); delivered, a lone pin run in ODE (measure/impact.h).
+// impact on ODE's row (contact/map_impact.h); delivered, a lone pin run in ODE.
 //
 // k = F(d)/d, dF/dd and c are those at the law's deepest point d of that impact: the row that ODE
 // has there is the one whose ERP and CFM are shown. omega = sqrt((dF/dd) / m). Tc is the length of
@@ -98,7 +98,7 @@ const char *mapping_law_name(const Scenario *scenario, const Joint *joint)
 }
 
 // The law's own impact, with and without damping.
-static bool ask(MappingContact *contact, const Joint *at, Err *err)
+static bool mapping_contact_ask(MappingContact *contact, const Joint *at, Err *err)
 {
     const MapImpactCase *impact = &contact->impact;
     const double holds = law_depth_max(&impact->law, law_touching_radius(at)); // m
@@ -157,7 +157,7 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
         // the law as it is, in whatever world the pin is run
         scenario_set_stiffness(&made.scenario, made.impact.law.stiffness, made.impact.law.exponent);
     }
-    if (!ask(&made, at, err)) {
+    if (!mapping_contact_ask(&made, at, err)) {
         return false;
     }
     fill_deepest(&made);
@@ -241,7 +241,8 @@ static void add_mass(Gathering *gathering, size_t play, size_t place, Vec2 along
 }
 
 // The masses at one place, as the bodies stand.
-static void add_place(Gathering *gathering, size_t play, size_t place, const Motion *motions)
+static void mapping_contact_add_place(Gathering *gathering, size_t play, size_t place,
+                                      const Motion *motions)
 {
     const Touch *touch = &gathering->places[place];
     if (touch_is_scalar(touch)) {
@@ -258,7 +259,7 @@ static void add_place(Gathering *gathering, size_t play, size_t place, const Mot
     }
 }
 
-static void add_masses(Gathering *gathering, const Motion *motions)
+static void mapping_contact_add_masses(Gathering *gathering, const Motion *motions)
 {
     // in a position where the ideal joints lock, no mass is defined
     if (!response_place(&gathering->response, motions)) {
@@ -267,7 +268,7 @@ static void add_masses(Gathering *gathering, const Motion *motions)
     size_t play = 0;
     for (size_t place = 0; place < gathering->place_count; place++) {
         play += gathering->places[place].joint != gathering->play[play].joint ? 1 : 0;
-        add_place(gathering, play, place, motions);
+        mapping_contact_add_place(gathering, play, place, motions);
     }
 }
 
@@ -316,7 +317,7 @@ static bool step_to(Gathering *gathering, void *state, double time_s, double *re
 }
 
 // Runs the reference from instant to instant, and from the last one to the end of the run.
-static bool gather(Gathering *gathering, RunWatch watch, Err *err)
+static bool mapping_contact_gather(Gathering *gathering, RunWatch watch, Err *err)
 {
     const Scenario *scenario = gathering->scenario;
     const Solver *solver = registry_solver(BACKEND_REFERENCE);
@@ -334,7 +335,7 @@ static bool gather(Gathering *gathering, RunWatch watch, Err *err)
         is_right = step_to(gathering, state, time_s, &reached_s, err);
         if (is_right) {
             solver->observe(state, fmin(time_s, reached_s), &sample);
-            add_masses(gathering, sample.bodies);
+            mapping_contact_add_masses(gathering, sample.bodies);
         }
         if (watch.progress != NULL) {
             watch.progress(reached_s / duration_s, clock_now_s() - started_s, watch.context);
@@ -346,7 +347,7 @@ static bool gather(Gathering *gathering, RunWatch watch, Err *err)
     return is_right;
 }
 
-static MappingJoint conclude(Gathered *gathered)
+static MappingJoint mapping_contact_conclude(Gathered *gathered)
 {
     sorted_make(gathered->masses, gathered->mass_count);
     MappingJoint joint = {
@@ -393,7 +394,7 @@ bool mapping_joint_measure(const Scenario *scenario, RunWatch watch, MappingJoin
     if (is_right) {
         touch_response(&scenario->linkage, gathering->places, gathering->place_count, false,
                        &gathering->response);
-        is_right = gather(gathering, watch, err);
+        is_right = mapping_contact_gather(gathering, watch, err);
     }
     if (is_right && gathering->play[0].mass_count == 0) {
         is_right = err_set(err, ERR_SOLVER, "the ideal joints are redundant throughout the run");
@@ -401,7 +402,7 @@ bool mapping_joint_measure(const Scenario *scenario, RunWatch watch, MappingJoin
     if (is_right) {
         *joints = mapping_joint_list(scenario, count);
         for (size_t i = 0; i < *count; i++) {
-            (*joints)[i] = conclude(&gathering->play[i]);
+            (*joints)[i] = mapping_contact_conclude(&gathering->play[i]);
         }
     }
     gathering_finish(gathering);
@@ -504,7 +505,7 @@ static bool is_step_valid(double step_s, const void *context)
 }
 
 // To three digits, so that what is printed is as valid as what was found.
-static double rounded(double value, double (*round_to)(double))
+static double mapping_contact_rounded(double value, double (*round_to)(double))
 {
     const double unit = pow(10.0, floor(log10(value)) - 2.0);
     return round_to(value / unit) * unit;
@@ -514,7 +515,7 @@ static double find_step(const MappingContact *contact, OdeMap map)
 {
     const StepTrial trial = {contact, map};
     const double longest_s = impact_longest_step(contact->half_period_s, is_step_valid, &trial);
-    return longest_s > 0.0 ? rounded(longest_s, floor) : 0.0;
+    return longest_s > 0.0 ? mapping_contact_rounded(longest_s, floor) : 0.0;
 }
 
 void verdict_find_steps(MappingContact *contact)
@@ -533,7 +534,7 @@ double verdict_least_penalty(const MappingContact *contact, double step_s)
     const double asked = contact->asked.restitution;
     const double least = (1.0 - MAPPING_VALID_SHARE) * asked;
     const double ratio = (asked - least) / (1.0 + least); // r = m / (p h)
-    return rounded(contact->impact.mass / (ratio * step_s), ceil);
+    return mapping_contact_rounded(contact->impact.mass / (ratio * step_s), ceil);
 }
 
 static double law_end(const MappingContact *contact)

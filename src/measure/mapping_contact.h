@@ -107,7 +107,7 @@ bool mapping_contact_make(const Scenario *scenario, const MappingJoint *joint, d
 // A contact's scenario for a map and step.
 Scenario mapping_scenario(const MappingContact *contact, OdeMap map, double step_s);
 
-// Is a setting right, what is wrong with it, and what would be right?
+// Whether a setting is right, what is wrong with it, and what would be right.
 
 // What an impact may be off by, of what the law asks, for a setting to be called valid.
 extern const double MAPPING_VALID_SHARE;

@@ -59,7 +59,7 @@ static double *count_ways(const size_t *ranks, size_t count, size_t chosen)
     return ways;
 }
 
-static int by_size(const void *a, const void *b)
+static int rank_test_by_size(const void *a, const void *b)
 {
     const size_t first = *(const size_t *)a;
     const size_t second = *(const size_t *)b;
@@ -67,11 +67,11 @@ static int by_size(const void *a, const void *b)
 }
 
 // The ways of these ranks, kept from the last time where they were the same.
-static void settle(RankTest *test, const size_t *ranks, size_t count, size_t chosen)
+static void rank_test_settle(RankTest *test, const size_t *ranks, size_t count, size_t chosen)
 {
     size_t sorted[RANK_TEST_BOTH];
     memcpy(sorted, ranks, count * sizeof *ranks);
-    qsort(sorted, count, sizeof *sorted, by_size);
+    qsort(sorted, count, sizeof *sorted, rank_test_by_size);
     if (test->count == count && test->chosen == chosen &&
         memcmp(test->ranks, sorted, count * sizeof *sorted) == 0) {
         return;
@@ -120,7 +120,7 @@ double rank_test_p(RankTest *test, const double *first, size_t first_count, cons
         ranks[i] = double_rank(all, count, all[i]);
         sum += i < first_count ? ranks[i] : 0;
     }
-    settle(test, ranks, count, first_count);
+    rank_test_settle(test, ranks, count, first_count);
     const double mean = (double)first_count * (double)(count + 1);
     return tail(test, fabs((double)sum - mean));
 }

@@ -1,4 +1,4 @@
-// Are two samples from one distribution, or has one of them moved?
+// Tests whether two samples are from one distribution.
 #pragma once
 
 #include <stddef.h>

@@ -25,7 +25,7 @@ static bool is_stopped(const Runner *runner)
     return listener->should_stop != NULL && listener->should_stop(listener->context);
 }
 
-static bool wait(void *owner)
+static bool runner_wait(void *owner)
 {
     const Stage *stage = owner;
     const RunnerListener *listener = &stage->runner->listener;
@@ -54,7 +54,8 @@ static bool next_run(void *owner, size_t *number, const void **context)
     return true;
 }
 
-static bool take_run(void *owner, size_t number, const void *result, const Child *child, Err *err)
+static bool runner_take_run(void *owner, size_t number, const void *result, const Child *child,
+                            Err *err)
 {
     const Runner *runner = ((Stage *)owner)->runner;
     const LadderRun run = task_run(ladder_run(runner->ladder, number), result, child);
@@ -83,8 +84,8 @@ static bool next_ensemble(void *owner, size_t *number, const void **context)
     return true;
 }
 
-static bool take_ensemble(void *owner, size_t number, const void *result, const Child *child,
-                          Err *err)
+static bool runner_take_ensemble(void *owner, size_t number, const void *result, const Child *child,
+                                 Err *err)
 {
     const Runner *runner = ((Stage *)owner)->runner;
     LadderEnsemble *ensemble = &runner->ladder->ensembles[number];
@@ -99,8 +100,8 @@ static bool take_ensemble(void *owner, size_t number, const void *result, const 
     return runner->listener.keep_ensemble(number, ensemble, runner->listener.context, err);
 }
 
-static bool make_runs(const Runner *runner, const Truth *truth, const char *doing, size_t jobs,
-                      size_t end, Err *err)
+static bool runner_make_runs(const Runner *runner, const Truth *truth, const char *doing,
+                             size_t jobs, size_t end, Err *err)
 {
     Stage stage = {.runner = runner, .truth = truth, .doing = doing, .end = end};
     const Pool pool = {
@@ -109,8 +110,8 @@ static bool make_runs(const Runner *runner, const Truth *truth, const char *doin
         .result_size = sizeof(LadderRun),
         .limits = {.time_s = runner->time_limit_s, .memory_bytes = TASK_MEMORY_LIMIT},
         .next = next_run,
-        .take = take_run,
-        .wait = wait,
+        .take = runner_take_run,
+        .wait = runner_wait,
         .owner = &stage,
     };
     return run_pool(runner, &pool, err);
@@ -129,14 +130,14 @@ static bool make_ensembles(const Runner *runner, const Truth *truth, Err *err)
         .limits = {.time_s = ENSEMBLE_MEMBERS * runner->time_limit_s,
                    .memory_bytes = TASK_MEMORY_LIMIT},
         .next = next_ensemble,
-        .take = take_ensemble,
-        .wait = wait,
+        .take = runner_take_ensemble,
+        .wait = runner_wait,
         .owner = &stage,
     };
     return run_pool(runner, &pool, err);
 }
 
-static bool make_truth(const Runner *runner, Truth *truth, Err *err)
+static bool runner_make_truth(const Runner *runner, Truth *truth, Err *err)
 {
     const double started_s = clock_now_s();
     const TruthChild work = {
@@ -178,9 +179,9 @@ bool runner_execute(const Runner *runner, Err *err)
     const size_t total = ladder_run_total(ladder);
     Truth truth = {0};
     const bool is_done =
-        (!needs_truth(runner) || make_truth(runner, &truth, err)) &&
-        make_runs(runner, &truth, "error runs", runner->jobs, ladder->point_count, err) &&
-        make_runs(runner, &truth, "timing runs", 1, total, err) &&
+        (!needs_truth(runner) || runner_make_truth(runner, &truth, err)) &&
+        runner_make_runs(runner, &truth, "error runs", runner->jobs, ladder->point_count, err) &&
+        runner_make_runs(runner, &truth, "timing runs", 1, total, err) &&
         (!ladder->truth.is_limited || make_ensembles(runner, &truth, err));
     truth_finish(&truth);
     return is_done;

@@ -24,7 +24,7 @@ typedef struct Choice {
     int last;
 } Choice;
 
-static Choice choose(const char *const *words, bool matters, int as_it_is)
+static Choice scheme_choose(const char *const *words, bool matters, int as_it_is)
 {
     return matters ? (Choice){0, word_count(words) - 1} : (Choice){as_it_is, as_it_is};
 }
@@ -92,11 +92,12 @@ static size_t list_ode(const Scenario *scenario, Scheme *schemes)
     const OdeOptions *ode = &scenario->ode;
     const bool has_play = scenario_has_clearance(scenario);
     const bool has_map = has_play && scenario->contact.model != CONTACT_POISSON;
-    const Choice maps = choose(OPTIONS_ODE_MAPS, has_map, (int)ode->map);
+    const Choice maps = scheme_choose(OPTIONS_ODE_MAPS, has_map, (int)ode->map);
     // without play every collider is the exact one, which has nothing to do; in space there is no
     // other
     const bool has_colliders = has_play && !scenario->linkage.is_spatial;
-    const Choice colliders = choose(OPTIONS_ODE_COLLIDERS, has_colliders, ODE_COLLIDER_PIN_HOLE);
+    const Choice colliders =
+        scheme_choose(OPTIONS_ODE_COLLIDERS, has_colliders, ODE_COLLIDER_PIN_HOLE);
     const int solvers = word_count(OPTIONS_ODE_SOLVERS);
     const int steppings = word_count(OPTIONS_ODE_STEPPINGS);
     size_t count = 0;
@@ -188,7 +189,7 @@ static bool next_part(const char **text, const char *separators, char part[ENTRY
     return length > 0;
 }
 
-static bool has_word(const Scheme *scheme, const char *word)
+static bool scheme_has_word(const Scheme *scheme, const char *word)
 {
     if (strcmp(OPTIONS_ODE_COLLIDERS[scheme->collider], word) == 0) {
         return true;
@@ -222,7 +223,7 @@ static bool matches(const Scheme *scheme, const char *entry)
         return true;
     }
     while (next_part(&entry, "/", word)) {
-        is_match = is_match && has_word(scheme, word);
+        is_match = is_match && scheme_has_word(scheme, word);
         is_asked = is_asked || is_collider(word);
     }
     return is_match && is_asked;

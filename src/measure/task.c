@@ -127,7 +127,7 @@ typedef struct Making {
     bool is_stopped;
 } Making;
 
-static bool next(void *owner, size_t *number, const void **context)
+static bool task_next(void *owner, size_t *number, const void **context)
 {
     Making *making = owner;
     *number = 0;
@@ -137,7 +137,7 @@ static bool next(void *owner, size_t *number, const void **context)
     return is_first;
 }
 
-static bool take(void *owner, size_t number, const void *packed, const Child *child, Err *err)
+static bool task_take(void *owner, size_t number, const void *packed, const Child *child, Err *err)
 {
     (void)number;
     Making *making = owner;
@@ -154,7 +154,7 @@ static bool take(void *owner, size_t number, const void *packed, const Child *ch
                    trajectory->message);
 }
 
-static bool wait(void *owner)
+static bool task_wait(void *owner)
 {
     Making *making = owner;
     const TruthChild *work = making->work;
@@ -175,9 +175,9 @@ bool truth_child_make(const TruthChild *work, Truth *truth, Err *err)
         .result_size = truth_pack_size(work->scenario),
         .limits = {.time_s = TASK_TRUTH_RUNS * work->run_limit_s,
                    .memory_bytes = TASK_MEMORY_LIMIT},
-        .next = next,
-        .take = take,
-        .wait = wait,
+        .next = task_next,
+        .take = task_take,
+        .wait = task_wait,
         .owner = &making,
     };
     bool is_made = pool_run(&pool, err);

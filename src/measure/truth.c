@@ -83,7 +83,7 @@ static double perturbed_tolerance(const Scenario *scenario)
     return fmin(first, fmax(SECOND * first, PERTURBED_SHARE * DISTANCE_PERTURBATION));
 }
 
-static void beat(void *context)
+static void truth_beat(void *context)
 {
     const TruthRuns *runs = context;
     runs->watch.progress(0.0, clock_now_s() - runs->perturbed.started_s, runs->watch.context);
@@ -118,7 +118,7 @@ static void begin_perturbed(TruthRuns *runs)
         .size = DISTANCE_PERTURBATION,
         .most = DISTANCE_GROWTH,
         .until_s = INFINITY,
-        .pulse = {runs->watch.progress != NULL ? beat : NULL, runs},
+        .pulse = {runs->watch.progress != NULL ? truth_beat : NULL, runs},
     });
 }
 
@@ -153,7 +153,7 @@ static void make_run(TruthRuns *runs, size_t index, bool is_callers)
                                                    : run_motion(scenario, solver, watch);
 }
 
-static void do_piece(size_t index, bool is_callers, void *context)
+static void truth_do_piece(size_t index, bool is_callers, void *context)
 {
     TruthRuns *runs = context;
     if (index < runs->count) {
@@ -195,7 +195,7 @@ static TruthRuns *truth_runs_make(const Scenario *scenario, RunWatch watch, size
         // most mechanisms have two starts for each joint with play
         .most = runs->count + 2 * scenario->linkage.joint_count,
         .next = next_piece,
-        .work = do_piece,
+        .work = truth_do_piece,
         .end = end_piece,
         .context = runs,
     };
@@ -345,7 +345,7 @@ static void certify_ideal(const Scenario *scenario, RunWatch watch, Truth *truth
 }
 
 // Keeps the first reason why a run is not complete.
-static void note_failure(const Trajectory *trajectory, Truth *truth)
+static void truth_note_failure(const Trajectory *trajectory, Truth *truth)
 {
     if (!trajectory->is_complete && truth->message[0] == '\0') {
         snprintf(truth->message, sizeof truth->message, "%s", trajectory->message);
@@ -370,14 +370,14 @@ static void take_growth(TruthRuns *runs, Truth *truth)
 
 // Compares the first run on the fine grid with the second and third, and the second with perturbed
 // ones.
-static void certify(TruthRuns *runs, Truth *truth)
+static void truth_certify(TruthRuns *runs, Truth *truth)
 {
     const Trajectory *first = truth_runs_fine(runs);
     const Trajectory *second = truth_runs_second(runs);
     const Trajectory *third = truth_runs_third(runs);
-    note_failure(first, truth);
-    note_failure(second, truth);
-    note_failure(third, truth);
+    truth_note_failure(first, truth);
+    truth_note_failure(second, truth);
+    truth_note_failure(third, truth);
     truth->is_limited = false;
     truth->horizon_s = truth_runs_duration(runs);
     DistanceMeasure of_first = distance_measure(first);
@@ -425,7 +425,7 @@ static Truth certified(const Scenario *scenario, RunWatch watch, size_t threads)
     Truth truth = {.growth = 1.0, .horizon_s = 0.0, .is_limited = true, .uncertainty = INFINITY};
     TruthRuns *runs = truth_runs_make(scenario, watch, threads);
     if (truth_runs_first(runs)->is_complete) {
-        certify(runs, &truth);
+        truth_certify(runs, &truth);
     }
     truth.trajectory = truth_runs_finish(runs);
     return truth;

@@ -218,7 +218,7 @@ static bool is_after_start(const Recorder *recorder, double end_s)
     return end_s > from_s || from_s == 0.0;
 }
 
-static bool is_stronger(const void *a, const void *b)
+static bool recorder_is_stronger(const void *a, const void *b)
 {
     return ((const Spike *)a)->force_max > ((const Spike *)b)->force_max;
 }
@@ -229,7 +229,7 @@ static void end_contact(Recorder *recorder, size_t number)
     if (recorder->open[number].onset_s >= recorder->trajectory->report_from_s) {
         JointExtremes *joint = &recorder->trajectory->joints[number];
         sorted_insert(joint->spikes, &joint->spike_count, TRAJECTORY_SPIKE_MAX,
-                      &recorder->open[number], sizeof(Spike), is_stronger);
+                      &recorder->open[number], sizeof(Spike), recorder_is_stronger);
     }
 }
 
@@ -259,7 +259,7 @@ static JointTop top_of(const StepRecord *step, size_t index)
 }
 
 // Of a joint in a step, by its place there.
-static void add_contact(Recorder *recorder, const StepRecord *step, size_t index)
+static void recorder_add_contact(Recorder *recorder, const StepRecord *step, size_t index)
 {
     const size_t number = solver_joint(step->part, index);
     const JointState *state = &step->joints[index];
@@ -318,7 +318,7 @@ static void raise_joint_space(JointExtremes *joint, bool is_first, const SpaceJo
     raise_to(&joint->axial_max, is_first, fabs(state->axial), time_s);
 }
 
-static void raise_all(Recorder *recorder, const StepRecord *step)
+static void recorder_raise_all(Recorder *recorder, const StepRecord *step)
 {
     Trajectory *trajectory = recorder->trajectory;
     const Linkage *linkage = &recorder->scenario->linkage;
@@ -357,12 +357,12 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
     for (size_t k = 0; k < joint_count; k++) {
         hash = hash_number(hash, step->joints[k].force);
         if (linkage_has_play(&linkage->joints[solver_joint(step->part, k)])) {
-            add_contact(recorder, step, k);
+            recorder_add_contact(recorder, step, k);
         }
     }
     trajectory->hash = hash;
     if (is_after_start(recorder, step->end_s)) {
-        raise_all(recorder, step);
+        recorder_raise_all(recorder, step);
     }
     recorder_ranges_add(&recorder->ranges, step);
     trajectory->energy.drive_work += step->drive_work;

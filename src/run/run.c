@@ -177,7 +177,7 @@ static void store(const PartSamples *samples, size_t number, const SolverPart *p
 }
 
 // Takes the next sample of a part, which has been observed.
-static bool take(PartSamples *samples, const SolverPart *part, Err *err)
+static bool run_take(PartSamples *samples, const SolverPart *part, Err *err)
 {
     Sample *sample = &samples->sample;
     if (!run_check_sample(&samples->scenario->linkage, part, sample, err)) {
@@ -207,7 +207,7 @@ static bool part_samples_take(PartSamples *samples, const StepRecord *record, Er
         }
         samples->solver->observe_part(samples->state, scenario_sample_time(samples->scenario, next),
                                       &samples->sample);
-        if (!take(samples, part, err)) {
+        if (!run_take(samples, part, err)) {
             return false;
         }
     }
@@ -221,7 +221,7 @@ static bool part_samples_complete(PartSamples *samples, size_t behind, Err *err)
             samples->solver->observe(samples->state,
                                      scenario_sample_time(samples->scenario, samples->next[i]),
                                      &samples->sample);
-            if (!take(samples, samples->parts[i], err)) {
+            if (!run_take(samples, samples->parts[i], err)) {
                 return false;
             }
         }
@@ -397,7 +397,7 @@ static bool take_ahead(Loop *loop, Trajectory *trajectory, Err *err)
     return true;
 }
 
-static bool take_samples(Loop *loop, Trajectory *trajectory, Err *err)
+static bool run_take_samples(Loop *loop, Trajectory *trajectory, Err *err)
 {
     for (size_t k = 0; k < trajectory->sample_count; k++) {
         if (!reach(loop, scenario_sample_time(loop->scenario, k), err) ||
@@ -415,7 +415,7 @@ static bool run_samples(Loop *loop, Trajectory *trajectory, Err *err)
         return false;
     }
     note_start(loop);
-    if (!(loop->has_parts ? take_ahead : take_samples)(loop, trajectory, err)) {
+    if (!(loop->has_parts ? take_ahead : run_take_samples)(loop, trajectory, err)) {
         return false;
     }
     // what is left after the last whole sample interval
@@ -550,7 +550,7 @@ typedef struct Way {
     double width_s;   // length of the last step
 } Way;
 
-static bool stride(Way *way, double stop_s, Err *err)
+static bool run_stride(Way *way, double stop_s, Err *err)
 {
     double end_s = 0.0;
     if (!solver_stride(way->solver, way->state, stop_s, &end_s, err)) {
@@ -569,7 +569,7 @@ static bool stride(Way *way, double stop_s, Err *err)
 static bool reach_in_motion(Way *way, double time_s, Err *err)
 {
     while (way->reached_s < time_s - RUN_ROUNDING * way->width_s) {
-        if (!stride(way, time_s, err)) {
+        if (!run_stride(way, time_s, err)) {
             return false;
         }
     }
@@ -579,7 +579,7 @@ static bool reach_in_motion(Way *way, double time_s, Err *err)
 static bool go(Way *way, Sample *sample, Trajectory *trajectory, Err *err)
 {
     // a first step, so that the sample at zero already stands in one
-    if (!stride(way, scenario_sample_time(way->scenario, 1), err)) {
+    if (!run_stride(way, scenario_sample_time(way->scenario, 1), err)) {
         return false;
     }
     for (size_t k = 0; k < trajectory->sample_count; k++) {

@@ -39,6 +39,6 @@ Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatc
 Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch watch,
                         const RunProbe *probe, const RunGuard *guard);
 
-// Runs the scenario for the bodies' positions and velocities at the samples alone (run_motion.c):
+// Runs the scenario for the bodies' positions and velocities at the samples alone:
 // nothing else in the trajectory is for use but whether it is complete, or why not.
 Trajectory *run_motion(const Scenario *scenario, const Solver *solver, RunWatch watch);

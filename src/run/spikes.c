@@ -61,7 +61,7 @@ static TracePoint cross(const TracePoint *a, const TracePoint *b, double value)
     };
 }
 
-static Part take_part(const Trace *trace, double sign)
+static Part spikes_take_part(const Trace *trace, double sign)
 {
     Part part = {.sign = sign, .points = calloc(2 * trace->count + 1, sizeof *part.points)};
     assert(part.points != NULL);
@@ -151,7 +151,7 @@ static size_t select_peaks(const Part *part, double threshold, Peak *peaks)
 
 // Where the flank of a peak may go on: the lowest point before another one, and before the part,
 // once it has fallen, has risen again. Of several as low the furthest: a knee is seen from afar.
-static size_t find_limit(const Part *part, const Peak *peak, size_t other)
+static size_t spikes_find_limit(const Part *part, const Peak *peak, size_t other)
 {
     const int step = other >= peak->point ? 1 : -1;
     const double fallen = height(part, peak) - 0.5 * peak->prominence;
@@ -206,12 +206,12 @@ static double find_level(const Part *part, size_t peak, size_t limit, double lev
     return part->points[limit].time_s;
 }
 
-static SignalSpike measure(const Part *part, const Peak *peak, size_t before, size_t behind)
+static SignalSpike spikes_measure(const Part *part, const Peak *peak, size_t before, size_t behind)
 {
     const TracePoint *top = &part->points[peak->point];
     const double level = top->value - 0.5 * peak->prominence;
-    const size_t first = find_limit(part, peak, before);
-    const size_t last = find_limit(part, peak, behind);
+    const size_t first = spikes_find_limit(part, peak, before);
+    const size_t last = spikes_find_limit(part, peak, behind);
     const TracePoint *onset = &part->points[find_knee(part, peak->point, first, level)];
     const TracePoint *end = &part->points[find_knee(part, peak->point, last, level)];
     return (SignalSpike){
@@ -228,16 +228,17 @@ static SignalSpike measure(const Part *part, const Peak *peak, size_t before, si
 }
 
 // Adds the spikes of one part of the signal to a list that has room for them.
-static size_t add_part(const Trace *trace, double sign, double threshold, SignalSpike *spikes)
+static size_t spikes_add_part(const Trace *trace, double sign, double threshold,
+                              SignalSpike *spikes)
 {
-    Part part = take_part(trace, sign);
+    Part part = spikes_take_part(trace, sign);
     Peak *peaks = calloc(part.count, sizeof *peaks);
     assert(peaks != NULL);
     const size_t count = select_peaks(&part, threshold, peaks);
     for (size_t i = 0; i < count; i++) {
         const size_t before = i > 0 ? peaks[i - 1].point : 0;
         const size_t behind = i + 1 < count ? peaks[i + 1].point : part.count - 1;
-        spikes[i] = measure(&part, &peaks[i], before, behind);
+        spikes[i] = spikes_measure(&part, &peaks[i], before, behind);
     }
     free(peaks);
     free(part.points);
@@ -260,8 +261,8 @@ size_t spikes_find(const Trace *trace, double threshold, SignalSpike **spikes)
     }
     SignalSpike *found = calloc(trace->count, sizeof *found);
     assert(found != NULL);
-    size_t count = add_part(trace, 1.0, threshold, found);
-    count += add_part(trace, -1.0, threshold, found + count);
+    size_t count = spikes_add_part(trace, 1.0, threshold, found);
+    count += spikes_add_part(trace, -1.0, threshold, found + count);
     qsort(found, count, sizeof *found, by_time);
     *spikes = found;
     return count;
@@ -400,7 +401,7 @@ static void append(Trace *trace, const TracePoint *point)
 }
 
 // Begins a line at a point that has been kept.
-static void begin(Trace *trace, const TracePoint *point)
+static void spikes_begin(Trace *trace, const TracePoint *point)
 {
     trace->first = trace->last = trace->top = trace->bottom = *point;
     trace->most_slope = INFINITY;
@@ -408,7 +409,7 @@ static void begin(Trace *trace, const TracePoint *point)
 }
 
 // Keeps the last point seen, and before it the extremes that it and the line's start do not reach.
-static void keep(Trace *trace)
+static void spikes_keep(Trace *trace)
 {
     const TracePoint last = trace->last;
     const bool has_top = trace->top.value > fmax(trace->first.value, last.value);
@@ -424,19 +425,19 @@ static void keep(Trace *trace)
         append(trace, &trace->top);
     }
     append(trace, &last);
-    begin(trace, &last);
+    spikes_begin(trace, &last);
 }
 
 void trace_close(Trace *trace)
 {
     if (trace->count > 0 && trace->last.time_s > trace->first.time_s) {
-        keep(trace);
+        spikes_keep(trace);
     }
 }
 
 // Goes over the points once more with twice the tolerance, until three quarters of the room are
 // free or nothing more can be had. The points written never catch up with those read.
-static void thin(Trace *trace)
+static void spikes_thin(Trace *trace)
 {
     const TracePoint under_way = trace->last;
     const size_t aim = trace->limit / 4;
@@ -449,7 +450,7 @@ static void thin(Trace *trace)
         trace->coarseness *= 2.0;
         set_tolerance(trace);
         trace->count = 1;
-        begin(trace, &trace->points[0]);
+        spikes_begin(trace, &trace->points[0]);
         for (size_t i = 1; i < before; i++) {
             const TracePoint point = trace->points[i];
             trace_add(trace, point.time_s, point.value, point.integral);
@@ -466,7 +467,7 @@ static void jump(Trace *trace, const TracePoint *point)
     if (point->value != trace->last.value) {
         trace_close(trace);
         append(trace, point);
-        begin(trace, point);
+        spikes_begin(trace, point);
     }
 }
 
@@ -482,7 +483,7 @@ void trace_turn(Trace *trace, const TracePoint *point)
     }
     if (trace->count == 0) {
         append(trace, point);
-        begin(trace, point);
+        spikes_begin(trace, point);
         return;
     }
     if (!(point->time_s > trace->last.time_s)) {
@@ -492,9 +493,9 @@ void trace_turn(Trace *trace, const TracePoint *point)
     const double width = point->time_s - trace->first.time_s;
     const double rise = point->value - trace->first.value;
     if (rise > trace->most_slope * width || rise < trace->least_slope * width) {
-        keep(trace);
+        spikes_keep(trace);
         if (trace->limit - trace->count < LIMIT_LEAST) {
-            thin(trace);
+            spikes_thin(trace);
         }
     }
     trace_add(trace, point->time_s, point->value, point->integral);

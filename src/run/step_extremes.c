@@ -168,7 +168,7 @@ static double extreme_so_far(const Looker *looker, size_t signal, double sign)
     return sign * extreme->value;
 }
 
-static bool is_near(const Aim *aim, double value, double share)
+static bool step_extremes_is_near(const Aim *aim, double value, double share)
 {
     return value >= aim->extreme - share * fabs(aim->extreme);
 }
@@ -211,7 +211,8 @@ static size_t count_near(Looker *looker, const Look *before, int parts, const Lo
             least = fmin(least, aim_value(&aim, &looks[k]));
         }
         // what stays as it is has no maximum
-        count += is_near(&aim, most, STEP_EXTREMES_RISE_MAX) && most - least > ALIKE * fabs(most)
+        count += step_extremes_is_near(&aim, most, STEP_EXTREMES_RISE_MAX) &&
+                         most - least > ALIKE * fabs(most)
                      ? 1
                      : 0;
     }
@@ -272,7 +273,7 @@ static int insert(Look *looks, int count, const Look *look)
 }
 
 // Climbs to the top of a signal in a step if it may be higher than the extreme so far.
-static bool find_top(const Aim *aim, size_t count, const Look *points, Look *found)
+static bool step_extremes_find_top(const Aim *aim, size_t count, const Look *points, Look *found)
 {
     size_t top = 0;
     for (size_t i = 1; i < count; i++) {
@@ -284,7 +285,7 @@ static bool find_top(const Aim *aim, size_t count, const Look *points, Look *fou
     Look three[3] = {points[top - 1], points[top], points[top + 1]};
     double expected;
     top_of_three(aim, three, &expected);
-    if (!is_near(aim, expected, LIKELY)) {
+    if (!step_extremes_is_near(aim, expected, LIKELY)) {
         return false;
     }
     climb(aim, three);
@@ -392,7 +393,7 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
     sought = 0;
     for (size_t number = 0; sought < SOUGHT_MOST && next_aim(looker, &number, &aim);) {
         Look top;
-        if (find_top(&aim, count, points, &top)) {
+        if (step_extremes_find_top(&aim, count, points, &top)) {
             look_count = insert(looks, look_count, &top);
             sought++;
         }
@@ -420,7 +421,7 @@ typedef struct Crowd {
     Look looks[CURVE_NODES];
 } Crowd;
 
-static double value_of(const Look *look, const Signal *signal)
+static double step_extremes_value_of(const Look *look, const Signal *signal)
 {
     switch (signal->which) {
     case RECORDER_OMEGA:
@@ -448,7 +449,7 @@ static void note_top(const Crowd *crowd, const Signal *signal, double share, dou
     if (signal->which == RECORDER_ALPHA) {
         double speeds[CURVE_NODES];
         for (size_t k = 0; k < CURVE_NODES; k++) {
-            speeds[k] = value_of(&crowd->looks[k], &speed);
+            speeds[k] = step_extremes_value_of(&crowd->looks[k], &speed);
         }
         top.omega = curve_at(speeds, share);
     }
@@ -464,7 +465,7 @@ static void raise_signal(const Crowd *crowd, Signal signal)
     double values[CURVE_NODES];
     size_t largest = 0;
     for (size_t k = 0; k < CURVE_NODES; k++) {
-        values[k] = signal.sign * value_of(&crowd->looks[k], &signal);
+        values[k] = signal.sign * step_extremes_value_of(&crowd->looks[k], &signal);
         largest = values[k] > values[largest] ? k : largest;
     }
     const bool is_inside = largest > 0 && largest + 1 < CURVE_NODES;
@@ -488,7 +489,7 @@ static void forget_tops(LookTop *tops)
     }
 }
 
-static void raise_all(const Crowd *crowd)
+static void step_extremes_raise_all(const Crowd *crowd)
 {
     const Linkage *linkage = &crowd->looker->scenario->linkage;
     const SolverPart *part = crowd->looker->part;
@@ -522,7 +523,7 @@ void look_at_crowd(Looker *looker, const Look *before, const Look *end)
     for (size_t k = 1; k + 1 < CURVE_NODES; k++) {
         crowd.looks[k] = look_inside(looker, crowd.start_s + curve_node(k) * crowd.width_s);
     }
-    raise_all(&crowd);
+    step_extremes_raise_all(&crowd);
     looker->has_tops = true;
 }
 

@@ -59,7 +59,7 @@ Look look_inside(Looker *looker, double time_s);
 Look look_at_end(Looker *looker, const StepRecord *step);
 
 // Whether so many signals of a step may come near the run's extremes that these are found together
-// (run/look_crowd.h) for less than one by one. Arguments as below.
+// for less than one by one. Arguments as below.
 bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks);
 
 // Looks in a step for maxima and minima of the signals that come near the run's extremes, down to

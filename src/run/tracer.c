@@ -28,7 +28,7 @@ static bool hands_on(const Linkage *linkage, int body)
 }
 
 // By body: the first of those that ideal joints connect with it.
-static size_t *connect(const Linkage *linkage)
+static size_t *tracer_connect(const Linkage *linkage)
 {
     size_t *leaders = zeroed(linkage->body_count, sizeof *leaders);
     leaders_start(leaders, linkage->body_count);
@@ -62,7 +62,7 @@ Causes causes_find(const Linkage *linkage)
 {
     const size_t ends = 2 * linkage->joint_count;
     Causes causes = {
-        .set_of = connect(linkage),
+        .set_of = tracer_connect(linkage),
         .firsts = zeroed(linkage->body_count + 1, sizeof *causes.firsts),
         .ends = zeroed(ends, sizeof *causes.ends),
     };
@@ -227,7 +227,7 @@ static void add_forces(Tracer *tracer, size_t joint, double impulse, int count, 
 }
 
 // Adds looks at bodies to their traces.
-static void add_bodies(Tracer *tracer, const SolverPart *part, int count, const Look *looks)
+static void tracer_add_bodies(Tracer *tracer, const SolverPart *part, int count, const Look *looks)
 {
     const size_t body_count = solver_body_count(part, &tracer->scenario->linkage);
     for (size_t k = 0; k < body_count; k++) {
@@ -251,7 +251,7 @@ static void look_at_start(Tracer *tracer, const StepRecord *step)
         tracer->last = looker_first(&tracer->looker);
     }
     const Look look = look_inside(&tracer->looker, step->start_s);
-    add_bodies(tracer, step->part, 1, &look);
+    tracer_add_bodies(tracer, step->part, 1, &look);
     for (size_t k = 0; k < joint_count; k++) {
         const size_t i = solver_joint(step->part, k);
         trace_add(&tracer->force[i], look.time_s, look.force[i], 0.0);
@@ -283,7 +283,7 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
     } else {
         count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);
     }
-    add_bodies(tracer, step->part, count, looks);
+    tracer_add_bodies(tracer, step->part, count, looks);
     const size_t joint_count = solver_joint_count(step->part, &tracer->scenario->linkage);
     for (size_t k = 0; k < joint_count; k++) {
         add_forces(tracer, solver_joint(step->part, k), step->impulse[k], count, looks);
@@ -324,7 +324,7 @@ static double range_within(const Trace *trace, double from_s, double to_s)
 }
 
 // The joint with play whose force changes most within a spike of a body, of those that reach it.
-static int find_joint(const Tracer *tracer, size_t body, const SignalSpike *spike)
+static int tracer_find_joint(const Tracer *tracer, size_t body, const SignalSpike *spike)
 {
     const Causes *causes = &tracer->causes;
     int found = -1;
@@ -338,7 +338,7 @@ static int find_joint(const Tracer *tracer, size_t body, const SignalSpike *spik
     return found;
 }
 
-static bool is_stronger(const void *a, const void *b)
+static bool tracer_is_stronger(const void *a, const void *b)
 {
     return fabs(((const SignalSpike *)a)->value) > fabs(((const SignalSpike *)b)->value);
 }
@@ -368,9 +368,9 @@ static void tell_signal(const Tracer *tracer, const Trace *trace, double thresho
         }
         spikes->count++;
         found[i].crank_rad = linkage_crank_angle(linkage, found[i].time_s);
-        found[i].joint = body >= 0 ? find_joint(tracer, (size_t)body, &found[i]) : -1;
+        found[i].joint = body >= 0 ? tracer_find_joint(tracer, (size_t)body, &found[i]) : -1;
         sorted_insert(spikes->spikes, &spikes->kept, SIGNAL_SPIKE_MAX, &found[i], sizeof found[i],
-                      is_stronger);
+                      tracer_is_stronger);
         if (linkage->driver.is_present) {
             count_sector(spikes, &found[i]);
         }

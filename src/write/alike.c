@@ -1,4 +1,4 @@
-
+// Writes sentences about many things: what holds of several is said once, with their names.
 #include "write/alike.h"
 #include "base/room.h"
 
@@ -30,7 +30,7 @@ Alike *alike_start(void)
     return alike;
 }
 
-static Sentence *find(Alike *alike, const char *said)
+static Sentence *alike_find(Alike *alike, const char *said)
 {
     const size_t length = strlen(said);
     // what is said of neighbours is alike more often than of any other two
@@ -50,7 +50,7 @@ static Sentence *find(Alike *alike, const char *said)
 
 void alike_add(Alike *alike, const char *name, const char *said)
 {
-    Sentence *sentence = find(alike, said);
+    Sentence *sentence = alike_find(alike, said);
     sentence->names =
         room_grow(sentence->names, &sentence->room, sentence->count + 1, sizeof *sentence->names);
     sentence->names[sentence->count] = strdup(name);
@@ -58,7 +58,7 @@ void alike_add(Alike *alike, const char *name, const char *said)
     sentence->count++;
 }
 
-static void write_names(const Sentence *sentence, Text *text)
+static void alike_write_names(const Sentence *sentence, Text *text)
 {
     const size_t shown = sentence->count > NAMES_MOST ? NAMES_SHOWN : sentence->count;
     for (size_t i = 0; i < shown; i++) {
@@ -84,7 +84,7 @@ void alike_end(Alike *alike, const char *lead, const char *between, size_t width
         width > 0 && alike->count > SENTENCES_MOST ? SENTENCES_SHOWN : alike->count;
     for (size_t i = 0; i < shown; i++) {
         text_append(text, "%s", lead);
-        write_names(&alike->sentences[i], text);
+        alike_write_names(&alike->sentences[i], text);
         text_append(text, "%s%s\n", between, alike->sentences[i].said);
     }
     if (shown < alike->count) {

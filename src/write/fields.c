@@ -56,7 +56,7 @@ static const void *inner_record(const Field *field, const void *record)
     return is_known ? bytes + field->offset : NULL;
 }
 
-static const char *find_word(const Field *field, const void *record, const void *at)
+static const char *fields_find_word(const Field *field, const void *record, const void *at)
 {
     switch (field->type) {
     case FIELD_NAME:
@@ -76,7 +76,7 @@ static Value find_value(const Field *field, const void *record)
         return (Value){.at = NULL, .number = NAN};
     }
     const void *at = (const char *)record + field->offset;
-    Value value = {.at = at, .word = find_word(field, record, at)};
+    Value value = {.at = at, .word = fields_find_word(field, record, at)};
     if (is_number(field)) {
         value.number = field->number != NULL ? field->number(record) : *(const double *)at;
     }
@@ -135,14 +135,14 @@ json_t *fields_json(const Field *fields, unsigned where, const void *record)
     return object;
 }
 
-static bool read_number(const Field *field, const json_t *json, double *value)
+static bool fields_read_number(const Field *field, const json_t *json, double *value)
 {
     const bool is_known = json_is_number(json);
     *value = is_known ? json_number_value(json) : NAN;
     return field->type == FIELD_STEP ? is_known && *value >= 0.0 : is_known || json_is_null(json);
 }
 
-static bool read_hash(const json_t *json, uint64_t *value)
+static bool fields_read_hash(const json_t *json, uint64_t *value)
 {
     const char *text = json_string_value(json);
     const bool is_hash = text != NULL && strlen(text) == HASH_DIGITS &&
@@ -151,7 +151,7 @@ static bool read_hash(const json_t *json, uint64_t *value)
     return is_hash;
 }
 
-static bool read_value(const Field *field, unsigned where, const json_t *json, void *value)
+static bool fields_read_value(const Field *field, unsigned where, const json_t *json, void *value)
 {
     switch (field->type) {
     case FIELD_COUNT:
@@ -164,12 +164,12 @@ static bool read_value(const Field *field, unsigned where, const json_t *json, v
         snprintf(value, field->size, "%s", json_is_string(json) ? json_string_value(json) : "");
         return json_is_string(json);
     case FIELD_HASH:
-        return read_hash(json, value);
+        return fields_read_hash(json, value);
     case FIELD_GROUP:
         return fields_json_read(field->of, where, json, value);
     default:
         assert(field->type == FIELD_NUMBER || field->type == FIELD_STEP);
-        return read_number(field, json, value);
+        return fields_read_number(field, json, value);
     }
 }
 
@@ -179,7 +179,7 @@ bool fields_json_read(const Field *fields, unsigned where, const json_t *object,
     for (const Field *field = fields; is_right && field->type != FIELD_END; field++) {
         const json_t *json = field->key == NULL ? object : json_object_get(object, field->key);
         is_right = !is_in_file(field, where) ||
-                   read_value(field, where, json, (char *)record + field->offset);
+                   fields_read_value(field, where, json, (char *)record + field->offset);
     }
     return is_right;
 }
@@ -336,7 +336,7 @@ static void number_cell(const Field *field, double value, Table *table)
     }
 }
 
-static void write_cell(const Field *field, const void *record, Table *table)
+static void fields_write_cell(const Field *field, const void *record, Table *table)
 {
     const Value value = find_value(field, record);
     if (is_number(field)) {
@@ -356,7 +356,7 @@ void fields_table_row(const Field *fields, unsigned where, const void *record, T
         if ((field->where & where) != 0 && has_inner(field)) {
             fields_table_row(field->of, where, inner_record(field, record), table);
         } else if ((field->where & where) != 0 && field->type != FIELD_LABEL) {
-            write_cell(field, record, table);
+            fields_write_cell(field, record, table);
         }
     }
 }

@@ -250,7 +250,8 @@ static void show_head(const char *head, size_t size, char shown[SHOWN_SIZE])
     shown[length] = '\0';
 }
 
-static bool refuse(const char *user, const char *path, const char *what, const Kind *kind, Err *err)
+static bool file_refuse(const char *user, const char *path, const char *what, const Kind *kind,
+                        Err *err)
 {
     return err_set(err, ERR_FILE,
                    "%s would replace %s, which %s and is not %s; delete it first or name another "
@@ -265,13 +266,13 @@ static bool refuse_head(const char *user, const char *path, const char *head, si
     for (size_t i = 0; i < FILE_KIND_COUNT; i++) {
         if (is_of_kind(&KINDS[i], head, size)) {
             snprintf(what, sizeof what, "is %s", KINDS[i].name);
-            return refuse(user, path, what, kind, err);
+            return file_refuse(user, path, what, kind, err);
         }
     }
     char shown[SHOWN_SIZE];
     show_head(head, size, shown);
     snprintf(what, sizeof what, "begins '%s'", shown);
-    return refuse(user, path, what, kind, err);
+    return file_refuse(user, path, what, kind, err);
 }
 
 static bool read_head(const char *path, char *head, size_t *size)
@@ -302,7 +303,7 @@ static bool file_kind_check(FileKind kind, const char *user, const char *path, E
     if (!read_head(path, head, &size)) {
         char what[128];
         snprintf(what, sizeof what, "cannot be read (%s)", strerror(errno));
-        refuse(user, path, what, &KINDS[kind], err);
+        file_refuse(user, path, what, &KINDS[kind], err);
     } else {
         is_own = is_of_kind(&KINDS[kind], head, size) ||
                  refuse_head(user, path, head, size, &KINDS[kind], err);
@@ -388,7 +389,7 @@ static void watch_signals(const char *temporary)
 }
 
 // The descriptor that a path names, which the caller opened; -1 where it names none.
-static int descriptor_of(const char *path)
+static int file_descriptor_of(const char *path)
 {
     static const char *const FOLDERS[] = {"/dev/fd/", "/proc/self/fd/"};
     if (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0) {
@@ -421,19 +422,19 @@ static bool is_callers(int descriptor)
 bool file_is_stream(const char *path)
 {
     struct stat status;
-    return descriptor_of(path) >= 0 || (stat(path, &status) == 0 && !S_ISREG(status.st_mode));
+    return file_descriptor_of(path) >= 0 || (stat(path, &status) == 0 && !S_ISREG(status.st_mode));
 }
 
 // What a message and the list of claims call the target.
-static const char *name_of(const char *path)
+static const char *file_name_of(const char *path)
 {
-    return descriptor_of(path) == STDOUT_FILENO ? "-" : path;
+    return file_descriptor_of(path) == STDOUT_FILENO ? "-" : path;
 }
 
 bool file_check_input(const char *user, const char *path, Err *err)
 {
     Claim claim;
-    return !claims_find(name_of(path), &claim) || !claim.is_read ||
+    return !claims_find(file_name_of(path), &claim) || !claim.is_read ||
            err_set(err, ERR_USAGE,
                    "%s would replace %s, which is the %s that this command reads; name another "
                    "file",
@@ -442,17 +443,18 @@ bool file_check_input(const char *user, const char *path, Err *err)
 
 // Whether this command does not read that file, has no other output for it where one is to be
 // claimed, and nothing of another kind stands there.
-static bool check_target(const char *user, FileKind kind, const char *path, bool is_new, Err *err)
+static bool file_check_target(const char *user, FileKind kind, const char *path, bool is_new,
+                              Err *err)
 {
     Claim claim;
     if (!file_check_input(user, path, err)) {
         return false;
     }
-    const bool is_claimed = claims_find(name_of(path), &claim);
+    const bool is_claimed = claims_find(file_name_of(path), &claim);
     if (is_claimed && is_new && strcmp(claim.user, user) != 0) {
         return err_set(err, ERR_USAGE, "%s and %s would both write %s", claim.user, user, path);
     }
-    return descriptor_of(path) >= 0 ||
+    return file_descriptor_of(path) >= 0 ||
            file_kind_check(kind, is_claimed ? claim.user : user, path, err);
 }
 
@@ -470,9 +472,9 @@ static bool find_target(const char *path, char *target, bool *is_regular, Err *e
 }
 
 // A descriptor of its own; -1, with errno set.
-static int open_target(const WholeFile *file, const char *path)
+static int file_open_target(const WholeFile *file, const char *path)
 {
-    const int descriptor = descriptor_of(path);
+    const int descriptor = file_descriptor_of(path);
     if (descriptor >= 0) {
         // beside the program's own words, wherever they go
         fflush(stdout);
@@ -493,7 +495,7 @@ static bool begin(WholeFile *file, const char *path, Err *err)
     if (is_regular && !file_parts_name(file->path, file->temporary, sizeof file->temporary)) {
         return fail_to_write(path, ENAMETOOLONG, err);
     }
-    const int target = open_target(file, path);
+    const int target = file_open_target(file, path);
     file->stream = target < 0 ? NULL : sink_open(&file->sink, target);
     if (file->stream == NULL) {
         return fail_to_write(path, errno, err);
@@ -504,14 +506,14 @@ static bool begin(WholeFile *file, const char *path, Err *err)
 
 bool file_begin(WholeFile *file, FileKind kind, const char *path, Err *err)
 {
-    return check_target("the output", kind, path, false, err) && begin(file, path, err);
+    return file_check_target("the output", kind, path, false, err) && begin(file, path, err);
 }
 
 // Whether the file could be written, by writing nothing to it.
 static bool probe(const char *path, Err *err)
 {
     struct stat status;
-    const int descriptor = descriptor_of(path);
+    const int descriptor = file_descriptor_of(path);
     if (descriptor >= 0) {
         // a closed standard output is reported where it is written to
         return descriptor == STDOUT_FILENO || is_callers(descriptor) ||
@@ -534,11 +536,11 @@ static bool probe(const char *path, Err *err)
 
 bool file_claim(const char *user, FileKind kind, const char *path, Err *err)
 {
-    if (!check_target(user, kind, path, true, err) ||
+    if (!file_check_target(user, kind, path, true, err) ||
         (!file_kind_is_kept(kind) && !probe(path, err))) {
         return false;
     }
-    claims_note_written(user, name_of(path));
+    claims_note_written(user, file_name_of(path));
     return true;
 }
 
@@ -586,7 +588,7 @@ bool file_write_text(FileKind kind, const char *path, const char *text, Err *err
 void file_remove(FileKind kind, const char *path)
 {
     Err err = {0};
-    if (!file_is_stream(path) && check_target("the output", kind, path, false, &err)) {
+    if (!file_is_stream(path) && file_check_target("the output", kind, path, false, &err)) {
         unlink(path);
     }
 }

@@ -5,7 +5,7 @@
 // no regular file (a pipe, a terminal, /dev/full) is written to directly.
 //
 // And it replaces nothing but its own: no file that the command reads, and none of another kind
-// (file_kind.h). Who wants that deletes the file first.
+// (FileKind). Who wants that deletes the file first.
 #pragma once
 
 #include "base/err.h"

@@ -31,14 +31,14 @@ static const size_t LINE_FLAGS = JSON_REAL_PRECISION(17) | JSON_COMPACT | JSON_S
 const JournalKind JOURNAL_COMPARE = {"compare", "store", "comparison", "; --fresh starts it over"};
 const JournalKind JOURNAL_BLESS = {"check", "file of kept starts", "baseline", ""};
 
-static bool fail(const Journal *journal, const char *what, Err *err)
+static bool journal_fail(const Journal *journal, const char *what, Err *err)
 {
     return err_set(err, ERR_FILE, "cannot %s the %s %s: %s", what, journal->kind->what,
                    journal->path, strerror(errno));
 }
 
 // The whole file, with a zero behind it; owned by the caller.
-static bool read_all(const Journal *journal, char **content, size_t *size, Err *err)
+static bool journal_read_all(const Journal *journal, char **content, size_t *size, Err *err)
 {
     struct stat status;
     // a device is written to and has nothing to be read, or has no end
@@ -52,7 +52,7 @@ static bool read_all(const Journal *journal, char **content, size_t *size, Err *
         *size += (size_t)count;
     }
     (*content)[*size] = '\0';
-    return count >= 0 || fail(journal, "read", err);
+    return count >= 0 || journal_fail(journal, "read", err);
 }
 
 // Takes the next line that is whole, and ends it; NULL behind the last.
@@ -77,7 +77,7 @@ static void make_seal(const char *line, size_t length, char seal[SEAL_SIZE + 1])
 
 // What a line holds, without its checksum; NULL where it is not what was once written. A new
 // reference.
-static json_t *read_line(const char *line, size_t length)
+static json_t *journal_read_line(const char *line, size_t length)
 {
     char seal[SEAL_SIZE + 1];
     if (length <= SEAL_SIZE) {
@@ -132,7 +132,7 @@ static bool check_key(const Journal *journal, const char *line, size_t length, c
                       Err *err)
 {
     const JournalKind *kind = journal->kind;
-    json_t *head = read_line(line, length);
+    json_t *head = journal_read_line(line, length);
     // one of an older program has no checksum, and says so by its key
     json_t *other = head != NULL ? json_incref(head) : json_loads(line, 0, NULL);
     const json_t *stored = json_object_get(other, kind->name);
@@ -152,11 +152,11 @@ static bool check_key(const Journal *journal, const char *line, size_t length, c
     return is_right;
 }
 
-static void read_entries(Journal *journal, char *rest, const char *end)
+static void journal_read_entries(Journal *journal, char *rest, const char *end)
 {
     size_t number = 2;
     for (char *line = next_line(&rest, end); line != NULL; line = next_line(&rest, end)) {
-        json_t *entry = read_line(line, (size_t)(rest - 1 - line));
+        json_t *entry = journal_read_line(line, (size_t)(rest - 1 - line));
         if (entry == NULL) {
             journal->damaged_line = journal->damaged_count == 0 ? number : journal->damaged_line;
             journal->damaged_count++;
@@ -172,18 +172,18 @@ static bool take_in(Journal *journal, json_t *key, bool is_fresh, Err *err)
 {
     char *content;
     size_t size;
-    bool is_done =
-        read_all(journal, &content, &size, err) && check_opening(journal, content, size, err);
+    bool is_done = journal_read_all(journal, &content, &size, err) &&
+                   check_opening(journal, content, size, err);
     const char *last = memrchr(content, '\n', size);
     const char *end = last == NULL ? content : last + 1;
     char *rest = content;
     const char *head = next_line(&rest, end);
     if (is_done && head != NULL && !is_fresh) {
         is_done = check_key(journal, head, (size_t)(rest - 1 - head), key, err);
-        read_entries(journal, rest, end);
+        journal_read_entries(journal, rest, end);
     }
     is_done = is_done && (ftruncate(journal->file, is_fresh ? 0 : end - content) == 0 ||
-                          fail(journal, "cut", err));
+                          journal_fail(journal, "cut", err));
     if (is_done && (is_fresh || head == NULL)) {
         is_done = journal_add(journal, json_pack("{s:O}", journal->kind->name, key), err);
     }
@@ -201,7 +201,7 @@ bool journal_open(Journal *journal, const JournalKind *kind, const char *path, j
         .entries = json_array(),
     };
     assert(journal->path != NULL && journal->entries != NULL);
-    bool is_open = journal->file >= 0 || fail(journal, "open", err);
+    bool is_open = journal->file >= 0 || journal_fail(journal, "open", err);
     if (is_open && work_lock_take(journal->file, 0) != 0) {
         is_open =
             err_set(err, ERR_FILE, "the %s %s is in use by another process", kind->what, path);
@@ -227,7 +227,7 @@ void journal_describe_damage(const Journal *journal, Text *text)
 }
 
 // A line that does not fit is written as far as it does, and the reason is that of the rest.
-static bool write_all(int file, const char *bytes, size_t size)
+static bool journal_write_all(int file, const char *bytes, size_t size)
 {
     ssize_t count = 0;
     for (size_t sent = 0; sent < size && count >= 0; sent += count > 0 ? (size_t)count : 0) {
@@ -248,9 +248,9 @@ bool journal_add(Journal *journal, json_t *entry, Err *err)
     text_init(&line);
     text_append(&line, "%.*s%s\n", (int)length, words, seal);
     // a pipe or a device has no disk to reach
-    const bool is_written = (write_all(journal->file, line.data, line.length) &&
+    const bool is_written = (journal_write_all(journal->file, line.data, line.length) &&
                              (fsync(journal->file) == 0 || errno == EINVAL || errno == EROFS)) ||
-                            fail(journal, "write", err);
+                            journal_fail(journal, "write", err);
     text_finish(&line);
     free(words);
     json_decref(entry);

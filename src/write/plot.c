@@ -12,7 +12,7 @@
 enum { AXIS_TICKS_WANTED = 6, AXIS_DECADE_LABELS = 7 };
 
 // A value on its axis's own scale, on which distances are pixels.
-static double scaled(const Axis *axis, double value)
+static double plot_scaled(const Axis *axis, double value)
 {
     switch (axis->scale) {
     case AXIS_LOG:
@@ -29,8 +29,8 @@ static double scaled(const Axis *axis, double value)
 // Where a value stands between the two edges, 0 to 1; outside of them beyond that.
 static double axis_share(const Axis *axis, double value)
 {
-    const double low = scaled(axis, axis->low);
-    return (scaled(axis, value) - low) / (scaled(axis, axis->high) - low);
+    const double low = plot_scaled(axis, axis->low);
+    return (plot_scaled(axis, value) - low) / (plot_scaled(axis, axis->high) - low);
 }
 
 // The spacing of about that many ticks over a span: 1, 2 or 5 times a power of ten.

@@ -149,8 +149,8 @@ static void write_limit_heads(const Linkage *linkage, FILE *stream)
     }
 }
 
-static void write_limits(const Linkage *linkage, const Trajectory *trajectory, size_t sample,
-                         FILE *stream)
+static void series_rows_write_limits(const Linkage *linkage, const Trajectory *trajectory,
+                                     size_t sample, FILE *stream)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (linkage->joints[i].limits.kind != LIMIT_NONE) {
@@ -212,8 +212,8 @@ static void write_rate_heads(const DistanceMeasure *rates, FILE *stream)
     }
 }
 
-static void write_rates(const DistanceMeasure *rates, const Trajectory *trajectory, size_t sample,
-                        FILE *stream)
+static void series_rows_write_rates(const DistanceMeasure *rates, const Trajectory *trajectory,
+                                    size_t sample, FILE *stream)
 {
     const DistanceMotion motion = distance_motion_at(trajectory, sample);
     for (size_t i = 0; i < rates->count; i++) {
@@ -226,8 +226,8 @@ static void write_rates(const DistanceMeasure *rates, const Trajectory *trajecto
     }
 }
 
-static void write_head(const Scenario *scenario, const Trajectory *trajectory,
-                       const DistanceMeasure *rates, FILE *stream)
+static void series_rows_write_head(const Scenario *scenario, const Trajectory *trajectory,
+                                   const DistanceMeasure *rates, FILE *stream)
 {
     const Linkage *linkage = &scenario->linkage;
     fputs("time_s,crank_deg", stream);
@@ -257,8 +257,8 @@ static void write_head(const Scenario *scenario, const Trajectory *trajectory,
     fputc('\n', stream);
 }
 
-static void write_row(const Scenario *scenario, const Trajectory *trajectory,
-                      const DistanceMeasure *rates, size_t sample, FILE *stream)
+static void series_rows_write_row(const Scenario *scenario, const Trajectory *trajectory,
+                                  const DistanceMeasure *rates, size_t sample, FILE *stream)
 {
     const double crank_deg = trajectory->crank_angles[sample] * UNITS_DEG;
     csv_write_number(stream, trajectory->times[sample]);
@@ -280,11 +280,11 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory,
         write_cells((const double[]){position.x, position.y}, 2, stream);
     }
     write_slides(&scenario->linkage, trajectory, sample, stream);
-    write_limits(&scenario->linkage, trajectory, sample, stream);
+    series_rows_write_limits(&scenario->linkage, trajectory, sample, stream);
     if (scenario->linkage.is_spatial) {
         write_space(&scenario->linkage, trajectory, sample, stream);
     }
-    write_rates(rates, trajectory, sample, stream);
+    series_rows_write_rates(rates, trajectory, sample, stream);
     if (trajectory->ranges.count > 0) {
         write_ranges(trajectory, sample, stream);
     }
@@ -294,9 +294,9 @@ static void write_row(const Scenario *scenario, const Trajectory *trajectory,
 void series_rows_write(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
 {
     DistanceMeasure rates = distance_rates(&scenario->linkage);
-    write_head(scenario, trajectory, &rates, stream);
+    series_rows_write_head(scenario, trajectory, &rates, stream);
     for (size_t i = 0; i < trajectory->sample_count; i++) {
-        write_row(scenario, trajectory, &rates, i, stream);
+        series_rows_write_row(scenario, trajectory, &rates, i, stream);
     }
     distance_finish(&rates);
 }

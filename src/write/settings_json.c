@@ -72,7 +72,7 @@ static json_t *setting_value(const CasefileSetting *setting)
 }
 
 // The settings that the scenario makes use of, by the key they have in a case file.
-static void set_settings(json_t *object, const Scenario *scenario)
+static void settings_json_set_settings(json_t *object, const Scenario *scenario)
 {
     json_t *settings = json_object();
     json_t *units = json_object();
@@ -95,7 +95,7 @@ void settings_json_begin(json_t *object, const Scenario *scenario)
     json_object_set_new(object, "tool", settings_json_tool());
     json_object_set_new(object, "case", json_value_text(scenario_path(scenario)));
     json_object_set_new(object, "title", json_value_text(scenario->title));
-    set_settings(object, scenario);
+    settings_json_set_settings(object, scenario);
 }
 
 json_t *settings_json_all(const Scenario *scenario)

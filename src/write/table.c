@@ -174,7 +174,7 @@ static void part_remove(Part *part, size_t index)
     }
 }
 
-static void take_all(const Table *table, Part *part)
+static void table_take_all(const Table *table, Part *part)
 {
     part->count = table->column_count;
     for (size_t i = 0; i < part->count; i++) {
@@ -229,7 +229,7 @@ static size_t first_line(const char *text, size_t width)
 
 // One line of texts, each from where the last one ended: spaces are owed and only paid before a
 // text, so that no line ends in spaces. Returns whether any text has more lines.
-static bool write_line(const Table *table, const Part *part, const char **texts, Text *text)
+static bool table_write_line(const Table *table, const Part *part, const char **texts, Text *text)
 {
     size_t owed = TABLE_INDENT;
     bool has_more = false;
@@ -254,12 +254,13 @@ static bool write_line(const Table *table, const Part *part, const char **texts,
     return has_more;
 }
 
-static void write_row(const Table *table, const Part *part, const char *const *cells, Text *text)
+static void table_write_row(const Table *table, const Part *part, const char *const *cells,
+                            Text *text)
 {
     const char **texts = calloc(table->column_count, sizeof *texts);
     assert(texts != NULL);
     memcpy(texts, cells, table->column_count * sizeof *texts);
-    while (write_line(table, part, texts, text)) {
+    while (table_write_line(table, part, texts, text)) {
     }
     free(texts);
 }
@@ -277,7 +278,7 @@ static void write_rule(const Part *part, Text *text)
     text_append(text, "\n");
 }
 
-static void write_head(const Table *table, const Part *part, Text *text)
+static void table_write_head(const Table *table, const Part *part, Text *text)
 {
     const char **titles = calloc(table->column_count, sizeof *titles);
     const char **units = calloc(table->column_count, sizeof *units);
@@ -292,10 +293,10 @@ static void write_head(const Table *table, const Part *part, Text *text)
         has_units = has_units || (units[number] != NULL && units[number][0] != '\0');
     }
     if (has_titles) {
-        write_row(table, part, titles, text);
+        table_write_row(table, part, titles, text);
     }
     if (has_units) {
-        write_row(table, part, units, text);
+        table_write_row(table, part, units, text);
     }
     if (has_titles) {
         write_rule(part, text);
@@ -326,7 +327,7 @@ static void write_left_out(const Table *table, Text *text)
 static void write_part(const Table *table, Part *part, Text *text)
 {
     set_widths(table, part);
-    write_head(table, part, text);
+    table_write_head(table, part, text);
     size_t rule = 0;
     const size_t end = shown_cells(table);
     for (size_t cell = 0; cell <= end; cell += table->column_count) {
@@ -334,7 +335,7 @@ static void write_part(const Table *table, Part *part, Text *text)
             write_rule(part, text);
         }
         if (cell < end) {
-            write_row(table, part, (const char *const *)&table->cells[cell], text);
+            table_write_row(table, part, (const char *const *)&table->cells[cell], text);
         }
     }
 }
@@ -429,7 +430,7 @@ void table_write(const Table *table, Text *text)
     bool *is_dropped = calloc(table->column_count, sizeof *is_dropped);
     assert(is_dropped != NULL);
     Part all = part_create(table);
-    take_all(table, &all);
+    table_take_all(table, &all);
     const bool is_narrow = drop_columns(table, TABLE_DETAIL, &all, is_dropped) ||
                            drop_columns(table, TABLE_MINOR, &all, is_dropped);
     if (is_narrow) {
@@ -437,7 +438,7 @@ void table_write(const Table *table, Text *text)
         write_dropped(table, is_dropped, text);
     } else {
         // in parts there is room for all of them
-        take_all(table, &all);
+        table_take_all(table, &all);
         write_parts(table, &all, text);
     }
     write_left_out(table, text);

@@ -22,7 +22,7 @@ typedef enum TableAlign {
     TABLE_DETAIL = 16 // may be left out before the minor ones
 } TableAlign;
 
-// The insides of a table are for table.c, which fills it, and table_write.c, which sets it out.
+// The insides of a table are for table.c alone.
 typedef struct TableColumn {
     char *title; // NULL without a head, as the unit
     char *unit;

@@ -1,4 +1,4 @@
-// How many of a unit make one of SI?
+// The factors from SI to the units that people read.
 #include "write/units.h"
 
 #include <stddef.h>

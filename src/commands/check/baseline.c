@@ -78,7 +78,7 @@ static void set_setting(BaselineSetting *target, const CasefileSetting *setting)
 }
 
 // Those that the scenario uses, but for its title.
-static void set_settings(Baseline *baseline, const Scenario *scenario)
+static void baseline_set_settings(Baseline *baseline, const Scenario *scenario)
 {
     baseline->settings = calloc(casefile_setting_count(scenario), sizeof *baseline->settings);
     assert(baseline->settings != NULL);
@@ -103,7 +103,7 @@ void baseline_set_head(Baseline *baseline, const Scenario *scenario, const Check
 #endif
     build_print(baseline->build);
     baseline->plan = *plan;
-    set_settings(baseline, scenario);
+    baseline_set_settings(baseline, scenario);
 }
 
 size_t baseline_find(const CheckMeasure *measure, const char *name, size_t near)
@@ -446,7 +446,7 @@ bool baseline_json_write(const char *path, const Baseline *baseline, Err *err)
 }
 
 // Fails with what is wrong, and where.
-static bool fail(const char *where, const char *what, Err *err)
+static bool baseline_fail(const char *where, const char *what, Err *err)
 {
     return err_set(err, ERR_FILE, "%s: %s", where, what);
 }
@@ -455,7 +455,7 @@ static bool fail(const char *where, const char *what, Err *err)
 static bool check_keys(const json_t *object, const char *where, const char *const *keys, Err *err)
 {
     if (!json_is_object(object)) {
-        return fail(where, "it is no object", err);
+        return baseline_fail(where, "it is no object", err);
     }
     size_t found = 0;
     for (; *keys != NULL; keys++) {
@@ -466,7 +466,8 @@ static bool check_keys(const json_t *object, const char *where, const char *cons
         }
         found += is_there ? 1 : 0;
     }
-    return found == json_object_size(object) || fail(where, "it has a key that means nothing", err);
+    return found == json_object_size(object) ||
+           baseline_fail(where, "it has a key that means nothing", err);
 }
 
 static bool read_text(const json_t *object, const char *key, char *target, size_t size, Err *err)
@@ -479,8 +480,8 @@ static bool read_text(const json_t *object, const char *key, char *target, size_
     return true;
 }
 
-static bool read_number(const json_t *object, const char *where, const char *key, double *target,
-                        Err *err)
+static bool baseline_read_number(const json_t *object, const char *where, const char *key,
+                                 double *target, Err *err)
 {
     const json_t *value = json_object_get(object, key);
     if (!json_is_number(value)) {
@@ -499,23 +500,24 @@ static bool read_truth(const json_t *root, CheckPlan *plan, Err *err)
         return true;
     }
     if (!check_keys(truth, "truth", KEYS, err) ||
-        !read_number(truth, "truth", "uncertainty", &plan->uncertainty, err)) {
+        !baseline_read_number(truth, "truth", "uncertainty", &plan->uncertainty, err)) {
         return false;
     }
     plan->has_truth = true;
     plan->is_limited = !json_is_null(json_object_get(truth, "horizon_s"));
-    if (plan->is_limited && !read_number(truth, "truth", "horizon_s", &plan->horizon_s, err)) {
+    if (plan->is_limited &&
+        !baseline_read_number(truth, "truth", "horizon_s", &plan->horizon_s, err)) {
         return false;
     }
     return (plan->uncertainty >= 0.0 && plan->horizon_s >= 0.0) ||
-           fail("truth", "it holds a negative number", err);
+           baseline_fail("truth", "it holds a negative number", err);
 }
 
 static bool read_settings(const json_t *root, Baseline *baseline, Err *err)
 {
     json_t *settings = json_object_get(root, "settings");
     if (!json_is_object(settings) || json_object_size(settings) == 0) {
-        return fail("settings", "there are none", err);
+        return baseline_fail("settings", "there are none", err);
     }
     baseline->settings = calloc(json_object_size(settings), sizeof *baseline->settings);
     assert(baseline->settings != NULL);
@@ -545,14 +547,15 @@ static bool read_why(const json_t *object, BaselineMetric *metric, Err *err)
             return true;
         }
     }
-    return fail(metric->name, "its 'why' begins with none of exact:, rounding:, statistical:", err);
+    return baseline_fail(metric->name,
+                         "its 'why' begins with none of exact:, rounding:, statistical:", err);
 }
 
-static bool read_hash(const json_t *object, BaselineMetric *metric, Err *err)
+static bool baseline_read_hash(const json_t *object, BaselineMetric *metric, Err *err)
 {
     const char *digits = json_string_value(json_object_get(object, "value"));
     if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16) {
-        return fail(metric->name, "'value' is not 16 hexadecimal digits", err);
+        return baseline_fail(metric->name, "'value' is not 16 hexadecimal digits", err);
     }
     metric->hash = strtoull(digits, NULL, 16);
     return true;
@@ -565,7 +568,7 @@ static bool read_sample(const json_t *object, BaselineMetric *metric, Err *err)
     const json_t *sample = json_object_get(object, "sample");
     metric->sample_count = json_array_size(sample);
     if (metric->sample_count < 2 || metric->sample_count > BASELINE_SAMPLE_SIZE) {
-        return fail(metric->name, "'sample' is no list of 2 to 32 numbers", err);
+        return baseline_fail(metric->name, "'sample' is no list of 2 to 32 numbers", err);
     }
     double mean = 0.0;
     double largest = 0.0;
@@ -573,17 +576,19 @@ static bool read_sample(const json_t *object, BaselineMetric *metric, Err *err)
         const json_t *value = json_array_get(sample, i);
         metric->sample[i] = json_number_value(value);
         if (!json_is_number(value) || (i > 0 && metric->sample[i] < metric->sample[i - 1])) {
-            return fail(metric->name, "'sample' is not a list of numbers in rising order", err);
+            return baseline_fail(metric->name, "'sample' is not a list of numbers in rising order",
+                                 err);
         }
         mean += metric->sample[i] / (double)metric->sample_count;
         largest = fmax(largest, fabs(metric->sample[i]));
     }
-    if (!read_number(object, metric->name, "mean", &metric->mean, err)) {
+    if (!baseline_read_number(object, metric->name, "mean", &metric->mean, err)) {
         return false;
     }
     const bool is_whole = metric->value == sorted_median(metric->sample, metric->sample_count) &&
                           fabs(mean - metric->mean) <= MEAN_AGREES * largest;
-    return is_whole || fail(metric->name, "'sample' is not the one of 'value' and 'mean'", err);
+    return is_whole ||
+           baseline_fail(metric->name, "'sample' is not the one of 'value' and 'mean'", err);
 }
 
 static bool is_hash_name(const char *name)
@@ -598,10 +603,10 @@ static bool read_metric(const char *name, const json_t *object, BaselineMetric *
     static const char *const KEYS[] = {"value", "band", "why", "?full", "?mean", "?sample", NULL};
     text_copy(metric->name, sizeof metric->name, name);
     if (strlen(name) >= sizeof metric->name) {
-        return fail(metric->name, "no metric has so long a name", err);
+        return baseline_fail(metric->name, "no metric has so long a name", err);
     }
     if (!check_keys(object, name, KEYS, err) || !read_why(object, metric, err) ||
-        !read_number(object, name, "band", &metric->band, err)) {
+        !baseline_read_number(object, name, "band", &metric->band, err)) {
         return false;
     }
     const json_t *value = json_object_get(object, "value");
@@ -611,28 +616,28 @@ static bool read_metric(const char *name, const json_t *object, BaselineMetric *
     const json_t *full = json_object_get(object, "full");
     metric->is_slow = full != NULL;
     if (full != NULL && !json_is_true(full)) {
-        return fail(name, "'full' is true or not there", err);
+        return baseline_fail(name, "'full' is true or not there", err);
     }
     if ((metric->kind == CHECK_HASH) != is_hash_name(name)) {
-        return fail(name, "16 hexadecimal digits belong to what ends in /hash, and to that alone",
-                    err);
+        return baseline_fail(
+            name, "16 hexadecimal digits belong to what ends in /hash, and to that alone", err);
     }
     if (metric->kind == CHECK_HASH && metric->band_kind != BAND_EXACT) {
-        return fail(name, "a hash is exact", err);
+        return baseline_fail(name, "a hash is exact", err);
     }
     if (metric->band < 0.0) {
-        return fail(name, "'band' is negative", err);
+        return baseline_fail(name, "'band' is negative", err);
     }
     if (metric->band_kind == BAND_EXACT && metric->band != 0.0) {
-        return fail(name, "'band' is not 0 though the number is exact", err);
+        return baseline_fail(name, "'band' is not 0 though the number is exact", err);
     }
     const bool is_read = metric->kind == CHECK_HASH
-                             ? read_hash(object, metric, err)
-                             : read_number(object, name, "value", &metric->value, err);
+                             ? baseline_read_hash(object, metric, err)
+                             : baseline_read_number(object, name, "value", &metric->value, err);
     const bool has_sample =
         json_object_get(object, "sample") != NULL || json_object_get(object, "mean") != NULL;
     if (is_read && has_sample != (metric->band_kind == BAND_STATISTICAL)) {
-        return fail(name, "a sample and its mean belong to what is statistical", err);
+        return baseline_fail(name, "a sample and its mean belong to what is statistical", err);
     }
     return is_read && (!has_sample || read_sample(object, metric, err));
 }
@@ -641,7 +646,7 @@ static bool read_metrics(const json_t *root, Baseline *baseline, Err *err)
 {
     json_t *metrics = json_object_get(root, "metrics");
     if (!json_is_object(metrics) || json_object_size(metrics) == 0) {
-        return fail("metrics", "there are none", err);
+        return baseline_fail("metrics", "there are none", err);
     }
     baseline->metrics = calloc(json_object_size(metrics), sizeof *baseline->metrics);
     assert(baseline->metrics != NULL);

@@ -164,7 +164,7 @@ static bool check_store_take_plan(const CheckStore *store, CheckPlan *plan, char
 }
 
 // Adds a line, and to the lines that are known.
-static bool append_line(CheckStore *store, json_t *line, Err *err)
+static bool check_bless_append_line(CheckStore *store, json_t *line, Err *err)
 {
     json_array_append(store->journal.entries, line);
     return journal_add(&store->journal, line, err);
@@ -176,7 +176,7 @@ static bool check_store_keep_plan(CheckStore *store, const CheckPlan *plan, cons
 {
     PlanLine line = {.plan = *plan};
     text_copy(line.no_truth, sizeof line.no_truth, no_truth);
-    return append_line(
+    return check_bless_append_line(
         store, json_pack("{s:o}", "plan", fields_json(PLAN_FIELDS, FIELD_STORE, &line)), err);
 }
 
@@ -197,7 +197,7 @@ static void check_store_take(CheckStore *store, CheckWork *works, size_t count)
 // Takes those of the works that were kept: they are then over.
 static bool check_store_keep(CheckStore *store, const CheckWork *work, Err *err)
 {
-    return append_line(store, start_line(work->start, work->measure), err);
+    return check_bless_append_line(store, start_line(work->start, work->measure), err);
 }
 
 // The number of starts that the file holds now.
@@ -234,27 +234,27 @@ typedef struct Making {
     CheckMeasure *measures;         // the case's own, then the members of an ensemble
 } Making;
 
-static void wait_for_truth(const char *doing, void *context)
+static void check_bless_wait_for_truth(const char *doing, void *context)
 {
     (void)doing;
     Making *making = context;
     check_progress_show(&making->progress, &(CheckWorkState){.total = 0});
 }
 
-static bool should_stop(void *context)
+static bool check_bless_should_stop(void *context)
 {
     (void)context;
     return interrupt_number() != 0;
 }
 
-static bool wait(const CheckWorkState *state, void *context)
+static bool check_bless_wait(const CheckWorkState *state, void *context)
 {
     Making *making = context;
     check_progress_show(&making->progress, state);
     return interrupt_number() == 0;
 }
 
-static bool keep(const CheckWork *work, void *context, Err *err)
+static bool check_bless_keep(const CheckWork *work, void *context, Err *err)
 {
     Making *making = context;
     return check_store_keep(&making->store, work, err);
@@ -263,13 +263,13 @@ static bool keep(const CheckWork *work, void *context, Err *err)
 // The plan that the truth gives. A mechanism that the reference cannot take has numbers all the
 // same, and no errors. But where the old baseline has errors a missing reference is a failure: it
 // would remove the most sensitive numbers.
-static bool make_plan(Making *making, Err *err)
+static bool check_bless_make_plan(Making *making, Err *err)
 {
     Truth truth;
     const TruthChild work = {.scenario = making->item->scenario,
                              .run_limit_s = making->options->common.time_limit_s,
-                             .wait = wait_for_truth,
-                             .should_stop = should_stop,
+                             .wait = check_bless_wait_for_truth,
+                             .should_stop = check_bless_should_stop,
                              .context = making};
     Err own = {0};
     const bool is_made = truth_child_make(&work, &truth, &own);
@@ -279,7 +279,7 @@ static bool make_plan(Making *making, Err *err)
                  is_made ? truth.message : own.text);
     }
     truth_finish(&truth);
-    if (should_stop(making)) {
+    if (check_bless_should_stop(making)) {
         return err_set(err, ERR_SOLVER,
                        "stopped before its first start; nothing is kept, and the same "
                        "command begins anew");
@@ -296,11 +296,11 @@ static bool make_plan(Making *making, Err *err)
     return check_store_keep_plan(&making->store, &making->plan, making->no_truth, err);
 }
 
-static bool find_plan(Making *making, Err *err)
+static bool check_bless_find_plan(Making *making, Err *err)
 {
     return check_store_take_plan(&making->store, &making->plan, making->no_truth,
                                  sizeof making->no_truth) ||
-           make_plan(making, err);
+           check_bless_make_plan(making, err);
 }
 
 // Whether all works were measured; the error says which was not, and why.
@@ -326,8 +326,8 @@ static bool check_measures(const Making *making, const CheckWork *works, size_t 
 
 // Measures those starts that are not kept yet; the first of a list of works is the number of the
 // member given.
-static bool measure(Making *making, CheckStart (*start_of)(unsigned member), unsigned first,
-                    size_t count, CheckMeasure *measures, Err *err)
+static bool check_bless_measure(Making *making, CheckStart (*start_of)(unsigned member),
+                                unsigned first, size_t count, CheckMeasure *measures, Err *err)
 {
     CheckWork *works = calloc(count, sizeof *works);
     assert(works != NULL);
@@ -339,7 +339,8 @@ static bool measure(Making *making, CheckStart (*start_of)(unsigned member), uns
     }
     check_store_take(&making->store, works, count);
     const CheckWorkers workers = {making->options->common.jobs,
-                                  making->options->common.time_limit_s, wait, keep, making};
+                                  making->options->common.time_limit_s, check_bless_wait,
+                                  check_bless_keep, making};
     const bool is_done =
         check_work_do(&workers, works, count, err) && check_measures(making, works, count, err);
     free(works);
@@ -352,8 +353,9 @@ static bool make_baseline(Making *making, Baseline *made, CheckMeasure *run, siz
 {
     CheckMeasure *measures = making->measures;
     *sample_count = 0;
-    if (!find_plan(making, err) ||
-        !measure(making, baseline_rounding_start, 0, 1 + BASELINE_MEMBERS, measures, err)) {
+    if (!check_bless_find_plan(making, err) ||
+        !check_bless_measure(making, baseline_rounding_start, 0, 1 + BASELINE_MEMBERS, measures,
+                             err)) {
         return false;
     }
     *run = check_measure_copy(&measures[0]);
@@ -367,7 +369,8 @@ static bool make_baseline(Making *making, Baseline *made, CheckMeasure *run, siz
         return true;
     }
     *sample_count = BASELINE_SAMPLE_SIZE;
-    return measure(making, baseline_sample_start, 1, BASELINE_SAMPLE_SIZE, measures, err) &&
+    return check_bless_measure(making, baseline_sample_start, 1, BASELINE_SAMPLE_SIZE, measures,
+                               err) &&
            baseline_set_sample(made, measures, BASELINE_SAMPLE_SIZE,
                                CHECK_FALSE_ALARM_RATE / (double)tests, err);
 }

@@ -46,7 +46,7 @@ bool check_row_is_out(const CheckRow *row)
     return row->verdict != CHECK_WITHIN && row->verdict != CHECK_LEFT_OUT;
 }
 
-static const char *find_setting(const Baseline *baseline, const char *key)
+static const char *check_judge_find_setting(const Baseline *baseline, const char *key)
 {
     for (size_t i = 0; i < baseline->setting_count; i++) {
         if (strcmp(baseline->settings[i].key, key) == 0) {
@@ -58,7 +58,8 @@ static const char *find_setting(const Baseline *baseline, const char *key)
 
 // Reads a number where one can begin: not within a word, and none of the words that strtod takes
 // for numbers. False where there is none; `end` is then as it was.
-static bool read_number(const char *text, const char *at, double *number, const char **end)
+static bool check_judge_read_number(const char *text, const char *at, double *number,
+                                    const char **end)
 {
     const bool is_within = at > text && isalnum((unsigned char)at[-1]);
     const char *digit = at + strspn(at, "+-.");
@@ -83,7 +84,7 @@ static double largest_number(const char *value)
     for (const char *at = value; *at != '\0';) {
         double number;
         const char *end = at + 1;
-        if (read_number(value, at, &number, &end)) {
+        if (check_judge_read_number(value, at, &number, &end)) {
             largest = fmax(largest, fabs(number));
         }
         at = end;
@@ -103,8 +104,8 @@ static bool settings_agree(const char *was, const char *now)
         double now_number;
         const char *was_end;
         const char *now_end;
-        if (read_number(was, at_was, &was_number, &was_end) &&
-            read_number(now, at_now, &now_number, &now_end)) {
+        if (check_judge_read_number(was, at_was, &was_number, &was_end) &&
+            check_judge_read_number(now, at_now, &now_number, &now_end)) {
             if (!(fabs(was_number - now_number) <= near)) {
                 return false;
             }
@@ -138,7 +139,7 @@ static void judge_settings(const Baseline *baseline, const Baseline *now, CheckR
 {
     for (size_t i = 0; i < baseline->setting_count; i++) {
         const BaselineSetting *setting = &baseline->settings[i];
-        judge_setting(setting, find_setting(now, setting->key), rows, count);
+        judge_setting(setting, check_judge_find_setting(now, setting->key), rows, count);
     }
 }
 
@@ -298,7 +299,8 @@ size_t check_judge(const Baseline *baseline, const CheckEvidence *evidence, Chec
 
 // The limits that a case sets itself.
 
-static CheckLimit judge(const Expectation *expectation, const char *backend, double value)
+static CheckLimit check_judge_judge(const Expectation *expectation, const char *backend,
+                                    double value)
 {
     CheckLimit limit = {.expectation = expectation, .value = value};
     snprintf(limit.name, sizeof limit.name, "%s%s%s", backend, backend[0] != '\0' ? "." : "",
@@ -317,14 +319,14 @@ size_t check_limits_judge(const Scenario *scenario, const CheckMeasure *run, Che
         for (size_t k = 0; k < scenario->run.backend_count; k++) {
             const BackendKind backend = scenario->run.backends[k];
             if (expect_value_concerns(expectation, scenario, backend)) {
-                limits[count++] =
-                    judge(expectation, OPTIONS_BACKENDS[backend], run->expected[i][backend]);
+                limits[count++] = check_judge_judge(expectation, OPTIONS_BACKENDS[backend],
+                                                    run->expected[i][backend]);
             }
         }
         if (count == before) {
             const bool is_named = expectation->backend != EXPECTATION_ANY_BACKEND;
-            limits[count++] =
-                judge(expectation, is_named ? OPTIONS_BACKENDS[expectation->backend] : "", NAN);
+            limits[count++] = check_judge_judge(
+                expectation, is_named ? OPTIONS_BACKENDS[expectation->backend] : "", NAN);
         }
     }
     return count;

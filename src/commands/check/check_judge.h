@@ -1,4 +1,4 @@
-// Which numbers have moved by more than they may?
+// Judges which numbers have moved by more than they may.
 #pragma once
 
 #include "base/err.h"
@@ -63,7 +63,7 @@ size_t check_judge(const Baseline *baseline, const CheckEvidence *evidence, Chec
 // Whether a row makes the check fail.
 bool check_row_is_out(const CheckRow *row);
 
-// Do the runs of a case keep within the limits that it sets itself?
+// Whether the runs of a case keep within the limits that it sets itself.
 
 enum { CHECK_LIMIT_MAX = EXPECTATION_MAX * BACKEND_COUNT };
 
@@ -73,7 +73,7 @@ typedef struct CheckLimit {
     const Expectation *expectation;                       // of the scenario: lives as long as it
     CheckVerdict verdict; // CHECK_WITHIN, CHECK_OUT, or CHECK_GONE where nothing was measured
     double value;         // SI; NAN where nothing was measured
-    double off;           // SI, by how much it is outside; see expect_value.h
+    double off;           // SI, by how much it is outside; see check_measure.h
 } CheckLimit;
 
 // Judges the limits of a scenario by its own start: writes at most CHECK_LIMIT_MAX, in the order of

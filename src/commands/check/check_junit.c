@@ -48,7 +48,7 @@ static void append_class(Text *text, const char *path)
 }
 
 // A name without dots.
-static void append_name(Text *text, const char *prefix, const char *words)
+static void check_junit_append_name(Text *text, const char *prefix, const char *words)
 {
     Text name;
     text_init(&name);
@@ -73,7 +73,7 @@ static void begin_test(Text *text, const CheckCase *item, const char *prefix, co
     text_append(text, "    <testcase classname=\"");
     append_class(text, item->path);
     text_append(text, "\" name=\"");
-    append_name(text, prefix, name);
+    check_junit_append_name(text, prefix, name);
     text_append(text, "\" time=\"%.3f\"", shown_time(time_s));
 }
 
@@ -126,7 +126,8 @@ static void append_limit(Text *text, const CheckCase *item, const CheckLimit *li
     text_finish(&message);
 }
 
-static void append_expected(Text *text, const CheckCase *item, const CheckOutcome *outcome)
+static void check_junit_append_expected(Text *text, const CheckCase *item,
+                                        const CheckOutcome *outcome)
 {
     Text name;
     text_init(&name);
@@ -154,7 +155,7 @@ static size_t count_tests(const CheckCase *item)
            (lacks_baseline(item) ? 1 : 0);
 }
 
-static void append_case(Text *text, const CheckCase *item)
+static void check_junit_append_case(Text *text, const CheckCase *item)
 {
     const CheckCounts counts = check_report_count(item);
     const bool is_failed = item->err.kind != ERR_NONE;
@@ -177,7 +178,7 @@ static void append_case(Text *text, const CheckCase *item)
                        item->note[0] != '\0' ? item->note : "judged by its limits alone");
     }
     for (size_t i = 0; i < item->outcome_count; i++) {
-        append_expected(text, item, &item->outcomes[i]);
+        check_junit_append_expected(text, item, &item->outcomes[i]);
     }
     for (size_t i = 0; i < item->limit_count; i++) {
         append_limit(text, item, &item->limits[i]);
@@ -206,7 +207,7 @@ void check_junit_write(const void *target, Text *text)
                 "tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" time=\"%.3f\">\n",
                 tests, failures, check_report_errors(report), wall_s);
     for (size_t i = 0; i < report->case_count; i++) {
-        append_case(text, &report->cases[i]);
+        check_junit_append_case(text, &report->cases[i]);
     }
     text_append(text, "</testsuites>\n");
 }

@@ -40,7 +40,7 @@ static void relative_path(const char *folder, const char *file, char target[FILE
 }
 
 // The path without links and dots; false where nothing is there.
-static bool resolve(const char *path, char target[FILE_PATH_SIZE])
+static bool check_list_resolve(const char *path, char target[FILE_PATH_SIZE])
 {
     char *whole = realpath(path, NULL);
     text_copy(target, FILE_PATH_SIZE, whole != NULL ? whole : path);
@@ -123,8 +123,8 @@ static void add_named(CheckItem *item, const CheckOptions *options)
     if (!read_case(item, options)) {
         return;
     }
-    resolve(path, whole);
-    resolve(options->folder, folder);
+    check_list_resolve(path, whole);
+    check_list_resolve(options->folder, folder);
     relative_path(folder, whole, item->relative);
     file_stem(scenario_path(item->scenario), name, sizeof name);
     const int length = snprintf(item->baseline_path, sizeof item->baseline_path, "%s/%s.json",
@@ -163,7 +163,7 @@ static void add_found(CheckItem *item, const char *file, const CheckOptions *opt
     snprintf(joined, sizeof joined, "%s%s%s", case_path[0] == '/' ? "" : options->folder,
              case_path[0] == '/' ? "" : "/", case_path);
     text_copy(item->relative, sizeof item->relative, case_path);
-    if (!resolve(joined, whole)) {
+    if (!check_list_resolve(joined, whole)) {
         err_set(&item->err, ERR_FILE, "the case of the baseline %s is not there: %s",
                 item->baseline_path, joined);
         return;

@@ -58,7 +58,7 @@ static void append_block(Text *text, const char *words)
     free(shown);
 }
 
-static void append_name(Text *text, const char *words)
+static void check_markdown_append_name(Text *text, const char *words)
 {
     text_append(text, "| ");
     append_code(text, words, true);
@@ -76,7 +76,7 @@ static void append_words(Text *text, const char *words)
     free(shown);
 }
 
-static void append_cell(Text *text, const char *words)
+static void check_markdown_append_cell(Text *text, const char *words)
 {
     text_append(text, "| ");
     append_words(text, words);
@@ -90,7 +90,7 @@ static const char *file_name(const char *path)
 }
 
 // What a paragraph is about.
-static void append_case(Text *text, const CheckCase *item)
+static void check_markdown_append_case(Text *text, const CheckCase *item)
 {
     text_append(text, "\n**");
     append_code(text, item->path, false);
@@ -156,20 +156,22 @@ static void append_headline(const CheckReport *report, Text *text)
 static void append_out(const CheckCase *item, Text *text)
 {
     const size_t out = check_report_count(item).out;
-    append_case(text, item);
+    check_markdown_append_case(text, item);
     text_append(text, "\n\n| metric | baseline | now | difference | band | bands off |\n"
                       "|---|---:|---:|---:|---:|---:|\n");
     for (size_t i = 0; i < out && i < WORST_ROWS; i++) {
         const CheckRow *row = &item->rows[i];
         const CheckCells cells = check_report_cells(row);
-        append_name(text, row->name);
+        check_markdown_append_name(text, row->name);
         // values of settings are text from a baseline and a case
-        (row->verdict == CHECK_SETTING ? append_name : append_cell)(text, cells.was);
-        (row->verdict == CHECK_SETTING ? append_name : append_cell)(text, cells.now);
-        append_cell(text, cells.difference);
-        append_cell(text, cells.band);
-        append_cell(text,
-                    row->verdict == CHECK_OUT ? cells.severity : CHECK_VERDICT_WORDS[row->verdict]);
+        (row->verdict == CHECK_SETTING ? check_markdown_append_name
+                                       : check_markdown_append_cell)(text, cells.was);
+        (row->verdict == CHECK_SETTING ? check_markdown_append_name
+                                       : check_markdown_append_cell)(text, cells.now);
+        check_markdown_append_cell(text, cells.difference);
+        check_markdown_append_cell(text, cells.band);
+        check_markdown_append_cell(
+            text, row->verdict == CHECK_OUT ? cells.severity : CHECK_VERDICT_WORDS[row->verdict]);
         text_append(text, "|\n");
     }
     if (out > WORST_ROWS) {
@@ -179,7 +181,7 @@ static void append_out(const CheckCase *item, Text *text)
 
 static void append_limits(const CheckCase *item, Text *text)
 {
-    append_case(text, item);
+    check_markdown_append_case(text, item);
     text_append(text, ": limits of its own\n\n| expected of | limit | now | outside by |\n"
                       "|---|---|---:|---:|\n");
     for (size_t i = 0; i < item->limit_count; i++) {
@@ -188,10 +190,11 @@ static void append_limits(const CheckCase *item, Text *text)
         if (limit->verdict == CHECK_WITHIN) {
             continue;
         }
-        append_name(text, limit->name);
-        append_cell(text, limit->expectation->words);
-        append_cell(text, limit->verdict == CHECK_GONE ? "not measured" : cells.value);
-        append_cell(text, cells.off);
+        check_markdown_append_name(text, limit->name);
+        check_markdown_append_cell(text, limit->expectation->words);
+        check_markdown_append_cell(text,
+                                   limit->verdict == CHECK_GONE ? "not measured" : cells.value);
+        check_markdown_append_cell(text, cells.off);
         text_append(text, "|\n");
     }
 }
@@ -209,7 +212,7 @@ static void append_all(const CheckReport *report, Text *text)
             continue;
         }
         const CheckCounts counts = check_report_count(item);
-        append_name(text, item->path);
+        check_markdown_append_name(text, item->path);
         if (item->err.kind != ERR_NONE) {
             text_append(text, "| | | | not checked |\n");
             continue;
@@ -217,9 +220,9 @@ static void append_all(const CheckReport *report, Text *text)
         text_append(text, "| %zu | %zu | %zu ", counts.within + counts.limits_within,
                     counts.out + counts.limits_out, counts.left_out);
         if (item->row_count > 0) {
-            append_name(text, item->rows[0].name);
+            check_markdown_append_name(text, item->rows[0].name);
         } else {
-            append_cell(text, "");
+            check_markdown_append_cell(text, "");
         }
         text_append(text, "|\n");
     }
@@ -227,16 +230,16 @@ static void append_all(const CheckReport *report, Text *text)
 }
 
 // One run; the case is named in its first.
-static void append_expected(const CheckCase *item, size_t number, Text *text)
+static void check_markdown_append_expected(const CheckCase *item, size_t number, Text *text)
 {
     const CheckOutcome *outcome = &item->outcomes[number];
     const OutcomeRun *run = &outcome->run;
     const bool is_first = number == 0;
     char words[CHECK_OUTCOME_TEXT_SIZE];
     check_outcome_words(outcome, words);
-    append_cell(text, is_first ? file_name(item->path) : "");
-    append_cell(text, is_first ? item->title : "");
-    append_cell(text, outcome->name);
+    check_markdown_append_cell(text, is_first ? file_name(item->path) : "");
+    check_markdown_append_cell(text, is_first ? item->title : "");
+    check_markdown_append_cell(text, outcome->name);
     const bool has_words = !outcome->is_as_expected || !run->is_complete || run->is_short;
     text_append(text, "| %s", outcome->is_as_expected ? "" : "**WRONG**: ");
     text_append(text, "%s", has_words ? "" : check_outcome_kind(outcome));
@@ -265,7 +268,7 @@ static void append_outcomes(const CheckReport *report, Text *text)
     text_finish(&counts);
     for (size_t i = 0; i < report->case_count; i++) {
         for (size_t k = 0; k < report->cases[i].outcome_count; k++) {
-            append_expected(&report->cases[i], k, text);
+            check_markdown_append_expected(&report->cases[i], k, text);
         }
     }
 }
@@ -277,7 +280,7 @@ void check_markdown_write(const void *target, Text *text)
     for (size_t i = 0; i < report->case_count; i++) {
         const CheckCase *item = &report->cases[i];
         if (item->err.kind != ERR_NONE) {
-            append_case(text, item);
+            check_markdown_append_case(text, item);
             text_append(text, " %s:\n\n",
                         report->is_blessed ? "has no new baseline" : "was not checked");
             append_block(text, item->err.text);

@@ -1,6 +1,6 @@
 // Measures a scenario: the numbers of its runs that a check compares.
 //
-// On each of its backends, as check_add.c lists. A motion that cannot be predicted to its end is
+// On each of its backends, as listed below. A motion that cannot be predicted to its end is
 // measured twice, to its end and up to the horizon; errors are then measured up to the horizon.
 #include "commands/check/check_measure.h"
 #include "base/printable.h"
@@ -127,8 +127,8 @@ static const double ROUNDING = 1e-12;    // of a scale: some 5000 roundings, all
 static const double CHOSEN_STEPS = 0.05; // of their number: a change of the method costs more
 static const double SPEED_ULPS = 16; // of a speed before and after a step, and of what made them
 
-static void add(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
-                CheckMetric metric)
+static void check_measure_add(CheckAdd *work, const Trajectory *run, const char *part,
+                              const char *name, CheckMetric metric)
 {
     CheckMeasure *measure = work->measure;
     snprintf(metric.name, sizeof metric.name, "%s%s/%s%s%s", run->backend, work->group, part,
@@ -144,35 +144,36 @@ static void add(CheckAdd *work, const Trajectory *run, const char *part, const c
 }
 
 // A number of which rounding is that of something else, if that is larger than its scale.
-static void add_beside(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
-                       double value, double scale, double beside)
+static void check_measure_add_beside(CheckAdd *work, const Trajectory *run, const char *part,
+                                     const char *name, double value, double scale, double beside)
 {
     const double whole = fmax(fabs(value), scale);
-    add(work, run, part, name,
-        (CheckMetric){.kind = CHECK_REAL,
-                      .value = value,
-                      .scale = whole,
-                      .floor = ROUNDING * fmax(whole, beside)});
+    check_measure_add(work, run, part, name,
+                      (CheckMetric){.kind = CHECK_REAL,
+                                    .value = value,
+                                    .scale = whole,
+                                    .floor = ROUNDING * fmax(whole, beside)});
 }
 
 static void add_real(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
                      double value, double scale)
 {
-    add_beside(work, run, part, name, value, scale, 0.0);
+    check_measure_add_beside(work, run, part, name, value, scale, 0.0);
 }
 
 // What a joint carries may be nothing but the rounding of what moves the mechanism.
-static void add_force(CheckAdd *work, const Trajectory *run, const Joint *joint, const char *name,
-                      double value, double scale)
+static void check_measure_add_force(CheckAdd *work, const Trajectory *run, const Joint *joint,
+                                    const char *name, double value, double scale)
 {
     const double moving = linkage_is_torsional(joint) ? work->energy : work->force;
-    add_beside(work, run, joint->name, name, value, scale, moving);
+    check_measure_add_beside(work, run, joint->name, name, value, scale, moving);
 }
 
 static void add_count(CheckAdd *work, const Trajectory *run, const char *part, const char *name,
                       size_t value)
 {
-    add(work, run, part, name,
+    check_measure_add(
+        work, run, part, name,
         (CheckMetric){.kind = CHECK_COUNT, .value = (double)value, .scale = (double)value});
 }
 
@@ -190,11 +191,11 @@ static void add_alpha(CheckAdd *work, const Trajectory *run, size_t number, cons
     const double scale = fmax(work->speeds.speeding[number],
                               fmax(extremes->alpha_max.value, -extremes->alpha_min.value));
     const char *body = work->scenario->linkage.bodies[number].name;
-    add(work, run, body, name,
-        (CheckMetric){.kind = CHECK_REAL,
-                      .value = value,
-                      .scale = scale,
-                      .floor = ROUNDING * scale + alpha_rounding(run, omega)});
+    check_measure_add(work, run, body, name,
+                      (CheckMetric){.kind = CHECK_REAL,
+                                    .value = value,
+                                    .scale = scale,
+                                    .floor = ROUNDING * scale + alpha_rounding(run, omega)});
 }
 
 // Of steps that a solver chooses by itself extremes depend on where the steps fall: now and then by
@@ -221,7 +222,7 @@ static BodyExtremes extremes_of_samples(const Trajectory *run, size_t body)
     return extremes;
 }
 
-static void add_bodies(CheckAdd *work, const Trajectory *run, BackendKind backend)
+static void check_measure_add_bodies(CheckAdd *work, const Trajectory *run, BackendKind backend)
 {
     static const char *const NAMES[2][4] = {
         {"omega_max_rad_s", "omega_min_rad_s", "alpha_max_rad_s2", "alpha_min_rad_s2"},
@@ -261,10 +262,11 @@ static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backen
         const bool is_turning = linkage_is_torsional(joint);
         // the reference looks for the peak of a contact between its steps
         if (is_by_samples(backend) && !linkage_has_play(joint)) {
-            add_force(work, run, joint, "force_max_at_samples_N", force_at_samples(run, i), 0.0);
+            check_measure_add_force(work, run, joint, "force_max_at_samples_N",
+                                    force_at_samples(run, i), 0.0);
         } else {
-            add_force(work, run, joint, is_turning ? "force_max_N_m" : "force_max_N",
-                      extremes->force_max.value, 0.0);
+            check_measure_add_force(work, run, joint, is_turning ? "force_max_N_m" : "force_max_N",
+                                    extremes->force_max.value, 0.0);
         }
         if (!linkage_has_play(joint) || !OPTIONS_BACKEND_HAS_PLAY[backend]) {
             continue;
@@ -309,9 +311,10 @@ static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backen
         const SignalSpikes *found = &run->force_spikes[i];
         if (found->is_known) {
             add_count(work, run, joint->name, "force_spikes", found->count);
-            add_force(work, run, joint,
-                      linkage_is_torsional(joint) ? "force_spikes_mean_N_m" : "force_spikes_mean_N",
-                      mean_size(found), found->threshold);
+            check_measure_add_force(work, run, joint,
+                                    linkage_is_torsional(joint) ? "force_spikes_mean_N_m"
+                                                                : "force_spikes_mean_N",
+                                    mean_size(found), found->threshold);
         }
     }
 }
@@ -333,7 +336,8 @@ static void add_energy(CheckAdd *work, const Trajectory *run)
 static void add_effort(CheckAdd *work, const Trajectory *run, const char *name, size_t value)
 {
     const double floor = run->step_s > 0.0 ? 0.0 : CHOSEN_STEPS * (double)value;
-    add(work, run, "cost", name,
+    check_measure_add(
+        work, run, "cost", name,
         (CheckMetric){
             .kind = CHECK_EFFORT, .value = (double)value, .scale = (double)value, .floor = floor});
 }
@@ -345,7 +349,7 @@ static void add_cost(CheckAdd *work, const Trajectory *run)
     add_count(work, run, "cost", "constraint_rows", run->constraint_rows);
     add_count(work, run, "cost", "contact_rows", run->contact_rows);
     add_count(work, run, "cost", "fallback_rows", run->fallback_rows);
-    add(work, run, "", "hash", (CheckMetric){.kind = CHECK_HASH, .hash = run->hash});
+    check_measure_add(work, run, "", "hash", (CheckMetric){.kind = CHECK_HASH, .hash = run->hash});
 }
 
 // Errors are shares already: what rounding may change of them is a share of 1, and the truth that
@@ -356,12 +360,12 @@ static void check_add_error(CheckAdd *work, const Trajectory *run, const Traject
     const double values[] = {error->max, error->omega_max, error->omega_rms, error->alpha_max};
     static const char *const NAMES[] = {"max_1", "omega_max_1", "omega_rms_1", "alpha_max_1"};
     for (int i = 0; i < 4; i++) {
-        add(work, run, "error", NAMES[i],
-            (CheckMetric){.kind = CHECK_REAL,
-                          .value = values[i],
-                          .scale = values[i],
-                          .floor =
-                              ROUNDING + uncertainty + (i == 3 ? alpha_rounding(run, 1.0) : 0.0)});
+        check_measure_add(work, run, "error", NAMES[i],
+                          (CheckMetric){.kind = CHECK_REAL,
+                                        .value = values[i],
+                                        .scale = values[i],
+                                        .floor = ROUNDING + uncertainty +
+                                                 (i == 3 ? alpha_rounding(run, 1.0) : 0.0)});
     }
 }
 
@@ -372,12 +376,12 @@ static void check_add_order(CheckAdd *work, const Trajectory *run, const char *n
 {
     // the quotient of two errors, each known to ROUNDING
     const double floor = 2.0 * ROUNDING / (finer * M_LN2);
-    add(work, run, "error", name,
-        (CheckMetric){.kind = CHECK_REAL,
-                      .is_slow = true,
-                      .value = log2(error / finer),
-                      .scale = 1.0,
-                      .floor = floor});
+    check_measure_add(work, run, "error", name,
+                      (CheckMetric){.kind = CHECK_REAL,
+                                    .is_slow = true,
+                                    .value = log2(error / finer),
+                                    .scale = 1.0,
+                                    .floor = floor});
 }
 
 static CheckAdd check_add_begin(const Scenario *scenario, const char *group, CheckMeasure *measure)
@@ -401,7 +405,7 @@ static void check_add_end(CheckAdd *work)
 // Adds extremes, spikes, contacts, energy and cost of a run.
 static void check_add_run(CheckAdd *work, const Trajectory *run, BackendKind backend)
 {
-    add_bodies(work, run, backend);
+    check_measure_add_bodies(work, run, backend);
     add_joints(work, run, backend);
     add_spikes(work, run, backend);
     add_energy(work, run);
@@ -412,7 +416,7 @@ enum { HALVINGS = 2 }; // of the step, for the order
 
 static const ChosenWatch NOBODY = {.begin = NULL};
 
-static void note_failure(CheckMeasure *measure, const Trajectory *run)
+static void check_measure_note_failure(CheckMeasure *measure, const Trajectory *run)
 {
     measure->is_complete = false;
     Text words;
@@ -423,12 +427,12 @@ static void note_failure(CheckMeasure *measure, const Trajectory *run)
 }
 
 // A run that is complete, or NULL with the reason in the measure.
-static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, BackendKind backend,
-                               const Truth *truth)
+static Trajectory *check_measure_run_backend(CheckAdd *work, const Scenario *scenario,
+                                             BackendKind backend, const Truth *truth)
 {
     Trajectory *run = backend_run(scenario, backend, truth, NOBODY, &TRACER_PROBE);
     if (!run->is_complete) {
-        note_failure(work->measure, run);
+        check_measure_note_failure(work->measure, run);
         trajectory_destroy(run);
         return NULL;
     }
@@ -437,7 +441,7 @@ static Trajectory *run_backend(CheckAdd *work, const Scenario *scenario, Backend
 
 static double find_error(CheckAdd *work, const Scenario *scenario, const Trajectory *truth)
 {
-    Trajectory *run = run_backend(work, scenario, BACKEND_ODE, NULL);
+    Trajectory *run = check_measure_run_backend(work, scenario, BACKEND_ODE, NULL);
     const double error = run != NULL ? error_against(run, truth, INFINITY).max : NAN;
     trajectory_destroy(run);
     return error;
@@ -488,7 +492,7 @@ static void measure_run(CheckAdd *work, BackendKind backend, Trajectory *run,
         return;
     }
     if (error_fail_unstable(run, truth, &error)) {
-        note_failure(work->measure, run);
+        check_measure_note_failure(work->measure, run);
         return;
     }
     check_add_error(work, run, &error, plan->uncertainty);
@@ -514,13 +518,14 @@ static void measure_group(const Scenario *scenario, const char *group, bool has_
 {
     CheckAdd work = check_add_begin(scenario, group, measure);
     const BackendKind judge = truth_backend(scenario);
-    Trajectory *truth = has_truth ? run_backend(&work, scenario, judge, NULL) : NULL;
+    Trajectory *truth = has_truth ? check_measure_run_backend(&work, scenario, judge, NULL) : NULL;
     const Truth known = settled_truth(truth, plan);
     for (size_t i = 0; measure->is_complete && i < scenario->run.backend_count; i++) {
         const BackendKind backend = scenario->run.backends[i];
         const bool is_there = truth != NULL && backend == judge;
-        Trajectory *run =
-            is_there ? truth : run_backend(&work, scenario, backend, truth == NULL ? NULL : &known);
+        Trajectory *run = is_there ? truth
+                                   : check_measure_run_backend(&work, scenario, backend,
+                                                               truth == NULL ? NULL : &known);
         if (run != NULL) {
             measure_run(&work, backend, run, truth, plan);
         }
@@ -630,7 +635,7 @@ CheckMeasure check_measure_copy(const CheckMeasure *measure)
 
 size_t check_measure_packed_size(const Scenario *scenario)
 {
-    // as check_add.c has them: extremes and spikes; forces, contacts and spikes; energy, cost,
+    // in the same order: extremes and spikes; forces, contacts and spikes; energy, cost,
     // errors and orders
     enum { OF_BODY = 6, OF_JOINT = 7, OF_RUN = 16, GROUPS = 2 };
     const Linkage *linkage = &scenario->linkage;

@@ -261,7 +261,8 @@ static size_t rows_to_show(const CheckCase *item, bool is_all)
     return is_all ? item->row_count : shown;
 }
 
-static void write_rows(const CheckCase *item, size_t count, const Style *style, Text *text)
+static void check_report_write_rows(const CheckCase *item, size_t count, const Style *style,
+                                    Text *text)
 {
     if (count == 0) {
         section_heading(item->path, style, text);
@@ -298,7 +299,7 @@ static void write_rows(const CheckCase *item, size_t count, const Style *style, 
 
 // The limits of the case itself, each with what its backends say: all of them, for whoever wrote
 // them wants to see each.
-static void write_limits(const CheckCase *item, const Style *style, Text *text)
+static void check_report_write_limits(const CheckCase *item, const Style *style, Text *text)
 {
     if (item->limit_count == 0) {
         return;
@@ -328,7 +329,7 @@ static void write_limits(const CheckCase *item, const Style *style, Text *text)
 }
 
 // How each run whose end the case expects did end.
-static void write_outcomes(const CheckCase *item, const Style *style, Text *text)
+static void check_report_write_outcomes(const CheckCase *item, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
         {"run", "", TABLE_LEFT},
@@ -365,7 +366,7 @@ static void write_outcomes(const CheckCase *item, const Style *style, Text *text
     }
 }
 
-static void write_counts(const CheckCase *item, const Style *style, Text *text)
+static void check_report_write_counts(const CheckCase *item, const Style *style, Text *text)
 {
     const CheckCounts counts = check_report_count(item);
     text_append(text, "%s%zu within, %zu out%s", counts.out > 0 ? style->failure : "",
@@ -385,20 +386,20 @@ static void write_case(const CheckReport *report, const CheckCase *item, bool is
                     style->end);
         return;
     }
-    write_outcomes(item, style, text);
-    write_limits(item, style, text);
+    check_report_write_outcomes(item, style, text);
+    check_report_write_limits(item, style, text);
     if (item->baseline[0] == '\0') {
         text_append(text, "%s%s%s", item->note[0] != '\0' ? "  " : "", item->note,
                     item->note[0] != '\0' ? "\n" : "");
         return;
     }
     const size_t shown = rows_to_show(item, is_all);
-    write_rows(item, shown, style, text);
+    check_report_write_rows(item, shown, style, text);
     text_append(text, "  ");
     if (report->is_blessed) {
         check_report_change(item, text);
     } else {
-        write_counts(item, style, text);
+        check_report_write_counts(item, style, text);
     }
     if (shown < item->row_count) {
         text_append(text, "; %zu more rows with --all", item->row_count - shown);

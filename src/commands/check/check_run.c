@@ -58,7 +58,7 @@ static void keep_error(const Piece *piece, Trajectory *run, OutcomeRun *result)
 }
 
 // In a child process.
-static void measure(const void *context, void *target)
+static void check_run_measure(const void *context, void *target)
 {
     const Piece *piece = context;
     OutcomeRun *result = target;
@@ -81,7 +81,7 @@ static void measure(const void *context, void *target)
     trajectory_destroy(run);
 }
 
-static bool next(void *owner, size_t *number, const void **context)
+static bool check_run_next(void *owner, size_t *number, const void **context)
 {
     Outcomes *all = owner;
     if (all->next == all->count) {
@@ -97,7 +97,8 @@ static bool next(void *owner, size_t *number, const void **context)
     return true;
 }
 
-static bool take(void *owner, size_t number, const void *result, const Child *child, Err *err)
+static bool check_run_take(void *owner, size_t number, const void *result, const Child *child,
+                           Err *err)
 {
     (void)err;
     CheckOutcome *outcome = &((Outcomes *)owner)->outcomes[number];
@@ -120,15 +121,15 @@ static bool check_outcome_run_wait(void *owner)
     return true;
 }
 
-static bool make_runs(Outcomes *all, Err *err)
+static bool check_run_make_runs(Outcomes *all, Err *err)
 {
     const Pool pool = {
         .jobs = all->work->jobs,
-        .work = measure,
+        .work = check_run_measure,
         .result_size = sizeof(OutcomeRun),
         .limits = {.time_s = all->work->time_limit_s, .memory_bytes = TASK_MEMORY_LIMIT},
-        .next = next,
-        .take = take,
+        .next = check_run_next,
+        .take = check_run_take,
         .wait = check_outcome_run_wait,
         .owner = all,
     };
@@ -139,8 +140,8 @@ static bool make_runs(Outcomes *all, Err *err)
     return is_done;
 }
 
-static void add(Outcomes *all, const ExpectedOutcome *expected, const char *name,
-                const Scheme *scheme)
+static void check_run_add(Outcomes *all, const ExpectedOutcome *expected, const char *name,
+                          const Scheme *scheme)
 {
     all->outcomes = realloc(all->outcomes, (all->count + 1) * sizeof *all->outcomes);
     all->schemes = realloc(all->schemes, (all->count + 1) * sizeof *all->schemes);
@@ -167,7 +168,7 @@ static bool add_backends(Outcomes *all, const ExpectedOutcome *expected)
             is_run = is_run || (is_it && feels_play && expected->of[0] == '\0');
         }
         if (is_named || is_run) {
-            add(all, expected, OPTIONS_BACKENDS[i], &scheme);
+            check_run_add(all, expected, OPTIONS_BACKENDS[i], &scheme);
         }
         is_backend = is_backend || is_named;
     }
@@ -193,7 +194,7 @@ static bool add_schemes(Outcomes *all, const ExpectedOutcome *expected, Err *err
                               "allowed: a time, such as run.step: 1 us",
                               item->path, schemes[i].name);
         } else {
-            add(all, expected, schemes[i].name, &schemes[i]);
+            check_run_add(all, expected, schemes[i].name, &schemes[i]);
         }
     }
     free(schemes);
@@ -219,7 +220,7 @@ static void check_outcome_run_wait_for_truth(const char *doing, void *context)
 }
 
 // The truth that all errors are taken against; without one the reason is in the error.
-static bool make_truth(const OutcomeWork *work, Truth *truth, Err *why)
+static bool check_run_make_truth(const OutcomeWork *work, Truth *truth, Err *why)
 {
     const TruthChild child = {.scenario = work->item->scenario,
                               .run_limit_s = work->time_limit_s,
@@ -228,7 +229,7 @@ static bool make_truth(const OutcomeWork *work, Truth *truth, Err *why)
     return truth_child_make(&child, truth, why);
 }
 
-static void judge(Outcomes *all, const Truth *truth, const Err *no_truth)
+static void check_run_judge(Outcomes *all, const Truth *truth, const Err *no_truth)
 {
     const double duration_s = scenario_duration(all->work->item->scenario);
     for (size_t i = 0; i < all->count; i++) {
@@ -252,7 +253,7 @@ static void add_refusal(Outcomes *all)
 {
     const CheckItem *item = all->work->item;
     const Scheme none = {.backend = BACKEND_ODE};
-    add(all, &item->refusal, "case", &none);
+    check_run_add(all, &item->refusal, "case", &none);
     CheckOutcome *outcome = &all->outcomes[0];
     text_copy(outcome->run.message, sizeof outcome->run.message, item->refused.text);
     check_outcome_judge(outcome);
@@ -274,9 +275,9 @@ static bool check_outcome_run(const OutcomeWork *work, CheckOutcome **outcomes, 
     } else if (work->item->scenario != NULL && work->item->scenario->outcome_count > 0) {
         is_done = list_runs(&all, err);
         if (is_done) {
-            all.truth = make_truth(work, &truth, &no_truth) ? &truth : NULL;
-            is_done = make_runs(&all, err);
-            judge(&all, &truth, &no_truth);
+            all.truth = check_run_make_truth(work, &truth, &no_truth) ? &truth : NULL;
+            is_done = check_run_make_runs(&all, err);
+            check_run_judge(&all, &truth, &no_truth);
         }
     }
     truth_finish(&truth);
@@ -391,7 +392,7 @@ static bool check_share(const CheckWork *works, Share share, Err *err)
 }
 
 // Moves the measures of a sample side by side, as judges take them.
-static CheckMeasure *gather(const CheckWork *works, Share share)
+static CheckMeasure *check_run_gather(const CheckWork *works, Share share)
 {
     CheckMeasure *sample = calloc(share.count, sizeof *sample);
     assert(sample != NULL);
@@ -419,7 +420,7 @@ static void finish_item(const CheckOptions *options, const CheckItem *item, cons
         note_alone(options, item, result);
         return;
     }
-    CheckMeasure *sample = gather(works, share);
+    CheckMeasure *sample = check_run_gather(works, share);
     const CheckEvidence evidence = {
         .run = works[share.first].measure,
         .sample = sample,
@@ -440,7 +441,8 @@ static void check_run_wait_for_truth(const char *doing, void *context)
 }
 
 // A case without a baseline has no truth from there; where it limits an error it needs one.
-static void find_plan(const CheckOptions *options, CheckProgress *progress, CheckItem *item)
+static void check_run_find_plan(const CheckOptions *options, CheckProgress *progress,
+                                CheckItem *item)
 {
     bool needs_truth = false;
     const size_t limits = item->scenario != NULL ? item->scenario->expectation_count : 0;
@@ -466,7 +468,7 @@ static void find_plan(const CheckOptions *options, CheckProgress *progress, Chec
     truth_finish(&truth);
 }
 
-static CheckRun begin(const CheckOptions *options, const CheckItem *items, size_t count)
+static CheckRun check_run_begin(const CheckOptions *options, const CheckItem *items, size_t count)
 {
     CheckRun run = {.cases = calloc(count + 1, sizeof *run.cases)};
     assert(run.cases != NULL);
@@ -521,7 +523,7 @@ static bool check_run_wait(const CheckWorkState *state, void *context)
 bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t count, CheckRun *run,
                        Err *err)
 {
-    *run = begin(options, items, count);
+    *run = check_run_begin(options, items, count);
     CheckWork *works = calloc(count * (1 + BASELINE_SAMPLE_SIZE) + 1, sizeof *works);
     Share *shares = calloc(count + 1, sizeof *shares);
     assert(works != NULL && shares != NULL);
@@ -532,7 +534,7 @@ bool check_run_execute(const CheckOptions *options, CheckItem *items, size_t cou
     }
     find_outcomes(options, items, count, &progress, run);
     for (size_t i = 0; i < count; i++) {
-        find_plan(options, &progress, &items[i]);
+        check_run_find_plan(options, &progress, &items[i]);
         shares[i] = plan_item(options, &items[i], works, total);
         total += shares[i].count;
     }

@@ -18,7 +18,7 @@ typedef struct Doing {
     bool *is_begun; // by work
 } Doing;
 
-static void measure(const void *context, void *result)
+static void check_work_measure(const void *context, void *result)
 {
     const CheckWork *work = context;
     Scenario scenario = scenario_copy(work->scenario);
@@ -30,7 +30,8 @@ static void measure(const void *context, void *result)
     scenario_free(&scenario);
 }
 
-static bool take(void *owner, size_t number, const void *result, const Child *child, Err *err)
+static bool check_work_take(void *owner, size_t number, const void *result, const Child *child,
+                            Err *err)
 {
     const Doing *doing = owner;
     CheckWork *work = &doing->works[number];
@@ -66,7 +67,7 @@ static double expected_wall(const CheckWork *works, size_t count, const Scenario
 }
 
 // Says how far it has come. Works that run count as half done.
-static bool wait(void *owner)
+static bool check_work_wait(void *owner)
 {
     const Doing *doing = owner;
     CheckWorkState state = {.total = doing->count};
@@ -90,7 +91,7 @@ static bool wait(void *owner)
 }
 
 // The own starts of all cases come first, for what they take tells what the others will.
-static bool next(void *owner, size_t *number, const void **context)
+static bool check_work_next(void *owner, size_t *number, const void **context)
 {
     Doing *doing = owner;
     for (int round = 0; round < 2; round++) {
@@ -124,12 +125,12 @@ bool check_work_do(const CheckWorkers *workers, CheckWork *works, size_t count, 
     assert(doing.is_begun != NULL);
     const Pool pool = {
         .jobs = workers->jobs,
-        .work = measure,
+        .work = check_work_measure,
         .result_size = largest_result(works, count),
         .limits = {.time_s = workers->time_limit_s, .memory_bytes = TASK_MEMORY_LIMIT},
-        .next = next,
-        .take = take,
-        .wait = wait,
+        .next = check_work_next,
+        .take = check_work_take,
+        .wait = check_work_wait,
         .owner = &doing,
     };
     const bool is_going = pool_run(&pool, err);

@@ -52,7 +52,7 @@ static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *e
 }
 
 // How it ends: a case that could not be checked weighs more than a number that moved.
-static bool conclude(const CheckReport *report, Err *err)
+static bool cmd_check_conclude(const CheckReport *report, Err *err)
 {
     for (size_t i = 0; i < report->case_count; i++) {
         const CheckCase *item = &report->cases[i];
@@ -96,7 +96,7 @@ static bool check_items(const CheckOptions *options, CheckItem *items, size_t co
         }
         is_done = results_write(&RESULTS, &options->common, "", &run.report, err);
         end_if_stopped();
-        is_done = is_done && conclude(&run.report, err);
+        is_done = is_done && cmd_check_conclude(&run.report, err);
     }
     check_run_finish(&run);
     return is_done;

@@ -51,7 +51,7 @@ static const OptionRow OPTIONS[] = {
     COMMON_QUIET(3),
 };
 
-static bool check(void *options, Err *err)
+static bool cmd_compare_check(void *options, Err *err)
 {
     return ((const CompareOptions *)options)->common.path != NULL ||
            err_set(err, ERR_USAGE, "no case given: jointplay compare CASE.yaml");
@@ -66,7 +66,7 @@ const Arguments COMPARE_ARGUMENTS = {
            "comparison that is stopped at any moment resumes from there.",
     .argument = COMMON_PATH("compare takes one case"),
     OPTION_ROWS(OPTIONS),
-    .check = check,
+    .check = cmd_compare_check,
 };
 
 static CompareOptions compare_options_default(void)
@@ -76,7 +76,8 @@ static CompareOptions compare_options_default(void)
                             .common.time_limit_s = DEFAULT_TIME_LIMIT};
 }
 
-static bool read_steps(const CompareOptions *options, double *steps, size_t *count, Err *err)
+static bool cmd_compare_read_steps(const CompareOptions *options, double *steps, size_t *count,
+                                   Err *err)
 {
     if (!option_values_read_times("steps", options->steps, LADDER_STEP_MAX, steps, count, err)) {
         return false;
@@ -90,7 +91,7 @@ static bool read_steps(const CompareOptions *options, double *steps, size_t *cou
 }
 
 // To the digits of the usual steps.
-static double rounded(double step_s)
+static double cmd_compare_rounded(double step_s)
 {
     char digits[32];
     snprintf(digits, sizeof digits, "%.0e", step_s);
@@ -108,7 +109,7 @@ static size_t usual_steps(const CompareOptions *options, const Scenario *scenari
     size_t count = 0;
     for (size_t i = 0; i < sizeof DEFAULT_STEPS / sizeof DEFAULT_STEPS[0]; i++) {
         Err err = {0};
-        const double step_s = rounded(step_factor(scenario) * DEFAULT_STEPS[i]);
+        const double step_s = cmd_compare_rounded(step_factor(scenario) * DEFAULT_STEPS[i]);
         if (scenario_duration(scenario) <= DEFAULT_STEPS_MOST * step_s &&
             common_options_check_step(&options->common, step_s, &err)) {
             steps[count++] = step_s;
@@ -137,7 +138,7 @@ static bool compare_options_ladder(const CompareOptions *options, const Scenario
     }
     if (options->steps == NULL) {
         step_count = usual_steps(options, scenario, steps);
-    } else if (!read_steps(options, steps, &step_count, err)) {
+    } else if (!cmd_compare_read_steps(options, steps, &step_count, err)) {
         return false;
     }
     *ladder = ladder_create(schemes, scheme_count, steps, step_count, options->repeats);
@@ -249,12 +250,12 @@ static bool keep_ensemble(size_t scheme, const LadderEnsemble *ensemble, void *c
     return compare_store_keep_ensemble(scheme, ensemble, &((Listening *)context)->store, err);
 }
 
-static void wait(const char *doing, void *context)
+static void cmd_compare_wait(const char *doing, void *context)
 {
     compare_progress_show(&((Listening *)context)->progress, doing);
 }
 
-static bool should_stop(void *context)
+static bool cmd_compare_should_stop(void *context)
 {
     (void)context;
     return interrupt_number() != 0;
@@ -313,7 +314,8 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
         .scenario = scenario,
         .jobs = options->common.jobs,
         .time_limit_s = options->common.time_limit_s,
-        .listener = {keep_truth, keep_run, keep_ensemble, wait, should_stop, &listening},
+        .listener = {keep_truth, keep_run, keep_ensemble, cmd_compare_wait, cmd_compare_should_stop,
+                     &listening},
     };
     interrupt_watch();
     const bool is_run = compare_store_open(&listening.store, options, scenario, ladder, err) &&
@@ -334,7 +336,7 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
 }
 
 // Warns of the settings that no scheme and no truth makes use of.
-static void warn(const CompareOptions *options, const Scenario *scenario)
+static void cmd_compare_warn(const CompareOptions *options, const Scenario *scenario)
 {
     // a comparison runs all backends and both solvers of ODE, whatever the case says
     Scenario *whole = malloc(sizeof *whole);
@@ -359,7 +361,7 @@ static bool compare_case(void *target, Err *err)
                    compare_options_ladder(options, scenario, &ladder, err) &&
                    results_claim(&RESULTS, &options->common, scenario_path(scenario), err);
     if (is_done) {
-        warn(options, scenario);
+        cmd_compare_warn(options, scenario);
         is_done = compare_ladder(options, scenario, ladder, err);
     }
     ladder_destroy(ladder);

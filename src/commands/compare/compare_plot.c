@@ -36,7 +36,7 @@ static bool is_drawn(const LadderPoint *point)
     return !point->is_failed && isfinite(point->wall_median_s) && point->error > 0.0;
 }
 
-static PlotStyle style_of(const Scheme *scheme)
+static PlotStyle compare_plot_style_of(const Scheme *scheme)
 {
     // with play the map has the colour, else the stepping, which is then all there is
     const bool has_map = strchr(scheme->name, '/') != strrchr(scheme->name, '/');
@@ -49,16 +49,17 @@ static PlotStyle style_of(const Scheme *scheme)
     return style;
 }
 
-static void draw_dot(Text *svg, double x, double y, double radius, const Scheme *scheme)
+static void compare_plot_draw_dot(Text *svg, double x, double y, double radius,
+                                  const Scheme *scheme)
 {
-    const PlotStyle style = style_of(scheme);
+    const PlotStyle style = compare_plot_style_of(scheme);
     const bool is_hollow = scheme->collider != ODE_COLLIDER_PIN_HOLE;
     plot_spot(svg, x, y, radius, is_hollow ? "#fff" : style.colour,
               is_hollow ? style.colour : "#fff", 1.4);
 }
 
 // The axes hold every point of ODE, and the time of all others.
-static void choose_axes(const Ladder *ladder, PlotPanel *panel)
+static void compare_plot_choose_axes(const Ladder *ladder, PlotPanel *panel)
 {
     double low_x = INFINITY, high_x = 0.0, low_y = INFINITY, high_y = 0.0;
     for (size_t i = 0; i < ladder->point_count; i++) {
@@ -90,7 +91,7 @@ static void choose_axes(const Ladder *ladder, PlotPanel *panel)
 }
 
 // Where an error is not a number of its own.
-static void draw_band(const PlotPanel *panel, const LadderTruth *truth)
+static void compare_plot_draw_band(const PlotPanel *panel, const LadderTruth *truth)
 {
     const double limit = ERROR_CLEAR_OF_TRUTH * truth->uncertainty;
     if (!(limit > panel->y.low)) {
@@ -172,12 +173,13 @@ static void draw_scheme(const PlotPanel *panel, const Ladder *ladder, size_t sch
             y[count++] = point->error;
         }
     }
-    plot_line(panel, count, x, y, style_of(&ladder->schemes[scheme]));
+    plot_line(panel, count, x, y, compare_plot_style_of(&ladder->schemes[scheme]));
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
         if (point->scheme == scheme && is_drawn(point)) {
-            draw_dot(panel->svg, at_x(panel, point->wall_median_s), plot_y(panel, point->error),
-                     point->is_on_frontier ? 5.2 : 3.8, &ladder->schemes[scheme]);
+            compare_plot_draw_dot(panel->svg, at_x(panel, point->wall_median_s),
+                                  plot_y(panel, point->error), point->is_on_frontier ? 5.2 : 3.8,
+                                  &ladder->schemes[scheme]);
         }
     }
 }
@@ -203,7 +205,7 @@ static void draw_other(const PlotPanel *panel, const LadderPoint *point)
               words);
 }
 
-static size_t count_failed(const Ladder *ladder, size_t scheme)
+static size_t compare_plot_count_failed(const Ladder *ladder, size_t scheme)
 {
     size_t failed = 0;
     for (size_t i = 0; i < ladder->point_count; i++) {
@@ -212,7 +214,7 @@ static size_t count_failed(const Ladder *ladder, size_t scheme)
     return failed;
 }
 
-static void draw_legend(const Ladder *ladder, Text *svg)
+static void compare_plot_draw_legend(const Ladder *ladder, Text *svg)
 {
     const bool is_roomy = ladder->scheme_count <= LEGEND_ROOMY;
     double y = PANEL_TOP + 6.0;
@@ -221,12 +223,12 @@ static void draw_legend(const Ladder *ladder, Text *svg)
         if (!scheme_has_step(scheme)) {
             continue;
         }
-        plot_sample(svg, LEGEND_LEFT, y - 4.0, style_of(scheme));
-        draw_dot(svg, LEGEND_LEFT + 15.0, y - 4.0, 3.8, scheme);
+        plot_sample(svg, LEGEND_LEFT, y - 4.0, compare_plot_style_of(scheme));
+        compare_plot_draw_dot(svg, LEGEND_LEFT + 15.0, y - 4.0, 3.8, scheme);
         plot_text(svg, LEGEND_LEFT + 38.0, y, "start", "", scheme->name);
         char words[96];
         const Order *order = &ladder->orders[i];
-        const size_t failed = count_failed(ladder, i);
+        const size_t failed = compare_plot_count_failed(ladder, i);
         int length = order->is_known ? snprintf(words, sizeof words, "order %.2f", order->order)
                                      : snprintf(words, sizeof words, "no order");
         if (failed > 0) {
@@ -241,7 +243,7 @@ static void draw_legend(const Ladder *ladder, Text *svg)
     plot_text(svg, LEGEND_LEFT + 38.0, y + 4.0, "start", "", "frontier, with its steps");
 }
 
-static void draw_head(const CompareReport *report, Text *svg)
+static void compare_plot_draw_head(const CompareReport *report, Text *svg)
 {
     const Ladder *ladder = report->ladder;
     const LadderTruth *truth = &ladder->truth;
@@ -267,17 +269,17 @@ void compare_plot_write(const void *of, Text *svg)
     const CompareReport *report = of;
     const Ladder *ladder = report->ladder;
     plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, report->scenario->title);
-    draw_head(report, svg);
+    compare_plot_draw_head(report, svg);
     PlotPanel panel = {.svg = svg,
                        .title = "Speed against error",
                        .left = PANEL_LEFT,
                        .top = PANEL_TOP,
                        .width = PANEL_WIDTH,
                        .height = PANEL_HEIGHT};
-    choose_axes(ladder, &panel);
+    compare_plot_choose_axes(ladder, &panel);
     plot_fine_grid(&panel);
     plot_enter(&panel);
-    draw_band(&panel, &ladder->truth);
+    compare_plot_draw_band(&panel, &ladder->truth);
     const LadderPoint **frontier = calloc(ladder->point_count + 1, sizeof(const LadderPoint *));
     const size_t count = frontier == NULL ? 0 : list_frontier(ladder, frontier);
     draw_frontier(&panel, frontier, count);
@@ -294,6 +296,6 @@ void compare_plot_write(const void *of, Text *svg)
     label_frontier(&panel, frontier, count);
     free(frontier);
     plot_leave(&panel);
-    draw_legend(ladder, svg);
+    compare_plot_draw_legend(ladder, svg);
     plot_end(svg);
 }

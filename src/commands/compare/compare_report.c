@@ -12,7 +12,7 @@
 
 // A point in JSON, CSV and tables, and the order of a scheme.
 
-static double step_of(const void *record)
+static double compare_report_step_of(const void *record)
 {
     const LadderPoint *point = record;
     return point->step_s > 0.0 ? point->step_s : NAN;
@@ -24,7 +24,7 @@ static const char *heading_of(const void *record)
     return point->is_first ? point->name : "";
 }
 
-static const char *status_of(const void *record)
+static const char *compare_report_status_of(const void *record)
 {
     return ((const LadderPoint *)record)->is_failed ? "failed" : "ok";
 }
@@ -41,15 +41,15 @@ static double evaluations_of(const void *record)
     return evaluations > 0 ? (double)evaluations : NAN;
 }
 
-static double step_wall_of(const void *record)
+static double compare_report_step_wall_of(const void *record)
 {
     const LadderPoint *point = record;
     return point->wall_median_s / (double)point->run.steps;
 }
 
-static double us_per_step_of(const void *record)
+static double compare_report_us_per_step_of(const void *record)
 {
-    return step_wall_of(record) * UNITS_US;
+    return compare_report_step_wall_of(record) * UNITS_US;
 }
 
 static json_t *walls_of(const void *record)
@@ -98,9 +98,9 @@ static const Field DONE_FIELDS[] = {
     {"wall_max_s", FIELD_NUMBER, FIELD_ALL, "most", "ms", "%.4g", AT(wall_max_s),
      .align = TABLE_DETAIL},
     {"wall_s", FIELD_VALUE, FIELD_JSON, .json = walls_of},
-    {"us_per_step", FIELD_NUMBER, FIELD_JSON, .number = us_per_step_of},
+    {"us_per_step", FIELD_NUMBER, FIELD_JSON, .number = compare_report_us_per_step_of},
     {NULL, FIELD_NUMBER, FIELD_TABLE, "a step", "us", "%.3g", .align = TABLE_MINOR,
-     .number = step_wall_of},
+     .number = compare_report_step_wall_of},
     {"on_frontier", FIELD_FLAG, FIELD_FILES, AT(is_on_frontier)},
     {"hash", FIELD_HASH, FIELD_JSON, AT(run.hash)},
     {0},
@@ -111,8 +111,8 @@ static const Field POINT_FIELDS[] = {
     {"scheme", FIELD_NAME, FIELD_CSV | CHEAPEST, "scheme", "", AT(name), .absent = "none of these"},
     {NULL, FIELD_NAME, FIELD_TABLE, "scheme", "", .word = heading_of},
     {"step_s", FIELD_NUMBER, FIELD_FILES | TABLES, "step", "us", "%.4g", .absent = "its own",
-     .number = step_of},
-    {"status", FIELD_NAME, FIELD_FILES, .word = status_of},
+     .number = compare_report_step_of},
+    {"status", FIELD_NAME, FIELD_FILES, .word = compare_report_status_of},
     {"message", FIELD_TEXT, FIELD_JSON, AT(reason)},
     {NULL, FIELD_PART, FIELD_FILES | TABLES, .of = DONE_FIELDS, .part = if_done},
     {NULL, FIELD_NAME, FIELD_TABLE, "", "", .word = marks_of},
@@ -215,7 +215,8 @@ static const EnsembleMetric COLUMNS[] = {
 };
 enum { COLUMN_COUNT = sizeof COLUMNS / sizeof COLUMNS[0] };
 
-static void spread_row(Table *table, const CompareReport *report, size_t scheme, size_t joint)
+static void compare_report_spread_row(Table *table, const CompareReport *report, size_t scheme,
+                                      size_t joint)
 {
     const LadderEnsemble *ensemble = &report->ladder->ensembles[scheme];
     const Field *metrics = measured_metric_fields(&report->scenario->linkage.joints[joint]);
@@ -247,7 +248,8 @@ static void compare_spread_write_failures(const CompareReport *report, const Sty
 }
 
 // One joint with play: the motion's spread by every scheme that has one.
-static void write_joint(const CompareReport *report, size_t joint, const Style *style, Text *text)
+static void compare_report_write_joint(const CompareReport *report, size_t joint,
+                                       const Style *style, Text *text)
 {
     const Field *metrics = measured_metric_fields(&report->scenario->linkage.joints[joint]);
     Table *table = table_create(2 + COLUMN_COUNT);
@@ -260,7 +262,7 @@ static void write_joint(const CompareReport *report, size_t joint, const Style *
     }
     for (size_t i = 0; i < report->ladder->scheme_count; i++) {
         if (report->ladder->ensembles[i].is_known) {
-            spread_row(table, report, i, joint);
+            compare_report_spread_row(table, report, i, joint);
         }
     }
     text_append(text, "\n  %s\n\n", report->scenario->linkage.joints[joint].name);
@@ -281,7 +283,7 @@ static void compare_spread_write(const CompareReport *report, const Style *style
         style->heading, ENSEMBLE_MEMBERS, style->end);
     for (size_t joint = 0; joint < ensemble_joint_count(linkage); joint++) {
         if (linkage_has_play(&linkage->joints[joint])) {
-            write_joint(report, joint, style, text);
+            compare_report_write_joint(report, joint, style, text);
         }
     }
     compare_spread_write_failures(report, style, text);
@@ -289,7 +291,7 @@ static void compare_spread_write(const CompareReport *report, const Style *style
 
 // The text.
 
-static void write_head(const CompareReport *report, const Style *style, Text *text)
+static void compare_report_write_head(const CompareReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
     const Ladder *ladder = report->ladder;
@@ -368,7 +370,7 @@ static void write_others(const Ladder *ladder, Text *text)
 void compare_text_write(const void *of, const Style *style, Text *text)
 {
     const CompareReport *report = of;
-    write_head(report, style, text);
+    compare_report_write_head(report, style, text);
     compare_rows_write_points(report->ladder, style, text);
     text_append(text,
                 "  frontier: every faster point of ODE has an error at least a hundredth larger.\n"
@@ -385,7 +387,7 @@ void compare_text_write(const void *of, const Style *style, Text *text)
 
 // The JSON.
 
-static json_t *truth_object(const CompareReport *report)
+static json_t *compare_report_truth_object(const CompareReport *report)
 {
     const LadderTruth *truth = &report->ladder->truth;
     json_t *object = json_object();
@@ -419,7 +421,7 @@ static json_t *ensemble_object(const CompareReport *report, const LadderEnsemble
     return object;
 }
 
-static json_t *scheme_object(const CompareReport *report, size_t index)
+static json_t *compare_report_scheme_object(const CompareReport *report, size_t index)
 {
     const Ladder *ladder = report->ladder;
     const Scheme *scheme = &ladder->schemes[index];
@@ -456,10 +458,10 @@ json_t *compare_json_build(const void *of)
     settings_json_begin(object, report->scenario);
     json_object_set_new(object, "machine", json_value_text(report->machine));
     json_object_set_new(object, "repeats", json_integer((json_int_t)ladder->repeats));
-    json_object_set_new(object, "truth", truth_object(report));
+    json_object_set_new(object, "truth", compare_report_truth_object(report));
     json_t *schemes = json_array();
     for (size_t i = 0; i < ladder->scheme_count; i++) {
-        json_array_append_new(schemes, scheme_object(report, i));
+        json_array_append_new(schemes, compare_report_scheme_object(report, i));
     }
     json_object_set_new(object, "schemes", schemes);
     json_t *cheapest = json_array();

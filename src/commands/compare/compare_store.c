@@ -110,7 +110,7 @@ json_t *ladder_json_ensemble(const Ladder *ladder, const Linkage *linkage, size_
     return json_pack("{s:o}", "ensemble", object);
 }
 
-static LadderJsonTaken take_truth(Ladder *ladder, const json_t *object)
+static LadderJsonTaken compare_store_take_truth(Ladder *ladder, const json_t *object)
 {
     LadderTruth truth = {.is_known = true};
     if (!fields_json_read(TRUTH_FIELDS, FIELD_STORE, object, &truth)) {
@@ -125,8 +125,8 @@ static LadderJsonTaken take_truth(Ladder *ladder, const json_t *object)
     return LADDER_JSON_TAKEN;
 }
 
-static LadderJsonTaken take_run(Ladder *ladder, const json_t *object, LadderKind kind,
-                                const char *machine)
+static LadderJsonTaken compare_store_take_run(Ladder *ladder, const json_t *object, LadderKind kind,
+                                              const char *machine)
 {
     Line line = {.run.kind = kind};
     const unsigned where = kind == LADDER_ERROR ? ERROR | FIELD_STORE : TIMING;
@@ -140,7 +140,8 @@ static LadderJsonTaken take_run(Ladder *ladder, const json_t *object, LadderKind
     return ladder_add(ladder, &line.run) ? LADDER_JSON_TAKEN : LADDER_JSON_UNUSED;
 }
 
-static LadderJsonTaken take_ensemble(Ladder *ladder, const Linkage *linkage, const json_t *object)
+static LadderJsonTaken compare_store_take_ensemble(Ladder *ladder, const Linkage *linkage,
+                                                   const json_t *object)
 {
     Line line = {0};
     if (!fields_json_read(LINE_FIELDS, ENSEMBLE, object, &line) ||
@@ -161,16 +162,17 @@ LadderJsonTaken ladder_json_take(Ladder *ladder, const Linkage *linkage, const j
 {
     const json_t *object;
     if ((object = json_object_get(line, "truth")) != NULL) {
-        return take_truth(ladder, object);
+        return compare_store_take_truth(ladder, object);
     }
     if ((object = json_object_get(line, "error")) != NULL) {
-        return take_run(ladder, object, LADDER_ERROR, machine);
+        return compare_store_take_run(ladder, object, LADDER_ERROR, machine);
     }
     if ((object = json_object_get(line, "timing")) != NULL) {
-        return take_run(ladder, object, LADDER_TIMING, machine);
+        return compare_store_take_run(ladder, object, LADDER_TIMING, machine);
     }
     object = json_object_get(line, "ensemble");
-    return object != NULL ? take_ensemble(ladder, linkage, object) : LADDER_JSON_DAMAGED;
+    return object != NULL ? compare_store_take_ensemble(ladder, linkage, object)
+                          : LADDER_JSON_DAMAGED;
 }
 
 enum { ENTRY_LINE = 2 }; // of the first entry: the key stands before it
@@ -195,7 +197,7 @@ static void find_machine(char machine[COMPARE_MACHINE_SIZE])
 }
 
 // The usual path: a name of its own for every key.
-static bool find_path(const json_t *key, char path[FILE_PATH_SIZE], Err *err)
+static bool compare_store_find_path(const json_t *key, char path[FILE_PATH_SIZE], Err *err)
 {
     const char *cache = getenv("XDG_CACHE_HOME");
     const char *home = getenv("HOME");
@@ -218,7 +220,7 @@ static bool find_path(const json_t *key, char path[FILE_PATH_SIZE], Err *err)
     return length < FILE_PATH_SIZE || err_set(err, ERR_FILE, "the path of the store is too long");
 }
 
-static bool take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *err)
+static bool compare_store_take_all(CompareStore *store, Ladder *ladder, bool is_quiet, Err *err)
 {
     size_t others = 0;
     size_t index;
@@ -265,11 +267,11 @@ bool compare_store_open(CompareStore *store, const CompareOptions *options,
     json_t *key = ladder_json_key(ladder, scenario, build);
     const char *file = options->store != NULL ? options->store : path;
     const bool is_open =
-        (options->store != NULL || find_path(key, path, err)) &&
+        (options->store != NULL || compare_store_find_path(key, path, err)) &&
         file_claim("--store", FILE_JOURNAL, file, err) &&
         journal_open(&store->journal, &JOURNAL_COMPARE, file, key, options->is_fresh, err);
     json_decref(key);
-    return is_open && take_all(store, ladder, options->common.is_quiet, err);
+    return is_open && compare_store_take_all(store, ladder, options->common.is_quiet, err);
 }
 
 bool compare_store_keep_truth(const LadderTruth *truth, void *context, Err *err)

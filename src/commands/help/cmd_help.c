@@ -1,4 +1,4 @@
-// How is a command used, and how is a case file written?
+// The command `jointplay help`: the use of a command, and the keys of a case.
 #include "casefile/casefile.h"
 #include "cli/arguments.h"
 #include "commands/commands.h"
@@ -19,7 +19,7 @@ static const OptionRow OPTIONS[] = {
      offsetof(HelpOptions, is_markdown), .letter = 'm'},
 };
 
-static bool read_word(const char *word, void *target, Err *err)
+static bool cmd_help_read_word(const char *word, void *target, Err *err)
 {
     HelpOptions *options = target;
     if (options->word_count == WORD_MAX) {
@@ -80,7 +80,7 @@ static bool explain_command(const HelpOptions *options, Err *err)
     return true;
 }
 
-static bool explain(void *target, Err *err)
+static bool cmd_help_explain(void *target, Err *err)
 {
     const HelpOptions *options = target;
     if (options->word_count == 0) {
@@ -100,11 +100,11 @@ static bool run_help(int argc, char **argv, Err *err)
         .program = "jointplay help",
         .usage = "[case|COMMAND]\nstudy COMMAND",
         .doc = "Shows how a command is used, or how a case or study file is written.",
-        .argument = {.type = OPTION_READ, .read = read_word},
+        .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
         OPTION_ROWS(OPTIONS),
     };
     HelpOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, explain, err);
+    return arguments_run(&ARGUMENTS, argc, argv, &options, cmd_help_explain, err);
 }
 
 const Command cmd_help = {

@@ -47,7 +47,8 @@ typedef struct MapOptions {
 // The options.
 
 // A plain number is in SI.
-static bool read_number(const char *name, const char *text, bool *is_given, double *value, Err *err)
+static bool cmd_map_read_number(const char *name, const char *text, bool *is_given, double *value,
+                                Err *err)
 {
     Complaint complaint;
     if (!quantity_number(text, value, &complaint)) {
@@ -61,13 +62,13 @@ static bool read_number(const char *name, const char *text, bool *is_given, doub
 static bool read_erp(const char *text, void *target, Err *err)
 {
     MapOptions *options = target;
-    return read_number("erp", text, &options->has_erp, &options->erp, err);
+    return cmd_map_read_number("erp", text, &options->has_erp, &options->erp, err);
 }
 
 static bool read_cfm(const char *text, void *target, Err *err)
 {
     MapOptions *options = target;
-    return read_number("cfm", text, &options->has_cfm, &options->cfm, err);
+    return cmd_map_read_number("cfm", text, &options->has_cfm, &options->cfm, err);
 }
 
 static bool read_kp(const char *text, void *target, Err *err)
@@ -219,7 +220,7 @@ static bool check_lone(const MapOptions *options, Err *err)
                    options->laws != NULL ? "--laws" : "--penalty");
 }
 
-static bool check(void *target, Err *err)
+static bool cmd_map_check(void *target, Err *err)
 {
     MapOptions *options = target;
     options->is_inverse =
@@ -254,7 +255,7 @@ static const Arguments MAP_ARGUMENTS = {
            "CFM stand for.",
     .argument = COMMON_PATH("map takes one case"),
     OPTION_ROWS(OPTIONS),
-    .check = check,
+    .check = cmd_map_check,
 };
 
 // What the options ask for beside the case.
@@ -318,8 +319,8 @@ static bool read_source(const char *name, const char *text, Dimension dimension,
     return option_values_read_quantity(name, text, dimension, value, err);
 }
 
-static bool read_steps(const MapOptions *options, const Scenario *scenario,
-                       MappingSettings *settings, Err *err)
+static bool cmd_map_read_steps(const MapOptions *options, const Scenario *scenario,
+                               MappingSettings *settings, Err *err)
 {
     if (options->steps != NULL) {
         return option_values_read_times("steps", options->steps, MAPPING_STEP_MAX, settings->steps,
@@ -354,7 +355,7 @@ static bool read_steps(const MapOptions *options, const Scenario *scenario,
 }
 
 // Whether all that touches in a case turns: masses are then inertias, and speeds angular.
-static bool is_torsional(const Linkage *linkage)
+static bool cmd_map_is_torsional(const Linkage *linkage)
 {
     size_t turning = 0;
     size_t loose = 0;
@@ -400,8 +401,8 @@ static bool map_options_settings(const MapOptions *options, const Scenario *scen
             settings->laws[i] = (LawKind)words[i];
         }
     }
-    const bool is_turning = is_torsional(&scenario->linkage);
-    return read_steps(options, scenario, settings, err) &&
+    const bool is_turning = cmd_map_is_torsional(&scenario->linkage);
+    return cmd_map_read_steps(options, scenario, settings, err) &&
            read_source("mass", options->mass, is_turning ? DIMENSION_INERTIA : DIMENSION_MASS,
                        &settings->mass_source, &settings->mass, err) &&
            read_source("speed", options->speed,
@@ -448,7 +449,7 @@ static void add_own(Overrides *overrides, const char *key, const char *value)
     }
 }
 
-static bool is_word(const char *text, const char *const *words)
+static bool cmd_map_is_word(const char *text, const char *const *words)
 {
     for (size_t i = 0; words[i] != NULL; i++) {
         if (strcmp(text, words[i]) == 0) {
@@ -463,7 +464,7 @@ static void list_overrides(const MapOptions *options, Overrides *overrides)
 {
     add_own(overrides, "contact.stiffness", options->stiffness);
     add_own(overrides, "contact.restitution", options->restitution);
-    if (options->damping != NULL && !is_word(options->damping, OPTIONS_DAMPINGS)) {
+    if (options->damping != NULL && !cmd_map_is_word(options->damping, OPTIONS_DAMPINGS)) {
         add_own(overrides, "contact.damping", "viscous");
         add_own(overrides, "contact.viscous-coefficient", options->damping);
     } else {
@@ -537,7 +538,7 @@ typedef struct Watching {
     const char *doing; // of a run or of many
 } Watching;
 
-static void show(Watching *watching, const char *words)
+static void cmd_map_show(Watching *watching, const char *words)
 {
     if (status_line_is_due(&watching->line, status_line_time(&watching->line), INFINITY)) {
         status_line_show(&watching->line, words);
@@ -558,7 +559,7 @@ static void show_row(size_t done, size_t total, void *context)
 {
     char words[64];
     snprintf(words, sizeof words, "%zu of %zu settings run in ODE", done, total);
-    show(context, words);
+    cmd_map_show(context, words);
 }
 
 static void show_run(double share, double wall_s, void *context)
@@ -567,7 +568,7 @@ static void show_run(double share, double wall_s, void *context)
     Watching *watching = context;
     char words[96];
     snprintf(words, sizeof words, "%s: %.0f %%", watching->doing, 100.0 * share);
-    show(watching, words);
+    cmd_map_show(watching, words);
 }
 
 static const ResultFile FILES[] = {
@@ -642,8 +643,8 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
 }
 
 // The masses that a row is read on: the one given, else those of the case's joints, else none.
-static bool add_masses(const MapOptions *options, const Scenario *scenario, Inverse *inverse,
-                       Err *err)
+static bool cmd_map_add_masses(const MapOptions *options, const Scenario *scenario,
+                               Inverse *inverse, Err *err)
 {
     double mass = 0.0;
     if (options->mass != NULL &&
@@ -673,14 +674,14 @@ static bool add_masses(const MapOptions *options, const Scenario *scenario, Inve
     return true;
 }
 
-static bool read_row(const MapOptions *options, const Scenario *scenario, Err *err)
+static bool cmd_map_read_row(const MapOptions *options, const Scenario *scenario, Err *err)
 {
     Inverse *inverse = calloc(1, sizeof *inverse);
     assert(inverse != NULL);
     bool is_read = options->has_kp
                        ? inverse_of_pair(options->kp, options->kd, options->step_s, inverse, err)
                        : inverse_of_row(options->erp, options->cfm, options->step_s, inverse, err);
-    is_read = is_read && add_masses(options, scenario, inverse, err);
+    is_read = is_read && cmd_map_add_masses(options, scenario, inverse, err);
     if (is_read) {
         results_print(&INVERSE_RESULTS, &options->common, inverse);
     }
@@ -723,8 +724,8 @@ static bool do_map(void *target, Err *err)
     const MapOptions *options = target;
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
-    const bool is_done = options->is_inverse
-                             ? load(options, scenario, err) && read_row(options, scenario, err)
+    const bool is_done = options->is_inverse ? load(options, scenario, err) &&
+                                                   cmd_map_read_row(options, scenario, err)
                          : options->stiffness != NULL ? map_lone(options, scenario, err)
                                                       : map_case(options, scenario, err);
     scenario_destroy(scenario);

@@ -105,7 +105,7 @@ void mapping_penalty_text_write(const PenaltyMap *map, const Style *style, Text 
 extern const Field DELIVERED_FIELDS[];
 extern const Field ASKED_FIELDS[];
 
-// Which spring and damper are an ERP and a CFM, and what do they give back?
+// The spring and damper that an ERP and a CFM are, and their restitution.
 
 enum { INVERSE_READING_COUNT = 3 };
 

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 
-// Which spring and damper are an ERP and a CFM, and what do they give back?
+// The spring and damper that an ERP and a CFM are, and their restitution.
 //
 // A row that stays the same through a contact is a linear spring and damper, read by the map that
 // it is taken to come from: kp = ERP / (h CFM) by the textbook and the corrected map, with kd = (1

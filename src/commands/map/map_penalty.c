@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// What does the paper's penalty parameter P become in ODE, and how deep do pins go with it?
+// The paper's penalty parameter P as ODE has it, and how deep pins go with it.
 //
 // P (Table II) is K_c C^e, printed without a unit; its two uses give it one:
 //   a stiffness, N/mm              k = P, F = k d; ERP and CFM by the case's map, with the viscous
@@ -106,7 +106,8 @@ static bool run_penalty(const Scenario *turned, const MappingJoint *joint, const
     return true;
 }
 
-static bool fill_row(const Scenario *scenario, const PenaltyMap *map, PenaltyMapRow *row, Err *err)
+static bool map_penalty_fill_row(const Scenario *scenario, const PenaltyMap *map,
+                                 PenaltyMapRow *row, Err *err)
 {
     row->turned = at_speed(scenario, row->rpm);
     MappingJoint *joints = NULL;
@@ -158,7 +159,7 @@ bool penalty_map_make(const Scenario *scenario, double step_s, RunWatch watch, P
         if (watch.progress != NULL) {
             watch.progress((double)i / PRINTED_SPEED_COUNT, 0.0, watch.context);
         }
-        if (!fill_row(scenario, made, row, err)) {
+        if (!map_penalty_fill_row(scenario, made, row, err)) {
             char where[48];
             snprintf(where, sizeof where, "at %.4g rpm", row->rpm);
             err_prefix(err, where);
@@ -187,7 +188,7 @@ enum {
     TABLES = STIFFNESS | PENALTY,
 };
 
-static const void *asked_of(const void *record)
+static const void *map_penalty_asked_of(const void *record)
 {
     return &((const PenaltyMapRow *)record)->stiffness.asked;
 }
@@ -219,7 +220,7 @@ static const Field ROW_FIELDS[] = {
     {NULL, FIELD_NUMBER, TABLES, "impact", "m/s", "%.4g", ROW(speed)},
     {NULL, FIELD_NUMBER, TABLES, "Table III", "um", "%.4f", ROW(approach)},
     {"rest_depth_m", FIELD_NUMBER, FIELD_JSON | STIFFNESS, "F / P", "um", "%.4g", ROW(rest_depth)},
-    {"asked", FIELD_PART, FIELD_JSON, .of = ASKED_FIELDS, .part = asked_of},
+    {"asked", FIELD_PART, FIELD_JSON, .of = ASKED_FIELDS, .part = map_penalty_asked_of},
     {"delivered_as_stiffness", FIELD_GROUP, FIELD_JSON, ROW(by_spring), .of = DELIVERED_FIELDS},
     {"penalty_cfm_m_N_s", FIELD_NUMBER, FIELD_JSON, ROW(cfm)},
     {"delivered_as_penalty", FIELD_GROUP, FIELD_JSON, ROW(by_penalty), .of = DELIVERED_FIELDS},
@@ -241,8 +242,8 @@ json_t *mapping_penalty_json(const PenaltyMap *map)
                      OPTIONS_ODE_MAPS[map->map], "step_s", map->step_s, "rows", rows);
 }
 
-static void write_table(const PenaltyMap *map, const char *heading, unsigned where,
-                        const Style *style, Text *text)
+static void map_penalty_write_table(const PenaltyMap *map, const char *heading, unsigned where,
+                                    const Style *style, Text *text)
 {
     Table *table = fields_table(heading, ROW_FIELDS, where, style, text);
     for (int i = 0; i < PRINTED_SPEED_COUNT; i++) {
@@ -253,14 +254,15 @@ static void write_table(const PenaltyMap *map, const char *heading, unsigned whe
 
 void mapping_penalty_text_write(const PenaltyMap *map, const Style *style, Text *text)
 {
-    write_table(map, "The paper's P read as a stiffness", STIFFNESS, style, text);
+    map_penalty_write_table(map, "The paper's P read as a stiffness", STIFFNESS, style, text);
     text_append(
         text,
         "  P in N/mm with the viscous damper of the restitution asked for, %s map, %.4g us; "
         "Table III is static, and so is F / P; delivered is the depth of an impact of "
         "the joint's effective mass.\n",
         OPTIONS_ODE_MAPS[map->map], map->step_s * UNITS_US);
-    write_table(map, "The paper's P read as a velocity-level penalty", PENALTY, style, text);
+    map_penalty_write_table(map, "The paper's P read as a velocity-level penalty", PENALTY, style,
+                            text);
     text_append(text,
                 "  F = P d', CFM = 1 / P, with ODE's bounce, %.4g us: the depth is what the pin "
                 "flies in the step that finds the wall, and follows the step and not P.\n",

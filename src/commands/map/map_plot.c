@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-// How far is each map off, at which step?
+// The error of each map at each step.
 //
 // The largest errors, wherever the steps fall, relative to what the law asks: left of the
 // restitution, right of the peak force. Lines are predicted, dots delivered; what is valid lies in
@@ -51,7 +51,7 @@ static double peak_of(const ImpactFigures *figures, const MapImpact *asked)
     return largest_error(&figures->force_max, asked->force_max);
 }
 
-static PlotStyle style_of(OdeMap map)
+static PlotStyle map_plot_style_of(OdeMap map)
 {
     PlotStyle style = plot_style(1, (size_t)map);
     style.width = 1.8;
@@ -67,7 +67,7 @@ static Axis step_axis(const MappingSettings *settings)
     return (Axis){.title = "step, us", .scale = AXIS_LOG, .low = low, .high = high};
 }
 
-static void draw_band(const PlotPanel *panel)
+static void map_plot_draw_band(const PlotPanel *panel)
 {
     const double top = plot_y(panel, MAPPING_VALID_SHARE);
     plot_below(panel, top, "#f0c419");
@@ -90,11 +90,11 @@ static void draw_curve(const PlotPanel *panel, const MappingContact *contact, Od
             y[count++] = error;
         }
     }
-    plot_line(panel, count, x, y, style_of(map));
+    plot_line(panel, count, x, y, map_plot_style_of(map));
 }
 
-static void draw_dots(const MappingReport *report, const PlotPanel *panel,
-                      const MappingContact *contact, const Shown *shown)
+static void map_plot_draw_dots(const MappingReport *report, const PlotPanel *panel,
+                               const MappingContact *contact, const Shown *shown)
 {
     for (size_t i = 0; i < contact->row_count; i++) {
         const MappingRow *row = &report->mapping->rows[contact->first_row + i];
@@ -102,7 +102,7 @@ static void draw_dots(const MappingReport *report, const PlotPanel *panel,
             const double error = shown->of(&row->delivered.figures, &contact->asked);
             plot_spot(panel->svg, plot_x(panel, row->step_s * UNITS_US),
                       plot_y(panel, fmin(fmax(error, ERROR_LEAST), ERROR_MOST)), 3.6,
-                      style_of(row->map).colour, "#fff", 1.0);
+                      map_plot_style_of(row->map).colour, "#fff", 1.0);
         }
     }
 }
@@ -124,12 +124,12 @@ static void draw_panel(const MappingReport *report, const MappingContact *contac
     };
     plot_fine_grid(&panel);
     plot_enter(&panel);
-    draw_band(&panel);
+    map_plot_draw_band(&panel);
     const size_t map_count = is_poisson ? 1 : settings->map_count;
     for (size_t i = 0; i < map_count; i++) {
         draw_curve(&panel, contact, is_poisson ? ODE_MAP_TEXTBOOK : settings->maps[i], shown);
     }
-    draw_dots(report, &panel, contact, shown);
+    map_plot_draw_dots(report, &panel, contact, shown);
     plot_leave(&panel);
 }
 
@@ -157,12 +157,12 @@ static void draw_contact(const MappingReport *report, size_t number, Text *svg)
     }
 }
 
-static void draw_legend(const MappingReport *report, Text *svg)
+static void map_plot_draw_legend(const MappingReport *report, Text *svg)
 {
     const MappingSettings *settings = &report->mapping->settings;
     double x = PANEL_LEFT;
     for (size_t i = 0; i < settings->map_count && !mapping_report_is_poisson(report); i++) {
-        plot_sample(svg, x, 78.0, style_of(settings->maps[i]));
+        plot_sample(svg, x, 78.0, map_plot_style_of(settings->maps[i]));
         plot_text(svg, x + 38.0, 82.0, "start", "", OPTIONS_ODE_MAPS[settings->maps[i]]);
         x += LEGEND_DISTANCE;
     }
@@ -179,7 +179,7 @@ void mapping_plot_write(const void *of, Text *svg)
     plot_begin(svg, PICTURE_WIDTH, HEAD_HEIGHT + ROW_HEIGHT * (double)drawn,
                report->scenario->title);
     plot_text(svg, PANEL_LEFT, 34.0, "start", "title", report->scenario->title);
-    draw_legend(report, svg);
+    map_plot_draw_legend(report, svg);
     for (size_t i = 0; i < drawn; i++) {
         draw_contact(report, i, svg);
     }

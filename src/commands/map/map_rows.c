@@ -6,8 +6,8 @@
 
 #include <math.h>
 
-// What is to be said of a contact, of its settings and of its best constants, in JSON, CSV and
-// tables?
+// The numbers of a contact, of its settings and of its best constants, in JSON, CSV and
+// tables.
 
 static const char *const SOURCES[] = {
     [MAPPING_MEDIAN] = "median", [MAPPING_MOST] = "most",   [MAPPING_GIVEN] = "given",
@@ -33,12 +33,12 @@ static const void *contact_of(const void *record)
     return ((const MappingRow *)record)->contact;
 }
 
-static const void *asked_of(const void *record)
+static const void *map_rows_asked_of(const void *record)
 {
     return &((const MappingRow *)record)->contact->asked;
 }
 
-static const char *joint_of(const void *record)
+static const char *map_rows_joint_of(const void *record)
 {
     return mapping_report_joint(record)->name;
 }
@@ -57,7 +57,7 @@ static double longest_of(const void *record)
     return longest_s > 0.0 ? longest_s : NAN;
 }
 
-static const char *message_of(const void *record)
+static const char *map_rows_message_of(const void *record)
 {
     const MappingRow *row = record;
     return row->delivered.is_measured ? row->words : row->delivered.message;
@@ -68,7 +68,7 @@ static const char *contact_status(const void *record)
     return ((const MappingContact *)record)->lack[0] == '\0' ? "ok" : "not mapped";
 }
 
-static json_t *is_torsional(const void *record)
+static json_t *map_rows_is_torsional(const void *record)
 {
     return json_boolean(linkage_is_torsional(mapping_report_joint(record)));
 }
@@ -175,7 +175,7 @@ const Field ASKED_FIELDS[] = {
 
 // What a row of CSV has of its contact, before and behind map and step.
 static const Field NAME_FIELDS[] = {
-    {"joint", FIELD_NAME, FIELD_CSV, .word = joint_of},
+    {"joint", FIELD_NAME, FIELD_CSV, .word = map_rows_joint_of},
     {"law", FIELD_NAME, FIELD_CSV, CONTACT(law_name)},
     {0},
 };
@@ -202,7 +202,7 @@ static const Field ROW_FIELDS[] = {
     {"erp", FIELD_NUMBER, FIELD_ALL, "ERP", "1", "%.6g", ROW(soft.erp)},
     {"cfm_m_N_s", FIELD_NUMBER, FIELD_FILES | PUSHED, "CFM", "1/(N s/m)", "%.6g", ROW(soft.cfm)},
     {NULL, FIELD_NUMBER, TURNED, "CFM", "1/(N m s/rad)", "%.6g", ROW(soft.cfm)},
-    {"asked", FIELD_PART, FIELD_CSV, .of = ASKED_FIELDS, .part = asked_of},
+    {"asked", FIELD_PART, FIELD_CSV, .of = ASKED_FIELDS, .part = map_rows_asked_of},
     {"predicted", FIELD_GROUP, FIELD_CSV, ROW(predicted), .of = PREDICTED_FIELDS},
     {"delivered", FIELD_GROUP, FIELD_CSV, ROW(delivered), .of = DELIVERED_FIELDS},
     {"verdict", FIELD_CHOICE, FIELD_ALL, .title = "verdict", ROW(verdict), .of = VERDICT_NAMES},
@@ -210,7 +210,7 @@ static const Field ROW_FIELDS[] = {
     {"predicted", FIELD_GROUP, FIELD_JSON, ROW(predicted), .of = PREDICTED_FIELDS},
     {"delivered", FIELD_GROUP, FIELD_JSON, ROW(delivered), .of = DELIVERED_FIELDS},
     {"longest_valid_step_s", FIELD_NUMBER, FIELD_CSV, .number = longest_of},
-    {"message", FIELD_TEXT, FIELD_CSV, .word = message_of},
+    {"message", FIELD_TEXT, FIELD_CSV, .word = map_rows_message_of},
     {0},
 };
 
@@ -248,8 +248,8 @@ static const Field MAPPED_FIELDS[] = {
     {0},
 };
 static const Field CONTACT_FIELDS[] = {
-    {"joint", FIELD_NAME, FIELD_JSON, .word = joint_of},
-    {"is_torsional", FIELD_VALUE, FIELD_JSON, .json = is_torsional},
+    {"joint", FIELD_NAME, FIELD_JSON, .word = map_rows_joint_of},
+    {"is_torsional", FIELD_VALUE, FIELD_JSON, .json = map_rows_is_torsional},
     {"law", FIELD_NAME, FIELD_JSON, CONTACT(law_name)},
     {"status", FIELD_NAME, FIELD_JSON, .word = contact_status},
     {"message", FIELD_TEXT, FIELD_JSON, CONTACT(lack)},

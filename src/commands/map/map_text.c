@@ -149,7 +149,7 @@ static void setting_row(const MappingContact *contact, const HeldSetting *settin
                             : NAN);
 }
 
-static void write_table(const MappingContact *contact, const Style *style, Text *text)
+static void map_text_write_table(const MappingContact *contact, const Style *style, Text *text)
 {
     const JointUnits *units = mapping_report_units(contact);
     char cfm[32];
@@ -249,7 +249,7 @@ static void mapping_held_text(const MappingContact *contact, const Style *style,
     const HeldSetting *row = &contact->held->settings[1];
     const JointUnits *units = mapping_report_units(contact);
     char values[HEADING_SIZE];
-    write_table(contact, style, text);
+    map_text_write_table(contact, style, text);
     text_append(text, "\n");
     snprintf(values, sizeof values, "kp = %.5g %s, kd = %.4g %s", pair->stiffness, units->stiffness,
              pair->damping, units->damping);
@@ -273,7 +273,7 @@ static void mapping_held_text(const MappingContact *contact, const Style *style,
     }
 }
 
-// Which ERP, CFM and step for this joint, and what do they deliver?
+// ERP, CFM and step for each contact, and what they deliver.
 
 enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 96 };
 
@@ -305,7 +305,7 @@ static bool has_lines(const Linkage *linkage)
     return false;
 }
 
-static void write_head(const MappingReport *report, const Style *style, Text *text)
+static void map_text_write_head(const MappingReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
@@ -441,8 +441,8 @@ static void write_run(const MappingContact *contact, Text *text)
         units->length, stable);
 }
 
-static void write_longest(const MappingReport *report, const MappingContact *contact,
-                          const Style *style, Text *text)
+static void map_text_write_longest(const MappingReport *report, const MappingContact *contact,
+                                   const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
         {"map", "", TABLE_LEFT},
@@ -480,7 +480,7 @@ static void write_longest(const MappingReport *report, const MappingContact *con
 void mapping_text_write(const void *of, const Style *style, Text *text)
 {
     const MappingReport *report = of;
-    write_head(report, style, text);
+    map_text_write_head(report, style, text);
     for (size_t i = 0; i < report->mapping->contact_count; i++) {
         const MappingContact *contact = &report->mapping->contacts[i];
         char law[MAPPING_REPORT_LAW_SIZE];
@@ -497,7 +497,7 @@ void mapping_text_write(const void *of, const Style *style, Text *text)
         write_law(report, contact, text);
         if (!mapping_report_is_poisson(report)) {
             write_run(contact, text);
-            write_longest(report, contact, style, text);
+            map_text_write_longest(report, contact, style, text);
         }
         mapping_settings_text_write(report, contact, style, text);
         if (contact->held != NULL) {

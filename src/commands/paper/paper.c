@@ -128,7 +128,7 @@ static void fill_by_run(const Scenario *scenario, Trajectory *run, ExtremesRow *
     trajectory_destroy(run);
 }
 
-static bool fill_ideal(EmbeddedCase which, ExtremesRow *row, Err *err)
+static bool paper_fill_ideal(EmbeddedCase which, ExtremesRow *row, Err *err)
 {
     Scenario scenario;
     if (!embedded_load(which, &scenario, err)) {
@@ -237,8 +237,8 @@ static bool extremes_others(ExtremesRow rows[PRINTED_ROW_COUNT], Err *err)
             rows[i] = empty_row(i);
         }
     }
-    return fill_ideal(EMBEDDED_IDEAL_NOMINAL, &rows[PRINTED_IDEAL_NOMINAL], err) &&
-           fill_ideal(EMBEDDED_IDEAL_STACKUP, &rows[PRINTED_IDEAL_STACKUP], err) &&
+    return paper_fill_ideal(EMBEDDED_IDEAL_NOMINAL, &rows[PRINTED_IDEAL_NOMINAL], err) &&
+           paper_fill_ideal(EMBEDDED_IDEAL_STACKUP, &rows[PRINTED_IDEAL_STACKUP], err) &&
            fill_impact(&rows[PRINTED_IMPACT], err) &&
            fill_by_sampling(&rows[PRINTED_IDEAL_ANALYTICAL], err);
 }

@@ -37,7 +37,7 @@ static bool uses(const CaseRun *run, BackendKind backend)
     return false;
 }
 
-static void make_truth(CaseRun *run, Progress *progress)
+static void case_run_make_truth(CaseRun *run, Progress *progress)
 {
     if (!uses(run, BACKEND_REFERENCE)) {
         return;
@@ -51,8 +51,8 @@ static void make_truth(CaseRun *run, Progress *progress)
 }
 
 // One run of one backend; the truth's own trajectory stands for the run of its backend.
-static Trajectory *run_backend(const CaseRun *run, BackendKind backend, bool is_announced,
-                               Progress *progress)
+static Trajectory *case_run_run_backend(const CaseRun *run, BackendKind backend, bool is_announced,
+                                        Progress *progress)
 {
     const Solver *solver = registry_solver(backend);
     Trajectory *truth = run->truth.trajectory;
@@ -151,10 +151,11 @@ void case_run_execute(CaseRun *run, Progress *progress)
         .errors = run->errors,
     };
     const bool is_announced = long_work_announce(&run->scenario, progress->line.is_quiet);
-    make_truth(run, progress);
+    case_run_make_truth(run, progress);
     for (size_t i = 0; i < options->backend_count; i++) {
-        run->runs[i] = run_backend(run, options->backends[i],
-                                   is_announced && options->backends[i] == BACKEND_ODE, progress);
+        run->runs[i] =
+            case_run_run_backend(run, options->backends[i],
+                                 is_announced && options->backends[i] == BACKEND_ODE, progress);
         run->failed_count += run->runs[i]->is_complete ? 0 : 1;
     }
     measure_errors(run);
@@ -250,8 +251,8 @@ bool run_files_claim(const CaseRun *run, const char *series, Err *err)
 }
 
 // The file of a backend's series in the folder.
-static bool find_member(const CaseRun *run, const CommonOptions *options, size_t number, char *path,
-                        Err *err)
+static bool case_run_find_member(const CaseRun *run, const CommonOptions *options, size_t number,
+                                 char *path, Err *err)
 {
     char name[SCENARIO_PATH_SIZE];
     char ending[LINKAGE_NAME_SIZE + 8];
@@ -265,7 +266,7 @@ bool run_files_claim_folder(const CaseRun *run, const CommonOptions *options, Er
 {
     char path[FILE_PATH_SIZE];
     for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
-        if (!find_member(run, options, i, path, err) ||
+        if (!case_run_find_member(run, options, i, path, err) ||
             !file_claim("--out", FILE_TABLE, path, err)) {
             return false;
         }
@@ -278,7 +279,7 @@ bool run_files_folder(const CaseRun *run, const CommonOptions *options, Err *err
     char path[FILE_PATH_SIZE];
     for (size_t i = 0; i < run->report.run_count; i++) {
         const Trajectory *trajectory = run->runs[i];
-        if (!find_member(run, options, i, path, err)) {
+        if (!case_run_find_member(run, options, i, path, err)) {
             return false;
         }
         if (!trajectory->is_complete) {

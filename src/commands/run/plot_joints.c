@@ -284,7 +284,8 @@ static Vec2 pin_at(const RunReport *report, const Trajectory *run, size_t sample
 
 // Whether the path of a pin is drawn, and then in which unit: um, or where there are several pins
 // the joint's radial clearance.
-static bool find_path(const PlotView *view, size_t run, size_t joint, bool is_one, PlotPath *path)
+static bool plot_joints_find_path(const PlotView *view, size_t run, size_t joint, bool is_one,
+                                  PlotPath *path)
 {
     const Joint *shape = &view->report->scenario->linkage.joints[joint];
     if (view->joints.is_left_out[joint] || shape->kind != JOINT_CLEARANCE ||
@@ -306,7 +307,7 @@ static double plot_joints_farthest(const PlotView *view, bool is_one)
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             PlotPath path;
-            const bool is_drawn = find_path(view, run, joint, is_one, &path);
+            const bool is_drawn = plot_joints_find_path(view, run, joint, is_one, &path);
             for (size_t i = 0; is_drawn && i < trajectory->sample_count; i++) {
                 const Vec2 e = pin_at(report, trajectory, i, &path);
                 most = fmax(most, fmax(fabs(e.x), fabs(e.y)));
@@ -354,7 +355,7 @@ void plot_joints_paths(const PlotView *view, PlotPanel panel)
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < linkage->joint_count; joint++) {
             PlotPath path;
-            if (find_path(view, run, joint, is_one, &path)) {
+            if (plot_joints_find_path(view, run, joint, is_one, &path)) {
                 plot_look_path(view, &panel, run, &path);
             }
         }
@@ -451,13 +452,15 @@ static double origin_of(const Joint *joint)
     return joint->limits.kind == LIMIT_BACKLASH ? joint->limits.middle : 0.0;
 }
 
-static double angle_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+static double plot_joints_angle_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                   size_t joint)
 {
     const double angle = trajectory_state(run, sample, joint)->tilt;
     return (angle - origin_of(plot_limits_joint_of(report, joint))) * UNITS_DEG;
 }
 
-static double length_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
+static double plot_joints_length_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                    size_t joint)
 {
     const double length = trajectory_state(run, sample, joint)->eccentricity.x;
     const Joint *of = plot_limits_joint_of(report, joint);
@@ -490,7 +493,7 @@ static double limit_of(const LimitPanel *limits, const Joint *joint, int side)
     return (limit - origin_of(joint)) * limits->unit;
 }
 
-static void take(Axis *axis, double value)
+static void plot_joints_take(Axis *axis, double value)
 {
     axis->low = isfinite(value) ? fmin(axis->low, value) : axis->low;
     axis->high = isfinite(value) ? fmax(axis->high, value) : axis->high;
@@ -507,10 +510,10 @@ static void plot_limits_widen(const LimitPanel *limits, const PlotView *view, Ax
             if (!plot_limits_shows(limits, view, run, joint)) {
                 continue;
             }
-            take(axis, limit_of(limits, plot_limits_joint_of(report, joint), 0));
-            take(axis, limit_of(limits, plot_limits_joint_of(report, joint), 1));
+            plot_joints_take(axis, limit_of(limits, plot_limits_joint_of(report, joint), 0));
+            plot_joints_take(axis, limit_of(limits, plot_limits_joint_of(report, joint), 1));
             for (size_t i = 0; i < trajectory->sample_count; i++) {
-                take(axis, limits->quantity.at(report, trajectory, i, joint));
+                plot_joints_take(axis, limits->quantity.at(report, trajectory, i, joint));
             }
         }
     }
@@ -567,7 +570,7 @@ static LimitPanel panel_of(bool is_angle, LimitKind kind)
         .kind = kind,
         .unit = is_angle ? UNITS_DEG : UNITS_MM,
         .quantity = {is_angle ? "angle, deg" : "travel, mm", true, -1,
-                     is_angle ? angle_of : length_of},
+                     is_angle ? plot_joints_angle_of : plot_joints_length_of},
     };
 }
 
@@ -603,7 +606,7 @@ static Vec2 loop_at(const RunReport *report, const Trajectory *run, size_t sampl
     const bool is_angle = linkage_is_torsional(plot_limits_joint_of(report, path->joint));
     return (Vec2){
         time_table_at(&torque->table, run->times[sample]),
-        (is_angle ? angle_of : length_of)(report, run, sample, path->joint),
+        (is_angle ? plot_joints_angle_of : plot_joints_length_of)(report, run, sample, path->joint),
     };
 }
 
@@ -614,7 +617,7 @@ static Axis torque_axis(const RunReport *report, bool is_angle)
                  .low = INFINITY,
                  .high = -INFINITY};
     for (size_t i = 0; i < table->count; i++) {
-        take(&axis, table->values[i]);
+        plot_joints_take(&axis, table->values[i]);
     }
     axis_round(&axis.low, &axis.high);
     return axis;
@@ -711,8 +714,8 @@ static double gap_of(const RunReport *report, const Trajectory *run, size_t samp
     return trajectory_state(run, sample, joint)->gap * UNITS_MM;
 }
 
-static double acceleration_of(const RunReport *report, const Trajectory *run, size_t sample,
-                              size_t joint)
+static double plot_joints_acceleration_of(const RunReport *report, const Trajectory *run,
+                                          size_t sample, size_t joint)
 {
     return slide_range_acceleration(&report->scenario->linkage, run, sample, joint);
 }
@@ -828,7 +831,7 @@ void plot_slides_accelerations(const PlotView *view, PlotPanel panel)
     static const SlidePanel ACCELERATION = {
         .title = "Acceleration of the slider, at the samples",
         .axis = "acceleration, m/s^2",
-        .quantity = {"acceleration", true, -1, acceleration_of},
+        .quantity = {"acceleration", true, -1, plot_joints_acceleration_of},
         .shows = shows_acceleration,
     };
     plot_slides_draw(&ACCELERATION, view, panel);

@@ -85,7 +85,7 @@ static int compare_ranked(const void *a, const void *b)
 }
 
 // Leaves out all but the first of many.
-static void choose(const PlotView *view, bool is_joint, Ranked *ranked, size_t count)
+static void plot_lines_choose(const PlotView *view, bool is_joint, Ranked *ranked, size_t count)
 {
     const RunReport *report = view->report;
     if (count <= DRAWN_MOST) {
@@ -118,7 +118,7 @@ static PlotSet set_create(size_t count)
     };
 }
 
-static void set_free(PlotSet *set)
+static void plot_lines_set_free(PlotSet *set)
 {
     free(set->is_shown);
     free(set->is_other);
@@ -129,7 +129,7 @@ static void set_free(PlotSet *set)
 
 // Takes out of those that are shown or named what is left out. Colours go by the order of the case,
 // from the one given on.
-static void settle(PlotSet *set, size_t count, unsigned first_colour)
+static void plot_lines_settle(PlotSet *set, size_t count, unsigned first_colour)
 {
     unsigned colour = first_colour;
     for (size_t i = 0; i < count; i++) {
@@ -143,7 +143,7 @@ static void settle(PlotSet *set, size_t count, unsigned first_colour)
     }
 }
 
-static void choose_bodies(PlotView *view)
+static void plot_lines_choose_bodies(PlotView *view)
 {
     const Linkage *linkage = &view->report->scenario->linkage;
     Ranked *ranked = zeroed(linkage->body_count, sizeof *ranked);
@@ -154,9 +154,9 @@ static void choose_bodies(PlotView *view)
             ranked[count++].number = i;
         }
     }
-    choose(view, false, ranked, count);
+    plot_lines_choose(view, false, ranked, count);
     free(ranked);
-    settle(&view->bodies, linkage->body_count, 0);
+    plot_lines_settle(&view->bodies, linkage->body_count, 0);
 }
 
 // Of each kind by itself, since there are panels for some kinds alone.
@@ -175,10 +175,10 @@ static void choose_joints(PlotView *view)
                 view->joints.is_named[i] = slide_range_has(&linkage->joints[i]);
             }
         }
-        choose(view, true, ranked, count);
+        plot_lines_choose(view, true, ranked, count);
     }
     free(ranked);
-    settle(&view->joints, linkage->joint_count, (unsigned)view->bodies.drawn);
+    plot_lines_settle(&view->joints, linkage->joint_count, (unsigned)view->bodies.drawn);
 }
 
 PlotView plot_view_begin(const RunReport *report)
@@ -190,15 +190,15 @@ PlotView plot_view_begin(const RunReport *report)
         .bodies = set_create(linkage->body_count),
         .joints = set_create(linkage->joint_count),
     };
-    choose_bodies(&view);
+    plot_lines_choose_bodies(&view);
     choose_joints(&view);
     return view;
 }
 
 void plot_view_finish(PlotView *view)
 {
-    set_free(&view->bodies);
-    set_free(&view->joints);
+    plot_lines_set_free(&view->bodies);
+    plot_lines_set_free(&view->joints);
     *view = (PlotView){.report = NULL};
 }
 
@@ -240,7 +240,7 @@ double plot_look_x(const PlotView *view, double crank_rad, double time_s)
                                              : time_s * UNITS_MS;
 }
 
-static const char *name_of(const RunReport *report, PlotQuantity quantity, size_t index)
+static const char *plot_lines_name_of(const RunReport *report, PlotQuantity quantity, size_t index)
 {
     const Linkage *linkage = &report->scenario->linkage;
     return quantity.is_joint ? linkage->joints[index].name : linkage->bodies[index].name;
@@ -303,7 +303,7 @@ void plot_look_marks(const PlotView *view, const PlotPanel *panel, const SignalS
         const SignalSpike *spike = &spikes->spikes[i];
         char title[2 * LINKAGE_NAME_SIZE + 96];
         snprintf(title, sizeof title, "%s %s: %.6g %s at %.7g ms", quantity.name,
-                 name_of(view->report, quantity, index), spike->value, unit,
+                 plot_lines_name_of(view->report, quantity, index), spike->value, unit,
                  spike->time_s * UNITS_MS);
         plot_mark(panel, plot_look_x(view, spike->crank_rad, spike->time_s), spike->value,
                   spike->value < 0.0, title,
@@ -349,7 +349,7 @@ void plot_look_draw(const PlotView *view, const PlotPanel *panel, size_t run, Pl
     }
     char title[TRAJECTORY_LABEL_SIZE + 2 * LINKAGE_NAME_SIZE];
     snprintf(title, sizeof title, "%s: %s %s", trajectory->backend, quantity.name,
-             name_of(report, quantity, index));
+             plot_lines_name_of(report, quantity, index));
     plot_band(panel, curve.count, curve.x, curve.low, curve.high, title,
               plot_style(run, plot_look_colour(view, quantity.is_joint, index)));
     free(curve.x);

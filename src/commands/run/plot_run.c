@@ -18,13 +18,15 @@
 static const double SPIKY = 8.0;
 static const double USUAL = 0.9;
 
-static double omega_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+static double plot_run_omega_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                size_t body)
 {
     (void)report;
     return trajectory_motion(run, sample, body)->omega;
 }
 
-static double alpha_of(const RunReport *report, const Trajectory *run, size_t sample, size_t body)
+static double plot_run_alpha_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                size_t body)
 {
     (void)report;
     return trajectory_motion(run, sample, body)->alpha;
@@ -37,8 +39,8 @@ static double speed_of(const RunReport *report, const Trajectory *run, size_t sa
     return hypot(velocity.x, velocity.y);
 }
 
-static double acceleration_of(const RunReport *report, const Trajectory *run, size_t sample,
-                              size_t body)
+static double plot_run_acceleration_of(const RunReport *report, const Trajectory *run,
+                                       size_t sample, size_t body)
 {
     (void)report;
     const Vec2 acceleration = trajectory_motion(run, sample, body)->acceleration;
@@ -52,14 +54,14 @@ typedef struct Reach {
     double usual; // what most of the run stays below on either side of zero
 } Reach;
 
-static int by_size(const void *a, const void *b)
+static int plot_run_by_size(const void *a, const void *b)
 {
     const double first = *(const double *)a;
     const double second = *(const double *)b;
     return (first > second) - (first < second);
 }
 
-static Reach find_reach(const PlotView *view, const Trajectory *run, PlotQuantity quantity)
+static Reach plot_run_find_reach(const PlotView *view, const Trajectory *run, PlotQuantity quantity)
 {
     const PlotSet *bodies = &view->bodies;
     Reach reach = {0};
@@ -79,7 +81,7 @@ static Reach find_reach(const PlotView *view, const Trajectory *run, PlotQuantit
             }
         }
     }
-    qsort(sizes, count, sizeof *sizes, by_size);
+    qsort(sizes, count, sizeof *sizes, plot_run_by_size);
     reach.usual = sizes[(size_t)(USUAL * (double)(count - 1))];
     free(sizes);
     return reach;
@@ -94,7 +96,7 @@ static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis
         if (!report->runs[i]->is_complete) {
             continue;
         }
-        const Reach reach = find_reach(view, report->runs[i], quantity);
+        const Reach reach = plot_run_find_reach(view, report->runs[i], quantity);
         const double size = fmax(-reach.low, reach.high);
         least = size > 0.0 ? fmin(least, size) : least;
         least = reach.usual > 0.0 ? fmin(least, reach.usual) : least;
@@ -144,7 +146,7 @@ static double turning_of(const RunReport *report, const Trajectory *run, size_t 
 {
     return run->space_motions != NULL
                ? vec3_length(trajectory_space_motion(run, sample, body)->omega)
-               : fabs(omega_of(report, run, sample, body));
+               : fabs(plot_run_omega_of(report, run, sample, body));
 }
 
 static double spinning_up_of(const RunReport *report, const Trajectory *run, size_t sample,
@@ -152,7 +154,7 @@ static double spinning_up_of(const RunReport *report, const Trajectory *run, siz
 {
     return run->space_motions != NULL
                ? vec3_length(trajectory_space_motion(run, sample, body)->alpha)
-               : fabs(alpha_of(report, run, sample, body));
+               : fabs(plot_run_alpha_of(report, run, sample, body));
 }
 
 // A pair of panels: a rate of the bodies' motion and how that changes.
@@ -169,16 +171,18 @@ static const MotionPanels *choose_motions(const PlotView *view)
     static const MotionPanels PANELS[] = {
         {{"Angular velocity", "Angular acceleration"},
          {"omega, rad/s", "alpha, rad/s^2"},
-         {{"omega", false, RANGES_OMEGA, omega_of}, {"alpha", false, RANGES_ALPHA, alpha_of}},
+         {{"omega", false, RANGES_OMEGA, plot_run_omega_of},
+          {"alpha", false, RANGES_ALPHA, plot_run_alpha_of}},
          true},
         {{"Speed of the centre of mass", "Acceleration of the centre of mass"},
          {"speed, m/s", "acceleration, m/s^2"},
          {{"speed", false, -1, speed_of},
-          {"acceleration", false, RANGES_ACCELERATION, acceleration_of}},
+          {"acceleration", false, RANGES_ACCELERATION, plot_run_acceleration_of}},
          false},
         {{"Angular velocity about z", "Angular acceleration about z"},
          {"omega, rad/s", "alpha, rad/s^2"},
-         {{"omega", false, RANGES_OMEGA, omega_of}, {"alpha", false, RANGES_ALPHA, alpha_of}},
+         {{"omega", false, RANGES_OMEGA, plot_run_omega_of},
+          {"alpha", false, RANGES_ALPHA, plot_run_alpha_of}},
          true},
         {{"Angular velocity, its size at the samples", "Angular acceleration, its size"},
          {"|omega|, rad/s", "|alpha|, rad/s^2"},
@@ -213,7 +217,7 @@ static bool is_in(const PlotSet *set, size_t number)
     return set->is_shown[number] || set->is_other[number];
 }
 
-static void choose_axis(const PlotView *view, bool is_joint, size_t count, Axis *axis)
+static void plot_run_choose_axis(const PlotView *view, bool is_joint, size_t count, Axis *axis)
 {
     const PlotSet *set = plot_view_set(view, is_joint);
     Range range = RANGE_EMPTY;
@@ -259,7 +263,7 @@ static void draw_run(const PlotView *view, const PlotPanel *panel, bool is_joint
     free(x);
 }
 
-static void draw(const PlotView *view, PlotPanel panel, bool is_joint)
+static void plot_run_draw(const PlotView *view, PlotPanel panel, bool is_joint)
 {
     const Linkage *linkage = &view->report->scenario->linkage;
     const size_t count = is_joint ? linkage->joint_count : linkage->body_count;
@@ -267,7 +271,7 @@ static void draw(const PlotView *view, PlotPanel panel, bool is_joint)
                                        : "number of the body, as in the case",
                      .low = 1.0,
                      .high = (double)count};
-    choose_axis(view, is_joint, count, &panel.y);
+    plot_run_choose_axis(view, is_joint, count, &panel.y);
     plot_enter(&panel);
     for (size_t run = 0; run < view->report->run_count; run++) {
         if (view->report->runs[run]->is_complete) {
@@ -281,7 +285,7 @@ static void plot_overview_bodies(const PlotView *view, PlotPanel panel)
 {
     panel.title = "All bodies: the largest of the whole run";
     panel.y.title = view->turns ? "|alpha|, rad/s^2" : "acceleration, m/s^2";
-    draw(view, panel, false);
+    plot_run_draw(view, panel, false);
 }
 
 // Of a mechanism of which something is left out: the largest value of every body and joint in each
@@ -290,7 +294,7 @@ static void plot_overview_joints(const PlotView *view, PlotPanel panel)
 {
     panel.title = "All joints: the largest of the whole run";
     panel.y.title = "force, N";
-    draw(view, panel, true);
+    plot_run_draw(view, panel, true);
 }
 
 static const double PICTURE_WIDTH = 1000.0; // pixels, as all that follow
@@ -331,7 +335,7 @@ typedef struct Legend {
     double y;
 } Legend;
 
-static void add_entry(Legend *legend, PlotStyle style, const char *words)
+static void plot_run_add_entry(Legend *legend, PlotStyle style, const char *words)
 {
     // a character of this font takes some 7 pixels
     const double width = 37.0 + 7.2 * (double)strlen(words) + 22.0;
@@ -356,7 +360,7 @@ static void add_marks(Legend *legend, const Trajectory *run)
 {
     char words[LINKAGE_NAME_SIZE + 64];
     snprintf(words, sizeof words, "spikes of the table, %s", run->backend);
-    add_entry(legend, (PlotStyle){"#333333", 0.0, 0.0, NULL}, words);
+    plot_run_add_entry(legend, (PlotStyle){"#333333", 0.0, 0.0, NULL}, words);
     const double width = 37.0 + 7.2 * (double)strlen(words) + 22.0;
     plot_mark_sample(legend->svg, legend->x - width + 20.0, legend->y,
                      (PlotStyle){"#333333", 1.0, 1.0, NULL});
@@ -371,7 +375,7 @@ static void add_colour(Legend *legend, const PlotView *view, bool is_joint, size
         style.width = 3.0;
         char words[LINKAGE_NAME_SIZE + 16];
         snprintf(words, sizeof words, "%s%s", what, name);
-        add_entry(legend, style, words);
+        plot_run_add_entry(legend, style, words);
     }
 }
 
@@ -389,7 +393,7 @@ static void add_left_out(Legend *legend, const PlotSet *set, const char *what, c
 }
 
 // Returns where its last row stands.
-static double draw_legend(const PlotView *view, Text *svg)
+static double plot_run_draw_legend(const PlotView *view, Text *svg)
 {
     const RunReport *report = view->report;
     Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
@@ -399,7 +403,7 @@ static double draw_legend(const PlotView *view, Text *svg)
         style.colour = "#333333";
         char words[TRAJECTORY_LABEL_SIZE + LINKAGE_NAME_SIZE + 16];
         name_run(run, words, sizeof words);
-        add_entry(&legend, style, words);
+        plot_run_add_entry(&legend, style, words);
     }
     legend.x = PANEL_LEFT[0];
     legend.y += LEGEND_ROW;
@@ -424,7 +428,7 @@ typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
 enum { PANEL_MAX = 17 };
 
-static bool has_joint(const RunReport *report, JointKind kind)
+static bool plot_run_has_joint(const RunReport *report, JointKind kind)
 {
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -443,22 +447,22 @@ static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
     if (!scenario_has_clearance(report->scenario)) {
         panels[count++] = plot_joints_errors;
     }
-    if (has_joint(report, JOINT_CLEARANCE)) {
+    if (plot_run_has_joint(report, JOINT_CLEARANCE)) {
         panels[count++] = plot_joints_paths;
     }
-    if (has_joint(report, JOINT_CLEARANCE) && report->scenario->linkage.is_spatial) {
+    if (plot_run_has_joint(report, JOINT_CLEARANCE) && report->scenario->linkage.is_spatial) {
         panels[count++] = plot_pins_tilts;
         panels[count++] = plot_pins_ends;
     }
-    if (has_joint(report, JOINT_GUIDE)) {
+    if (plot_run_has_joint(report, JOINT_GUIDE)) {
         panels[count++] = plot_slides_paths;
         panels[count++] = plot_slides_offsets;
         panels[count++] = plot_slides_tilts;
     }
-    if (has_joint(report, JOINT_GUIDE) || has_joint(report, JOINT_PRISMATIC)) {
+    if (plot_run_has_joint(report, JOINT_GUIDE) || plot_run_has_joint(report, JOINT_PRISMATIC)) {
         panels[count++] = plot_slides_accelerations;
     }
-    if (has_joint(report, JOINT_STOP)) {
+    if (plot_run_has_joint(report, JOINT_STOP)) {
         panels[count++] = plot_slides_stops;
     }
     static const struct {
@@ -498,7 +502,7 @@ void plot_run_write(const void *of, Text *svg)
     const int more_rows = (int)count / 2;
     Text legend;
     text_init(&legend);
-    const double pushed = fmax(0.0, draw_legend(&view, &legend) - LEGEND_END);
+    const double pushed = fmax(0.0, plot_run_draw_legend(&view, &legend) - LEGEND_END);
     const Sheet sheet = {svg, PANEL_TOP + pushed};
     plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + pushed + more_rows * ROW_HEIGHT, title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);

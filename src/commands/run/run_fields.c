@@ -8,7 +8,7 @@
 #include <float.h>
 #include <math.h>
 
-static const char *status_of(const void *record)
+static const char *run_fields_status_of(const void *record)
 {
     return ((const Trajectory *)record)->is_complete ? "ok" : "failed";
 }
@@ -23,19 +23,19 @@ static const void *if_estimated(const void *record)
     return ((const Trajectory *)record)->trials > 0 ? record : NULL;
 }
 
-static double step_of(const void *record)
+static double run_fields_step_of(const void *record)
 {
     const Trajectory *run = record;
     return run->step_s > 0.0 ? run->step_s : NAN;
 }
 
-static double us_per_step_of(const void *record)
+static double run_fields_us_per_step_of(const void *record)
 {
     const Trajectory *run = record;
     return run->wall_s / (double)run->steps * UNITS_US;
 }
 
-static double step_wall_of(const void *record)
+static double run_fields_step_wall_of(const void *record)
 {
     const Trajectory *run = record;
     return run->steps > 0 && run->wall_s > 0.0 ? run->wall_s / (double)run->steps : NAN;
@@ -49,7 +49,7 @@ static double real_time_of(const void *record)
 
 static double real_time_shown(const void *record)
 {
-    return isfinite(step_wall_of(record)) ? real_time_of(record) : NAN;
+    return isfinite(run_fields_step_wall_of(record)) ? real_time_of(record) : NAN;
 }
 
 static double evaluations_shown(const void *record)
@@ -64,7 +64,7 @@ static json_t *is_held(const void *record)
     return json_boolean(!run->is_short && !run->estimate_is_cut);
 }
 
-static double unknown(const void *record)
+static double run_fields_unknown(const void *record)
 {
     (void)record;
     return NAN;
@@ -123,14 +123,14 @@ static const Field ESTIMATE_FIELDS[] = {
     {0},
 };
 static const Field COMPLETE_FIELDS[] = {
-    {"step_s", FIELD_NUMBER, FIELD_JSON, .number = step_of},
+    {"step_s", FIELD_NUMBER, FIELD_JSON, .number = run_fields_step_of},
     {"steps", FIELD_COUNT, FIELD_JSON | FIELD_TABLE, "steps", "", RUN(steps)},
     {"evaluations", FIELD_COUNT, FIELD_JSON, RUN(evaluations)},
     {NULL, FIELD_NUMBER, FIELD_TABLE, "evaluations", "", .number = evaluations_shown},
     {"duration_s", FIELD_NUMBER, FIELD_JSON, RUN(duration_s)},
     {"wall_s", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "wall time", "ms", RUN(wall_s)},
-    {"us_per_step", FIELD_NUMBER, FIELD_JSON, .number = us_per_step_of},
-    {NULL, FIELD_NUMBER, FIELD_TABLE, "a step", "us", .number = step_wall_of},
+    {"us_per_step", FIELD_NUMBER, FIELD_JSON, .number = run_fields_us_per_step_of},
+    {NULL, FIELD_NUMBER, FIELD_TABLE, "a step", "us", .number = run_fields_step_wall_of},
     {"real_time_factor", FIELD_NUMBER, FIELD_JSON, .number = real_time_of},
     {NULL, FIELD_NUMBER, FIELD_TABLE, "simulated/wall", "1", .number = real_time_shown},
     {"constraint_rows", FIELD_COUNT, FIELD_JSON, RUN(constraint_rows)},
@@ -143,7 +143,7 @@ const Field RUN_FIELDS[] = {
     {"backend", FIELD_TEXT, FIELD_JSON | FIELD_TABLE, "backend", "", RUN(backend)},
     {"label", FIELD_TEXT, FIELD_JSON, RUN(label)},
     {NULL, FIELD_NAME, FIELD_TABLE, "status", "", .word = status_shown},
-    {"status", FIELD_NAME, FIELD_JSON, .word = status_of},
+    {"status", FIELD_NAME, FIELD_JSON, .word = run_fields_status_of},
     {"message", FIELD_TEXT, FIELD_JSON, RUN(message)},
     {NULL, FIELD_IF, FIELD_JSON | FIELD_TABLE, .known = offsetof(Trajectory, is_complete),
      .of = COMPLETE_FIELDS},
@@ -212,7 +212,7 @@ const Field RUN_SPIKE_FIELDS[] = {
     {"peak_s", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "peak", "ms", "%.4f", SPIKE(time_s)},
     {"end_s", FIELD_NUMBER, FIELD_JSON, SPIKE(end_s)},
     {"crank_deg", FIELD_DEGREES, RUN_DRIVEN, "crank", "deg", "%.1f", SPIKE(crank_rad)},
-    {"crank_deg", FIELD_NUMBER, RUN_NO_CRANK, .number = unknown},
+    {"crank_deg", FIELD_NUMBER, RUN_NO_CRANK, .number = run_fields_unknown},
     {"value_rad_s2", FIELD_NUMBER, RUN_ALPHA, SPIKE(value)},
     {"value_N", FIELD_NUMBER, RUN_FORCE, SPIKE(value)},
     {"value_N_m", FIELD_NUMBER, RUN_TORQUE, SPIKE(value)},
@@ -264,7 +264,8 @@ typedef struct Largest {
     double force;   // N
 } Largest;
 
-static void take_samples(const Scenario *scenario, const Trajectory *run, Largest *largest)
+static void run_fields_take_samples(const Scenario *scenario, const Trajectory *run,
+                                    Largest *largest)
 {
     for (size_t k = 0; k < run->sample_count; k++) {
         for (size_t i = 0; i < run->body_count; i++) {
@@ -279,12 +280,12 @@ static void take_samples(const Scenario *scenario, const Trajectory *run, Larges
     }
 }
 
-static Largest find_largest(const Scenario *scenario, const Trajectory *run)
+static Largest run_fields_find_largest(const Scenario *scenario, const Trajectory *run)
 {
     const Linkage *linkage = &scenario->linkage;
     const double gravity = fabs(scenario->gravity);
     Largest largest = {.distance = 0.0};
-    take_samples(scenario, run, &largest);
+    run_fields_take_samples(scenario, run, &largest);
     double mass = 0.0;
     for (size_t i = 0; i < run->body_count; i++) {
         const BodyExtremes *body = &run->bodies[i];
@@ -316,7 +317,7 @@ static RunFloor find_floor(const Scenario *scenario, const Trajectory *run)
     if (!run->is_complete) {
         return (RunFloor){0};
     }
-    const Largest largest = find_largest(scenario, run);
+    const Largest largest = run_fields_find_largest(scenario, run);
     return (RunFloor){
         .turning = DBL_EPSILON * largest.omega,
         .spinning_up = DBL_EPSILON * largest.alpha,
@@ -408,7 +409,7 @@ static Extreme at_sample(double value, const Trajectory *run, size_t sample)
 }
 
 // Takes a value that was then into the least and most.
-static void widen(Extreme range[2], double value, const Trajectory *run, size_t sample)
+static void run_fields_widen(Extreme range[2], double value, const Trajectory *run, size_t sample)
 {
     const Extreme now = at_sample(value, run, sample);
     range[0] = sample == 0 || value < range[0].value ? now : range[0];
@@ -424,12 +425,14 @@ SlideRange slide_range_find(const Linkage *linkage, const Trajectory *run, size_
         const Vec2 along = joint_rows_along(linkage, motions, (int)joint);
         const int body = linkage->joints[joint].body_a;
         const double omega = body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
-        widen(range.position, vec2_dot(along, gap.position), run, i);
+        run_fields_widen(range.position, vec2_dot(along, gap.position), run, i);
         // the line turns with its body
-        widen(range.velocity,
-              vec2_dot(along, gap.velocity) + omega * vec2_dot(vec2_perp(along), gap.position), run,
-              i);
-        widen(range.acceleration, slide_range_acceleration(linkage, run, i, joint), run, i);
+        run_fields_widen(range.velocity,
+                         vec2_dot(along, gap.velocity) +
+                             omega * vec2_dot(vec2_perp(along), gap.position),
+                         run, i);
+        run_fields_widen(range.acceleration, slide_range_acceleration(linkage, run, i, joint), run,
+                         i);
         const double resultant = vec2_length(trajectory_state(run, i, joint)->force_on_b);
         if (i == 0 || resultant > range.resultant.value) {
             range.resultant = at_sample(resultant, run, i);

@@ -11,7 +11,7 @@
 
 // The reference and what was measured against it.
 
-static json_t *message_of(const Truth *truth)
+static json_t *run_json_message_of(const Truth *truth)
 {
     return truth->is_uncertified ? json_string("is not certified: --uncertified")
                                  : json_value_not_certified(truth->message);
@@ -30,7 +30,7 @@ static json_t *run_truth_json_truth(const RunReport *report)
     const bool is_certified = truth->message[0] == '\0';
     json_object_set_new(object, "message",
                         truth->trajectory->is_complete
-                            ? message_of(truth)
+                            ? run_json_message_of(truth)
                             : json_value_text(truth->trajectory->message));
     if (truth->trajectory->is_complete) {
         json_value_set(object, "uncertainty", truth->uncertainty);

@@ -199,7 +199,7 @@ typedef struct SpikeBandSums {
     SignalSector outside;
 } SpikeBandSums;
 
-// Below which size is a number of a run nothing but rounding?
+// The size below which a number of a run is nothing but rounding.
 
 // Of each quantity what one rounding is of the largest that the mechanism has of it, or gravity
 // makes of it: tables for people show what is below as 0. Files keep their numbers.

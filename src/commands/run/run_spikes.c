@@ -42,7 +42,7 @@ static SpikeBandSums spike_bands_sums(const SignalSpikes *spikes)
     return sums;
 }
 
-static bool is_near(double value, double wanted)
+static bool run_spikes_is_near(double value, double wanted)
 {
     return fabs(value - wanted) <= SAME * wanted;
 }
@@ -54,7 +54,8 @@ static bool has_papers_play(const Linkage *linkage)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if (linkage_has_play(joint)) {
-            is_so = i == PAPER_JOINT && is_near(linkage_radial_clearance(joint), PAPER_CLEARANCE);
+            is_so = i == PAPER_JOINT &&
+                    run_spikes_is_near(linkage_radial_clearance(joint), PAPER_CLEARANCE);
             if (!is_so) {
                 break;
             }
@@ -67,10 +68,11 @@ static bool has_papers_play(const Linkage *linkage)
 static bool spike_bands_apply(const RunReport *report)
 {
     const FourBar *fourbar = &report->scenario->fourbar;
-    return report->scenario->has_fourbar && is_near(fourbar->ground.nominal, PAPER_GROUND) &&
-           is_near(fourbar->crank.nominal, PAPER_CRANK) &&
-           is_near(fourbar->coupler.nominal, PAPER_COUPLER) &&
-           is_near(fourbar->follower.nominal, PAPER_FOLLOWER) &&
+    return report->scenario->has_fourbar &&
+           run_spikes_is_near(fourbar->ground.nominal, PAPER_GROUND) &&
+           run_spikes_is_near(fourbar->crank.nominal, PAPER_CRANK) &&
+           run_spikes_is_near(fourbar->coupler.nominal, PAPER_COUPLER) &&
+           run_spikes_is_near(fourbar->follower.nominal, PAPER_FOLLOWER) &&
            has_papers_play(&report->scenario->linkage);
 }
 
@@ -87,7 +89,7 @@ static double spike_bands_last_deg(size_t band)
 
 // Tables of the spikes.
 
-static bool has_joint(const RunReport *report, const Trajectory *run, size_t joint)
+static bool run_spikes_has_joint(const RunReport *report, const Trajectory *run, size_t joint)
 {
     return run->is_complete && run->force_spikes[joint].is_known &&
            linkage_has_play(&report->scenario->linkage.joints[joint]);
@@ -103,9 +105,9 @@ static bool looked_for_any(const RunReport *report, const Trajectory *run)
     return false;
 }
 
-static void count_row(Table *table, const RunReport *report, const Trajectory *run,
-                      const char *quantity, const char *name, const char *unit,
-                      const SignalSpikes *spikes)
+static void run_spikes_count_row(Table *table, const RunReport *report, const Trajectory *run,
+                                 const char *quantity, const char *name, const char *unit,
+                                 const SignalSpikes *spikes)
 {
     table_cell(table, "%s %s", quantity, name);
     table_cell(table, "%s", unit);
@@ -125,7 +127,7 @@ static void count_row(Table *table, const RunReport *report, const Trajectory *r
     }
 }
 
-static void write_counts(const RunReport *report, const Style *style, Text *text)
+static void run_spikes_write_counts(const RunReport *report, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
         {"signal", "", TABLE_LEFT},     {"unit", "", TABLE_LEFT},
@@ -142,18 +144,19 @@ static void write_counts(const RunReport *report, const Style *style, Text *text
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
             if (run_report_has_body_spikes(report, run, body)) {
-                count_row(table, report, run, "alpha", linkage->bodies[body].name, "rad/s^2",
-                          &run->alpha_spikes[body]);
+                run_spikes_count_row(table, report, run, "alpha", linkage->bodies[body].name,
+                                     "rad/s^2", &run->alpha_spikes[body]);
             }
         }
     }
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (has_joint(report, run, joint)) {
+            if (run_spikes_has_joint(report, run, joint)) {
                 const Joint *of = &linkage->joints[joint];
-                count_row(table, report, run, linkage_is_torsional(of) ? "torque" : "force",
-                          of->name, joint_units(of)->force, &run->force_spikes[joint]);
+                run_spikes_count_row(table, report, run,
+                                     linkage_is_torsional(of) ? "torque" : "force", of->name,
+                                     joint_units(of)->force, &run->force_spikes[joint]);
             }
         }
     }
@@ -174,8 +177,8 @@ static size_t count_kept(const RunReport *report, const Trajectory *run)
     return count;
 }
 
-static void write_strongest(const RunReport *report, const Trajectory *run, size_t limit,
-                            const Style *style, Text *text)
+static void run_spikes_write_strongest(const RunReport *report, const Trajectory *run, size_t limit,
+                                       const Style *style, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
     const unsigned where = run_report_columns(report);
@@ -204,9 +207,9 @@ void spike_tables_write(const RunReport *report, size_t limit, const Style *styl
     if (last == NULL) {
         return;
     }
-    write_counts(report, style, text);
+    run_spikes_write_counts(report, style, text);
     if (count_kept(report, last) > 0) {
-        write_strongest(report, last, limit, style, text);
+        run_spikes_write_strongest(report, last, limit, style, text);
     }
 }
 

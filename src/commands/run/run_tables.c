@@ -219,8 +219,8 @@ static size_t count_spikes(const Linkage *linkage, const Trajectory *run, unsign
     return count;
 }
 
-static void write_strongest(const RunReport *report, const Trajectory *run, unsigned kind,
-                            size_t limit, const Style *style, Text *text)
+static void run_tables_write_strongest(const RunReport *report, const Trajectory *run,
+                                       unsigned kind, size_t limit, const Style *style, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
     const unsigned where = run_report_columns(report) | kind;
@@ -247,7 +247,7 @@ void run_tables_spikes(const RunReport *report, size_t limit, const Style *style
         for (size_t i = report->run_count; i-- > 0;) {
             const Trajectory *run = report->runs[i];
             if (count_spikes(&report->scenario->linkage, run, KINDS[k]) > 0) {
-                write_strongest(report, run, KINDS[k], limit, style, text);
+                run_tables_write_strongest(report, run, KINDS[k], limit, style, text);
                 break;
             }
         }
@@ -408,7 +408,7 @@ void run_slides_blocks(const RunReport *report, const Style *style, Text *text)
 // The angular velocity of bodies in space whose axes are not all along z.
 
 // The largest of a vector over the samples that are reported, and when.
-static Extreme find_largest(const Trajectory *run, size_t body, bool is_rate)
+static Extreme run_tables_find_largest(const Trajectory *run, size_t body, bool is_rate)
 {
     Extreme most = {.value = 0.0, .time_s = NAN, .crank_rad = NAN};
     for (size_t k = 0; k < run->sample_count; k++) {
@@ -457,8 +457,8 @@ void run_turns_write(const RunReport *report, const Style *style, Text *text)
             }
             table_cell(table, "%s", linkage->bodies[body].name);
             table_cell(table, "%s", run->backend);
-            cell(table, report, find_largest(run, body, false));
-            cell(table, report, find_largest(run, body, true));
+            cell(table, report, run_tables_find_largest(run, body, false));
+            cell(table, report, run_tables_find_largest(run, body, true));
         }
     }
     if (table != NULL) {

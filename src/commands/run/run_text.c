@@ -25,7 +25,7 @@ static void append_damping(Text *said, double damping, const char *unit)
     }
 }
 
-static void write_springs(const Linkage *linkage, size_t width, Text *text)
+static void run_text_write_springs(const Linkage *linkage, size_t width, Text *text)
 {
     Alike *alike = alike_start();
     for (size_t i = 0; i < linkage->spring_count; i++) {
@@ -56,7 +56,7 @@ static void write_springs(const Linkage *linkage, size_t width, Text *text)
     alike_end(alike, "  springs     ", ": ", width, text);
 }
 
-static void write_torque(const Linkage *linkage, Text *text)
+static void run_text_write_torque(const Linkage *linkage, Text *text)
 {
     const TimeTable *table = &linkage->torque.table;
     if (table->count == 0) {
@@ -85,8 +85,8 @@ static void write_torque(const Linkage *linkage, Text *text)
 static void run_loads_write(const RunReport *report, size_t width, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    write_springs(linkage, width, text);
-    write_torque(linkage, text);
+    run_text_write_springs(linkage, width, text);
+    run_text_write_torque(linkage, text);
 }
 
 // The closed form of the mechanism, before any solver has taken a step.
@@ -380,7 +380,7 @@ static void write_room(const Joint *joint, Text *text)
     }
 }
 
-static void write_pin(const Joint *joint, bool is_spatial, Text *text)
+static void run_text_write_pin(const Joint *joint, bool is_spatial, Text *text)
 {
     text_append(text, "hole %.7g mm, pin %.7g mm, radial clearance %.4g um",
                 2.0 * joint->clearance.hole_radius * UNITS_MM,
@@ -402,7 +402,7 @@ static void write_guide(const Joint *joint, Text *text)
                 linkage_radial_clearance(joint) * UNITS_UM, linkage_guide_tilt(guide) * UNITS_MRAD);
 }
 
-static void write_stop(const Joint *joint, Text *text)
+static void run_text_write_stop(const Joint *joint, Text *text)
 {
     const Stop *stop = &joint->stop;
     if (stop->radius_b > 0.0) {
@@ -418,7 +418,7 @@ static void write_stop(const Joint *joint, Text *text)
 }
 
 // What limits a coordinate: in degrees of a pivot, mm of a slider, and um of teeth.
-static void write_limits(const Joint *joint, Text *text)
+static void run_text_write_limits(const Joint *joint, Text *text)
 {
     const Limits *limits = &joint->limits;
     const bool is_turning = linkage_is_torsional(joint);
@@ -464,21 +464,21 @@ static const char *play_word(const Joint *joint)
 }
 
 // What play it is, of a joint that has some.
-static void write_joint(const Joint *joint, bool is_spatial, Text *text)
+static void run_text_write_joint(const Joint *joint, bool is_spatial, Text *text)
 {
     if (joint->limits.kind != LIMIT_NONE) {
-        write_limits(joint, text);
+        run_text_write_limits(joint, text);
     } else if (joint->kind == JOINT_CLEARANCE) {
-        write_pin(joint, is_spatial, text);
+        run_text_write_pin(joint, is_spatial, text);
     } else if (joint->kind == JOINT_GUIDE) {
         write_guide(joint, text);
     } else {
-        write_stop(joint, text);
+        run_text_write_stop(joint, text);
     }
 }
 
 // The play of all joints for which there is the same word.
-static void write_play(const Linkage *linkage, const char *word, size_t width, Text *text)
+static void run_text_write_play(const Linkage *linkage, const char *word, size_t width, Text *text)
 {
     char lead[32];
     snprintf(lead, sizeof lead, "  %-12s", word);
@@ -490,7 +490,7 @@ static void write_play(const Linkage *linkage, const char *word, size_t width, T
         }
         Text said;
         text_init(&said);
-        write_joint(&linkage->joints[i], linkage->is_spatial, &said);
+        run_text_write_joint(&linkage->joints[i], linkage->is_spatial, &said);
         alike_add(alike, linkage->joints[i].name, said.data);
         text_finish(&said);
     }
@@ -515,7 +515,7 @@ static void write_mechanism(const RunReport *report, size_t width, Text *text)
     }
     text_append(text, "\n");
     for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++) {
-        write_play(&scenario->linkage, WORDS[i], width, text);
+        run_text_write_play(&scenario->linkage, WORDS[i], width, text);
     }
 }
 
@@ -554,7 +554,7 @@ static void write_drive(const Scenario *scenario, Text *text)
     }
 }
 
-static void write_damping(const ContactOptions *contact, bool is_turning, Text *text)
+static void run_text_write_damping(const ContactOptions *contact, bool is_turning, Text *text)
 {
     text_append(text, ", damping %s", OPTIONS_DAMPINGS[contact->damping]);
     if (contact->damping == DAMPING_VISCOUS) {
@@ -584,7 +584,7 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
         text_append(text, ", d = A F (B - ln F) with A = %.4g m/N, B = %.4g", law.compliance,
                     law.offset);
     }
-    write_damping(&own, is_turning, text);
+    run_text_write_damping(&own, is_turning, text);
 }
 
 static void write_penalty(const Scenario *scenario, const Joint *joint, Text *text)
@@ -624,7 +624,7 @@ static void write_friction(const Scenario *scenario, size_t width, Text *text)
     alike_end(alike, "  friction    ", ": ", width, text);
 }
 
-static void write_contact(const Scenario *scenario, size_t width, Text *text)
+static void run_text_write_contact(const Scenario *scenario, size_t width, Text *text)
 {
     Alike *alike = alike_start();
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
@@ -713,7 +713,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     write_mechanism(report, style->width, text);
     run_loads_write(report, style->width, text);
     write_drive(scenario, text);
-    write_contact(scenario, style->width, text);
+    run_text_write_contact(scenario, style->width, text);
     write_models(report, style, text);
     // what was asked comes first, how far it can be believed beside it, and theory last
     run_truth_errors(report, style, text);

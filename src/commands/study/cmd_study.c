@@ -134,7 +134,7 @@ static const OptionRow STUDY_STATUS_OPTIONS[] = {
 static const uint64_t WANTED_UNKNOWN = UINT64_MAX;
 
 // Adds a store; one that is not there holds nothing yet.
-static bool add_part(Parts *parts, const char *path, uint64_t wanted, Err *err)
+static bool cmd_study_add_part(Parts *parts, const char *path, uint64_t wanted, Err *err)
 {
     if (parts->count == parts->room) {
         parts->room = 2 * parts->room + 1;
@@ -181,13 +181,13 @@ static bool add_study(Parts *parts, const char *study, Err *err)
                     study_path_store(study, (Shard){0, 1}, path, err);
     // a store of all is what the parts were merged into, or are to be
     if (is_added && (shards == 0 || access(path, F_OK) == 0)) {
-        is_added = add_part(parts, path, design_run_count(spec), err);
+        is_added = cmd_study_add_part(parts, path, design_run_count(spec), err);
         shards = 0;
     }
     for (uint64_t i = 0; is_added && i < shards; i++) {
         const Shard shard = {i, shards};
         is_added = study_path_store(study, shard, path, err) &&
-                   add_part(parts, path, design_shard_count(spec, shard), err);
+                   cmd_study_add_part(parts, path, design_shard_count(spec, shard), err);
     }
     spec_close(spec);
     return is_added;
@@ -216,9 +216,10 @@ static bool tell(void *target, Err *err)
     for (size_t i = 0; i < words->count && is_told; i++) {
         Parts parts = {0};
         const char *word = words->words[i];
-        is_told = (study_path_is_study(word) ? add_study(&parts, word, err)
-                                             : add_part(&parts, word, WANTED_UNKNOWN, err)) &&
-                  print_parts(&parts, words->is_wide, err);
+        is_told =
+            (study_path_is_study(word) ? add_study(&parts, word, err)
+                                       : cmd_study_add_part(&parts, word, WANTED_UNKNOWN, err)) &&
+            print_parts(&parts, words->is_wide, err);
         is_told = finish_parts(&parts, err) && is_told;
     }
     return is_told;
@@ -269,7 +270,7 @@ static bool study_export_check(void *options, Err *err)
            err_set(err, ERR_USAGE, "no store given: jointplay study export STORE.sqlite");
 }
 
-static bool write_all(void *target, Err *err)
+static bool cmd_study_write_all(void *target, Err *err)
 {
     const ExportOptions *options = target;
     char path[FILE_PATH_SIZE];
@@ -304,7 +305,7 @@ static bool study_export_run(int argc, char **argv, Err *err)
         .check = study_export_check,
     };
     ExportOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, write_all, err);
+    return arguments_run(&ARGUMENTS, argc, argv, &options, cmd_study_write_all, err);
 }
 
 const Command study_command_export = {
@@ -452,7 +453,7 @@ typedef struct DrawOptions {
     bool is_quiet;
 } DrawOptions;
 
-static bool read_word(const char *word, void *target, Err *err)
+static bool cmd_study_read_word(const char *word, void *target, Err *err)
 {
     DrawOptions *options = target;
     if (options->file != NULL) {
@@ -493,7 +494,7 @@ static bool study_draw_check(void *target, Err *err)
     return option_values_check_picture("plot", options->file, err);
 }
 
-static bool draw(void *target, Err *err)
+static bool cmd_study_draw(void *target, Err *err)
 {
     const DrawOptions *options = target;
     char path[FILE_PATH_SIZE];
@@ -519,12 +520,12 @@ static bool study_draw_run(int argc, char **argv, Err *err)
         .doc = "Draws one column of a study over another, as SVG: one dot per run, or, if many "
                "runs share each x, their median and a band from 5 to 95 %."
                "\vThe first line of 'jointplay study export' names the columns.",
-        .argument = {.type = OPTION_READ, .read = read_word},
+        .argument = {.type = OPTION_READ, .read = cmd_study_read_word},
         OPTION_ROWS(STUDY_DRAW_OPTIONS),
         .check = study_draw_check,
     };
     DrawOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, draw, err);
+    return arguments_run(&ARGUMENTS, argc, argv, &options, cmd_study_draw, err);
 }
 
 const Command study_command_plot = {
@@ -701,14 +702,15 @@ enum {
 };
 
 // The i-th of `count` runs spread over the whole shard.
-static uint64_t spread(const StudyOptions *options, const Spec *spec, uint64_t i, uint64_t count)
+static uint64_t cmd_study_spread(const StudyOptions *options, const Spec *spec, uint64_t i,
+                                 uint64_t count)
 {
     const double end = (double)design_run_count(spec);
     const uint64_t from = (uint64_t)floor((double)i * end / (double)count);
     return design_next(spec, options->shard, from);
 }
 
-static void append_cell(Table *table, const Column *column, const Cell *cell)
+static void cmd_study_append_cell(Table *table, const Column *column, const Cell *cell)
 {
     if (column->kind == COLUMN_WORD) {
         table_cell(table, "%s", cell->word);
@@ -734,7 +736,7 @@ static void append_runs(const StudyOptions *options, const Spec *spec, const Lay
         design_values(spec, run, values);
         table_cell(table, "%" PRIu64, run);
         for (size_t i = 0; i < layout->setting_count; i++) {
-            append_cell(table, &layout->settings[i], &values[i]);
+            cmd_study_append_cell(table, &layout->settings[i], &values[i]);
         }
         run = design_next(spec, options->shard, run + 1);
     }
@@ -755,7 +757,7 @@ static void append_trials(const StudyOptions *options, const Spec *spec, Text *t
         Cell values[RECORD_SETTING_MAX];
         BackendKind backend;
         Err err = {0};
-        const uint64_t run = spread(options, spec, i, count);
+        const uint64_t run = cmd_study_spread(options, spec, i, count);
         if (run >= end) {
             break;
         }

@@ -274,7 +274,7 @@ typedef struct Overrides {
     const char *all[SPEC_SETTING_MAX + SPEC_VARIABLE_MAX];
 } Overrides;
 
-static void add_value(const Variable *variable, const Cell *value, Text *text)
+static void design_add_value(const Variable *variable, const Cell *value, Text *text)
 {
     if (variable->is_word) {
         text_append(text, "%s=%s", variable->key, value->word);
@@ -297,7 +297,7 @@ static void overrides_make(const Spec *spec, const Cell *values, Overrides *over
     for (size_t i = 0; i < spec->variable_count; i++) {
         text_init(&overrides->texts[i]);
         if (strcmp(spec->variables[i].key, SPEC_SCHEME_KEY) != 0) {
-            add_value(&spec->variables[i], &values[i], &overrides->texts[i]);
+            design_add_value(&spec->variables[i], &values[i], &overrides->texts[i]);
             overrides->all[overrides->count++] = overrides->texts[i].data;
         }
     }
@@ -310,7 +310,8 @@ static void overrides_finish(const Spec *spec, Overrides *overrides)
     }
 }
 
-static bool apply_scheme(const char *name, Scenario *scenario, BackendKind *backend, Err *err)
+static bool design_apply_scheme(const char *name, Scenario *scenario, BackendKind *backend,
+                                Err *err)
 {
     Scheme schemes[SCHEME_MAX];
     const size_t count = scheme_list(scenario, schemes);
@@ -353,7 +354,7 @@ bool design_scenario(const Spec *spec, const Cell *values, Scenario *scenario, B
                                       overrides.count, &built, &own);
     for (size_t i = 0; is_good && i < spec->variable_count; i++) {
         if (strcmp(spec->variables[i].key, SPEC_SCHEME_KEY) == 0) {
-            is_good = apply_scheme(values[i].word, &built, &chosen, &own);
+            is_good = design_apply_scheme(values[i].word, &built, &chosen, &own);
         }
     }
     overrides_finish(spec, &overrides);

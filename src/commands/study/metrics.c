@@ -192,7 +192,7 @@ static const char *metric_name(const Metric *metric, const Linkage *linkage, siz
     return metric->name;
 }
 
-static void add_settings(const Spec *spec, Layout *layout)
+static void metrics_add_settings(const Spec *spec, Layout *layout)
 {
     for (size_t i = 0; i < spec->variable_count; i++) {
         const Variable *variable = &spec->variables[i];
@@ -211,7 +211,8 @@ typedef struct Result {
     const char *of; // name of that, or empty
 } Result;
 
-static bool find_member(const Linkage *linkage, Owner owner, size_t member, const char **name)
+static bool metrics_find_member(const Linkage *linkage, Owner owner, size_t member,
+                                const char **name)
 {
     if (owner == OF_BODY) {
         *name = linkage->bodies[member].name;
@@ -233,7 +234,8 @@ static size_t list_results(const Linkage *linkage, Result results[RECORD_RESULT_
     const char *name;
     for (Owner owner = 0; owner < OWNER_COUNT; owner++) {
         for (size_t i = 0; i < members[owner]; i++) {
-            for (size_t k = 0; find_member(linkage, owner, i, &name) && k < METRIC_COUNT; k++) {
+            for (size_t k = 0; metrics_find_member(linkage, owner, i, &name) && k < METRIC_COUNT;
+                 k++) {
                 if (METRICS[k].owner == owner) {
                     assert(count < RECORD_RESULT_MAX);
                     results[count++] = (Result){&METRICS[k], i, name};
@@ -249,7 +251,7 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
     Result results[RECORD_RESULT_MAX];
     const size_t count = list_results(&scenario->linkage, results);
     *layout = (Layout){0};
-    add_settings(spec, layout);
+    metrics_add_settings(spec, layout);
     for (size_t i = 0; i < count; i++) {
         const Metric *metric = results[i].metric;
         if (metric->owner < OF_ERROR || spec->has_truth) {
@@ -280,7 +282,7 @@ static bool is_there(const Metric *metric, const Measured *measured, size_t memb
     }
 }
 
-static double read_value(const Metric *metric, const Measured *measured, size_t member)
+static double metrics_read_value(const Metric *metric, const Measured *measured, size_t member)
 {
     const void *const owners[OWNER_COUNT] = {
         &measured->run->bodies[metric->owner == OF_BODY ? member : 0],
@@ -310,7 +312,8 @@ bool metrics_take(const Scenario *scenario, Trajectory *trajectory, const Truth 
     const size_t count = list_results(measured.linkage, list);
     for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
         const bool is_known = i < count && is_there(list[i].metric, &measured, list[i].member);
-        const double value = is_known ? read_value(list[i].metric, &measured, list[i].member) : NAN;
+        const double value =
+            is_known ? metrics_read_value(list[i].metric, &measured, list[i].member) : NAN;
         results[i] = isfinite(value) ? value : NAN;
     }
     return true;

@@ -376,7 +376,7 @@ bool spec_read_case(Reading *reading, const Node *node)
 }
 
 // From slow to fast: see spec.h.
-static int rank_of(const Variable *variable)
+static int spec_rank_of(const Variable *variable)
 {
     const bool is_grid = !variable->is_drawn;
     return is_grid && variable->changes_truth ? 0 : is_grid ? 2 : 1;
@@ -388,7 +388,7 @@ static void order_variables(Spec *spec)
     for (size_t i = 1; i < spec->variable_count; i++) {
         const Variable moved = spec->variables[i];
         size_t k = i;
-        for (; k > 0 && rank_of(&spec->variables[k - 1]) > rank_of(&moved); k--) {
+        for (; k > 0 && spec_rank_of(&spec->variables[k - 1]) > spec_rank_of(&moved); k--) {
             spec->variables[k] = spec->variables[k - 1];
         }
         spec->variables[k] = moved;
@@ -596,7 +596,7 @@ static bool is_tolerance(const Node *node)
 }
 
 // The limits of the tolerance that the case gives to the key.
-static bool take_tolerance(const Reading *reading, const Node *node)
+static bool spec_take_tolerance(const Reading *reading, const Node *node)
 {
     Variable *variable = reading->variable;
     const Scenario *base = reading->spec->base;
@@ -619,7 +619,7 @@ static bool take_tolerance(const Reading *reading, const Node *node)
     return true;
 }
 
-static bool check_limits(const Reading *reading, const Node *node)
+static bool spec_check_limits(const Reading *reading, const Node *node)
 {
     const Variable *variable = reading->variable;
     return variable->low < variable->high ||
@@ -631,7 +631,7 @@ bool spec_read_uniform(Reading *reading, const Node *node)
 {
     reading->variable->kind = VARIABLE_UNIFORM;
     if (is_tolerance(node)) {
-        return take_tolerance(reading, node);
+        return spec_take_tolerance(reading, node);
     }
     const Node *low = node->kind == NODE_LIST ? node->first : NULL;
     const Node *high = low != NULL ? low->next : NULL;
@@ -641,7 +641,7 @@ bool spec_read_uniform(Reading *reading, const Node *node)
     }
     return spec_read_number(reading, low, true, &reading->variable->low) &&
            spec_read_number(reading, high, true, &reading->variable->high) &&
-           check_limits(reading, node);
+           spec_check_limits(reading, node);
 }
 
 bool spec_read_log_uniform(Reading *reading, const Node *node)
@@ -667,7 +667,7 @@ static bool check_normal(const Reading *reading, const Node *node)
     }
     const double low = (variable->low - variable->centre) / variable->deviation;
     const double high = (variable->high - variable->centre) / variable->deviation;
-    return check_limits(reading, node) &&
+    return spec_check_limits(reading, node) &&
            (normal_between(low, high) >= NORMAL_SHARE_MIN ||
             spec_read_refuse(reading, node, "limits within 6 deviations of the mean",
                              "the limits of %s contain almost none of the distribution",
@@ -679,7 +679,7 @@ bool spec_read_normal(Reading *reading, const Node *node)
     Variable *variable = reading->variable;
     variable->kind = VARIABLE_NORMAL;
     if (is_tolerance(node)) {
-        if (!take_tolerance(reading, node)) {
+        if (!spec_take_tolerance(reading, node)) {
             return false;
         }
         variable->centre = 0.5 * (variable->low + variable->high);
@@ -695,7 +695,7 @@ bool spec_read_triangular(Reading *reading, const Node *node)
 {
     Variable *variable = reading->variable;
     variable->kind = VARIABLE_TRIANGULAR;
-    if (!spec_keys_read(reading, SPEC_TRIANGULAR, node) || !check_limits(reading, node)) {
+    if (!spec_keys_read(reading, SPEC_TRIANGULAR, node) || !spec_check_limits(reading, node)) {
         return false;
     }
     return (variable->low <= variable->centre && variable->centre <= variable->high) ||

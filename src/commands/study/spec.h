@@ -146,12 +146,12 @@ typedef struct SpecGroupRow {
     const char *example; // in the message about a missing key
 } SpecGroupRow;
 
-// spec_table.c
+// The keys of a study file and the table of them.
 extern const SpecKey SPEC_KEYS[];
 extern const size_t SPEC_KEY_COUNT;
 extern const SpecGroupRow SPEC_GROUPS[SPEC_GROUP_COUNT];
 
-// spec_keys.c: reads a mapping by the rows of its group into the spec, or into the variable.
+// Reads a mapping by the rows of its group into the spec, or into the variable.
 bool spec_keys_read(Reading *reading, SpecGroup group, const Node *map);
 
 // What a study has that says nothing of its limits, draws and truth.

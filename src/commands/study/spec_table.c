@@ -164,7 +164,7 @@ static const char RULES[] =
     "are errors. It has vary, draw, or both; a key of the case may appear in only one of set, vary "
     "and draw, with its whole path, such as joints.crank-coupler.hole.";
 
-static void describe_default(const SpecKey *key, Text *text)
+static void spec_table_describe_default(const SpecKey *key, Text *text)
 {
     const Spec spec = spec_default();
     const void *value = (const char *)&spec + key->offset;
@@ -210,13 +210,13 @@ static void describe_key(const SpecKey *key, bool is_markdown, Text *text)
     if (is_markdown) {
         spec_key_allowed(key, &words);
         text_append(&words, " | ");
-        describe_default(key, &words);
+        spec_table_describe_default(key, &words);
         text_append(text, "| `%s%s%s` | %s | %s |\n", group, dot, key->name, words.data, key->doc);
     } else {
         text_append(&words, "%s: ", key->doc);
         spec_key_allowed(key, &words);
         text_append(&words, key->is_required ? "; " : "; default: ");
-        describe_default(key, &words);
+        spec_table_describe_default(key, &words);
         text_append(text, "    %s%s%s\n", group, dot, key->name);
         append_folded(&words, text);
     }
@@ -275,8 +275,8 @@ static bool read_whole(const Reading *reading, const SpecKey *key, const Node *v
     return true;
 }
 
-static bool read_limit(const Reading *reading, const SpecKey *key, const Node *value,
-                       const char *allowed, void *target)
+static bool spec_table_read_limit(const Reading *reading, const SpecKey *key, const Node *value,
+                                  const char *allowed, void *target)
 {
     Complaint complaint;
     double limit = 0.0;
@@ -316,8 +316,8 @@ static bool read_choice(const Reading *reading, const SpecKey *key, const Node *
                             nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
 }
 
-static bool read_line(const Reading *reading, const SpecKey *key, const Node *value,
-                      const char *allowed, char *target)
+static bool spec_table_read_line(const Reading *reading, const SpecKey *key, const Node *value,
+                                 const char *allowed, char *target)
 {
     if (value->kind != NODE_SCALAR || strlen(value->text) >= SPEC_TEXT_SIZE) {
         return spec_read_refuse(reading, value, allowed, "%s is not one line of text", key->name);
@@ -335,7 +335,7 @@ static bool read_by_type(Reading *reading, const SpecKey *key, const Node *value
     int choice = 0;
     switch (key->type) {
     case SPEC_KEY_LINE:
-        return read_line(reading, key, value, allowed, target);
+        return spec_table_read_line(reading, key, value, allowed, target);
     case SPEC_KEY_FLAG:
         if (!read_choice(reading, key, value, allowed, &choice)) {
             return false;
@@ -347,7 +347,7 @@ static bool read_by_type(Reading *reading, const SpecKey *key, const Node *value
     case SPEC_KEY_CHOICE:
         return read_choice(reading, key, value, allowed, target);
     case SPEC_KEY_LIMIT:
-        return read_limit(reading, key, value, allowed, target);
+        return spec_table_read_limit(reading, key, value, allowed, target);
     case SPEC_KEY_VALUE:
     case SPEC_KEY_DIFFERENCE:
         // a difference is in no range of the key's
@@ -360,7 +360,7 @@ static bool read_by_type(Reading *reading, const SpecKey *key, const Node *value
     return false;
 }
 
-static bool read_value(Reading *reading, const SpecKey *key, const Node *value)
+static bool spec_table_read_value(Reading *reading, const SpecKey *key, const Node *value)
 {
     Text allowed;
     text_init(&allowed);
@@ -394,7 +394,7 @@ bool spec_keys_read(Reading *reading, SpecGroup group, const Node *map)
     }
     bool is_read = true;
     for (size_t i = 0; i < count && is_read; i++) {
-        is_read = values[i] == NULL || read_value(reading, keys[i], values[i]);
+        is_read = values[i] == NULL || spec_table_read_value(reading, keys[i], values[i]);
     }
     return is_read;
 }

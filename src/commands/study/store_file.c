@@ -48,7 +48,7 @@ static const unsigned char STORE_BESIDE_MAGIC[MAGIC_SIZE] = {0xd9, 0xd5, 0x05, 0
 // Those of a journal that is not in use.
 static const unsigned char NOTHING[MAGIC_SIZE] = {0};
 
-static bool refuse(const Store *store, const char *beside, const char *why, Err *err)
+static bool store_file_refuse(const Store *store, const char *beside, const char *why, Err *err)
 {
     return err_set(err, ERR_FILE,
                    "the store %s is not opened: the file %s next to it %s; move it away",
@@ -82,7 +82,7 @@ static bool check_journal(const Store *store, const char *path, Err *err)
     if (journal < 0) {
         // a journal may end while a store in use is read
         return errno == ENOENT ||
-               refuse(store, path, errno == ELOOP ? "is a link" : "cannot be read", err);
+               store_file_refuse(store, path, errno == ELOOP ? "is a link" : "cannot be read", err);
     }
     const char *fault = "is not a file of a single name";
     if (fstat(journal, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink <= 1) {
@@ -92,7 +92,7 @@ static bool check_journal(const Store *store, const char *path, Err *err)
     struct stat later;
     const bool is_wrong = fault != NULL && (fstat(journal, &later) != 0 || later.st_nlink != 0);
     close(journal);
-    return !is_wrong || refuse(store, path, fault, err);
+    return !is_wrong || store_file_refuse(store, path, fault, err);
 }
 
 // Refuses files that would make SQLite write or delete another file than the store and its journal.
@@ -103,8 +103,9 @@ static bool store_beside_check(const Store *store, const char *resolved, Err *er
     Text path;
     text_init(&path);
     text_append(&path, "%s-wal", resolved);
-    bool is_right = lstat(path.data, &status) != 0 ||
-                    refuse(store, path.data, "is a write-ahead log, which no store has", err);
+    bool is_right =
+        lstat(path.data, &status) != 0 ||
+        store_file_refuse(store, path.data, "is a write-ahead log, which no store has", err);
     text_finish(&path);
     text_init(&path);
     text_append(&path, "%s-journal", resolved);
@@ -407,7 +408,7 @@ static bool check_header(const Store *store, int file, bool is_empty_right, bool
 }
 
 // Opening a pipe would wait, and a folder gets a message of its own.
-static bool check_kind(const Store *store, Err *err)
+static bool store_file_check_kind(const Store *store, Err *err)
 {
     struct stat status;
     if (stat(store->path, &status) != 0 || S_ISREG(status.st_mode)) {
@@ -535,7 +536,7 @@ static bool claim(Store *store, bool is_made, Err *err)
 // version or damaged, and is emptied.
 static bool store_file_open(Store *store, bool is_fresh, Err *err)
 {
-    if (!check_kind(store, err)) {
+    if (!store_file_check_kind(store, err)) {
         return false;
     }
     store->lock = open(store->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -553,7 +554,7 @@ static bool store_file_open(Store *store, bool is_fresh, Err *err)
 
 bool store_file_view(Store *store, Err *err)
 {
-    if (!check_kind(store, err)) {
+    if (!store_file_check_kind(store, err)) {
         return false;
     }
     const int file = open(store->path, O_RDONLY | O_CLOEXEC);
@@ -632,7 +633,7 @@ static void destroy(Store *store)
 }
 
 // Creates the tables where there are none, and compares those that exist with what is expected.
-static bool settle(Store *store, const StoreHead *head, const char *source, Err *err)
+static bool store_file_settle(Store *store, const StoreHead *head, const char *source, Err *err)
 {
     bool is_there = false;
     if (!store_shape_is_there(store, &is_there, err) ||
@@ -648,7 +649,7 @@ static Store *store_open_open_to_work(const char *path, const StoreHead *head, b
 {
     assert(head->key_count <= STORE_KEY_MAX);
     Store *store = make_store(path);
-    if (store_file_open(store, is_fresh, err) && settle(store, head, source, err)) {
+    if (store_file_open(store, is_fresh, err) && store_file_settle(store, head, source, err)) {
         return store;
     }
     // a file that was not there before and did not become a store is deleted

@@ -34,12 +34,12 @@ struct Store {
     StoreKey keys[STORE_KEY_MAX]; // their words are owned
 };
 
-// store.c: opening
+// Opening (store_file.c)
 
 // Opens the store that others are merged into, as store_open; `source` is the first of them.
 Store *store_open_target(const char *path, const StoreHead *head, const char *source, Err *err);
 
-// store_file.c: the file
+// The file (store_file.c)
 
 // Sets the error of SQLite's last failure, in our own words for what a user can act on. `what` is
 // what was tried: "read" or "write". Always false.
@@ -68,11 +68,11 @@ bool store_prepare(Store *store, const char *sql, struct sqlite3_stmt **statemen
 // false already, which it is then; the statement is finished.
 bool store_step(Store *store, struct sqlite3_stmt **statement, bool *is_good, Err *err);
 
-// store_beside.c: what stands beside the file
+// What stands beside the file
 
-// store_copy.c: reading what an interrupted write has left
+// Reading what an interrupted write has left
 
-// store_shape.c: the tables
+// The tables (store_rows.c)
 
 // Whether there is anything in the schema of the file.
 bool store_shape_is_there(Store *store, bool *is_there, Err *err);
@@ -83,7 +83,7 @@ void store_shape_quote(Text *sql, const char *name);
 // The text of a value, cut to so many bytes, or a copy of it; empty for NULL.
 void store_take_words(struct sqlite3_stmt *row, int column, char *words, size_t size);
 
-// store_schema.c: whose rows they are
+// Whose rows they are
 
 // Makes the tables, or reads what they are.
 bool store_schema_make(Store *store, const StoreHead *head, Err *err);
@@ -98,7 +98,7 @@ bool store_schema_check(const Store *store, const StoreHead *head, const char *s
 
 void store_schema_finish(Store *store);
 
-// store_row.c: the rows
+// The rows
 
 // The statement that reads rows by rising number: parameter 1 is the number before the first, 2 the
 // most that are wanted (-1: all).
@@ -110,7 +110,7 @@ bool store_row_take(const Store *store, struct sqlite3_stmt *statement, Record *
 // Whether two rows are the same in all but their effort.
 bool store_row_is_same(const Layout *layout, const Record *a, const Record *b);
 
-// store_write.c: adding and deleting them
+// Adding and deleting them
 
 // Replaces the row of a run, in the transaction that store_commit ends.
 bool store_replace(Store *store, const Record *record, Err *err);

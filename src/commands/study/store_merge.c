@@ -26,7 +26,8 @@
 // Quantiles are values that occur, found by sorting in SQL: SQLite sorts in files where memory is
 // short.
 
-static bool count_row(const Layout *layout, const Record *record, void *context, Err *err)
+static bool store_merge_count_row(const Layout *layout, const Record *record, void *context,
+                                  Err *err)
 {
     (void)layout;
     (void)err;
@@ -40,7 +41,7 @@ static bool count_row(const Layout *layout, const Record *record, void *context,
 bool store_count(Store *store, StoreCount *count, Err *err)
 {
     *count = (StoreCount){.run_count = store->run_count};
-    store->is_verified = store_each(store, count_row, count, err);
+    store->is_verified = store_each(store, store_merge_count_row, count, err);
     return store->is_verified;
 }
 
@@ -131,7 +132,7 @@ static bool prepare_values(Store *store, const Column *column, bool is_count,
 }
 
 // The rank, from 1, of a share of `count` values.
-static uint64_t rank_of(double share, uint64_t count)
+static uint64_t store_merge_rank_of(double share, uint64_t count)
 {
     const double rank = ceil(share * (double)count);
     return rank < 1.0 ? 1 : (uint64_t)rank;
@@ -153,7 +154,8 @@ bool store_spread(Store *store, size_t column, StoreSpread *spread, Err *err)
     is_read = is_read && prepare_values(store, wanted, false, &row, err);
     size_t next = 0;
     for (uint64_t rank = 1; store_step(store, &row, &is_read, err); rank++) {
-        for (; next < SHARE_COUNT && rank_of(SHARES[next], spread->count) == rank; next++) {
+        for (; next < SHARE_COUNT && store_merge_rank_of(SHARES[next], spread->count) == rank;
+             next++) {
             *targets[next] = sqlite3_column_double(row, 0);
         }
     }
@@ -221,7 +223,7 @@ static void sink(Merge *merge, size_t i)
 }
 
 // Brings the next row of a source, if there is one.
-static bool advance(Cursor *cursor, bool *has_row, Err *err)
+static bool store_merge_advance(Cursor *cursor, bool *has_row, Err *err)
 {
     const uint64_t former = cursor->record.run;
     const int status = sqlite3_step(cursor->rows);
@@ -259,7 +261,7 @@ static bool open_source(Merge *merge, const char *path, Err *err)
     }
     sqlite3_bind_int64(cursor->rows, 1, -1);
     sqlite3_bind_int64(cursor->rows, 2, -1);
-    if (!advance(cursor, &has_row, err)) {
+    if (!store_merge_advance(cursor, &has_row, err)) {
         return false;
     }
     if (has_row) {
@@ -287,7 +289,7 @@ static bool open_sources(Merge *merge, const char *target, const char *const *so
 }
 
 // Opening it for writing undoes what a killed merge has left.
-static bool open_target(Merge *merge, const char *path, Err *err)
+static bool store_merge_open_target(Merge *merge, const char *path, Err *err)
 {
     const Store *first = merge->cursors[0].store;
     const StoreHead head = store_schema_head(first);
@@ -312,8 +314,9 @@ static bool lacks_errors(const Layout *layout, const Record *record)
 
 // Compares a row with the other one of its run. Both must be the same, or one cut off or without a
 // truth: then the better one stays.
-static bool compare(const Merge *merge, const Record *record, const char *path, const Record *other,
-                    const char *other_path, bool *is_better, Err *err)
+static bool store_merge_compare(const Merge *merge, const Record *record, const char *path,
+                                const Record *other, const char *other_path, bool *is_better,
+                                Err *err)
 {
     const Layout *layout = merge->target->layout;
     *is_better = is_cut_off(other) && !is_cut_off(record);
@@ -347,18 +350,20 @@ static bool look_up(Merge *merge, const Record *record, const char *path, bool *
     sqlite3_bind_int64(target->rows, 2, 1);
     const bool is_read =
         sqlite3_step(target->rows) == SQLITE_ROW || store_fail(target, "read", err);
-    const bool is_same = is_read && store_row_take(target, target->rows, &there, err) &&
-                         compare(merge, record, path, &there, target->path, &is_better, err);
+    const bool is_same =
+        is_read && store_row_take(target, target->rows, &there, err) &&
+        store_merge_compare(merge, record, path, &there, target->path, &is_better, err);
     sqlite3_reset(target->rows);
     return is_same && (!is_better || store_replace(target, record, err));
 }
 
-static bool take_row(Merge *merge, const Record *record, const char *path, Err *err)
+static bool store_merge_take_row(Merge *merge, const Record *record, const char *path, Err *err)
 {
     bool is_there = false;
     if (merge->last_path != NULL && merge->last.run == record->run) {
         bool is_better = false;
-        if (!compare(merge, record, path, &merge->last, merge->last_path, &is_better, err)) {
+        if (!store_merge_compare(merge, record, path, &merge->last, merge->last_path, &is_better,
+                                 err)) {
             return false;
         }
         if (!is_better) {
@@ -377,13 +382,13 @@ static bool take_row(Merge *merge, const Record *record, const char *path, Err *
     return is_there || store_add(merge->target, record, err);
 }
 
-static bool take_all(Merge *merge, Err *err)
+static bool store_merge_take_all(Merge *merge, Err *err)
 {
     while (merge->waiting > 0) {
         Cursor *first = merge->heap[0];
         bool has_row;
-        if (!take_row(merge, &first->record, first->store->path, err) ||
-            !advance(first, &has_row, err)) {
+        if (!store_merge_take_row(merge, &first->record, first->store->path, err) ||
+            !store_merge_advance(first, &has_row, err)) {
             return false;
         }
         if (!has_row) {
@@ -401,7 +406,7 @@ bool store_merge(const char *target, const char *const *sources, size_t source_c
     bool is_done = open_sources(&merge, target, sources, source_count, err);
     // a store merged only with itself stays as it is
     if (is_done && merge.count > 0) {
-        is_done = open_target(&merge, target, err) && take_all(&merge, err);
+        is_done = store_merge_open_target(&merge, target, err) && store_merge_take_all(&merge, err);
     }
     if (merge.target != NULL && !is_done) {
         sqlite3_exec(merge.target->base, "ROLLBACK", NULL, NULL, NULL);

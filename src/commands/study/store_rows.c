@@ -97,7 +97,7 @@ static char *store_copy_column(sqlite3_stmt *statement, int column)
     return copy;
 }
 
-static bool is_word(sqlite3_stmt *statement, int column, const char *word)
+static bool store_rows_is_word(sqlite3_stmt *statement, int column, const char *word)
 {
     const char *words = (const char *)sqlite3_column_text(statement, column);
     return word == NULL ? words == NULL : words != NULL && strcmp(words, word) == 0;
@@ -108,9 +108,10 @@ static size_t find_object(sqlite3_stmt *statement)
 {
     size_t i = 0;
     while (i < OBJECT_COUNT &&
-           !(is_word(statement, 0, OBJECTS[i].type) && is_word(statement, 1, OBJECTS[i].name) &&
-             is_word(statement, 2, OBJECTS[i].table) &&
-             (OBJECTS[i].name == RUN || is_word(statement, 3, OBJECTS[i].sql)))) {
+           !(store_rows_is_word(statement, 0, OBJECTS[i].type) &&
+             store_rows_is_word(statement, 1, OBJECTS[i].name) &&
+             store_rows_is_word(statement, 2, OBJECTS[i].table) &&
+             (OBJECTS[i].name == RUN || store_rows_is_word(statement, 3, OBJECTS[i].sql)))) {
         i++;
     }
     return i;
@@ -126,7 +127,7 @@ static bool refuse_object(const Store *store, sqlite3_stmt *statement, Err *err)
         {"view", "a view"}, {"trigger", "a trigger"}, {"index", "an index"}, {"table", "a table"}};
     const char *found = "something";
     for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
-        found = is_word(statement, 0, KINDS[i].type) ? KINDS[i].words : found;
+        found = store_rows_is_word(statement, 0, KINDS[i].type) ? KINDS[i].words : found;
     }
     return err_set(err, ERR_FILE,
                    "%s is not the store of a study: it contains %s that no store has", store->path,
@@ -160,13 +161,14 @@ static bool read_objects(Store *store, char **run, Err *err)
 }
 
 // Adds a column where there is room; one that is left out is missing in the words made of them.
-static void add_column(Column *columns, size_t *count, size_t most, sqlite3_stmt *row)
+static void store_rows_add_column(Column *columns, size_t *count, size_t most, sqlite3_stmt *row)
 {
     if (*count < most) {
         Column *column = &columns[(*count)++];
         store_take_words(row, 0, column->name, sizeof column->name);
         for (size_t kind = 0; kind < TYPE_COUNT; kind++) {
-            column->kind = is_word(row, 1, TYPES[kind]) ? (ColumnKind)kind : column->kind;
+            column->kind =
+                store_rows_is_word(row, 1, TYPES[kind]) ? (ColumnKind)kind : column->kind;
         }
     }
 }
@@ -179,15 +181,16 @@ static bool read_columns(Store *store, Layout *layout, Err *err)
         store, "SELECT name, type FROM pragma_table_info('run') ORDER BY cid", &row, err);
     bool is_result = false;
     while (store_step(store, &row, &is_read, err)) {
-        if (is_word(row, 0, "outcome")) {
+        if (store_rows_is_word(row, 0, "outcome")) {
             is_result = true;
-        } else if (is_word(row, 0, RUN) || is_word(row, 0, "reason") || is_word(row, 0, "hash") ||
-                   is_word(row, 0, "checksum")) {
+        } else if (store_rows_is_word(row, 0, RUN) || store_rows_is_word(row, 0, "reason") ||
+                   store_rows_is_word(row, 0, "hash") || store_rows_is_word(row, 0, "checksum")) {
             continue;
         } else if (is_result) {
-            add_column(layout->results, &layout->result_count, RECORD_RESULT_MAX, row);
+            store_rows_add_column(layout->results, &layout->result_count, RECORD_RESULT_MAX, row);
         } else {
-            add_column(layout->settings, &layout->setting_count, RECORD_SETTING_MAX, row);
+            store_rows_add_column(layout->settings, &layout->setting_count, RECORD_SETTING_MAX,
+                                  row);
         }
     }
     return is_read;
@@ -265,7 +268,7 @@ static const char *column_name(const Layout *layout, size_t number)
 }
 
 // SQL does not tell capitals from small letters in them.
-static bool check_names(const Layout *layout, Err *err)
+static bool store_rows_check_names(const Layout *layout, Err *err)
 {
     const char *name;
     for (size_t i = 0; (name = column_name(layout, i)) != NULL; i++) {
@@ -280,8 +283,8 @@ static bool check_names(const Layout *layout, Err *err)
     return true;
 }
 
-static bool add_value(Store *store, sqlite3_stmt *statement, const char *name, const char *value,
-                      const char *words, Err *err)
+static bool store_rows_add_value(Store *store, sqlite3_stmt *statement, const char *name,
+                                 const char *value, const char *words, Err *err)
 {
     sqlite3_bind_text(statement, 1, name, -1, SQLITE_STATIC);
     sqlite3_bind_text(statement, 2, value, -1, SQLITE_STATIC);
@@ -300,21 +303,21 @@ static bool add_values(Store *store, const StoreHead *head, Err *err)
     bool is_added = true;
     for (size_t i = 0; i < head->key_count && is_added; i++) {
         const StoreKey *key = &head->keys[i];
-        is_added = add_value(store, statement, key->name, key->value, key->words, err);
+        is_added = store_rows_add_value(store, statement, key->name, key->value, key->words, err);
     }
     char runs[STORE_WORDS_SIZE];
     char checksum[STORE_WORDS_SIZE];
     snprintf(runs, sizeof runs, COUNT_FORMAT, head->run_count);
     store_schema_make_checksum(head, checksum);
-    is_added = is_added && add_value(store, statement, RUNS, runs, NULL, err) &&
-               add_value(store, statement, CHECKSUM, checksum, NULL, err);
+    is_added = is_added && store_rows_add_value(store, statement, RUNS, runs, NULL, err) &&
+               store_rows_add_value(store, statement, CHECKSUM, checksum, NULL, err);
     sqlite3_finalize(statement);
     return is_added;
 }
 
 bool store_schema_make(Store *store, const StoreHead *head, Err *err)
 {
-    if (!check_names(head->layout, err)) {
+    if (!store_rows_check_names(head->layout, err)) {
         return false;
     }
     Text sql;
@@ -720,7 +723,7 @@ static bool prepare_adding(Store *store, Err *err)
     return is_ready;
 }
 
-static bool begin(Store *store, Err *err)
+static bool store_rows_begin(Store *store, Err *err)
 {
     store->is_changing = store->is_changing || store_run_sql(store, "BEGIN IMMEDIATE", err);
     return store->is_changing;
@@ -728,7 +731,7 @@ static bool begin(Store *store, Err *err)
 
 bool store_add(Store *store, const Record *record, Err *err)
 {
-    if (!prepare_adding(store, err) || !begin(store, err)) {
+    if (!prepare_adding(store, err) || !store_rows_begin(store, err)) {
         return false;
     }
     store_row_bind(store->layout, store->add_run, record);
@@ -805,7 +808,7 @@ static bool forget_damaged(Store *store, uint64_t *forgotten, Err *err)
 
 bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
 {
-    if (!store_commit(store, err) || !begin(store, err)) {
+    if (!store_commit(store, err) || !store_rows_begin(store, err)) {
         return false;
     }
     // there are errors only where the study has a truth; a run without them has none
@@ -827,6 +830,6 @@ bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err)
 
 bool store_replace(Store *store, const Record *record, Err *err)
 {
-    return begin(store, err) && delete_run(store, record->run, err) &&
+    return store_rows_begin(store, err) && delete_run(store, record->run, err) &&
            store_add(store, record, err);
 }

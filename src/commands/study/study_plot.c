@@ -28,13 +28,14 @@ typedef struct Gathering {
     bool has_by;
 } Gathering;
 
-static double number_of(const Layout *layout, const Record *record, size_t column)
+static double study_plot_number_of(const Layout *layout, const Record *record, size_t column)
 {
     return column < layout->setting_count ? record->settings[column].number
                                           : record->results[column - layout->setting_count];
 }
 
-static size_t group_of(const StudyPoints *points, const Layout *layout, const Record *record)
+static size_t study_plot_group_of(const StudyPoints *points, const Layout *layout,
+                                  const Record *record)
 {
     const Cell *value = &record->settings[points->by];
     const bool is_word = layout->settings[points->by].kind == COLUMN_WORD;
@@ -47,15 +48,15 @@ static size_t group_of(const StudyPoints *points, const Layout *layout, const Re
     return points->group_count;
 }
 
-static bool take_row(const Layout *layout, const Record *record, void *context, Err *err)
+static bool study_plot_take_row(const Layout *layout, const Record *record, void *context, Err *err)
 {
     (void)err;
     Gathering *gathering = context;
     StudyPoints *points = gathering->points;
     const StudyPoint point = {
-        .x = number_of(layout, record, gathering->x),
-        .y = gathering->has_y ? number_of(layout, record, gathering->y) : 0.0,
-        .group = gathering->has_by ? group_of(points, layout, record) : 0,
+        .x = study_plot_number_of(layout, record, gathering->x),
+        .y = gathering->has_y ? study_plot_number_of(layout, record, gathering->y) : 0.0,
+        .group = gathering->has_by ? study_plot_group_of(points, layout, record) : 0,
     };
     const bool is_point = record->outcome == RUN_OUTCOME_OK && isfinite(point.x) &&
                           isfinite(point.y) && point.group < points->group_count;
@@ -99,7 +100,7 @@ static size_t count_x(const StudyPoints *points)
     return count;
 }
 
-static void put_in_order(StudyPoints *points)
+static void study_plot_put_in_order(StudyPoints *points)
 {
     qsort(points->points, points->count, sizeof *points->points, compare_points);
     size_t i = 0;
@@ -119,8 +120,8 @@ typedef enum Wanted {
 } Wanted;
 
 // Finds a column by name. Fails with ERR_USAGE, naming the one that may have been meant.
-static bool find_column(const Layout *layout, const char *name, Wanted wanted, size_t *column,
-                        Err *err)
+static bool study_plot_find_column(const Layout *layout, const char *name, Wanted wanted,
+                                   size_t *column, Err *err)
 {
     const char *names[RECORD_SETTING_MAX + RECORD_RESULT_MAX];
     const size_t all = layout->setting_count + layout->result_count;
@@ -140,13 +141,13 @@ static bool find_column(const Layout *layout, const char *name, Wanted wanted, s
            err_set(err, ERR_USAGE, "the column %s holds words, and numbers are wanted", name);
 }
 
-static bool find_groups(Store *store, const char *by, StudyPoints *points, Err *err)
+static bool study_plot_find_groups(Store *store, const char *by, StudyPoints *points, Err *err)
 {
     points->group_count = 1;
     if (by == NULL) {
         return true;
     }
-    return find_column(store_layout(store), by, SETTING, &points->by, err) &&
+    return study_plot_find_column(store_layout(store), by, SETTING, &points->by, err) &&
            store_values(store, points->by, STUDY_GROUP_MAX, points->groups, &points->group_count,
                         err) &&
            (points->group_count <= STUDY_GROUP_MAX ||
@@ -160,10 +161,10 @@ bool study_points_read(Store *store, const char *x, const char *y, const char *b
     const Layout *layout = store_layout(store);
     *points = (StudyPoints){0};
     Gathering gathering = {.points = points, .has_y = y != NULL, .has_by = by != NULL};
-    bool is_read = find_column(layout, x, NUMBER, &gathering.x, err) &&
-                   (y == NULL || find_column(layout, y, NUMBER, &gathering.y, err)) &&
-                   find_groups(store, by, points, err) &&
-                   store_each(store, take_row, &gathering, err);
+    bool is_read = study_plot_find_column(layout, x, NUMBER, &gathering.x, err) &&
+                   (y == NULL || study_plot_find_column(layout, y, NUMBER, &gathering.y, err)) &&
+                   study_plot_find_groups(store, by, points, err) &&
+                   store_each(store, study_plot_take_row, &gathering, err);
     if (is_read && points->count == 0) {
         is_read = err_set(err, ERR_USAGE, "no run of the study has a number in %s%s%s", x,
                           y == NULL ? "" : " and in ", y == NULL ? "" : y);
@@ -172,7 +173,7 @@ bool study_points_read(Store *store, const char *x, const char *y, const char *b
         study_points_finish(points);
         return false;
     }
-    put_in_order(points);
+    study_plot_put_in_order(points);
     return true;
 }
 
@@ -221,7 +222,7 @@ typedef struct Bars {
     double shares[STUDY_GROUP_MAX][BAR_MOST]; // percent of the group
 } Bars;
 
-static double scaled(const Bars *bars, double value)
+static double study_plot_scaled(const Bars *bars, double value)
 {
     return bars->is_log ? log10(value) : value;
 }
@@ -238,8 +239,8 @@ static void choose_bars(const StudyPoints *points, const Column *column, const A
     bars->is_log = axis->scale == AXIS_LOG;
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < points->count; i++) {
-        low = fmin(low, scaled(bars, points->points[i].x));
-        high = fmax(high, scaled(bars, points->points[i].x));
+        low = fmin(low, study_plot_scaled(bars, points->points[i].x));
+        high = fmax(high, study_plot_scaled(bars, points->points[i].x));
     }
     const bool is_whole =
         column->kind == COLUMN_WHOLE && !bars->is_log && high - low < BAR_MOST - 1;
@@ -263,7 +264,8 @@ static void fill_bars(const StudyPoints *points, Bars *bars)
     for (size_t group = 0; group < points->group_count; group++) {
         const size_t runs = points->first[group + 1] - points->first[group];
         for (size_t i = points->first[group]; i < points->first[group + 1]; i++) {
-            const double place = (scaled(bars, points->points[i].x) - bars->low) / bars->width;
+            const double place =
+                (study_plot_scaled(bars, points->points[i].x) - bars->low) / bars->width;
             const size_t bar =
                 place < (double)bars->count ? (size_t)fmax(place, 0.0) : bars->count - 1;
             bars->shares[group][bar] += UNITS_PERCENT / (double)runs;
@@ -352,7 +354,7 @@ enum {
     MANY_DOTS = 2000, // dots from which on they are small
 };
 
-static PlotStyle style_of(size_t group)
+static PlotStyle study_plot_style_of(size_t group)
 {
     PlotStyle style = plot_style(1, group);
     style.width = 1.8;
@@ -361,7 +363,7 @@ static PlotStyle style_of(size_t group)
     return style;
 }
 
-static void choose_axis(const char *title, double low, double high, Axis *axis)
+static void study_plot_choose_axis(const char *title, double low, double high, Axis *axis)
 {
     *axis = (Axis){.title = title, .low = low, .high = high};
     if (low > 0.0 && high > LOG_SPAN * low) {
@@ -372,7 +374,8 @@ static void choose_axis(const char *title, double low, double high, Axis *axis)
     }
 }
 
-static void choose_axes(const StudyPoints *points, const StudyPlot *plot, PlotPanel *panel)
+static void study_plot_choose_axes(const StudyPoints *points, const StudyPlot *plot,
+                                   PlotPanel *panel)
 {
     double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
     for (size_t i = 0; i < points->count; i++) {
@@ -381,9 +384,9 @@ static void choose_axes(const StudyPoints *points, const StudyPlot *plot, PlotPa
         low_y = fmin(low_y, points->points[i].y);
         high_y = fmax(high_y, points->points[i].y);
     }
-    choose_axis(plot->x, low_x, high_x, &panel->x);
+    study_plot_choose_axis(plot->x, low_x, high_x, &panel->x);
     if (plot->y != NULL) {
-        choose_axis(plot->y, low_y, high_y, &panel->y);
+        study_plot_choose_axis(plot->y, low_y, high_y, &panel->y);
     }
 }
 
@@ -394,11 +397,12 @@ static double quantile(const StudyPoints *points, size_t first, size_t end, doub
     return points->points[first + (size_t)rank - 1].y;
 }
 
-static void draw_band(const PlotPanel *panel, const StudyPoints *points, size_t group)
+static void study_plot_draw_band(const PlotPanel *panel, const StudyPoints *points, size_t group)
 {
     Text back;
     text_init(&back);
-    text_append(panel->svg, "<path fill=\"%s\" fill-opacity=\"0.16\" d=\"", style_of(group).colour);
+    text_append(panel->svg, "<path fill=\"%s\" fill-opacity=\"0.16\" d=\"",
+                study_plot_style_of(group).colour);
     size_t drawn = 0;
     for (size_t i = points->first[group], end; i < points->first[group + 1]; i = end) {
         end = study_points_pile(points, i);
@@ -420,8 +424,8 @@ static void draw_band(const PlotPanel *panel, const StudyPoints *points, size_t 
     text_finish(&back);
 }
 
-static void draw_dot(const PlotPanel *panel, double x, double y, double radius, double opacity,
-                     const char *colour)
+static void study_plot_draw_dot(const PlotPanel *panel, double x, double y, double radius,
+                                double opacity, const char *colour)
 {
     text_append(panel->svg,
                 "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\" fill-opacity=\"%g\"/>\n", x,
@@ -438,14 +442,15 @@ static void draw_line(const PlotPanel *panel, const StudyPoints *points, size_t 
         x[count] = points->points[i].x;
         y[count++] = quantile(points, i, end, 0.5);
     }
-    plot_line(panel, count, x, y, style_of(group));
+    plot_line(panel, count, x, y, study_plot_style_of(group));
     for (size_t i = 0; i < count; i++) {
-        draw_dot(panel, plot_x(panel, x[i]), plot_y(panel, y[i]), 3.0, 1.0, style_of(group).colour);
+        study_plot_draw_dot(panel, plot_x(panel, x[i]), plot_y(panel, y[i]), 3.0, 1.0,
+                            study_plot_style_of(group).colour);
     }
 }
 
 // What lies on a dot already cannot be seen, so that a picture of a million runs stays a picture.
-static void draw_dots(const PlotPanel *panel, const StudyPoints *points, size_t group)
+static void study_plot_draw_dots(const PlotPanel *panel, const StudyPoints *points, size_t group)
 {
     const size_t columns = (size_t)(panel->width / DOT_CELL) + 1;
     const size_t rows = (size_t)(panel->height / DOT_CELL) + 1;
@@ -460,14 +465,15 @@ static void draw_dots(const PlotPanel *panel, const StudyPoints *points, size_t 
         char *cell = column < columns && row < rows ? &is_taken[row * columns + column] : NULL;
         if (cell != NULL && !*cell) {
             *cell = 1;
-            draw_dot(panel, x, y, is_many ? 1.4 : 2.6, is_many ? 0.5 : 0.7, style_of(group).colour);
+            study_plot_draw_dot(panel, x, y, is_many ? 1.4 : 2.6, is_many ? 0.5 : 0.7,
+                                study_plot_style_of(group).colour);
         }
     }
     free(is_taken);
 }
 
-static void draw_legend(const PlotPanel *panel, const StudyPoints *points, const StudyPlot *plot,
-                        const Layout *layout)
+static void study_plot_draw_legend(const PlotPanel *panel, const StudyPoints *points,
+                                   const StudyPlot *plot, const Layout *layout)
 {
     double y = PANEL_TOP + 6.0;
     if (plot->by == NULL) {
@@ -478,8 +484,9 @@ static void draw_legend(const PlotPanel *panel, const StudyPoints *points, const
         char words[RECORD_WORD_SIZE];
         y += group == 0 ? 26.0 : LEGEND_ROW;
         study_points_group_name(points, layout, group, words);
-        plot_sample(panel->svg, LEGEND_LEFT, y - 4.0, style_of(group));
-        draw_dot(panel, LEGEND_LEFT + 15.0, y - 4.0, 3.4, 1.0, style_of(group).colour);
+        plot_sample(panel->svg, LEGEND_LEFT, y - 4.0, study_plot_style_of(group));
+        study_plot_draw_dot(panel, LEGEND_LEFT + 15.0, y - 4.0, 3.4, 1.0,
+                            study_plot_style_of(group).colour);
         plot_text(panel->svg, LEGEND_LEFT + 38.0, y, "start", "", words);
         snprintf(words, sizeof words, "%zu runs", points->first[group + 1] - points->first[group]);
         plot_text(panel->svg, LEGEND_LEFT + 38.0, y + 15.0, "start", "note", words);
@@ -497,7 +504,8 @@ static bool has_band(const StudyPoints *points)
     return false;
 }
 
-static void draw_head(const StudyPoints *points, const StudyPlot *plot, const char *what, Text *svg)
+static void study_plot_draw_head(const StudyPoints *points, const StudyPlot *plot, const char *what,
+                                 Text *svg)
 {
     char words[3 * RECORD_NAME_SIZE];
     if (plot->y == NULL) {
@@ -519,13 +527,13 @@ static void draw_points(const PlotPanel *panel, const StudyPoints *points, bool 
     plot_fine_grid(panel);
     plot_enter(panel);
     for (size_t group = 0; group < points->group_count && is_line; group++) {
-        draw_band(panel, points, group);
+        study_plot_draw_band(panel, points, group);
     }
     for (size_t group = 0; group < points->group_count; group++) {
         if (is_line) {
             draw_line(panel, points, group);
         } else {
-            draw_dots(panel, points, group);
+            study_plot_draw_dots(panel, points, group);
         }
     }
     plot_leave(panel);
@@ -544,23 +552,23 @@ bool study_plot_write(Store *store, const StudyPlot *plot, Text *svg, Err *err)
                              : has_band(&points) ? ": median, and the band that nine of ten lie in"
                                                  : ": median";
     plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, plot->title != NULL ? plot->title : plot->x);
-    draw_head(&points, plot, what, svg);
+    study_plot_draw_head(&points, plot, what, svg);
     PlotPanel panel = {.svg = svg,
                        .title = "",
                        .left = PANEL_LEFT,
                        .top = PANEL_TOP,
                        .width = plot->by == NULL ? PANEL_WIDTH_ALONE : PANEL_WIDTH,
                        .height = PANEL_HEIGHT};
-    choose_axes(&points, plot, &panel);
+    study_plot_choose_axes(&points, plot, &panel);
     if (plot->y == NULL) {
         study_histogram_draw(
             &points,
             store_column_at(store_layout(store), store_column(store_layout(store), plot->x)),
-            &panel, style_of);
+            &panel, study_plot_style_of);
     } else {
         draw_points(&panel, &points, is_line);
     }
-    draw_legend(&panel, &points, plot, store_layout(store));
+    study_plot_draw_legend(&panel, &points, plot, store_layout(store));
     plot_end(svg);
     study_points_finish(&points);
     return true;

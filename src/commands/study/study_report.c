@@ -89,7 +89,8 @@ static void add_reason(Progress *progress, const StoreReason *reason)
     }
 }
 
-static bool add_part(Progress *progress, const StudyPart *part, StoreCount *count, Err *err)
+static bool study_report_add_part(Progress *progress, const StudyPart *part, StoreCount *count,
+                                  Err *err)
 {
     StoreReason reasons[REASONS_ASKED];
     size_t reason_count = 0;
@@ -148,7 +149,7 @@ static double percent(uint64_t part, uint64_t whole)
     return whole == 0 ? 0.0 : 100.0 * (double)part / (double)whole;
 }
 
-static uint64_t count_failed(const StoreCount *count)
+static uint64_t study_report_count_failed(const StoreCount *count)
 {
     return count->rows - count->outcomes[RUN_OUTCOME_OK];
 }
@@ -159,11 +160,11 @@ static void part_row(Table *table, const StudyPart *part, const StoreCount *coun
     table_cell(table, "%" PRIu64, part->wanted);
     table_cell(table, "%" PRIu64, count->rows);
     table_cell(table, "%.1f", percent(count->rows, part->wanted));
-    table_cell(table, "%" PRIu64, count_failed(count));
+    table_cell(table, "%" PRIu64, study_report_count_failed(count));
     table_cell(table, part->store == NULL ? "not begun" : "");
 }
 
-static void write_outcomes(const Progress *progress, const Style *style, Text *text)
+static void study_report_write_outcomes(const Progress *progress, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
         {"outcome", "", TABLE_LEFT}, {"runs", "", TABLE_RIGHT}, {"share", "%", TABLE_RIGHT}};
@@ -179,7 +180,7 @@ static void write_outcomes(const Progress *progress, const Style *style, Text *t
     section_end(table, text);
 }
 
-static void write_reasons(const Progress *progress, const Style *style, Text *text)
+static void study_report_write_reasons(const Progress *progress, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {{"runs", "", TABLE_RIGHT},
                                         {"outcome", "", TABLE_LEFT},
@@ -201,7 +202,7 @@ static void write_reasons(const Progress *progress, const Style *style, Text *te
         table_cell(table, "%" PRIu64, reason->example);
     }
     section_end(table, text);
-    const uint64_t others = count_failed(&progress->count) - told;
+    const uint64_t others = study_report_count_failed(&progress->count) - told;
     if (others > 0) {
         text_append(text, "  and %" PRIu64 " more for other reasons\n", others);
     }
@@ -240,7 +241,7 @@ bool study_text_status(const StudyPart *parts, size_t part_count, const Style *s
     bool is_read = true;
     for (size_t i = 0; i < part_count && is_read; i++) {
         StoreCount count;
-        is_read = add_part(&progress, &parts[i], &count, err);
+        is_read = study_report_add_part(&progress, &parts[i], &count, err);
         part_row(table, &parts[i], &count);
     }
     section_end(table, &stores);
@@ -254,16 +255,16 @@ bool study_text_status(const StudyPart *parts, size_t part_count, const Style *s
                     percent(progress.count.rows, progress.wanted), style->end);
         text_append(text, "%s", part_count > 1 ? stores.data : "");
         if (progress.count.rows > 0) {
-            write_outcomes(&progress, style, text);
+            study_report_write_outcomes(&progress, style, text);
         }
-        write_reasons(&progress, style, text);
+        study_report_write_reasons(&progress, style, text);
         write_times(&progress, text);
     }
     text_finish(&stores);
     return is_read;
 }
 
-static bool spread_row(Store *store, Table *table, size_t result, Err *err)
+static bool study_report_spread_row(Store *store, Table *table, size_t result, Err *err)
 {
     const Layout *layout = store_layout(store);
     StoreSpread spread;
@@ -291,7 +292,7 @@ bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
                                  HEADS, style, &section);
     bool is_read = true;
     for (size_t i = 0; i < store_layout(store)->result_count && is_read; i++) {
-        is_read = spread_row(store, table, i, err);
+        is_read = study_report_spread_row(store, table, i, err);
     }
     section_end(table, &section);
     text_append(text, "%s", is_read ? section.data : "");
@@ -317,7 +318,7 @@ static void write_hash(uint64_t hash, char words[HASH_SIZE])
     }
 }
 
-static void write_cell(FILE *stream, const RecordField *field, const Record *record)
+static void study_report_write_cell(FILE *stream, const RecordField *field, const Record *record)
 {
     char hash[HASH_SIZE];
     switch (field->kind) {
@@ -343,7 +344,7 @@ static void write_cell(FILE *stream, const RecordField *field, const Record *rec
 }
 
 // The names of the columns where there is no record.
-static void write_line(FILE *stream, const Layout *layout, const Record *record)
+static void study_report_write_line(FILE *stream, const Layout *layout, const Record *record)
 {
     RecordField field;
     for (size_t i = 0; record_field(layout, i, &field); i++) {
@@ -353,7 +354,7 @@ static void write_line(FILE *stream, const Layout *layout, const Record *record)
         if (record == NULL) {
             csv_write_word(stream, field.name);
         } else {
-            write_cell(stream, &field, record);
+            study_report_write_cell(stream, &field, record);
         }
     }
     fputc('\n', stream);
@@ -361,7 +362,7 @@ static void write_line(FILE *stream, const Layout *layout, const Record *record)
 
 static bool take_csv(const Layout *layout, const Record *record, void *file, Err *err)
 {
-    write_line(((const WholeFile *)file)->stream, layout, record);
+    study_report_write_line(((const WholeFile *)file)->stream, layout, record);
     return file_check(file, err);
 }
 
@@ -410,14 +411,15 @@ static bool take_jsonl(const Layout *layout, const Record *record, void *file, E
     return file_check(file, err);
 }
 
-static bool write_rows(Store *store, FileKind kind, const char *path, StoreTaker take, Err *err)
+static bool study_report_write_rows(Store *store, FileKind kind, const char *path, StoreTaker take,
+                                    Err *err)
 {
     WholeFile file;
     if (!file_begin(&file, kind, path, err)) {
         return false;
     }
     if (kind == FILE_TABLE) {
-        write_line(file.stream, store_layout(store), NULL);
+        study_report_write_line(file.stream, store_layout(store), NULL);
     }
     if (!store_each(store, take, &file, err)) {
         file_abandon(&file);
@@ -428,10 +430,10 @@ static bool write_rows(Store *store, FileKind kind, const char *path, StoreTaker
 
 bool study_rows_write_csv(Store *store, const char *path, Err *err)
 {
-    return write_rows(store, FILE_TABLE, path, take_csv, err);
+    return study_report_write_rows(store, FILE_TABLE, path, take_csv, err);
 }
 
 bool study_rows_write_jsonl(Store *store, const char *path, Err *err)
 {
-    return write_rows(store, FILE_ROWS, path, take_jsonl, err);
+    return study_report_write_rows(store, FILE_ROWS, path, take_jsonl, err);
 }

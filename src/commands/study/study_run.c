@@ -40,7 +40,7 @@ static void show_progress(const SweepState *state, void *line)
     text_finish(&words);
 }
 
-static bool should_stop(void *line)
+static bool study_run_should_stop(void *line)
 {
     (void)line;
     return interrupt_number() != 0;
@@ -174,7 +174,7 @@ static bool sweep(const StudyOptions *options, const Spec *spec, const Layout *l
         .jobs = options->common.jobs,
         .store = open_store(options, spec, layout, err),
         .report = show_progress,
-        .should_stop = should_stop,
+        .should_stop = study_run_should_stop,
         .context = &line,
     };
     if (order.store == NULL) {
@@ -195,7 +195,8 @@ static double cpu_time(int who)
            1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
-static bool make_runs(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err)
+static bool study_run_make_runs(const StudyOptions *options, const Spec *spec, const Layout *layout,
+                                Err *err)
 {
     StudyReport report = {.spec = spec,
                           .store = options->store,
@@ -262,7 +263,7 @@ static void say_unused_key(const char *line)
 
 // Says which keys of the case and the study change none of the runs, of which so many are looked
 // at, evenly over all.
-static void say_unused(const Spec *spec)
+static void study_run_say_unused(const Spec *spec)
 {
     const uint64_t count = design_run_count(spec);
     const uint64_t looks = count < UNUSED_LOOKS ? count : UNUSED_LOOKS;
@@ -306,11 +307,11 @@ bool study_run(void *target, Err *err)
     Layout *layout = calloc(1, sizeof *layout);
     assert(layout != NULL);
     if (spec != NULL && !options->common.is_quiet) {
-        say_unused(spec);
+        study_run_say_unused(spec);
     }
     const bool is_done = spec != NULL && find_layout(spec, layout, err) &&
                          (options->is_dry ? study_run_dry(options, spec, layout, err)
-                                          : make_runs(options, spec, layout, err));
+                                          : study_run_make_runs(options, spec, layout, err));
     spec_close(spec);
     free(layout);
     return is_done;

@@ -36,7 +36,7 @@
 enum { NAME_SIZE = 128 };
 
 // A name for what Slurm reads by rules of its own, where % and quotes mean something.
-static void find_name(const char *stem, char name[NAME_SIZE])
+static void study_slurm_find_name(const char *stem, char name[NAME_SIZE])
 {
     static const char PLAIN[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
     text_copy(name, NAME_SIZE, stem);
@@ -144,7 +144,7 @@ static bool append_value(const SlurmJob *job, const char *word, size_t length, T
         }
     }
     if (strncmp(word, "name@", length + 1) == 0) {
-        find_name(job->stem, name);
+        study_slurm_find_name(job->stem, name);
         text_append(text, "%s", name);
         return true;
     }
@@ -211,7 +211,7 @@ static const OptionRow OPTIONS[] = {
      .letter = 'q'},
 };
 
-static bool check(void *target, Err *err)
+static bool study_slurm_check(void *target, Err *err)
 {
     const SlurmOptions *options = target;
     if (options->path == NULL) {
@@ -367,7 +367,7 @@ static bool make_scripts(void *target, Err *err)
     return true;
 }
 
-static bool run(int argc, char **argv, Err *err)
+static bool study_slurm_run(int argc, char **argv, Err *err)
 {
     static const Arguments ARGUMENTS = {
         .program = "jointplay study slurm",
@@ -378,7 +378,7 @@ static bool run(int argc, char **argv, Err *err)
                "resumes where it was.",
         .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
         OPTION_ROWS(OPTIONS),
-        .check = check,
+        .check = study_slurm_check,
     };
     SlurmOptions options = {.job = {.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL}};
     return arguments_run(&ARGUMENTS, argc, argv, &options, make_scripts, err);
@@ -387,5 +387,5 @@ static bool run(int argc, char **argv, Err *err)
 const Command study_command_slurm = {
     .name = "slurm",
     .summary = "writes the scripts that make a study on a cluster",
-    .run = run,
+    .run = study_slurm_run,
 };

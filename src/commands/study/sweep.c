@@ -96,8 +96,8 @@ static void forget_results(Record *record)
     }
 }
 
-static void measure(const SweepRun *task, const Scenario *scenario, BackendKind backend,
-                    Record *record)
+static void sweep_measure(const SweepRun *task, const Scenario *scenario, BackendKind backend,
+                          Record *record)
 {
     Trajectory *trajectory =
         backend_run(scenario, backend, task->truth, (ChosenWatch){.begin = NULL}, NULL);
@@ -117,7 +117,7 @@ static void measure(const SweepRun *task, const Scenario *scenario, BackendKind 
     trajectory_destroy(trajectory);
 }
 
-static void run(const SweepRun *task, Record *record)
+static void sweep_run(const SweepRun *task, Record *record)
 {
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
@@ -127,19 +127,19 @@ static void run(const SweepRun *task, Record *record)
     BackendKind backend;
     Err err = {0};
     if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
-        measure(task, scenario, backend, record);
+        sweep_measure(task, scenario, backend, record);
     } else {
         give_reason(record, RUN_OUTCOME_REFUSED, err.text);
     }
     scenario_destroy(scenario);
 }
 
-static void certify(const SweepTruth *truth, void *packed)
+static void sweep_certify(const SweepTruth *truth, void *packed)
 {
     task_certify(&truth->task, packed);
 }
 
-const SweepWork SWEEP_WORK = {run, certify};
+const SweepWork SWEEP_WORK = {sweep_run, sweep_certify};
 
 static void enter(const SweepSlot *slot)
 {
@@ -239,7 +239,7 @@ static bool sweep_group_next(const Sweep *sweep, uint64_t from, uint64_t end, ui
 }
 
 // The number behind the last run of a run's group.
-static uint64_t find_end(const Spec *spec, uint64_t run)
+static uint64_t sweep_find_end(const Spec *spec, uint64_t run)
 {
     const uint64_t group = design_group(spec, run);
     uint64_t inside = run;
@@ -284,7 +284,7 @@ static void sweep_group_open(const Sweep *sweep, uint64_t run, SweepGroup *group
         group->end = design_run_count(spec);
         return;
     }
-    group->end = find_end(spec, run);
+    group->end = sweep_find_end(spec, run);
     // a run whose own step makes no case says so itself; the truth is that of the others, too
     bool is_prepared = false;
     for (uint64_t i = run; i < group->end && !is_prepared; i++) {
@@ -420,7 +420,7 @@ static SweepGroup *find_ready(const SweepPool *pool, bool *are_enough)
     return first;
 }
 
-static SweepGroup *find_group(const SweepPool *pool, SweepGroupState state)
+static SweepGroup *sweep_find_group(const SweepPool *pool, SweepGroupState state)
 {
     for (size_t i = 0; i < pool->group_count; i++) {
         if (pool->groups[i].state == state) {
@@ -433,7 +433,7 @@ static SweepGroup *find_group(const SweepPool *pool, SweepGroupState state)
 // Opens the next group where there is room for it and one is left.
 static bool open_next(SweepPool *pool, SweepGroup **opened, Err *err)
 {
-    SweepGroup *group = find_group(pool, SWEEP_GROUP_NONE);
+    SweepGroup *group = sweep_find_group(pool, SWEEP_GROUP_NONE);
     *opened = NULL;
     if (group == NULL || pool->from >= pool->end) {
         return true;
@@ -474,7 +474,8 @@ static bool start_worker(SweepJob *job, Child *child, const SweepGroup *group, C
 // Begins what the job is to do. Where the system has no process left but some are running, one
 // becomes free when they end. The slot applies the time limit, because the process may have to wait
 // first.
-static bool start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started, Err *err)
+static bool sweep_start(SweepPool *pool, size_t number, SweepGroup *group, bool *is_started,
+                        Err *err)
 {
     SweepJob *job = &pool->jobs[number];
     Child *child = &pool->children[number];
@@ -503,7 +504,7 @@ static bool start_truth(SweepPool *pool, size_t number, SweepGroup *group, bool 
                         Err *err)
 {
     pool->jobs[number].is_truth = true;
-    if (!start(pool, number, group, is_started, err)) {
+    if (!sweep_start(pool, number, group, is_started, err)) {
         return false;
     }
     group->state = *is_started ? SWEEP_GROUP_MAKING : SWEEP_GROUP_WANTED;
@@ -520,7 +521,7 @@ static bool start_run(SweepPool *pool, size_t number, SweepGroup *group, bool *i
         .truth = group->has_truth ? &group->truth : NULL,
         .run = group->next,
     };
-    if (!start(pool, number, group, is_started, err)) {
+    if (!sweep_start(pool, number, group, is_started, err)) {
         return false;
     }
     if (!*is_started) {
@@ -531,13 +532,13 @@ static bool start_run(SweepPool *pool, size_t number, SweepGroup *group, bool *i
 }
 
 // Gives a free job something to do, where there is something.
-static bool fill(SweepPool *pool, size_t number, bool *is_started, Err *err)
+static bool sweep_fill(SweepPool *pool, size_t number, bool *is_started, Err *err)
 {
     bool are_enough;
     SweepGroup *ready = find_ready(pool, &are_enough);
     *is_started = false;
     while (!are_enough) {
-        SweepGroup *group = find_group(pool, SWEEP_GROUP_WANTED);
+        SweepGroup *group = sweep_find_group(pool, SWEEP_GROUP_WANTED);
         if (group == NULL && !open_next(pool, &group, err)) {
             return false;
         }
@@ -573,7 +574,7 @@ static bool sweep_pool_fill(SweepPool *pool, Err *err)
         for (size_t i = 0; i < pool->job_count && is_started; i++) {
             if (pool->jobs[i].group == NULL &&
                 count_slot(pool, pool->jobs[i].slot.number) <= depth &&
-                !fill(pool, i, &is_started, err)) {
+                !sweep_fill(pool, i, &is_started, err)) {
                 return false;
             }
         }
@@ -582,7 +583,7 @@ static bool sweep_pool_fill(SweepPool *pool, Err *err)
 }
 
 // How long a process worked, as far as its parent knows: it may have had to wait.
-static double time_of(SweepPool *pool, const SweepJob *job, const Child *child)
+static double sweep_time_of(SweepPool *pool, const SweepJob *job, const Child *child)
 {
     double *ended_s = &pool->ended_s[job->slot.number];
     const double from_s = child->started_s > *ended_s ? child->started_s : *ended_s;
@@ -590,7 +591,8 @@ static double time_of(SweepPool *pool, const SweepJob *job, const Child *child)
     return *ended_s - from_s;
 }
 
-static bool take_run(SweepPool *pool, SweepJob *job, const Child *child, double wall_s, Err *err)
+static bool sweep_take_run(SweepPool *pool, SweepJob *job, const Child *child, double wall_s,
+                           Err *err)
 {
     SweepState *state = pool->state;
     Record *record = &job->record;
@@ -607,7 +609,7 @@ static bool take_run(SweepPool *pool, SweepJob *job, const Child *child, double 
     return store_add(pool->sweep->store, record, err);
 }
 
-static void take_truth(SweepPool *pool, SweepGroup *group, const Child *child, double wall_s)
+static void sweep_take_truth(SweepPool *pool, SweepGroup *group, const Child *child, double wall_s)
 {
     char reason[RECORD_REASON_SIZE] = "";
     pool->state->inside_s += wall_s;
@@ -649,16 +651,16 @@ static bool sweep_pool_take(SweepPool *pool, Err *err)
             continue;
         }
         Child *child = &pool->children[i];
-        const double wall_s = time_of(pool, job, child);
+        const double wall_s = sweep_time_of(pool, job, child);
         sweep_work_mark_timeout(&job->slot, child);
         if (is_in_doubt(job, child) && try_again(pool, i)) {
             pool->state->inside_s += wall_s;
             continue;
         }
         if (job->is_truth) {
-            take_truth(pool, group, child, wall_s);
+            sweep_take_truth(pool, group, child, wall_s);
         } else {
-            is_taken = take_run(pool, job, child, wall_s, err);
+            is_taken = sweep_take_run(pool, job, child, wall_s, err);
         }
         job->group = NULL;
         pool->busy--;
@@ -735,7 +737,7 @@ static void report(const Sweep *sweep, SweepState *state, Times *times)
     sweep->report(state, sweep->context);
 }
 
-static bool keep(SweepPool *pool, Times *times, Err *err)
+static bool sweep_keep(SweepPool *pool, Times *times, Err *err)
 {
     const double clock_s = clock_now_s();
     if (clock_s - times->reported_s >= REPORT_S) {
@@ -763,7 +765,7 @@ static bool sweep_loop_go_on(SweepPool *pool, Times *times, SweepEnd *end, Err *
             return false;
         }
         child_wait(pool->children, pool->job_count, PAUSE_S);
-        if (!sweep_pool_take(pool, err) || !keep(pool, times, err)) {
+        if (!sweep_pool_take(pool, err) || !sweep_keep(pool, times, err)) {
             return false;
         }
     }

@@ -34,7 +34,7 @@ void slot_close(int slots)
     }
 }
 
-static void lock(int slots, size_t slot, short kind)
+static void worker_lock(int slots, size_t slot, short kind)
 {
     struct flock what = {.l_type = kind, .l_whence = SEEK_SET, .l_start = (off_t)slot, .l_len = 1};
     while (slots >= 0 && fcntl(slots, F_SETLKW, &what) != 0 && errno == EINTR) {
@@ -57,7 +57,7 @@ static void set_timer(double limit_s)
 
 void slot_enter(int slots, size_t slot, double limit_s)
 {
-    lock(slots, slot, F_WRLCK);
+    worker_lock(slots, slot, F_WRLCK);
     if (limit_s > 0.0) {
         set_timer(limit_s);
     }
@@ -67,7 +67,7 @@ void slot_leave(int slots, size_t slot)
 {
     const struct itimerval never = {0};
     setitimer(ITIMER_REAL, &never, NULL);
-    lock(slots, slot, F_UNLCK);
+    worker_lock(slots, slot, F_UNLCK);
 }
 
 // The last message of a dying process is kept, and kept off the terminal.

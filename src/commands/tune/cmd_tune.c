@@ -58,7 +58,7 @@ static bool read_error(const char *text, void *options, Err *err)
 }
 
 // A plain number counts world steps, a time is a time.
-static bool read_limit(const char *text, void *target, Err *err)
+static bool cmd_tune_read_limit(const char *text, void *target, Err *err)
 {
     TuneOptions *options = target;
     Complaint complaint;
@@ -90,7 +90,7 @@ static const OptionRow OPTIONS[] = {
      1, OPTION_READ, .read = read_error},
     {"max-cost", "COST",
      "What one run may cost: a time such as '50 ms', or world steps such as 2000", 1, OPTION_READ,
-     .read = read_limit},
+     .read = cmd_tune_read_limit},
     {"cost", "time|steps", "What to minimise (default: time, or the unit of --max-cost)", 1,
      OPTION_CHOICE, AT(asked_cost), .words = COSTS},
     {"at-step", "TIME",
@@ -141,7 +141,7 @@ static bool settle_cost(TuneOptions *options, Err *err)
     return true;
 }
 
-static bool check(void *target, Err *err)
+static bool cmd_tune_check(void *target, Err *err)
 {
     TuneOptions *options = target;
     if (options->common.path == NULL) {
@@ -165,7 +165,7 @@ static const Arguments TUNE_ARGUMENTS = {
            "\vExit status 1 says that no setting meets the error, or none within --max-cost.",
     .argument = COMMON_PATH("tune takes one case"),
     OPTION_ROWS(OPTIONS),
-    .check = check,
+    .check = cmd_tune_check,
 };
 
 static TuneOptions tune_options_default(void)
@@ -270,7 +270,7 @@ typedef struct Watching {
     StatusLine line;
 } Watching;
 
-static void wait(const char *doing, double left_s, void *context)
+static void cmd_tune_wait(const char *doing, double left_s, void *context)
 {
     Watching *watching = context;
     const double wall_s = status_line_time(&watching->line);
@@ -300,7 +300,7 @@ static const char *cmd_tune_program_lacks(const Scenario *scenario)
                                         : NULL;
 }
 
-static bool write_code(const void *target, Text *text, const char **nothing, Err *err)
+static bool cmd_tune_write_code(const void *target, Text *text, const char **nothing, Err *err)
 {
     const TuneReport *report = target;
     const TuneTrial *trial = tune_export_trial(report);
@@ -352,7 +352,7 @@ static bool write_mjcf(const void *target, Text *text, const char **nothing, Err
 }
 
 static const ResultFile FILES[] = {
-    {"--code", offsetof(TuneOptions, code), ".c", FILE_CODE, .may = write_code},
+    {"--code", offsetof(TuneOptions, code), ".c", FILE_CODE, .may = cmd_tune_write_code},
     {"--sdf", offsetof(TuneOptions, sdf), ".sdf", FILE_SDF, .may = write_sdf},
     {"--mjcf", offsetof(TuneOptions, mjcf), ".xml", FILE_MJCF, .may = write_mjcf},
     {.ending = ".txt", .kind = FILE_REPORT},
@@ -422,7 +422,7 @@ static bool check_met(const TuneReport *report, Err *err)
 }
 
 // Runs the program that is to be written, if there is one.
-static bool run_program(const TuneOptions *options, const TuneSearch *work, Err *err)
+static bool cmd_tune_run_program(const TuneOptions *options, const TuneSearch *work, Err *err)
 {
     const CommonOptions *common = &options->common;
     const TuneReport report = {work->scenario, work->tune, common->overrides,
@@ -450,17 +450,18 @@ static bool search(const TuneOptions *options, const Scenario *scenario, Tune *t
         .scenario = scenario,
         .jobs = common->jobs,
         .time_limit_s = common->time_limit_s,
-        .wait = wait,
+        .wait = cmd_tune_wait,
         .context = &watching,
     };
-    const bool is_done = tune_search_execute(&work, err) && run_program(options, &work, err);
+    const bool is_done =
+        tune_search_execute(&work, err) && cmd_tune_run_program(options, &work, err);
     status_line_end(&watching.line);
     return is_done;
 }
 
 // Names the settings of the command line that have no effect: those that nothing makes use of, and
 // those that are what is searched for.
-static void warn(const TuneOptions *options, const Scenario *scenario)
+static void cmd_tune_warn(const TuneOptions *options, const Scenario *scenario)
 {
     Scenario *whole = malloc(sizeof *whole);
     assert(whole != NULL);
@@ -496,7 +497,7 @@ static bool tune_case(void *target, Err *err)
                    tune_options_search(options, scenario, &tune, err) &&
                    results_claim(&RESULTS, common, scenario_path(scenario), err);
     if (is_done) {
-        warn(options, scenario);
+        cmd_tune_warn(options, scenario);
         is_done = search(options, scenario, tune, err);
     }
     if (is_done) {

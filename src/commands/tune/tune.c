@@ -59,7 +59,7 @@ static double least_rate(const Tune *tune, int scheme)
     return least;
 }
 
-static double rate_of(const Tune *tune, size_t scheme)
+static double tune_rate_of(const Tune *tune, size_t scheme)
 {
     const double own = least_rate(tune, (int)scheme);
     const double all = least_rate(tune, TUNE_NONE);
@@ -74,7 +74,7 @@ static bool tune_cost_is_timed(const Tune *tune, const TuneTrial *trial)
 }
 
 // The time of a run, s: the least where it was timed, or what its work comes to.
-static double time_of(const Tune *tune, const TuneTrial *trial)
+static double tune_time_of(const Tune *tune, const TuneTrial *trial)
 {
     if (tune_cost_is_timed(tune, trial)) {
         return tune->schemes[trial->scheme].processor_least_s;
@@ -82,7 +82,7 @@ static double time_of(const Tune *tune, const TuneTrial *trial)
     // one that chooses its step makes a reference first, which is no work of world steps
     const bool has_step = scheme_has_step(&tune->schemes[trial->scheme].scheme);
     return has_step && trial->run.is_complete
-               ? rate_of(tune, trial->scheme) *
+               ? tune_rate_of(tune, trial->scheme) *
                      work_of(tune, (double)trial->run.steps, (double)trial->run.evaluations)
                : trial->run.processor_s;
 }
@@ -91,7 +91,7 @@ double tune_trial_cost(const Tune *tune, const TuneTrial *trial)
 {
     return tune->cost == TUNE_LENGTH  ? 1.0 / trial->value
            : tune->cost == TUNE_STEPS ? (double)trial->run.steps
-                                      : time_of(tune, trial);
+                                      : tune_time_of(tune, trial);
 }
 
 // The finest trial of a scheme that ended whole, or NULL. What is unstable, and so has no error,
@@ -122,9 +122,10 @@ double tune_time(const Tune *tune, size_t scheme, int index)
     if (finest != NULL && !scheme_has_step(&tune->schemes[scheme].scheme)) {
         return finest->run.processor_s;
     }
-    return finest == NULL ? 0.0
-                          : rate_of(tune, scheme) * work_of(tune, steps_at(tune, finest, index),
-                                                            (double)finest->run.evaluations);
+    return finest == NULL
+               ? 0.0
+               : tune_rate_of(tune, scheme) *
+                     work_of(tune, steps_at(tune, finest, index), (double)finest->run.evaluations);
 }
 
 double tune_cost(const Tune *tune, size_t scheme, int index)
@@ -143,7 +144,7 @@ bool tune_is_within(const Tune *tune, const TuneTrial *trial)
 {
     const TuneLimit *limit = &tune->limit;
     return (limit->steps == 0 || trial->run.steps <= limit->steps) &&
-           (limit->time_s == 0.0 || time_of(tune, trial) <= limit->time_s);
+           (limit->time_s == 0.0 || tune_time_of(tune, trial) <= limit->time_s);
 }
 
 enum { TUNE_STEPS_A_DECADE = 10 };
@@ -408,7 +409,7 @@ const TuneTrial *tune_best(const Tune *tune, int scheme)
 }
 
 // The cheapest among all schemes, or the plain rows alone; of those as cheap the first.
-static int choose(const Tune *tune, const Scenario *scenario, bool is_plain)
+static int tune_choose(const Tune *tune, const Scenario *scenario, bool is_plain)
 {
     double least = INFINITY;
     for (int pass = 0; pass < 2; pass++) {
@@ -471,8 +472,8 @@ void tune_conclude(Tune *tune, const Scenario *scenario)
             }
         }
     }
-    tune->winner = choose(tune, scenario, false);
-    tune->plain = choose(tune, scenario, true);
+    tune->winner = tune_choose(tune, scenario, false);
+    tune->plain = tune_choose(tune, scenario, true);
     tune->held = choose_held(tune, scenario, false);
     tune->held_plain = choose_held(tune, scenario, true);
     tune->within = TUNE_NONE;

@@ -24,7 +24,7 @@
 //     kp = 1 / (1/kp1 + 1/kp2),  kd = kd1 + kd2
 //     soft_erp = h kp / (h kp + kd),  soft_cfm = 1 / (h kp + kd)          (the textbook map)
 // so that each of two equal surfaces has 2 kp and kd / 2. The soft_erp and soft_cfm of a surface
-// are read and not used. The stop of a joint is one row by itself (tune_limit.c). max_vel bounds
+// are read and not used. The stop of a joint is one row by itself (tune_linear.c). max_vel bounds
 // the speed at which a contact pushes apart, 0.01 m/s unless said otherwise; min_depth is the
 // overlap that is left alone.
 
@@ -280,7 +280,7 @@ static void write_elastic(const ForceLaw *law, bool is_angle, Text *text)
     }
 }
 
-static void write_damping(const ForceLaw *law, bool is_angle, Text *text)
+static void tune_export_write_damping(const ForceLaw *law, bool is_angle, Text *text)
 {
     const char *unit = is_angle ? "N m s/rad" : "N s/m";
     if (law->hysteresis > 0.0) {
@@ -334,7 +334,7 @@ static void write_name(const Joint *joint, Text *text)
 }
 
 // The stop of ODE's own hinge or slider is the same row.
-static void write_stop(const Joint *joint, const ForceLaw *law, OdeMap map, Text *text)
+static void tune_export_write_stop(const Joint *joint, const ForceLaw *law, OdeMap map, Text *text)
 {
     static const RowLines HINGE = {"dJointSetHingeParam(hinge, dParamStopERP, ",
                                    "dJointSetHingeParam(hinge, dParamStopCFM, ", ")"};
@@ -349,7 +349,7 @@ static void write_stop(const Joint *joint, const ForceLaw *law, OdeMap map, Text
     write_name(joint, text);
     text_append(text, "(dJointID %s, double depth, double v0)\n{\n", name);
     write_elastic(law, is_hinge, text);
-    write_damping(law, is_hinge, text);
+    tune_export_write_damping(law, is_hinge, text);
     write_map(law, map, is_hinge ? HINGE : SLIDER, text);
     text_append(text, "}\n\n");
 }
@@ -371,7 +371,7 @@ static void tune_snippet_write_surface(const Joint *joint, const ForceLaw *law, 
     write_name(joint, text);
     text_append(text, "(\n    dSurfaceParameters *surface, double depth, double v0)\n{\n");
     write_elastic(law, false, text);
-    write_damping(law, false, text);
+    tune_export_write_damping(law, false, text);
     if (law->friction > 0.0 && joint->kind != JOINT_GEAR) {
         text_append(text,
                     "    surface->mode = dContactSoftERP | dContactSoftCFM | dContactApprox1;\n"
@@ -423,7 +423,7 @@ bool tune_snippet_write(const TuneReport *report, const TuneTrial *trial, Text *
         if (linkage_has_play(&linkage->joints[i])) {
             fits = law_of_joint(scenario, &linkage->joints[i], &law, &unused);
             if (has_stops(&linkage->joints[i])) {
-                write_stop(&linkage->joints[i], &law, map, &lines);
+                tune_export_write_stop(&linkage->joints[i], &law, map, &lines);
             } else {
                 tune_snippet_write_surface(&linkage->joints[i], &law, map, &lines);
             }
@@ -454,7 +454,7 @@ const TuneTrial *tune_export_trial(const TuneReport *report)
 }
 
 // The code makes no trials: it gets the step that they choose.
-static bool choose_step(Scenario *scenario, Err *err)
+static bool tune_export_choose_step(Scenario *scenario, Err *err)
 {
     Trajectory *run = chosen_run_make(scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
     const bool is_chosen = run->is_complete || err_set(err, ERR_SOLVER, "%s", run->message);
@@ -471,7 +471,7 @@ bool tune_export_scenario(const TuneReport *report, Scenario *scenario, Err *err
     assert(trial != NULL);
     *scenario = *report->scenario;
     tune_apply(&report->tune->schemes[trial->scheme], trial->value, scenario);
-    return scenario->run.step > 0.0 || choose_step(scenario, err);
+    return scenario->run.step > 0.0 || tune_export_choose_step(scenario, err);
 }
 
 // The scenario of a program that was run already: its step is known.
@@ -557,7 +557,7 @@ static void write_program(const TuneProgram *program, Text *text)
                       "-lm\n");
 }
 
-static void write_code(const TuneReport *report, const Style *style, Text *text)
+static void tune_export_write_code(const TuneReport *report, const Style *style, Text *text)
 {
     text_append(text, "\n%sAs ODE C code%s\n\n", style->heading, style->end);
     if (tune_export_trial(report) == NULL) {
@@ -740,7 +740,7 @@ static void write_mujoco(const TuneReport *report, const Style *style, Text *tex
 
 void tune_export_write(const TuneReport *report, const Style *style, Text *text)
 {
-    write_code(report, style, text);
+    tune_export_write_code(report, style, text);
     tune_export_write_loop(report, style, text);
     write_gazebo(report, style, text);
     write_mujoco(report, style, text);

@@ -14,7 +14,7 @@ static const char *const OUTCOMES[] = {[TUNE_OPEN] = "open",
                                        [TUNE_STALLED] = "stalled",
                                        [TUNE_TOO_LONG] = "too-long"};
 
-static json_t *truth_object(const LadderTruth *truth)
+static json_t *tune_json_truth_object(const LadderTruth *truth)
 {
     json_t *object = json_object();
     json_object_set_new(object, "backend", json_string(truth->backend));
@@ -78,7 +78,7 @@ static json_t *setting_object(const TuneReport *report, const TuneTrial *trial)
     return object;
 }
 
-static json_t *scheme_object(const Tune *tune, size_t number)
+static json_t *tune_json_scheme_object(const Tune *tune, size_t number)
 {
     const TuneScheme *scheme = &tune->schemes[number];
     const TuneTrial *best = tune_best(tune, (int)number);
@@ -225,7 +225,7 @@ json_t *tune_json_build(const void *target)
     json_t *object = json_object();
     settings_json_begin(object, report->scenario);
     set_asked(object, tune);
-    json_object_set_new(object, "truth", truth_object(&tune->truth));
+    json_object_set_new(object, "truth", tune_json_truth_object(&tune->truth));
     json_object_set_new(object, "is_met", json_boolean(tune_report_is_met(report)));
     const TuneTrial *winner = tune_best(tune, tune->winner);
     const bool is_held = tune->held_s > 0.0;
@@ -239,7 +239,7 @@ json_t *tune_json_build(const void *target)
         setting_object(report, tune->within != TUNE_NONE ? &tune->trials[tune->within] : NULL));
     json_t *schemes = json_array();
     for (size_t i = 0; i < tune->scheme_count; i++) {
-        json_array_append_new(schemes, scheme_object(tune, i));
+        json_array_append_new(schemes, tune_json_scheme_object(tune, i));
     }
     json_object_set_new(object, "schemes", schemes);
     json_t *trials = json_array();

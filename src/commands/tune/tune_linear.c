@@ -28,7 +28,7 @@
 // reads `stiffness` and `dissipation` of a limit for Simbody; with ODE it hands cfm and erp of
 // physics/ode/limit to dParamStopCFM and dParamStopERP (ODEJoint::Load), the row of a stop:
 //     erp = h k / (h k + c),  cfm = 1 / (h k + c)
-// The row of a limit of MuJoCo is that of a contact (tune_mujoco.c), where A is the joint's
+// The row of a limit of MuJoCo is that of a contact (tune_export.c), where A is the joint's
 // dof_invweight0: the mobility of its coordinate, of a tree of joints at qpos0.
 
 // where there is no stop: MuJoCo's range has two ends, and nothing gets that far
@@ -53,7 +53,7 @@ typedef struct Ends {
     double high;
 } Ends;
 
-static Ends range_of(const Linkage *linkage, size_t number)
+static Ends tune_linear_range_of(const Linkage *linkage, size_t number)
 {
     const Joint *joint = &linkage->joints[number];
     Motion *motions = calloc(linkage->body_count + 1, sizeof *motions);
@@ -68,7 +68,7 @@ static Ends range_of(const Linkage *linkage, size_t number)
 static const char *tune_limit_lacks(const Scenario *scenario, size_t number)
 {
     const Joint *joint = &scenario->linkage.joints[number];
-    const Ends range = range_of(&scenario->linkage, number);
+    const Ends range = tune_linear_range_of(&scenario->linkage, number);
     ForceLaw law;
     Err ignored = {ERR_NONE, ""};
     if (!law_of_joint(scenario, joint, &law, &ignored) || law.family != FORCE_LAW_POWER ||
@@ -85,7 +85,7 @@ static const char *tune_limit_lacks(const Scenario *scenario, size_t number)
 
 const char *tune_limit_lacks_range(const Scenario *scenario, size_t number)
 {
-    const Ends range = range_of(&scenario->linkage, number);
+    const Ends range = tune_linear_range_of(&scenario->linkage, number);
     return range.low < range.high
                ? NULL
                : "MuJoCo has no range of length 0, which backlash of 0 would be: give the joint a "
@@ -132,13 +132,13 @@ static Limited limited_of(const TuneReport *report)
         .joint = &report->scenario->linkage.joints[number],
         .units = joint_units(&report->scenario->linkage.joints[number]),
         .linear = &tune->linears[tune->linear],
-        .range = range_of(&report->scenario->linkage, number),
+        .range = tune_linear_range_of(&report->scenario->linkage, number),
     };
     linkage_turning(made.linkage, (int)number, &made.bodies[0], &made.bodies[1]);
     return made;
 }
 
-static void write_body(const Linkage *linkage, const char *tag, int body, Text *text)
+static void tune_linear_write_body(const Linkage *linkage, const char *tag, int body, Text *text)
 {
     text_append(text, "  <%s>", tag);
     xml_append(body == LINKAGE_GROUND ? "world" : linkage->bodies[body].name, text);
@@ -146,7 +146,7 @@ static void write_body(const Linkage *linkage, const char *tag, int body, Text *
 }
 
 // In the world as the bodies stand at the start.
-static Vec2 axis_of(const Limited *limited, size_t number)
+static Vec2 tune_linear_axis_of(const Limited *limited, size_t number)
 {
     Motion *motions = calloc(limited->linkage->body_count + 1, sizeof *motions);
     assert(motions != NULL);
@@ -158,8 +158,9 @@ static Vec2 axis_of(const Limited *limited, size_t number)
 
 static void write_axis(const Limited *limited, size_t number, Text *text)
 {
-    const Vec2 along =
-        limited->joint->kind == JOINT_PRISMATIC ? axis_of(limited, number) : (Vec2){0.0, 0.0};
+    const Vec2 along = limited->joint->kind == JOINT_PRISMATIC
+                           ? tune_linear_axis_of(limited, number)
+                           : (Vec2){0.0, 0.0};
     text_append(text, "%s %s %d", number_shortest(along.x).text, number_shortest(along.y).text,
                 limited->joint->kind == JOINT_PRISMATIC ? 0 : 1);
 }
@@ -171,8 +172,8 @@ void tune_limit_sdf(const TuneReport *report, ErpCfm row, Text *text)
     xml_append(limited.joint->name, text);
     text_append(text, "\" type=\"%s\">\n",
                 limited.joint->kind == JOINT_PRISMATIC ? "prismatic" : "revolute");
-    write_body(limited.linkage, "parent", limited.bodies[1], text);
-    write_body(limited.linkage, "child", limited.bodies[0], text);
+    tune_linear_write_body(limited.linkage, "parent", limited.bodies[1], text);
+    tune_linear_write_body(limited.linkage, "child", limited.bodies[0], text);
     text_append(text, "  <axis>\n    <xyz expressed_in=\"__model__\">");
     write_axis(&limited, report->tune->contact.joint, text);
     text_append(text, "</xyz>\n    <limit>\n");
@@ -195,7 +196,7 @@ void tune_limit_sdf(const TuneReport *report, ErpCfm row, Text *text)
                 number_shortest(row.cfm).text, number_shortest(row.erp).text);
 }
 
-static const char *end_of(double value, NumberText *shortest)
+static const char *tune_linear_end_of(double value, NumberText *shortest)
 {
     *shortest = number_shortest(isfinite(value) ? value : copysign(FAR, value));
     return shortest->text;
@@ -216,9 +217,10 @@ void tune_limit_mjcf(const TuneReport *report, const double solref[2], double im
                 "       range=\"%s %s\"\n"
                 "       solreflimit=\"%s %s\"\n"
                 "       solimplimit=\"%s %s 1 0.5 1\"/>\n",
-                end_of(limited.range.low, &low), end_of(limited.range.high, &high),
-                number_shortest(solref[0]).text, number_shortest(solref[1]).text,
-                number_shortest(impedance).text, number_shortest(impedance).text);
+                tune_linear_end_of(limited.range.low, &low),
+                tune_linear_end_of(limited.range.high, &high), number_shortest(solref[0]).text,
+                number_shortest(solref[1]).text, number_shortest(impedance).text,
+                number_shortest(impedance).text);
 }
 
 // of the deepest penetration: a resting contact stays at the shallow end
@@ -272,8 +274,8 @@ static size_t sample_near(const Trajectory *trajectory, double time_s)
     return nearest;
 }
 
-static double find_mass(const Linkage *linkage, const Trajectory *trajectory, size_t joint,
-                        double time_s)
+static double tune_linear_find_mass(const Linkage *linkage, const Trajectory *trajectory,
+                                    size_t joint, double time_s)
 {
     Response response;
     double mass = NAN;
@@ -310,13 +312,14 @@ static void find_pin(const Scenario *scenario, const Trajectory *truth, TuneCont
             .joint = i,
             .depth = joint->penetration_max.value,
             .speed = joint->spike_count > 0 ? joint->spikes[0].approach_speed : 0.0,
-            .mass = find_mass(linkage, truth, i, joint->penetration_max.time_s),
+            .mass = tune_linear_find_mass(linkage, truth, i, joint->penetration_max.time_s),
         };
     }
 }
 
 // The one joint with stops or backlash.
-static void find_limit(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)
+static void tune_linear_find_limit(const Scenario *scenario, const Trajectory *truth,
+                                   TuneContact *contact)
 {
     size_t number;
     if (!tune_limit_alone(&scenario->linkage, &number) ||
@@ -335,12 +338,13 @@ static void find_limit(const Scenario *scenario, const Trajectory *truth, TuneCo
     };
 }
 
-static void find_contact(const Scenario *scenario, const Trajectory *truth, TuneContact *contact)
+static void tune_linear_find_contact(const Scenario *scenario, const Trajectory *truth,
+                                     TuneContact *contact)
 {
     *contact = (TuneContact){.is_known = false};
     find_pin(scenario, truth, contact);
     if (!contact->is_known) {
-        find_limit(scenario, truth, contact);
+        tune_linear_find_limit(scenario, truth, contact);
     }
     contact->is_known = contact->is_known && isfinite(contact->mass);
 }
@@ -473,7 +477,7 @@ bool tune_linear_run(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
     ForceLaw law;
-    find_contact(search->scenario, search->truth->trajectory, &tune->contact);
+    tune_linear_find_contact(search->scenario, search->truth->trajectory, &tune->contact);
     if (!tune->contact.is_known) {
         return true;
     }

@@ -1,4 +1,4 @@
-// What can a contact with constant spring and damper deliver, as Gazebo and MuJoCo have it?
+// What a contact with constant spring and damper delivers, as Gazebo and MuJoCo have it.
 #pragma once
 
 #include "commands/tune/tune.h"

@@ -39,12 +39,12 @@ static void library_world_close(LibraryWorld *world);
 // The same calls, in the same order and with the same numbers, as tune_world.c, _joints.c and
 // _forces.c write into a program: what is measured here is what the program does.
 
-static dBodyID body_of(const LibraryWorld *world, int body)
+static dBodyID tune_program_body_of(const LibraryWorld *world, int body)
 {
     return body == LINKAGE_GROUND ? NULL : world->bodies[body];
 }
 
-static void make_body(LibraryWorld *world, int number)
+static void tune_program_make_body(LibraryWorld *world, int number)
 {
     const Linkage *linkage = &world->scenario->linkage;
     const Body *body = &linkage->bodies[number];
@@ -66,7 +66,7 @@ static void make_body(LibraryWorld *world, int number)
     world->bodies[number] = made;
 }
 
-static void make_ideal(LibraryWorld *world, int number, const Motion *motions)
+static void tune_program_make_ideal(LibraryWorld *world, int number, const Motion *motions)
 {
     const Linkage *linkage = &world->scenario->linkage;
     const Joint *joint = &linkage->joints[number];
@@ -81,12 +81,14 @@ static void make_ideal(LibraryWorld *world, int number, const Motion *motions)
         const Vec2 along =
             vec2_scale(coordinate_sense(joint), joint_rows_along(linkage, motions, number));
         made = dJointCreateSlider(world->world, 0);
-        dJointAttach(made, body_of(world, turned), body_of(world, against));
+        dJointAttach(made, tune_program_body_of(world, turned),
+                     tune_program_body_of(world, against));
         dJointSetSliderAxis(made, along.x, along.y, 0);
     } else {
         const Vec2 at = linkage_point(motions, joint->body_a, joint->anchor_a);
         made = dJointCreateHinge(world->world, 0);
-        dJointAttach(made, body_of(world, turned), body_of(world, against));
+        dJointAttach(made, tune_program_body_of(world, turned),
+                     tune_program_body_of(world, against));
         dJointSetHingeAnchor(made, at.x, at.y, 0);
         dJointSetHingeAxis(made, 0, 0, 1);
     }
@@ -101,7 +103,8 @@ static void make_damper(LibraryWorld *world, size_t number, const Motion *motion
     const Vec2 ends[2] = {spring->anchor_a, spring->anchor_b};
     const int first = spring->body_a == LINKAGE_GROUND ? 1 : 0;
     const dJointID made = dJointCreateDBall(world->world, 0);
-    dJointAttach(made, body_of(world, bodies[first]), body_of(world, bodies[1 - first]));
+    dJointAttach(made, tune_program_body_of(world, bodies[first]),
+                 tune_program_body_of(world, bodies[1 - first]));
     const Vec2 from = linkage_point(motions, bodies[first], ends[first]);
     const Vec2 to = linkage_point(motions, bodies[1 - first], ends[1 - first]);
     dJointSetDBallAnchor1(made, from.x, from.y, 0);
@@ -134,7 +137,7 @@ static void make_motors(LibraryWorld *world, const Motion *motions)
 }
 
 // A point of a body, NULL being the world, and its velocity.
-static void find_end(dBodyID body, Vec2 local, dVector3 at, dVector3 velocity)
+static void tune_program_find_end(dBodyID body, Vec2 local, dVector3 at, dVector3 velocity)
 {
     memset(velocity, 0, sizeof(dVector3));
     at[0] = local.x;
@@ -149,14 +152,14 @@ static void pull(const LibraryWorld *world, size_t number)
 {
     const Linkage *linkage = &world->scenario->linkage;
     const Spring *spring = &linkage->springs[number];
-    const dBodyID a = body_of(world, spring->body_a);
-    const dBodyID b = body_of(world, spring->body_b);
+    const dBodyID a = tune_program_body_of(world, spring->body_a);
+    const dBodyID b = tune_program_body_of(world, spring->body_b);
     dVector3 from;
     dVector3 to;
     dVector3 v;
     dVector3 w;
-    find_end(a, tune_world_local(linkage, spring->body_a, spring->anchor_a), from, v);
-    find_end(b, tune_world_local(linkage, spring->body_b, spring->anchor_b), to, w);
+    tune_program_find_end(a, tune_world_local(linkage, spring->body_a, spring->anchor_a), from, v);
+    tune_program_find_end(b, tune_world_local(linkage, spring->body_b, spring->anchor_b), to, w);
     const double distance = hypot(to[0] - from[0], to[1] - from[1]);
     const double x = (to[0] - from[0]) / distance;
     const double y = (to[1] - from[1]) / distance;
@@ -178,7 +181,7 @@ static void pull(const LibraryWorld *world, size_t number)
 }
 
 // Springs and a torque, where the step evaluates forces.
-static void push(dWorldID pushed, void *data)
+static void tune_program_push(dWorldID pushed, void *data)
 {
     (void)pushed;
     const LibraryWorld *world = data;
@@ -231,7 +234,8 @@ static bool accept(JpStatus status, const JpError *error, Err *err)
     return status <= JP_OK || err_set(err, ERR_SOLVER, "libjointplay: %s", error->text);
 }
 
-static bool fill_contact(const Scenario *scenario, const Joint *joint, JpContact *contact, Err *err)
+static bool tune_program_fill_contact(const Scenario *scenario, const Joint *joint,
+                                      JpContact *contact, Err *err)
 {
 #define LIBRARY_DAMPING(name, word, factor) JP_DAMPING_##name,
     static const JpDamping DAMPINGS[] = {OPTIONS_DAMPING_LIST(LIBRARY_DAMPING)};
@@ -278,9 +282,9 @@ static bool make_pin(LibraryWorld *world, int number, Err *err)
     }
     JpError error;
     JpJoint *made;
-    return fill_contact(scenario, joint, &pin.contact, err) &&
-           accept(jp_pin_create(world->play, body_of(world, joint->body_a),
-                                body_of(world, joint->body_b), &pin, &made, &error),
+    return tune_program_fill_contact(scenario, joint, &pin.contact, err) &&
+           accept(jp_pin_create(world->play, tune_program_body_of(world, joint->body_a),
+                                tune_program_body_of(world, joint->body_b), &pin, &made, &error),
                   &error, err);
 }
 
@@ -295,7 +299,7 @@ static bool make_limits(LibraryWorld *world, int number, const Motion *motions, 
         JpBacklash backlash = jp_backlash_default();
         backlash.gap = joint->limits.backlash;
         backlash.offset = joint->limits.middle - start;
-        return fill_contact(scenario, joint, &backlash.tooth, err) &&
+        return tune_program_fill_contact(scenario, joint, &backlash.tooth, err) &&
                accept(
                    jp_backlash_create(world->play, world->joints[number], &backlash, &made, &error),
                    &error, err);
@@ -303,7 +307,7 @@ static bool make_limits(LibraryWorld *world, int number, const Motion *motions, 
     JpStops stops = jp_stops_default();
     stops.low = joint->limits.low - start;
     stops.high = joint->limits.high - start;
-    return fill_contact(scenario, joint, &stops.contact, err) &&
+    return tune_program_fill_contact(scenario, joint, &stops.contact, err) &&
            accept(jp_stops_create(world->play, world->joints[number], &stops, &made, &error),
                   &error, err);
 }
@@ -323,7 +327,7 @@ static bool make_play(LibraryWorld *world, const Motion *motions, Err *err)
         dWorldSetQuickStepW(world->world, scenario->ode.over_relaxation);
     }
     if (tune_world_pushes(linkage)) {
-        options.collide = push;
+        options.collide = tune_program_push;
         options.collide_data = world;
     }
     JpError error;
@@ -362,10 +366,10 @@ static bool library_world_open(const Scenario *scenario, LibraryWorld *world, Er
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
     for (int i = 0; i < (int)linkage->body_count; i++) {
-        make_body(world, i);
+        tune_program_make_body(world, i);
     }
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        make_ideal(world, i, motions);
+        tune_program_make_ideal(world, i, motions);
     }
     make_motors(world, motions);
     const bool is_made = make_play(world, motions, err);
@@ -458,7 +462,7 @@ static bool open_world(const Scenario *scenario, void **state, Err *err)
     return true;
 }
 
-static bool stride(void *state, double stop_s, double *end_s, Err *err)
+static bool tune_program_stride(void *state, double stop_s, double *end_s, Err *err)
 {
     (void)stop_s;
     Stepping *stepping = state;
@@ -486,7 +490,7 @@ static void glance(const void *state, double time_s, Sample *sample)
 static const Solver LIBRARY = {
     .name = "libjointplay",
     .open = open_world,
-    .stride = stride,
+    .stride = tune_program_stride,
     .glance = glance,
     .close = close_world,
 };
@@ -500,7 +504,7 @@ typedef struct Measuring {
 } Measuring;
 
 // The error of the program at a step, NAN where it has none, with the reason.
-static double measure(const Measuring *measuring, double step_s, TuneProgram *program)
+static double tune_program_measure(const Measuring *measuring, double step_s, TuneProgram *program)
 {
     const Tune *tune = measuring->search->tune;
     Scenario printed = *measuring->scenario;
@@ -535,7 +539,7 @@ static void work(const void *context, void *result)
     TuneProgram *program = result;
     *program = *measuring->program;
     const double first_s = program->step_s;
-    program->error_first = program->error = measure(measuring, first_s, program);
+    program->error_first = program->error = tune_program_measure(measuring, first_s, program);
     program->meets = is_met(tune, program->error);
     if (!measuring->may_shorten) {
         return;
@@ -543,7 +547,7 @@ static void work(const void *context, void *result)
     int index = tune_index_below(first_s);
     index += tune_value(index) < first_s ? 0 : 1;
     for (int i = 0; i < SHORTER_MOST && !program->meets; i++, index++) {
-        const double error = measure(measuring, tune_value(index), program);
+        const double error = tune_program_measure(measuring, tune_value(index), program);
         program->meets = is_met(tune, error);
         if (program->meets || isnan(program->error) || error < program->error) {
             program->step_s = tune_value(index);
@@ -552,7 +556,7 @@ static void work(const void *context, void *result)
     }
 }
 
-static bool next(void *owner, size_t *number, const void **context)
+static bool tune_program_next(void *owner, size_t *number, const void **context)
 {
     Measuring *measuring = owner;
     const bool is_first = !measuring->is_begun;
@@ -562,7 +566,8 @@ static bool next(void *owner, size_t *number, const void **context)
     return is_first;
 }
 
-static bool take(void *owner, size_t number, const void *result, const Child *child, Err *err)
+static bool tune_program_take(void *owner, size_t number, const void *result, const Child *child,
+                              Err *err)
 {
     (void)number;
     (void)err;
@@ -578,7 +583,7 @@ static bool take(void *owner, size_t number, const void *result, const Child *ch
     return true;
 }
 
-static bool wait(void *owner)
+static bool tune_program_wait(void *owner)
 {
     const TuneSearch *search = ((const Measuring *)owner)->search;
     search->wait("running the program of --code", INFINITY, search->context);
@@ -603,9 +608,9 @@ bool tune_program_run(const TuneSearch *search, const Scenario *scenario, bool m
         .result_size = sizeof(TuneProgram),
         .limits = {.time_s = (1 + SHORTER_MOST) * search->time_limit_s,
                    .memory_bytes = TASK_MEMORY_LIMIT},
-        .next = next,
-        .take = take,
-        .wait = wait,
+        .next = tune_program_next,
+        .take = tune_program_take,
+        .wait = tune_program_wait,
         .owner = &measuring,
     };
     return pool_run(&pool, err);

@@ -17,7 +17,7 @@ typedef struct Making {
     Task task;        // that is about to begin
 } Making;
 
-static bool next(void *owner, size_t *number, const void **context)
+static bool tune_runs_next(void *owner, size_t *number, const void **context)
 {
     Making *making = owner;
     const TuneRuns *runs = making->runs;
@@ -35,7 +35,8 @@ static bool next(void *owner, size_t *number, const void **context)
     return true;
 }
 
-static bool take(void *owner, size_t number, const void *result, const Child *child, Err *err)
+static bool tune_runs_take(void *owner, size_t number, const void *result, const Child *child,
+                           Err *err)
 {
     (void)err;
     Making *making = owner;
@@ -48,7 +49,7 @@ static bool take(void *owner, size_t number, const void *result, const Child *ch
 }
 
 // Of runs with a count from those of them that are over.
-static double time_left(const Making *making)
+static double tune_runs_time_left(const Making *making)
 {
     const TuneRuns *runs = making->runs;
     if (runs->choose != NULL) {
@@ -62,10 +63,10 @@ static double time_left(const Making *making)
            (double)making->taken;
 }
 
-static bool wait(void *owner)
+static bool tune_runs_wait(void *owner)
 {
     const Making *making = owner;
-    making->search->wait(making->runs->doing, time_left(making), making->search->context);
+    making->search->wait(making->runs->doing, tune_runs_time_left(making), making->search->context);
     return true;
 }
 
@@ -79,9 +80,9 @@ bool tune_runs_make(const TuneSearch *search, const TuneRuns *runs, Err *err)
         .work = task_measure,
         .result_size = sizeof(LadderRun),
         .limits = {.time_s = search->time_limit_s, .memory_bytes = TASK_MEMORY_LIMIT},
-        .next = next,
-        .take = take,
-        .wait = wait,
+        .next = tune_runs_next,
+        .take = tune_runs_take,
+        .wait = tune_runs_wait,
         .owner = making,
     };
     const bool is_done = pool_run(&pool, err);
@@ -96,7 +97,7 @@ bool tune_runs_make(const TuneSearch *search, const TuneRuns *runs, Err *err)
 // reference's contacts, as `map` has them, and for the hardest impact. What they are worth in the
 // whole mechanism is not derived but run.
 
-static void apply_scheme(void *owner, size_t number, Scenario *scenario)
+static void tune_runs_apply_scheme(void *owner, size_t number, Scenario *scenario)
 {
     const Tune *tune = owner;
     tune_apply(&tune->schemes[number], tune->held_s, scenario);
@@ -110,7 +111,7 @@ static void take_scheme(void *tune, size_t number, const LadderRun *run)
 bool tune_held_run(const TuneSearch *search, Err *err)
 {
     const TuneRuns runs = {"running all schemes at the step", search->tune->scheme_count,
-                           apply_scheme, take_scheme, .owner = search->tune};
+                           tune_runs_apply_scheme, take_scheme, .owner = search->tune};
     return tune_runs_make(search, &runs, err);
 }
 
@@ -122,7 +123,7 @@ static void watch_run(double share, double wall_s, void *context)
     search->wait("measuring the contacts", INFINITY, search->context);
 }
 
-static void add_settings(Tune *tune, TuneLinearSource source, const Held *held)
+static void tune_runs_add_settings(Tune *tune, TuneLinearSource source, const Held *held)
 {
     for (size_t i = 0; i < HELD_MAP_COUNT; i++) {
         const HeldSetting *setting = &held->settings[i];
@@ -154,7 +155,7 @@ static void add_impact(const TuneSearch *search, const MappingJoint *joint, doub
         mapping_contact_make(search->scenario, joint, mass, closing, contact, &ignored)) {
         search->wait("finding constants for the step", INFINITY, search->context);
         held_find(contact, search->tune->held_s, held);
-        add_settings(search->tune, source, held);
+        tune_runs_add_settings(search->tune, source, held);
     }
     free(held);
     free(contact);

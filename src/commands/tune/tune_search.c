@@ -219,7 +219,7 @@ static bool is_too_long(const Pass *pass, size_t scheme)
 
 // The scheme of the pass whose next setting is the cheapest, or TUNE_NONE; ends those that are
 // done.
-static int choose(const Pass *pass)
+static int tune_search_choose(const Pass *pass)
 {
     Tune *tune = pass->search->tune;
     const double best = best_cost(tune, pass);
@@ -251,7 +251,7 @@ static int choose(const Pass *pass)
 static bool choose_next(void *owner, size_t *number)
 {
     const Pass *pass = owner;
-    const int chosen = choose(pass);
+    const int chosen = tune_search_choose(pass);
     if (chosen != TUNE_NONE) {
         pass->search->tune->schemes[chosen].is_busy = true;
         *number = (size_t)chosen;
@@ -294,7 +294,7 @@ static Pass plain_pass(const TuneSearch *search)
 }
 
 // With the plain rows that come after it, where none of them has met the target by then.
-static double time_left(void *owner)
+static double tune_search_time_left(void *owner)
 {
     const Pass *pass = owner;
     const Tune *tune = pass->search->tune;
@@ -315,7 +315,7 @@ static bool run_pass(Pass *pass, const char *doing, Err *err)
                            .take = take_next,
                            .owner = pass,
                            .choose = choose_next,
-                           .left = time_left};
+                           .left = tune_search_time_left};
     return tune_runs_make(pass->search, &runs, err);
 }
 
@@ -451,7 +451,7 @@ static bool time_finalists(const TuneSearch *search, Err *err)
 }
 
 // Whether the target can be told from the reference's uncertainty.
-static bool check_target(const Tune *tune, Err *err)
+static bool tune_search_check_target(const Tune *tune, Err *err)
 {
     const LadderTruth *truth = &tune->truth;
     if (truth->message[0] != '\0') {
@@ -494,7 +494,7 @@ static bool search_cheapest(const TuneSearch *search, Err *err)
     return is_done && tune_reference_run(search, err);
 }
 
-static void wait_for_truth(const char *doing, void *context)
+static void tune_search_wait_for_truth(const char *doing, void *context)
 {
     const TuneSearch *search = context;
     search->wait(doing, INFINITY, search->context);
@@ -508,14 +508,14 @@ bool tune_search_execute(const TuneSearch *asked, Err *err)
     search.truth = &truth;
     const TruthChild work = {.scenario = asked->scenario,
                              .run_limit_s = asked->time_limit_s,
-                             .wait = wait_for_truth,
+                             .wait = tune_search_wait_for_truth,
                              .context = &search};
     const double started_s = clock_now_s();
     bool is_done = truth_child_make(&work, &truth, err);
     if (is_done) {
         tune->truth = ladder_truth_of(&truth, clock_now_s() - started_s);
     }
-    is_done = is_done && check_target(tune, err) &&
+    is_done = is_done && tune_search_check_target(tune, err) &&
               (tune->held_s > 0.0 ? search_held(&search, err) : search_cheapest(&search, err)) &&
               tune_linear_run(&search, err);
     truth_finish(&truth);

@@ -12,7 +12,7 @@
 // its uncertainty.
 bool tune_search_execute(const TuneSearch *search, Err *err);
 
-// What would the reference cost for the error asked for, without ODE?
+// The cost of the reference for the error asked for, without ODE.
 
 // Appends the tolerance, its error, its cost beside the cheapest setting's, and its keys; nothing
 // where there is none.

@@ -44,7 +44,7 @@ static void append_longest(const Tune *tune, Text *text)
     }
 }
 
-static void write_longest(const TuneReport *report, Text *text)
+static void tune_text_write_longest(const TuneReport *report, Text *text)
 {
     const Tune *tune = report->tune;
     const TuneTrial *longest = tune_best(tune, tune->winner);
@@ -79,7 +79,7 @@ static void tune_held_text_scheme_row(const Tune *tune, const TuneTrial *trial, 
 }
 
 // Why the runs at the step that failed did, each reason once.
-static void write_reasons(const Tune *tune, Text *text)
+static void tune_text_write_reasons(const Tune *tune, Text *text)
 {
     for (size_t i = 0; i < tune->trial_count; i++) {
         const TuneTrial *trial = &tune->trials[i];
@@ -114,7 +114,7 @@ static void tune_held_text_write_schemes(const Tune *tune, const Style *style, T
         }
     }
     section_end(table, text);
-    write_reasons(tune, text);
+    tune_text_write_reasons(tune, text);
 }
 
 // Appends the best setting at the step, whether it meets the error, the longest step that does
@@ -131,7 +131,7 @@ static void tune_held_text_answer(const TuneReport *report, const Style *style, 
         text_append(text, "  none\n");
     }
     if (!tune_is_met_held(tune)) {
-        write_longest(report, text);
+        tune_text_write_longest(report, text);
     }
     tune_held_text_write_schemes(tune, style, text);
 }
@@ -267,7 +267,7 @@ static void write_asked(const Tune *tune, Text *text)
     text_append(text, "; the least %s\n", tune->cost == TUNE_STEPS ? "world steps" : "time");
 }
 
-static void write_head(const TuneReport *report, const Style *style, Text *text)
+static void tune_text_write_head(const TuneReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
     const Tune *tune = report->tune;
@@ -490,7 +490,7 @@ void tune_text_write(const void *target, const Style *style, Text *text)
 {
     const TuneReport *report = target;
     const bool is_held = report->tune->held_s > 0.0;
-    write_head(report, style, text);
+    tune_text_write_head(report, style, text);
     if (is_held) {
         tune_held_text_answer(report, style, text);
     } else {

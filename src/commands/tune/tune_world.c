@@ -69,7 +69,7 @@ static void write_plain(const char *name, Text *text)
 }
 
 // Whether two names are one where all but letters and digits is one sign.
-static bool are_alike(const char *a, const char *b)
+static bool tune_world_are_alike(const char *a, const char *b)
 {
     Text first;
     Text second;
@@ -86,7 +86,7 @@ static bool are_alike(const char *a, const char *b)
 
 typedef enum Named { BODIES, JOINTS } Named;
 
-static const char *name_of(const Linkage *linkage, Named named, int number)
+static const char *tune_world_name_of(const Linkage *linkage, Named named, int number)
 {
     return named == BODIES ? linkage->bodies[number].name : linkage->joints[number].name;
 }
@@ -95,10 +95,10 @@ static const char *name_of(const Linkage *linkage, Named named, int number)
 static void write_unique(const Linkage *linkage, Named named, int number, Text *text)
 {
     const size_t count = named == BODIES ? linkage->body_count : linkage->joint_count;
-    const char *name = name_of(linkage, named, number);
+    const char *name = tune_world_name_of(linkage, named, number);
     write_plain(name, text);
     for (int i = 0; i < (int)count; i++) {
-        if (i != number && are_alike(name_of(linkage, named, i), name)) {
+        if (i != number && tune_world_are_alike(tune_world_name_of(linkage, named, i), name)) {
             text_append(text, "_%d", number);
             return;
         }
@@ -221,8 +221,8 @@ static void tune_world_joints_write_point(const char *name, const char *field, V
 }
 
 // The contact of a struct of which `name` is a member that is a contact.
-static bool write_contact(const Scenario *scenario, const Joint *joint, const char *name,
-                          Text *text, Err *err)
+static bool tune_world_write_contact(const Scenario *scenario, const Joint *joint, const char *name,
+                                     Text *text, Err *err)
 {
 #define WRITTEN_DAMPING(name, word, factor) "JP_DAMPING_" #name,
     static const char *const DAMPINGS[] = {OPTIONS_DAMPING_LIST(WRITTEN_DAMPING)};
@@ -290,7 +290,7 @@ static void end_made(Made *made, const Linkage *linkage, int joint, const char *
     text_finish(&made->on);
 }
 
-static bool write_pin(const Scenario *scenario, int number, Text *text, Err *err)
+static bool tune_world_write_pin(const Scenario *scenario, int number, Text *text, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     const Joint *joint = &linkage->joints[number];
@@ -303,7 +303,7 @@ static bool write_pin(const Scenario *scenario, int number, Text *text, Err *err
                                   tune_world_local(linkage, joint->body_a, joint->anchor_a), text);
     tune_world_joints_write_point(pin, "pin",
                                   tune_world_local(linkage, joint->body_b, joint->anchor_b), text);
-    const bool is_done = write_contact(scenario, joint, made.contact.data, text, err);
+    const bool is_done = tune_world_write_contact(scenario, joint, made.contact.data, text, err);
     if (contact.friction > 0.0) {
         write_field(pin, "friction", contact.friction, "", text);
         write_field(pin, "friction_speed", contact.friction_speed, "m/s", text);
@@ -316,7 +316,7 @@ static bool write_pin(const Scenario *scenario, int number, Text *text, Err *err
 }
 
 // Flanks with a gap, or stops, on an ideal joint of ODE.
-static bool write_limits(const Scenario *scenario, int number, Text *text, Err *err)
+static bool tune_world_write_limits(const Scenario *scenario, int number, Text *text, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     const Joint *joint = &linkage->joints[number];
@@ -336,7 +336,7 @@ static bool write_limits(const Scenario *scenario, int number, Text *text, Err *
         write_field(limits, "low", joint->limits.low - start, unit, text);
         write_field(limits, "high", joint->limits.high - start, unit, text);
     }
-    const bool is_done = write_contact(scenario, joint, made.contact.data, text, err);
+    const bool is_done = tune_world_write_contact(scenario, joint, made.contact.data, text, err);
     tune_world_joint(linkage, number, &made.on);
     end_made(&made, linkage, number, what, text);
     return is_done;
@@ -348,9 +348,9 @@ static bool tune_world_play(const Scenario *scenario, int joint, Text *text, Err
 {
     const Joint *of = &scenario->linkage.joints[joint];
     if (of->kind == JOINT_CLEARANCE) {
-        return write_pin(scenario, joint, text, err);
+        return tune_world_write_pin(scenario, joint, text, err);
     }
-    return of->limits.kind == LIMIT_NONE || write_limits(scenario, joint, text, err);
+    return of->limits.kind == LIMIT_NONE || tune_world_write_limits(scenario, joint, text, err);
 }
 
 // Springs, dampers and drives in a world of ODE that libjointplay steps.
@@ -377,7 +377,8 @@ bool tune_world_pushes(const Linkage *linkage)
     return is_any;
 }
 
-static void write_table(const char *name, const TimeTable *table, const char *unit, Text *text)
+static void tune_world_write_table(const char *name, const TimeTable *table, const char *unit,
+                                   Text *text)
 {
     text_append(text, "\nstatic const double %s[][2] = { // s, %s\n   ", name, unit);
     for (size_t i = 0; i < table->count; i++) {
@@ -430,7 +431,7 @@ static void tune_world_forces_write_point(const Linkage *linkage, int body, Vec2
     text_append(text, ", %s, %s, ", number_shortest(local.x).text, number_shortest(local.y).text);
 }
 
-static void write_springs(const Linkage *linkage, Text *text)
+static void tune_world_write_springs(const Linkage *linkage, Text *text)
 {
     for (size_t i = 0; i < linkage->spring_count; i++) {
         const Spring *spring = &linkage->springs[i];
@@ -473,7 +474,7 @@ static void write_torsions(const Linkage *linkage, Text *text)
     }
 }
 
-static void write_torque(const Linkage *linkage, Text *text)
+static void tune_world_write_torque(const Linkage *linkage, Text *text)
 {
     const Torque *torque = &linkage->torque;
     if (torque->table.count == 0) {
@@ -491,11 +492,11 @@ static void tune_world_push(const Linkage *linkage, Text *text)
     const TimeTable *speeds = &linkage->driver.speeds;
     const TimeTable *torques = &linkage->torque.table;
     if (speeds->count > 0) {
-        write_table("DRIVE", speeds, "rad/s", text);
+        tune_world_write_table("DRIVE", speeds, "rad/s", text);
     }
     if (torques->count > 0) {
         const bool is_hinge = linkage->joints[linkage->torque.joint].kind == JOINT_REVOLUTE;
-        write_table("DRIVE", torques, is_hinge ? "N m" : "N", text);
+        tune_world_write_table("DRIVE", torques, is_hinge ? "N m" : "N", text);
         text_append(text, "static double middle; // s, of the step under way\n");
     }
     text_append(text, "%s", speeds->count + torques->count > 0 ? AT : "");
@@ -509,9 +510,9 @@ static void tune_world_push(const Linkage *linkage, Text *text)
         text_append(text, "\n// where the step evaluates forces\n"
                           "static void push(dWorldID pushed, void *data)\n{\n"
                           "    (void)pushed;\n    (void)data;\n");
-        write_springs(linkage, text);
+        tune_world_write_springs(linkage, text);
         write_torsions(linkage, text);
-        write_torque(linkage, text);
+        tune_world_write_torque(linkage, text);
         text_append(text, "}\n");
     }
 }
@@ -672,7 +673,7 @@ static void write_includes(const Scenario *scenario, Text *text)
 }
 
 // The bodies and joints, which main makes.
-static void write_names(const Linkage *linkage, Text *text)
+static void tune_world_write_names(const Linkage *linkage, Text *text)
 {
     text_append(text, "static dBodyID ");
     for (int i = 0; i < (int)linkage->body_count; i++) {
@@ -760,7 +761,7 @@ static void write_functions(const Scenario *scenario, Text *text)
     text_append(text, "%s%s", CHECK, PRINT_ROW);
 }
 
-static void write_body(const Linkage *linkage, int number, Text *text)
+static void tune_world_write_body(const Linkage *linkage, int number, Text *text)
 {
     const Body *body = &linkage->bodies[number];
     const bool is_led = tune_world_is_led(linkage, number);
@@ -793,7 +794,7 @@ static void write_world(const Scenario *scenario, Text *text)
                 number_shortest(0.0 - scenario->gravity).text,
                 number_shortest(is_plain ? scenario->ode.erp : TUNE_WORLD_ERP).text);
     for (int i = 0; i < (int)linkage->body_count; i++) {
-        write_body(linkage, i, text);
+        tune_world_write_body(linkage, i, text);
     }
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         tune_world_ideal(linkage, i, text);
@@ -801,7 +802,7 @@ static void write_world(const Scenario *scenario, Text *text)
     tune_world_motors(linkage, text);
 }
 
-static bool write_play(const Scenario *scenario, Text *text, Err *err)
+static bool tune_world_write_play(const Scenario *scenario, Text *text, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     const OdeOptions *ode = &scenario->ode;
@@ -930,10 +931,10 @@ bool tune_world_write(const TuneCode *code, Text *text, Err *err)
     }
     text_append(text, "\n");
     write_includes(scenario, text);
-    write_names(linkage, text);
+    tune_world_write_names(linkage, text);
     write_functions(scenario, text);
     write_world(scenario, text);
-    if (!write_play(scenario, text, err)) {
+    if (!tune_world_write_play(scenario, text, err)) {
         return false;
     }
     write_list(linkage, text);
