@@ -29,7 +29,7 @@
 
 enum { POWERS = 2 }; // lost in damping and in friction
 
-static const double MIDDLES[2] = {1.0 / 2.0, 2.0 / 5.0};
+static const double MIDDLE_SHARES[2] = {1.0 / 2.0, 2.0 / 5.0};
 static const double THETA_MOST[2] = {2.2, 1.0};
 static const double ERROR_FACTORS[2] = {1.0 / 120.0, 1.0 / 3600.0};
 
@@ -40,9 +40,9 @@ static const double EXTEND_MOST = 10.0;
 
 // of the force of the impact that a contact began with, a share by which its errors are judged as
 // long as it lasts: what is left of that impact's own errors is as large
-static const double REMEMBERED = 1.0;
+static const double IMPACT_FORCE_SHARE = 1.0;
 
-static const double STEP_SAFETY = 0.85;
+static const double EXPLICIT_SAFETY = 0.85;
 
 // The integrals of the moments a time after a point.
 static void add_second(const Kernel *kernel, const KernelPoint *from, double since_s,
@@ -126,7 +126,7 @@ void kernel_explicit_step(Kernel *kernel, const KernelPoint *from, int order, do
 {
     step->order = order;
     step->width_s = width_s;
-    step->middle = MIDDLES[order - 4];
+    step->middle = MIDDLE_SHARES[order - 4];
     step->inside = &kernel->work->inside;
     find_middle_point(kernel, from, step->middle * width_s, step->inside);
     kernel_rates_find(kernel, step->inside);
@@ -226,7 +226,7 @@ double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const Ker
         const double allowed =
             contact->tolerance *
             fmax(contact->force_per_speed *
-                     fmax(fabs(pose.approach_speed), REMEMBERED * contact->impact_speed),
+                     fmax(fabs(pose.approach_speed), IMPACT_FORCE_SHARE * contact->impact_speed),
                  vec2_length((Vec2){force[0], force[1]}));
         // error over what is allowed, of either order at this length
         const double theta = fastest * h;
@@ -238,7 +238,7 @@ double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const Ker
         worst = own <= worst ? worst : own; // a NaN must show
         const double shares[2] = {1.0 / sqrt(sqrt(errors[0])), pow(errors[1], -1.0 / 5.0)};
         for (int k = 0; k < 2; k++) {
-            const double wanted_s = STEP_SAFETY * shares[k] * h;
+            const double wanted_s = EXPLICIT_SAFETY * shares[k] * h;
             longest_s[k] = fmin(longest_s[k], fmin(wanted_s, THETA_MOST[k] / frequency));
         }
     }

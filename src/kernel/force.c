@@ -36,7 +36,7 @@
 #include <string.h>
 
 // rows of a kernel from which on all are worked out together
-enum { WIDE = 8 };
+enum { ROWS_TOGETHER_LEAST = 8 };
 
 // The pose of a contact at a point from rows that were found together.
 static void pose_by_rows(const Kernel *kernel, size_t contact, KernelKnownPose *known)
@@ -145,7 +145,7 @@ static void find_touch(const Kernel *kernel, const KernelPoint *point, size_t co
 void kernel_force_find_touching(Kernel *kernel, const KernelPoint *point, double *force,
                                 double powers[2], KernelTouch *touching)
 {
-    const bool is_wide = kernel->row_count >= WIDE;
+    const bool is_wide = kernel->row_count >= ROWS_TOGETHER_LEAST;
     bool is_any = false;
     powers[0] = powers[1] = 0.0;
     for (size_t i = 0; i < kernel->contact_count; i++) {
@@ -289,12 +289,12 @@ static void write_slopes(KernelSlopes *slopes, size_t row, double force, const G
 }
 
 // Friction's force, taken from the pin: along the tangent, and along its axis; with gradients.
-typedef struct Held {
+typedef struct FrictionRows {
     double round;
     double axial;
     Gradient by_round;
     Gradient by_axial;
-} Held;
+} FrictionRows;
 
 // How fast the pin slides along its axis, and how that changes.
 static double find_axial(const KernelContact *contact, const PinHole *pose, const double *speeds,
@@ -322,7 +322,7 @@ static double find_axial(const KernelContact *contact, const PinHole *pose, cons
 // Friction against a sliding that has two directions.
 static void find_both(const KernelContact *contact, double round, const Gradient *by_round,
                       double axial, const Gradient *by_axial, double normal,
-                      const Gradient *by_normal, Held *held)
+                      const Gradient *by_normal, FrictionRows *held)
 {
     const KernelGrip grip = kernel_friction_grip(hypot(round, axial), contact->law.friction_speed);
     const double share = grip.share;
@@ -360,7 +360,7 @@ static double find_round(const KernelContact *contact, const PinHole *pose, cons
 }
 
 static void find_friction(const KernelContact *contact, const PinHole *pose, const double *speeds,
-                          double normal, const Gradient *by_normal, Held *held)
+                          double normal, const Gradient *by_normal, FrictionRows *held)
 {
     Gradient by_sliding;
     const double sliding = find_round(contact, pose, speeds, &by_sliding);
@@ -379,7 +379,7 @@ static void find_friction(const KernelContact *contact, const PinHole *pose, con
 }
 
 // The rows of the bodies' turns about the pin's axis.
-static void write_turns(const KernelContact *contact, const PinHole *pose, const Held *held,
+static void write_turns(const KernelContact *contact, const PinHole *pose, const FrictionRows *held,
                         KernelSlopes *slopes)
 {
     const Vec2 still = {0.0, 0.0};
@@ -394,7 +394,7 @@ static void write_turns(const KernelContact *contact, const PinHole *pose, const
 }
 
 // The rows that friction along the axis acts in.
-static void write_axial(const KernelContact *contact, const PinHole *pose, const Held *held,
+static void write_axial(const KernelContact *contact, const PinHole *pose, const FrictionRows *held,
                         KernelSlopes *slopes)
 {
     const Vec2 still = {0.0, 0.0};
@@ -444,7 +444,7 @@ void kernel_slopes_find(const Kernel *kernel, size_t number, double time_s, cons
     const Vec2 still = {0.0, 0.0};
     const double n[2] = {pose.normal.x, pose.normal.y};
     const double t[2] = {tangent.x, tangent.y};
-    Held held = {.round = 0.0};
+    FrictionRows held = {.round = 0.0};
     // a wall that pulls rubs on nothing
     if (contact->has_friction && normal > 0.0) {
         find_friction(contact, &pose, speeds, normal, &by_normal, &held);
@@ -497,7 +497,7 @@ static inline Rated rated_hold(Rated sliding, double speed)
 
 // What is known of a contact that touches: rows' speeds and accelerations, directions, and what
 // presses.
-typedef struct Moving {
+typedef struct MovingContact {
     const KernelContact *contact;
     Rated speed[KERNEL_ROWS_MOST];
     Rated normal[2];  // the direction of the force on the pin
@@ -506,26 +506,26 @@ typedef struct Moving {
     Rated pressing;   // N
     double *force;    // of its rows
     double *rate;
-} Moving;
+} MovingContact;
 
 static inline Rated directed(const Rated direction[2], const Rated vector[2])
 {
     return rated_plus(rated_times(direction[0], vector[0]), rated_times(direction[1], vector[1]));
 }
 
-static void push_row(Moving *moving, size_t row, Rated force)
+static void push_row(MovingContact *moving, size_t row, Rated force)
 {
     moving->force[row] += force.value;
     moving->rate[row] += force.rate;
 }
 
-static Rated rows_along(const Moving *moving, const Rated direction[2], size_t row)
+static Rated rows_along(const MovingContact *moving, const Rated direction[2], size_t row)
 {
     return directed(direction, moving->speed + row);
 }
 
 // Friction of a pin in space, round its axis and along it; returns the power it takes.
-static Rated rate_space_friction(Moving *moving, Rated round, Rated *held)
+static Rated rate_space_friction(MovingContact *moving, Rated round, Rated *held)
 {
     const double hole_arm = moving->contact->hole_radius;
     const Rated by_hole =
@@ -551,7 +551,7 @@ static Rated rate_space_friction(Moving *moving, Rated round, Rated *held)
 }
 
 // Adds friction to the rows; returns the power it takes.
-static Rated rate_friction(Moving *moving)
+static Rated rate_friction(MovingContact *moving)
 {
     const KernelContact *contact = moving->contact;
     const Rated grip = rated_scale(contact->law.friction, moving->pressing);
@@ -604,7 +604,7 @@ static Rated rate_pressing(const KernelContact *contact, const KernelTouch *touc
 }
 
 // Directions, arms and pressing of a contact from its pose.
-static Rated find_pressing(Moving *moving, const KernelTouch *touch)
+static Rated find_pressing(MovingContact *moving, const KernelTouch *touch)
 {
     const PinHole *pose = &touch->pose;
     const Rated *v = moving->speed;
@@ -628,7 +628,7 @@ static Rated find_pressing(Moving *moving, const KernelTouch *touch)
 }
 
 // Adds what a contact that touches presses and rubs with to its rows, which are empty.
-static void rate_contact(Moving *moving, const KernelTouch *touch, KernelPoint *point)
+static void rate_contact(MovingContact *moving, const KernelTouch *touch, KernelPoint *point)
 {
     const Rated damped = find_pressing(moving, touch);
     point->powers[0] += damped.value;
@@ -648,7 +648,7 @@ static void rate_contact(Moving *moving, const KernelTouch *touch, KernelPoint *
 
 // How a contact's rows move under the forces.
 static void find_moving(const Kernel *kernel, const KernelPoint *point, const double *forces,
-                        const KernelTouch *touch, Moving *moving)
+                        const KernelTouch *touch, MovingContact *moving)
 {
     const size_t first = moving->contact->first_row;
     for (size_t k = 0; k < moving->contact->row_count; k++) {
@@ -671,7 +671,7 @@ void kernel_rates_find(Kernel *kernel, KernelPoint *point)
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
         if (contact->is_touching) {
-            Moving moving = {
+            MovingContact moving = {
                 .contact = contact,
                 .force = point->force + contact->first_row,
                 .rate = point->rate + contact->first_row,

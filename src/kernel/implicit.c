@@ -54,7 +54,7 @@ typedef struct ImplicitStages {
     double *changes[2];
 } ImplicitStages;
 
-static const double ROUNDINGS = 8.0 * 0x1p-52; // of what a depth is the difference of
+static const double DEPTH_ROUNDINGS = 8.0 * 0x1p-52; // of what a depth is the difference of
 
 // By how much impulses move the rows of a contact.
 static void move_rows(const Kernel *kernel, size_t contact, const double *impulse, double *moved)
@@ -86,9 +86,9 @@ double kernel_depth_rounding(const Kernel *kernel, size_t contact, double time_s
 {
     const KernelContact *of = &kernel->contacts[contact];
     if (of->shape != KERNEL_LINE) {
-        return ROUNDINGS * fabs(of->radial_clearance);
+        return DEPTH_ROUNDINGS * fabs(of->radial_clearance);
     }
-    return ROUNDINGS *
+    return DEPTH_ROUNDINGS *
            (fabs(kernel->position[of->first_row]) + time_s * fabs(kernel->speed[of->first_row]));
 }
 
@@ -146,7 +146,8 @@ static double error_share(const Kernel *kernel, const KernelPoint *from, double 
 
 enum {
     NEWTON_MOST = 12,
-    DENSE = 64, // rows up to which the equations are solved stage by stage, as one dense matrix
+    DENSE_ROWS_MOST =
+        64, // rows up to which the equations are solved stage by stage, as one dense matrix
 };
 
 // clang-format off
@@ -160,12 +161,13 @@ static const double STAGE_WEIGHT[STAGES][STAGES] = {
 // clang-format on
 
 // of the error that is allowed: what is left after that change is about its square
-static const double SOLVED = 1e-2;
+static const double NEWTON_LEFT_MOST = 1e-2;
 
-static const double FROM_DEPTH = 0.5; // of the depth at the start, a smooth force goes on linearly
+static const double LINEAR_DEPTH_SHARE =
+    0.5; // of the depth at the start, a smooth force goes on linearly
 
 // Gives the kernel its stages.
-static void stages_create(Kernel *kernel)
+static void create_stages(Kernel *kernel)
 {
     const size_t rows = kernel_rows(kernel);
     ImplicitStages *stages = kernel->stages = zeroed(1, sizeof *stages);
@@ -185,7 +187,7 @@ static void stages_create(Kernel *kernel)
     }
 }
 
-static void stages_destroy(ImplicitStages *stages)
+static void destroy_stages(ImplicitStages *stages)
 {
     if (stages == NULL) {
         return;
@@ -212,7 +214,7 @@ static void stages_destroy(ImplicitStages *stages)
 // The number of an unknown: of few rows stage by stage, of many all stages of a row together.
 static size_t unknown(const ImplicitStages *stages, size_t stage, size_t row)
 {
-    return stages->count <= DENSE ? stage * stages->count + row : row * STAGES + stage;
+    return stages->count <= DENSE_ROWS_MOST ? stage * stages->count + row : row * STAGES + stage;
 }
 
 static void list_rows(const Kernel *kernel, ImplicitStages *stages, const KernelPoint *from)
@@ -221,7 +223,7 @@ static void list_rows(const Kernel *kernel, ImplicitStages *stages, const Kernel
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const PinHole pose =
             kernel_motion_pose(kernel, i, from->time_s, from->impulse, from->moment);
-        stages->from_depth[i] = FROM_DEPTH * fmax(pose.penetration, 0.0);
+        stages->from_depth[i] = LINEAR_DEPTH_SHARE * fmax(pose.penetration, 0.0);
     }
     for (size_t i = 0; i < kernel_rows(kernel); i++) {
         if (kernel->contacts[kernel->contact_of[i]].is_touching) {
@@ -233,7 +235,7 @@ static void list_rows(const Kernel *kernel, ImplicitStages *stages, const Kernel
 static void shape_slopes(const Kernel *kernel, ImplicitStages *stages, size_t which)
 {
     // rows of one contact differ in what is in their reach
-    const size_t most = stages->count <= DENSE ? stages->count : kernel->reach;
+    const size_t most = stages->count <= DENSE_ROWS_MOST ? stages->count : kernel->reach;
     banded_shape(&stages->by_impulse[which], stages->count, most + KERNEL_ROWS_MOST);
     banded_shape(&stages->by_moment[which], stages->count, most + KERNEL_ROWS_MOST);
 }
@@ -457,7 +459,7 @@ static bool iterate_stages(Kernel *kernel, ImplicitStages *stages, const KernelP
             return false;
         }
         const double size = correct_stages(kernel, stages, from, width_s);
-        if (size <= SOLVED) {
+        if (size <= NEWTON_LEFT_MOST) {
             return true;
         }
         if (!(size < INFINITY)) {
@@ -499,7 +501,7 @@ static bool is_pressing(const Kernel *kernel, const ImplicitStages *stages, cons
 
 // Solves for the stages of a step of a length, s, from a completed point. Returns false where
 // Newton's method does not get there.
-static bool stages_solve(Kernel *kernel, ImplicitStages *stages, const KernelPoint *from,
+static bool solve_stages(Kernel *kernel, ImplicitStages *stages, const KernelPoint *from,
                          double width_s)
 {
     list_rows(kernel, stages, from);
@@ -521,15 +523,15 @@ static const double EIGENVALUE = 0.27488882959568;
 // clang-format on
 
 // of what is stable: where the damping stops the pin, explicit steps have to follow that
-static const double SETTLES = 0.01;
+static const double OVERDAMPED_SHARE = 0.01;
 
-static const double SAFETY = 0.9; // of the step that would have just the error allowed
+static const double IMPLICIT_SAFETY = 0.9; // of the step that would have just the error allowed
 static const double SHRINK_MOST = 0.1;
 static const double GROW_MOST = 6.0;
 
 void kernel_implicit_finish(Kernel *kernel)
 {
-    stages_destroy(kernel->stages);
+    destroy_stages(kernel->stages);
     kernel->stages = NULL;
 }
 
@@ -547,7 +549,7 @@ bool kernel_implicit_is_needed(const Kernel *kernel, const KernelPoint *point, d
         // as deep as the step leads
         const double depth = fmax(pose.penetration, 0.0) + width_s * fmax(pose.approach_speed, 0.0);
         const double decays = kernel_force_decay(kernel, i, pose.normal, depth) * width_s;
-        if (decays > (contact->is_overdamped ? SETTLES : 1.0) * kernel->stable) {
+        if (decays > (contact->is_overdamped ? OVERDAMPED_SHARE : 1.0) * kernel->stable) {
             return true;
         }
     }
@@ -639,10 +641,10 @@ double kernel_implicit_step(Kernel *kernel, const KernelPoint *from, double widt
                             KernelPoint *to)
 {
     if (kernel->stages == NULL) {
-        stages_create(kernel);
+        create_stages(kernel);
     }
     ImplicitStages *stages = kernel->stages;
-    const bool is_solved = stages_solve(kernel, stages, from, width_s);
+    const bool is_solved = solve_stages(kernel, stages, from, width_s);
     kernel_point_begin(kernel, to, from->time_s + width_s);
     const size_t rows = kernel_rows(kernel);
     memcpy(to->impulse, stages->impulse[STAGES - 1], rows * sizeof *to->impulse);
@@ -659,7 +661,7 @@ double kernel_implicit_step(Kernel *kernel, const KernelPoint *from, double widt
 
 double kernel_implicit_next(double width_s, double error)
 {
-    return width_s * fmin(GROW_MOST, fmax(SHRINK_MOST, SAFETY * pow(error, -0.25)));
+    return width_s * fmin(GROW_MOST, fmax(SHRINK_MOST, IMPLICIT_SAFETY * pow(error, -0.25)));
 }
 
 void kernel_implicit_settled(const Kernel *kernel, double *force)

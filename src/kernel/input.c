@@ -29,7 +29,7 @@ void kernel_track_clear(KernelTrack *track)
 }
 
 // The first of the times behind one, or the last before it, by its number; `count` where none is.
-static size_t track_find(const double *times, size_t count, double time_s, bool is_before)
+static size_t find_time(const double *times, size_t count, double time_s, bool is_before)
 {
     size_t low = 0;
     size_t high = count;
@@ -45,7 +45,7 @@ static size_t track_find(const double *times, size_t count, double time_s, bool 
 }
 
 // Whether a time lies behind a node and before the next one.
-static bool track_is_behind(const KernelTrack *track, size_t node, double time_s, bool is_before)
+static bool is_behind_node(const KernelTrack *track, size_t node, double time_s, bool is_before)
 {
     const double *times = track->times + node;
     if (node + 1 >= track->count) {
@@ -59,8 +59,8 @@ void kernel_track_at(const KernelTrack *track, double time_s, bool is_before, si
                      double *impulse, double *moment, double *force)
 {
     const size_t rows = track->rows;
-    if (!track_is_behind(track, *begin, time_s, is_before)) {
-        const size_t behind = track_find(track->times, track->count, time_s, is_before);
+    if (!is_behind_node(track, *begin, time_s, is_before)) {
+        const size_t behind = find_time(track->times, track->count, time_s, is_before);
         *begin = behind > 0 ? behind - 1 : 0;
     }
     const size_t node = *begin;
@@ -82,20 +82,20 @@ void kernel_track_at(const KernelTrack *track, double time_s, bool is_before, si
 
 double kernel_track_stop(const KernelTrack *track, double after_s)
 {
-    const size_t at = track_find(track->stops, track->stop_count, after_s, false);
+    const size_t at = find_time(track->stops, track->stop_count, after_s, false);
     return at < track->stop_count ? track->stops[at] : INFINITY;
 }
 
 double kernel_track_node(const KernelTrack *track, double after_s)
 {
-    const size_t at = track_find(track->times, track->count, after_s, false);
+    const size_t at = find_time(track->times, track->count, after_s, false);
     return at < track->count ? track->times[at] : INFINITY;
 }
 
 // The largest change of an impulse from the track to what the kernel has now, and the largest
 // impulse of both, N s.
-static double track_change(const KernelTrack *track, const Kernel *kernel, size_t contact,
-                           double *largest)
+static double find_change(const KernelTrack *track, const Kernel *kernel, size_t contact,
+                          double *largest)
 {
     const KernelContact *of = &kernel->contacts[contact];
     double impulse[KERNEL_ROWS_MOST] = {0.0};
@@ -126,7 +126,7 @@ void kernel_track_write(KernelTrack *track, const Kernel *kernel, size_t contact
     const size_t rows = kernel->row_count;
     const size_t count = kernel->node_count;
     double largest;
-    const double change = track_change(track, kernel, contact, &largest);
+    const double change = find_change(track, kernel, contact, &largest);
     const double met = of->frequency > 0.0 && of->impact_speed > 0.0
                            ? of->force_per_speed * of->impact_speed / of->frequency
                            : 0.0;
@@ -156,7 +156,7 @@ void kernel_track_write(KernelTrack *track, const Kernel *kernel, size_t contact
 }
 
 // Forgets what the tracks add.
-static void input_forget(KernelInput *input)
+static void forget_added(KernelInput *input)
 {
     for (size_t i = 0; i < KERNEL_ADDED; i++) {
         input->added[i].time_s = NAN;
@@ -173,7 +173,7 @@ KernelInput *kernel_input_create(size_t rows)
         added->speed = added->position + rows;
         added->acceleration = added->speed + rows;
     }
-    input_forget(input);
+    forget_added(input);
     return input;
 }
 
@@ -194,7 +194,7 @@ void kernel_input_destroy(KernelInput *input)
 void kernel_input_clear(KernelInput *input)
 {
     input->source_count = input->link_count = 0;
-    input_forget(input);
+    forget_added(input);
 }
 
 size_t kernel_input_add(KernelInput *input, const KernelTrack *track)
@@ -234,7 +234,7 @@ void kernel_input_take(KernelInput *input)
         input->versions[i] = input->sources[i]->version;
         input->nodes[i] = 0;
     }
-    input_forget(input);
+    forget_added(input);
 }
 
 // Adds what all tracks do at a time.

@@ -54,7 +54,7 @@ static inline KernelNodeRow kernel_quintic(KernelNodeRow first, KernelNodeRow la
 // and near rest by the series phi = 1 / v_s - s^2 / (3 v_s^3).
 
 // of v_s: sliding below which differences of the closed form would be rounding
-static const double KERNEL_FRICTION_SLOW = 1e-4;
+static const double KERNEL_FRICTION_SERIES_BELOW = 1e-4;
 
 typedef struct KernelHold {
     double held;  // 1
@@ -74,7 +74,7 @@ typedef struct KernelGrip {
 
 static inline KernelGrip kernel_friction_grip(double size, double speed)
 {
-    if (size < KERNEL_FRICTION_SLOW * speed) {
+    if (size < KERNEL_FRICTION_SERIES_BELOW * speed) {
         return (KernelGrip){1.0 / speed, -2.0 / (3.0 * speed * speed * speed)};
     }
     const KernelHold hold = kernel_friction_hold(size, speed);

@@ -41,7 +41,7 @@ static void fill_between(Kernel *kernel, const double *block, size_t a, size_t b
 }
 
 // The number of a contact among sorted ones, or `count`.
-static size_t find_member(const size_t *members, size_t count, size_t member)
+static size_t find_in_island(const size_t *members, size_t count, size_t member)
 {
     size_t low = 0;
     size_t high = count;
@@ -63,7 +63,7 @@ void kernel_fill(Kernel *kernel, const KernelCoupling *coupling, const size_t *m
         for (size_t n = coupling->first_partner[member]; n < coupling->first_partner[member + 1];
              n++) {
             const size_t other = coupling->partners[n];
-            const size_t b = members == NULL ? other : find_member(members, a + 1, other);
+            const size_t b = members == NULL ? other : find_in_island(members, a + 1, other);
             if (b > a) {
                 continue;
             }
@@ -81,7 +81,7 @@ size_t kernel_coupling_reach(const KernelCoupling *coupling, const Kernel *kerne
         for (size_t n = coupling->first_partner[members[a]];
              n < coupling->first_partner[members[a] + 1] && coupling->partners[n] <= members[a];
              n++) {
-            const size_t b = find_member(members, a + 1, coupling->partners[n]);
+            const size_t b = find_in_island(members, a + 1, coupling->partners[n]);
             if (b <= a) {
                 const size_t apart =
                     contact->first_row + contact->row_count - 1 - kernel->contacts[b].first_row;
@@ -94,9 +94,9 @@ size_t kernel_coupling_reach(const KernelCoupling *coupling, const Kernel *kerne
 }
 
 // How fast impulses that vary so in the rows of one contact may make another one at most, m/s; both
-// are contacts of a kernel of all contacts.
-static double coupling_push(const KernelCoupling *coupling, const Kernel *all, size_t from,
-                            const double *variations, size_t to)
+// are numbers among all contacts.
+static double find_push(const KernelCoupling *coupling, const Kernel *all, size_t from,
+                        const double *variations, size_t to)
 {
     const size_t rows = all->contacts[from].row_count;
     const size_t own = all->contacts[to].row_count;
@@ -111,7 +111,7 @@ static double coupling_push(const KernelCoupling *coupling, const Kernel *all, s
 }
 
 // Makes an island of so many of the contacts, which it takes over.
-static KernelIsland *island_make(const KernelIslands *islands, size_t *members, size_t count)
+static KernelIsland *make_island(const KernelIslands *islands, size_t *members, size_t count)
 {
     const Kernel *all = islands->all;
     KernelIsland *island = zeroed(1, sizeof *island);
@@ -131,7 +131,7 @@ static KernelIsland *island_make(const KernelIslands *islands, size_t *members, 
     return island;
 }
 
-static void island_free(KernelIsland *island)
+static void free_island(KernelIsland *island)
 {
     if (island != NULL) {
         kernel_finish(&island->kernel);
@@ -144,7 +144,7 @@ static void island_free(KernelIsland *island)
 }
 
 // Gives an island the state of its contacts at the start of the step.
-static void island_start(const KernelIslands *islands, KernelIsland *island)
+static void start_island(const KernelIslands *islands, KernelIsland *island)
 {
     const Kernel *all = islands->all;
     Kernel *kernel = &island->kernel;
@@ -164,13 +164,13 @@ static void island_start(const KernelIslands *islands, KernelIsland *island)
 }
 
 enum {
-    CLUSTER = 4,        // contacts of a block at most, but for more of one contact
-    ROUNDS_MOST = 40,   // after which an island is run as a whole
+    CLUSTER_CONTACTS_MOST = 4, // contacts of a block at most, but for more of one joint
+    ROUNDS_MOST = 40,          // after which an island is run as a whole
     PATIENCE_LEAST = 3, // steps in which an island is divided before it is tried as a whole again
     PATIENCE_MOST = 15,
 };
 
-// Adds a contact with all of its contact to a cluster, and to the queue.
+// Adds a contact with all others of its joint to a cluster, and to the queue.
 static void cluster_joint(const Kernel *all, size_t member, size_t cluster, size_t *cluster_of,
                           size_t *queue, size_t *queued)
 {
@@ -185,9 +185,9 @@ static void cluster_joint(const Kernel *all, size_t member, size_t cluster, size
     }
 }
 
-// The clusters that contacts are sorted into once and for all: those of one contact, and neighbours
+// The clusters that contacts are sorted into once and for all: those of one joint, and neighbours
 // of neighbours. Owned by the caller.
-static size_t *blocks_cluster(const Kernel *all, const KernelCoupling *coupling)
+static size_t *find_clusters(const Kernel *all, const KernelCoupling *coupling)
 {
     const size_t count = all->contact_count;
     size_t *cluster_of = zeroed(count, sizeof *cluster_of);
@@ -210,7 +210,7 @@ static size_t *blocks_cluster(const Kernel *all, const KernelCoupling *coupling)
                 if (cluster_of[partner] != SIZE_MAX) {
                     continue;
                 }
-                if (queued - begun >= CLUSTER) {
+                if (queued - begun >= CLUSTER_CONTACTS_MOST) {
                     cluster++;
                     begun = queued;
                 }
@@ -244,7 +244,7 @@ static bool choose_divided(KernelIslands *islands)
 }
 
 // Divides islands that are large: of contacts that belong together, those of one cluster stay so.
-static void blocks_divide(KernelIslands *islands)
+static void divide_islands(KernelIslands *islands)
 {
     const KernelCoupling *coupling = &islands->coupling;
     const size_t count = islands->all->contact_count;
@@ -335,7 +335,7 @@ static void connect_block(KernelIslands *islands, KernelIsland *island)
 }
 
 // Connects the islands that are blocks of a larger one with the tracks of the others.
-static void blocks_connect(KernelIslands *islands)
+static void connect_blocks(KernelIslands *islands)
 {
     for (size_t i = 0; i < islands->count; i++) {
         KernelIsland *island = islands->islands[i];
@@ -347,7 +347,7 @@ static void blocks_connect(KernelIslands *islands)
 }
 
 // Begins a step: no track says anything.
-static void blocks_begin(KernelIslands *islands)
+static void begin_blocks(KernelIslands *islands)
 {
     for (size_t i = 0; i < islands->all->contact_count; i++) {
         kernel_track_clear(&islands->tracks[i]);
@@ -441,7 +441,7 @@ static BlocksEnd give_up(KernelIslands *islands)
 }
 
 // Runs the islands that are not run yet, and blocks until they agree.
-static BlocksEnd blocks_run(KernelIslands *islands, RunIsland *run, double duration)
+static BlocksEnd run_blocks(KernelIslands *islands, RunIsland *run, double duration)
 {
     BlocksEnd end = BLOCKS_DONE;
     for (size_t round = 0; round < ROUNDS_MOST; round++) {
@@ -484,9 +484,9 @@ KernelIslands *kernel_islands_create(Kernel *all, const KernelCoupling *coupling
     islands->pushes = zeroed(count, sizeof *islands->pushes);
     islands->leaders = zeroed(count, sizeof *islands->leaders);
     islands->longest_s = zeroed(count, sizeof *islands->longest_s);
-    islands->undivided_most = KERNEL_ISLAND_LARGE;
-    islands->events_most = KERNEL_ISLAND_BUSY;
-    islands->clusters = blocks_cluster(all, coupling);
+    islands->undivided_most = KERNEL_UNDIVIDED_MOST;
+    islands->events_most = KERNEL_UNDIVIDED_EVENTS_MOST;
+    islands->clusters = find_clusters(all, coupling);
     islands->parents = zeroed(count, sizeof *islands->parents);
     islands->is_divided = zeroed(count, sizeof *islands->is_divided);
     islands->is_to_divide = zeroed(count, sizeof *islands->is_to_divide);
@@ -506,7 +506,7 @@ void kernel_islands_destroy(KernelIslands *islands)
         return;
     }
     for (size_t i = 0; i < islands->all->contact_count; i++) {
-        island_free(islands->kept[i]);
+        free_island(islands->kept[i]);
         kernel_track_finish(&islands->tracks[i]);
     }
     free(islands->clusters);
@@ -588,7 +588,7 @@ static bool is_same(const KernelIsland *island, const size_t *members, size_t co
            memcmp(island->members, members, count * sizeof *members) == 0;
 }
 
-// The contacts of a contact are active together: what it does is the sum of what they do, and how
+// The contacts of a joint are active together: what it does is the sum of what they do, and how
 // stiff one is depends on the others.
 static void activate_joints(KernelIslands *islands)
 {
@@ -611,7 +611,7 @@ static void make_islands(KernelIslands *islands)
     const size_t count = islands->all->contact_count;
     activate_joints(islands);
     join_partners(islands);
-    blocks_divide(islands);
+    divide_islands(islands);
     size_t *sizes = number_active(islands);
     size_t **members = zeroed(islands->count, sizeof *members);
     for (size_t i = 0; i < islands->count; i++) {
@@ -627,14 +627,14 @@ static void make_islands(KernelIslands *islands)
         if (is_same(*kept, members[i], sizes[i])) {
             free(members[i]);
         } else {
-            island_free(*kept);
-            *kept = island_make(islands, members[i], sizes[i]);
+            free_island(*kept);
+            *kept = make_island(islands, members[i], sizes[i]);
         }
         islands->islands[i] = *kept;
     }
     free(members);
     free(sizes);
-    blocks_connect(islands);
+    connect_blocks(islands);
 }
 
 // How much the impulses in an island's rows vary in the step.
@@ -664,8 +664,8 @@ static void add_pushes(KernelIslands *islands, const KernelIsland *island)
             const size_t other = coupling->partners[n];
             if (!islands->is_active[other]) {
                 islands->pushes[other] +=
-                    coupling_push(coupling, islands->all, member,
-                                  variations + kernel->contacts[i].first_row, other);
+                    find_push(coupling, islands->all, member,
+                              variations + kernel->contacts[i].first_row, other);
             }
         }
     }
@@ -696,7 +696,7 @@ static void keep_states(KernelIslands *islands, double duration)
     for (size_t i = 0; i < all->contact_count; i++) {
         KernelContact *contact = &all->contacts[i];
         if (islands->kept[i] != NULL && !islands->kept[i]->is_run) {
-            island_free(islands->kept[i]);
+            free_island(islands->kept[i]);
             islands->kept[i] = NULL;
         }
         if (!islands->is_active[i]) {
@@ -718,7 +718,7 @@ static void keep_states(KernelIslands *islands, double duration)
 static bool run_island(KernelIslands *islands, KernelIsland *island, double duration)
 {
     const size_t before = island->kernel.evaluations;
-    island_start(islands, island);
+    start_island(islands, island);
     if (!kernel_run(&island->kernel, duration)) {
         return false;
     }
@@ -737,11 +737,11 @@ bool kernel_islands_run(KernelIslands *islands, double duration)
             islands->kept[i]->is_run = false;
         }
     }
-    blocks_begin(islands);
+    begin_blocks(islands);
     BlocksEnd end;
     do {
         make_islands(islands);
-        end = blocks_run(islands, run_island, duration);
+        end = run_blocks(islands, run_island, duration);
         if (end == BLOCKS_FAILED) {
             return false;
         }

@@ -1,7 +1,7 @@
 // The contact kernel: contacts integrated by themselves, in local steps of their own, within one
 // step of the world. In go the rows of relative motion at the contacts, their mobility and free
-// acceleration; out come impulses, their integrals (moments), peaks of the force, and losses. It
-// knows neither mechanisms nor the engine that moves the bodies.
+// acceleration; out come impulses, their integrals (moments), forces and losses, at nodes between
+// which they can be evaluated. It knows neither mechanisms nor the engine that moves the bodies.
 //
 // Each contact point has rows of its own. Of a pin in its hole: x and y of the pin's centre less
 // the hole's, and with friction the turns of the hole's and of the pin's body; of two discs
@@ -20,7 +20,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// What a circle of the second body touches on the first.
+// What a circle of body b touches on body a.
 typedef enum KernelShape {
     KERNEL_HOLE, // it is inside a circle
     KERNEL_DISC, // it is outside a circle
@@ -43,7 +43,7 @@ enum {
     KERNEL_ROW_PIN = 7,
 };
 
-// One contact point. Up to has_friction all is given; the rest lives on from one step to the next.
+// One contact point. The first six are given; the rest lives on from one step to the next.
 // A disc outside another is a hole of negative size: the same formulas hold for both.
 typedef struct KernelContact {
     ForceLaw law;
@@ -125,7 +125,7 @@ typedef struct KernelPose {
 // A kernel of no contacts yet.
 Kernel kernel_start(double phase);
 
-// Adds a contact, of which shape, law, sizes, joint and siblings are given, with its rows:
+// Adds a contact, of which the first six members are given, with its rows:
 // KERNEL_ROWS_PLAIN, or more of one with friction, but for a line's.
 void kernel_add(Kernel *kernel, const KernelContact *contact, size_t rows);
 
@@ -248,14 +248,16 @@ size_t kernel_coupling_reach(const KernelCoupling *coupling, const Kernel *kerne
                              const size_t *members);
 
 enum {
-    KERNEL_ISLAND_LARGE = 48, // active contacts of an island up to which it is not divided
-    KERNEL_ISLAND_BUSY =
-        24, // events in a step of a larger one up to which it is not divided either
+    // active contacts of an island, and events in a step of a larger one, up to which it is not
+    // divided
+    KERNEL_UNDIVIDED_MOST = 48,
+    KERNEL_UNDIVIDED_EVENTS_MOST = 24,
 };
 
+// One island, or a block of one.
 typedef struct KernelIsland {
-    Kernel kernel;   // a contact of it is one of the contacts
-    size_t *members; // owned; in order
+    Kernel kernel;   // of its contacts
+    size_t *members; // by contact of it: its number among all, in order; owned
     bool is_run;     // in this step
     size_t node;     // of the time that was looked at last
     KernelSums sums; // then
@@ -268,7 +270,7 @@ typedef struct KernelIsland {
 } KernelIsland;
 
 typedef struct KernelIslands {
-    Kernel *all; // contacts and rows of all contacts: what lives on from step to step
+    Kernel *all; // contacts and their rows, of all islands: what lives on from step to step
     KernelCoupling coupling;
     size_t count;
     KernelIsland **islands;   // of this step; owned, as are all arrays

@@ -119,28 +119,28 @@ static double flight_time(const Kernel *kernel, size_t contact, const KernelPoin
 }
 
 // implicit steps next to the ends of a contact are down to this share of the others
-static const double GRADED = 1.0 / 256.0;
-static const double GROWTH = 0.25; // of the time since the onset, or left to the end
+static const double GRADED_SHARE_LEAST = 1.0 / 256.0;
+static const double GRADING_SHARE = 0.25; // of the time since the onset, or left to the end
 
 static const double FRICTION_PHASE = 0.5; // of the time in which friction takes hold
 
 // of what is left: an implicit step that cannot be solved at this length has no finite forces
-static const double SHORTEST = 1e-14;
+static const double STEP_SHARE_LEAST = 1e-14;
 
 // times a contact's frequency, from which on its damping may need an implicit step
-static const double DAMPED = 4.0;
+static const double DAMPED_FREQUENCIES = 4.0;
 
 // time constants of damping and friction in an explicit step at most
 static const double DECAYS_MOST = 1.5;
 
 // of the time left to a contact's end, an explicit step takes at most
-static const double ENDING = 0.5;
+static const double END_SHARE_MOST = 0.5;
 
-enum { TRIES = 12 };              // to find a length whose error is small enough
-static const double SHRINK = 0.1; // where an error is no number
+enum { STEP_TRIES_MOST = 12 };         // to find a length whose error is small enough
+static const double STEP_SHRINK = 0.1; // where an error is no number
 
 // what each order costs, in forces
-static const double COSTS[2] = {2.0, 3.0};
+static const double STEP_FORCES[2] = {2.0, 3.0};
 
 static bool is_any_touching(const Kernel *kernel)
 {
@@ -169,7 +169,7 @@ static void fly(const Kernel *kernel, const KernelPoint *from, double width_s, K
 
 // A step from there of a given length by the same method. Returns false where an implicit one
 // cannot be solved; `to` is then near it at best.
-static bool local_step_try(Kernel *kernel, LocalStep *step, double width_s, KernelPoint *to)
+static bool try_local_step(Kernel *kernel, LocalStep *step, double width_s, KernelPoint *to)
 {
     step->is_ended = false;
     switch (step->method) {
@@ -187,11 +187,11 @@ static bool local_step_try(Kernel *kernel, LocalStep *step, double width_s, Kern
 }
 
 // The depth of a contact after a part of a step that was taken, m.
-static double local_step_depth(Kernel *kernel, LocalStep *step, size_t contact, double width_s)
+static double depth_after(Kernel *kernel, LocalStep *step, size_t contact, double width_s)
 {
     KernelPoint *at = &kernel->work->trial;
     if (step->method != LOCAL_STEP_EXPLICIT) {
-        local_step_try(kernel, step, width_s, at);
+        try_local_step(kernel, step, width_s, at);
     } else {
         kernel_point_begin(kernel, at, step->from->time_s + width_s);
         kernel_explicit_inside(kernel, &step->explicit, step->from,
@@ -206,7 +206,7 @@ static double width_before_end(const PinHole *pose, double share_s)
 {
     const double depth = fmax(pose->penetration, 0.0);
     return pose->approach_speed < 0.0
-               ? fmax(GROWTH * depth / -pose->approach_speed, GRADED * share_s)
+               ? fmax(GRADING_SHARE * depth / -pose->approach_speed, GRADED_SHARE_LEAST * share_s)
                : INFINITY;
 }
 
@@ -227,9 +227,9 @@ static double choose_width(const Kernel *kernel, const KernelPoint *point, doubl
         const double frequency =
             fmax(contact->frequency, kernel_force_frequency(kernel, i, pose.normal, depth));
         const double share_s = kernel->stiff_phase / frequency;
-        const double least_s = GRADED * share_s;
-        *frictionless_s =
-            fmin(*frictionless_s, fmin(share_s, fmax(GROWTH * contact->touching_s, least_s)));
+        const double least_s = GRADED_SHARE_LEAST * share_s;
+        *frictionless_s = fmin(*frictionless_s,
+                               fmin(share_s, fmax(GRADING_SHARE * contact->touching_s, least_s)));
         *frictionless_s = fmin(*frictionless_s, width_before_end(&pose, share_s));
         if (contact->law.friction > 0.0) {
             width_s =
@@ -265,7 +265,7 @@ static double take_stiff(Kernel *kernel, const KernelPoint *from, double explici
     double error = kernel_implicit_step(kernel, from, width_s, to);
     while (!(error <= 1.0)) {
         width_s = kernel_implicit_next(width_s, error);
-        if (width_s < SHORTEST * left_s) {
+        if (width_s < STEP_SHARE_LEAST * left_s) {
             return 0.0;
         }
         error = kernel_implicit_step(kernel, from, width_s, to);
@@ -324,13 +324,14 @@ static double limit_explicit(const Kernel *kernel, const KernelPoint *from, bool
             longest_s = fmin(longest_s, fmax(time_to_wall(kernel, contact, from->time_s, &pose),
                                              contact->first_width_s));
         }
-        longest_s = fmin(longest_s,
-                         fmax(ENDING * time_to_end(contact, from, &pose), contact->first_width_s));
+        longest_s = fmin(longest_s, fmax(END_SHARE_MOST * time_to_end(contact, from, &pose),
+                                         contact->first_width_s));
         if (contact->law.hysteresis != 0.0 || contact->law.viscous != 0.0) {
             const double decay = kernel_force_decay(kernel, i, pose.normal, depth);
             const double frequency =
                 fmax(contact->frequency, kernel_force_frequency(kernel, i, pose.normal, depth));
-            *may_be_stiff = *may_be_stiff || contact->is_overdamped || decay > DAMPED * frequency;
+            *may_be_stiff =
+                *may_be_stiff || contact->is_overdamped || decay > DAMPED_FREQUENCIES * frequency;
             longest_s = fmin(longest_s, DECAYS_MOST / decay);
         }
         if (contact->law.friction > 0.0) {
@@ -349,7 +350,7 @@ static double choose_explicit(const Kernel *kernel, double limit_s, double left_
         counts[k] = ceil(left_s / fmin(kernel->longest_s[k], limit_s) * (1.0 - 1e-12));
     }
     // the forces at the end of a step of order 4 follow from what it knows
-    const bool is_higher = COSTS[1] * counts[1] < COSTS[0] * counts[0];
+    const bool is_higher = STEP_FORCES[1] * counts[1] < STEP_FORCES[0] * counts[0];
     *order = is_higher ? 5 : 4;
     return left_s / fmax(1.0, counts[is_higher]);
 }
@@ -370,10 +371,10 @@ static double take_explicit(Kernel *kernel, LocalStep *step, double limit_s, dou
             // a step cut short by what was left says little of longer ones
             const double before_s = kernel->longest_s[k];
             kernel->longest_s[k] = is_good ? fmin(longest_s[k], fmax(5.0 * width_s, before_s))
-                                   : error < INFINITY ? fmax(longest_s[k], SHRINK * width_s)
-                                                      : SHRINK * width_s;
+                                   : error < INFINITY ? fmax(longest_s[k], STEP_SHRINK * width_s)
+                                                      : STEP_SHRINK * width_s;
         }
-        if (is_good || i == TRIES) {
+        if (is_good || i == STEP_TRIES_MOST) {
             step->is_ended = step->explicit.extends && width_s == left_s;
             return width_s;
         }
@@ -382,13 +383,14 @@ static double take_explicit(Kernel *kernel, LocalStep *step, double limit_s, dou
 
 // Takes a step of at most `left_s` from a completed point, by the method that suits, and as long as
 // that allows. Returns its length; the forces at its end are left open, as below.
-static double local_step_take(Kernel *kernel, LocalStep *step, double left_s, KernelPoint *to)
+static double take_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoint *to)
 {
     step->is_ended = false;
     if (!is_any_touching(kernel)) {
         // not beyond what is known of others' pushes
         const double node_s =
-            kernel_input_node(kernel, step->from->time_s + SHORTEST * left_s) - step->from->time_s;
+            kernel_input_node(kernel, step->from->time_s + STEP_SHARE_LEAST * left_s) -
+            step->from->time_s;
         const double width_s = fmin(left_s, node_s);
         step->method = LOCAL_STEP_FLIGHT;
         fly(kernel, step->from, width_s, to);
@@ -414,16 +416,17 @@ static double local_step_take(Kernel *kernel, LocalStep *step, double left_s, Ke
 
 enum { ROOT_STEPS = 60, EVENT_STEPS = 8 };
 
-static const double TURNED = 1e-12; // of a flight, before which a pin has turned by rounding
+static const double TURN_ROUNDING = 1e-12; // of a flight, before which a pin has turned by rounding
 static const double EVENT_ROUNDING = 1e-14; // of a local step
-static const double NEARBY = 0.5; // of a flight: a closed form that is further off is another one
+static const double CLOSED_FORM_OFF_MOST =
+    0.5; // of a flight: a closed form that is further off is another one
 
 // of a local step: contacts that begin or end nearer to each other than this do so together, for
 // rounding of positions keeps the contacts of equal mechanisms apart by no less
-static const double AT_ONCE = 1e-7;
+static const double SIMULTANEOUS = 1e-7;
 
 // how many roundings of its depth a pin may be off the wall that it is at
-static const double AT_WALL = 64.0;
+static const double WALL_ROUNDINGS = 64.0;
 
 // The width at which a contact's depth passes zero, between 0 and `width_s`, by the Illinois
 // method.
@@ -436,7 +439,7 @@ static double find_crossing(Kernel *kernel, LocalStep *step, size_t contact, dou
     int side = 0;
     for (int i = 0; i < ROOT_STEPS && high - low > 1e-15 * width_s; i++) {
         width = (low * last - high * first) / (last - first);
-        const double depth = local_step_depth(kernel, step, contact, width);
+        const double depth = depth_after(kernel, step, contact, width);
         if (depth == 0.0) {
             break;
         }
@@ -461,10 +464,11 @@ static double find_return(Kernel *kernel, LocalStep *step, size_t contact, doubl
     KernelPoint *at = &kernel->work->trial;
     double width_s = flight_time(kernel, contact, step->from, whole_s);
     for (int i = 0; i < EVENT_STEPS && kernel->drift != NULL && width_s < INFINITY; i++) {
-        local_step_try(kernel, step, width_s, at);
+        try_local_step(kernel, step, width_s, at);
         const PinHole *pose = kernel_point_pose(kernel, at, contact);
         const double later_s = -pose->penetration / pose->approach_speed;
-        if (!(fabs(later_s) > EVENT_ROUNDING * whole_s) || !(fabs(later_s) < NEARBY * width_s)) {
+        if (!(fabs(later_s) > EVENT_ROUNDING * whole_s) ||
+            !(fabs(later_s) < CLOSED_FORM_OFF_MOST * width_s)) {
             break;
         }
         width_s += later_s;
@@ -496,7 +500,7 @@ static bool find_bracket(Kernel *kernel, LocalStep *step, size_t contact, const 
     *first = fmin(*first, 0.0);
     if (!(*last > 0.0) && start.approach_speed > 0.0 && end.approach_speed < 0.0) {
         *width_s *= start.approach_speed / (start.approach_speed - end.approach_speed);
-        *last = local_step_depth(kernel, step, contact, *width_s);
+        *last = depth_after(kernel, step, contact, *width_s);
     }
     return *last > 0.0;
 }
@@ -506,13 +510,13 @@ static bool is_leaving(const Kernel *kernel, const KernelPoint *from, size_t con
 {
     const PinHole *pose = kernel_point_pose(kernel, from, contact);
     const double rounding = kernel_depth_rounding(kernel, contact, from->time_s);
-    return !kernel->contacts[contact].is_touching && pose->penetration >= -AT_WALL * rounding &&
-           pose->approach_speed < 0.0;
+    return !kernel->contacts[contact].is_touching &&
+           pose->penetration >= -WALL_ROUNDINGS * rounding && pose->approach_speed < 0.0;
 }
 
 // Shortens a step to where the first contact begins or ends in it. Returns how many do there; which
 // is in the kernel's work.
-static size_t events_find(Kernel *kernel, LocalStep *step, const KernelPoint *to, double *width_s)
+static size_t find_events(Kernel *kernel, LocalStep *step, const KernelPoint *to, double *width_s)
 {
     const double whole_s = *width_s;
     double *crossings = kernel->work->crossings_s;
@@ -535,7 +539,7 @@ static size_t events_find(Kernel *kernel, LocalStep *step, const KernelPoint *to
     }
     size_t events = 0;
     for (size_t i = 0; found > 0 && i < kernel->contact_count; i++) {
-        kernel->work->has_event[i] = crossings[i] <= *width_s + AT_ONCE * whole_s;
+        kernel->work->has_event[i] = crossings[i] <= *width_s + SIMULTANEOUS * whole_s;
         events += kernel->work->has_event[i] ? 1 : 0;
     }
     return events;
@@ -544,8 +548,8 @@ static size_t events_find(Kernel *kernel, LocalStep *step, const KernelPoint *to
 // Shortens a step in which a pin goes away from its wall and comes to it, while another one
 // touches, to where it turns: from there on the next crossing can be found. Returns whether there
 // is one.
-static bool events_shorten(const Kernel *kernel, const KernelPoint *from, const KernelPoint *to,
-                           double *width_s)
+static bool shorten_to_turn(const Kernel *kernel, const KernelPoint *from, const KernelPoint *to,
+                            double *width_s)
 {
     const double whole_s = *width_s;
     for (size_t i = 0; i < kernel->contact_count; i++) {
@@ -558,7 +562,7 @@ static bool events_shorten(const Kernel *kernel, const KernelPoint *from, const 
             (start.penetration >= 0.0 || end.penetration > 0.0)) {
             const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
             // one that turns right away has turned
-            *width_s = share > TURNED ? fmin(*width_s, share * whole_s) : *width_s;
+            *width_s = share > TURN_ROUNDING ? fmin(*width_s, share * whole_s) : *width_s;
         }
     }
     return *width_s < whole_s;
@@ -566,7 +570,7 @@ static bool events_shorten(const Kernel *kernel, const KernelPoint *from, const 
 
 // Steps to where the first of the contacts found begins or ends: the length is right but for the
 // error of what was known between the ends of the step. Returns false where a step cannot be taken.
-static bool events_step(Kernel *kernel, LocalStep *step, double *width_s, KernelPoint *to)
+static bool step_to_first_event(Kernel *kernel, LocalStep *step, double *width_s, KernelPoint *to)
 {
     const double whole_s = *width_s;
     size_t first = 0;
@@ -574,7 +578,7 @@ static bool events_step(Kernel *kernel, LocalStep *step, double *width_s, Kernel
         first++;
     }
     for (int i = 0;; i++) {
-        if (!local_step_try(kernel, step, *width_s, to)) {
+        if (!try_local_step(kernel, step, *width_s, to)) {
             return false;
         }
         const PinHole *pose = kernel_point_pose(kernel, to, first);
@@ -591,16 +595,16 @@ static bool events_step(Kernel *kernel, LocalStep *step, double *width_s, Kernel
 bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoint *to,
                        size_t *events)
 {
-    double width_s = local_step_take(kernel, step, left_s, to);
+    double width_s = take_local_step(kernel, step, left_s, to);
     const double whole_s = width_s;
     bool is_solved = true;
     if ((step->method != LOCAL_STEP_FLIGHT || kernel->input != NULL) &&
-        events_shorten(kernel, step->from, to, &width_s)) {
-        is_solved = local_step_try(kernel, step, width_s, to);
+        shorten_to_turn(kernel, step->from, to, &width_s)) {
+        is_solved = try_local_step(kernel, step, width_s, to);
     }
-    *events = is_solved ? events_find(kernel, step, to, &width_s) : 0;
+    *events = is_solved ? find_events(kernel, step, to, &width_s) : 0;
     if (*events != 0) {
-        is_solved = events_step(kernel, step, &width_s, to);
+        is_solved = step_to_first_event(kernel, step, &width_s, to);
     }
     if (!is_solved) {
         kernel->stiff_width_s = 0.5 * whole_s;

@@ -66,8 +66,8 @@ void kernel_set_drift(Kernel *kernel, const double *drift, double duration)
     }
 }
 
-static void drift_add_all(const Kernel *kernel, size_t row, double time_s, const double *impulse,
-                          const double *moment, double *positions, double *speeds)
+static void add_drift_to_all(const Kernel *kernel, size_t row, double time_s, const double *impulse,
+                             const double *moment, double *positions, double *speeds)
 {
     const size_t rows = kernel->row_count;
     const double *drift = kernel->drift + row * rows;
@@ -81,7 +81,7 @@ static void drift_add_all(const Kernel *kernel, size_t row, double time_s, const
     }
 }
 
-static void drift_bend_all(const Kernel *kernel, double time_s, double *positions, double *speeds)
+static void add_free_bend(const Kernel *kernel, double time_s, double *positions, double *speeds)
 {
     for (size_t i = 0; i < kernel->row_count; i++) {
         const double bend = 0.5 * time_s * kernel->free_rate[i];
@@ -92,7 +92,7 @@ static void drift_bend_all(const Kernel *kernel, double time_s, double *position
 
 // Adds to a row's speed and position, from the impulses so far and the moments, of a kernel of so
 // many rows. Inline: for every pose.
-static inline void drift_add(const Kernel *kernel, size_t rows, size_t row, double time_s,
+static inline void add_drift(const Kernel *kernel, size_t rows, size_t row, double time_s,
                              const double *impulse, const double *moment, double *speed,
                              double *moved)
 {
@@ -136,7 +136,7 @@ static inline double row_motion_by(const Kernel *kernel, KernelSpan span, size_t
         speed += mobility[k] * impulse[k];
     }
     if (kernel->drift != NULL) {
-        drift_add(kernel, rows, row, time_s, impulse, moment, &speed, &moved);
+        add_drift(kernel, rows, row, time_s, impulse, moment, &speed, &moved);
     }
     *position = moved;
     return speed;
@@ -311,7 +311,7 @@ void kernel_motion_all(const Kernel *kernel, double time_s, const double *impuls
         }
     }
     if (kernel->drift != NULL) {
-        drift_bend_all(kernel, time_s, positions, speeds);
+        add_free_bend(kernel, time_s, positions, speeds);
     }
     for (size_t k = 0; k < width; k++) {
         const double *mobility = kernel_mobility(kernel, k, 0);
@@ -327,7 +327,7 @@ void kernel_motion_all(const Kernel *kernel, double time_s, const double *impuls
             positions[i] += mobility[i] * moved;
         }
         if (kernel->drift != NULL) {
-            drift_add_all(kernel, k, time_s, impulse, moment, positions, speeds);
+            add_drift_to_all(kernel, k, time_s, impulse, moment, positions, speeds);
         }
     }
 }

@@ -195,10 +195,10 @@ void kernel_sums_free(KernelSums *sums)
 }
 
 enum {
-    FIRST_ROOM = 8, // nodes; a step without contacts has two
+    NODE_ROOM_FIRST = 8, // nodes; a step without contacts has two
     // what more a step took is given back when steps are calm again: of many mechanisms side by
     // side few touch at a time
-    MOST_KEPT = 32,
+    KEPT_ROOM_MOST = 32,
 };
 
 // Marks which contacts touch from a node on, and how fast they close.
@@ -243,7 +243,7 @@ static void drop_nodes(Kernel *kernel)
 
 void kernel_nodes_begin(Kernel *kernel)
 {
-    if (kernel->node_room > MOST_KEPT && kernel->node_room > 4 * kernel->node_count) {
+    if (kernel->node_room > KEPT_ROOM_MOST && kernel->node_room > 4 * kernel->node_count) {
         drop_nodes(kernel);
     }
     kernel->node_count = 0;
@@ -252,7 +252,7 @@ void kernel_nodes_begin(Kernel *kernel)
 // Makes room for more nodes.
 static void grow_nodes(Kernel *kernel)
 {
-    const size_t room = 2 * kernel->node_room + FIRST_ROOM;
+    const size_t room = 2 * kernel->node_room + NODE_ROOM_FIRST;
     const size_t rows = kernel->row_count;
     const size_t contacts = kernel->contact_count;
     const size_t words = (contacts + 63) / 64;
@@ -365,18 +365,19 @@ static const double TOLERANCE_LEAST = 1e-10;
 static const double TOLERANCE_MOST = 1e-3;
 
 // of a contact's first step: times the tolerance, to the power 2/3, in rad
-static const double FIRST = 50.0;
+static const double FIRST_STEP_FACTOR = 50.0;
 
 // restitutions below a tenth or so
-static const double OVERDAMPED = 8.0;
+static const double OVERDAMPED_FREQUENCIES = 8.0;
 
 // The force grows as the power 1.5 of the time since the onset.
 static void set_first_width(KernelContact *contact)
 {
-    contact->first_width_s =
-        contact->frequency > 0.0
-            ? cbrt(FIRST * FIRST * contact->tolerance * contact->tolerance) / contact->frequency
-            : 0.0;
+    contact->first_width_s = contact->frequency > 0.0
+                                 ? cbrt(FIRST_STEP_FACTOR * FIRST_STEP_FACTOR * contact->tolerance *
+                                        contact->tolerance) /
+                                       contact->frequency
+                                 : 0.0;
 }
 
 // How much the mobility of a contact has changed since the step before, in the time between their
@@ -450,8 +451,8 @@ static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
     for (int k = 0; k < 2; k++) {
         kernel->longest_s[k] = contact->first_width_s;
     }
-    contact->is_overdamped =
-        kernel_force_decay(kernel, number, pose->normal, depth) > OVERDAMPED * contact->frequency;
+    contact->is_overdamped = kernel_force_decay(kernel, number, pose->normal, depth) >
+                             OVERDAMPED_FREQUENCIES * contact->frequency;
 }
 
 // Contacts that a step of the world finds begun or over already: by rounding, as the positions of

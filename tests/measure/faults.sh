@@ -67,7 +67,7 @@ run_tests() {
 # Whether the reference is made of a file: tests of its truth need not be asked about others.
 is_of_reference() {
     case $1 in
-    src/base/* | src/model/* | src/contact/* | src/reference/* | src/run/* | src/measure/*) true ;;
+    src/base/* | src/kernel/* | src/model/* | src/contact/* | src/reference/* | src/run/* | src/measure/*) true ;;
     *) false ;;
     esac
 }
