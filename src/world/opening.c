@@ -123,6 +123,18 @@ static double kinetic(dBodyID body, const double *speeds)
     return 0.5 * mass.mass * square + 0.5 * dCalcVectorDot3(spin, momentum);
 }
 
+// What gravity alone gives a body in a step: beside that, what a body at rest has is rounding.
+static double kinetic_of_fall(const JpWorld *world, dBodyID body, double step)
+{
+    dVector3 gravity;
+    dWorldGetGravity(world->id, gravity);
+    double speeds[BODY_NUMBERS] = {0.0};
+    for (int k = 0; k < 3; k++) {
+        speeds[k] = step * gravity[k];
+    }
+    return kinetic(body, speeds);
+}
+
 // Whether the joints correct more of the speeds than that, from those after a whole step.
 static JpStatus find_correction(JpWorld *world, double step, const double *speeds, bool *is_large,
                                 JpError *error)
@@ -141,7 +153,7 @@ static JpStatus find_correction(JpWorld *world, double step, const double *speed
             by[k] = 2.0 * by[k] - before[k] - speeds[BODY_NUMBERS * i + k];
         }
         if (!dBodyIsKinematic(record->id)) {
-            whole += kinetic(record->id, before);
+            whole += kinetic(record->id, before) + kinetic_of_fall(world, record->id, step);
             corrected += kinetic(record->id, by);
         }
     }
