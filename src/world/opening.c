@@ -38,10 +38,10 @@ static double share_at_ends(double erp)
 static void move_kept(BodyRecord *record, const double *by, double times)
 {
     dQuaternion turned;
-    bodies_turn(record->turn, &by[3], times, turned);
-    memcpy(record->turn, turned, sizeof record->turn);
+    bodies_turn(record->kept.turn, &by[3], times, turned);
+    memcpy(record->kept.turn, turned, sizeof record->kept.turn);
     for (int k = 0; k < 3; k++) {
-        record->position[k] += times * by[k];
+        record->kept.position[k] += times * by[k];
     }
 }
 
@@ -99,7 +99,7 @@ static bool is_any_moving(const Bodies *bodies)
     for (size_t i = 0; i < bodies->count; i++) {
         const BodyRecord *record = &bodies->records[i];
         for (int k = 0; k < 3; k++) {
-            if (record->velocity[k] != 0.0 || record->omega[k] != 0.0) {
+            if (record->kept.velocity[k] != 0.0 || record->kept.omega[k] != 0.0) {
                 return true;
             }
         }
@@ -146,8 +146,8 @@ static JpStatus find_correction(JpWorld *world, double step, const double *speed
         const BodyRecord *record = &world->bodies.records[i];
         double before[BODY_NUMBERS];
         double by[BODY_NUMBERS];
-        memcpy(before, record->velocity, 3 * sizeof *before);
-        memcpy(before + 3, record->omega, 3 * sizeof *before);
+        memcpy(before, record->kept.velocity, 3 * sizeof *before);
+        memcpy(before + 3, record->kept.omega, 3 * sizeof *before);
         read_speeds(record, by);
         for (int k = 0; k < BODY_NUMBERS; k++) {
             by[k] = 2.0 * by[k] - before[k] - speeds[BODY_NUMBERS * i + k];
