@@ -275,19 +275,46 @@ bool bodies_are_in_range(const Bodies *bodies, const char **name)
     return true;
 }
 
+static void keep_position(dBodyID id, BodyMoment *kept)
+{
+    memcpy(kept->position, dBodyGetPosition(id), sizeof kept->position);
+    memcpy(kept->turn, dBodyGetQuaternion(id), sizeof kept->turn);
+}
+
+static void keep_moment(dBodyID id, BodyMoment *kept)
+{
+    keep_position(id, kept);
+    memcpy(kept->velocity, dBodyGetLinearVel(id), sizeof kept->velocity);
+    memcpy(kept->omega, dBodyGetAngularVel(id), sizeof kept->omega);
+    memcpy(kept->force, dBodyGetForce(id), sizeof kept->force);
+    memcpy(kept->torque, dBodyGetTorque(id), sizeof kept->torque);
+    kept->is_enabled = dBodyIsEnabled(id);
+}
+
+static void put_back_position(dBodyID id, const BodyMoment *kept)
+{
+    dBodySetPosition(id, kept->position[0], kept->position[1], kept->position[2]);
+    dBodySetQuaternion(id, kept->turn);
+}
+
+static void put_back_moment(dBodyID id, const BodyMoment *kept)
+{
+    put_back_position(id, kept);
+    dBodySetLinearVel(id, kept->velocity[0], kept->velocity[1], kept->velocity[2]);
+    dBodySetAngularVel(id, kept->omega[0], kept->omega[1], kept->omega[2]);
+    dBodySetForce(id, kept->force[0], kept->force[1], kept->force[2]);
+    dBodySetTorque(id, kept->torque[0], kept->torque[1], kept->torque[2]);
+    if (kept->is_enabled != dBodyIsEnabled(id)) {
+        (kept->is_enabled ? dBodyEnable : dBodyDisable)(id);
+    }
+}
+
 void bodies_find_all(Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->count; i++) {
-        BodyFound *found = &bodies->records[i].found;
-        const dBodyID id = bodies->records[i].id;
-        memcpy(found->position, dBodyGetPosition(id), sizeof found->position);
-        memcpy(found->turn, dBodyGetQuaternion(id), sizeof found->turn);
-        memcpy(found->velocity, dBodyGetLinearVel(id), sizeof found->velocity);
-        memcpy(found->omega, dBodyGetAngularVel(id), sizeof found->omega);
-        memcpy(found->force, dBodyGetForce(id), sizeof found->force);
-        memcpy(found->torque, dBodyGetTorque(id), sizeof found->torque);
-        found->is_enabled = dBodyIsEnabled(id);
-        found->is_gyroscopic = dBodyGetGyroscopicMode(id);
+        BodyRecord *record = &bodies->records[i];
+        keep_moment(record->id, &record->found);
+        record->is_gyroscopic = dBodyGetGyroscopicMode(record->id);
     }
 }
 
@@ -295,18 +322,8 @@ void bodies_put_back_all(Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->count; i++) {
         BodyRecord *record = &bodies->records[i];
-        const BodyFound *found = &record->found;
-        const dBodyID id = record->id;
-        dBodySetPosition(id, found->position[0], found->position[1], found->position[2]);
-        dBodySetQuaternion(id, found->turn);
-        dBodySetLinearVel(id, found->velocity[0], found->velocity[1], found->velocity[2]);
-        dBodySetAngularVel(id, found->omega[0], found->omega[1], found->omega[2]);
-        dBodySetForce(id, found->force[0], found->force[1], found->force[2]);
-        dBodySetTorque(id, found->torque[0], found->torque[1], found->torque[2]);
-        dBodySetGyroscopicMode(id, found->is_gyroscopic);
-        if (found->is_enabled != dBodyIsEnabled(id)) {
-            (found->is_enabled ? dBodyEnable : dBodyDisable)(id);
-        }
+        put_back_moment(record->id, &record->found);
+        dBodySetGyroscopicMode(record->id, record->is_gyroscopic);
         record->is_gyrating = record->is_resting = false;
     }
     bodies->moving = bodies->count;
@@ -315,49 +332,28 @@ void bodies_put_back_all(Bodies *bodies)
 void bodies_keep_positions(Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->moving; i++) {
-        BodyRecord *record = &bodies->records[i];
-        memcpy(record->position, dBodyGetPosition(record->id), sizeof record->position);
-        memcpy(record->turn, dBodyGetQuaternion(record->id), sizeof record->turn);
+        keep_position(bodies->records[i].id, &bodies->records[i].kept);
     }
 }
 
 void bodies_keep(Bodies *bodies)
 {
-    bodies_keep_positions(bodies);
     for (size_t i = 0; i < bodies->moving; i++) {
-        BodyRecord *record = &bodies->records[i];
-        const dBodyID id = record->id;
-        memcpy(record->velocity, dBodyGetLinearVel(id), sizeof record->velocity);
-        memcpy(record->omega, dBodyGetAngularVel(id), sizeof record->omega);
-        memcpy(record->force, dBodyGetForce(id), sizeof record->force);
-        memcpy(record->torque, dBodyGetTorque(id), sizeof record->torque);
-        record->is_enabled = dBodyIsEnabled(id);
+        keep_moment(bodies->records[i].id, &bodies->records[i].kept);
     }
 }
 
 void bodies_put_back_positions(const Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->moving; i++) {
-        const BodyRecord *record = &bodies->records[i];
-        const dReal *at = record->position;
-        dBodySetPosition(record->id, at[0], at[1], at[2]);
-        dBodySetQuaternion(record->id, record->turn);
+        put_back_position(bodies->records[i].id, &bodies->records[i].kept);
     }
 }
 
 void bodies_put_back(const Bodies *bodies)
 {
-    bodies_put_back_positions(bodies);
     for (size_t i = 0; i < bodies->moving; i++) {
-        const BodyRecord *record = &bodies->records[i];
-        const dBodyID id = record->id;
-        dBodySetLinearVel(id, record->velocity[0], record->velocity[1], record->velocity[2]);
-        dBodySetAngularVel(id, record->omega[0], record->omega[1], record->omega[2]);
-        dBodySetForce(id, record->force[0], record->force[1], record->force[2]);
-        dBodySetTorque(id, record->torque[0], record->torque[1], record->torque[2]);
-        if (record->is_enabled != dBodyIsEnabled(id)) {
-            (record->is_enabled ? dBodyEnable : dBodyDisable)(id);
-        }
+        put_back_moment(bodies->records[i].id, &bodies->records[i].kept);
     }
 }
 
@@ -395,12 +391,12 @@ void bodies_drift_kept(const Bodies *bodies, double time)
 {
     for (size_t i = 0; i < bodies->count; i++) {
         const BodyRecord *record = &bodies->records[i];
-        const dReal *at = record->position;
+        const dReal *at = record->kept.position;
         if (dBodyIsEnabled(record->id)) {
-            drift_from(record->id, at, record->turn, time);
+            drift_from(record->id, at, record->kept.turn, time);
         } else {
             dBodySetPosition(record->id, at[0], at[1], at[2]);
-            dBodySetQuaternion(record->id, record->turn);
+            dBodySetQuaternion(record->id, record->kept.turn);
         }
     }
 }

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// A body as a step finds it (world/found.h).
-typedef struct BodyFound {
+// Where a body is, how it moves and what acts on it.
+typedef struct BodyMoment {
     dVector3 position;
     dQuaternion turn;
     dVector3 velocity;
@@ -16,24 +16,17 @@ typedef struct BodyFound {
     dVector3 force;
     dVector3 torque;
     bool is_enabled;
-    bool is_gyroscopic;
-} BodyFound;
+} BodyMoment;
 
 typedef struct BodyRecord {
     dBodyID id;
-    bool is_added;    // by hand: stays known without a joint
-    unsigned seen;    // the gathering that found it last
-    unsigned reached; // the one in whose step a joint of ours could move it last
-    bool is_resting;  // disabled by bodies_rest
-    // kept by bodies_keep
-    dVector3 position;
-    dQuaternion turn;
-    dVector3 velocity;
-    dVector3 omega;
-    dVector3 force;
-    dVector3 torque;
-    bool is_enabled;
-    BodyFound found;
+    bool is_added;      // by hand: stays known without a joint
+    unsigned seen;      // the gathering that found it last
+    unsigned reached;   // the one in whose step a joint of ours could move it last
+    bool is_resting;    // disabled by bodies_rest
+    BodyMoment kept;    // by bodies_keep
+    BodyMoment found;   // as a step finds it (world/found.h)
+    bool is_gyroscopic; // likewise
     // of the step before, for the gyroscopic torque
     dVector3 last_omega; // at its end
     dVector3 last_alpha;

@@ -102,7 +102,7 @@ void gyration_finish(Bodies *bodies, double step)
         dBodySetGyroscopicMode(record->id, 1);
         memcpy(record->last_omega, dBodyGetAngularVel(record->id), sizeof record->last_omega);
         for (int k = 0; k < 3; k++) {
-            record->last_alpha[k] = (record->last_omega[k] - record->omega[k]) / step;
+            record->last_alpha[k] = (record->last_omega[k] - record->kept.omega[k]) / step;
         }
         record->has_last = true;
     }

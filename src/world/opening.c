@@ -38,10 +38,10 @@ static double share_at_ends(double erp)
 static void move_kept(BodyRecord *record, const double *by, double times)
 {
     dQuaternion turned;
-    bodies_turn(record->turn, &by[3], times, turned);
-    memcpy(record->turn, turned, sizeof record->turn);
+    bodies_turn(record->kept.turn, &by[3], times, turned);
+    memcpy(record->kept.turn, turned, sizeof record->kept.turn);
     for (int k = 0; k < 3; k++) {
-        record->position[k] += times * by[k];
+        record->kept.position[k] += times * by[k];
     }
 }
 
@@ -99,7 +99,7 @@ static bool is_any_moving(const Bodies *bodies)
     for (size_t i = 0; i < bodies->count; i++) {
         const BodyRecord *record = &bodies->records[i];
         for (int k = 0; k < 3; k++) {
-            if (record->velocity[k] != 0.0 || record->omega[k] != 0.0) {
+            if (record->kept.velocity[k] != 0.0 || record->kept.omega[k] != 0.0) {
                 return true;
             }
         }
@@ -123,6 +123,18 @@ static double kinetic(dBodyID body, const double *speeds)
     return 0.5 * mass.mass * square + 0.5 * dCalcVectorDot3(spin, momentum);
 }
 
+// What gravity alone gives a body in a step: beside that, what a body at rest has is rounding.
+static double kinetic_of_fall(const JpWorld *world, dBodyID body, double step)
+{
+    dVector3 gravity;
+    dWorldGetGravity(world->id, gravity);
+    double speeds[BODY_NUMBERS] = {0.0};
+    for (int k = 0; k < 3; k++) {
+        speeds[k] = step * gravity[k];
+    }
+    return kinetic(body, speeds);
+}
+
 // Whether the joints correct more of the speeds than that, from those after a whole step.
 static JpStatus find_correction(JpWorld *world, double step, const double *speeds, bool *is_large,
                                 JpError *error)
@@ -134,14 +146,14 @@ static JpStatus find_correction(JpWorld *world, double step, const double *speed
         const BodyRecord *record = &world->bodies.records[i];
         double before[BODY_NUMBERS];
         double by[BODY_NUMBERS];
-        memcpy(before, record->velocity, 3 * sizeof *before);
-        memcpy(before + 3, record->omega, 3 * sizeof *before);
+        memcpy(before, record->kept.velocity, 3 * sizeof *before);
+        memcpy(before + 3, record->kept.omega, 3 * sizeof *before);
         read_speeds(record, by);
         for (int k = 0; k < BODY_NUMBERS; k++) {
             by[k] = 2.0 * by[k] - before[k] - speeds[BODY_NUMBERS * i + k];
         }
         if (!dBodyIsKinematic(record->id)) {
-            whole += kinetic(record->id, before);
+            whole += kinetic(record->id, before) + kinetic_of_fall(world, record->id, step);
             corrected += kinetic(record->id, by);
         }
     }

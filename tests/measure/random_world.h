@@ -27,13 +27,16 @@ typedef struct RandomWorld {
     RandomPlay plays[RANDOM_PLAYS];
     size_t play_count;
     double step;     // s
+    double resolved; // s: longer steps are too long for rows
     bool is_wild;    // of sizes that nobody builds
+    bool is_plain;   // of sizes that are neither wild nor too stiff for the step
     bool is_passive; // nothing drives it and nothing rubs: its energy cannot grow
     uint64_t random; // goes on with drives
 } RandomWorld;
 
-// Of every three worlds one is passive, of every five one is wild. No world is refused: what the
-// library refuses to make is left out.
+// Of every three worlds one is passive, of every five one is wild. With rows, the others are
+// stepped so that their contacts are resolved, but for one of four, which is as stiff as it comes.
+// No world is refused: what the library refuses to make is left out.
 RandomWorld random_world(unsigned number, JpStepping stepping);
 void random_world_finish(RandomWorld *made);
 
@@ -42,6 +45,9 @@ void random_world_drive(RandomWorld *made);
 
 // J: of bodies, rotors, gravity and what is stored in contacts.
 double random_world_energy(const RandomWorld *made);
+
+// J, stored in contacts.
+double random_world_stored(const RandomWorld *made);
 
 // J, of bodies and rotors.
 double random_world_kinetic(const RandomWorld *made);

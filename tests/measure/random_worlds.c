@@ -2,13 +2,14 @@
 //
 //     random_worlds FIRST COUNT [STEPS [PASSIVE_STEPS [STEPPING]]]
 //
-// Asked of each stepping: every step ends; of worlds of plain sizes nine of ten steps are made; no
-// force is negative and every number finite; no largest force of a contact without damping is above
-// its law at the largest depth, in steps that are JP_OK; and with contacts within the step the
-// energy of a passive world, all of whose steps are JP_OK, does not grow. An abort or a leak is the
-// sanitizers' to find. Prints what was found of each stepping, and each world that is not as asked;
-// exits with 1 if there is one. How far damped forces are above the law at the closing speeds of
-// the steps' ends is printed only: within a step a contact may close faster.
+// Asked of each stepping: every step ends; of worlds of plain sizes, with rows those whose steps
+// resolve their contacts (random_world.c), nine of ten steps are JP_OK; no force is negative and
+// every number finite; no largest force of a contact without damping is above its law at the
+// largest depth, in steps that are JP_OK; and the energy of a passive world, all of whose steps are
+// JP_OK, does not grow. An abort or a leak is the sanitizers' to find. Prints what was found of
+// each stepping, and each world that is not as asked; exits with 1 if there is one. How far damped
+// forces are above the law at the closing speeds of the steps' ends is printed only: within a step
+// a contact may close faster.
 //
 // The control, with CONTROL as a sixth word: all largest forces are read a third too large.
 #include "random_world.h"
@@ -20,7 +21,7 @@
 #include <string.h>
 #include <time.h>
 
-static const double LEAST_MADE = 0.9; // of the steps of plain sizes
+static const double LEAST_OK = 0.9; // of the steps of plain sizes
 
 // Above the law's own force: of contacts within the step by rounding alone. Rows know forces at
 // steps only, and take the top of a parabola through three, at most an eighth above the largest.
@@ -30,7 +31,8 @@ static const double OVER_ROWS = 0.125;
 // A world is given up on after that.
 static const double SECONDS_MOST = 60.0;
 
-// Of the largest kinetic energy: what steps of order 2 leave of it.
+// Of the largest kinetic energy: what steps of order 2 leave of it. After plain steps positions are
+// half a step ahead of velocities, so that an energy is read only while nothing touches.
 static const double GROWTH = 1e-2;
 
 static const double CONTROL = 4.0 / 3.0;
@@ -47,10 +49,14 @@ typedef struct Found {
     size_t plain_steps;
     size_t plain_ok;
     size_t plain_coarse;
+    size_t stiff_steps; // of sizes too stiff for the step
+    size_t stiff_ok;
+    size_t stiff_coarse;
     size_t wild_steps;
     size_t wild_ok;
     size_t impacts;
     size_t peaks;         // largest forces that were held against the law
+    size_t ended;         // worlds that could not be stepped on
     double slowest;       // s of processor time, of a step
     double peak;          // 1, the largest force over the law's, undamped
     double damped;        // 1, damped
@@ -196,7 +202,9 @@ static bool make_step(Run *run, Found *found, bool *is_ok)
         const JpStatus status = jp_world_step(run->made.play, step, &error);
         keep_worst(seconds() - start, run->number, &found->slowest, &found->at[3]);
         *is_ok = i == 0 && status == JP_OK;
-        found->plain_coarse += !run->made.is_wild && i == 0 && status == JP_COARSE ? 1 : 0;
+        if (!run->made.is_wild && i == 0 && status == JP_COARSE) {
+            *(run->made.is_plain ? &found->plain_coarse : &found->stiff_coarse) += 1;
+        }
         run->is_ok = status == JP_OK;
         run->is_coarse = run->is_coarse || status != JP_OK;
         if (status <= JP_OK) {
@@ -217,6 +225,7 @@ static void run_world(Run *run, size_t steps, Found *found)
     double most = start;
     double scale = random_world_kinetic(made);
     size_t ok = 0;
+    size_t tried = 0;
     bool is_alive = true;
     const double begun = seconds();
     for (size_t i = 0; i < steps && is_alive; i++) {
@@ -224,6 +233,7 @@ static void run_world(Run *run, size_t steps, Found *found)
         random_world_drive(made);
         is_alive = make_step(run, found, &is_ok);
         ok += is_ok ? 1 : 0;
+        tried++;
         if (is_alive) {
             JpWorldStats stats = {0};
             jp_world_stats(made->play, &stats, NULL);
@@ -231,19 +241,24 @@ static void run_world(Run *run, size_t steps, Found *found)
             run->fallbacks = stats.fallbacks;
             check_sides(run, found);
         }
+        found->ended += is_alive ? 0 : 1;
         is_alive = is_alive && seconds() - begun < SECONDS_MOST;
-        if (has_energy && is_alive) {
+        const bool is_read =
+            found->stepping != JP_STEPPING_PLAIN || random_world_stored(made) == 0.0;
+        if (has_energy && is_alive && is_read) {
             const double energy = random_world_energy(made);
             most = fmax(most, energy);
             scale = fmax(scale, random_world_kinetic(made));
         }
     }
-    *(made->is_wild ? &found->wild_steps : &found->plain_steps) += steps;
-    *(made->is_wild ? &found->wild_ok : &found->plain_ok) += ok;
+    *(made->is_wild    ? &found->wild_steps
+      : made->is_plain ? &found->plain_steps
+                       : &found->stiff_steps) += tried;
+    *(made->is_wild ? &found->wild_ok : made->is_plain ? &found->plain_ok : &found->stiff_ok) += ok;
     if (has_energy && scale > 0.0) {
         const double growth = (most - start) / scale;
         found->passive++;
-        if (!run->is_coarse && found->stepping == JP_STEPPING_IMPULSE && !(growth <= GROWTH)) {
+        if (!run->is_coarse && !(growth <= GROWTH)) {
             blame(run, "energy that grows");
         }
         found->passive_ok += run->is_coarse ? 0 : 1;
@@ -255,11 +270,13 @@ static void run_world(Run *run, size_t steps, Found *found)
 static void print_found(const Found *found)
 {
     printf("%s: %zu worlds, %zu of %zu plain steps JP_OK (%.2f %%) and %zu JP_COARSE, %zu of %zu "
-           "wild JP_OK; %zu impacts; "
+           "stiff JP_OK and %zu JP_COARSE, %zu of %zu wild JP_OK; %zu impacts; %zu worlds "
+           "ended; "
            "slowest step %.3g s (world %u)\n",
            NAMES[found->stepping], found->worlds, found->plain_ok, found->plain_steps,
            100.0 * (double)found->plain_ok / fmax(1.0, (double)found->plain_steps),
-           found->plain_coarse, found->wild_ok, found->wild_steps, found->impacts, found->slowest,
+           found->plain_coarse, found->stiff_ok, found->stiff_steps, found->stiff_coarse,
+           found->wild_ok, found->wild_steps, found->impacts, found->ended, found->slowest,
            found->at[3]);
     printf("    %zu peaks above the law by at most %.3g (world %u), damped %.3g (world %u); "
            "%zu passive worlds gain at most %.3g (world %u), %zu with steps that are not JP_OK "
@@ -308,9 +325,8 @@ int main(int argc, char **argv)
         const Found found = run_worlds((JpStepping)stepping, (unsigned)numbers[0],
                                        (unsigned)numbers[1], steps, argc > 6);
         print_found(&found);
-        const double made = (double)(found.plain_ok + found.plain_coarse);
-        const bool is_made = made >= LEAST_MADE * (double)found.plain_steps;
-        faults += found.faults + (is_made ? 0 : 1);
+        const bool is_enough = (double)found.plain_ok >= LEAST_OK * (double)found.plain_steps;
+        faults += found.faults + (is_enough ? 0 : 1);
     }
     dCloseODE();
     return faults > 0 ? 1 : 0;
