@@ -44,7 +44,9 @@ static bool take(Kind kind, const char *message, va_list arguments)
     longjmp(fault->left, 1);
 }
 
-// What ODE does where there is no handler.
+static void on_message(int number, const char *message, va_list arguments);
+
+// What ODE does where there is no handler: for what it says without one it is asked to say it.
 static void do_as_ode(Kind kind, int number, const char *message, va_list arguments)
 {
     char text[FAULT_TEXT_SIZE];
@@ -59,7 +61,9 @@ static void do_as_ode(Kind kind, int number, const char *message, va_list argume
         dError(number, "%s", text);
         break;
     default:
-        fprintf(stderr, "\nODE Message %d: %s\n", number, text);
+        dSetMessageHandler(NULL);
+        dMessage(number, "%s", text);
+        dSetMessageHandler(on_message);
     }
 }
 

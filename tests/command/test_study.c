@@ -63,7 +63,7 @@ static bool says_unused(Program *program, const char *vary)
     fclose(stream);
     run_well(program, "study friction.yaml --dry-run");
     return strstr(program->errors, "contact.friction-speed of the study has no effect in any run; "
-                                   "it would with contact.friction above 0") != NULL;
+                                   "it would with a friction above 0") != NULL;
 }
 
 static void a_key_that_no_run_uses_is_said(void **state)
