@@ -256,7 +256,13 @@ static void the_short_form_makes_the_same_linkage(void **state)
                   "  assembly: left\n"
                   "drive: {speed: 5000 rpm, start: 0.8 rad}\n");
     assert_true(scenario.has_slidercrank && !scenario.has_fourbar);
-    assert_memory_equal(&scenario.slidercrank, &expected.slidercrank, sizeof(SliderCrank));
+    const SliderCrank *made = &scenario.slidercrank;
+    const SliderCrank *asked = &expected.slidercrank;
+    assert_close(made->crank, asked->crank, 0.0);
+    assert_close(made->rod, asked->rod, 0.0);
+    assert_close(made->offset, asked->offset, 0.0);
+    assert_close(made->line, asked->line, 0.0);
+    assert_int_equal(made->side, asked->side);
     for (int i = 0; i < 3; i++) {
         const Body *body = &scenario.linkage.bodies[i];
         const Body *other = &expected.linkage.bodies[i];
