@@ -3,14 +3,15 @@
 
 #include <sys/stat.h>
 
-// Runs a line of a shell in the program's folder: $jointplay is the program, $cases the cases.
+// Runs a line of a shell in the program's folder: $jointplay is the program, $cases the cases. What
+// clang's coverage says there of its own files, which a limit on files meets too, is left out.
 static void run_line(Program *program, const char *line)
 {
     char command[4 * PROGRAM_PATH_SIZE];
     char path[PROGRAM_PATH_SIZE];
     snprintf(command, sizeof command,
              "cd '%s' && jointplay=$JOINTPLAY_PROGRAM && cases=$JOINTPLAY_CASES && "
-             "{ %s; } >.output 2>.errors",
+             "{ %s; } >.output 2>.errors; status=$?; sed -i '/^prof/d' .errors; exit $status",
              program->folder, line);
     const int status = system(command);
     program->status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
