@@ -2,6 +2,7 @@
 //
 // As model/distance.c measures it; the reference's samples stand at the same times.
 #include "measure/error.h"
+#include "base/sorted.h"
 #include "base/zeroed.h"
 #include "model/kinematics.h"
 
@@ -334,20 +335,14 @@ static double least_pivot(const Trajectory *run, size_t sample)
     return exp(low);
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double typical_pivot(const Trajectory *run)
 {
     double pivots[TYPICAL];
     for (size_t i = 0; i < TYPICAL; i++) {
         pivots[i] = least_pivot(run, i * (run->sample_count - 1) / (TYPICAL - 1));
     }
-    qsort(pivots, TYPICAL, sizeof *pivots, compare_numbers);
-    return pivots[TYPICAL / 2];
+    sorted_make(pivots, TYPICAL);
+    return sorted_median(pivots, TYPICAL);
 }
 
 static bool has_ideal_joints_alone(const Linkage *linkage)
