@@ -18,6 +18,12 @@ typedef struct StopSpace {
 // the caller to free, or NULL with ERR_CASE where a law does not fit a joint.
 StopSpace *stop_space_list(const Scenario *scenario, size_t *count, Err *err);
 
+// Which of its joint's places it is: 0 the low end, 1 the high one.
+static inline int stop_space_place(const StopSpace *stop)
+{
+    return stop->sign > 0.0 ? 0 : 1;
+}
+
 // The gap, rad, at an angle.
 static inline double stop_space_gap(const StopSpace *stop, double angle)
 {

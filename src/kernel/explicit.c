@@ -206,7 +206,7 @@ double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const Ker
     step->extends = true;
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (!contact->is_touching) {
+        if (!contact->state.is_touching) {
             continue;
         }
         const PinHole pose = *kernel_point_pose(kernel, inside, i);
@@ -225,8 +225,8 @@ double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const Ker
         const double *force = inside->force + contact->first_row;
         const double allowed =
             contact->tolerance *
-            fmax(contact->force_per_speed *
-                     fmax(fabs(pose.approach_speed), IMPACT_FORCE_SHARE * contact->impact_speed),
+            fmax(contact->force_per_speed * fmax(fabs(pose.approach_speed),
+                                                 IMPACT_FORCE_SHARE * contact->state.impact_speed),
                  vec2_length((Vec2){force[0], force[1]}));
         // error over what is allowed, of either order at this length
         const double theta = fastest * h;

@@ -114,7 +114,7 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
 static double pressing(const KernelContact *contact, const KernelTouch *touch)
 {
     const double rate = touch->pose.approach_speed;
-    const double speed = fmax(contact->impact_speed, contact->law.impact_speed_floor);
+    const double speed = fmax(contact->state.impact_speed, contact->law.impact_speed_floor);
     const double total = touch->elastic * (1.0 + contact->law.hysteresis * rate / speed) +
                          contact->law.viscous * rate;
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
@@ -151,7 +151,7 @@ void kernel_force_find_touching(Kernel *kernel, const KernelPoint *point, double
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
         double *own = force + contact->first_row;
-        if (!contact->is_touching) {
+        if (!contact->state.is_touching) {
             memset(own, 0, contact->row_count * sizeof *own);
             continue;
         }
@@ -195,7 +195,7 @@ static double mobility_between(const Kernel *kernel, const KernelContact *of, Ve
         const double *below = other + kernel->pitch;
         const double between = normal.x * (other[0] * normal.x + other[1] * normal.y) +
                                normal.y * (below[0] * normal.x + below[1] * normal.y);
-        const bool presses = of[k].is_touching || of[k].shape != KERNEL_LINE;
+        const bool presses = of[k].state.is_touching || of[k].shape != KERNEL_LINE;
         sum += k != 0 && presses ? fabs(between) : 0.0;
     }
     return sum;
@@ -221,7 +221,7 @@ double kernel_force_decay(const Kernel *kernel, size_t contact, Vec2 normal, dou
 {
     const KernelContact *of = &kernel->contacts[contact];
     return normal_mobility(kernel, contact, normal) *
-           force_law_damping(&of->law, depth, of->impact_speed);
+           force_law_damping(&of->law, depth, of->state.impact_speed);
 }
 
 double kernel_force_friction_time(const Kernel *kernel, size_t contact, const double *force)
@@ -261,7 +261,7 @@ static double find_normal(const KernelContact *contact, const PinHole *pose, Vec
     const double below = pose->penetration - depth;
     const double elastic = force_law_elastic(law, depth);
     const double tangent_stiffness = force_law_tangent(law, depth);
-    const double floored = fmax(contact->impact_speed, law->impact_speed_floor);
+    const double floored = fmax(contact->state.impact_speed, law->impact_speed_floor);
     const double rise = 1.0 + law->hysteresis * pose->approach_speed / floored;
     const double by_depth = tangent_stiffness * (below < 0.0 ? 1.0 : rise);
     const double by_rate = law->hysteresis * elastic / floored + law->viscous;
@@ -425,7 +425,7 @@ void kernel_slopes_find(const Kernel *kernel, size_t number, double time_s, cons
     const KernelContact *contact = &kernel->contacts[number];
     const PinHole pose = kernel_motion_pose(kernel, number, time_s, impulse, moment);
     memset(slopes, 0, sizeof *slopes);
-    if (!contact->is_touching || (pose.penetration <= 0.0 && from_depth == 0.0)) {
+    if (!contact->state.is_touching || (pose.penetration <= 0.0 && from_depth == 0.0)) {
         return;
     }
     double speeds[SPEEDS] = {0.0};
@@ -588,7 +588,8 @@ static Rated rate_pressing(const KernelContact *contact, const KernelTouch *touc
                            Rated *lost)
 {
     const ForceLaw *law = &contact->law;
-    const double factor = law->hysteresis / fmax(contact->impact_speed, law->impact_speed_floor);
+    const double factor =
+        law->hysteresis / fmax(contact->state.impact_speed, law->impact_speed_floor);
     // at no depth the slope of a law of exponent below 1 is infinite
     const double slope = touch->tangent < INFINITY ? touch->tangent : 0.0;
     const Rated elastic = {touch->elastic, slope * closing.value};
@@ -670,7 +671,7 @@ void kernel_rates_find(Kernel *kernel, KernelPoint *point)
     memset(point->power_rates, 0, sizeof point->power_rates);
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (contact->is_touching) {
+        if (contact->state.is_touching) {
             MovingContact moving = {
                 .contact = contact,
                 .force = point->force + contact->first_row,

@@ -136,7 +136,7 @@ static double error_share(const Kernel *kernel, const KernelPoint *from, double 
 {
     double worst = 0.0;
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        if (kernel->contacts[i].is_touching) {
+        if (kernel->contacts[i].state.is_touching) {
             const double share = share_of_contact(kernel, i, from, width_s, moved, impulse, moment);
             worst = share <= worst ? worst : share;
         }
@@ -226,7 +226,7 @@ static void list_rows(const Kernel *kernel, ImplicitStages *stages, const Kernel
         stages->from_depth[i] = LINEAR_DEPTH_SHARE * fmax(pose.penetration, 0.0);
     }
     for (size_t i = 0; i < kernel_rows(kernel); i++) {
-        if (kernel->contacts[kernel->contact_of[i]].is_touching) {
+        if (kernel->contacts[kernel->contact_of[i]].state.is_touching) {
             stages->row_of[stages->count++] = i;
         }
     }
@@ -436,7 +436,7 @@ static bool guess_stages(const Kernel *kernel, ImplicitStages *stages, const Ker
     for (size_t s = 0; s < STAGES; s++) {
         find_stage(kernel, stages, from, width_s, s);
         for (size_t i = 0; i < kernel->contact_count; i++) {
-            if (kernel->contacts[i].is_touching) {
+            if (kernel->contacts[i].state.is_touching) {
                 extend_forces(kernel, stages, from, STAGE_TIME[s] * width_s, s, i);
             }
         }
@@ -491,7 +491,7 @@ static bool is_pressing(const Kernel *kernel, const ImplicitStages *stages, cons
                         double width_s)
 {
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        if (kernel->contacts[i].is_touching &&
+        if (kernel->contacts[i].state.is_touching &&
             !is_contact_pressing(kernel, stages, from, width_s, i)) {
             return false;
         }
@@ -540,7 +540,7 @@ bool kernel_implicit_is_needed(const Kernel *kernel, const KernelPoint *point, d
 {
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (!contact->is_touching ||
+        if (!contact->state.is_touching ||
             (contact->law.hysteresis == 0.0 && contact->law.viscous == 0.0)) {
             continue;
         }

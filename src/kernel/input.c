@@ -127,8 +127,8 @@ void kernel_track_write(KernelTrack *track, const Kernel *kernel, size_t contact
     const size_t count = kernel->node_count;
     double largest;
     const double change = find_change(track, kernel, contact, &largest);
-    const double met = of->frequency > 0.0 && of->impact_speed > 0.0
-                           ? of->force_per_speed * of->impact_speed / of->frequency
+    const double met = of->frequency > 0.0 && of->state.impact_speed > 0.0
+                           ? of->force_per_speed * of->state.impact_speed / of->frequency
                            : 0.0;
     if (change > 0.0 && !(change <= of->tolerance * fmax(largest, met))) {
         track->version++;

@@ -122,7 +122,7 @@ static KernelIsland *make_island(const KernelIslands *islands, size_t *members, 
     for (size_t i = 0; i < count; i++) {
         const KernelContact *contact = &all->contacts[members[i]];
         kernel_add(kernel, contact, contact->row_count);
-        for (size_t k = 0; contact->is_touching && k < 2; k++) {
+        for (size_t k = 0; contact->state.is_touching && k < 2; k++) {
             kernel->longest_s[k] = fmin(kernel->longest_s[k], islands->longest_s[members[i]][k]);
         }
     }
@@ -732,7 +732,7 @@ bool kernel_islands_run(KernelIslands *islands, double duration)
     Kernel *all = islands->all;
     for (size_t i = 0; i < all->contact_count; i++) {
         islands->is_active[i] =
-            all->contacts[i].is_touching || may_touch(all, &all->contacts[i], duration, 0.0);
+            all->contacts[i].state.is_touching || may_touch(all, &all->contacts[i], duration, 0.0);
         if (islands->kept[i] != NULL) {
             islands->kept[i]->is_run = false;
         }

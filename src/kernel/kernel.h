@@ -12,6 +12,7 @@
 // step (kernel/motion.c).
 #pragma once
 
+#include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 #include "kernel/pin_hole.h"
 
@@ -43,7 +44,8 @@ enum {
     KERNEL_ROW_PIN = 7,
 };
 
-// One contact point. The first six are given; the rest lives on from one step to the next.
+// One contact point. The first six are given, and the state where it touches already as it is added;
+// the rest lives on from one step to the next.
 // A disc outside another is a hole of negative size: the same formulas hold for both.
 typedef struct KernelContact {
     ForceLaw law;
@@ -56,10 +58,9 @@ typedef struct KernelContact {
     bool has_friction;
     size_t first_row;
     size_t row_count;
-    bool is_touching;
-    double impact_speed;    // m/s, closing speed where the contact under way began
-    double touching_s;      // s, since then
-    double frequency;       // rad/s, of its oscillation at the depth to be expected
+    ContactState state;
+    double frequency;       // rad/s, of its oscillation at the depth to be expected; 0 of a contact
+                            // that was set touching and has not been looked at yet
     double force_per_speed; // N s/m: the force to be expected of a closing speed
     double tolerance;       // 1: error of the force in a local step that is allowed, relative to it
     double first_width_s;   // of the first local step of a contact, and of the last

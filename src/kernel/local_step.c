@@ -145,7 +145,7 @@ static const double STEP_FORCES[2] = {2.0, 3.0};
 static bool is_any_touching(const Kernel *kernel)
 {
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        if (kernel->contacts[i].is_touching) {
+        if (kernel->contacts[i].state.is_touching) {
             return true;
         }
     }
@@ -219,7 +219,7 @@ static double choose_width(const Kernel *kernel, const KernelPoint *point, doubl
     *frictionless_s = left_s;
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (!contact->is_touching) {
+        if (!contact->state.is_touching) {
             continue;
         }
         const PinHole pose = *kernel_point_pose(kernel, point, i);
@@ -229,7 +229,7 @@ static double choose_width(const Kernel *kernel, const KernelPoint *point, doubl
         const double share_s = kernel->stiff_phase / frequency;
         const double least_s = GRADED_SHARE_LEAST * share_s;
         *frictionless_s = fmin(*frictionless_s,
-                               fmin(share_s, fmax(GRADING_SHARE * contact->touching_s, least_s)));
+                               fmin(share_s, fmax(GRADING_SHARE * contact->state.age_s, least_s)));
         *frictionless_s = fmin(*frictionless_s, width_before_end(&pose, share_s));
         if (contact->law.friction > 0.0) {
             width_s =
@@ -245,7 +245,7 @@ static double longest_width(const Kernel *kernel, const KernelPoint *from, doubl
     double width_s = left_s;
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (contact->is_touching) {
+        if (contact->state.is_touching) {
             const double share_s = kernel->stiff_phase / contact->frequency;
             const PinHole *pose = kernel_point_pose(kernel, from, i);
             width_s = fmin(width_s, width_before_end(pose, share_s));
@@ -315,7 +315,7 @@ static double limit_explicit(const Kernel *kernel, const KernelPoint *from, bool
     *may_be_stiff = false;
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (!contact->is_touching) {
+        if (!contact->state.is_touching) {
             continue;
         }
         const PinHole pose = *kernel_point_pose(kernel, from, i);
@@ -486,7 +486,7 @@ static bool find_bracket(Kernel *kernel, LocalStep *step, size_t contact, const 
     const PinHole end = *kernel_point_pose(kernel, to, contact);
     *first = start.penetration;
     *last = end.penetration;
-    if (kernel->contacts[contact].is_touching) {
+    if (kernel->contacts[contact].state.is_touching) {
         if (start.penetration < 0.0 && start.approach_speed > 0.0 && end.approach_speed > 0.0) {
             return false; // moved off the wall by the step of the world, and not back there yet
         }
@@ -510,7 +510,7 @@ static bool is_leaving(const Kernel *kernel, const KernelPoint *from, size_t con
 {
     const PinHole *pose = kernel_point_pose(kernel, from, contact);
     const double rounding = kernel_depth_rounding(kernel, contact, from->time_s);
-    return !kernel->contacts[contact].is_touching &&
+    return !kernel->contacts[contact].state.is_touching &&
            pose->penetration >= -WALL_ROUNDINGS * rounding && pose->approach_speed < 0.0;
 }
 
@@ -553,7 +553,7 @@ static bool shorten_to_turn(const Kernel *kernel, const KernelPoint *from, const
 {
     const double whole_s = *width_s;
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        if (kernel->contacts[i].is_touching) {
+        if (kernel->contacts[i].state.is_touching) {
             continue;
         }
         const PinHole start = *kernel_point_pose(kernel, from, i);
@@ -611,7 +611,7 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
         return false;
     }
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        kernel->contacts[i].touching_s += width_s;
+        kernel->contacts[i].state.age_s += width_s;
     }
     return true;
 }

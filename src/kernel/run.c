@@ -209,7 +209,7 @@ static void set_touching(const Kernel *kernel, const KernelPoint *point, uint64_
     for (size_t first = 0; first < count; first += 64) {
         uint64_t bits = 0;
         for (size_t i = first; i < count && i < first + 64; i++) {
-            const bool touches = kernel->contacts[i].is_touching;
+            const bool touches = kernel->contacts[i].state.is_touching;
             bits |= touches ? UINT64_C(1) << (i - first) : 0;
             closings[i] = touches ? kernel_point_pose(kernel, point, i)->approach_speed : 0.0;
         }
@@ -429,21 +429,20 @@ static void set_tolerances(Kernel *kernel, double duration_s)
     kernel->duration_before_s = duration_s;
 }
 
-static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
+// Works out how fast a contact that began with its impact speed will oscillate, and how long its
+// first local step is.
+static void expect_contact(Kernel *kernel, size_t number, Vec2 normal)
 {
     KernelContact *contact = &kernel->contacts[number];
-    contact->is_touching = true;
-    contact->impact_speed = pose->approach_speed;
-    contact->touching_s = 0.0;
     kernel->stiff_width_s = 0.0;
     // the depth at which a spring of that frequency would have taken up the speed
     double depth = 1e-6;
     for (int i = 0; i < 8; i++) {
-        const double speed = fmax(pose->approach_speed, contact->law.impact_speed_floor);
-        depth = fmin(speed / kernel_force_frequency(kernel, number, pose->normal, depth),
+        const double speed = fmax(contact->state.impact_speed, contact->law.impact_speed_floor);
+        depth = fmin(speed / kernel_force_frequency(kernel, number, normal, depth),
                      0.5 * force_law_depth_limit(&contact->law));
     }
-    contact->frequency = kernel_force_frequency(kernel, number, pose->normal, depth);
+    contact->frequency = kernel_force_frequency(kernel, number, normal, depth);
     const double mobility =
         contact->frequency * contact->frequency / force_law_tangent(&contact->law, depth);
     contact->force_per_speed = contact->frequency / mobility;
@@ -451,8 +450,26 @@ static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
     for (int k = 0; k < 2; k++) {
         kernel->longest_s[k] = contact->first_width_s;
     }
-    contact->is_overdamped = kernel_force_decay(kernel, number, pose->normal, depth) >
+    contact->is_overdamped = kernel_force_decay(kernel, number, normal, depth) >
                              OVERDAMPED_FREQUENCIES * contact->frequency;
+}
+
+static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
+{
+    kernel->contacts[number].state =
+        (ContactState){.is_touching = true, .impact_speed = pose->approach_speed};
+    expect_contact(kernel, number, pose->normal);
+}
+
+// Contacts that were set touching before a first step.
+static void resume_contacts(Kernel *kernel, const KernelPoint *point)
+{
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        const KernelContact *contact = &kernel->contacts[i];
+        if (contact->state.is_touching && contact->frequency == 0.0) {
+            expect_contact(kernel, i, kernel_point_pose(kernel, point, i)->normal);
+        }
+    }
 }
 
 // Contacts that a step of the world finds begun or over already: by rounding, as the positions of
@@ -462,8 +479,8 @@ static void settle_contacts(Kernel *kernel, const KernelPoint *point)
     for (size_t i = 0; i < kernel->contact_count; i++) {
         KernelContact *contact = &kernel->contacts[i];
         const PinHole *pose = kernel_point_pose(kernel, point, i);
-        if (contact->is_touching) {
-            contact->is_touching = pose->penetration > 0.0 || pose->approach_speed > 0.0;
+        if (contact->state.is_touching) {
+            contact->state.is_touching = pose->penetration > 0.0 || pose->approach_speed > 0.0;
         } else if (pose->penetration > 0.0 && pose->approach_speed > 0.0) {
             begin_contact(kernel, i, pose);
         }
@@ -476,8 +493,8 @@ static void change_contacts(Kernel *kernel, const KernelPoint *point)
         if (!kernel->work->has_event[i]) {
             continue;
         }
-        if (kernel->contacts[i].is_touching) {
-            kernel->contacts[i].is_touching = false;
+        if (kernel->contacts[i].state.is_touching) {
+            kernel->contacts[i].state.is_touching = false;
         } else {
             begin_contact(kernel, i, kernel_point_pose(kernel, point, i));
         }
@@ -501,6 +518,7 @@ bool kernel_run(Kernel *kernel, double duration)
     begin_step(kernel, from);
     kernel_nodes_begin(kernel);
     kernel->event_count = 0;
+    resume_contacts(kernel, from);
     set_tolerances(kernel, duration);
     settle_contacts(kernel, from);
     kernel_rates_find(kernel, from);

@@ -8,6 +8,7 @@
 #include "base/err.h"
 #include "base/vec2.h"
 #include "base/vec3.h"
+#include "kernel/contact_state.h"
 #include "model/drive.h"
 
 #include <stdbool.h>
@@ -137,6 +138,8 @@ typedef struct JointContact {
     double friction;      // 1, Coulomb's coefficient
 } JointContact;
 
+enum { JOINT_PLACES = 4 }; // at which a joint with play can touch, at most
+
 // What a joint has only in space.
 typedef struct JointSpace {
     double height;          // m, z of its middle at time zero
@@ -161,6 +164,9 @@ typedef struct Joint {
     Gear gear;           // of a JOINT_GEAR
     Limits limits;       // of a JOINT_REVOLUTE or JOINT_PRISMATIC, and of every JOINT_GEAR
     JointContact contact;
+    // what its contacts bring along at time zero, in the order of its places (contact/touch.h; in
+    // space contact/pin_space.h and the ends of an angle); all zero: none touches yet
+    ContactState contacts[JOINT_PLACES];
     JointSpace space;
 } Joint;
 

@@ -8,6 +8,8 @@
 #include "base/zeroed.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 typedef struct Several {
     const Scenario *scenario;
@@ -181,6 +183,20 @@ void several_glance(const void *state, double time_s, Sample *sample)
         solver_glance(several->solver, member->state, time_s, &member->sample);
         member_show_bodies(member, sample);
     }
+}
+
+void several_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    const Several *several = state;
+    ContactState(*own)[JOINT_PLACES] = zeroed(several->scenario->linkage.joint_count, sizeof *own);
+    for (size_t i = 0; i < several->count; i++) {
+        const Member *member = &several->members[i];
+        several->solver->contacts(member->state, own);
+        for (size_t k = 0; k < member->part.joint_count; k++) {
+            memcpy(states[member->joints[k]], own[k], sizeof own[k]);
+        }
+    }
+    free(own);
 }
 
 SolverModel several_model(const void *state)

@@ -14,6 +14,7 @@ StepRecord several_record(const void *state);
 void several_observe(const void *state, double time_s, Sample *sample);
 void several_observe_part(const void *state, double time_s, Sample *sample);
 void several_glance(const void *state, double time_s, Sample *sample);
+void several_contacts(const void *state, ContactState (*states)[JOINT_PLACES]);
 void several_close(void *state);
 
 // Rows and evaluations are sums; steps are those of the mechanism that took most. The label is that

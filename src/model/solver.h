@@ -87,6 +87,9 @@ typedef struct Solver {
     // Optional: the bodies' positions and velocities alone, which may take less; the rest of the
     // sample stays as it is. NULL: observe has them.
     void (*glance)(const void *state, double time_s, Sample *sample);
+    // What the contacts of each joint carry at the end of the last step, by joint and its places.
+    // NULL of solvers without contacts.
+    void (*contacts)(const void *state, ContactState (*states)[JOINT_PLACES]);
     SolverModel (*model)(const void *state);
     // Optional: extremes from a time on known better than from steps (a closed form), which return
     // every turn. NULL: taken from records.

@@ -43,7 +43,7 @@ static void share_mass(const ContactMass *mass, ContactRow *rows, size_t number)
     set_along(mass, rows, number, own);
     for (size_t i = 0; i < mass->world->pair_count; i++) {
         const ContactRow *other = &rows[i];
-        if (mass->world->pairs[i].joint != joint || !other->is_touching) {
+        if (mass->world->pairs[i].joint != joint || !other->state.is_touching) {
             continue;
         }
         double along[RESPONSE_ROWS_A_JOINT];

@@ -68,37 +68,39 @@ static Overlap end_overlap(const ContactRow *row, const WorldPair *pair, const T
 static void begin(ContactRow *row, bool is_staggered, const TouchPose *pose, double onset_s,
                   double step_s)
 {
-    row->impact_speed = is_staggered
-                            ? onset_speed(&row->onset, row->closing, pose->gap, row->inside, step_s)
-                            : row->closing;
-    tops_begin(&row->tops, row->law.viscous * row->impact_speed, 0.5 * step_s - onset_s);
+    row->state.impact_speed =
+        is_staggered ? onset_speed(&row->onset, row->closing, pose->gap, row->inside, step_s)
+                     : row->closing;
+    row->state.age_s = 0.0;
+    tops_begin(&row->tops, row->law.viscous * row->state.impact_speed, 0.5 * step_s - onset_s);
 }
 
 void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair, bool is_staggered,
                       double step_s, JointState *state)
 {
-    const bool was_touching = row->is_touching;
+    const bool was_touching = row->state.is_touching;
     const TouchPose pose = pair_pose(pair);
     const Overlap overlap = end_overlap(row, pair, &pose, is_staggered, step_s);
     row->share = overlap.share;
-    row->is_touching = find_collision(world, pair, &pose, &overlap, row);
+    row->state.is_touching = find_collision(world, pair, &pose, &overlap, row);
     row->inside = pair->hole == NULL ? -pose.gap : row->depth;
     *state = (JointState){
         .eccentricity = pose.offset,
         .gap = pose.gap,
-        .is_touching = row->is_touching,
+        .is_touching = row->state.is_touching,
     };
-    if (!row->is_touching) {
-        row->impact_speed = pose.approach_speed;
+    if (!row->state.is_touching) {
+        row->state.impact_speed = pose.approach_speed;
     } else {
         // of a polygon's side the circles' penetration and its rate are not the row's
         row->excess = pair->hole == NULL ? 0.0 : row->depth + pose.gap;
         row->closing =
             pair->hole == NULL ? pose.approach_speed : -vec2_dot(row->normal, pose.velocity);
         row->faster = row->closing - pose.approach_speed;
+        row->state.age_s += step_s;
         if (!was_touching) {
             begin(row, is_staggered, &pose, overlap.onset, step_s);
         }
     }
-    onset_note(&row->onset, row->is_touching, pose.gap);
+    onset_note(&row->onset, row->state.is_touching, pose.gap);
 }

@@ -37,7 +37,7 @@ static dSurfaceParameters impact_surface(const ContactRows *rows, ContactRow *ro
     const LawRow at = {
         .depth = row->depth,
         .closing = row->closing,
-        .impact_speed = row->impact_speed,
+        .impact_speed = row->state.impact_speed,
         .share = row->share,
         .mass = row->mass,
     };
@@ -53,11 +53,12 @@ static dSurfaceParameters impact_surface(const ContactRows *rows, ContactRow *ro
 }
 
 // What of a place's contacts does not change.
-static void init_row(ContactRows *rows, size_t number, const ForceLaw *law)
+static void init_row(ContactRows *rows, size_t number, const Touch *place)
 {
     ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
-    row->law = *law;
+    row->law = place->law;
+    row->state = rows->scenario->linkage.joints[place->joint].contacts[place->place];
     row->surface = rows->map == NULL ? poisson_surface(rows, number) : row->surface;
     row->contact.geom = (dContactGeom){.g1 = pair->hole, .g2 = pair->pin, .side1 = -1, .side2 = -1};
     if (pair->row != NULL) {
@@ -92,11 +93,19 @@ bool contact_rows_init(ContactRows *rows, const Scenario *scenario, World *world
                         ? scenario->contact.penalty
                         : penalty_estimate(scenario->linkage.driver.speed, &scenario->material);
     for (size_t i = 0; i < world->pair_count; i++) {
-        init_row(rows, i, &places[i].law);
+        init_row(rows, i, &places[i]);
     }
     free(places);
     rows->group = dJointGroupCreate(0);
     return true;
+}
+
+void contact_rows_states(const ContactRows *rows, ContactState (*states)[JOINT_PLACES])
+{
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        const Touch *place = &rows->world->pairs[i].touch;
+        states[place->joint][place->place] = rows->rows[i].state;
+    }
 }
 
 void contact_rows_finish(ContactRows *rows)
@@ -156,7 +165,7 @@ static void find_friction(ContactRows *rows, double step_s)
     size_t *numbers = rows->numbers;
     size_t count = 0;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        if (rows->rows[i].is_touching) {
+        if (rows->rows[i].state.is_touching) {
             found[count] = contact_rows_friction(rows, i);
             found[count].target =
                 rows->rows[i].contact.surface.soft_erp / step_s * rows->rows[i].depth;
@@ -202,7 +211,7 @@ static void make_contact_rows(ContactRows *rows, double step_s)
         find_friction(rows, step_s);
     }
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        if (rows->rows[i].is_touching) {
+        if (rows->rows[i].state.is_touching) {
             make_row(rows, i, step_s);
             rows->row_count++;
             row_count += has_friction && !rows->world->pairs[i].is_end ? 2 : 1;
@@ -265,13 +274,14 @@ static void find_row(ContactRows *rows, size_t number, double step_s, JointState
     JointState place;
     contact_row_find(row, rows->world, pair, rows->is_staggered, step_s, is_first ? state : &place);
     if (is_first) {
-        approach[pair->joint] = pair->is_corner && !row->is_touching ? 0.0 : row->impact_speed;
+        approach[pair->joint] =
+            pair->is_corner && !row->state.is_touching ? 0.0 : row->state.impact_speed;
         return;
     }
     state->gap = fmin(state->gap, place.gap);
-    state->is_touching = state->is_touching || row->is_touching;
-    if (row->is_touching) {
-        approach[pair->joint] = fmax(approach[pair->joint], row->impact_speed);
+    state->is_touching = state->is_touching || row->state.is_touching;
+    if (row->state.is_touching) {
+        approach[pair->joint] = fmax(approach[pair->joint], row->state.impact_speed);
     }
 }
 
@@ -282,12 +292,12 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
     rows->mass.is_placed = false;
     for (size_t i = 0; i < count; i++) {
         find_row(rows, i, step_s, states, approach);
-        if (rows->rows[i].is_touching && !check_depth(rows, i, err)) {
+        if (rows->rows[i].state.is_touching && !check_depth(rows, i, err)) {
             return false;
         }
     }
     for (size_t i = 0; i < count; i++) {
-        if (rows->rows[i].is_touching) {
+        if (rows->rows[i].state.is_touching) {
             check_stability(rows, i, step_s);
             write_contact(rows, i, step_s);
         }

@@ -26,7 +26,7 @@ static void book_energy(ContactRows *rows, size_t number, Vec2 force, double ste
     row->elastic = 0.0;
     row->dissipated = 0.0;
     row->friction = 0.0;
-    if (!row->is_touching) {
+    if (!row->state.is_touching) {
         return;
     }
     const TouchPose pose = pair_pose(&rows->world->pairs[number]);
@@ -57,7 +57,7 @@ static Vec2 row_force(const ContactRows *rows, size_t number)
 {
     const ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
-    if (!row->is_touching || pair->row != NULL) {
+    if (!row->state.is_touching || pair->row != NULL) {
         return (Vec2){0.0, 0.0};
     }
     const Vec3 on_a = pressing_row_force(&row->feedback, pair->bodies);
@@ -111,7 +111,7 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
             states[pair->joint].force = 0.0;
         }
         const Vec2 force = row_force(rows, i);
-        if (rows->rows[i].is_touching) {
+        if (rows->rows[i].state.is_touching) {
             read_row(rows, i, force, step_s, &states[pair->joint]);
             any = true;
         }
@@ -132,7 +132,7 @@ void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets)
         const ContactRow *row = &rows->rows[i];
         const int number = rows->world->pairs[i].joint;
         const Joint *joint = &rows->scenario->linkage.joints[number];
-        if (row->is_touching) {
+        if (row->state.is_touching) {
             offsets[number] = row->arms[joint->body_a == body ? 0 : 1];
         }
     }
@@ -157,7 +157,7 @@ void contact_rows_tops(const ContactRows *rows, JointTop *tops)
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];
         JointTop *top = &tops[rows->world->pairs[i].joint];
-        if (rows->world->pairs[i].is_end && row->is_touching) {
+        if (rows->world->pairs[i].is_end && row->state.is_touching) {
             top->force = fmax(top->force, row->tops.force);
             top->depth = fmax(top->depth, row->tops.depth);
         }

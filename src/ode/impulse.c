@@ -196,6 +196,15 @@ static void impulse_observe(const void *state, double time_s, Sample *sample)
                         sample->joints, impulse->depths);
 }
 
+static void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    const ImpulseStep *step = &((const Impulse *)state)->step;
+    for (size_t i = 0; i < step->place_count; i++) {
+        const Touch *place = &step->places[i];
+        states[place->joint][place->place] = step->kernel.contacts[i].state;
+    }
+}
+
 static SolverModel impulse_model(const void *state)
 {
     const Impulse *impulse = state;
@@ -216,6 +225,7 @@ const Solver STEPPING_IMPULSE = {
     .step = impulse_step,
     .record = impulse_record,
     .observe = impulse_observe,
+    .contacts = impulse_contacts,
     .model = impulse_model,
     .close = impulse_close,
 };

@@ -115,6 +115,7 @@ static KernelContact joint_of(const ImpulseStep *step, const Touch *place)
         .radial_clearance = is_line ? 0.0 : sign * place->clearance,
         .hole_radius = is_line ? 0.0 : sign * place->radius_a,
         .joint = place->joint,
+        .state = step->scenario->linkage.joints[place->joint].contacts[place->place],
         .siblings = {has_corners ? -place->place : 0,
                      has_corners ? TOUCH_CORNERS - 1 - place->place : 0},
     };

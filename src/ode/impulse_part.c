@@ -71,9 +71,9 @@ void impulse_part_add_place(ImpulsePart *part, const KernelContact *place, bool 
 {
     const int joint = place->joint;
     part->impulse[joint] = part->is_known[joint] ? part->impulse[joint] + pushed : pushed;
-    const double touching_s = is_touching ? place->touching_s : INFINITY;
+    const double touching_s = is_touching ? place->state.age_s : INFINITY;
     if (!part->is_known[joint] || touching_s < part->since_s[joint]) {
-        part->approach[joint] = place->impact_speed;
+        part->approach[joint] = place->state.impact_speed;
         part->since_s[joint] = touching_s;
     }
     part->is_known[joint] = true;

@@ -35,6 +35,7 @@ const Solver STEPPING_IMPULSE_PARTS = {
     .record = several_record,
     .observe = several_observe,
     .observe_part = several_observe_part,
+    .contacts = several_contacts,
     .model = several_model,
     .close = several_close,
 };

@@ -89,7 +89,7 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
         };
         const double near =
             NEAR * linkage_radial_clearance(&step->scenario->linkage.joints[joint->joint]);
-        if (joint->is_touching || gap_at(joint, now) < near ||
+        if (joint->state.is_touching || gap_at(joint, now) < near ||
             gap_at(joint, vec2_add(now, moved)) < near) {
             return true;
         }

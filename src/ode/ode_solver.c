@@ -78,6 +78,14 @@ static void ode_observe_part(const void *state, double time_s, Sample *sample)
     ode->stepping->observe_part(ode->state, time_s, sample);
 }
 
+static void ode_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    const Ode *ode = state;
+    if (ode->stepping->contacts != NULL) { // of ideal joints alone there are none
+        ode->stepping->contacts(ode->state, states);
+    }
+}
+
 static SolverModel ode_model(const void *state)
 {
     const Ode *ode = state;
@@ -100,6 +108,7 @@ const Solver ODE_SOLVER = {
     .record = ode_record,
     .observe = ode_observe,
     .observe_part = ode_observe_part,
+    .contacts = ode_contacts,
     .model = ode_model,
     .close = ode_close,
 };

@@ -225,6 +225,11 @@ static void plain_observe(const void *state, double time_s, Sample *sample)
     }
 }
 
+static void plain_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    contact_rows_states(&((const Plain *)state)->contacts, states);
+}
+
 static SolverModel plain_model(const void *state)
 {
     const Plain *plain = state;
@@ -246,6 +251,7 @@ const Solver STEPPING_PLAIN = {
     .step = plain_step,
     .record = plain_record,
     .observe = plain_observe,
+    .contacts = plain_contacts,
     .model = plain_model,
     .close = plain_close,
 };

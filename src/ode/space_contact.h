@@ -10,12 +10,11 @@
 
 // What a pin does at one of its places.
 typedef struct SpaceContact {
-    bool is_touching;
-    double depth; // m, of the row, like all that follows up to the friction
+    ContactState state; // as in ode/contact_row.h
+    double depth;       // m, of the row, like all that follows up to the friction
     PinSpacePose pose;
-    Vec3 point;          // m, where the force acts
-    Vec3 hole_axis;      // unit, of a collar
-    double impact_speed; // m/s, closing speed when the present contact began
+    Vec3 point;     // m, where the force acts
+    Vec3 hole_axis; // unit, of a collar
     Onset onset;
     double mass;       // kg, effective along the normal that it was worked out for
     double stiff_mass; // kg, with which the stiffest motion of the joint's places meets it

@@ -30,7 +30,7 @@ static unsigned touching_places(const SpaceContacts *contacts, size_t number)
     unsigned places = 0;
     const size_t end = end_of_joint(contacts, number);
     for (size_t i = first_of_joint(contacts, number); i < end; i++) {
-        places |= contacts->contacts[i].is_touching ? 1U << contacts->places[i].place : 0;
+        places |= contacts->contacts[i].state.is_touching ? 1U << contacts->places[i].place : 0;
     }
     return places;
 }
@@ -41,7 +41,7 @@ static bool needs_mass(const SpaceContacts *contacts, size_t number)
 {
     static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
     const SpaceContact *contact = &contacts->contacts[number];
-    return contact->is_touching &&
+    return contact->state.is_touching &&
            (contacts->map->needs_mass ||
             contact->mass_places != touching_places(contacts, number) ||
             !(vec3_dot(contact->mass_normal, contact->pose.normal) > SAME_NORMAL));
@@ -60,7 +60,7 @@ static bool place_normals(SpaceContacts *contacts, const SpaceMotion *motions)
             contacts->rows[SPACE_CONTACT_ROWS * i + k].body[0] = place->hole.body;
             contacts->rows[SPACE_CONTACT_ROWS * i + k].body[1] = place->pin.body;
         }
-        if (contact->is_touching) {
+        if (contact->state.is_touching) {
             contacts->rows[SPACE_CONTACT_ROWS * i] =
                 space_row_along(motions, place->hole.body, contact->pose.at_a, place->pin.body,
                                 contact->pose.at_b, contact->pose.normal);
@@ -89,7 +89,7 @@ static void find_mass(SpaceContacts *contacts, size_t number)
     for (size_t k = first_of_joint(contacts, number); k < end; k++) {
         const SpaceContact *other = &contacts->contacts[k];
         const ForceLaw *of = &contacts->places[k].law;
-        if (!other->is_touching) {
+        if (!other->state.is_touching) {
             continue;
         }
         const double between = mobility_between(contacts, number, k);
@@ -116,7 +116,7 @@ void space_contact_mass_find(SpaceContacts *contacts, const SpaceMotion *motions
         is_placed = true;
         const size_t end = end_of_joint(contacts, i);
         for (size_t k = first_of_joint(contacts, i); k < end; k++) {
-            if (contacts->contacts[k].is_touching) {
+            if (contacts->contacts[k].state.is_touching) {
                 find_mass(contacts, k);
             }
         }

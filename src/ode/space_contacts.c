@@ -22,6 +22,10 @@ bool space_contacts_list(SpaceContacts *contacts, const Scenario *scenario, Err 
     contacts->places = pin_space_list(scenario, &contacts->count, err);
     contacts->contacts = zeroed(contacts->count, sizeof *contacts->contacts);
     contacts->motions = zeroed(bodies, sizeof *contacts->motions);
+    for (size_t i = 0; i < contacts->count; i++) {
+        const PinSpace *place = &contacts->places[i];
+        contacts->contacts[i].state = scenario->linkage.joints[place->joint].contacts[place->place];
+    }
     return contacts->places != NULL;
 }
 
@@ -69,20 +73,23 @@ static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMoti
 {
     const PinSpace *place = &contacts->places[number];
     SpaceContact *contact = &contacts->contacts[number];
-    const bool was_touching = contact->is_touching;
+    const bool was_touching = contact->state.is_touching;
     contact->pose = pin_space_pose(place, motions);
     contact->depth = -contact->pose.gap;
-    contact->is_touching = contact->pose.gap < 0.0;
-    if (!contact->is_touching) {
-        contact->impact_speed = contact->pose.approach_speed;
-    } else if (!was_touching) {
+    contact->state.is_touching = contact->pose.gap < 0.0;
+    if (!contact->state.is_touching) {
+        contact->state.impact_speed = contact->pose.approach_speed;
+    } else if (was_touching) {
+        contact->state.age_s += step_s;
+    } else {
         const PinSpacePose *pose = &contact->pose;
-        contact->impact_speed = contacts->is_staggered
-                                    ? onset_speed(&contact->onset, pose->approach_speed, pose->gap,
-                                                  contact->depth, step_s)
-                                    : pose->approach_speed;
+        contact->state.age_s = 0.0;
+        contact->state.impact_speed = contacts->is_staggered
+                                          ? onset_speed(&contact->onset, pose->approach_speed,
+                                                        pose->gap, contact->depth, step_s)
+                                          : pose->approach_speed;
     }
-    onset_note(&contact->onset, contact->is_touching, contact->pose.gap);
+    onset_note(&contact->onset, contact->state.is_touching, contact->pose.gap);
     const Clearance *clearance = &contacts->scenario->linkage.joints[place->joint].clearance;
     contact->point = contact->pose.at_a;
     if (place->place == PIN_SPACE_COLLAR) {
@@ -132,7 +139,7 @@ static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, dou
     const LawRow at = {
         .depth = contact->depth,
         .closing = contact->pose.approach_speed,
-        .impact_speed = contact->impact_speed,
+        .impact_speed = contact->state.impact_speed,
         .share = 1.0,
         .mass = contact->mass,
     };
@@ -169,7 +176,7 @@ static size_t make_joints(SpaceContacts *contacts)
     for (size_t i = 0; i < contacts->count; i++) {
         SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
-        if (contact->is_touching) {
+        if (contact->state.is_touching) {
             const dBodyID bodies[2] = {body_of(contacts->world, place->hole.body),
                                        body_of(contacts->world, place->pin.body)};
             pressing_row_of_way(contacts->world->id, contacts->group, &contact->contact, bodies,
@@ -193,10 +200,10 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
     for (size_t i = 0; i < contacts->count; i++) {
         SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
-        if (place->place == 0 || (place->place == 1 && contact->is_touching)) {
-            approach[place->joint] = contact->impact_speed;
+        if (place->place == 0 || (place->place == 1 && contact->state.is_touching)) {
+            approach[place->joint] = contact->state.impact_speed;
         }
-        if (!contact->is_touching) {
+        if (!contact->state.is_touching) {
             continue;
         }
         if (!law_check_depth(&place->law, &linkage->joints[place->joint], contact->depth, 1.0,
@@ -220,7 +227,7 @@ static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotio
 {
     SpaceContact *contact = &contacts->contacts[number];
     contact->elastic = contact->dissipated = contact->friction = 0.0;
-    if (!contact->is_touching) {
+    if (!contact->state.is_touching) {
         return;
     }
     const PinSpace *place = &contacts->places[number];
@@ -251,7 +258,7 @@ void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *j
     SpaceMotion *motions = contacts->motions;
     bool any = false;
     for (size_t i = 0; i < contacts->count; i++) {
-        any = any || contacts->contacts[i].is_touching;
+        any = any || contacts->contacts[i].state.is_touching;
     }
     for (size_t i = 0; any && i < contacts->scenario->linkage.body_count; i++) {
         motions[i] = space_world_motion(contacts->world, i);
@@ -260,7 +267,7 @@ void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *j
         const PinSpace *place = &contacts->places[i];
         SpaceContact *contact = &contacts->contacts[i];
         contact->force = (Vec3){0.0, 0.0, 0.0};
-        if (contact->is_touching) {
+        if (contact->state.is_touching) {
             const dBodyID bodies[2] = {body_of(contacts->world, place->hole.body),
                                        body_of(contacts->world, place->pin.body)};
             contact->force = vec3_scale(-1.0, pressing_row_force(&contact->feedback, bodies));
@@ -278,7 +285,7 @@ void space_contacts_load(const SpaceContacts *contacts, int body, Vec3 centre, S
     for (size_t i = 0; i < contacts->count && body != LINKAGE_GROUND; i++) {
         const SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
-        if (contact->is_touching && (place->hole.body == body || place->pin.body == body)) {
+        if (contact->state.is_touching && (place->hole.body == body || place->pin.body == body)) {
             const double sign = place->pin.body == body ? 1.0 : -1.0;
             const Vec3 force = vec3_scale(sign, contact->force);
             load->move = vec3_add(load->move, force);

@@ -79,7 +79,7 @@ void space_friction_rows_add(SpaceContacts *contacts, const SpaceMotion *motions
     size_t *numbers = zeroed(contacts->count, sizeof *numbers);
     size_t count = 0;
     for (size_t i = 0; i < contacts->count; i++) {
-        if (contacts->contacts[i].is_touching) {
+        if (contacts->contacts[i].state.is_touching) {
             found[count] = friction_row(contacts, i, motions, step_s);
             numbers[count++] = i;
         }

@@ -228,6 +228,16 @@ static void space_impulse_observe(const void *state, double time_s, Sample *samp
     memcpy(sample->space_joints, joints.space, linkage->joint_count * sizeof *sample->space_joints);
 }
 
+static void space_impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    const SpaceImpulseStep *step = &((const SpaceImpulse *)state)->step;
+    for (size_t i = 0; i < step->place_count; i++) {
+        const StopSpace *stop = space_impulse_step_stop(step, i);
+        const int place = stop != NULL ? stop_space_place(stop) : step->places[i].place;
+        states[space_impulse_step_joint(step, i)][place] = step->kernel.contacts[i].state;
+    }
+}
+
 static SolverModel space_impulse_model(const void *state)
 {
     const SpaceImpulse *impulse = state;
@@ -260,6 +270,7 @@ const Solver SPACE_IMPULSE_PARTS = {
     .record = several_record,
     .observe = several_observe,
     .observe_part = several_observe_part,
+    .contacts = several_contacts,
     .model = several_model,
     .close = several_close,
 };
@@ -270,6 +281,7 @@ const Solver SPACE_IMPULSE = {
     .step = space_impulse_step,
     .record = space_impulse_record,
     .observe = space_impulse_observe,
+    .contacts = space_impulse_contacts,
     .model = space_impulse_model,
     .close = space_impulse_close,
 };

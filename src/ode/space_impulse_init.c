@@ -50,13 +50,18 @@ static bool init_kernel(SpaceImpulseStep *step, Err *err)
             .radial_clearance = place->clearance,
             .hole_radius = joint->clearance.hole_radius,
             .joint = place->joint,
+            .state = joint->contacts[place->place],
             .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
         };
         kernel_add(&step->kernel, &added, rows);
     }
     for (size_t i = 0; i < stop_count; i++) {
         const StopSpace *stop = &step->stops[i];
-        const KernelContact added = {.law = stop->law, .shape = KERNEL_LINE, .joint = stop->joint};
+        const Joint *joint = &scenario->linkage.joints[stop->joint];
+        const KernelContact added = {.law = stop->law,
+                                     .shape = KERNEL_LINE,
+                                     .joint = stop->joint,
+                                     .state = joint->contacts[stop_space_place(stop)]};
         kernel_add(&step->kernel, &added, PIN_SPACE_PLAIN_ROWS);
     }
     step->total = kernel_sums(kernel_rows(&step->kernel));

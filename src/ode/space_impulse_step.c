@@ -78,7 +78,7 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
         const double moved = width_s * space_row_speed(&opening, step->before);
         const double play = coordinate_play(&linkage->joints[stop->joint]);
         const double limit = isfinite(play) ? NEAR * play : 0.0;
-        if (step->kernel.contacts[i].is_touching || gap < limit || gap + moved < limit) {
+        if (step->kernel.contacts[i].state.is_touching || gap < limit || gap + moved < limit) {
             return true;
         }
     }
@@ -87,7 +87,8 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
         // the speed alone: what it may gain meanwhile is less than the margin
         const double limit = NEAR * step->places[i].clearance;
         const double moved = width_s * pose.approach_speed;
-        if (step->kernel.contacts[i].is_touching || pose.gap < limit || pose.gap - moved < limit) {
+        if (step->kernel.contacts[i].state.is_touching || pose.gap < limit ||
+            pose.gap - moved < limit) {
             return true;
         }
     }

@@ -331,6 +331,19 @@ static void space_rows_observe(const void *state, double time_s, Sample *sample)
     space_joints_place(&rows->response, sample->space_bodies, sample->joints, sample->space_joints);
 }
 
+static void space_rows_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    const SpaceRows *rows = state;
+    for (size_t i = 0; i < rows->contacts.count; i++) {
+        const PinSpace *place = &rows->contacts.places[i];
+        states[place->joint][place->place] = rows->contacts.contacts[i].state;
+    }
+    for (size_t i = 0; i < rows->stops.count; i++) {
+        const SpaceStop *stop = &rows->stops.stops[i];
+        states[stop->joint][stop->sign > 0.0 ? 0 : 1] = stop->state;
+    }
+}
+
 static SolverModel space_rows_model(const void *state)
 {
     const SpaceRows *rows = state;
@@ -352,6 +365,7 @@ const Solver SPACE_PLAIN = {
     .step = space_rows_step,
     .record = space_rows_record,
     .observe = space_rows_observe,
+    .contacts = space_rows_contacts,
     .model = space_rows_model,
     .close = space_rows_close,
 };
@@ -362,6 +376,7 @@ const Solver SPACE_STAGGERED = {
     .step = space_rows_step,
     .record = space_rows_record,
     .observe = space_rows_observe,
+    .contacts = space_rows_contacts,
     .model = space_rows_model,
     .close = space_rows_close,
 };

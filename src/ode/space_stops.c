@@ -30,7 +30,11 @@ bool space_stops_list(SpaceStops *stops, const Scenario *scenario, Err *err)
     for (size_t i = 0; i < stops->count; i++) {
         const StopSpace *of = &listed[i];
         stops->stops[i] =
-            (SpaceStop){.joint = of->joint, .sign = of->sign, .limit = of->limit, .law = of->law};
+            (SpaceStop){.joint = of->joint,
+                        .sign = of->sign,
+                        .limit = of->limit,
+                        .law = of->law,
+                        .state = linkage->joints[of->joint].contacts[stop_space_place(of)]};
         stops->angles[of->joint] = space_coordinate_start(linkage, of->joint);
     }
     free(listed);
@@ -79,23 +83,26 @@ static void look_at(const SpaceStops *stops, const SpaceMotion *motions, SpaceSt
 
 static void find_contact(SpaceStops *stops, SpaceStop *stop, double step_s)
 {
-    const bool was_touching = stop->is_touching;
+    const bool was_touching = stop->state.is_touching;
     const Overlap overlap = stops->is_staggered
                                 ? overlap_find(&stop->law, stop->gap, stop->closing, step_s)
                                 : (Overlap){.depth = -stop->gap, .share = 1.0};
     stop->share = overlap.share;
     stop->depth = overlap.depth;
-    stop->is_touching = overlap.depth > 0.0;
-    if (!stop->is_touching) {
-        stop->impact_speed = stop->closing;
-    } else if (!was_touching) {
-        stop->impact_speed = stops->is_staggered ? onset_speed(&stop->onset, stop->closing,
-                                                               stop->gap, -stop->gap, step_s)
-                                                 : stop->closing;
-        tops_begin(&stop->tops, stop->law.viscous * stop->impact_speed,
+    stop->state.is_touching = overlap.depth > 0.0;
+    if (!stop->state.is_touching) {
+        stop->state.impact_speed = stop->closing;
+    } else if (was_touching) {
+        stop->state.age_s += step_s;
+    } else {
+        stop->state.age_s = 0.0;
+        stop->state.impact_speed = stops->is_staggered ? onset_speed(&stop->onset, stop->closing,
+                                                                     stop->gap, -stop->gap, step_s)
+                                                       : stop->closing;
+        tops_begin(&stop->tops, stop->law.viscous * stop->state.impact_speed,
                    0.5 * step_s - overlap.onset);
     }
-    onset_note(&stop->onset, stop->is_touching, stop->gap);
+    onset_note(&stop->onset, stop->state.is_touching, stop->gap);
 }
 
 // The inertias that all ends meet that press, kg m^2.
@@ -127,7 +134,7 @@ static void press(SpaceStops *stops, SpaceStop *stop, double step_s)
         const LawRow at = {
             .depth = stop->depth,
             .closing = stop->closing,
-            .impact_speed = stop->impact_speed,
+            .impact_speed = stop->state.impact_speed,
             .share = stop->share,
             .mass = stop->mass,
         };
@@ -158,18 +165,18 @@ bool space_stops_make(SpaceStops *stops, const SpaceMotion *motions, double step
         const bool is_first = i == 0 || stops->stops[i - 1].joint != stop->joint;
         joint->tilt = *angle;
         joint->gap = is_first ? stop->gap : fmin(joint->gap, stop->gap);
-        joint->is_touching = (!is_first && joint->is_touching) || stop->is_touching;
-        if (is_first || stop->is_touching) {
-            approach[stop->joint] = stop->impact_speed;
+        joint->is_touching = (!is_first && joint->is_touching) || stop->state.is_touching;
+        if (is_first || stop->state.is_touching) {
+            approach[stop->joint] = stop->state.impact_speed;
         }
-        is_any = is_any || stop->is_touching;
+        is_any = is_any || stop->state.is_touching;
     }
     if (is_any && stops->map != NULL) {
         find_masses(stops, motions);
     }
     for (size_t i = 0; i < stops->count; i++) {
         SpaceStop *stop = &stops->stops[i];
-        if (!stop->is_touching) {
+        if (!stop->state.is_touching) {
             continue;
         }
         if (!law_check_depth(&stop->law, &linkage->joints[stop->joint], stop->depth, 1.0, err)) {
@@ -215,7 +222,7 @@ void space_stops_clear(SpaceStops *stops, double step_s, SpaceJoints *joints)
             joint->force = 0.0;
         }
         stop->pressing = stop->elastic = stop->dissipated = 0.0;
-        if (!stop->is_touching) {
+        if (!stop->state.is_touching) {
             continue;
         }
         const dReal *torque = stop->feedback.t1;
@@ -247,7 +254,7 @@ void space_stops_tops(const SpaceStops *stops, JointTop *tops)
         if (i == 0 || stops->stops[i - 1].joint != stop->joint) {
             *top = (JointTop){.force = 0.0};
         }
-        if (stop->is_touching) {
+        if (stop->state.is_touching) {
             top->force = fmax(top->force, stop->tops.force);
             top->depth = fmax(top->depth, stop->tops.depth);
         }

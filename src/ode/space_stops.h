@@ -22,18 +22,17 @@ typedef struct SpaceStop {
     Vec3 axis; // of the row, of ODE's first body
     Onset onset;
     Tops tops;
-    bool is_touching;
-    bool falls_back;     // the map is not stable at this step: the row is the textbook's
-    double gap;          // rad, where the bodies are
-    double depth;        // rad, of the row
-    double share;        // 1, of the step in which the end is overlapped
-    double closing;      // rad/s, before the step
-    double impact_speed; // rad/s, when the present contact began
-    double mass;         // kg m^2, effective
-    double damping;      // N m s/rad
-    double pressing;     // N m, in the step
-    double elastic;      // J, stored after it
-    double dissipated;   // J, lost in it
+    ContactState state; // as in ode/contact_row.h
+    bool falls_back;    // the map is not stable at this step: the row is the textbook's
+    double gap;         // rad, where the bodies are
+    double depth;       // rad, of the row
+    double share;       // 1, of the step in which the end is overlapped
+    double closing;     // rad/s, before the step
+    double mass;        // kg m^2, effective
+    double damping;     // N m s/rad
+    double pressing;    // N m, in the step
+    double elastic;     // J, stored after it
+    double dissipated;  // J, lost in it
 } SpaceStop;
 
 typedef struct SpaceStops {

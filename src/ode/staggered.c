@@ -367,6 +367,11 @@ static void staggered_observe(const void *state, double time_s, Sample *sample)
     }
 }
 
+static void staggered_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    contact_rows_states(&((const Staggered *)state)->contacts, states);
+}
+
 static SolverModel staggered_model(const void *state)
 {
     const Staggered *staggered = state;
@@ -388,6 +393,7 @@ const Solver STEPPING_STAGGERED = {
     .step = staggered_step,
     .record = staggered_record,
     .observe = staggered_observe,
+    .contacts = staggered_contacts,
     .model = staggered_model,
     .close = staggered_close,
 };

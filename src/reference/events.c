@@ -304,10 +304,8 @@ void events_apply(System *system, const EventList *events, double time_s, const 
         const Event *event = &events->events[i];
         Contact *contact = &system->contacts[event->contact];
         if (contact->mode == CONTACT_APART) {
-            contact->onset_s = system->kind->time(system, time_s);
-            contact->impact_speed = system->kind->press(system, event->contact, time_s, y).closing;
-            contact->damping_rate = contact->law.hysteresis /
-                                    fmax(contact->impact_speed, contact->law.impact_speed_floor);
+            contact_begin(contact, system->kind->time(system, time_s),
+                          system->kind->press(system, event->contact, time_s, y).closing);
         }
         contact->mode = event->mode;
     }

@@ -312,6 +312,29 @@ static void mechanism_glance(const void *state, double time_s, Sample *sample)
     }
 }
 
+// Events at the end of the last step are those of the next one's start.
+static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    const Mechanism *mechanism = state;
+    const Stepper *stepper = mechanism->stepper;
+    const System *system = stepper->system;
+    const SystemState *end = stepper->points.states[stepper->points.count - 1];
+    system_give_contacts(system, mechanism->end_s, states);
+    for (size_t i = 0; i < stepper->events.count; i++) {
+        const Event *event = &stepper->events.events[i];
+        const Contact *contact = &system->contacts[event->contact];
+        ContactState *changed = &states[contact->joint][contact->place];
+        if (event->mode == CONTACT_APART) {
+            *changed = (ContactState){.is_touching = false};
+        } else if (contact->mode == CONTACT_APART) {
+            *changed = (ContactState){.is_touching = true,
+                                      .impact_speed = end->contacts[event->contact].closing};
+        } else {
+            changed->is_slack = event->mode == CONTACT_SLACK;
+        }
+    }
+}
+
 static SolverModel mechanism_model(const void *state)
 {
     const Mechanism *mechanism = state;
@@ -341,6 +364,7 @@ static const Solver MECHANISM_SOLVER = {
     .record = mechanism_record,
     .observe = mechanism_observe,
     .glance = mechanism_glance,
+    .contacts = mechanism_contacts,
     .model = mechanism_model,
     .close = mechanism_close,
 };
@@ -377,6 +401,7 @@ static const Solver MECHANISMS_SOLVER = {
     .observe = several_observe,
     .observe_part = several_observe_part,
     .glance = several_glance,
+    .contacts = several_contacts,
     .model = model_of_all,
     .close = several_close,
 };
@@ -436,6 +461,12 @@ static void reference_glance(const void *state, double time_s, Sample *sample)
     reference->solver->glance(reference->state, time_s, sample);
 }
 
+static void reference_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    const Reference *reference = state;
+    reference->solver->contacts(reference->state, states);
+}
+
 static SolverModel reference_model(const void *state)
 {
     const Reference *reference = state;
@@ -460,6 +491,7 @@ const Solver REFERENCE_SOLVER = {
     .observe = reference_observe,
     .observe_part = reference_observe_part,
     .glance = reference_glance,
+    .contacts = reference_contacts,
     .model = reference_model,
     .close = reference_close,
 };

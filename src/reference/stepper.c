@@ -480,6 +480,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     stepper->events.events = calloc(system->contact_count + 1, sizeof(Event));
     stepper->found.events = calloc(system->contact_count + 1, sizeof(Event));
     assert(stepper->events.events != NULL && stepper->found.events != NULL);
+    system_take_contacts(system);
     system->kind->start(system, integrator->y);
     integrator->rates = system->kind->rates;
     integrator->slopes = system->kind->slopes;

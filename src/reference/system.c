@@ -61,3 +61,30 @@ Press system_press(const System *system, Dop853 *integrator, size_t contact, dou
     }
     return system->kind->press(system, contact, time, y);
 }
+
+void system_take_contacts(System *system)
+{
+    for (size_t i = 0; i < system->contact_count; i++) {
+        Contact *contact = &system->contacts[i];
+        const Joint *joint = &system->scenario->linkage.joints[contact->joint];
+        const ContactState *state = &joint->contacts[contact->place];
+        if (state->is_touching) {
+            contact_begin(contact, -state->age_s, state->impact_speed);
+            contact->mode = state->is_slack ? CONTACT_SLACK : CONTACT_PRESSING;
+        }
+    }
+}
+
+void system_give_contacts(const System *system, double time_s, ContactState (*states)[JOINT_PLACES])
+{
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
+        ContactState *state = &states[contact->joint][contact->place];
+        *state = (ContactState){.is_touching = contact->mode != CONTACT_APART};
+        if (state->is_touching) {
+            state->is_slack = contact->mode == CONTACT_SLACK;
+            state->impact_speed = contact->impact_speed;
+            state->age_s = time_s - contact->onset_s;
+        }
+    }
+}

@@ -29,6 +29,7 @@ typedef enum ContactMode {
 
 typedef struct Contact {
     int joint;
+    int place;   // of the joint: which of its contacts it is
     int partner; // of a limited coordinate: by how many contacts the one at its other end comes
                  // later; 0: there is none
     ForceLaw law;
@@ -73,6 +74,16 @@ static inline Press press_find(const Contact *contact, double depth, double clos
     press.normal = contact->mode == CONTACT_PRESSING ? press.pressing : 0.0;
     press.damping_power = (press.normal - press.elastic) * closing;
     return press;
+}
+
+// Begins a contact at a time, s, with a closing speed.
+static inline void contact_begin(Contact *contact, double onset_s, double impact_speed)
+{
+    contact->mode = CONTACT_PRESSING;
+    contact->onset_s = onset_s;
+    contact->impact_speed = impact_speed;
+    contact->damping_rate =
+        contact->law.hysteresis / fmax(impact_speed, contact->law.impact_speed_floor);
 }
 
 // How strongly a contact is damped, N s/m.
@@ -195,6 +206,12 @@ void system_free_needs(System *system);
 
 // One contact at a time in the tried step.
 Press system_press(const System *system, Dop853 *integrator, size_t contact, double time);
+
+// Lets contacts begin as the linkage has it, and the other way round: writes what they carry at a
+// time, s, in the mode that they are in.
+void system_take_contacts(System *system);
+void system_give_contacts(const System *system, double time_s,
+                          ContactState (*states)[JOINT_PLACES]);
 
 // Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
 bool system_check_depth(const System *system, const SystemState *state, double share, Err *err);

@@ -212,6 +212,7 @@ static bool dynamics_list_sites(const Scenario *scenario, Dynamics *dynamics, Er
         of_joint = i > 0 && touches[i - 1].joint == touch->joint ? of_joint + 1 : 0;
         system->contacts[i] = (Contact){
             .joint = touch->joint,
+            .place = touch->place,
             .partner = find_partner(scenario, touches, system->contact_count, i),
             .law = touch->law,
             .clearance = linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),

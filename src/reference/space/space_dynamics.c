@@ -105,6 +105,7 @@ static size_t space_turn_list(const Scenario *scenario, const SpaceTree *tree, i
             const double play = coordinate_play(of);
             laws[count++] = (Contact){
                 .joint = joint,
+                .place = i, // as stop_space_place has it
                 .law = law,
                 .arm = space_turn_arm_of(tree, joint),
                 .flight = isfinite(play) ? play : 1.0,
@@ -580,6 +581,7 @@ static void space_dynamics_set_pins(SpaceDynamics *dynamics, const PinSpace *sit
         dynamics->contacts[i].site = sites[i];
         system->contacts[i] = (Contact){
             .joint = sites[i].joint,
+            .place = sites[i].place,
             .law = sites[i].law,
             .clearance = sites[i].clearance,
             .arm = 1.0,
