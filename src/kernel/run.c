@@ -518,8 +518,8 @@ bool kernel_run(Kernel *kernel, double duration)
     begin_step(kernel, from);
     kernel_nodes_begin(kernel);
     kernel->event_count = 0;
-    resume_contacts(kernel, from);
     set_tolerances(kernel, duration);
+    resume_contacts(kernel, from);
     settle_contacts(kernel, from);
     kernel_rates_find(kernel, from);
     kernel_nodes_add(kernel, from);

@@ -45,6 +45,11 @@ typedef struct BodySpace {
     double velocity_z; // m/s, at time zero
     double omega_x;    // rad/s, at time zero, along the world's axes
     double omega_y;
+    // Where the joints' points and axes are in the body is said by Body.start and the height above.
+    // A run that is continued begins elsewhere:
+    bool is_elsewhere;
+    Vec3 position; // m, of the centre of mass, at time zero
+    Quat turn;     // from the body's frame to the world's
 } BodySpace;
 
 typedef struct Body {

@@ -41,6 +41,10 @@ void space_start(const Linkage *linkage, SpaceMotion *motions)
     free(planar);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const BodySpace *space = &linkage->bodies[i].space;
+        if (space->is_elsewhere) {
+            motions[i].position = space->position;
+            motions[i].turn = space->turn;
+        }
         motions[i].velocity.z = space->velocity_z;
         motions[i].omega.x = space->omega_x;
         motions[i].omega.y = space->omega_y;
@@ -54,6 +58,24 @@ void space_set_start(const SpaceMotion *motion, Body *body)
     body->space.velocity_z = motion->velocity.z;
     body->space.omega_x = motion->omega.x;
     body->space.omega_y = motion->omega.y;
+}
+
+void space_set_place(const SpaceMotion *motion, Body *body)
+{
+    space_set_start(motion, body);
+    body->space.is_elsewhere = true;
+    body->space.position = motion->position;
+    body->space.turn = motion->turn;
+}
+
+bool space_starts_elsewhere(const Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if (linkage->bodies[i].space.is_elsewhere) {
+            return true;
+        }
+    }
+    return false;
 }
 
 SpaceMotion space_driven(const Linkage *linkage, double time_s)

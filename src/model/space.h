@@ -1,7 +1,8 @@
 // A linkage in space: what its bodies and joints are beyond the plane, and how they move there.
 //
 // The mechanism is the one of model/linkage.h; z points out of the plane towards the viewer. At
-// time zero every body's frame is turned about z alone, by the angle of its planar start. A joint
+// time zero every body's frame is turned about z alone, by the angle of its planar start, unless a
+// run is continued (BodySpace.is_elsewhere). A joint
 // is at the point of its planar anchors, at a height of its own, and has an axis; unless the case
 // says otherwise that is z. A pin with play fills the hole's width, tilts and slides in it.
 #pragma once
@@ -27,6 +28,12 @@ void space_start(const Linkage *linkage, SpaceMotion *motions);
 
 // Makes the speeds of a motion those of a body's start.
 void space_set_start(const SpaceMotion *motion, Body *body);
+
+// The same, and makes the place of a motion that at which the body starts, whatever its joints say.
+void space_set_place(const SpaceMotion *motion, Body *body);
+
+// Whether any body starts at such a place.
+bool space_starts_elsewhere(const Linkage *linkage);
 
 // The motion of the driven body at a time: about the axis of its joint with the ground.
 SpaceMotion space_driven(const Linkage *linkage, double time_s);

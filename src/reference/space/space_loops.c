@@ -623,7 +623,7 @@ void space_loops_start(SpaceTree *tree, SpaceLoops *loops, double *q, double *u,
     space_loops_choose(loops, scratch, true);
     space_loops_project(loops, 0.0, q, u, scratch);
     space_tree_rebase(tree, 0.0, q, u);
-    if (tree->linkage->driver.is_present) {
+    if (tree->linkage->driver.is_present && !space_starts_elsewhere(tree->linkage)) {
         space_loops_bring(tree, q, scratch);
         // where they are not near, the gaps count from the base again
         space_tree_rebase(tree, 0.0, q, u);

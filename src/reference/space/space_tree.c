@@ -283,6 +283,11 @@ static LongQuat product(LongQuat a, LongQuat b)
     };
 }
 
+static LongQuat long_quat(Quat a)
+{
+    return (LongQuat){a.w, a.x, a.y, a.z};
+}
+
 static LongQuat back(LongQuat a)
 {
     return (LongQuat){a.w, -a.x, -a.y, -a.z};
@@ -430,8 +435,23 @@ static void space_tree_base_settle(SpaceTree *tree)
     }
 }
 
+// How far a hanging body has turned about its joint's axis since the joints' points were where the
+// case has them.
+static long double angle_since_case(const SpaceTree *tree, const SpaceNode *node,
+                                    const SpaceMotion *motions)
+{
+    const Quat none = {1.0, 0.0, 0.0, 0.0};
+    const Quat parent = node->parent == LINKAGE_GROUND ? none : motions[node->parent].turn;
+    const LongQuat now = product(back(long_quat(parent)), long_quat(motions[node->body].turn));
+    const LongQuat turned = product(now, back(tree->start_turn[node->body]));
+    const LongVec3 along = {turned.x, turned.y, turned.z};
+    const LongVec3 axis = long_vec3(tree->ends[node->parent_end].axis);
+    return 2.0L * atan2l(long_vec3_dot(along, axis), turned.w);
+}
+
 void space_tree_start(SpaceTree *tree, const SpaceMotion *motions, double *u)
 {
+    const bool is_elsewhere = space_starts_elsewhere(tree->linkage);
     const Vec3 z = {0.0, 0.0, 1.0};
     LongQuat *turns = zeroed(tree->linkage->body_count + 1, sizeof *turns);
     turns[0] = (LongQuat){1.0L, 0.0L, 0.0L, 0.0L};
@@ -457,11 +477,16 @@ void space_tree_start(SpaceTree *tree, const SpaceMotion *motions, double *u)
                 product(back(turns[node->parent + 1]), turns[node->body + 1]);
             const Vec3 frame = node->parent == LINKAGE_GROUND ? (Vec3){0.0, 0.0, 0.0}
                                                               : motions[node->parent].omega;
-            const Vec3 axis = tree->linkage->joints[node->joint].space.axis;
+            Vec3 axis = tree->linkage->joints[node->joint].space.axis;
+            if (is_elsewhere) {
+                tree->base_angle[node->body] = angle_since_case(tree, node, motions);
+                axis = space_direction(motions, node->parent, tree->ends[node->parent_end].axis);
+            }
             rates[0] = vec3_dot(axis, vec3_sub(motion->omega, frame));
             continue;
         }
-        tree->base_turn[node->body + 1] = turns[node->body + 1];
+        tree->base_turn[node->body + 1] =
+            is_elsewhere ? unit(long_quat(motion->turn)) : turns[node->body + 1];
         tree->base_position[node->body + 1] = long_vec3(motion->position);
         const double values[6] = {motion->velocity.x, motion->velocity.y, motion->velocity.z,
                                   motion->omega.x,    motion->omega.y,    motion->omega.z};

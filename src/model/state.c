@@ -1,0 +1,139 @@
+// Takes the state of a run, and makes it the start of another.
+//
+// Positions, speeds and what the contacts carry (kernel/contact_state.h) are all that the motion
+// depends on. Angles that have grown by whole turns lose digits, so they are turned back: with k_i
+// the whole turns of body i, everything that counts the angle of body b against body a, limits,
+// springs and the angle that a slider holds, moves by -2 pi (k_b - k_a), teeth by the same of their
+// pitch circles, and the motion stays what it was.
+#include "model/state.h"
+
+#include "base/zeroed.h"
+#include "model/coordinate.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// of the angle that a drive has turned by: a whole turn to rounding
+static const double TURN_ROUNDING = 1e-14;
+
+RunState run_state_create(const Linkage *linkage)
+{
+    return (RunState){
+        .body_count = linkage->body_count,
+        .joint_count = linkage->joint_count,
+        .sample = sample_create(linkage),
+        .contacts = zeroed(linkage->joint_count, sizeof(ContactState[JOINT_PLACES])),
+    };
+}
+
+void run_state_free(RunState *state)
+{
+    sample_free(&state->sample);
+    free(state->contacts);
+    state->contacts = NULL;
+}
+
+void run_state_take(const Solver *solver, const void *of, double end_s, RunState *state)
+{
+    state->time_s = end_s;
+    solver->observe(of, end_s, &state->sample);
+    if (solver->contacts != NULL) {
+        solver->contacts(of, state->contacts);
+    }
+}
+
+// The whole turns of a body since its start.
+static double whole_turns(const Body *body, const Motion *now)
+{
+    return round((now->angle - body->start.angle) / (2.0 * M_PI));
+}
+
+// What counts the angles of bodies at a joint, when these are turned back.
+static void turn_back_joint(const Linkage *linkage, int number, const double *back_rad,
+                            Motion *motions)
+{
+    Joint *joint = &linkage->joints[number];
+    const double a = joint->body_a == LINKAGE_GROUND ? 0.0 : back_rad[joint->body_a];
+    const double b = joint->body_b == LINKAGE_GROUND ? 0.0 : back_rad[joint->body_b];
+    joint->held_angle -= b - a;
+    if (joint->limits.kind == LIMIT_NONE || joint->kind == JOINT_PRISMATIC) {
+        return;
+    }
+    const double before = coordinate_position(linkage, motions, number);
+    Motion *turned = zeroed(linkage->body_count, sizeof *turned);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        turned[i] = motions[i];
+        turned[i].angle -= back_rad[i];
+    }
+    const double by = coordinate_position(linkage, turned, number) - before;
+    free(turned);
+    if (by != 0.0) {
+        joint->limits.middle += by;
+        joint->limits.low += by;
+        joint->limits.high += by;
+    }
+}
+
+static void turn_back_springs(Linkage *linkage, const double *back_rad)
+{
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        int turned;
+        int against;
+        linkage_turning(linkage, linkage->torsions[i].joint, &turned, &against);
+        linkage->torsions[i].angle -=
+            back_rad[turned] - (against == LINKAGE_GROUND ? 0.0 : back_rad[against]);
+    }
+}
+
+static void start_in_plane(const RunState *state, Linkage *linkage)
+{
+    const size_t count = linkage->body_count;
+    double *back_rad = zeroed(count, sizeof *back_rad);
+    Motion *motions = state->sample.bodies;
+    for (size_t i = 0; i < count; i++) {
+        back_rad[i] = 2.0 * M_PI * whole_turns(&linkage->bodies[i], &motions[i]);
+    }
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        turn_back_joint(linkage, i, back_rad, motions);
+    }
+    turn_back_springs(linkage, back_rad);
+    for (size_t i = 0; i < count; i++) {
+        linkage->bodies[i].start = motions[i];
+        linkage->bodies[i].start.angle -= back_rad[i];
+    }
+    free(back_rad);
+}
+
+// Where pins and blocks stand in their play, to more digits than the bodies' positions have.
+static void start_in_play(const JointState *state, Joint *joint)
+{
+    if (joint->kind == JOINT_CLEARANCE) {
+        joint->clearance.start = state->eccentricity;
+    } else if (joint->kind == JOINT_GUIDE) {
+        joint->guide.start = (Vec2){state->eccentricity.y, state->tilt};
+    }
+}
+
+void run_state_start(const RunState *state, Scenario *scenario)
+{
+    Linkage *linkage = &scenario->linkage;
+    if (linkage->driver.is_present) {
+        const double turned = drive_angle(&linkage->driver, state->time_s) - linkage->driver.start;
+        const double of_a_turn = remainder(turned, 2.0 * M_PI);
+        linkage->driver.start += fabs(of_a_turn) > TURN_ROUNDING * fabs(turned) ? of_a_turn : 0.0;
+    }
+    if (linkage->is_spatial) {
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            space_set_place(&state->sample.space_bodies[i], &linkage->bodies[i]);
+        }
+    } else {
+        start_in_plane(state, linkage);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        Joint *joint = &linkage->joints[i];
+        for (size_t k = 0; k < JOINT_PLACES; k++) {
+            joint->contacts[k] = state->contacts[i][k];
+        }
+        start_in_play(&state->sample.joints[i], joint);
+    }
+}

@@ -1,0 +1,28 @@
+// The state of a run at one instant: all that its future depends on. A run can be started from it,
+// by any solver.
+#pragma once
+
+#include "model/solver.h"
+
+// Whoever owns it can save and set it: plain arrays by body and by joint.
+typedef struct RunState {
+    double time_s; // since the start of the run that it is of
+    size_t body_count;
+    size_t joint_count;
+    Sample sample; // how the bodies move, and where pins and blocks stand in their play
+    ContactState (*contacts)[JOINT_PLACES]; // by joint and its places
+} RunState;
+
+// Room for a state of a linkage, for run_state_free.
+RunState run_state_create(const Linkage *linkage);
+void run_state_free(RunState *state);
+
+// Takes the state at the end of the last step of a solver, s, from its start.
+void run_state_take(const Solver *solver, const void *of, double end_s, RunState *state);
+
+// Makes a state the start of a scenario of the same linkage, whose time zero is then that of the
+// state: the drive begins at the angle that it has come to. A drive whose speed changes over time
+// must be where it began, and so must its torque; in space every drive must. Bodies that have
+// turned by more than half a turn are turned back by whole turns, and what counts their angles with
+// them.
+void run_state_start(const RunState *state, Scenario *scenario);
