@@ -282,6 +282,12 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "contact.impact-speed-floor", .dimension = DIMENSION_SPEED,
      AT(contact.impact_speed_floor), .low = 0.0, .high = 1e3, .low_is_open = true,
      .needs = IMPACT, .wants = REBOUND, .doc = "smallest impact speed by which the damping laws divide"},
+    {.path = "contact.resting-speed", .dimension = DIMENSION_SPEED, AT(contact.resting_speed),
+     .low = 0.0, .high = 1e3, .low_is_open = true, .zero_word = "none",
+     .default_words = "none: by the speed of the impact, however long the contact lasts",
+     .needs = IMPACT, .wants = REBOUND,
+     .doc = "speed by which the damping laws divide once a contact has outlasted its impact: it was "
+            "compressed, released, and is compressed again"},
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
      .low_is_open = true, .needs = TURNING,

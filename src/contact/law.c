@@ -93,6 +93,7 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
     } else {
         built.hysteresis = damping_factor(contact->damping, contact->restitution);
     }
+    built.resting_speed = built.hysteresis > 0.0 ? contact->resting_speed : 0.0;
     *law = built;
     return true;
 }

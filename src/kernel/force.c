@@ -114,7 +114,7 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
 static double pressing(const KernelContact *contact, const KernelTouch *touch)
 {
     const double rate = touch->pose.approach_speed;
-    const double speed = fmax(contact->state.impact_speed, contact->law.impact_speed_floor);
+    const double speed = fmax(contact->state.damping_speed, contact->law.impact_speed_floor);
     const double total = touch->elastic * (1.0 + contact->law.hysteresis * rate / speed) +
                          contact->law.viscous * rate;
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
@@ -221,7 +221,7 @@ double kernel_force_decay(const Kernel *kernel, size_t contact, Vec2 normal, dou
 {
     const KernelContact *of = &kernel->contacts[contact];
     return normal_mobility(kernel, contact, normal) *
-           force_law_damping(&of->law, depth, of->state.impact_speed);
+           force_law_damping(&of->law, depth, of->state.damping_speed);
 }
 
 double kernel_force_friction_time(const Kernel *kernel, size_t contact, const double *force)
@@ -261,7 +261,7 @@ static double find_normal(const KernelContact *contact, const PinHole *pose, Vec
     const double below = pose->penetration - depth;
     const double elastic = force_law_elastic(law, depth);
     const double tangent_stiffness = force_law_tangent(law, depth);
-    const double floored = fmax(contact->state.impact_speed, law->impact_speed_floor);
+    const double floored = fmax(contact->state.damping_speed, law->impact_speed_floor);
     const double rise = 1.0 + law->hysteresis * pose->approach_speed / floored;
     const double by_depth = tangent_stiffness * (below < 0.0 ? 1.0 : rise);
     const double by_rate = law->hysteresis * elastic / floored + law->viscous;
@@ -589,7 +589,7 @@ static Rated rate_pressing(const KernelContact *contact, const KernelTouch *touc
 {
     const ForceLaw *law = &contact->law;
     const double factor =
-        law->hysteresis / fmax(contact->state.impact_speed, law->impact_speed_floor);
+        law->hysteresis / fmax(contact->state.damping_speed, law->impact_speed_floor);
     // at no depth the slope of a law of exponent below 1 is infinite
     const double slope = touch->tangent < INFINITY ? touch->tangent : 0.0;
     const Rated elastic = {touch->elastic, slope * closing.value};

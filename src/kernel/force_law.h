@@ -22,6 +22,8 @@ typedef struct ForceLaw {
     double hysteresis;         // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
     double viscous;            // c, N s/m: F = F_el + c d'; 0 for none
     double impact_speed_floor; // m/s, > 0: smallest v0 the hysteretic damping divides by
+    double resting_speed;      // m/s: v0 of a contact that has outlasted its impact
+                               // (kernel/contact_state.h); 0: that of its impact for ever
     double friction;           // mu, 1: Coulomb's coefficient; 0 for none
     double friction_speed;     // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
 } ForceLaw;

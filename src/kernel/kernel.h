@@ -44,9 +44,9 @@ enum {
     KERNEL_ROW_PIN = 7,
 };
 
-// One contact point. The first six are given, and the state where it touches already as it is added;
-// the rest lives on from one step to the next.
-// A disc outside another is a hole of negative size: the same formulas hold for both.
+// One contact point. The first six are given, and the state where it touches already as it is
+// added; the rest lives on from one step to the next. A disc outside another is a hole of negative
+// size: the same formulas hold for both.
 typedef struct KernelContact {
     ForceLaw law;
     KernelShape shape;

@@ -545,21 +545,28 @@ static size_t find_events(Kernel *kernel, LocalStep *step, const KernelPoint *to
     return events;
 }
 
-// Shortens a step in which a pin goes away from its wall and comes to it, while another one
-// touches, to where it turns: from there on the next crossing can be found. Returns whether there
-// is one.
+// Whether a contact turns inwards between two poses at which something has to be known of it: a pin
+// at its wall or inside that comes back, whose next crossing can be found from there on, or one
+// that touches and outlasts its impact (kernel/contact_state.h).
+static bool turns_inwards(const KernelContact *contact, const PinHole *start, const PinHole *end)
+{
+    if (!(start->approach_speed < 0.0) || !(end->approach_speed > 0.0)) {
+        return false;
+    }
+    return contact->state.is_touching ? contact->law.resting_speed > 0.0 &&
+                                            !contact->state.is_resting && end->penetration > 0.0
+                                      : start->penetration >= 0.0 || end->penetration > 0.0;
+}
+
+// Shortens a step in which a contact turns inwards to where it does. Returns whether there is one.
 static bool shorten_to_turn(const Kernel *kernel, const KernelPoint *from, const KernelPoint *to,
                             double *width_s)
 {
     const double whole_s = *width_s;
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        if (kernel->contacts[i].state.is_touching) {
-            continue;
-        }
         const PinHole start = *kernel_point_pose(kernel, from, i);
         const PinHole end = *kernel_point_pose(kernel, to, i);
-        if (start.approach_speed < 0.0 && end.approach_speed > 0.0 &&
-            (start.penetration >= 0.0 || end.penetration > 0.0)) {
+        if (turns_inwards(&kernel->contacts[i], &start, &end)) {
             const double share = start.approach_speed / (start.approach_speed - end.approach_speed);
             // one that turns right away has turned
             *width_s = share > TURN_ROUNDING ? fmin(*width_s, share * whole_s) : *width_s;

@@ -367,6 +367,9 @@ static const double TOLERANCE_MOST = 1e-3;
 // of a contact's first step: times the tolerance, to the power 2/3, in rad
 static const double FIRST_STEP_FACTOR = 50.0;
 
+// of the closing speed at a local step's start: less than that at its end is none
+static const double TURNED_SHARE = 0.03;
+
 // restitutions below a tenth or so
 static const double OVERDAMPED_FREQUENCIES = 8.0;
 
@@ -456,8 +459,7 @@ static void expect_contact(Kernel *kernel, size_t number, Vec2 normal)
 
 static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
 {
-    kernel->contacts[number].state =
-        (ContactState){.is_touching = true, .impact_speed = pose->approach_speed};
+    kernel->contacts[number].state = contact_state_begun(pose->approach_speed);
     expect_contact(kernel, number, pose->normal);
 }
 
@@ -499,6 +501,26 @@ static void change_contacts(Kernel *kernel, const KernelPoint *point)
             begin_contact(kernel, i, kernel_point_pose(kernel, point, i));
         }
     }
+}
+
+// Lets impacts be over by the end of a local step. Returns whether any is whose force changes.
+static bool rest_contacts(Kernel *kernel, const KernelPoint *from, const KernelPoint *to)
+{
+    bool is_any = false;
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        KernelContact *contact = &kernel->contacts[i];
+        if (!contact->state.is_touching || !(contact->law.resting_speed > 0.0)) {
+            continue;
+        }
+        const double closing = kernel_point_pose(kernel, to, i)->approach_speed;
+        const double before = kernel_point_pose(kernel, from, i)->approach_speed;
+        // the step was shortened to where it turns, by a line
+        const bool has_turned = closing < 0.0 && closing > TURNED_SHARE * before;
+        const double turned = has_turned && contact->state.is_released ? 0.0 : closing;
+        is_any =
+            contact_state_follow(&contact->state, turned, contact->law.resting_speed) || is_any;
+    }
+    return is_any;
 }
 
 // The point at the start of a step.
@@ -549,9 +571,12 @@ bool kernel_run(Kernel *kernel, double duration)
             kernel_rates_find(kernel, to);
         }
         kernel_nodes_add(kernel, to);
+        const bool is_over = rest_contacts(kernel, from, to);
         if (events != 0) {
             kernel->event_count++;
             change_contacts(kernel, to);
+        }
+        if (events != 0 || is_over) {
             kernel_rates_find(kernel, to);
             kernel_nodes_add(kernel, to);
         }

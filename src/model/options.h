@@ -127,6 +127,8 @@ typedef struct ContactOptions {
     double friction;            // 1, Coulomb's coefficient; 0 for none
     double friction_speed;      // m/s, sliding speed over which the reference's friction sets in
     double impact_speed_floor;  // m/s, smallest impact speed the damping laws divide by
+    double resting_speed;       // m/s, by which they divide where a contact has outlasted its
+                                // impact (kernel/contact_state.h); 0: by that of its impact for ever
     double penalty;             // N s/m, of CONTACT_POISSON; 0: the paper's Eq. (9) at the speed
     double bounce_speed;        // m/s, CONTACT_POISSON: slower impacts do not bounce
 } ContactOptions;

@@ -153,6 +153,7 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
         &scenario->contact.friction,
         &scenario->contact.friction_speed,
         &scenario->contact.impact_speed_floor,
+        &scenario->contact.resting_speed,
         &scenario->contact.penalty,
         &scenario->contact.bounce_speed,
         &scenario->run.step,

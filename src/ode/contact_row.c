@@ -68,10 +68,9 @@ static Overlap end_overlap(const ContactRow *row, const WorldPair *pair, const T
 static void begin(ContactRow *row, bool is_staggered, const TouchPose *pose, double onset_s,
                   double step_s)
 {
-    row->state.impact_speed =
+    row->state = contact_state_begun(
         is_staggered ? onset_speed(&row->onset, row->closing, pose->gap, row->inside, step_s)
-                     : row->closing;
-    row->state.age_s = 0.0;
+                     : row->closing);
     tops_begin(&row->tops, row->law.viscous * row->state.impact_speed, 0.5 * step_s - onset_s);
 }
 
@@ -97,8 +96,10 @@ void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair
         row->closing =
             pair->hole == NULL ? pose.approach_speed : -vec2_dot(row->normal, pose.velocity);
         row->faster = row->closing - pose.approach_speed;
-        row->state.age_s += step_s;
-        if (!was_touching) {
+        if (was_touching) {
+            row->state.age_s += step_s;
+            contact_state_follow(&row->state, row->closing, row->law.resting_speed);
+        } else {
             begin(row, is_staggered, &pose, overlap.onset, step_s);
         }
     }

@@ -37,7 +37,7 @@ static dSurfaceParameters impact_surface(const ContactRows *rows, ContactRow *ro
     const LawRow at = {
         .depth = row->depth,
         .closing = row->closing,
-        .impact_speed = row->state.impact_speed,
+        .impact_speed = row->state.damping_speed,
         .share = row->share,
         .mass = row->mass,
     };

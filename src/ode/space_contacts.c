@@ -81,13 +81,14 @@ static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMoti
         contact->state.impact_speed = contact->pose.approach_speed;
     } else if (was_touching) {
         contact->state.age_s += step_s;
+        contact_state_follow(&contact->state, contact->pose.approach_speed,
+                             place->law.resting_speed);
     } else {
         const PinSpacePose *pose = &contact->pose;
-        contact->state.age_s = 0.0;
-        contact->state.impact_speed = contacts->is_staggered
-                                          ? onset_speed(&contact->onset, pose->approach_speed,
-                                                        pose->gap, contact->depth, step_s)
-                                          : pose->approach_speed;
+        contact->state = contact_state_begun(
+            contacts->is_staggered ? onset_speed(&contact->onset, pose->approach_speed, pose->gap,
+                                                 contact->depth, step_s)
+                                   : pose->approach_speed);
     }
     onset_note(&contact->onset, contact->state.is_touching, contact->pose.gap);
     const Clearance *clearance = &contacts->scenario->linkage.joints[place->joint].clearance;
@@ -139,7 +140,7 @@ static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, dou
     const LawRow at = {
         .depth = contact->depth,
         .closing = contact->pose.approach_speed,
-        .impact_speed = contact->state.impact_speed,
+        .impact_speed = contact->state.damping_speed,
         .share = 1.0,
         .mass = contact->mass,
     };

@@ -94,11 +94,12 @@ static void find_contact(SpaceStops *stops, SpaceStop *stop, double step_s)
         stop->state.impact_speed = stop->closing;
     } else if (was_touching) {
         stop->state.age_s += step_s;
+        contact_state_follow(&stop->state, stop->closing, stop->law.resting_speed);
     } else {
-        stop->state.age_s = 0.0;
-        stop->state.impact_speed = stops->is_staggered ? onset_speed(&stop->onset, stop->closing,
-                                                                     stop->gap, -stop->gap, step_s)
-                                                       : stop->closing;
+        stop->state =
+            contact_state_begun(stops->is_staggered ? onset_speed(&stop->onset, stop->closing,
+                                                                  stop->gap, -stop->gap, step_s)
+                                                    : stop->closing);
         tops_begin(&stop->tops, stop->law.viscous * stop->state.impact_speed,
                    0.5 * step_s - overlap.onset);
     }
@@ -134,7 +135,7 @@ static void press(SpaceStops *stops, SpaceStop *stop, double step_s)
         const LawRow at = {
             .depth = stop->depth,
             .closing = stop->closing,
-            .impact_speed = stop->state.impact_speed,
+            .impact_speed = stop->state.damping_speed,
             .share = stop->share,
             .mass = stop->mass,
         };

@@ -4,6 +4,8 @@
 //     apart:    -d             d the penetration
 //     pressing:  d, release    release: 1 + chi d'/v0, or the force itself with a viscous damper
 //     slack:     d, -release
+// A pressing contact that has moved out and comes back (kernel/contact_state.h) also has the margin
+// -d': where that is used up its impact is over.
 // A margin that is negative at one of a few points of a step has crossed zero before it. The
 // crossing is found on the step's polynomial; then the step is taken again up to there, and its end
 // moved by Newton's method until the penetration is zero to rounding: no step ever passes the
@@ -21,7 +23,7 @@
 #include <float.h>
 #include <math.h>
 
-enum { HALVINGS = 24, LANDING_ITERATIONS = 4, MARGINS = 2 };
+enum { HALVINGS = 24, LANDING_ITERATIONS = 4, MARGIN_REST = 2, MARGINS = 3 };
 
 // m: a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
 static const double LANDING_DEPTH_M = 1e-19;
@@ -46,7 +48,7 @@ static double margin_of(const Press *press, ContactMode mode, int which)
     case CONTACT_APART:
         return -press->depth;
     case CONTACT_PRESSING:
-        return which == 0 ? press->depth : press->release;
+        return which == 0 ? press->depth : which == MARGIN_REST ? -press->closing : press->release;
     default:
         return which == 0 ? press->depth : -press->release;
     }
@@ -63,6 +65,9 @@ static double rounding_of(const System *system, const SystemState *state, size_t
     const double depth = EVENTS_ROUNDING * length;
     if (mode == CONTACT_APART || which == 0) {
         return depth;
+    }
+    if (which == MARGIN_REST) {
+        return EVENTS_ROUNDING * speed;
     }
     if (contact->law.viscous > 0.0) {
         const double reached = fmax(state->contacts[number].depth, depth);
@@ -95,7 +100,18 @@ static ContactMode mode_after(ContactMode mode, int which)
     if (which == 0) {
         return CONTACT_APART;
     }
-    return mode == CONTACT_PRESSING ? CONTACT_SLACK : CONTACT_PRESSING;
+    return mode == CONTACT_PRESSING && which != MARGIN_REST ? CONTACT_SLACK : CONTACT_PRESSING;
+}
+
+// How many margins a contact has in its mode.
+static int margin_count(const Contact *contact)
+{
+    if (contact->mode == CONTACT_APART) {
+        return 1;
+    }
+    const bool may_rest = contact->mode == CONTACT_PRESSING && contact->law.resting_speed > 0.0 &&
+                          contact->is_released && !contact->is_resting;
+    return may_rest ? MARGINS : MARGIN_REST;
 }
 
 // Where the margin first turns negative between two times, the first of which may be the event
@@ -153,6 +169,7 @@ static void note_event(const Margin *margin, double time, Event *event)
             .time = time,
             .contact = margin->contact,
             .mode = mode_after(mode, margin->which),
+            .is_rest = margin->which == MARGIN_REST,
         };
     }
 }
@@ -208,7 +225,7 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
 {
     found->count = 0;
     for (size_t i = 0; i < system->contact_count; i++) {
-        const int margins = system->contacts[i].mode == CONTACT_APART ? 1 : MARGINS;
+        const int margins = margin_count(&system->contacts[i]);
         Event event = {.time = INFINITY};
         for (int which = 0; which < margins; which++) {
             Margin margin = {system, integrator, i, which};
@@ -306,6 +323,9 @@ void events_apply(System *system, const EventList *events, double time_s, const 
         if (contact->mode == CONTACT_APART) {
             contact_begin(contact, system->kind->time(system, time_s),
                           system->kind->press(system, event->contact, time_s, y).closing);
+        }
+        if (event->is_rest) {
+            contact_rest(contact);
         }
         contact->mode = event->mode;
     }

@@ -327,8 +327,9 @@ static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_P
         if (event->mode == CONTACT_APART) {
             *changed = (ContactState){.is_touching = false};
         } else if (contact->mode == CONTACT_APART) {
-            *changed = (ContactState){.is_touching = true,
-                                      .impact_speed = end->contacts[event->contact].closing};
+            *changed = contact_state_begun(end->contacts[event->contact].closing);
+        } else if (event->is_rest) {
+            contact_state_rest(changed, contact->law.resting_speed);
         } else {
             changed->is_slack = event->mode == CONTACT_SLACK;
         }

@@ -463,6 +463,18 @@ static void follow_speeds(Stepper *stepper)
     }
 }
 
+// Notes which contacts have moved out of their walls.
+static void follow_releases(Stepper *stepper)
+{
+    System *system = stepper->system;
+    const SystemState *end = state_at_end(stepper);
+    for (size_t i = 0; i < system->contact_count; i++) {
+        Contact *contact = &system->contacts[i];
+        contact->is_released = contact->is_released ||
+                               (contact->mode != CONTACT_APART && end->contacts[i].closing < 0.0);
+    }
+}
+
 bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
 {
     memset(stepper, 0, sizeof *stepper);
@@ -523,7 +535,8 @@ void stepper_finish(Stepper *stepper)
 static bool is_onset(const Stepper *stepper)
 {
     for (size_t i = 0; i < stepper->events.count; i++) {
-        if (stepper->events.events[i].mode == CONTACT_PRESSING) {
+        const Event *event = &stepper->events.events[i];
+        if (event->mode == CONTACT_PRESSING && !event->is_rest) {
             return true;
         }
     }
@@ -564,6 +577,7 @@ static void take_over(Stepper *stepper)
     Dop853 *integrator = &stepper->integrator;
     System *system = stepper->system;
     follow_speeds(stepper);
+    follow_releases(stepper);
     allow_rounding(stepper);
     const double taken_s = integrator->tried;
     dop853_accept(integrator);

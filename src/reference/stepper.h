@@ -5,12 +5,13 @@
 #include "reference/integrators.h"
 #include "reference/system.h"
 
-// Events: a contact begins, ends or goes slack (reference/events.c).
+// Events: a contact begins, ends, goes slack or has outlasted its impact (reference/events.c).
 
 typedef struct Event {
     double time; // s
     size_t contact;
     ContactMode mode; // the mode that begins
+    bool is_rest;     // it stays in its mode, and its impact is over
 } Event;
 
 // Events of a step, at most one a contact.

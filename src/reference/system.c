@@ -71,6 +71,10 @@ void system_take_contacts(System *system)
         if (state->is_touching) {
             contact_begin(contact, -state->age_s, state->impact_speed);
             contact->mode = state->is_slack ? CONTACT_SLACK : CONTACT_PRESSING;
+            contact->is_released = state->is_released;
+            if (state->is_resting) {
+                contact_rest(contact);
+            }
         }
     }
 }
@@ -82,9 +86,13 @@ void system_give_contacts(const System *system, double time_s, ContactState (*st
         ContactState *state = &states[contact->joint][contact->place];
         *state = (ContactState){.is_touching = contact->mode != CONTACT_APART};
         if (state->is_touching) {
+            *state = contact_state_begun(contact->impact_speed);
             state->is_slack = contact->mode == CONTACT_SLACK;
-            state->impact_speed = contact->impact_speed;
+            state->is_released = contact->is_released;
             state->age_s = time_s - contact->onset_s;
+            if (contact->is_resting) {
+                contact_state_rest(state, contact->law.resting_speed);
+            }
         }
     }
 }

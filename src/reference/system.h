@@ -42,7 +42,9 @@ typedef struct Contact {
     ContactMode mode;
     double onset_s;      // when the contact under way began
     double impact_speed; // m/s, closing speed when the contact under way began
-    double damping_rate; // s/m, chi / v0 of it, v0 not below the law's floor
+    double damping_rate; // s/m, chi / v0, v0 not below the law's floor
+    bool is_released;    // as in kernel/contact_state.h
+    bool is_resting;
 } Contact;
 
 // A contact's force along its normal at one instant.
@@ -84,6 +86,15 @@ static inline void contact_begin(Contact *contact, double onset_s, double impact
     contact->impact_speed = impact_speed;
     contact->damping_rate =
         contact->law.hysteresis / fmax(impact_speed, contact->law.impact_speed_floor);
+    contact->is_released = contact->is_resting = false;
+}
+
+// Lets the impact of a contact be over.
+static inline void contact_rest(Contact *contact)
+{
+    const ForceLaw *law = &contact->law;
+    contact->is_resting = true;
+    contact->damping_rate = law->hysteresis / fmax(law->resting_speed, law->impact_speed_floor);
 }
 
 // How strongly a contact is damped, N s/m.

@@ -1,0 +1,40 @@
+// The settled motion of a mechanism: what is left of its start once it has turned long enough.
+//
+// A drive of constant speed maps the state at one crank angle to that a revolution later. Where a
+// revolution, or some of them, bring a state back, the motion repeats; else it goes on for ever
+// without.
+#pragma once
+
+#include "model/state.h"
+
+enum { SETTLE_PERIOD_MAX = 12 }; // revolutions after which a motion is seen to repeat, at most
+
+// What happened in one revolution.
+typedef struct Revolution {
+    double *force_max; // N, by joint, of those with play; owned
+    size_t *impacts;   // by joint: contacts begun; owned
+    double *section;   // velocities at its end, over the fastest so far: three of each body; owned
+} Revolution;
+
+typedef struct Settling {
+    Scenario scenario;       // whose start is that of the next revolution; owned
+    double fastest;          // m/s, of any point of a body at the sections so far
+    size_t count;            // revolutions so far
+    Revolution *revolutions; // owned
+    RunState state;          // at the end of the last
+    size_t evaluations;
+    size_t period; // revolutions after which it repeats; 0: it has not yet
+    double change; // 1: over the last period, of sections and largest forces
+    double left;   // 1: what is estimated to be still to come of it
+} Settling;
+
+// Prepares a scenario with a drive of constant speed; it starts as the scenario does.
+Settling settling_start(const Scenario *scenario);
+void settling_finish(Settling *settling);
+
+// Goes on by one revolution. Fails with ERR_SOLVER.
+bool settling_turn(Settling *settling, Err *err);
+
+// Goes on until the motion repeats to within a tolerance, relative, or so many revolutions are
+// over. Fails with ERR_SOLVER.
+bool settling_run(Settling *settling, double tolerance, size_t most, Err *err);
