@@ -57,6 +57,7 @@ static const Condition WANTS[] = {
     {ANY_ROWS, 0, {"an ideal joint, or any ode.map but impulse", "", false}},
     {SMOOTHED, 0, {"contact.model: impact, and reference among run.backends or ode.solver: direct", "", false}},
     {SHUFFLED, 0, {"ode.iterations above 8", "ode.iterations", false}},
+    {SETTLED, 0, {"run.start: settled", "run.start", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
 };
 // clang-format on
@@ -225,7 +226,8 @@ static unsigned row_bits(const Scenario *scenario)
     return bit(HELD_ROWS, is_held) | bit(ANY_ROWS, is_held || has_contacts) |
            bit(SMOOTHED, is_smoothed && scenario->contact.model == CONTACT_IMPACT) |
            bit(SHUFFLED, scenario->ode.iterations > SHUFFLE_ITERATIONS) |
-           bit(MOVED, build_is_determined(&scenario->linkage));
+           bit(MOVED, build_is_determined(&scenario->linkage)) |
+           bit(SETTLED, scenario->run.start == START_SETTLED);
 }
 
 static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)

@@ -50,5 +50,6 @@ enum {
     SMOOTHED = 1 << 7,         // some solver lets friction set in over a speed
     MOVED = 1 << 8,            // a drive determines the motion before time zero
     COMMON_FRICTION = 1 << 10, // some joint with play has no friction of its own
+    SETTLED = 1 << 11,         // runs start in the settled motion
     SHUFFLED = 1 << 9,         // the quick solver comes to change the order of the rows
 };

@@ -322,6 +322,14 @@ const SchemaRow SCHEMA_ROWS[] = {
      AT(run.report_from), .low = 0.0, .high = 1e6, .needs = LATER,
      .doc = "extremes, contacts and spikes are reported from this time on, such as 1 revolution, "
             "to exclude an assumed start; errors, energy, series and picture cover the whole run"},
+    {.path = "run.start", .type = SCHEMA_CHOICE, AT(run.start), .words = OPTIONS_RUN_STARTS,
+     .needs = PLAY | TURNING | IMPACT,
+     .doc = "as-written: pins in the middle of their holes, or where the case puts them; settled: in "
+            "the motion that the reference comes to from there, where every backend starts, with "
+            "what its contacts carry"},
+    {.path = "run.settle-most", .type = SCHEMA_INTEGER, AT(run.settle_most), .low = 2.0,
+     .high = 1e6, .needs = PLAY | TURNING | IMPACT, .wants = SETTLED,
+     .doc = "revolutions after which a motion that does not repeat is taken as it is"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
      .doc = "the solvers to run, in this order: a word or a list; the default of a case with "

@@ -2,6 +2,7 @@
 #include "cli/common_options.h"
 
 #include "casefile/casefile.h"
+#include "run/settle.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -18,7 +19,11 @@ size_t common_options_count_jobs(void)
 
 bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *err)
 {
-    return casefile_load(options->path, options->overrides, options->override_count, scenario, err);
+    if (!casefile_load(options->path, options->overrides, options->override_count, scenario, err)) {
+        return false;
+    }
+    settle_scenario(scenario);
+    return true;
 }
 
 bool common_options_check_step(const CommonOptions *options, double step_s, Err *err)

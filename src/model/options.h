@@ -89,6 +89,12 @@ typedef enum ContactModel {
 
 typedef enum OdeSolver { ODE_DIRECT, ODE_QUICK } OdeSolver;
 
+// How a run starts.
+typedef enum RunStart {
+    START_WRITTEN, // as the case has it: pins in the middle of their holes unless it says otherwise
+    START_SETTLED, // in the motion that is left of that once it has turned long enough
+} RunStart;
+
 // The polygon that a collider takes a round hole for.
 typedef enum OdePolygon {
     ODE_CIRCUMSCRIBED, // its sides touch the circle at their middles
@@ -99,6 +105,7 @@ typedef enum OdePolygon {
 extern const char *const OPTIONS_CONTACT_MODELS[];
 extern const char *const OPTIONS_LAWS[];
 extern const char *const OPTIONS_DAMPINGS[];
+extern const char *const OPTIONS_RUN_STARTS[];
 extern const char *const OPTIONS_ODE_SOLVERS[];
 extern const char *const OPTIONS_ODE_STEPPINGS[];
 extern const char *const OPTIONS_ODE_MAPS[];
@@ -137,6 +144,8 @@ typedef struct RunOptions {
     double revolutions;     // of a driver of constant speed
     double duration;        // s, where there is none
     size_t samples;         // per revolution of that driver, or in the whole run without it
+    RunStart start;
+    size_t settle_most;     // revolutions of START_SETTLED until it is taken as it is
     double interval;        // no key, s: samples stand so far apart, as many as the run has room
                             // for; 0: as `samples` says
     double step;            // s; 0: chosen for the tolerance

@@ -38,6 +38,8 @@ Scenario scenario_copy(const Scenario *scenario)
     copy.expectations =
         copied(scenario->expectations, scenario->expectation_count, sizeof *scenario->expectations);
     copy.keys = copied(scenario->keys, scenario->key_count, sizeof *scenario->keys);
+    copy.settled.joints = copied(scenario->settled.joints, scenario->linkage.joint_count,
+                                 sizeof *scenario->settled.joints);
     copy.outcomes = copied(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
     return copy;
 }
@@ -48,6 +50,7 @@ Scenario scenario_around(const Scenario *scenario, Linkage linkage)
     around.linkage = linkage;
     around.path = NULL;
     around.expectations = NULL;
+    around.settled.joints = NULL;
     around.outcomes = NULL;
     around.keys = NULL;
     around.key_count = 0;
@@ -71,6 +74,8 @@ void scenario_free(Scenario *scenario)
     linkage_free(&scenario->linkage);
     free(scenario->path);
     free(scenario->expectations);
+    free(scenario->settled.joints);
+    scenario->settled.joints = NULL;
     free(scenario->outcomes);
     free(scenario->keys);
     scenario->path = NULL;

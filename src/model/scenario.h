@@ -31,6 +31,25 @@ typedef struct ScenarioKey {
     size_t line;   // of the case file, from 1; 0 of the command line
 } ScenarioKey;
 
+// What a joint with play did on the way to the settled motion.
+typedef struct SettledJoint {
+    double first;   // N, its largest force in the first revolution, from the start as written
+    double force;   // N, over the last period; of a motion that does not repeat the median of the
+                    // revolutions' largest forces
+    double low;     // N, 5 % of them are below; of one that repeats the same
+    double high;    // N, and 5 % above
+    double impacts; // contacts begun in a revolution
+} SettledJoint;
+
+// How the start of a scenario was found (run/settle.h).
+typedef struct SettledStart {
+    size_t revolutions;          // that it took; 0: the start is as written
+    size_t period;               // revolutions after which the motion repeats; 0: it does not
+    double change;               // 1, over the last of them
+    SettledJoint *joints;        // by joint; owned
+    char message[ERR_TEXT_SIZE]; // why there is none
+} SettledStart;
+
 // It owns the arrays of its linkage and its own. An assignment shares them: it is for a scenario of
 // other options that does not outlive the first. What is to have other bodies, joints or a life of
 // its own needs scenario_copy.
@@ -55,6 +74,7 @@ typedef struct Scenario {
     Expectation *expectations; // for the checks of runs; no solver reads them; owned
     size_t outcome_count;
     ExpectedOutcome *outcomes; // likewise
+    SettledStart settled;      // of START_SETTLED
     size_t key_count;
     ScenarioKey *keys; // that were given, in the order of the text; no solver reads them; owned
 } Scenario;

@@ -479,6 +479,15 @@ static double driven_until(const Loop *loop)
     return driven != LINKAGE_GROUND ? loop->turning.told_s[driven] : loop->reached_s;
 }
 
+// No solver starts anywhere but in the settled motion where that is what was asked for.
+static bool run_check_start(const Scenario *scenario, Err *err)
+{
+    const SettledStart *settled = &scenario->settled;
+    return scenario->run.start != START_SETTLED || settled->revolutions > 0 ||
+           err_set(err, ERR_SOLVER, "the settled motion is not known: %s",
+                   settled->message[0] != '\0' ? settled->message : "nobody has looked for it");
+}
+
 Trajectory *run_scenario(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {
     return run_guarded(scenario, solver, watch, NULL, NULL);
@@ -497,7 +506,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     if (trajectory->sample_count == 0) {
         return trajectory;
     }
-    if (!solver->open(scenario, &loop.state, &err)) {
+    if (!run_check_start(scenario, &err) || !solver->open(scenario, &loop.state, &err)) {
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
     }
@@ -604,7 +613,7 @@ Trajectory *run_motion(const Scenario *scenario, const Solver *solver, RunWatch 
     if (trajectory->sample_count == 0) {
         return trajectory;
     }
-    if (!solver->open(scenario, &way.state, &err)) {
+    if (!run_check_start(scenario, &err) || !solver->open(scenario, &way.state, &err)) {
         snprintf(trajectory->message, sizeof trajectory->message, "%s", err.text);
         return trajectory;
     }

@@ -12,16 +12,21 @@
 #include "base/zeroed.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { RATES = 3 }; // of a body at a section
+enum { RATES = 6 }; // of a body at a section
 
 // 1: of two changes, the ratio above which nothing can be said of what is to come
 static const double RATIO_MOST = 0.98;
 
 // 1: changes below this are those of rounding and of the reference's tolerance
 static const double CHANGE_LEAST = 1e-9;
+
+// Of sections and forces: a motion that still changes by less repeats. A peak then has the five
+// digits that a drawing takes, and two more.
+static const double SETTLE_TOLERANCE = 1e-7;
 
 Settling settling_start(const Scenario *scenario)
 {
@@ -46,6 +51,9 @@ void settling_finish(Settling *settling)
     run_state_free(&settling->state);
     scenario_free(&settling->scenario);
 }
+
+// of the largest forces of the revolutions: those below 5 % and above 95 % of them
+static const double FEW = 0.05;
 
 static Revolution *add_revolution(Settling *settling)
 {
@@ -86,13 +94,18 @@ static void take_section(Settling *settling, Revolution *revolution)
 {
     const Linkage *linkage = &settling->scenario.linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const Motion *motion = &settling->state.sample.bodies[i];
-        const double turning = motion->omega * linkage_reach(linkage, (int)i);
-        double *rates = revolution->section + RATES * i;
-        rates[0] = motion->velocity.x;
-        rates[1] = motion->velocity.y;
-        rates[2] = turning;
-        settling->fastest = fmax(settling->fastest, vec2_length(motion->velocity) + fabs(turning));
+        const Motion *planar = &settling->state.sample.bodies[i];
+        SpaceMotion motion = {.velocity = {planar->velocity.x, planar->velocity.y, 0.0},
+                              .omega = {0.0, 0.0, planar->omega}};
+        if (linkage->is_spatial) {
+            motion = settling->state.sample.space_bodies[i];
+        }
+        const Vec3 turning = vec3_scale(linkage_reach(linkage, (int)i), motion.omega);
+        const double rates[RATES] = {motion.velocity.x, motion.velocity.y, motion.velocity.z,
+                                     turning.x,         turning.y,         turning.z};
+        memcpy(revolution->section + RATES * i, rates, sizeof rates);
+        settling->fastest =
+            fmax(settling->fastest, vec3_length(motion.velocity) + vec3_length(turning));
     }
 }
 
@@ -183,4 +196,65 @@ bool settling_run(Settling *settling, double tolerance, size_t most, Err *err)
         }
     }
     return true;
+}
+
+// The start of one scenario becomes that of another of the same linkage.
+static void take_start(const Linkage *from, Linkage *to)
+{
+    memcpy(to->bodies, from->bodies, to->body_count * sizeof *to->bodies);
+    memcpy(to->joints, from->joints, to->joint_count * sizeof *to->joints);
+    memcpy(to->torsions, from->torsions, to->torsion_count * sizeof *to->torsions);
+    to->driver.start = from->driver.start;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// What a joint did; of a motion that does not repeat over its second half.
+static SettledJoint sum_up(const Settling *settling, size_t joint)
+{
+    const size_t last = settling->count;
+    const size_t many = settling->period > 0 ? settling->period : (last + 1) / 2;
+    double *forces = zeroed(many, sizeof *forces);
+    SettledJoint found = {.first = settling->revolutions[0].force_max[joint]};
+    for (size_t k = 0; k < many; k++) {
+        forces[k] = settling->revolutions[last - many + k].force_max[joint];
+        found.impacts +=
+            (double)settling->revolutions[last - many + k].impacts[joint] / (double)many;
+    }
+    qsort(forces, many, sizeof *forces, compare_doubles);
+    const double most = (double)(many - 1);
+    found.force = settling->period > 0 ? forces[many - 1] : forces[(many - 1) / 2];
+    found.low = settling->period > 0 ? found.force : forces[(size_t)(FEW * most)];
+    found.high = settling->period > 0 ? found.force : forces[(size_t)ceil((1.0 - FEW) * most)];
+    free(forces);
+    return found;
+}
+
+void settle_scenario(Scenario *scenario)
+{
+    SettledStart *settled = &scenario->settled;
+    if (scenario->run.start != START_SETTLED || settled->revolutions > 0) {
+        return;
+    }
+    Settling settling = settling_start(scenario);
+    Err err = {ERR_NONE, ""};
+    if (settling_run(&settling, SETTLE_TOLERANCE, scenario->run.settle_most, &err)) {
+        take_start(&settling.scenario.linkage, &scenario->linkage);
+        settled->revolutions = settling.count;
+        settled->period = settling.period;
+        settled->change = settling.change;
+        settled->joints = zeroed(scenario->linkage.joint_count, sizeof *settled->joints);
+        for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+            settled->joints[i] = sum_up(&settling, i);
+        }
+    } else {
+        snprintf(settled->message, sizeof settled->message, "revolution %zu: %s", settling.count,
+                 err.text);
+    }
+    settling_finish(&settling);
 }

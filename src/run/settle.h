@@ -35,6 +35,11 @@ void settling_finish(Settling *settling);
 // Goes on by one revolution. Fails with ERR_SOLVER.
 bool settling_turn(Settling *settling, Err *err);
 
+// Gives a scenario that is to start in its settled motion that start, and says how it was found;
+// one that has it, or is to start as written, stays as it is. Where there is none the scenario says
+// why.
+void settle_scenario(Scenario *scenario);
+
 // Goes on until the motion repeats to within a tolerance, relative, or so many revolutions are
 // over. Fails with ERR_SOLVER.
 bool settling_run(Settling *settling, double tolerance, size_t most, Err *err);

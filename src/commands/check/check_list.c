@@ -7,6 +7,7 @@
 #include "casefile/casefile.h"
 #include "cli/warnings.h"
 #include "commands/check/baseline.h"
+#include "run/settle.h"
 #include "write/file.h"
 
 #include <assert.h>
@@ -109,6 +110,7 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
         return false;
     }
     warnings_say(item->scenario, &options->common);
+    settle_scenario(item->scenario);
     baseline_set_head(&item->now, item->scenario, &item->baseline.plan);
     return true;
 }

@@ -7,6 +7,7 @@
 #include "cli/written.h"
 #include "measure/chosen_run.h"
 #include "run/registry.h"
+#include "run/settle.h"
 #include "run/tracer.h"
 #include "write/file.h"
 #include "write/series_rows.h"
@@ -144,6 +145,7 @@ static void ask_closed_form(CaseRun *run)
 void case_run_execute(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
+    settle_scenario(&run->scenario);
     run->report = (RunReport){
         .scenario = &run->scenario,
         .run_count = options->backend_count,

@@ -6,6 +6,7 @@
 #include "commands/study/worker.h"
 #include "measure/chosen_run.h"
 #include "run/registry.h"
+#include "run/settle.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -127,6 +128,7 @@ static void sweep_run(const SweepRun *task, Record *record)
     BackendKind backend;
     Err err = {0};
     if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
+        settle_scenario(scenario);
         sweep_measure(task, scenario, backend, record);
     } else {
         give_reason(record, RUN_OUTCOME_REFUSED, err.text);
@@ -269,6 +271,7 @@ static bool prepare_truth(const Spec *spec, uint64_t run, SweepGroup *group)
         group->wanted = NULL;
         return false;
     }
+    settle_scenario(&group->wanted->task.scenario);
     group->packed_size = truth_pack_size(&group->wanted->task.scenario);
     group->packed = malloc(group->packed_size);
     assert(group->packed != NULL);
