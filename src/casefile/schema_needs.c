@@ -25,6 +25,7 @@ typedef struct Condition {
 static const Condition CONDITIONS[] = {
     {SPATIAL, 0, {"space: spatial", "space", true}},
     {PLAY, 0, {"a joint with play", "", false}},
+    {TURNING, 0, {"a drive of constant speed", "", false}},
     {IDEAL, 0, {"a case whose joints are all ideal", "", false}},
     {IMPACT, PLAY, {"contact.model: impact", "contact.model", false}},
     {POISSON, PLAY, {"contact.model: poisson", "contact.model", true}},

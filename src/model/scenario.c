@@ -144,6 +144,12 @@ double scenario_sample_time(const Scenario *scenario, size_t sample)
     return turn * (double)sample / (double)scenario->run.samples;
 }
 
+bool scenario_settles(const Scenario *scenario)
+{
+    return scenario->run.start == START_SETTLED && drive_is_steady(&scenario->linkage.driver) &&
+           scenario->contact.model == CONTACT_IMPACT && scenario_has_clearance(scenario);
+}
+
 void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponent)
 {
     scenario->contact.stiffness = stiffness;

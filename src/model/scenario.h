@@ -119,6 +119,9 @@ static inline double scenario_restitution(const Scenario *scenario, const Joint 
                                           : scenario->contact.restitution;
 }
 
+// Whether runs are to start in a settled motion: it is asked for, and there is one to come to.
+bool scenario_settles(const Scenario *scenario);
+
 // Gives all joints with play one stiffness, N/m^exponent, in place of the contact's and of their
 // own; 0 where the contact's law is to say it.
 void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponent);

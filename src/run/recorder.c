@@ -192,6 +192,17 @@ Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory)
         .open = zeroed(linkage->joint_count, sizeof *recorder.open),
         .ranges = recorder_ranges_start(scenario, trajectory),
     };
+    // a contact that is under way has begun before
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        for (size_t k = 0; k < JOINT_PLACES; k++) {
+            const ContactState *state = &linkage->joints[i].contacts[k];
+            if (state->is_touching) {
+                recorder.was_touching[i] = true;
+                recorder.open[i].onset_s = -state->age_s;
+                recorder.open[i].approach_speed = state->impact_speed;
+            }
+        }
+    }
     return recorder;
 }
 

@@ -483,7 +483,7 @@ static double driven_until(const Loop *loop)
 static bool run_check_start(const Scenario *scenario, Err *err)
 {
     const SettledStart *settled = &scenario->settled;
-    return scenario->run.start != START_SETTLED || settled->revolutions > 0 ||
+    return !scenario_settles(scenario) || settled->revolutions > 0 ||
            err_set(err, ERR_SOLVER, "the settled motion is not known: %s",
                    settled->message[0] != '\0' ? settled->message : "nobody has looked for it");
 }

@@ -238,7 +238,7 @@ static SettledJoint sum_up(const Settling *settling, size_t joint)
 void settle_scenario(Scenario *scenario)
 {
     SettledStart *settled = &scenario->settled;
-    if (scenario->run.start != START_SETTLED || settled->revolutions > 0) {
+    if (!scenario_settles(scenario) || settled->revolutions > 0) {
         return;
     }
     Settling settling = settling_start(scenario);

@@ -1,4 +1,5 @@
 // Builds the JSON of versions and settings with which a result was made.
+#include "write/settled.h"
 #include "write/settings_json.h"
 #include "base/hash.h"
 #include "casefile/casefile.h"
@@ -96,6 +97,7 @@ void settings_json_begin(json_t *object, const Scenario *scenario)
     json_object_set_new(object, "case", json_value_text(scenario_path(scenario)));
     json_object_set_new(object, "title", json_value_text(scenario->title));
     settings_json_set_settings(object, scenario);
+    settled_json(object, scenario);
 }
 
 json_t *settings_json_all(const Scenario *scenario)

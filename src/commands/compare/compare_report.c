@@ -3,6 +3,7 @@
 #include "write/json_value.h"
 #include "write/measured_fields.h"
 #include "write/settings_json.h"
+#include "write/settled.h"
 #include "write/table.h"
 #include "write/units.h"
 
@@ -297,6 +298,7 @@ static void compare_report_write_head(const CompareReport *report, const Style *
     const Ladder *ladder = report->ladder;
     const LadderTruth *truth = &ladder->truth;
     section_title(scenario->title, scenario_path(scenario), style, text);
+    settled_text(scenario, text);
     if (truth->message[0] != '\0') {
         text_append(text, "  truth       %s, made in %.3g s; could not be certified: %s\n",
                     truth->backend, truth->wall_s, truth->message);

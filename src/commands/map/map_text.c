@@ -1,6 +1,7 @@
 // Writes the text of a mapping: the settings of each contact and what they deliver.
 #include "commands/map/map.h"
 #include "contact/law.h"
+#include "write/settled.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -309,6 +310,7 @@ static void map_text_write_head(const MappingReport *report, const Style *style,
 {
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
+    settled_text(scenario, text);
     text_append(
         text,
         "  valid       restitution%s within %.0f %% of what is asked, wherever the steps fall\n",

@@ -7,6 +7,7 @@
 #include "model/kinematics.h"
 #include "model/space_rows.h"
 #include "write/alike.h"
+#include "write/settled.h"
 #include "write/table.h"
 #include "write/units.h"
 
@@ -713,6 +714,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     write_mechanism(report, style->width, text);
     run_loads_write(report, style->width, text);
     write_drive(scenario, text);
+    settled_text(scenario, text);
     run_text_write_contact(scenario, style->width, text);
     write_models(report, style, text);
     // what was asked comes first, how far it can be believed beside it, and theory last

@@ -3,6 +3,7 @@
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_search.h"
 #include "write/number.h"
+#include "write/settled.h"
 #include "write/table.h"
 #include "write/units.h"
 
@@ -272,6 +273,7 @@ static void tune_text_write_head(const TuneReport *report, const Style *style, T
     const Scenario *scenario = report->scenario;
     const Tune *tune = report->tune;
     section_title(scenario->title, scenario_path(scenario), style, text);
+    settled_text(scenario, text);
     write_asked(tune, text);
     text_append(text, "  truth       %s, to %.2g\n", tune->truth.backend, tune->truth.uncertainty);
     if (tune->truth.is_limited) {
