@@ -145,7 +145,7 @@ static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t
     joint->first_row = laid_out.first_row;
     joint->row_count = laid_out.row_count;
     joint->state.is_touching = from->is_touching;
-    joint->state.impact_speed = from->impact_speed;
+    joint->state.impact_speed = joint->state.damping_speed = from->impact_speed;
     if (from->is_touching && joint->frequency == 0.0) {
         // a contact that began in a step with rows
         joint->frequency = sqrt(force_law_tangent(&from->law, fmax(from->inside, DBL_MIN)) *

@@ -60,7 +60,7 @@ static void a_weight_sinks_into_its_damper(void **state)
         Kernel pin = resting(restitution);
         assert_true(kernel_run(&pin, 0.1));
         assert_true(sinking_error(&pin, restitution, 0.1) < 1e-5);
-        assert_true(pin.contacts[0].is_touching);
+        assert_true(pin.contacts[0].state.is_touching);
         assert_true(pin.node_count < 400);
         assert_close(lone_pin_end(&pin).force[0], -ONE_IMPACT_MASS * WEIGHT, 1e-5);
         kernel_finish(&pin);
@@ -85,7 +85,7 @@ static void next_to_no_restitution_is_delivered(void **state)
         // the flight, and three times what the way back takes at the speed given back
         const double duration_s = 1e-4 + 3.0 * depth / (asked * ONE_IMPACT_SPEED);
         assert_true(kernel_run(&pin, duration_s));
-        assert_false(pin.contacts[0].is_touching);
+        assert_false(pin.contacts[0].state.is_touching);
         const double given_back = -lone_pin_speed_after(&pin) / ONE_IMPACT_SPEED;
         assert_near(given_back, damping_delivered(chi), 1e-8);
         double deepest = 0.0;
@@ -115,7 +115,7 @@ static void what_dies_away_at_once_is_not_in_the_forces(void **state)
         pin.position[0] = ONE_IMPACT_CLEARANCE + settled;
         pin.speed[0] = way * 1e-8; // 1e-2 N s/m and more: 1e5 times that speed in N
         assert_true(kernel_run(&pin, 1e-3));
-        assert_true(pin.contacts[0].is_touching);
+        assert_true(pin.contacts[0].state.is_touching);
         for (int i = 0; i <= 20; i++) {
             const double time_s = 5e-5 * i;
             PinSums sums;
@@ -185,7 +185,7 @@ static void a_pressed_disc_is_braked_by_friction(void **state)
     pin.free[0] = load;
     pin.speed[1] = sideways;
     assert_true(kernel_run(&pin, duration_s));
-    assert_true(pin.contacts[0].is_touching);
+    assert_true(pin.contacts[0].state.is_touching);
     assert_true(pin.node_count < 400);
     const PinSums end = lone_pin_end(&pin);
     const double braking = friction * load;

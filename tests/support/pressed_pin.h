@@ -19,8 +19,7 @@ static inline Kernel pressed_pin(uint64_t *seed, double friction, size_t rows)
     KernelContact *joint = &pin.contacts[0];
     joint->radial_clearance = PRESSED_CLEARANCE;
     joint->hole_radius = 5e-3;
-    joint->is_touching = true;
-    joint->impact_speed = 0.1;
+    joint->state = contact_state_begun(0.1);
     const double angle = 3.0 * lcg_draw(seed);
     pin.position[0] = (PRESSED_CLEARANCE + PRESSED_DEPTH) * cos(angle);
     pin.position[1] = (PRESSED_CLEARANCE + PRESSED_DEPTH) * sin(angle);

@@ -14,7 +14,7 @@ static double restitution(ForceLaw law, double phase)
 {
     Kernel pin = lone_pin(law, phase);
     run(&pin, DURATION_S);
-    assert_false(pin.contacts[0].is_touching);
+    assert_false(pin.contacts[0].state.is_touching);
     const double speed = lone_pin_speed_after(&pin);
     kernel_finish(&pin);
     return -speed / ONE_IMPACT_SPEED;
@@ -114,7 +114,7 @@ static void an_onset_stands_where_the_flight_meets_the_wall(void **state)
         assert_int_equal(pin.touching[2], 1);
         // positions are known to 1e-19 m, and the gap is 1e-5 m
         assert_close(pin.times[1], 2.0 * LONE_PIN_GAP / (v + arrival), 1e-13);
-        assert_close(pin.contacts[0].impact_speed, arrival, 1e-12);
+        assert_close(pin.contacts[0].state.impact_speed, arrival, 1e-12);
         // control: the wall a nanometre further away
         const double later = sqrt(v * v + 2.0 * acceleration * (LONE_PIN_GAP + 1e-9));
         assert_true(pin.times[1] < (1.0 - 1e-6) * 2.0 * (LONE_PIN_GAP + 1e-9) / (v + later));
@@ -174,7 +174,7 @@ static void a_pin_that_falls_back_touches_again(void **state)
     }
     assert_int_equal(arrivals, 3);
     // 0.1 N of gravity against 100 N and more of the contact
-    assert_close(pin.contacts[0].impact_speed, ONE_IMPACT_SPEED * e * e, 2e-2);
+    assert_close(pin.contacts[0].state.impact_speed, ONE_IMPACT_SPEED * e * e, 2e-2);
     assert_true(pin.node_count < 3000);
     kernel_finish(&pin);
 }
@@ -209,12 +209,12 @@ static void a_pin_moved_off_its_wall_comes_back_to_it(void **state)
     static const double FREE = 1000.0; // m/s^2
     Kernel pin = lone_pin(lone_pin_hertz(0.0), 0.01);
     run(&pin, LONE_PIN_GAP / ONE_IMPACT_SPEED + 0.9 * lone_pin_duration());
-    assert_true(pin.contacts[0].is_touching);
+    assert_true(pin.contacts[0].state.is_touching);
     pin.position[0] = ONE_IMPACT_CLEARANCE - 4e-6;
     pin.speed[0] = 5e-3;
     pin.free[0] = FREE;
     run(&pin, 2.3e-4);
-    assert_false(pin.contacts[0].is_touching);
+    assert_false(pin.contacts[0].state.is_touching);
     const PinSums sums = lone_pin_end(&pin);
     const double time_s = pin.times[pin.node_count - 1];
     const double speed = pin.speed[0] + FREE * time_s + sums.impulse[0] / ONE_IMPACT_MASS;

@@ -119,7 +119,7 @@ static void rows_that_turn_move_as_their_equations_say(void **state)
     double errors[2];
     Kernel pin = turning_pin(true);
     find_errors(&pin, &truth, errors);
-    assert_false(pin.contacts[0].is_touching);
+    assert_false(pin.contacts[0].state.is_touching);
     kernel_finish(&pin);
     // local steps of errors of 1e-9, and what they know of the third integral
     assert_true(errors[0] < 1e-6);
