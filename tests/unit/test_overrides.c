@@ -61,7 +61,7 @@ static void wrong_overrides_are_usage_errors(void **state)
            "    --set run.stp=1 us\n"
            "              ^~~\n"
            "allowed: revolutions, duration, samples, step, tolerance, most-steps, spike-threshold, "
-           "report-from, backends");
+           "report-from, start, settle-most, backends");
     refuse(IMPACT, "joints.follower-ground.hole=9 mm", ERR_USAGE,
            "--set joints.follower-ground.hole=9 mm: joints.follower-ground.pin is missing\n"
            "    --set joints.follower-ground.hole=9 mm\n"
