@@ -628,7 +628,10 @@ static const char *lacks_joint(const Scenario *scenario, const Joint *joint)
         return "libjointplay has no disc that meets a wall or another disc";
     case JOINT_GEAR:
         return "libjointplay has no pair of gears";
-    default:
+    case JOINT_REVOLUTE:
+    case JOINT_CLEARANCE:
+    case JOINT_PRISMATIC:
+    case JOINT_KIND_COUNT:
         break;
     }
     return linkage_has_play(joint) && scenario->contact.damping == DAMPING_EXACT &&
