@@ -106,6 +106,7 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     .holder = SCHEMA_TORSION_SPRING, .offset = offsetof(TorsionSpring, field), .needs = MEMBER
 #define POINT(field) \
     .family = SCHEMA_POINT, .holder = SCHEMA_POINT, .offset = offsetof(TracedPoint, field), .needs = MEMBER
+#define DAMPING_DOC(name, word, words, factor) "; " word ": " words
 
 const SchemaRow SCHEMA_ROWS[] = {
     {.path = "title", .type = SCHEMA_TEXT, AT(title), .default_words = "none",
@@ -259,7 +260,8 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "K in F = K d^n, instead of a law; n follows from the unit: N/m^1.5, N/mm^1.5, N/m"},
     {.path = "contact.damping", .type = SCHEMA_CHOICE, AT(contact.damping),
      .words = OPTIONS_DAMPINGS, .needs = IMPACT, .wants = COMMON_DAMPING,
-     .doc = "damping law of the impact model"},
+     .doc = "damping law of the impact model, by its hysteresis factor chi for a restitution e"
+            OPTIONS_DAMPING_LIST(DAMPING_DOC)},
     {.path = "contact.restitution", AT(contact.restitution), .low = 0.0, .high = 1.0,
      .needs = PLAY, .wants = REBOUND, .doc = "desired ratio of the speeds after and before an impact"},
     {.path = "contact.viscous-coefficient", .dimension = DIMENSION_DAMPING,

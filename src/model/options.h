@@ -21,17 +21,18 @@
     member(LAW_PAPER_TABLE_2, "paper-table-2", law_paper_table_2) \
     member(LAW_PAPER_TABLE_3, "paper-table-3", law_paper_table_3)
 
-// Where the energy of an impact goes; see contact/damping.h. The name follows DAMPING_ here and
-// JP_DAMPING_ in the library; the function is that of contact/damping.c that gives the factor.
+// Where the energy of an impact goes: what hysteretic damping has for chi, 1, of the restitution
+// asked for, e, in words and as contact/damping.c computes it. The name follows DAMPING_ here and
+// JP_DAMPING_ in the library.
 #define OPTIONS_DAMPING_LIST(member) \
-    member(NONE, "none", none) \
-    member(LANKARANI_NIKRAVESH, "lankarani-nikravesh", lankarani_nikravesh) \
-    member(HUNT_CROSSLEY, "hunt-crossley", hunt_crossley) \
-    member(FLORES, "flores", flores) \
-    member(GONTHIER, "gonthier", gonthier) \
-    member(HU_GUO, "hu-guo", hu_guo) \
-    member(EXACT, "exact", exact) \
-    member(VISCOUS, "viscous", none)
+    member(NONE, "none", "0", 0.0) \
+    member(LANKARANI_NIKRAVESH, "lankarani-nikravesh", "3 (1 - e^2) / 4", 0.75 * (1.0 - e) * (1.0 + e)) \
+    member(HUNT_CROSSLEY, "hunt-crossley", "3 (1 - e) / 2", 1.5 * (1.0 - e)) \
+    member(FLORES, "flores", "8 (1 - e) / (5 e)", 1.6 * (1.0 - e) / e) \
+    member(GONTHIER, "gonthier", "(1 - e^2) / e", (1.0 - e) * (1.0 + e) / e) \
+    member(HU_GUO, "hu-guo", "3 (1 - e) / (2 e)", 1.5 * (1.0 - e) / e) \
+    member(EXACT, "exact", "the root of chi (1 + e) = ln((1 + chi) / (1 - chi e))", exact_factor(e)) \
+    member(VISCOUS, "viscous", "0, and viscous-coefficient in its place", 0.0)
 
 // How stiffness and damping become ERP and CFM of a row; see contact/map.h. The name follows
 // ODE_MAP_ here and JP_MAP_ in the library; the row is that of contact/map.c. After them comes
@@ -88,7 +89,7 @@
 #define OPTIONS_ENUMERATOR(id, ...) id,
 
 typedef enum LawKind { OPTIONS_LAW_LIST(OPTIONS_ENUMERATOR) LAW_COUNT } LawKind;
-#define OPTIONS_DAMPING_ENUMERATOR(name, word, factor) DAMPING_##name,
+#define OPTIONS_DAMPING_ENUMERATOR(name, ...) DAMPING_##name,
 typedef enum DampingKind {
     OPTIONS_DAMPING_LIST(OPTIONS_DAMPING_ENUMERATOR) DAMPING_COUNT
 } DampingKind;
