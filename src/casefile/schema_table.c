@@ -15,13 +15,15 @@ static const char *const SLIDER_CRANK_PIVOTS[] = {
     "ground-crank", "crank-rod", "rod-slider", "slider-guide", NULL,
 };
 
-const SchemaFormRow SCHEMA_FORMS[SCHEMA_FORM_COUNT] = {
+const SchemaFormRow SCHEMA_FORMS[] = {
     {SCHEMA_FOUR_BAR, "four-bar", FOUR_BAR_LINKS, FOUR_BAR_PIVOTS,
      "crank-coupler, coupler-follower, follower-ground"},
     {SCHEMA_SLIDER_CRANK, "slider-crank", SLIDER_CRANK_LINKS, SLIDER_CRANK_PIVOTS,
      "crank-rod, rod-slider, slider-guide"},
     {SCHEMA_LONG, "bodies", NULL, NULL, NULL},
 };
+static_assert(sizeof SCHEMA_FORMS / sizeof *SCHEMA_FORMS == SCHEMA_FORM_COUNT,
+              "each form has its row");
 
 const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_SINGLE] = {"", "", 1},
