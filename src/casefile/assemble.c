@@ -127,13 +127,6 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     return true;
 }
 
-static bool build_short(const Entries *entries, Scenario *scenario, Err *err)
-{
-    return entries->form == SCHEMA_SLIDER_CRANK
-               ? slider_check(entries, scenario, err) && slider_build(scenario, err)
-               : closure_check(entries, scenario, err) && build_fourbar(scenario, err);
-}
-
 static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
 {
     if (scenario->linkage.is_spatial && !space_is_upright(&scenario->linkage)) {
@@ -144,12 +137,26 @@ static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
            closure_check_ideal(entries, scenario, err);
 }
 
+static bool build_form(const Entries *entries, Scenario *scenario, Err *err)
+{
+    switch (entries->form) {
+    case SCHEMA_FOUR_BAR:
+        return closure_check(entries, scenario, err) && build_fourbar(scenario, err);
+    case SCHEMA_SLIDER_CRANK:
+        return slider_check(entries, scenario, err) && slider_build(scenario, err);
+    case SCHEMA_LONG:
+    case SCHEMA_ALL: // these two are sets of forms
+    case SCHEMA_SHORT:
+        break;
+    }
+    return build_long(entries, scenario, err);
+}
+
 // What remains is wrong as a whole; it is shown at the drive, or at the top where there is none.
 static bool build(const Entries *entries, Scenario *scenario, Err *err)
 {
     Err own = {0};
-    const bool is_built = entries->form != SCHEMA_LONG ? build_short(entries, scenario, &own)
-                                                       : build_long(entries, scenario, &own);
+    const bool is_built = build_form(entries, scenario, &own);
     if (is_built && scenario_check(scenario, &own)) {
         return true;
     }

@@ -277,20 +277,25 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
                               "a step can only be chosen for the impact model\nallowed: a step "
                               "such as 1 us, or contact.model: impact");
     }
-    if (has_play && ode->stepping == ODE_EXTRAPOLATED) {
+    const bool is_general = OPTIONS_ODE_STEPPING_IS_GENERAL[ode->stepping];
+    const char *word = OPTIONS_ODE_STEPPINGS[ode->stepping];
+    if (has_play && !is_general) {
         return entries_refuse(entries_find(entries, "ode.stepping", 0), err,
-                              "extrapolated stepping is for ideal joints: contacts are not "
-                              "smooth\nallowed: plain, staggered");
+                              "%s stepping is for ideal joints: contacts are not "
+                              "smooth\nallowed: plain, staggered",
+                              word);
     }
-    if (scenario->linkage.is_spatial && ode->stepping == ODE_EXTRAPOLATED) {
+    if (scenario->linkage.is_spatial && !is_general) {
         return entries_refuse(entries_blame(entries, "space ode.stepping", 0), err,
-                              "extrapolated stepping is for linkages in the plane\nallowed: "
-                              "stepping: plain or staggered, or space: planar");
+                              "%s stepping is for linkages in the plane\nallowed: "
+                              "stepping: plain or staggered, or space: planar",
+                              word);
     }
-    if (scenario->linkage.driver.speeds.count > 0 && ode->stepping == ODE_EXTRAPOLATED) {
+    if (scenario->linkage.driver.speeds.count > 0 && !is_general) {
         return entries_refuse(entries_blame(entries, "ode.stepping drive.speed", 0), err,
-                              "extrapolated stepping is for drives of constant speed: a speed over "
-                              "time has kinks\nallowed: plain, staggered");
+                              "%s stepping is for drives of constant speed: a speed over "
+                              "time has kinks\nallowed: plain, staggered",
+                              word);
     }
     if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {
         return entries_refuse(

@@ -140,9 +140,13 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
     case JOINT_STOP:
         return check_stiffness(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
-    default:
-        return true;
+    case JOINT_REVOLUTE:
+    case JOINT_PRISMATIC:
+    case JOINT_GEAR:
+    case JOINT_KIND_COUNT:
+        break;
     }
+    return true;
 }
 
 bool check_joints(const Entries *entries, const Scenario *scenario, Err *err)

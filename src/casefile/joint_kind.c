@@ -3,6 +3,7 @@
 
 #include "casefile/limits.h"
 
+#include <assert.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -23,6 +24,7 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         {JOINT_CLEARANCE, "joints.*.hole joints.*.pin joints.*.radial-clearance joints.*.width "
                           "joints.*.start"},
     };
+    static_assert(sizeof KINDS / sizeof *KINDS == JOINT_KIND_COUNT, "each kind has its keys");
     if (entries->form != SCHEMA_LONG) {
         const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
         const bool slides = entries->form == SCHEMA_SLIDER_CRANK && joint == SLIDER_GUIDE;
@@ -39,14 +41,8 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
 
 static const char *describe_kind(JointKind kind)
 {
-    static const char *const WORDS[] = {
-        [JOINT_REVOLUTE] = "which has no play",
-        [JOINT_CLEARANCE] = "a pin in a hole",
-        [JOINT_PRISMATIC] = "a prismatic joint without play",
-        [JOINT_GUIDE] = "a block between guides",
-        [JOINT_STOP] = "a stop",
-        [JOINT_GEAR] = "a pair of gears",
-    };
+#define JOINT_KIND_WORDS(id, words, ...) words,
+    static const char *const WORDS[] = {LINKAGE_JOINT_KIND_LIST(JOINT_KIND_WORDS)};
     return WORDS[kind];
 }
 

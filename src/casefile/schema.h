@@ -6,6 +6,8 @@
 #include "casefile/units.h"
 #include "model/scenario.h"
 
+#include <assert.h>
+
 enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 40 };
 
 // How a value is written, and what it becomes in the scenario.
@@ -63,6 +65,7 @@ typedef enum SchemaForm {
 } SchemaForm;
 
 enum { SCHEMA_FORM_COUNT = 3 };
+static_assert((int)SCHEMA_LONG == 1 << (SCHEMA_FORM_COUNT - 1), "the long form is the last");
 
 // What a form is called and gives.
 typedef struct SchemaFormRow {

@@ -15,13 +15,15 @@ static const char *const SLIDER_CRANK_PIVOTS[] = {
     "ground-crank", "crank-rod", "rod-slider", "slider-guide", NULL,
 };
 
-const SchemaFormRow SCHEMA_FORMS[SCHEMA_FORM_COUNT] = {
+const SchemaFormRow SCHEMA_FORMS[] = {
     {SCHEMA_FOUR_BAR, "four-bar", FOUR_BAR_LINKS, FOUR_BAR_PIVOTS,
      "crank-coupler, coupler-follower, follower-ground"},
     {SCHEMA_SLIDER_CRANK, "slider-crank", SLIDER_CRANK_LINKS, SLIDER_CRANK_PIVOTS,
      "crank-rod, rod-slider, slider-guide"},
     {SCHEMA_LONG, "bodies", NULL, NULL, NULL},
 };
+static_assert(sizeof SCHEMA_FORMS / sizeof *SCHEMA_FORMS == SCHEMA_FORM_COUNT,
+              "each form has its row");
 
 const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_SINGLE] = {"", "", 1},
@@ -106,6 +108,7 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     .holder = SCHEMA_TORSION_SPRING, .offset = offsetof(TorsionSpring, field), .needs = MEMBER
 #define POINT(field) \
     .family = SCHEMA_POINT, .holder = SCHEMA_POINT, .offset = offsetof(TracedPoint, field), .needs = MEMBER
+#define DAMPING_DOC(name, word, words, factor) "; " word ": " words
 
 const SchemaRow SCHEMA_ROWS[] = {
     {.path = "title", .type = SCHEMA_TEXT, AT(title), .default_words = "none",
@@ -259,7 +262,8 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "K in F = K d^n, instead of a law; n follows from the unit: N/m^1.5, N/mm^1.5, N/m"},
     {.path = "contact.damping", .type = SCHEMA_CHOICE, AT(contact.damping),
      .words = OPTIONS_DAMPINGS, .needs = IMPACT, .wants = COMMON_DAMPING,
-     .doc = "damping law of the impact model"},
+     .doc = "damping law of the impact model, by its hysteresis factor chi for a restitution e"
+            OPTIONS_DAMPING_LIST(DAMPING_DOC)},
     {.path = "contact.restitution", AT(contact.restitution), .low = 0.0, .high = 1.0,
      .needs = PLAY, .wants = REBOUND, .doc = "desired ratio of the speeds after and before an impact"},
     {.path = "contact.viscous-coefficient", .dimension = DIMENSION_DAMPING,

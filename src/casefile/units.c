@@ -10,32 +10,10 @@ typedef struct DimensionWords {
     const char *si;
 } DimensionWords;
 
-// clang-format off
-static const DimensionWords DIMENSIONS[DIMENSION_COUNT] = {
-    [DIMENSION_NONE]          = {"a plain number",     "0.9",            ""},
-    [DIMENSION_LENGTH]        = {"a length",           "254 mm",         "m"},
-    [DIMENSION_MASS]          = {"a mass",             "0.29 kg",        "kg"},
-    [DIMENSION_INERTIA]       = {"a moment of inertia", "173.92 kg mm^2", "kg m^2"},
-    [DIMENSION_ANGULAR_SPEED] = {"an angular speed",   "1000 rpm",       "rad/s"},
-    [DIMENSION_ANGLE]         = {"an angle",           "30 deg",         "rad"},
-    [DIMENSION_TIME]          = {"a time",             "1 us",           "s"},
-    [DIMENSION_ACCELERATION]  = {"an acceleration",    "9.80665 m/s^2",  "m/s^2"},
-    [DIMENSION_SPEED]         = {"a speed",            "1 mm/s",         "m/s"},
-    [DIMENSION_PRESSURE]      = {"a pressure",         "207 GPa",        "Pa"},
-    [DIMENSION_DAMPING]       = {"a damping coefficient", "973.33 N s/mm", "N s/m"},
-    [DIMENSION_MEMORY]        = {"an amount of memory", "2 GB",         "B"},
-    [DIMENSION_FORCE]         = {"a force",            "1.2 kN",         "N"},
-    [DIMENSION_IMPULSE]       = {"an impulse",         "0.2 N s",        "N s"},
-    [DIMENSION_ANGULAR_IMPULSE] = {"an angular impulse", "0.01 N m s", "N m s"},
-    [DIMENSION_ENERGY]        = {"an energy",          "0.5 J",          "J"},
-    [DIMENSION_ANGULAR_ACCELERATION] = {"an angular acceleration", "7574 rad/s^2", "rad/s^2"},
-    [DIMENSION_SPRING]        = {"a stiffness",        "4.5 N/mm",       "N/m"},
-    [DIMENSION_TORQUE]        = {"a torque",           "0.1 N m",        "N m"},
-    [DIMENSION_TORSION_SPRING] = {"a torsional stiffness", "0.5 N m/rad", "N m/rad"},
-    [DIMENSION_TORSION_DAMPING] = {"a torsional damping", "1 N mm s/rad", "N m s/rad"},
-    [DIMENSION_STIFFNESS]     = {"a stiffness",        "6.6e10 N/m^1.5", "N/m^n"},
-};
+#define UNITS_WORDS(id, name, example, si) {name, example, si},
+static const DimensionWords DIMENSIONS[] = {UNITS_DIMENSION_LIST(UNITS_WORDS)};
 
+// clang-format off
 // of two units equally near to a wrong one, the first is suggested
 static const Unit UNITS[] = {
     {"mm",      DIMENSION_LENGTH,        1.0,    1e3},

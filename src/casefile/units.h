@@ -8,31 +8,38 @@
 
 enum { UNITS_NAME_SIZE = 32 };
 
-typedef enum Dimension {
-    DIMENSION_NONE, // a plain number
-    DIMENSION_LENGTH,
-    DIMENSION_MASS,
-    DIMENSION_INERTIA,
-    DIMENSION_ANGULAR_SPEED,
-    DIMENSION_ANGLE,
-    DIMENSION_TIME,
-    DIMENSION_ACCELERATION,
-    DIMENSION_SPEED,
-    DIMENSION_PRESSURE,
-    DIMENSION_DAMPING,
-    DIMENSION_MEMORY,
-    DIMENSION_FORCE,
-    DIMENSION_IMPULSE,
-    DIMENSION_ANGULAR_IMPULSE,
-    DIMENSION_ENERGY,
-    DIMENSION_ANGULAR_ACCELERATION,
-    DIMENSION_SPRING, // of a spring along a line
-    DIMENSION_TORQUE,
-    DIMENSION_TORSION_SPRING,
-    DIMENSION_TORSION_DAMPING,
-    DIMENSION_STIFFNESS, // N/m^n; read by quantity_stiffness, listed here for its words only
-    DIMENSION_COUNT,
-} Dimension;
+// What a number of a case can be: a line a dimension, its enumerator, its name with its article, a
+// value as a case would give it, and the SI unit, which units.c has with others in its table.
+//
+// A spring is one along a line; a stiffness is of any law, N/m^n, is read by quantity_stiffness and
+// listed for its words only.
+// clang-format off
+#define UNITS_DIMENSION_LIST(member) \
+    member(DIMENSION_NONE, "a plain number", "0.9", "") \
+    member(DIMENSION_LENGTH, "a length", "254 mm", "m") \
+    member(DIMENSION_MASS, "a mass", "0.29 kg", "kg") \
+    member(DIMENSION_INERTIA, "a moment of inertia", "173.92 kg mm^2", "kg m^2") \
+    member(DIMENSION_ANGULAR_SPEED, "an angular speed", "1000 rpm", "rad/s") \
+    member(DIMENSION_ANGLE, "an angle", "30 deg", "rad") \
+    member(DIMENSION_TIME, "a time", "1 us", "s") \
+    member(DIMENSION_ACCELERATION, "an acceleration", "9.80665 m/s^2", "m/s^2") \
+    member(DIMENSION_SPEED, "a speed", "1 mm/s", "m/s") \
+    member(DIMENSION_PRESSURE, "a pressure", "207 GPa", "Pa") \
+    member(DIMENSION_DAMPING, "a damping coefficient", "973.33 N s/mm", "N s/m") \
+    member(DIMENSION_MEMORY, "an amount of memory", "2 GB", "B") \
+    member(DIMENSION_FORCE, "a force", "1.2 kN", "N") \
+    member(DIMENSION_IMPULSE, "an impulse", "0.2 N s", "N s") \
+    member(DIMENSION_ANGULAR_IMPULSE, "an angular impulse", "0.01 N m s", "N m s") \
+    member(DIMENSION_ENERGY, "an energy", "0.5 J", "J") \
+    member(DIMENSION_ANGULAR_ACCELERATION, "an angular acceleration", "7574 rad/s^2", "rad/s^2") \
+    member(DIMENSION_SPRING, "a stiffness", "4.5 N/mm", "N/m") \
+    member(DIMENSION_TORQUE, "a torque", "0.1 N m", "N m") \
+    member(DIMENSION_TORSION_SPRING, "a torsional stiffness", "0.5 N m/rad", "N m/rad") \
+    member(DIMENSION_TORSION_DAMPING, "a torsional damping", "1 N mm s/rad", "N m s/rad") \
+    member(DIMENSION_STIFFNESS, "a stiffness", "6.6e10 N/m^1.5", "N/m^n")
+// clang-format on
+#define UNITS_DIMENSION(id, ...) id,
+typedef enum Dimension { UNITS_DIMENSION_LIST(UNITS_DIMENSION) DIMENSION_COUNT } Dimension;
 
 // One unit: a value in it times numerator / denominator is the value in SI. Kept as a fraction so
 // that 279.4 mm becomes the number nearest to 0.2794 and not its neighbour.

@@ -11,6 +11,8 @@
 //   Contact ends where F = 0, hence d'' = 0: at the phase omega_d t = 2 acos z, where the speed
 //   is -v0 exp(-z omega t). Beyond z = 1 the same with hyperbolic functions.
 //
+// The factors of the laws by name are in OPTIONS_DAMPING_LIST of model/options.h.
+//
 // e restitution, 1; chi hysteresis factor, 1; z damping ratio c / (2 sqrt(k m)), 1; d penetration,
 // m; v0 impact speed, m/s; m effective mass, kg; K, n stiffness, N/m^n, and exponent.
 //
@@ -58,38 +60,7 @@ static double mismatch_of_e(double e, void *context)
     return mismatch(*(const double *)context, e);
 }
 
-static double none(double e)
-{
-    (void)e;
-    return 0.0;
-}
-
-static double lankarani_nikravesh(double e)
-{
-    return 0.75 * (1.0 - e) * (1.0 + e);
-}
-
-static double hunt_crossley(double e)
-{
-    return 1.5 * (1.0 - e);
-}
-
-static double flores(double e)
-{
-    return 1.6 * (1.0 - e) / e;
-}
-
-static double gonthier(double e)
-{
-    return (1.0 - e) * (1.0 + e) / e;
-}
-
-static double hu_guo(double e)
-{
-    return 1.5 * (1.0 - e) / e;
-}
-
-static double exact(double e)
+static double exact_factor(double e)
 {
     if (e == 1.0) {
         return 0.0;
@@ -103,10 +74,17 @@ static double exact(double e)
 
 double damping_factor(DampingKind kind, double restitution)
 {
-#define DAMPING_FACTOR(name, word, factor) factor,
-    static double (*const FACTORS[])(double restitution) = {OPTIONS_DAMPING_LIST(DAMPING_FACTOR)};
+#define DAMPING_FACTOR(name, word, words, factor)                                                  \
+    case DAMPING_##name:                                                                           \
+        return factor;
     assert(restitution >= 0.0 && restitution <= 1.0);
-    return FACTORS[kind](restitution);
+    const double e = restitution;
+    switch (kind) {
+        OPTIONS_DAMPING_LIST(DAMPING_FACTOR)
+    case DAMPING_COUNT:
+        break;
+    }
+    return 0.0;
 }
 
 double damping_delivered(double chi)

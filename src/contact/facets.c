@@ -67,9 +67,11 @@ double facets_resolution(OdeCollider collider, double hole_radius)
         return ODE_TOLERANCE;
     case ODE_COLLIDER_TRIMESH:
         return TRIMESH_SHARE * hole_radius;
-    default:
-        return 0.0;
+    case ODE_COLLIDER_PIN_HOLE:
+    case ODE_COLLIDER_COUNT:
+        break;
     }
+    return 0.0; // it is exact
 }
 
 typedef struct Impact {

@@ -24,9 +24,35 @@ double law_touching_radius(const Joint *joint)
         return INFINITY; // at its limits
     case JOINT_STOP:
         return fmin(stop->radius_b > 0.0 ? stop->radius_b : INFINITY, other);
-    default:
-        return joint->clearance.pin_radius;
+    case JOINT_CLEARANCE:
+    case JOINT_KIND_COUNT:
+        break;
     }
+    return joint->clearance.pin_radius;
+}
+
+// What a joint's body b is inside which part of body a.
+typedef struct Parts {
+    const char *inner;
+    const char *outer;
+} Parts;
+
+static Parts parts_of(JointKind kind)
+{
+    switch (kind) {
+    case JOINT_CLEARANCE:
+        return (Parts){"pin", "the wall of its hole"};
+    case JOINT_GUIDE:
+        return (Parts){"block", "its guide"};
+    case JOINT_GEAR:
+        return (Parts){"second gear", "the first one"};
+    case JOINT_STOP:
+    case JOINT_REVOLUTE:
+    case JOINT_PRISMATIC:
+    case JOINT_KIND_COUNT:
+        break;
+    }
+    return (Parts){"second body", "what stops it"};
 }
 
 bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, double share, Err *err)
@@ -35,13 +61,8 @@ bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, doub
     if (depth <= share * allowed) {
         return true;
     }
-    static const char *const WORDS[][2] = {
-        [JOINT_CLEARANCE] = {"pin", "the wall of its hole"},
-        [JOINT_GUIDE] = {"block", "its guide"},
-        [JOINT_STOP] = {"second body", "what stops it"},
-        [JOINT_GEAR] = {"second gear", "the first one"},
-    };
-    return err_set(
-        err, ERR_SOLVER, "the %s of %s is %.4g mm inside %s; no contact law holds beyond %.4g mm",
-        WORDS[joint->kind][0], joint->name, 1e3 * depth, WORDS[joint->kind][1], 1e3 * allowed);
+    const Parts parts = parts_of(joint->kind);
+    return err_set(err, ERR_SOLVER,
+                   "the %s of %s is %.4g mm inside %s; no contact law holds beyond %.4g mm",
+                   parts.inner, joint->name, 1e3 * depth, parts.outer, 1e3 * allowed);
 }

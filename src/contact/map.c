@@ -62,7 +62,7 @@ static void check_contact(const MapContact *contact)
     assert(map_contact_is_sound(contact));
 }
 
-static ErpCfm textbook(const MapContact *contact)
+static ErpCfm convert_textbook(const MapContact *contact)
 {
     check_contact(contact);
     const double sum = contact->step * contact->stiffness + contact->damping;
@@ -80,13 +80,13 @@ static double damper_of(const MapContact *contact)
     return fmax(contact->damping, STAND_IN_SHARE * contact->step * contact->stiffness);
 }
 
-static ErpCfm corrected(const MapContact *contact)
+static ErpCfm convert_corrected(const MapContact *contact)
 {
     const double damper = damper_of(contact);
     return map_row(contact->step * contact->stiffness / damper, 1.0 / damper);
 }
 
-static ErpCfm midpoint(const MapContact *contact)
+static ErpCfm convert_midpoint(const MapContact *contact)
 {
     assert(contact->depth > 0.0);
     const double half = 0.5 * damper_of(contact);
@@ -94,7 +94,7 @@ static ErpCfm midpoint(const MapContact *contact)
     return map_row(contact->step * force / (half * contact->depth), 1.0 / half);
 }
 
-static ErpCfm exact(const MapContact *contact)
+static ErpCfm convert_exact(const MapContact *contact)
 {
     assert(contact->mass > 0.0);
     const double h = contact->step;
@@ -167,15 +167,15 @@ double map_bounce_delivered(double restitution, double cfm, double mass, double 
     return (restitution - r) / (1.0 + r);
 }
 
-static const Map MAPS[] = {
-    [ODE_MAP_TEXTBOOK] = {INFINITY, 0.0, false, textbook, invert_textbook},
-    [ODE_MAP_CORRECTED] = {2.0, STAND_IN_SHARE, false, corrected, invert_corrected},
-    [ODE_MAP_MIDPOINT] = {2.0, STAND_IN_SHARE, false, midpoint, invert_midpoint},
-    [ODE_MAP_EXACT] = {M_PI, STAND_IN_SHARE, true, exact, invert_exact},
-};
+static const Map textbook_map = {INFINITY, 0.0, false, convert_textbook, invert_textbook};
+static const Map corrected_map = {2.0, STAND_IN_SHARE, false, convert_corrected, invert_corrected};
+static const Map midpoint_map = {2.0, STAND_IN_SHARE, false, convert_midpoint, invert_midpoint};
+static const Map exact_map = {M_PI, STAND_IN_SHARE, true, convert_exact, invert_exact};
 
 const Map *map_get(OdeMap kind)
 {
+#define MAP_ROW(name, word, row) &row,
+    static const Map *const MAPS[] = {OPTIONS_ODE_ROW_MAP_LIST(MAP_ROW)};
     assert(kind < ODE_MAP_IMPULSE);
-    return &MAPS[kind];
+    return MAPS[kind];
 }

@@ -50,12 +50,28 @@ static Touch place_stop(const Joint *joint, int number)
     };
 }
 
+// What the ends of a limited coordinate are; of the kinds that have none a turn's.
+static TouchShape shape_of_end(JointKind kind)
+{
+    switch (kind) {
+    case JOINT_PRISMATIC:
+        return TOUCH_LINE;
+    case JOINT_GEAR:
+        return TOUCH_TEETH;
+    case JOINT_REVOLUTE:
+    case JOINT_CLEARANCE:
+    case JOINT_GUIDE:
+    case JOINT_STOP:
+    case JOINT_KIND_COUNT:
+        break;
+    }
+    return TOUCH_TURN;
+}
+
 // The ends of a limited coordinate. Of a slider they are lines across its own line, and anchor b is
 // a point.
 static size_t place_ends(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
 {
-    static const TouchShape SHAPES[] = {
-        [JOINT_REVOLUTE] = TOUCH_TURN, [JOINT_PRISMATIC] = TOUCH_LINE, [JOINT_GEAR] = TOUCH_TEETH};
     const double ends[2] = {coordinate_low(joint), coordinate_high(joint)};
     const Vec2 along = vec2_rotate(joint->direction, (Vec2){1.0, 0.0});
     size_t count = 0;
@@ -68,7 +84,7 @@ static size_t place_ends(const Joint *joint, int number, Touch places[TOUCH_CORN
         *end = (Touch){
             .joint = number,
             .place = i,
-            .shape = SHAPES[joint->kind],
+            .shape = shape_of_end(joint->kind),
             .anchor_a = joint->anchor_a,
             .anchor_b = joint->anchor_b,
         };
@@ -108,9 +124,13 @@ size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
     case JOINT_STOP:
         places[0] = place_stop(joint, number);
         return 1;
-    default:
-        return 0;
+    case JOINT_REVOLUTE:
+    case JOINT_PRISMATIC:
+    case JOINT_GEAR:
+    case JOINT_KIND_COUNT:
+        break;
     }
+    return 0;
 }
 
 bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *err)
@@ -181,7 +201,7 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
                                  linkage_point(motions, joint->body_a, place->anchor_a));
     const Vec2 velocity = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
                                    linkage_point_velocity(motions, joint->body_a, place->anchor_a));
-    if (place->shape == TOUCH_TURN || place->shape == TOUCH_TEETH) {
+    if (touch_is_end(place)) {
         return pose_of_end(linkage, place, motions, offset, velocity);
     }
     const bool is_ground = joint->body_a == LINKAGE_GROUND;
@@ -195,28 +215,35 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
 
 void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 *from_b)
 {
-    if (place->shape == TOUCH_HOLE) {
+    switch (place->shape) {
+    case TOUCH_HOLE:
         *from_a = vec2_scale(-place->radius_a, pose->normal);
         *from_b = vec2_sub(*from_a, pose->offset);
-    } else if (place->shape == TOUCH_DISC) {
+        break;
+    case TOUCH_DISC:
         *from_a = vec2_scale(place->radius_a, pose->normal);
         *from_b = vec2_sub(*from_a, pose->offset);
-    } else if (place->shape == TOUCH_TEETH) {
+        break;
+    case TOUCH_TEETH: {
         // where the pitch circles touch, on the line of the centres
         const double share = place->radius_a / (place->radius_a + place->radius_b);
         *from_a = vec2_scale(share, pose->offset);
         *from_b = vec2_sub(*from_a, pose->offset);
-    } else {
+        break;
+    }
+    case TOUCH_LINE:
+    case TOUCH_TURN:
         // on body b: the circle's lowest point; of body a the point beside it
         *from_b = vec2_scale(-place->radius_b, pose->normal);
         *from_a = vec2_add(pose->offset, *from_b);
+        break;
     }
 }
 
 double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose *pose,
                      const Motion *motions)
 {
-    if (place->shape == TOUCH_TURN || place->shape == TOUCH_TEETH) {
+    if (touch_is_end(place)) {
         return 0.0; // pitch circles roll on one another
     }
     const Joint *joint = &linkage->joints[place->joint];

@@ -22,10 +22,12 @@
 #include "model/response.h"
 #include "model/scenario.h"
 
+// How what touches is shaped; a switch over shapes has no default, so that a new one is met
+// wherever shapes differ.
 typedef enum TouchShape {
-    TOUCH_HOLE,
-    TOUCH_DISC,
-    TOUCH_LINE,
+    TOUCH_HOLE,  // a circle of body b in one of body a
+    TOUCH_DISC,  // a circle of body b beside one of body a
+    TOUCH_LINE,  // a circle or point of body b at a line of body a
     TOUCH_TURN,  // an end of a revolute joint's angle
     TOUCH_TEETH, // a flank of a pair of gears
 } TouchShape;
@@ -61,7 +63,31 @@ typedef struct TouchPose {
 // in the response: it has a normal always, and no curvature.
 static inline bool touch_is_scalar(const Touch *place)
 {
-    return place->shape != TOUCH_HOLE && place->shape != TOUCH_DISC;
+    switch (place->shape) {
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+        return false;
+    case TOUCH_LINE:
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+        break;
+    }
+    return true;
+}
+
+// Whether a place is an end of an angle or of teeth, where nothing slides.
+static inline bool touch_is_end(const Touch *place)
+{
+    switch (place->shape) {
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+        return true;
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+    case TOUCH_LINE:
+        break;
+    }
+    return false;
 }
 
 // Makes a list of the places of all joints with play, joint by joint, with their laws, which free()

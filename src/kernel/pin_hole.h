@@ -31,8 +31,12 @@ static inline PinHole pin_hole_pose(Vec2 hole_centre, Vec2 pin_centre, Vec2 rela
     const double gap = radial_clearance - size;
     if (size == 0.0) {
         return (PinHole){
+            .eccentricity = {0.0, 0.0},
+            .eccentricity_size = 0.0,
             .gap = gap,
             .penetration = -gap,
+            .has_normal = false,
+            .normal = {0.0, 0.0},
             .approach_speed = vec2_length(relative_velocity),
         };
     }

@@ -154,6 +154,21 @@ static double contact_time(const Scenario *scenario)
     return shortest_s;
 }
 
+// By which power of the step the error of a way of stepping falls where motion is smooth.
+static double order_of(const OdeOptions *ode)
+{
+    switch (ode->stepping) {
+    case ODE_PLAIN:
+        return 1.0;
+    case ODE_EXTRAPOLATED:
+        return (double)ode->levels + 1.0;
+    case ODE_STAGGERED:
+    case ODE_STEPPING_COUNT:
+        break;
+    }
+    return 2.0;
+}
+
 static StepChoice step_choice_begin(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -169,9 +184,7 @@ static StepChoice step_choice_begin(const Scenario *scenario)
         .scenario = scenario,
         .first_step_s = fmin(first_s, FIRST_CONTACTS * contact_time(scenario)),
         .is_smooth = is_smooth,
-        .order = ode->stepping == ODE_PLAIN          ? 1.0
-                 : ode->stepping == ODE_EXTRAPOLATED ? (double)ode->levels + 1.0
-                                                     : 2.0,
+        .order = order_of(ode),
     };
 }
 

@@ -601,6 +601,7 @@ static OdeMap other_map(const MappingContact *contact, const MappingRow *row)
 {
     static const OdeMap CHOICES[] = {ODE_MAP_CORRECTED, ODE_MAP_MIDPOINT, ODE_MAP_EXACT,
                                      ODE_MAP_TEXTBOOK, ODE_MAP_IMPULSE};
+    static_assert(sizeof CHOICES / sizeof *CHOICES == ODE_MAP_COUNT, "each map has its turn");
     for (size_t i = 0; i < sizeof CHOICES / sizeof *CHOICES; i++) {
         if (CHOICES[i] != row->map && row->step_s <= contact->largest_s[CHOICES[i]]) {
             return CHOICES[i];

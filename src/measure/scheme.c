@@ -43,7 +43,8 @@ static void name_scheme(Scheme *scheme, bool has_map)
 static bool go_together(const Scheme *scheme, const Scenario *scenario, bool has_map)
 {
     const bool is_impulse = has_map && scheme->map == ODE_MAP_IMPULSE;
-    return (scheme->stepping != ODE_EXTRAPOLATED || scenario_is_extrapolable(scenario)) &&
+    return (OPTIONS_ODE_STEPPING_IS_GENERAL[scheme->stepping] ||
+            scenario_is_extrapolable(scenario)) &&
            !(is_impulse && scheme->stepping != ODE_STAGGERED) &&
            !(is_impulse && scheme->collider != ODE_COLLIDER_PIN_HOLE);
 }

@@ -7,7 +7,7 @@
 enum {
     SCHEME_CHOSEN = 4, // steps that ODE chooses for an error: auto/1e-3 and finer
     // every combination of ODE's choices, and the solvers that choose their own steps
-    SCHEME_MAX = (ODE_QUICK + 1) * ODE_STEPPING_COUNT * ODE_MAP_COUNT * ODE_COLLIDER_COUNT +
+    SCHEME_MAX = ODE_SOLVER_COUNT * ODE_STEPPING_COUNT * ODE_MAP_COUNT * ODE_COLLIDER_COUNT +
                  SCHEME_CHOSEN + BACKEND_COUNT,
     SCHEME_NAME_SIZE = 64,
 };

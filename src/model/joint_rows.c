@@ -66,9 +66,14 @@ Vec2 joint_rows_start(const Joint *joint)
         return joint->clearance.start;
     case JOINT_GUIDE:
         return joint->guide.start;
-    default:
-        return (Vec2){0.0, 0.0};
+    case JOINT_REVOLUTE:
+    case JOINT_PRISMATIC:
+    case JOINT_STOP:
+    case JOINT_GEAR:
+    case JOINT_KIND_COUNT:
+        break;
     }
+    return (Vec2){0.0, 0.0};
 }
 
 // From the anchor on body a to that on body b, its rate, and the rate's without accelerations.
@@ -126,7 +131,7 @@ void joint_rows_find(const Linkage *linkage, const Motion *motions, int joint, J
     const Joint *of = &linkage->joints[joint];
     Ends ends;
     find_ends(linkage, motions, joint, &ends);
-    if (of->kind == JOINT_PRISMATIC || of->kind == JOINT_GUIDE) {
+    if (joint_rows_is_angle(of->kind, 1)) {
         find_prismatic(of, &ends, rows);
     } else {
         find_revolute(&ends, rows);

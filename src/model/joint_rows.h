@@ -29,13 +29,17 @@ typedef struct JointRows {
 // The number of rows of a kind of joint: JOINT_ROWS, or 0 of stops and gears.
 static inline size_t joint_rows_count(JointKind kind)
 {
-    return kind == JOINT_STOP || kind == JOINT_GEAR ? 0 : JOINT_ROWS;
+#define JOINT_ROWS_COUNT(id, words, is_ideal, rows, has_angle) rows,
+    static const size_t COUNTS[] = {LINKAGE_JOINT_KIND_LIST(JOINT_ROWS_COUNT)};
+    return COUNTS[kind];
 }
 
 // Whether a row of a kind of joint is an angle rather than a length.
 static inline bool joint_rows_is_angle(JointKind kind, size_t row)
 {
-    return row == 1 && (kind == JOINT_PRISMATIC || kind == JOINT_GUIDE);
+#define JOINT_ROWS_HAS_ANGLE(id, words, is_ideal, rows, has_angle) has_angle,
+    static const bool HAVE_ANGLES[] = {LINKAGE_JOINT_KIND_LIST(JOINT_ROWS_HAS_ANGLE)};
+    return row == 1 && HAVE_ANGLES[kind];
 }
 
 // The number of rows of all joints, the drive's apart.

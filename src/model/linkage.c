@@ -11,9 +11,14 @@ double linkage_radial_clearance(const Joint *joint)
         return joint->clearance.hole_radius - joint->clearance.pin_radius;
     case JOINT_GUIDE:
         return 0.5 * fabs(joint->guide.opening - joint->guide.height);
-    default:
-        return 0.0;
+    case JOINT_REVOLUTE:
+    case JOINT_PRISMATIC:
+    case JOINT_STOP:
+    case JOINT_GEAR:
+    case JOINT_KIND_COUNT:
+        break;
     }
+    return 0.0;
 }
 
 double linkage_guide_gap(const Guide *guide, double offset, double tilt)

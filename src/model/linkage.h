@@ -60,18 +60,32 @@ typedef struct Body {
     BodySpace space;
 } Body;
 
-typedef enum JointKind {
-    JOINT_REVOLUTE,  // ideal: the two anchors coincide
-    JOINT_CLEARANCE, // a pin on body b in a hole of body a, with play between them
-    JOINT_PRISMATIC, // ideal: the anchor on body b stays on the line of body a (Joint.direction),
-                     // and the two bodies keep their angle to one another
-    JOINT_GUIDE,     // a block on body b between two guides of body a, or a sleeve on body b round
-                     // a rod of body a, with play between them
-    JOINT_STOP,      // a disc on body b that touches a line or a disc of body a from outside; it
-                     // holds nothing while apart
-    JOINT_GEAR,      // two gears, bodies a and b, on pivots of one carrier, with play between their
-                     // teeth; the pivots are joints of their own
-} JointKind;
+// The kinds of joints: a line each, its enumerator, what a message calls it, whether it is ideal,
+// that is whether it holds its bodies in its rows without play, how many rows it has, and whether
+// the second of them is an angle rather than a length (model/joint_rows.h). Every other table of
+// kinds is made from this list, and a switch over kinds has no default.
+//
+// Revolute: the two anchors coincide.
+// Clearance: a pin on body b in a hole of body a, with play between them.
+// Prismatic: the anchor on body b stays on the line of body a (Joint.direction), and the two bodies
+// keep their angle to one another.
+// Guide: a block on body b between two guides of body a, or a sleeve on body b round a rod of body
+// a, with play between them.
+// Stop: a disc on body b that touches a line or a disc of body a from outside; it holds nothing
+// while apart.
+// Gear: two gears, bodies a and b, on pivots of one carrier, with play between their teeth; the
+// pivots are joints of their own.
+// clang-format off
+#define LINKAGE_JOINT_KIND_LIST(member) \
+    member(JOINT_REVOLUTE, "which has no play", true, JOINT_ROWS, false) \
+    member(JOINT_CLEARANCE, "a pin in a hole", false, JOINT_ROWS, false) \
+    member(JOINT_PRISMATIC, "a prismatic joint without play", true, JOINT_ROWS, true) \
+    member(JOINT_GUIDE, "a block between guides", false, JOINT_ROWS, true) \
+    member(JOINT_STOP, "a stop", false, 0, false) \
+    member(JOINT_GEAR, "a pair of gears", false, 0, false)
+// clang-format on
+#define LINKAGE_JOINT_KIND(id, ...) id,
+typedef enum JointKind { LINKAGE_JOINT_KIND_LIST(LINKAGE_JOINT_KIND) JOINT_KIND_COUNT } JointKind;
 
 // The sizes of a pin in its hole.
 typedef struct Clearance {
@@ -255,7 +269,9 @@ static inline JointEnd linkage_end(const Joint *joint, int side)
 // have limits all the same.
 static inline bool linkage_kind_is_ideal(JointKind kind)
 {
-    return kind == JOINT_REVOLUTE || kind == JOINT_PRISMATIC;
+#define LINKAGE_IS_IDEAL(id, words, is_ideal, rows, has_angle) is_ideal,
+    static const bool ARE_IDEAL[] = {LINKAGE_JOINT_KIND_LIST(LINKAGE_IS_IDEAL)};
+    return ARE_IDEAL[kind];
 }
 
 // Whether bodies touch in a joint: a pin in its hole, a block between its guides, a stop, teeth, or

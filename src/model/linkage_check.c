@@ -163,9 +163,12 @@ static bool check_joint(const Linkage *linkage, size_t number, Err *err)
         return check_stop(joint, err) && check_own_contact(joint, err);
     case JOINT_GEAR:
         return check_gear(linkage, joint, err) && check_own_contact(joint, err);
-    default:
-        return joint->limits.kind == LIMIT_NONE || check_own_contact(joint, err);
+    case JOINT_REVOLUTE:
+    case JOINT_PRISMATIC:
+    case JOINT_KIND_COUNT:
+        break;
     }
+    return joint->limits.kind == LIMIT_NONE || check_own_contact(joint, err);
 }
 
 static bool check_driver(const Linkage *linkage, Err *err)

@@ -3,20 +3,22 @@
 
 #include <string.h>
 
-#define WORD(id, word)                        word,
-#define MEMBER_WORD(id, word, ...)            word,
-#define MEMBER_HAS_PLAY(id, word, solver, is) is,
+#define WORD(id, word)                                word,
+#define MEMBER_WORD(id, word, ...)                    word,
+#define MEMBER_HAS_PLAY(id, word, solver, is)         is,
+#define MEMBER_IS_GENERAL(id, word, plane, space, is) is,
 
-const char *const OPTIONS_CONTACT_MODELS[] = {"impact", "poisson", NULL};
+const char *const OPTIONS_CONTACT_MODELS[] = {OPTIONS_CONTACT_MODEL_LIST(WORD) NULL};
 const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(MEMBER_WORD) NULL};
-const char *const OPTIONS_RUN_STARTS[] = {"as-written", "settled", NULL};
-const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
+const char *const OPTIONS_RUN_STARTS[] = {OPTIONS_RUN_START_LIST(WORD) NULL};
+const char *const OPTIONS_ODE_SOLVERS[] = {OPTIONS_ODE_SOLVER_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER_WORD) NULL};
-const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_MAP_LIST(WORD) NULL};
+const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_ROW_MAP_LIST(MEMBER_WORD) "impulse", NULL};
 const char *const OPTIONS_ODE_COLLIDERS[] = {OPTIONS_ODE_COLLIDER_LIST(MEMBER_WORD) NULL};
-const char *const OPTIONS_ODE_POLYGONS[] = {"circumscribed", "inscribed", NULL};
+const char *const OPTIONS_ODE_POLYGONS[] = {OPTIONS_ODE_POLYGON_LIST(WORD) NULL};
 const char *const OPTIONS_BACKENDS[] = {OPTIONS_BACKEND_LIST(MEMBER_WORD) NULL};
+const bool OPTIONS_ODE_STEPPING_IS_GENERAL[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER_IS_GENERAL)};
 const bool OPTIONS_BACKEND_HAS_PLAY[] = {OPTIONS_BACKEND_LIST(MEMBER_HAS_PLAY)};
 
 bool options_backend_has_play(const char *backend)

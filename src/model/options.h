@@ -4,9 +4,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// Families of alternatives that are meant to grow: one line a member, its enumerator, its word in a
-// case and, where the member is an object, that. The enumeration, the list of words and the
-// registry follow from it, in this order.
+// Families of alternatives: one line a member, its enumerator, its word in a case and, where the
+// member is an object or has properties, those. The enumeration, the list of words and the registry
+// follow from it, in this order. Every other table of a family is made from its list, and a switch
+// over one has no default: what a new member lacks does not compile.
 
 // clang-format off
 
@@ -20,34 +21,42 @@
     member(LAW_PAPER_TABLE_2, "paper-table-2", law_paper_table_2) \
     member(LAW_PAPER_TABLE_3, "paper-table-3", law_paper_table_3)
 
-// Where the energy of an impact goes; see contact/damping.h. The name follows DAMPING_ here and
-// JP_DAMPING_ in the library; the function is that of contact/damping.c that gives the factor.
+// Where the energy of an impact goes: what hysteretic damping has for chi, 1, of the restitution
+// asked for, e, in words and as contact/damping.c computes it. The name follows DAMPING_ here and
+// JP_DAMPING_ in the library.
 #define OPTIONS_DAMPING_LIST(member) \
-    member(NONE, "none", none) \
-    member(LANKARANI_NIKRAVESH, "lankarani-nikravesh", lankarani_nikravesh) \
-    member(HUNT_CROSSLEY, "hunt-crossley", hunt_crossley) \
-    member(FLORES, "flores", flores) \
-    member(GONTHIER, "gonthier", gonthier) \
-    member(HU_GUO, "hu-guo", hu_guo) \
-    member(EXACT, "exact", exact) \
-    member(VISCOUS, "viscous", none)
+    member(NONE, "none", "0", 0.0) \
+    member(LANKARANI_NIKRAVESH, "lankarani-nikravesh", "3 (1 - e^2) / 4", 0.75 * (1.0 - e) * (1.0 + e)) \
+    member(HUNT_CROSSLEY, "hunt-crossley", "3 (1 - e) / 2", 1.5 * (1.0 - e)) \
+    member(FLORES, "flores", "8 (1 - e) / (5 e)", 1.6 * (1.0 - e) / e) \
+    member(GONTHIER, "gonthier", "(1 - e^2) / e", (1.0 - e) * (1.0 + e) / e) \
+    member(HU_GUO, "hu-guo", "3 (1 - e) / (2 e)", 1.5 * (1.0 - e) / e) \
+    member(EXACT, "exact", "the root of chi (1 + e) = ln((1 + chi) / (1 - chi e))", exact_factor(e)) \
+    member(VISCOUS, "viscous", "0, and viscous-coefficient in its place", 0.0)
 
-// How stiffness and damping become ERP and CFM; see contact/map.h. Last the one that makes no row:
-// with ODE_STAGGERED the contact is integrated within the step.
-#define OPTIONS_ODE_MAP_LIST(member) \
-    member(ODE_MAP_TEXTBOOK, "textbook") \
-    member(ODE_MAP_CORRECTED, "corrected") \
-    member(ODE_MAP_MIDPOINT, "midpoint") \
-    member(ODE_MAP_EXACT, "exact") \
-    member(ODE_MAP_IMPULSE, "impulse")
+// How stiffness and damping become ERP and CFM of a row; see contact/map.h. The name follows
+// ODE_MAP_ here and JP_MAP_ in the library; the row is that of contact/map.c. After them comes
+// ODE_MAP_IMPULSE, which makes no row: with ODE_STAGGERED the contact is integrated within the step.
+#define OPTIONS_ODE_ROW_MAP_LIST(member) \
+    member(TEXTBOOK, "textbook", textbook_map) \
+    member(CORRECTED, "corrected", corrected_map) \
+    member(MIDPOINT, "midpoint", midpoint_map) \
+    member(EXACT, "exact", exact_map)
+
+// How ODE solves for the forces of a step.
+#define OPTIONS_ODE_SOLVER_LIST(member) \
+    member(ODE_DIRECT, "direct") \
+    member(ODE_QUICK, "quick")
 
 // When ODE's positions and speeds are taken to be; see ode/stepping.h. Plain: both at the end of the
 // step, as ODE's manual has it. Staggered: positions half a step behind, a leapfrog. Extrapolated:
-// several staggered worlds of different steps, for ideal joints.
+// several staggered worlds of different steps. Each with its solver in the plane and in space, and
+// whether it is for every case; else for smooth motion in the plane alone: ideal joints, and a drive
+// without kinks.
 #define OPTIONS_ODE_STEPPING_LIST(member) \
-    member(ODE_PLAIN, "plain", STEPPING_PLAIN) \
-    member(ODE_STAGGERED, "staggered", STEPPING_STAGGERED) \
-    member(ODE_EXTRAPOLATED, "extrapolated", STEPPING_EXTRAPOLATED)
+    member(ODE_PLAIN, "plain", STEPPING_PLAIN, &SPACE_PLAIN, true) \
+    member(ODE_STAGGERED, "staggered", STEPPING_STAGGERED, &SPACE_STAGGERED, true) \
+    member(ODE_EXTRAPOLATED, "extrapolated", STEPPING_EXTRAPOLATED, NULL, false)
 
 // How ODE learns that a pin touches the wall of its hole; see ode/collider.h. First the exact one;
 // all others take the hole for a polygon.
@@ -58,21 +67,44 @@
     member(ODE_COLLIDER_CONVEX, "ode-convex", collider_convex) \
     member(ODE_COLLIDER_TRIMESH, "trimesh", collider_trimesh)
 
+// How a run starts: as the case has it, with pins in the middle of their holes unless it says
+// otherwise, or in the motion that is left of that once it has turned long enough.
+#define OPTIONS_RUN_START_LIST(member) \
+    member(START_WRITTEN, "as-written") \
+    member(START_SETTLED, "settled")
+
 // The solvers, see model/solver.h, and whether they model play: others take every joint as ideal.
 #define OPTIONS_BACKEND_LIST(member) \
     member(BACKEND_ANALYTIC, "analytic", ANALYTIC_SOLVER, false) \
     member(BACKEND_REFERENCE, "reference", REFERENCE_SOLVER, true) \
     member(BACKEND_ODE, "ode", ODE_SOLVER, true)
 
+// The model of what happens where pin and hole overlap: spring and damper, force from penetration
+// and its rate; or velocity-level penalty with restitution, force from closing speed.
+#define OPTIONS_CONTACT_MODEL_LIST(member) \
+    member(CONTACT_IMPACT, "impact") \
+    member(CONTACT_POISSON, "poisson")
+
+// The polygon that a collider takes a round hole for: its sides touch the circle at their middles,
+// or its corners lie on the circle, as those of meshes from CAD do.
+#define OPTIONS_ODE_POLYGON_LIST(member) \
+    member(ODE_CIRCUMSCRIBED, "circumscribed") \
+    member(ODE_INSCRIBED, "inscribed")
+
 // clang-format on
 #define OPTIONS_ENUMERATOR(id, ...) id,
 
 typedef enum LawKind { OPTIONS_LAW_LIST(OPTIONS_ENUMERATOR) LAW_COUNT } LawKind;
-#define OPTIONS_DAMPING_ENUMERATOR(name, word, factor) DAMPING_##name,
+#define OPTIONS_DAMPING_ENUMERATOR(name, ...) DAMPING_##name,
 typedef enum DampingKind {
     OPTIONS_DAMPING_LIST(OPTIONS_DAMPING_ENUMERATOR) DAMPING_COUNT
 } DampingKind;
-typedef enum OdeMap { OPTIONS_ODE_MAP_LIST(OPTIONS_ENUMERATOR) ODE_MAP_COUNT } OdeMap;
+#define OPTIONS_ODE_MAP_ENUMERATOR(name, word, row) ODE_MAP_##name,
+typedef enum OdeMap {
+    OPTIONS_ODE_ROW_MAP_LIST(OPTIONS_ODE_MAP_ENUMERATOR) ODE_MAP_IMPULSE,
+    ODE_MAP_COUNT
+} OdeMap;
+typedef enum OdeSolver { OPTIONS_ODE_SOLVER_LIST(OPTIONS_ENUMERATOR) ODE_SOLVER_COUNT } OdeSolver;
 typedef enum OdeStepping {
     OPTIONS_ODE_STEPPING_LIST(OPTIONS_ENUMERATOR) ODE_STEPPING_COUNT
 } OdeStepping;
@@ -80,25 +112,12 @@ typedef enum OdeCollider {
     OPTIONS_ODE_COLLIDER_LIST(OPTIONS_ENUMERATOR) ODE_COLLIDER_COUNT
 } OdeCollider;
 typedef enum BackendKind { OPTIONS_BACKEND_LIST(OPTIONS_ENUMERATOR) BACKEND_COUNT } BackendKind;
-
-// The model of what happens where pin and hole overlap.
 typedef enum ContactModel {
-    CONTACT_IMPACT,  // spring and damper: force from penetration and its rate
-    CONTACT_POISSON, // velocity-level penalty with restitution: force from closing speed
+    OPTIONS_CONTACT_MODEL_LIST(OPTIONS_ENUMERATOR) CONTACT_MODEL_COUNT
 } ContactModel;
-
-typedef enum OdeSolver { ODE_DIRECT, ODE_QUICK } OdeSolver;
-
-// How a run starts.
-typedef enum RunStart {
-    START_WRITTEN, // as the case has it: pins in the middle of their holes unless it says otherwise
-    START_SETTLED, // in the motion that is left of that once it has turned long enough
-} RunStart;
-
-// The polygon that a collider takes a round hole for.
+typedef enum RunStart { OPTIONS_RUN_START_LIST(OPTIONS_ENUMERATOR) RUN_START_COUNT } RunStart;
 typedef enum OdePolygon {
-    ODE_CIRCUMSCRIBED, // its sides touch the circle at their middles
-    ODE_INSCRIBED,     // its corners lie on the circle, as those of meshes from CAD do
+    OPTIONS_ODE_POLYGON_LIST(OPTIONS_ENUMERATOR) ODE_POLYGON_COUNT
 } OdePolygon;
 
 // The words that stand for the choices above, in their order; each list ends in NULL.
@@ -112,6 +131,9 @@ extern const char *const OPTIONS_ODE_MAPS[];
 extern const char *const OPTIONS_ODE_COLLIDERS[];
 extern const char *const OPTIONS_ODE_POLYGONS[];
 extern const char *const OPTIONS_BACKENDS[];
+
+// By OdeStepping: whether it is for every case.
+extern const bool OPTIONS_ODE_STEPPING_IS_GENERAL[];
 
 // By BackendKind, and by the backend's name.
 extern const bool OPTIONS_BACKEND_HAS_PLAY[];

@@ -99,19 +99,33 @@ void impulse_step_finish(ImpulseStep *step)
     free(step->places);
 }
 
+// Of what is a coordinate by itself the rows are those of a line.
+static KernelShape kernel_shape_of(TouchShape shape)
+{
+    switch (shape) {
+    case TOUCH_HOLE:
+        return KERNEL_HOLE;
+    case TOUCH_DISC:
+        return KERNEL_DISC;
+    case TOUCH_LINE:
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+        break;
+    }
+    return KERNEL_LINE;
+}
+
 // What a kernel is given of a place.
 static KernelContact joint_of(const ImpulseStep *step, const Touch *place)
 {
-    // a disc outside is a hole of negative size; of what is a coordinate by itself the rows are
-    // those of a line
-    const double sign = place->shape == TOUCH_DISC ? -1.0 : 1.0;
-    const bool is_line = touch_is_scalar(place);
+    // a disc outside is a hole of negative size
+    const KernelShape shape = kernel_shape_of(place->shape);
+    const double sign = shape == KERNEL_DISC ? -1.0 : 1.0;
+    const bool is_line = shape == KERNEL_LINE;
     const bool has_corners = step->scenario->linkage.joints[place->joint].kind == JOINT_GUIDE;
     return (KernelContact){
         .law = place->law,
-        .shape = is_line                      ? KERNEL_LINE
-                 : place->shape == TOUCH_DISC ? KERNEL_DISC
-                                              : KERNEL_HOLE,
+        .shape = shape,
         .radial_clearance = is_line ? 0.0 : sign * place->clearance,
         .hole_radius = is_line ? 0.0 : sign * place->radius_a,
         .joint = place->joint,

@@ -14,16 +14,13 @@ typedef struct Ode {
     void *state; // of it
 } Ode;
 
-#define MEMBER(id, word, solver) &solver,
+#define IN_PLANE_MEMBER(id, word, plane, space, ...) &plane,
+#define IN_SPACE_MEMBER(id, word, plane, space, ...) space,
 
 static const Solver *choose(const Scenario *scenario)
 {
-    static const Solver *const STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER)};
-    // NULL: of the plane alone, as extrapolated worlds are
-    static const Solver *const IN_SPACE[ODE_STEPPING_COUNT] = {
-        [ODE_PLAIN] = &SPACE_PLAIN,
-        [ODE_STAGGERED] = &SPACE_STAGGERED,
-    };
+    static const Solver *const IN_PLANE[] = {OPTIONS_ODE_STEPPING_LIST(IN_PLANE_MEMBER)};
+    static const Solver *const IN_SPACE[] = {OPTIONS_ODE_STEPPING_LIST(IN_SPACE_MEMBER)};
     const bool is_spatial = scenario->linkage.is_spatial;
     if (scenario_integrates_contacts(scenario)) {
         const Linkage *linkage = &scenario->linkage;
@@ -31,7 +28,7 @@ static const Solver *choose(const Scenario *scenario)
         return is_spatial ? (has_parts ? &SPACE_IMPULSE_PARTS : &SPACE_IMPULSE)
                           : (has_parts ? &STEPPING_IMPULSE_PARTS : &STEPPING_IMPULSE);
     }
-    return is_spatial ? IN_SPACE[scenario->ode.stepping] : STEPPINGS[scenario->ode.stepping];
+    return is_spatial ? IN_SPACE[scenario->ode.stepping] : IN_PLANE[scenario->ode.stepping];
 }
 
 static bool ode_open(const Scenario *scenario, void **state, Err *err)

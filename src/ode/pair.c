@@ -179,9 +179,11 @@ Vec2 pair_point(const WorldPair *pair, Vec2 normal)
         return vec2_add(anchor_of(pair, 0), vec2_scale(touch->radius_a, normal));
     case TOUCH_TEETH:
         return pitch_point(pair);
-    default:
-        return vec2_sub(anchor_of(pair, 1), vec2_scale(touch->radius_b, normal));
+    case TOUCH_LINE:
+    case TOUCH_TURN:
+        break;
     }
+    return vec2_sub(anchor_of(pair, 1), vec2_scale(touch->radius_b, normal));
 }
 
 void pair_arms(const WorldPair *pair, const TouchPose *pose, Vec2 arms[2], Vec2 *lever)

@@ -6,7 +6,7 @@
 #include "ode/world.h"
 
 // The ways of stepping, each a solver behind ODE_SOLVER, in ode/NAME.c under its own name.
-#define STEPPING_DECLARE(id, word, solver) extern const Solver solver;
+#define STEPPING_DECLARE(id, word, plane, ...) extern const Solver plane;
 OPTIONS_ODE_STEPPING_LIST(STEPPING_DECLARE)
 extern const Solver STEPPING_IMPULSE; // where contacts are integrated within the step
 

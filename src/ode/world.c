@@ -12,6 +12,7 @@
 #include "ode/engine.h"
 #include "ode/world_rows.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -177,6 +178,8 @@ void world_finish(World *world)
     memset(world, 0, sizeof *world);
 }
 
+static_assert(ODE_SOLVER_COUNT == 2, "a step is quick or direct, as whoever calls world_step and "
+                                     "engine_step says by ODE_QUICK");
 bool world_step(World *world, double step_s, bool is_quick, Err *err)
 {
     for (size_t i = 0; i < world->sliding_count; i++) {

@@ -9,7 +9,7 @@
 // slower than any impact of a body of millimetres that one sees
 static const double DEFAULT_SPEED_FLOOR = 1e-6;
 
-#define CONTACT_DAMPING(name, word, factor) [JP_DAMPING_##name] = DAMPING_##name,
+#define CONTACT_DAMPING(name, ...) [JP_DAMPING_##name] = DAMPING_##name,
 static const DampingKind KINDS[] = {OPTIONS_DAMPING_LIST(CONTACT_DAMPING)};
 
 static const LawKind PIN_LAWS[] = {

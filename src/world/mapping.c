@@ -6,16 +6,11 @@
 
 #include <math.h>
 
-static const OdeMap MAPS[] = {
-    [JP_MAP_TEXTBOOK] = ODE_MAP_TEXTBOOK,
-    [JP_MAP_CORRECTED] = ODE_MAP_CORRECTED,
-    [JP_MAP_MIDPOINT] = ODE_MAP_MIDPOINT,
-    [JP_MAP_EXACT] = ODE_MAP_EXACT,
-};
+#define MAPPING_ROW(name, word, row) [JP_MAP_##name] = ODE_MAP_##name,
+static const OdeMap MAPS[] = {OPTIONS_ODE_ROW_MAP_LIST(MAPPING_ROW)};
 
-// the last one makes no row
-_Static_assert(sizeof MAPS / sizeof *MAPS == ODE_MAP_COUNT - 1,
-               "a map of OPTIONS_ODE_MAP_LIST is missing: add it to JpMap and to MAPS");
+_Static_assert(sizeof MAPS / sizeof *MAPS == ODE_MAP_IMPULSE,
+               "JpMap has a map that OPTIONS_ODE_ROW_MAP_LIST lacks");
 
 JpStatus mapping_of(JpMap kind, const Map **map, JpError *error)
 {

@@ -4,6 +4,8 @@
 #include "random_case.h"
 #include "random_draw.h"
 
+#include "model/options.h"
+
 enum { ROTOR_MOST = 4 };
 
 typedef struct Shaft {
@@ -106,14 +108,12 @@ static void write_springs(Shaft *shaft, FILE *file)
     }
 }
 
-// Any damping but the viscous one, whose coefficient is not that of a torque.
+// Any damping but the last, the viscous one, whose coefficient is not that of a torque.
 static void write_damping(Draw *draw, FILE *file)
 {
-    static const char *const DAMPINGS[] = {
-        "none", "lankarani-nikravesh", "hunt-crossley", "flores", "gonthier", "hu-guo", "exact",
-    };
-    fprintf(file, "contact: {damping: %s}\n",
-            DAMPINGS[draw_below(draw, sizeof DAMPINGS / sizeof *DAMPINGS)]);
+#define ROTOR_WORD(id, word, ...) word,
+    static const char *const DAMPINGS[] = {OPTIONS_DAMPING_LIST(ROTOR_WORD)};
+    fprintf(file, "contact: {damping: %s}\n", DAMPINGS[draw_below(draw, DAMPING_VISCOUS)]);
 }
 
 static void write_rotors(uint64_t seed, FILE *file)

@@ -1,6 +1,7 @@
 #include "random_draw.h"
 
 #include "base/lcg.h"
+#include "model/options.h"
 
 // the first draws of neighbouring seeds are alike
 enum { STIR = 8 };
@@ -49,13 +50,12 @@ void draw_play(Draw *draw, FILE *file)
     }
 }
 
+// The word of a member of a list of alternatives.
+#define DRAW_WORD(id, word, ...) word,
+
 static void write_stiffness(Draw *draw, FILE *file)
 {
-    static const char *const LAWS[] = {
-        "hertz-socket",          "johnson",       "radzimovsky",   "esdu-78035",
-        "dubowsky-freudenstein", "paper-table-2", "paper-table-3",
-    };
-    enum { LAW_COUNT = sizeof LAWS / sizeof *LAWS };
+    static const char *const LAWS[] = {OPTIONS_LAW_LIST(DRAW_WORD)};
     const size_t which = draw_below(draw, LAW_COUNT + 2);
     if (which < LAW_COUNT) {
         fprintf(file, "law: %s", LAWS[which]);
@@ -68,16 +68,13 @@ static void write_stiffness(Draw *draw, FILE *file)
 
 void draw_contact(Draw *draw, FILE *file)
 {
-    static const char *const DAMPINGS[] = {
-        "none",    "lankarani-nikravesh", "hunt-crossley", "flores", "gonthier", "hu-guo", "exact",
-        "viscous",
-    };
-    const size_t damping = draw_below(draw, sizeof DAMPINGS / sizeof *DAMPINGS);
+    static const char *const DAMPINGS[] = {OPTIONS_DAMPING_LIST(DRAW_WORD)};
+    const size_t damping = draw_below(draw, DAMPING_COUNT);
     fprintf(file, "contact: {");
     write_stiffness(draw, file);
     fprintf(file, ", damping: %s, restitution: %.3g", DAMPINGS[damping],
             draw_between(draw, 0.2, 0.98));
-    if (damping + 1 == sizeof DAMPINGS / sizeof *DAMPINGS) {
+    if (damping == DAMPING_VISCOUS) {
         fprintf(file, ", viscous-coefficient: %.4g N s/m", draw_log_between(draw, 10.0, 1e3));
     }
     const bool has_friction = draw_chance(draw, 0.4);

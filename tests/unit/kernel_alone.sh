@@ -1,24 +1,16 @@
 #!/bin/sh
-# Is the contact kernel a library of its own? Compiles its sources with a program that bounces a
-# mass on a wall, where no other folder than src/base can be included, links them with libm only,
-# and runs that by each compiler that there is. Prints TAP.
-#     kernel_alone.sh SOURCE_ROOT FILE...    files: the kernel's sources, and what they need of base
+# Is the amalgamation of the contact kernel a library by itself? Compiles it with a program that
+# bounces a mass on a wall, links both with libm only, and runs that by each compiler that there is;
+# and takes its header into C++. Prints TAP.
+#     kernel_alone.sh SOURCE_ROOT jointplay_kernel.c jointplay_kernel.h
 set -u
 root=$1
-shift
+source=$2
+header=$3
 here=$(mktemp -d)
 trap 'rm -rf "$here"' EXIT
-mkdir "$here/src" "$here/far"
-ln -s "$root/src/kernel" "$here/src/kernel"
-ln -s "$root/src/base" "$here/src/base"
-
-# Compiles and links a program with the kernel's files, by one compiler.
-build() {
-    compiler=$1
-    shift
-    "$compiler" -std=gnu17 -O0 -Wall -Werror -I "$here/src" -o "$here/bounce" "$@" -lm \
-        >"$here/log" 2>&1
-}
+cp "$source" "$header" "$here"
+warnings="-Wall -Wextra -Werror"
 
 number=0
 report() {
@@ -31,18 +23,37 @@ report() {
     fi
 }
 
+# Whether there is a compiler; says so where there is none.
+has() {
+    command -v "$1" >/dev/null && return 0
+    number=$((number + 1))
+    echo "ok $number - $1 # SKIP it is not installed"
+    return 1
+}
+
 for name in gcc clang; do
-    if ! command -v "$name" >/dev/null; then
-        number=$((number + 1))
-        echo "ok $number - $name # SKIP it is not installed"
-        continue
-    fi
-    build "$name" "$root/tests/unit/kernel_alone.c" "$@" && "$here/bounce" >"$here/log"
-    report $? "by $name the kernel alone bounces a mass as Hertz has it"
+    has "$name" || continue
+    # shellcheck disable=SC2086 # several words
+    "$name" -std=c17 -O1 $warnings -I "$here" -o "$here/bounce" "$here/jointplay_kernel.c" \
+        "$root/tests/unit/kernel_alone.c" -lm >"$here/log" 2>&1 && "$here/bounce" >"$here/log"
+    report $? "by $name the kernel alone bounces a mass as closed forms have it"
 done
 
-# the control: a program that includes a linkage must not compile there
-printf '#include "model/linkage.h"\nint main(void) { return 0; }\n' >"$here/far/far.c"
-! cc -std=gnu17 -I "$here/src" -fsyntax-only "$here/far/far.c" >"$here/log" 2>&1
-report $? "a program that needs the model is refused"
+printf '#include "jointplay_kernel.h"\nint main() { return kernel_start(0.1).contact_count; }\n' \
+    >"$here/user.cc"
+for name in g++ clang++; do
+    has "$name" || continue
+    # shellcheck disable=SC2086 # several words
+    "$name" $warnings -I "$here" -fsyntax-only "$here/user.cc" >"$here/log" 2>&1
+    report $? "$name takes the header into C++"
+done
+
+# the control: a source of the kernel that needs a mechanism is refused
+mkdir -p "$here/far/src/kernel"
+cp "$root/LICENSE" "$here/far"
+printf '#include "model/linkage.h"\n' >"$here/far/src/kernel/far.c"
+! sh "$root/src/kernel/amalgamate.sh" "$here/far/src" 1 "$here/far.c" "$here/far.h" \
+    "$here/far/src/kernel/far.c" "$here/far/src/kernel/far.c" >"$here/log" 2>&1 &&
+    grep -q 'model/linkage.h is neither' "$here/log"
+report $? "a kernel that needs the model is refused"
 echo "1..$number"

@@ -16,7 +16,7 @@ static void check_message(void **state)
     assert_memory_equal(&scenario, &before, sizeof scenario);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
-    return bad_files_run("bad_cases", "tests/bad/*.yaml", check_message);
+    return bad_files_run(argc, argv, "tests/bad/*.yaml", check_message);
 }

@@ -17,7 +17,7 @@ static void check_message(void **state)
     assert_memory_equal(&spec, &EMPTY, sizeof spec);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
-    return bad_files_run("bad_studies", "tests/bad_study/*.yaml", check_message);
+    return bad_files_run(argc, argv, "tests/bad_study/*.yaml", check_message);
 }

@@ -237,7 +237,7 @@ static bool accept(JpStatus status, const JpError *error, Err *err)
 static bool tune_program_fill_contact(const Scenario *scenario, const Joint *joint,
                                       JpContact *contact, Err *err)
 {
-#define LIBRARY_DAMPING(name, word, factor) JP_DAMPING_##name,
+#define LIBRARY_DAMPING(name, ...) JP_DAMPING_##name,
     static const JpDamping DAMPINGS[] = {OPTIONS_DAMPING_LIST(LIBRARY_DAMPING)};
     const ContactOptions own = law_options(&scenario->contact, joint);
     ForceLaw law;

@@ -224,7 +224,7 @@ static void tune_world_joints_write_point(const char *name, const char *field, V
 static bool tune_world_write_contact(const Scenario *scenario, const Joint *joint, const char *name,
                                      Text *text, Err *err)
 {
-#define WRITTEN_DAMPING(name, word, factor) "JP_DAMPING_" #name,
+#define WRITTEN_DAMPING(name, ...) "JP_DAMPING_" #name,
     static const char *const DAMPINGS[] = {OPTIONS_DAMPING_LIST(WRITTEN_DAMPING)};
     const ContactOptions own = law_options(&scenario->contact, joint);
     const bool is_turn = linkage_is_torsional(joint);
@@ -628,7 +628,10 @@ static const char *lacks_joint(const Scenario *scenario, const Joint *joint)
         return "libjointplay has no disc that meets a wall or another disc";
     case JOINT_GEAR:
         return "libjointplay has no pair of gears";
-    default:
+    case JOINT_REVOLUTE:
+    case JOINT_CLEARANCE:
+    case JOINT_PRISMATIC:
+    case JOINT_KIND_COUNT:
         break;
     }
     return linkage_has_play(joint) && scenario->contact.damping == DAMPING_EXACT &&

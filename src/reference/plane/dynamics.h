@@ -99,7 +99,7 @@ static inline void dynamics_contact_points(const PlaneSite *site, const TouchPos
 // Whether a contact's gap is that of an angle or of teeth.
 static inline bool dynamics_contact_is_turn(const PlaneSite *site)
 {
-    return site->touch.shape == TOUCH_TURN || site->touch.shape == TOUCH_TEETH;
+    return touch_is_end(&site->touch);
 }
 
 // The second rate of a contact's gap, m/s^2, after tree_accelerate.

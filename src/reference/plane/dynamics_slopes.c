@@ -49,9 +49,12 @@ static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
         return side == 0 ? -touch->radius_a : touch->radius_a - vec2_length(pose->offset);
     case TOUCH_DISC:
         return side == 0 ? touch->radius_a : vec2_length(pose->offset) - touch->radius_a;
-    default:
-        return side == 0 ? -touch->radius_b : touch->radius_b;
+    case TOUCH_LINE:
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+        break;
     }
+    return side == 0 ? -touch->radius_b : touch->radius_b;
 }
 
 // Arms of friction, and how it grips at a state of the tree.
