@@ -91,9 +91,13 @@ typedef struct JpContact {
     double restitution; /* 1, 0 to 1, of the hysteretic kinds; some want more than 0 */
     double damper;      /* N s/m, of JP_DAMPING_VISCOUS */
     double speed_floor; /* m/s, > 0: slower impacts are damped as if they had this speed */
+    /* m/s, of the hysteretic kinds: a contact that has outlasted its impact (it was compressed,
+     * released, and is compressed again) is damped as if it had this speed; 0: as at its impact */
+    double resting_speed;
 } JpContact;
 
-/* No stiffness yet; exponent 1, JP_DAMPING_EXACT, restitution .5, speed floor 1e-6. */
+/* No stiffness yet; exponent 1, JP_DAMPING_EXACT, restitution .5, speed floor 1e-6, no resting
+ * speed. */
 JP_API JpContact jp_contact_default(void);
 JP_API JpStatus jp_contact_check(const JpContact *contact, JpError *error);
 

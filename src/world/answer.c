@@ -130,7 +130,7 @@ static double hardest(const Answer *answer, const AnswerPlace *of, double speed,
     const Side *side = &place->sides[0];
     double depth = fabs(speed) * answer->step;
     for (size_t i = 0; i < place_side_count(place); i++) {
-        depth += place->sides[i].is_touching ? place->sides[i].inside : 0.0;
+        depth += place->sides[i].state.is_touching ? place->sides[i].inside : 0.0;
     }
     const double damped = force_law_damping(&side->law, depth, speed) * fabs(speed);
     const double pressed = answer->step * (force_law_elastic(&side->law, depth) + damped);

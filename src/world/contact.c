@@ -81,6 +81,8 @@ static JpStatus check_damping(const JpContact *contact, JpError *error)
     case JP_DAMPING_VISCOUS:
         return refusal_of_negative(contact->damper, "the contact's damper", error);
     default:
+        REFUSAL_TRY(
+            refusal_of_negative(contact->resting_speed, "the contact's resting speed", error));
         return check_restitution(contact, error);
     }
 }
@@ -102,6 +104,7 @@ JpStatus contact_law(const JpContact *contact, ForceLaw *law, JpError *error)
     if (contact->damping == JP_DAMPING_VISCOUS) {
         law->viscous = contact->damper;
     } else if (contact->damping != JP_DAMPING_NONE) {
+        law->resting_speed = contact->resting_speed;
         law->hysteresis = damping_factor(KINDS[contact->damping], contact->restitution);
     }
     return refusal_none(error);

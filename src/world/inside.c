@@ -144,9 +144,10 @@ static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t
     joint->has_friction = place->friction > 0.0;
     joint->first_row = laid_out.first_row;
     joint->row_count = laid_out.row_count;
-    joint->state.is_touching = from->is_touching;
-    joint->state.impact_speed = joint->state.damping_speed = from->impact_speed;
-    if (from->is_touching && joint->frequency == 0.0) {
+    const double age_s = joint->state.age_s; // as the kernel counts it
+    joint->state = from->state;
+    joint->state.age_s = age_s;
+    if (from->state.is_touching && joint->frequency == 0.0) {
         // a contact that began in a step with rows
         joint->frequency = sqrt(force_law_tangent(&from->law, fmax(from->inside, DBL_MIN)) *
                                 play_mobility(of->joint, place));
@@ -305,8 +306,8 @@ static Instant read_at(Reading *reading, size_t node, double time)
         kernel_pose(reading->kernel, reading->number, node, time, reading->sums).pose;
     side->inside = fmax(pose.penetration, 0.0);
     Instant at = {.time = time, .closing = pose.approach_speed};
-    at.force =
-        force_law_force(&side->law, fmax(side->inside, DBL_MIN), at.closing, side->impact_speed);
+    at.force = force_law_force(&side->law, fmax(side->inside, DBL_MIN), at.closing,
+                               side->state.damping_speed);
     at.power = -at.force * at.closing;
     side_note(side, at.force);
     side->step_force = fmax(side->step_force, at.force);
@@ -410,13 +411,14 @@ static void read_side(Reading *reading)
     Side *side = reading->side;
     for (size_t node = 0; node < kernel->node_count; node++) {
         const double start = kernel->times[node];
-        const bool was_touching = side->is_touching;
-        side->is_touching = kernel_touches(kernel, node, reading->number);
-        if (side->is_touching && !was_touching) {
+        const bool was_touching = side->state.is_touching;
+        side->state.is_touching = kernel_touches(kernel, node, reading->number);
+        if (side->state.is_touching && !was_touching) {
             // the very speed by which the contact was damped
             side_begin(side, kernel->closings[node * kernel->contact_count + reading->number]);
         }
-        if (side->is_touching && node + 1 < kernel->node_count && kernel->times[node + 1] > start) {
+        if (side->state.is_touching && node + 1 < kernel->node_count &&
+            kernel->times[node + 1] > start) {
             read_interval(reading, node);
         }
     }
@@ -432,6 +434,9 @@ static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size
     of->place->inside[number] = kernel->contacts[joint];
     side->step_force = 0.0;
     read_side(&reading);
+    if (side->state.is_touching) {
+        side->state = kernel->contacts[joint].state;
+    }
     if (of->place->shape == PLACE_LINE) {
         // to rounding
         const double end = kernel->times[kernel->node_count - 1];
@@ -451,7 +456,7 @@ void inside_book(Answer *answer)
         const AnswerPlace *of = &answer->places[i];
         for (size_t k = 0; !of->is_active && k < SIDE_COUNT; k++) {
             of->place->sides[k].force = 0.0;
-            of->place->sides[k].is_touching = false;
+            of->place->sides[k].state.is_touching = false;
         }
     }
     visit_sides(answer, book_side);
@@ -513,7 +518,7 @@ static bool judge_side(Answer *answer, const AnswerPlace *of, size_t side, size_
     kernel_at(kernel, last, end, &answer->sums);
     find_drift(answer, of, number, end, drift);
     const double slope =
-        judged->is_touching ? force_law_tangent(&judged->law, judged->inside) : 0.0;
+        judged->state.is_touching ? force_law_tangent(&judged->law, judged->inside) : 0.0;
     const double wrong = slope * drift[0] + joint->force_per_speed * drift[1];
     const double force = fmax(judged->step_force, FORCE_SEEN * judged->force_max);
     if (!(wrong <= FORCE_SHARE * force)) {

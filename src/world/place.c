@@ -59,7 +59,7 @@ static bool is_near_side(const Side *side, double position, double speed, double
                          double duration)
 {
     const double gap = side_gap(side, position);
-    return side->is_touching || gap < 0.0 ||
+    return side->state.is_touching || gap < 0.0 ||
            first_touch(gap, side->sign * speed, 0.5 * side->sign * acceleration) <= duration;
 }
 
@@ -74,5 +74,5 @@ bool place_is_near(const Place *place, const double *speed, const double *accele
     const double reach = hypot(from[0], from[1]) +
                          duration * (hypot(speed[0], speed[1]) +
                                      0.5 * duration * hypot(acceleration[0], acceleration[1]));
-    return place->sides[0].is_touching || reach >= place->clearance;
+    return place->sides[0].state.is_touching || reach >= place->clearance;
 }

@@ -45,7 +45,7 @@ bool play_is_finite(const JpJoint *joint)
         for (size_t k = 0; k < place_side_count(place); k++) {
             const Side *side = &place->sides[k];
             sum += side->force + side->force_max + side->depth_max + side->impulse + side->work +
-                   side->impact_speed;
+                   side->state.impact_speed;
         }
     }
     return isfinite(sum);
@@ -102,7 +102,7 @@ JpSide play_side(const Side *side, double position)
         .impulse = side->impulse,
         .work = side->work,
         .stored = gap < 0.0 ? force_law_energy(&side->law, -gap) : 0.0,
-        .impact_speed = side->impact_speed,
+        .impact_speed = side->state.impact_speed,
         .impacts = side->impacts,
         .is_touching = gap < 0.0,
     };

@@ -18,26 +18,30 @@ static Overlap find_overlap(const Side *side, const SideMotion *motion, double s
 
 void side_begin(Side *side, double closing)
 {
-    side->impact_speed = fmax(closing, 0.0);
+    side->state = contact_state_begun(fmax(closing, 0.0));
     side->impacts++;
     side->mobility = 0.0;
-    tops_begin(&side->tops, side->law.viscous * side->impact_speed, 0.0);
+    tops_begin(&side->tops, side->law.viscous * side->state.impact_speed, 0.0);
 }
 
 void side_find(Side *side, const SideMotion *motion, double step)
 {
-    const bool was_touching = side->is_touching;
+    const bool was_touching = side->state.is_touching;
     const double start = motion->start_closing;
     const double earlier = motion->earlier;
     side->closing = motion->closing;
     const Overlap overlap = find_overlap(side, motion, step);
-    side->is_touching = overlap.depth > 0.0;
-    side->begins = side->is_touching && !was_touching;
+    side->state.is_touching = overlap.depth > 0.0;
+    side->begins = side->state.is_touching && !was_touching;
     side->age = was_touching ? side->age + step : 0.0;
     side->depth = overlap.depth;
     side->share = overlap.share;
     side->inside = fmax(-motion->gap, 0.0);
-    if (side->is_touching && !was_touching) {
+    if (side->state.is_touching && was_touching) {
+        side->state.age_s = side->age;
+        contact_state_follow(&side->state, side->closing, side->law.resting_speed);
+    }
+    if (side->state.is_touching && !was_touching) {
         const double change =
             side->last_step > 0.0 ? (start - side->last_closing) / side->last_step : 0.0;
         const double late = earlier > 0.0 ? overlap.onset : -side->depth / start;
@@ -45,7 +49,7 @@ void side_find(Side *side, const SideMotion *motion, double step)
         side->tops.since = earlier > 0.0 ? earlier - late : -late;
     }
     side->last_closing = start;
-    side->last_step = side->is_touching ? 0.0 : step;
+    side->last_step = side->state.is_touching ? 0.0 : step;
 }
 
 MapContact side_contact(const Side *side, double step)
@@ -53,7 +57,7 @@ MapContact side_contact(const Side *side, double step)
     const LawRow row = {
         .depth = side->depth,
         .closing = side->closing,
-        .impact_speed = side->impact_speed,
+        .impact_speed = side->state.damping_speed,
         .share = side->share,
     };
     return law_row_contact(&side->law, &row, step);
@@ -81,7 +85,7 @@ void side_note(Side *side, double force)
 
 void side_book(Side *side, double force, double rate_before, double rate_after, double step)
 {
-    if (side->is_touching) {
+    if (side->state.is_touching) {
         tops_note_step(&side->tops, force, side->inside, side->share, step);
         keep_largest(side);
     }

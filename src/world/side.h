@@ -4,6 +4,7 @@
 #include "contact/law_row.h"
 #include "contact/overlap.h"
 #include "contact/tops.h"
+#include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 
 #include <stdbool.h>
@@ -13,12 +14,11 @@ typedef struct Side {
     ForceLaw law;
     double sign;  // 1: pushes the coordinate up; -1: down
     double limit; // rad or m: where it begins to touch; infinite where there is none
-    bool is_touching;
+    ContactState state;
     bool begins;         // whether the step under way is the first in which it touches
     double age;          // s, of the contact under way, before this step
     double lasts;        // s, that it lasts if it is an impact
     double tried;        // mobility that the world has, found for that; 0: not found
-    double impact_speed; // closing speed where the contact under way began
     double depth;        // of the row in the step under way, 0 where it does not touch
     double share;        // 1, of the step in which it touches
     double step_force;   // largest in the step under way, of contacts within the step

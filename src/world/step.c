@@ -88,7 +88,7 @@ enum { DEPTH_DOUBLINGS = 200, DEPTH_HALVINGS = 20 }; // of a depth, to a part in
 // taken up the energy v^2 / (2 mobility). It has none beyond its limit, which ends the search, too.
 static double impact_duration(const Side *side, double mobility, double step)
 {
-    const double speed = side->impact_speed;
+    const double speed = side->state.impact_speed;
     const double energy = 0.5 * speed * speed / mobility;
     double high = speed * step;
     for (int i = 0; i < DEPTH_DOUBLINGS && force_law_energy(&side->law, high) < energy; i++) {
@@ -225,7 +225,7 @@ static JpStatus each_touching(JpWorld *world, SideFunction function, double step
         for (size_t i = 0; i < joint->place_count; i++) {
             Place *place = &joint->places[i];
             for (size_t k = 0; k < place_side_count(place); k++) {
-                if (place->sides[k].is_touching) {
+                if (place->sides[k].state.is_touching) {
                     REFUSAL_TRY(function(joint, place, &place->sides[k], step, error));
                 }
             }
@@ -240,9 +240,10 @@ static void press_one(const JpJoint *joint, Place *place, double step)
 {
     Side *low = &place->sides[0];
     Side *high = &place->sides[1];
-    if (place_side_count(place) == SIDE_COUNT && low->is_touching && high->is_touching) {
+    if (place_side_count(place) == SIDE_COUNT && low->state.is_touching &&
+        high->state.is_touching) {
         Side *left = low->closing > 0.0 ? high : low;
-        left->is_touching = false;
+        left->state.is_touching = false;
         coarse_note(joint->world, "a joint crosses its play within a step of %g s", step);
     }
 }
@@ -287,7 +288,7 @@ static void take_forces(JpJoint *joint, Place *place, double step, double forces
 {
     forces[0] = forces[1] = 0.0;
     for (size_t i = 0; i < place_side_count(place); i++) {
-        if (place->sides[i].is_touching) {
+        if (place->sides[i].state.is_touching) {
             forces[i] = row_take(place);
         }
     }

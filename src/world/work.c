@@ -19,7 +19,7 @@ static size_t touching_rows(const JpJoint *joint)
     for (size_t i = 0; i < joint->place_count; i++) {
         const Place *place = &joint->places[i];
         for (size_t k = 0; k < place_side_count(place); k++) {
-            count += !place->sides[k].is_touching ? 0 : place->friction > 0.0 ? 3 : 1;
+            count += !place->sides[k].state.is_touching ? 0 : place->friction > 0.0 ? 3 : 1;
         }
     }
     return count;

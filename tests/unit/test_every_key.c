@@ -29,12 +29,15 @@ static const char *const UNWRITTEN[] = {
     "run.most-steps",
     "run.spike-threshold",
     "run.report-from",
+    "run.start",
+    "run.settle-most",
     "run.samples",
     "run.tolerance",
     "reference.tolerance",
     // replaced in this case: by its revolutions and its viscous damping
     "run.duration",
     "contact.restitution",
+    "contact.resting-speed",
     // of the contact model and the rows of the program's own world, which the library has not
     "contact.model",
     "contact.penalty",

@@ -258,6 +258,7 @@ static bool tune_program_fill_contact(const Scenario *scenario, const Joint *joi
         contact->restitution = own.restitution;
     }
     contact->speed_floor = law.impact_speed_floor;
+    contact->resting_speed = law.resting_speed;
     return true;
 }
 

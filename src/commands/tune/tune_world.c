@@ -253,6 +253,9 @@ static bool tune_world_write_contact(const Scenario *scenario, const Joint *join
         write_field(name, "restitution", own.restitution, "", text);
     }
     write_field(name, "speed_floor", law.impact_speed_floor, is_turn ? "rad/s" : "m/s", text);
+    if (law.resting_speed > 0.0) {
+        write_field(name, "resting_speed", law.resting_speed, is_turn ? "rad/s" : "m/s", text);
+    }
     return true;
 }
 
