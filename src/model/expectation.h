@@ -27,10 +27,13 @@ typedef enum ExpectedNumber {
     EXPECTED_IMPULSE,          // N s
     EXPECTED_PENETRATION_MAX,  // m
     EXPECTED_CONTACT_FRACTION, // 1
-    EXPECTED_ERROR_MAX,        // 1, as the three below up to the horizon of predictability
+    EXPECTED_ERROR_MAX,        // 1, as the six below up to the horizon of predictability
     EXPECTED_ERROR_OMEGA_MAX,
     EXPECTED_ERROR_OMEGA_RMS,
     EXPECTED_ERROR_ALPHA_MAX,
+    EXPECTED_ERROR_FORCE_MAX,
+    EXPECTED_ERROR_PEAK_FORCE_MAX,
+    EXPECTED_ERROR_PEAK_ALPHA_MAX,
     EXPECTED_DRIVE_WORK, // J
     EXPECTED_DISSIPATED,
     EXPECTED_CHANGE,

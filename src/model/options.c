@@ -11,6 +11,7 @@ const char *const OPTIONS_CONTACT_MODELS[] = {"impact", "poisson", NULL};
 const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_SOLVERS[] = {"direct", "quick", NULL};
+const char *const OPTIONS_TOLERANCES_OF[] = {OPTIONS_TOLERANCE_OF_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_MAP_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_COLLIDERS[] = {OPTIONS_ODE_COLLIDER_LIST(MEMBER_WORD) NULL};
@@ -65,6 +66,7 @@ RunOptions run_options_default(void)
         .samples = 3600,  // a tenth of a degree
         .step = 0.0,      // chosen for the tolerance: no one step suits every mechanism
         .tolerance = 1e-4,
+        .tolerance_of = TOLERANCE_OF_MOTION, // what of all errors is most sure of
         .most_steps = 3000000, // a minute of world steps that are full of contacts, 20 us each
         // as much as ideal joints show by themselves, so that they show no spike
         .spike_threshold = 1.0,

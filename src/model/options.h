@@ -64,6 +64,12 @@
     member(BACKEND_REFERENCE, "reference", REFERENCE_SOLVER, true) \
     member(BACKEND_ODE, "ode", ODE_SOLVER, true)
 
+// The error that a tolerance is of; see measure/error.h.
+#define OPTIONS_TOLERANCE_OF_LIST(member) \
+    member(TOLERANCE_OF_MOTION, "motion") \
+    member(TOLERANCE_OF_FORCES, "forces") \
+    member(TOLERANCE_OF_PEAKS, "peaks")
+
 // clang-format on
 #define OPTIONS_ENUMERATOR(id, ...) id,
 
@@ -79,6 +85,9 @@ typedef enum OdeStepping {
 typedef enum OdeCollider {
     OPTIONS_ODE_COLLIDER_LIST(OPTIONS_ENUMERATOR) ODE_COLLIDER_COUNT
 } OdeCollider;
+typedef enum ToleranceOf {
+    OPTIONS_TOLERANCE_OF_LIST(OPTIONS_ENUMERATOR) TOLERANCE_OF_COUNT
+} ToleranceOf;
 typedef enum BackendKind { OPTIONS_BACKEND_LIST(OPTIONS_ENUMERATOR) BACKEND_COUNT } BackendKind;
 
 // The model of what happens where pin and hole overlap.
@@ -100,6 +109,7 @@ extern const char *const OPTIONS_CONTACT_MODELS[];
 extern const char *const OPTIONS_LAWS[];
 extern const char *const OPTIONS_DAMPINGS[];
 extern const char *const OPTIONS_ODE_SOLVERS[];
+extern const char *const OPTIONS_TOLERANCES_OF[];
 extern const char *const OPTIONS_ODE_STEPPINGS[];
 extern const char *const OPTIONS_ODE_MAPS[];
 extern const char *const OPTIONS_ODE_COLLIDERS[];
@@ -132,13 +142,14 @@ typedef struct ContactOptions {
 } ContactOptions;
 
 typedef struct RunOptions {
-    double revolutions;     // of a driver of constant speed
-    double duration;        // s, where there is none
-    size_t samples;         // per revolution of that driver, or in the whole run without it
-    double interval;        // no key, s: samples stand so far apart, as many as the run has room
-                            // for; 0: as `samples` says
-    double step;            // s; 0: chosen for the tolerance
-    double tolerance;       // 1, largest error wanted of a step that is chosen
+    double revolutions; // of a driver of constant speed
+    double duration;    // s, where there is none
+    size_t samples;     // per revolution of that driver, or in the whole run without it
+    double interval;    // no key, s: samples stand so far apart, as many as the run has room
+                        // for; 0: as `samples` says
+    double step;        // s; 0: chosen for the tolerance
+    double tolerance;   // 1, largest error wanted of a step that is chosen
+    ToleranceOf tolerance_of;
     size_t most_steps;      // world steps of all trials of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show
     double report_from;     // s, or turns of the driver; what is before is not reported

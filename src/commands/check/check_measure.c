@@ -31,18 +31,30 @@ static double error_number(const TrajectoryError *error, ExpectedNumber number)
     if (error == NULL || !error->is_known) {
         return NAN;
     }
-    return number == EXPECTED_ERROR_MAX         ? error->max
-           : number == EXPECTED_ERROR_OMEGA_MAX ? error->omega_max
-           : number == EXPECTED_ERROR_OMEGA_RMS ? error->omega_rms
-                                                : error->alpha_max;
+    switch (number) {
+    case EXPECTED_ERROR_MAX:
+        return error->max;
+    case EXPECTED_ERROR_OMEGA_MAX:
+        return error->omega_max;
+    case EXPECTED_ERROR_OMEGA_RMS:
+        return error->omega_rms;
+    case EXPECTED_ERROR_ALPHA_MAX:
+        return error->alpha_max;
+    case EXPECTED_ERROR_FORCE_MAX:
+        return error->force_max;
+    case EXPECTED_ERROR_PEAK_FORCE_MAX:
+        return error->peak_force_max;
+    case EXPECTED_ERROR_PEAK_ALPHA_MAX:
+        return error->peak_alpha_max;
+    default:
+        return NAN;
+    }
 }
 
 bool expect_value_is_error(const Expectation *expectation)
 {
-    return expectation->number == EXPECTED_ERROR_MAX ||
-           expectation->number == EXPECTED_ERROR_OMEGA_MAX ||
-           expectation->number == EXPECTED_ERROR_OMEGA_RMS ||
-           expectation->number == EXPECTED_ERROR_ALPHA_MAX;
+    return expectation->number >= EXPECTED_ERROR_MAX &&
+           expectation->number <= EXPECTED_ERROR_PEAK_ALPHA_MAX;
 }
 
 bool expect_value_concerns(const Expectation *expectation, const Scenario *scenario,
@@ -369,6 +381,27 @@ static void check_add_error(CheckAdd *work, const Trajectory *run, const Traject
     }
 }
 
+// The errors that the tolerance of a case is of, where they are not those of the motion.
+static void add_error_of_kind(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
+                              double uncertainty)
+{
+    const ToleranceOf kind = work->scenario->run.tolerance_of;
+    static const char *const NAMES[] = {"force_max_1", "peak_force_max_1", "peak_alpha_max_1"};
+    const double values[] = {error->force_max, error->peak_force_max, error->peak_alpha_max};
+    for (int i = 0; kind != TOLERANCE_OF_MOTION && i < 3; i++) {
+        const bool is_its = (kind == TOLERANCE_OF_FORCES) == (i == 0);
+        // without play there are no forces of contacts
+        if (is_its && !isnan(values[i])) {
+            check_measure_add(work, run, "error", NAMES[i],
+                              (CheckMetric){.kind = CHECK_REAL,
+                                            .value = values[i],
+                                            .scale = values[i],
+                                            .floor = ROUNDING + uncertainty +
+                                                     (i == 2 ? alpha_rounding(run, 1.0) : 0.0)});
+        }
+    }
+}
+
 // Adds what the error is, against a truth that is known to `uncertainty`, and one order of
 // convergence from two errors.
 static void check_add_order(CheckAdd *work, const Trajectory *run, const char *name, double error,
@@ -496,6 +529,7 @@ static void measure_run(CheckAdd *work, BackendKind backend, Trajectory *run,
         return;
     }
     check_add_error(work, run, &error, plan->uncertainty);
+    add_error_of_kind(work, run, &error, plan->uncertainty);
     measure_expected(work, backend, run, &error);
     if (plan->is_full && backend == BACKEND_ODE && work->scenario->run.step > 0.0) {
         add_orders(work, run, truth, plan);
@@ -637,7 +671,7 @@ size_t check_measure_packed_size(const Scenario *scenario)
 {
     // in the same order: extremes and spikes; forces, contacts and spikes; energy, cost,
     // errors and orders
-    enum { OF_BODY = 6, OF_JOINT = 7, OF_RUN = 16, GROUPS = 2 };
+    enum { OF_BODY = 6, OF_JOINT = 7, OF_RUN = 18, GROUPS = 2 };
     const Linkage *linkage = &scenario->linkage;
     const size_t count = OF_BODY * linkage->body_count + OF_JOINT * linkage->joint_count + OF_RUN;
     return sizeof(CheckMeasure) +

@@ -11,6 +11,7 @@
 #include "write/fields.h"
 #include "write/table.h"
 
+#include <math.h>
 #include <string.h>
 
 // The contacts of one run beside the reference's, by joint.
@@ -36,6 +37,23 @@ typedef struct RunReport {
 static inline bool run_report_has_truth(const RunReport *report)
 {
     return report->truth != NULL && report->truth->trajectory->is_complete;
+}
+
+// The horizon up to which errors are stated, s.
+static inline double run_report_horizon(const RunReport *report)
+{
+    return run_report_has_truth(report) ? report->truth->horizon_s : INFINITY;
+}
+
+// The run that a run with a known error was held against.
+static inline const Trajectory *run_report_against(const RunReport *report, size_t index)
+{
+    const Trajectory *against = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const bool is_it = strcmp(report->runs[i]->backend, report->errors[index].against) == 0;
+        against = is_it ? report->runs[i] : against;
+    }
+    return against;
 }
 
 // Whether an error is against the certified solution, so that uncertainty and horizon belong to it.
