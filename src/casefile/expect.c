@@ -58,7 +58,7 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
     NUMBER(EXPECTED_ERROR_ALPHA_MAX, EXPECT_ERROR, "alpha_max", DIMENSION_NONE,
            "largest error of alpha, relative to each body's largest alpha"),
     NUMBER(EXPECTED_ERROR_FORCE_MAX, EXPECT_ERROR, "force_max", DIMENSION_NONE,
-           "largest error of any contact force at the samples, over the joint's largest"),
+           "largest error of a contact force at samples, over the joint's largest"),
     NUMBER(EXPECTED_ERROR_PEAK_FORCE_MAX, EXPECT_ERROR, "peak_force_max", DIMENSION_NONE,
            "largest error of the peak force of a contact, over the joint's largest"),
     NUMBER(EXPECTED_ERROR_PEAK_ALPHA_MAX, EXPECT_ERROR, "peak_alpha_max", DIMENSION_NONE,

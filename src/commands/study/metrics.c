@@ -128,7 +128,7 @@ static const Metric METRICS[] = {
     ERROR("error_alpha_max", REAL, NOTHING, alpha_max,
           "largest error of alpha, relative to each body's largest alpha"),
     ERROR("error_force_max", REAL, NOTHING, force_max,
-          "largest error of any contact force at the samples, over the joint's largest"),
+          "largest error of a contact force at samples, over the joint's largest"),
     ERROR("error_force_max_in_horizon", REAL, NOTHING, force_max_in_horizon,
           "the same up to the predictability horizon"),
     ERROR("error_peak_force_max", REAL, NOTHING, peak_force_max,
