@@ -10,6 +10,7 @@
 #include "contact/law.h"
 #include "measure/chosen_run.h"
 #include "measure/truth.h"
+#include "model/joint_numbers.h"
 #include "model/perturb.h"
 #include "model/shake.h"
 #include "run/registry.h"
@@ -75,7 +76,6 @@ static double expect_value_of(const Expectation *expectation, const Trajectory *
                               const TrajectoryError *error)
 {
     const BodyExtremes *body = &run->bodies[expectation->member];
-    const JointExtremes *joint = &run->joints[expectation->member];
     switch (expectation->number) {
     case EXPECTED_OMEGA_MAX:
         return body->omega_max.value;
@@ -87,18 +87,13 @@ static double expect_value_of(const Expectation *expectation, const Trajectory *
         return body->alpha_min.value;
     case EXPECTED_ALPHA_SPIKES:
         return spikes(&run->alpha_spikes[expectation->member]);
-    case EXPECTED_FORCE_MAX:
-        return joint->force_max.value;
     case EXPECTED_FORCE_SPIKES:
         return spikes(&run->force_spikes[expectation->member]);
-    case EXPECTED_IMPACTS:
-        return (double)joint->impacts;
-    case EXPECTED_IMPULSE:
-        return joint->impulse;
-    case EXPECTED_PENETRATION_MAX:
-        return joint->penetration_max.value;
-    case EXPECTED_CONTACT_FRACTION:
-        return joint->contact_time / run->duration_s;
+#define EXPECTED_OF_JOINT(id, ...)                                                                 \
+    case EXPECTED_##id:                                                                            \
+        return joint_numbers_find(JOINT_NUMBER_##id, run, (size_t)expectation->member).value;
+        JOINT_NUMBERS_OF_ANY_LIST(EXPECTED_OF_JOINT)
+        JOINT_NUMBERS_OF_PLAY_LIST(EXPECTED_OF_JOINT)
     case EXPECTED_DRIVE_WORK:
         return run->energy.drive_work;
     case EXPECTED_DISSIPATED:
@@ -266,30 +261,38 @@ static double force_at_samples(const Trajectory *run, size_t joint)
     return force;
 }
 
+// One number of a joint; the largest force of one without play as often from its samples.
+static void add_joint_number(CheckAdd *work, const Trajectory *run, BackendKind backend,
+                             JointNumberId id, size_t joint)
+{
+    const JointNumber *number = &JOINT_NUMBERS[id];
+    const Joint *of = &work->scenario->linkage.joints[joint];
+    const double value = joint_numbers_find(id, run, joint).value;
+    char name[CHECK_NAME_SIZE];
+    snprintf(name, sizeof name, "%s%s", number->keys[linkage_is_torsional(of)], number->check_end);
+    // the reference looks for the peak of a contact between its steps
+    if (id == JOINT_NUMBER_FORCE_MAX && is_by_samples(backend) && !linkage_has_play(of)) {
+        check_measure_add_force(work, run, of, "force_max_at_samples_N",
+                                force_at_samples(run, joint), 0.0);
+    } else if (number->kind == JOINT_NUMBER_OF_COUNT) {
+        add_count(work, run, of->name, name, (size_t)value);
+    } else if (number->kind == JOINT_NUMBER_OF_FORCE) {
+        check_measure_add_force(work, run, of, name, value, 0.0);
+    } else {
+        add_real(work, run, of->name, name, value, 0.0);
+    }
+}
+
 static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backend)
 {
     for (size_t i = 0; i < run->joint_count; i++) {
-        const Joint *joint = &work->scenario->linkage.joints[i];
-        const JointExtremes *extremes = &run->joints[i];
-        const bool is_turning = linkage_is_torsional(joint);
-        // the reference looks for the peak of a contact between its steps
-        if (is_by_samples(backend) && !linkage_has_play(joint)) {
-            check_measure_add_force(work, run, joint, "force_max_at_samples_N",
-                                    force_at_samples(run, i), 0.0);
-        } else {
-            check_measure_add_force(work, run, joint, is_turning ? "force_max_N_m" : "force_max_N",
-                                    extremes->force_max.value, 0.0);
+        const bool has_play = linkage_has_play(&work->scenario->linkage.joints[i]) &&
+                              OPTIONS_BACKEND_HAS_PLAY[backend];
+        for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
+            if (has_play || !JOINT_NUMBERS[id].is_of_play) {
+                add_joint_number(work, run, backend, id, i);
+            }
         }
-        if (!linkage_has_play(joint) || !OPTIONS_BACKEND_HAS_PLAY[backend]) {
-            continue;
-        }
-        add_count(work, run, joint->name, "impacts", extremes->impacts);
-        add_real(work, run, joint->name, is_turning ? "impulse_N_m_s" : "impulse_N_s",
-                 extremes->impulse, 0.0);
-        add_real(work, run, joint->name, is_turning ? "penetration_max_rad" : "penetration_max_m",
-                 extremes->penetration_max.value, 0.0);
-        add_real(work, run, joint->name, "contact_fraction_1", trajectory_contact_share(run, i),
-                 0.0);
     }
 }
 
@@ -671,7 +674,7 @@ size_t check_measure_packed_size(const Scenario *scenario)
 {
     // in the same order: extremes and spikes; forces, contacts and spikes; energy, cost,
     // errors and orders
-    enum { OF_BODY = 6, OF_JOINT = 7, OF_RUN = 18, GROUPS = 2 };
+    enum { OF_BODY = 6, OF_JOINT = JOINT_NUMBER_COUNT + 2, OF_RUN = 18, GROUPS = 2 };
     const Linkage *linkage = &scenario->linkage;
     const size_t count = OF_BODY * linkage->body_count + OF_JOINT * linkage->joint_count + OF_RUN;
     return sizeof(CheckMeasure) +

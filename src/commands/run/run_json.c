@@ -355,7 +355,9 @@ static json_t *joint_object(const Linkage *linkage, const Trajectory *run, size_
     const RunJoint numbers = run_fields_joint(linkage, run, number);
     const unsigned where =
         FIELD_JSON | run_report_contact(of) | (linkage->is_spatial ? RUN_SPATIAL : 0);
-    json_t *joint = fields_json(RUN_JOINT_FIELDS, where, &numbers);
+    RunJointFields fields;
+    run_fields_of_joint(linkage_is_torsional(of), &fields);
+    json_t *joint = fields_json(fields.rows, where, &numbers);
     if (slide_range_has(of)) {
         set_slide(joint, linkage, run, number, numbers.is_felt);
     }

@@ -124,8 +124,10 @@ static void write_untouched(const RunReport *report, bool is_torsional, size_t w
 static void write_contacts(const RunReport *report, bool is_torsional, const Style *style,
                            Text *text)
 {
-    const unsigned where = run_report_columns(report) | (is_torsional ? RUN_TURNED : RUN_PUSHED);
+    const unsigned where = run_report_columns(report);
     const Linkage *linkage = &report->scenario->linkage;
+    RunJointFields fields;
+    run_fields_of_joint(is_torsional, &fields);
     RunFloor *floors = run_floor_list(report);
     Table *table = NULL;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
@@ -138,13 +140,13 @@ static void write_contacts(const RunReport *report, bool is_torsional, const Sty
             if (table == NULL) {
                 table = fields_table(is_torsional ? "Contacts at the limits of pivots"
                                                   : "Contacts in the joints with play",
-                                     RUN_JOINT_FIELDS, where, style, text);
+                                     fields.rows, where, style, text);
             }
             const RunJoint numbers = run_fields_joint(linkage, run, joint);
             table_cell(table, "%s", linkage->joints[joint].name);
             table_cell(table, "%s", run->backend);
             const RunJoint shown = run_floor_joint(&numbers, is_torsional, &floors[i]);
-            fields_table_row(RUN_JOINT_FIELDS, where, &shown, table);
+            fields_table_row(fields.rows, where, &shown, table);
         }
     }
     free(floors);
