@@ -2,7 +2,7 @@
 // case file.
 #pragma once
 
-#include "model/joint_numbers.h"
+#include "model/joint_number_list.h"
 #include "model/linkage.h"
 
 enum {
@@ -24,7 +24,7 @@ typedef enum ExpectedNumber {
     EXPECTED_ALPHA_MAX, // rad/s^2
     EXPECTED_ALPHA_MIN,
     EXPECTED_ALPHA_SPIKES,
-    // of a joint, in the order of model/joint_numbers.h
+    // of a joint, in the order of model/joint_number_list.h
     JOINT_NUMBERS_OF_ANY_LIST(EXPECTATION_OF_JOINT) EXPECTED_FORCE_SPIKES,
     JOINT_NUMBERS_OF_PLAY_LIST(EXPECTATION_OF_JOINT)
         EXPECTED_ERROR_MAX, // 1, as the six below up to the horizon of predictability

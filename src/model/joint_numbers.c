@@ -1,7 +1,5 @@
-// The table of the numbers of a joint, and how each is had from a run.
+// Makes the table of the numbers of a joint from their list.
 #include "model/joint_numbers.h"
-
-#include "model/trajectory.h"
 
 #include <math.h>
 

@@ -119,7 +119,7 @@ enum {
 // What a joint did in a run. Without play that is felt there are no contacts to count: null, not 0.
 typedef struct RunJoint {
     bool is_felt;
-    size_t counts[JOINT_NUMBER_COUNT]; // of the numbers of model/joint_numbers.h that are whole
+    size_t counts[JOINT_NUMBER_COUNT]; // of the numbers of model/joint_number_list.h that are whole
     Extreme numbers[JOINT_NUMBER_COUNT];
     double tilt_max;  // rad, in space
     double axial_max; // m, likewise
@@ -145,7 +145,7 @@ static inline unsigned run_report_force(const Joint *joint)
     return linkage_is_torsional(joint) ? RUN_TORQUE : RUN_FORCE;
 }
 
-// The fields of a RunJoint, made of the rows of model/joint_numbers.h. Not to be copied.
+// The fields of a RunJoint, made of the rows of model/joint_number_list.h. Not to be copied.
 enum { RUN_JOINT_FIELD_MAX = 3 * JOINT_NUMBER_COUNT + 8 };
 
 typedef struct RunJointFields {

@@ -15,7 +15,7 @@
 // What a number of a run is of; the columns stand in this order.
 typedef enum Owner {
     OF_BODY,  // each whose motion is not prescribed: BodyExtremes
-    OF_JOINT, // each with play: model/joint_numbers.h, whole numbers first
+    OF_JOINT, // each with play: model/joint_number_list.h, whole numbers first
     OF_RUN,   // Trajectory
     OF_ERROR, // TrajectoryError, in studies with a truth
     OF_TRUTH, // Truth, likewise
