@@ -10,8 +10,8 @@
 //
 // The value is an Extreme, of the joint's `extremes` in the `run`, where it has this `number`;
 // only(x) is one that stands at no time. It is finite in every complete run that has it, or `check`
-// refuses the run. Rows of kind COUNT stand before the others in tables and
-// studies, those of kind SHARE behind them.
+// refuses the run. Rows of kind COUNT stand before the others in tables and studies, those of kind
+// SHARE behind them.
 #define JOINT_NUMBERS_OF_ANY_LIST(row) \
     row(FORCE_MAX, "force_max", FORCE, "force max", "torque max", NULL, false, true, \
         extremes->force_max, "largest force")

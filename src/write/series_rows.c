@@ -121,27 +121,27 @@ typedef struct SeriesColumn {
     double (*find)(const SeriesPlace *place);
 } SeriesColumn;
 
-static bool slides(const Joint *joint)
+static bool series_slides(const Joint *joint)
 {
     return joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE;
 }
 
-static bool is_guide(const Joint *joint)
+static bool series_is_guide(const Joint *joint)
 {
     return joint->kind == JOINT_GUIDE;
 }
 
-static bool is_pin(const Joint *joint)
+static bool series_is_pin(const Joint *joint)
 {
     return joint->kind == JOINT_CLEARANCE;
 }
 
-static bool has_limits(const Joint *joint)
+static bool series_has_limits(const Joint *joint)
 {
     return joint->limits.kind != LIMIT_NONE;
 }
 
-static double slide_acceleration(const SeriesPlace *place)
+static double series_slide_acceleration(const SeriesPlace *place)
 {
     const Joint *joint = &place->linkage->joints[place->joint];
     const Motion *motions = trajectory_motion(place->trajectory, place->sample, 0);
@@ -151,13 +151,13 @@ static double slide_acceleration(const SeriesPlace *place)
 }
 
 // Of a block the vector sum of the forces whose sizes its force adds up.
-static double resultant(const SeriesPlace *place)
+static double series_resultant(const SeriesPlace *place)
 {
     return vec2_length(place->state->force_on_b);
 }
 
 // The coordinate of a joint that has limits, whichever of its kind.
-static double coordinate(const SeriesPlace *place)
+static double series_coordinate(const SeriesPlace *place)
 {
     return place->linkage->is_spatial
                ? place->state->tilt
@@ -168,7 +168,7 @@ static double coordinate(const SeriesPlace *place)
 
 // clang-format off
 #define FINDER(name, member) \
-    static double name(const SeriesPlace *place) \
+    static double series_##name(const SeriesPlace *place) \
     { \
         return place->member; \
     }
@@ -187,32 +187,32 @@ FINDER(force_back, space->end_forces[0])
 FINDER(force_front, space->end_forces[1])
 
 static const SeriesColumn OF_JOINTS[] = {
-    {"ex_m", SERIES_AS_NAMED, NULL, eccentricity_x},
-    {"ey_m", SERIES_AS_NAMED, NULL, eccentricity_y},
-    {"gap", SERIES_LENGTH, NULL, gap},
-    {"force", SERIES_FORCE, NULL, force},
+    {"ex_m", SERIES_AS_NAMED, NULL, series_eccentricity_x},
+    {"ey_m", SERIES_AS_NAMED, NULL, series_eccentricity_y},
+    {"gap", SERIES_LENGTH, NULL, series_gap},
+    {"force", SERIES_FORCE, NULL, series_force},
     {0},
 };
 // what a slider has more than a pin
 static const SeriesColumn OF_SLIDERS[] = {
-    {"tilt_rad", SERIES_AS_NAMED, slides, tilt},
-    {"moment_N_m", SERIES_AS_NAMED, slides, moment},
-    {"slide_acceleration_m_s2", SERIES_AS_NAMED, slides, slide_acceleration},
-    {"resultant_N", SERIES_AS_NAMED, is_guide, resultant},
+    {"tilt_rad", SERIES_AS_NAMED, series_slides, series_tilt},
+    {"moment_N_m", SERIES_AS_NAMED, series_slides, series_moment},
+    {"slide_acceleration_m_s2", SERIES_AS_NAMED, series_slides, series_slide_acceleration},
+    {"resultant_N", SERIES_AS_NAMED, series_is_guide, series_resultant},
     {0},
 };
 static const SeriesColumn OF_LIMITS[] = {
-    {"coordinate", SERIES_LENGTH, has_limits, coordinate},
+    {"coordinate", SERIES_LENGTH, series_has_limits, series_coordinate},
     {0},
 };
 static const SeriesColumn OF_PINS_IN_SPACE[] = {
-    {"tilt_rad", SERIES_AS_NAMED, is_pin, pin_tilt},
-    {"axial_m", SERIES_AS_NAMED, is_pin, pin_axial},
-    {"axial_force_N", SERIES_AS_NAMED, is_pin, pin_axial_force},
-    {"gap_back_m", SERIES_AS_NAMED, is_pin, gap_back},
-    {"gap_front_m", SERIES_AS_NAMED, is_pin, gap_front},
-    {"force_back_N", SERIES_AS_NAMED, is_pin, force_back},
-    {"force_front_N", SERIES_AS_NAMED, is_pin, force_front},
+    {"tilt_rad", SERIES_AS_NAMED, series_is_pin, series_pin_tilt},
+    {"axial_m", SERIES_AS_NAMED, series_is_pin, series_pin_axial},
+    {"axial_force_N", SERIES_AS_NAMED, series_is_pin, series_pin_axial_force},
+    {"gap_back_m", SERIES_AS_NAMED, series_is_pin, series_gap_back},
+    {"gap_front_m", SERIES_AS_NAMED, series_is_pin, series_gap_front},
+    {"force_back_N", SERIES_AS_NAMED, series_is_pin, series_force_back},
+    {"force_front_N", SERIES_AS_NAMED, series_is_pin, series_force_front},
     {0},
 };
 // clang-format on
