@@ -6,6 +6,8 @@
 
 #include "measure/error.h"
 
+#include <string.h>
+
 // A trajectory whose speeds are sin and cos of the sample, each body scaled.
 static Trajectory *made(const Scenario *scenario, double offset, double slip)
 {
