@@ -305,6 +305,13 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
     return true;
 }
 
+static bool check_tolerance(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    return scenario->run.tolerance_of != TOLERANCE_OF_FORCES || scenario_has_clearance(scenario) ||
+           entries_refuse(entries_find(entries, "run.tolerance-of", 0), err,
+                          "no joint has play, and no contact a force\nallowed: motion, peaks");
+}
+
 static bool check_run(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const bool is_driven = scenario->linkage.driver.is_present;
@@ -316,6 +323,7 @@ static bool check_run(const Entries *entries, const Scenario *scenario, Err *err
     return check_length(entries, is_turning, err) &&
            check_report(entries, scenario, is_turning, err) &&
            check_backends(entries, &scenario->run, err) && check_stepping(entries, scenario, err) &&
+           check_tolerance(entries, scenario, err) &&
            check_steps(entries, &scenario->run, scenario_duration(scenario), is_turning, err) &&
            (!is_turning || check_samples(entries, &scenario->run, err));
 }

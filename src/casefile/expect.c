@@ -26,9 +26,20 @@ const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
     [id] = {.group = of, .name = word, .number = id, .dimension = unit, .doc = words}
 #define WHOLE(id, of, word, words) \
     [id] = {.group = of, .name = word, .number = id, .is_count = true, .doc = words}
-#define PLAY(id, word, unit, whole, words) \
-    [id] = {.group = EXPECT_JOINTS, .name = word, .number = id, .dimension = unit, \
-            .is_count = whole, .needs_play = true, .doc = words}
+// by the kind of a number of a joint
+#define DIMENSION_OF_COUNT   DIMENSION_NONE
+#define DIMENSION_OF_SHARE   DIMENSION_NONE
+#define DIMENSION_OF_FORCE   DIMENSION_FORCE
+#define DIMENSION_OF_IMPULSE DIMENSION_IMPULSE
+#define DIMENSION_OF_DEPTH   DIMENSION_LENGTH
+#define OF_JOINT(id, word, of, words, play) \
+    [EXPECTED_##id] = {.group = EXPECT_JOINTS, .name = word, .number = EXPECTED_##id, \
+                       .dimension = DIMENSION_OF_##of, .is_count = JOINT_NUMBER_OF_##of == JOINT_NUMBER_OF_COUNT, \
+                       .needs_play = play, .doc = words},
+#define OF_ANY_JOINT(id, word, of, title, turned, format, detail, timed, value, words) \
+    OF_JOINT(id, word, of, words, false)
+#define OF_JOINT_WITH_PLAY(id, word, of, title, turned, format, detail, timed, value, words) \
+    OF_JOINT(id, word, of, words, true)
 
 const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
     NUMBER(EXPECTED_OMEGA_MAX, EXPECT_BODIES, "omega_max", DIMENSION_ANGULAR_SPEED,
@@ -41,14 +52,9 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
            "smallest angular acceleration"),
     WHOLE(EXPECTED_ALPHA_SPIKES, EXPECT_BODIES, "alpha_spikes",
           "number of spikes of the angular acceleration"),
-    NUMBER(EXPECTED_FORCE_MAX, EXPECT_JOINTS, "force_max", DIMENSION_FORCE, "largest force"),
+    JOINT_NUMBERS_OF_ANY_LIST(OF_ANY_JOINT)
     WHOLE(EXPECTED_FORCE_SPIKES, EXPECT_JOINTS, "force_spikes", "number of spikes of the force"),
-    PLAY(EXPECTED_IMPACTS, "impacts", DIMENSION_NONE, true, "contacts begun"),
-    PLAY(EXPECTED_IMPULSE, "impulse", DIMENSION_IMPULSE, false, "impulse of all contacts"),
-    PLAY(EXPECTED_PENETRATION_MAX, "penetration_max", DIMENSION_LENGTH, false,
-         "deepest penetration"),
-    PLAY(EXPECTED_CONTACT_FRACTION, "contact_fraction", DIMENSION_NONE, false,
-         "share of the time in contact"),
+    JOINT_NUMBERS_OF_PLAY_LIST(OF_JOINT_WITH_PLAY)
     NUMBER(EXPECTED_ERROR_MAX, EXPECT_ERROR, "max", DIMENSION_NONE,
            "largest error of any velocity of bodies and pins, over its own largest"),
     NUMBER(EXPECTED_ERROR_OMEGA_MAX, EXPECT_ERROR, "omega_max", DIMENSION_NONE,
@@ -57,6 +63,12 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
            "root mean square of the errors of omega"),
     NUMBER(EXPECTED_ERROR_ALPHA_MAX, EXPECT_ERROR, "alpha_max", DIMENSION_NONE,
            "largest error of alpha, relative to each body's largest alpha"),
+    NUMBER(EXPECTED_ERROR_FORCE_MAX, EXPECT_ERROR, "force_max", DIMENSION_NONE,
+           "largest error of a contact force at samples, over the joint's largest"),
+    NUMBER(EXPECTED_ERROR_PEAK_FORCE_MAX, EXPECT_ERROR, "peak_force_max", DIMENSION_NONE,
+           "largest error of the peak force of a contact, over the joint's largest"),
+    NUMBER(EXPECTED_ERROR_PEAK_ALPHA_MAX, EXPECT_ERROR, "peak_alpha_max", DIMENSION_NONE,
+           "largest error of a body's extremes of alpha, over the larger of them"),
     NUMBER(EXPECTED_DRIVE_WORK, EXPECT_ENERGY, "drive_work", DIMENSION_ENERGY,
            "work of the drive"),
     NUMBER(EXPECTED_DISSIPATED, EXPECT_ENERGY, "dissipated", DIMENSION_ENERGY,

@@ -313,6 +313,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "with step auto: the largest allowed error of any body's angular velocity or velocity, "
             "and of any pin's in its hole, each relative to its own largest value, up to the "
             "predictability horizon"},
+    {.path = "run.tolerance-of", .type = SCHEMA_CHOICE, AT(run.tolerance_of),
+     .words = OPTIONS_TOLERANCES_OF, .needs = ODE | CHOSEN_STEP,
+     .doc = "which error run.tolerance limits: of the motion; of the contact forces in joints with "
+            "play, each relative to its own largest; or of the peaks of these contacts and of the "
+            "bodies' angular accelerations"},
     {.path = "run.most-steps", .type = SCHEMA_INTEGER, AT(run.most_steps), .low = 1e3, .high = 1e12,
      .needs = ODE | CHOSEN_STEP,
      .doc = "with step auto: the limit for the world steps of all trials together; if it is too "

@@ -11,12 +11,14 @@
 #include "base/clock.h"
 #include "base/zeroed.h"
 #include "contact/touch.h"
+#include "measure/error.h"
 #include "measure/truth.h"
 #include "model/distance.h"
 #include "model/lock.h"
 #include "model/scale.h"
 #include "model/scenario.h"
 #include "run/registry.h"
+#include "run/tracer.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,6 +45,7 @@ typedef struct TrialRule {
     const Truth *truth;
     TrialWindow window; // in which errors count
     double tolerance;   // 1
+    ToleranceOf kind;   // of which error it is
     bool is_last;       // it is run to its end, though it misses the tolerance
     bool is_smooth;     // likewise, for its largest error says which step is next
 } TrialRule;
@@ -231,15 +234,22 @@ static double step_choice_after_failure(double step_s)
 // a reference is rarely off by more than it says, and by three times that hardly ever
 static const double TRUTH_MARGIN = 3.0;
 
-// of the other run's tolerance to the truth's
-static const double OTHER = 1e1;
-
 typedef struct Watcher {
     const TrialRule *rule;
-    DistanceMeasure measure; // of the truth
+    DistanceMeasure measure; // of the truth, as the next
+    ForceMeasure forces;
     Trial *trial;
     bool is_over; // the tolerance was exceeded
 } Watcher;
+
+static double apart_at(const Watcher *watcher, const Trajectory *run, size_t sample)
+{
+    const Trajectory *truth = watcher->rule->truth->trajectory;
+    return watcher->rule->kind == TOLERANCE_OF_FORCES
+               ? error_forces_apart(&watcher->forces, run, truth, sample)
+               : distance_apart(&watcher->measure, distance_motion_at(run, sample),
+                                distance_motion_at(truth, sample), NULL);
+}
 
 static bool chosen_run_look(const Trajectory *trajectory, size_t sample, void *context, Err *err)
 {
@@ -249,13 +259,14 @@ static bool chosen_run_look(const Trajectory *trajectory, size_t sample, void *c
     Trial *trial = watcher->trial;
     const double time_s = truth->times[sample];
     const bool is_behind = time_s > rule->window.until_s;
+    // how the uncertainty of forces grows is not known
     const bool is_of_interest =
-        !is_behind || (rule->window.is_uncertain && time_s <= rule->window.horizon_s);
+        !is_behind || (rule->kind == TOLERANCE_OF_MOTION && rule->window.is_uncertain &&
+                       time_s <= rule->window.horizon_s);
     if (!is_of_interest || (watcher->is_over && !rule->is_smooth)) {
         return true;
     }
-    const double apart = distance_apart(&watcher->measure, distance_motion_at(trajectory, sample),
-                                        distance_motion_at(truth, sample), NULL);
+    const double apart = apart_at(watcher, trajectory, sample);
     if (is_behind && apart <= rule->window.behind * rule->tolerance) {
         return true;
     }
@@ -276,6 +287,39 @@ static bool chosen_run_look(const Trajectory *trajectory, size_t sample, void *c
     return runs_on || err_set(err, ERR_SOLVER, "the step is too coarse");
 }
 
+// The last sample up to which the peaks of a run hold the tolerance, s; 0: not even the first.
+static double peaks_held_until(const TrialRule *rule, const Trajectory *run)
+{
+    const Trajectory *truth = rule->truth->trajectory;
+    const double most = rule->tolerance - TRUTH_MARGIN * rule->window.uncertainty;
+    size_t held = 0;
+    size_t missed = truth->sample_count;
+    while (missed - held > 1) {
+        const size_t middle = held + (missed - held) / 2;
+        const double until_s = fmin(truth->times[middle], rule->window.until_s);
+        *(error_of_peaks(run, truth, until_s) <= most ? &held : &missed) = middle;
+    }
+    return truth->times[held];
+}
+
+// Peaks are compared when the whole run is known. Returns whether they hold the tolerance.
+static bool trial_judge_peaks(const TrialRule *rule, Trial *trial)
+{
+    const double apart = error_of_peaks(trial->run, rule->truth->trajectory, rule->window.until_s);
+    const double bound = apart + TRUTH_MARGIN * rule->window.uncertainty;
+    trial->worst = bound;
+    if (bound <= rule->tolerance) {
+        trial->held_s = rule->window.until_s;
+        trial->held_error = bound;
+        return true;
+    }
+    trial->error = bound;
+    trial->held_s = peaks_held_until(rule, trial->run);
+    trial->held_error = rule->tolerance;
+    trial->is_given_up = !rule->is_last && !rule->is_smooth;
+    return false;
+}
+
 static Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch,
                         const RunProbe *probe)
 {
@@ -284,10 +328,15 @@ static Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatc
         .rule = rule,
         .trial = &trial,
         .measure = distance_measure(rule->truth->trajectory),
+        .forces = error_forces(rule->truth->trajectory),
     };
     const RunGuard guard = {chosen_run_look, &watcher};
-    trial.run = run_guarded(scenario, registry_solver(BACKEND_ODE), watch, probe, &guard);
-    trial.holds = trial.run->is_complete && !watcher.is_over;
+    const bool is_of_peaks = rule->kind == TOLERANCE_OF_PEAKS;
+    trial.run = run_guarded(scenario, registry_solver(BACKEND_ODE), watch, probe,
+                            is_of_peaks ? NULL : &guard);
+    trial.holds = trial.run->is_complete && !watcher.is_over &&
+                  (!is_of_peaks || trial_judge_peaks(rule, &trial));
+    error_forces_finish(&watcher.forces);
     distance_finish(&watcher.measure);
     return trial;
 }
@@ -342,10 +391,7 @@ static TrialWindow trial_window(const Scenario *scenario, const Truth *truth, do
     if (!isfinite(truth->uncertainty)) {
         return (TrialWindow){.is_uncertain = true};
     }
-    Scenario other = *scenario;
-    // looser, or tighter where no run is as loose
-    const double own = options_reference_tolerance(&scenario->reference);
-    other.reference.tolerance = own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER;
+    const Scenario other = truth_at_other_tolerance(scenario);
     Trajectory *run = run_motion(&other, registry_solver(BACKEND_REFERENCE), watch);
     const TrialWindow window = run->is_complete
                                    ? shorten(truth->trajectory, run, truth->growth, whole, most)
@@ -448,6 +494,15 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
                  chosen->scenario->reference.tolerance);
         return true;
     }
+    const ToleranceOf kind = chosen->scenario->run.tolerance_of;
+    if (kind != TOLERANCE_OF_MOTION && !(chosen->window.uncertainty <= TRUTH_SHARE * tolerance)) {
+        snprintf(message, size,
+                 "run.tolerance %.3g is below ten times the uncertainty of the reference in %s, "
+                 "%.2g; allowed: %.2g or more, or run.tolerance-of: motion",
+                 tolerance, OPTIONS_TOLERANCES_OF[kind], chosen->window.uncertainty,
+                 chosen->window.uncertainty / TRUTH_SHARE);
+        return true;
+    }
     if (!(truth->trajectory->times[1] <= chosen->window.until_s)) {
         snprintf(message, size,
                  "no step can be chosen, because the motion cannot be predicted up to the first "
@@ -499,7 +554,10 @@ static Trajectory *finish(const Chosen *chosen, Trial *trial)
     run->estimate_is_cut = trial->holds && chosen->window.is_uncertain;
     run->is_short = !trial->holds;
     const size_t length = strlen(run->label);
-    snprintf(run->label + length, sizeof run->label - length, ", error %.3g wanted",
+    const ToleranceOf kind = chosen->scenario->run.tolerance_of;
+    snprintf(run->label + length, sizeof run->label - length, ", error%s%s %.3g wanted",
+             kind == TOLERANCE_OF_MOTION ? "" : " of ",
+             kind == TOLERANCE_OF_MOTION ? "" : OPTIONS_TOLERANCES_OF[kind],
              chosen->scenario->run.tolerance);
     return run;
 }
@@ -512,6 +570,7 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
         .truth = chosen->truth,
         .window = chosen->window,
         .tolerance = tolerance,
+        .kind = chosen->scenario->run.tolerance_of,
         .is_last = is_last,
         .is_smooth = chosen->choice.is_smooth,
     };
@@ -588,6 +647,17 @@ static Trajectory *chosen_run_choose(Chosen *chosen)
     }
 }
 
+// Of what the tolerance is of, in the window.
+static void take_uncertainty(Chosen *chosen)
+{
+    const Scenario *scenario = chosen->scenario;
+    if (scenario->run.tolerance_of != TOLERANCE_OF_MOTION && chosen->window.until_s > 0.0) {
+        chosen->window.uncertainty =
+            truth_uncertainty_of(chosen->truth, scenario, scenario->run.tolerance_of,
+                                 chosen->window.until_s, watch_of(chosen));
+    }
+}
+
 Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, ChosenWatch watch,
                             const RunProbe *probe)
 {
@@ -608,6 +678,7 @@ Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, Chosen
     if (chosen.truth->trajectory->is_complete) {
         chosen.window = trial_window(scenario, chosen.truth, TRUTH_SHARE * scenario->run.tolerance,
                                      watch_of(&chosen));
+        take_uncertainty(&chosen);
     }
     char message[ERR_TEXT_SIZE];
     Trajectory *run = lacks_truth(&chosen, message, sizeof message)
@@ -618,6 +689,11 @@ Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, Chosen
 }
 
 // A run on a backend, at its own step or a chosen one.
+
+const RunProbe *backend_run_probe(const Scenario *scenario)
+{
+    return scenario->run.tolerance_of == TOLERANCE_OF_PEAKS ? &TRACER_PROBE : NULL;
+}
 
 bool backend_run_is_chosen(const Scenario *scenario, BackendKind backend)
 {

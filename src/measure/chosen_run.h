@@ -30,5 +30,9 @@ Scenario chosen_run_scenario(const Scenario *scenario, double step_s);
 Trajectory *backend_run(const Scenario *scenario, BackendKind backend, const Truth *truth,
                         ChosenWatch watch, const RunProbe *probe);
 
+// What looks into the steps of a run of which errors are measured: nothing, but where the tolerance
+// is of peaks, which are then those that `run` finds.
+const RunProbe *backend_run_probe(const Scenario *scenario);
+
 // Whether the step of that backend is to be chosen.
 bool backend_run_is_chosen(const Scenario *scenario, BackendKind backend);

@@ -175,6 +175,355 @@ static double energy_lost(const Trajectory *trajectory, const Trajectory *refere
     return lost > 0.0 ? lost / error_energy(reference) : 0.0;
 }
 
+// The forces of contacts.
+//
+//     e_j = max_k |F_jk - F_ref,jk| / S_j    at the samples k
+//     S_j = max_k |F_ref,jk|, at least ERROR_FORCE_FLOOR of the largest of any joint
+// and of the peaks P of contacts, largest forces of every step, with S_j the largest of these.
+
+// Two numbers over a scale. What is not finite is no small error.
+static double apart_over(double a, double b, double scale)
+{
+    const double apart = fabs(a - b) / scale;
+    return isfinite(apart) ? apart : INFINITY;
+}
+
+bool error_has_forces(const Trajectory *trajectory, const Trajectory *reference, size_t joint)
+{
+    const Joint *of = &reference->linkage.joints[joint];
+    return trajectory->states != NULL && reference->states != NULL &&
+           trajectory_feels_play(trajectory, of) && trajectory_feels_play(reference, of);
+}
+
+static double error_largest_force(const Trajectory *reference, size_t joint)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < reference->sample_count; k++) {
+        largest = fmax(largest, fabs(trajectory_state(reference, k, joint)->force));
+    }
+    return largest;
+}
+
+// A size, but at least the floor's share of the largest of the joints that are like it in unit.
+// Where nothing pushes any of them that is 1 N.
+static double force_scale(const Trajectory *reference, size_t joint,
+                          double (*size)(const Trajectory *reference, size_t joint))
+{
+    const Linkage *linkage = &reference->linkage;
+    const bool is_torsional = linkage_is_torsional(&linkage->joints[joint]);
+    const double own = size(reference, joint);
+    double largest = own;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage_is_torsional(&linkage->joints[i]) == is_torsional) {
+            largest = fmax(largest, size(reference, i));
+        }
+    }
+    return largest > 0.0 ? fmax(own, ERROR_FORCE_FLOOR * largest) : 1.0;
+}
+
+static double error_force_between(const Trajectory *trajectory, const Trajectory *reference,
+                                  size_t sample, size_t joint, double scale)
+{
+    return apart_over(trajectory_state(trajectory, sample, joint)->force,
+                      trajectory_state(reference, sample, joint)->force, scale);
+}
+
+ForceMeasure error_forces(const Trajectory *reference)
+{
+    const size_t joint_count = reference->joint_count;
+    ForceMeasure measure = {
+        .joints = zeroed(joint_count, sizeof *measure.joints),
+        .scales = zeroed(joint_count, sizeof *measure.scales),
+    };
+    for (size_t i = 0; i < joint_count; i++) {
+        if (error_has_forces(reference, reference, i)) {
+            measure.joints[measure.count] = i;
+            measure.scales[measure.count++] = force_scale(reference, i, error_largest_force);
+        }
+    }
+    return measure;
+}
+
+void error_forces_finish(ForceMeasure *measure)
+{
+    free(measure->joints);
+    free(measure->scales);
+    *measure = (ForceMeasure){.count = 0};
+}
+
+double error_forces_apart(const ForceMeasure *measure, const Trajectory *trajectory,
+                          const Trajectory *reference, size_t sample)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < measure->count; i++) {
+        largest = fmax(largest, error_force_between(trajectory, reference, sample,
+                                                    measure->joints[i], measure->scales[i]));
+    }
+    return largest;
+}
+
+// The peaks of contacts.
+
+// a contact that is still under way at the horizon ends there but for rounding
+static const double PEAK_HORIZON_ROUNDING = 1e-9;
+
+// One contact of either run.
+typedef struct PeakContact {
+    double onset_s;
+    double end_s;
+    double force_max; // N or N m
+    bool is_truth;
+} PeakContact;
+
+static int compare_onsets(const void *a, const void *b)
+{
+    const PeakContact *left = a;
+    const PeakContact *right = b;
+    return (left->onset_s > right->onset_s) - (left->onset_s < right->onset_s);
+}
+
+static size_t list_contacts(const JointExtremes *run, const JointExtremes *truth,
+                            PeakContact contacts[2 * TRAJECTORY_SPIKE_MAX])
+{
+    const JointExtremes *const joints[] = {run, truth};
+    size_t count = 0;
+    for (int i = 0; i < 2; i++) {
+        for (size_t k = 0; k < joints[i]->spike_count; k++) {
+            const Spike *spike = &joints[i]->spikes[k];
+            contacts[count++] = (PeakContact){
+                .onset_s = spike->onset_s,
+                .end_s = spike->onset_s + spike->duration_s,
+                .force_max = spike->force_max,
+                .is_truth = i == 1,
+            };
+        }
+    }
+    qsort(contacts, count, sizeof *contacts, compare_onsets);
+    return count;
+}
+
+// The largest force that a contact may have had without being kept.
+static double weakest_kept(const JointExtremes *joint)
+{
+    return joint->spike_count == TRAJECTORY_SPIKE_MAX
+               ? joint->spikes[TRAJECTORY_SPIKE_MAX - 1].force_max
+               : 0.0;
+}
+
+// The contacts from one on that overlap, directly or through others, as one of each run.
+typedef struct PeakGroup {
+    size_t counts[2]; // of the run, of the reference
+    double peaks[2];  // N or N m, likewise
+    double end_s;
+} PeakGroup;
+
+static PeakGroup take_group(const PeakContact *contacts, size_t count)
+{
+    PeakGroup group = {.end_s = contacts[0].end_s};
+    for (size_t i = 0; i < count && contacts[i].onset_s <= group.end_s; i++) {
+        const PeakContact *contact = &contacts[i];
+        group.counts[contact->is_truth]++;
+        group.peaks[contact->is_truth] = fmax(group.peaks[contact->is_truth], contact->force_max);
+        group.end_s = fmax(group.end_s, contact->end_s);
+    }
+    return group;
+}
+
+// The difference of its two peaks, N or N m.
+static double peaks_apart(const PeakGroup *group, const JointExtremes *run,
+                          const JointExtremes *truth)
+{
+    if (group->counts[true] == 0) {
+        return fmax(0.0, group->peaks[false] - weakest_kept(truth));
+    }
+    if (group->counts[false] == 0) {
+        return fmax(0.0, group->peaks[true] - weakest_kept(run));
+    }
+    return fabs(group->peaks[false] - group->peaks[true]);
+}
+
+static double largest_peak(const Trajectory *reference, size_t joint)
+{
+    return reference->joints[joint].force_max.value;
+}
+
+static void error_add_peaks(const Trajectory *trajectory, const Trajectory *reference, size_t joint,
+                            double horizon_s, JointError *error)
+{
+    const JointExtremes *run = &trajectory->joints[joint];
+    const JointExtremes *truth = &reference->joints[joint];
+    const double scale = force_scale(reference, joint, largest_peak);
+    const double until_s = horizon_s * (1.0 + PEAK_HORIZON_ROUNDING);
+    PeakContact contacts[2 * TRAJECTORY_SPIKE_MAX];
+    const size_t count = list_contacts(run, truth, contacts);
+    for (size_t i = 0; i < count;) {
+        const PeakGroup group = take_group(contacts + i, count - i);
+        const double apart = apart_over(peaks_apart(&group, run, truth), 0.0, scale);
+        error->peak_max = fmax(error->peak_max, apart);
+        if (group.end_s <= until_s) {
+            error->peak_max_in_horizon = fmax(error->peak_max_in_horizon, apart);
+            error->missed += group.counts[false] == 0 ? group.counts[true] : 0;
+            error->extra += group.counts[true] == 0 ? group.counts[false] : 0;
+        }
+        i += group.counts[false] + group.counts[true];
+    }
+}
+
+// A horizon without a sample beyond the start gives no error.
+static bool has_horizon(const Trajectory *reference, double horizon_s)
+{
+    return reference->sample_count <= 1 || reference->times[1] <= horizon_s;
+}
+
+JointError error_of_joint(const Trajectory *trajectory, const Trajectory *reference, size_t joint,
+                          double horizon_s)
+{
+    JointError error = {.force_max = 0.0};
+    const double scale = force_scale(reference, joint, error_largest_force);
+    for (size_t k = 0; k < reference->sample_count; k++) {
+        const double apart = error_force_between(trajectory, reference, k, joint, scale);
+        error.force_max = fmax(error.force_max, apart);
+        if (reference->times[k] <= horizon_s) {
+            error.force_max_in_horizon = fmax(error.force_max_in_horizon, apart);
+        }
+    }
+    error_add_peaks(trajectory, reference, joint, horizon_s, &error);
+    if (!has_horizon(reference, horizon_s)) {
+        error.force_max_in_horizon = error.peak_max_in_horizon = NAN;
+    }
+    return error;
+}
+
+// The peaks of accelerations.
+
+// The largest and the smallest acceleration of a body, rad/s^2.
+typedef struct AlphaPeaks {
+    double most;
+    double least;
+} AlphaPeaks;
+
+static AlphaPeaks peaks_of_steps(const Trajectory *run, size_t body)
+{
+    return (AlphaPeaks){run->bodies[body].alpha_max.value, run->bodies[body].alpha_min.value};
+}
+
+static AlphaPeaks peaks_of_samples(const Trajectory *run, size_t body, double until_s)
+{
+    AlphaPeaks peaks = {-INFINITY, INFINITY};
+    for (size_t k = 0; k < run->sample_count && run->times[k] <= until_s; k++) {
+        const double alpha = trajectory_motion(run, k, body)->alpha;
+        peaks.most = fmax(peaks.most, alpha);
+        peaks.least = fmin(peaks.least, alpha);
+    }
+    return peaks;
+}
+
+static double peak_size(AlphaPeaks peaks)
+{
+    return fmax(fabs(peaks.most), fabs(peaks.least));
+}
+
+// Of the largest acceleration of the body in the reference, but at least the floor's share of that
+// with which its furthest point would accelerate as the fastest of all by turning does.
+static double peak_scale(const Trajectory *reference, size_t body)
+{
+    double fastest = 0.0;
+    for (size_t i = 0; i < reference->body_count; i++) {
+        fastest = fmax(fastest, peak_size(peaks_of_steps(reference, i)) * reference->reach[i]);
+    }
+    const double largest = fmax(peak_size(peaks_of_steps(reference, body)),
+                                ERROR_FORCE_FLOOR * fastest / reference->reach[body]);
+    return largest > 0.0 && isfinite(largest) ? largest : 1.0;
+}
+
+static double alpha_apart(AlphaPeaks run, AlphaPeaks truth, double scale)
+{
+    return fmax(apart_over(run.most, truth.most, scale), apart_over(run.least, truth.least, scale));
+}
+
+BodyError error_of_body(const Trajectory *trajectory, const Trajectory *reference, size_t body,
+                        double horizon_s)
+{
+    const double scale = peak_scale(reference, body);
+    const double end_s = reference->times[reference->sample_count - 1];
+    BodyError error = {.peak_max = alpha_apart(peaks_of_steps(trajectory, body),
+                                               peaks_of_steps(reference, body), scale)};
+    error.peak_max_in_horizon =
+        !has_horizon(reference, horizon_s) ? NAN
+        : end_s <= horizon_s               ? error.peak_max
+                             : alpha_apart(peaks_of_samples(trajectory, body, horizon_s),
+                                           peaks_of_samples(reference, body, horizon_s), scale);
+    return error;
+}
+
+// Keeps the larger, and whose it is: by the horizon's where that is known.
+static void keep_larger(double whole, double in_horizon, const char *name, double *most,
+                        double *most_in_horizon, char in[LINKAGE_NAME_SIZE])
+{
+    const bool is_first = isnan(*most);
+    const bool is_larger =
+        isnan(in_horizon) ? !(whole <= *most) : !(in_horizon <= *most_in_horizon);
+    if (is_larger) {
+        snprintf(in, LINKAGE_NAME_SIZE, "%s", name);
+    }
+    *most = is_first ? whole : fmax(*most, whole);
+    *most_in_horizon = is_first ? in_horizon : fmax(*most_in_horizon, in_horizon);
+}
+
+static void add_forces(const Trajectory *trajectory, const Trajectory *reference, double horizon_s,
+                       TrajectoryError *error)
+{
+    error->force_max = error->force_max_in_horizon = NAN;
+    error->peak_force_max = error->peak_force_max_in_horizon = NAN;
+    for (size_t i = 0; i < reference->joint_count; i++) {
+        if (error_has_forces(trajectory, reference, i)) {
+            const JointError joint = error_of_joint(trajectory, reference, i, horizon_s);
+            const char *name = reference->linkage.joints[i].name;
+            keep_larger(joint.force_max, joint.force_max_in_horizon, name, &error->force_max,
+                        &error->force_max_in_horizon, error->force_in);
+            keep_larger(joint.peak_max, joint.peak_max_in_horizon, name, &error->peak_force_max,
+                        &error->peak_force_max_in_horizon, error->peak_force_in);
+        }
+    }
+}
+
+static void error_add_peak_alphas(const Trajectory *trajectory, const Trajectory *reference,
+                                  double horizon_s, TrajectoryError *error)
+{
+    error->peak_alpha_max = error->peak_alpha_max_in_horizon = NAN;
+    // a run that was made to be compared by its motion alone has no extremes
+    const bool has_extremes = trajectory->states != NULL && reference->states != NULL;
+    for (size_t i = 0; has_extremes && i < reference->body_count; i++) {
+        if ((int)i != reference->driven_body) {
+            const BodyError body = error_of_body(trajectory, reference, i, horizon_s);
+            keep_larger(body.peak_max, body.peak_max_in_horizon, reference->linkage.bodies[i].name,
+                        &error->peak_alpha_max, &error->peak_alpha_max_in_horizon,
+                        error->peak_alpha_in);
+        }
+    }
+}
+
+double error_of_peaks(const Trajectory *trajectory, const Trajectory *reference, double horizon_s)
+{
+    TrajectoryError error = {.is_known = true};
+    add_forces(trajectory, reference, horizon_s, &error);
+    error_add_peak_alphas(trajectory, reference, horizon_s, &error);
+    return error_of_kind(&error, TOLERANCE_OF_PEAKS, true);
+}
+
+double error_of_kind(const TrajectoryError *error, ToleranceOf kind, bool is_limited)
+{
+    switch (kind) {
+    case TOLERANCE_OF_FORCES:
+        return is_limited ? error->force_max_in_horizon : error->force_max;
+    case TOLERANCE_OF_PEAKS:
+        return is_limited ? fmax(error->peak_force_max_in_horizon, error->peak_alpha_max_in_horizon)
+                          : fmax(error->peak_force_max, error->peak_alpha_max);
+    default:
+        return error_of_run(error, is_limited);
+    }
+}
+
 const char *error_is_unstable(const TrajectoryError *error, bool is_limited)
 {
     if (!(error_of_run(error, is_limited) < ERROR_UNSTABLE)) {
@@ -209,6 +558,8 @@ TrajectoryError error_against(const Trajectory *trajectory, const Trajectory *re
     DistanceMeasure measure = distance_measure(reference);
     add_rates(trajectory, reference, horizon_s, &measure, &error);
     error_add_beside(trajectory, reference, &error);
+    add_forces(trajectory, reference, horizon_s, &error);
+    error_add_peak_alphas(trajectory, reference, horizon_s, &error);
     distance_finish(&measure);
     // a horizon without a sample beyond the start gives no error
     if (reference->sample_count > 1 && !(reference->times[1] <= horizon_s)) {

@@ -48,7 +48,8 @@ void task_measure(const void *context, void *result)
     }
     const double started_s = clock_processor_s();
     Trajectory *trajectory =
-        backend_run(&task->scenario, task->backend, truth, (ChosenWatch){.begin = NULL}, NULL);
+        backend_run(&task->scenario, task->backend, truth, (ChosenWatch){.begin = NULL},
+                    run->kind == LADDER_ERROR ? backend_run_probe(&task->scenario) : NULL);
     run->processor_s = clock_processor_s() - started_s;
     run->is_complete = trajectory->is_complete;
     shorten_copy(run->message, sizeof run->message, trajectory->message);

@@ -446,6 +446,30 @@ Truth truth_make(const Scenario *scenario, RunWatch watch)
     return truth_make_on(scenario, watch, 1);
 }
 
+// of the other run's tolerance to the truth's
+static const double OTHER = 1e1;
+
+Scenario truth_at_other_tolerance(const Scenario *scenario)
+{
+    const double own = options_reference_tolerance(&scenario->reference);
+    return with_tolerance(scenario,
+                          own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER);
+}
+
+double truth_uncertainty_of(const Truth *truth, const Scenario *scenario, ToleranceOf kind,
+                            double until_s, RunWatch watch)
+{
+    if (kind == TOLERANCE_OF_MOTION) {
+        return truth->uncertainty;
+    }
+    const Scenario other = truth_at_other_tolerance(scenario);
+    Trajectory *second = tracer_run(&other, registry_solver(BACKEND_REFERENCE), watch);
+    const TrajectoryError error = error_against(second, truth->trajectory, until_s);
+    const double apart = error_of_kind(&error, kind, true);
+    trajectory_destroy(second);
+    return error.is_known && isfinite(apart) ? apart + truth->uncertainty : INFINITY;
+}
+
 Truth truth_make_uncertified(const Scenario *scenario, RunWatch watch)
 {
     Truth truth = {

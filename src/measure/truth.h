@@ -28,6 +28,16 @@ Truth truth_make_on(const Scenario *scenario, RunWatch watch, size_t threads);
 Truth truth_make_uncertified(const Scenario *scenario, RunWatch watch);
 void truth_finish(Truth *truth);
 
+// The scenario with another tolerance of the reference: ten times looser, or tighter where no run
+// is as loose.
+Scenario truth_at_other_tolerance(const Scenario *scenario);
+
+// How sure a certified truth is of what a tolerance is of, up to a time, s: of motion as it says
+// itself; of forces and peaks by how far a run of the reference at another tolerance is off, 1.
+// INFINITY where that run fails.
+double truth_uncertainty_of(const Truth *truth, const Scenario *scenario, ToleranceOf kind,
+                            double until_s, RunWatch watch);
+
 // The backend that errors of a scenario are taken against.
 BackendKind truth_backend(const Scenario *scenario);
 

@@ -2,6 +2,7 @@
 // case file.
 #pragma once
 
+#include "model/joint_number_list.h"
 #include "model/linkage.h"
 
 enum {
@@ -14,6 +15,8 @@ enum {
     OUTCOME_WORDS_SIZE = 160,
 };
 
+#define EXPECTATION_OF_JOINT(id, ...) EXPECTED_##id,
+
 // What is limited.
 typedef enum ExpectedNumber {
     EXPECTED_OMEGA_MAX, // of a body, rad/s
@@ -21,16 +24,16 @@ typedef enum ExpectedNumber {
     EXPECTED_ALPHA_MAX, // rad/s^2
     EXPECTED_ALPHA_MIN,
     EXPECTED_ALPHA_SPIKES,
-    EXPECTED_FORCE_MAX, // of a joint, N
-    EXPECTED_FORCE_SPIKES,
-    EXPECTED_IMPACTS,          // of a joint with play
-    EXPECTED_IMPULSE,          // N s
-    EXPECTED_PENETRATION_MAX,  // m
-    EXPECTED_CONTACT_FRACTION, // 1
-    EXPECTED_ERROR_MAX,        // 1, as the three below up to the horizon of predictability
+    // of a joint, in the order of model/joint_number_list.h
+    JOINT_NUMBERS_OF_ANY_LIST(EXPECTATION_OF_JOINT) EXPECTED_FORCE_SPIKES,
+    JOINT_NUMBERS_OF_PLAY_LIST(EXPECTATION_OF_JOINT)
+        EXPECTED_ERROR_MAX, // 1, as the six below up to the horizon of predictability
     EXPECTED_ERROR_OMEGA_MAX,
     EXPECTED_ERROR_OMEGA_RMS,
     EXPECTED_ERROR_ALPHA_MAX,
+    EXPECTED_ERROR_FORCE_MAX,
+    EXPECTED_ERROR_PEAK_FORCE_MAX,
+    EXPECTED_ERROR_PEAK_ALPHA_MAX,
     EXPECTED_DRIVE_WORK, // J
     EXPECTED_DISSIPATED,
     EXPECTED_CHANGE,

@@ -13,6 +13,7 @@ const char *const OPTIONS_LAWS[] = {OPTIONS_LAW_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_DAMPINGS[] = {OPTIONS_DAMPING_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_RUN_STARTS[] = {OPTIONS_RUN_START_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_SOLVERS[] = {OPTIONS_ODE_SOLVER_LIST(WORD) NULL};
+const char *const OPTIONS_TOLERANCES_OF[] = {OPTIONS_TOLERANCE_OF_LIST(WORD) NULL};
 const char *const OPTIONS_ODE_STEPPINGS[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_ROW_MAP_LIST(MEMBER_WORD) "impulse", NULL};
 const char *const OPTIONS_ODE_COLLIDERS[] = {OPTIONS_ODE_COLLIDER_LIST(MEMBER_WORD) NULL};
@@ -70,6 +71,7 @@ RunOptions run_options_default(void)
         .tolerance = 1e-4,
         .start = START_WRITTEN,
         .settle_most = 100, // ten times what the slowest of the cases takes
+        .tolerance_of = TOLERANCE_OF_MOTION, // what of all errors is most sure of
         .most_steps = 3000000, // a minute of world steps that are full of contacts, 20 us each
         // as much as ideal joints show by themselves, so that they show no spike
         .spike_threshold = 1.0,

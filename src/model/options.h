@@ -91,6 +91,12 @@
     member(ODE_CIRCUMSCRIBED, "circumscribed") \
     member(ODE_INSCRIBED, "inscribed")
 
+// The error that a tolerance is of; see measure/error.h.
+#define OPTIONS_TOLERANCE_OF_LIST(member) \
+    member(TOLERANCE_OF_MOTION, "motion") \
+    member(TOLERANCE_OF_FORCES, "forces") \
+    member(TOLERANCE_OF_PEAKS, "peaks")
+
 // clang-format on
 #define OPTIONS_ENUMERATOR(id, ...) id,
 
@@ -111,6 +117,9 @@ typedef enum OdeStepping {
 typedef enum OdeCollider {
     OPTIONS_ODE_COLLIDER_LIST(OPTIONS_ENUMERATOR) ODE_COLLIDER_COUNT
 } OdeCollider;
+typedef enum ToleranceOf {
+    OPTIONS_TOLERANCE_OF_LIST(OPTIONS_ENUMERATOR) TOLERANCE_OF_COUNT
+} ToleranceOf;
 typedef enum BackendKind { OPTIONS_BACKEND_LIST(OPTIONS_ENUMERATOR) BACKEND_COUNT } BackendKind;
 typedef enum ContactModel {
     OPTIONS_CONTACT_MODEL_LIST(OPTIONS_ENUMERATOR) CONTACT_MODEL_COUNT
@@ -126,6 +135,7 @@ extern const char *const OPTIONS_LAWS[];
 extern const char *const OPTIONS_DAMPINGS[];
 extern const char *const OPTIONS_RUN_STARTS[];
 extern const char *const OPTIONS_ODE_SOLVERS[];
+extern const char *const OPTIONS_TOLERANCES_OF[];
 extern const char *const OPTIONS_ODE_STEPPINGS[];
 extern const char *const OPTIONS_ODE_MAPS[];
 extern const char *const OPTIONS_ODE_COLLIDERS[];
@@ -172,6 +182,7 @@ typedef struct RunOptions {
                             // for; 0: as `samples` says
     double step;            // s; 0: chosen for the tolerance
     double tolerance;       // 1, largest error wanted of a step that is chosen
+    ToleranceOf tolerance_of;
     size_t most_steps;      // world steps of all trials of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show
     double report_from;     // s, or turns of the driver; what is before is not reported

@@ -1,9 +1,11 @@
 // The field tables of errors and distributions.
 #include "write/measured_fields.h"
 
-#define ERROR(member)  .offset = offsetof(TrajectoryError, member)
-#define SPREAD(member) .offset = offsetof(Distribution, member)
-#define METRIC(number) .offset = sizeof(Distribution) * (number)
+#define ERROR(member)    .offset = offsetof(TrajectoryError, member)
+#define OF_JOINT(member) .offset = offsetof(JointError, member)
+#define OF_BODY(member)  .offset = offsetof(BodyError, member)
+#define SPREAD(member)   .offset = offsetof(Distribution, member)
+#define METRIC(number)   .offset = sizeof(Distribution) * (number)
 
 enum { KEPT = FIELD_JSON | FIELD_STORE, SHOWN = KEPT | FIELD_CSV };
 
@@ -21,6 +23,31 @@ const Field ERROR_FIELDS[] = {
     {"alpha_max", FIELD_NUMBER, SHOWN, ERROR(alpha_max)},
     {"angle_max_rad", FIELD_NUMBER, SHOWN, ERROR(angle_max_rad)},
     {"energy_lost", FIELD_NUMBER, KEPT, ERROR(energy_lost)},
+    {"force_max", FIELD_NUMBER, KEPT, ERROR(force_max)},
+    {"force_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(force_max_in_horizon)},
+    {"force_in", FIELD_TEXT, KEPT, ERROR(force_in), .size = LINKAGE_NAME_SIZE},
+    {"peak_force_max", FIELD_NUMBER, KEPT, ERROR(peak_force_max)},
+    {"peak_force_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(peak_force_max_in_horizon)},
+    {"peak_force_in", FIELD_TEXT, KEPT, ERROR(peak_force_in), .size = LINKAGE_NAME_SIZE},
+    {"peak_alpha_max", FIELD_NUMBER, KEPT, ERROR(peak_alpha_max)},
+    {"peak_alpha_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(peak_alpha_max_in_horizon)},
+    {"peak_alpha_in", FIELD_TEXT, KEPT, ERROR(peak_alpha_in), .size = LINKAGE_NAME_SIZE},
+    {0},
+};
+
+const Field ERROR_JOINT_FIELDS[] = {
+    {"force_max", FIELD_NUMBER, FIELD_JSON, OF_JOINT(force_max)},
+    {"force_max_in_horizon", FIELD_NUMBER, FIELD_JSON, OF_JOINT(force_max_in_horizon)},
+    {"peak_force_max", FIELD_NUMBER, FIELD_JSON, OF_JOINT(peak_max)},
+    {"peak_force_max_in_horizon", FIELD_NUMBER, FIELD_JSON, OF_JOINT(peak_max_in_horizon)},
+    {"missed", FIELD_COUNT, FIELD_JSON, OF_JOINT(missed)},
+    {"extra", FIELD_COUNT, FIELD_JSON, OF_JOINT(extra)},
+    {0},
+};
+
+const Field ERROR_BODY_FIELDS[] = {
+    {"peak_alpha_max", FIELD_NUMBER, FIELD_JSON, OF_BODY(peak_max)},
+    {"peak_alpha_max_in_horizon", FIELD_NUMBER, FIELD_JSON, OF_BODY(peak_max_in_horizon)},
     {0},
 };
 

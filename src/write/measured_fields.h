@@ -7,6 +7,8 @@
 
 // Of a TrajectoryError.
 extern const Field ERROR_FIELDS[];
+extern const Field ERROR_JOINT_FIELDS[];
+extern const Field ERROR_BODY_FIELDS[];
 
 // Of the Distributions of a joint, by EnsembleMetric: a group each, in the joint's units. Those of
 // a joint with limits about which it turns are torques and angles.

@@ -95,70 +95,167 @@ static void write_ranges(const Trajectory *trajectory, size_t sample, FILE *stre
     }
 }
 
-// What a slider has more than a pin: its tilt, the couple with the force on it, and of a block the
-// vector sum of the forces whose sizes its force adds up.
-static bool slides(const Joint *joint)
+// What is written of joints: a row gives the column's name, its unit, which joints have it, and its
+// value.
+
+// One joint at one sample.
+typedef struct SeriesPlace {
+    const Linkage *linkage;
+    const Trajectory *trajectory;
+    size_t sample;
+    size_t joint;
+    const JointState *state;
+    const SpaceJointState *space; // NULL in the plane
+} SeriesPlace;
+
+typedef enum SeriesUnit {
+    SERIES_AS_NAMED, // it stands in the name
+    SERIES_FORCE,    // N, or N m where limits turn the joint
+    SERIES_LENGTH,   // m, or rad
+} SeriesUnit;
+
+typedef struct SeriesColumn {
+    const char *name;
+    SeriesUnit unit;
+    bool (*has)(const Joint *joint); // NULL: every joint
+    double (*find)(const SeriesPlace *place);
+} SeriesColumn;
+
+static bool series_slides(const Joint *joint)
 {
     return joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE;
 }
 
-static void write_slide_heads(const Linkage *linkage, FILE *stream)
+static bool series_is_guide(const Joint *joint)
 {
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const char *name = linkage->joints[i].name;
-        if (slides(&linkage->joints[i])) {
-            fprintf(stream, ",%s_tilt_rad,%s_moment_N_m", name, name);
-            fprintf(stream, ",%s_slide_acceleration_m_s2", name);
-        }
-        if (linkage->joints[i].kind == JOINT_GUIDE) {
-            fprintf(stream, ",%s_resultant_N", name);
-        }
-    }
+    return joint->kind == JOINT_GUIDE;
 }
 
-static void write_slides(const Linkage *linkage, const Trajectory *trajectory, size_t sample,
-                         FILE *stream)
+static bool series_is_pin(const Joint *joint)
 {
-    const Motion *motions = trajectory_motion(trajectory, sample, 0);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (slides(joint)) {
-            const JointState *state = trajectory_state(trajectory, sample, i);
-            const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
-            const Vec2 along = joint_rows_along(linkage, motions, (int)i);
-            const double numbers[] = {state->tilt, state->moment_on_b,
-                                      vec2_dot(along, motions[body].acceleration)};
-            write_cells(numbers, 3, stream);
-        }
-        if (joint->kind == JOINT_GUIDE) {
-            const double resultant =
-                vec2_length(trajectory_state(trajectory, sample, i)->force_on_b);
-            write_cells(&resultant, 1, stream);
-        }
-    }
+    return joint->kind == JOINT_CLEARANCE;
+}
+
+static bool series_has_limits(const Joint *joint)
+{
+    return joint->limits.kind != LIMIT_NONE;
+}
+
+static double series_slide_acceleration(const SeriesPlace *place)
+{
+    const Joint *joint = &place->linkage->joints[place->joint];
+    const Motion *motions = trajectory_motion(place->trajectory, place->sample, 0);
+    const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
+    const Vec2 along = joint_rows_along(place->linkage, motions, (int)place->joint);
+    return vec2_dot(along, motions[body].acceleration);
+}
+
+// Of a block the vector sum of the forces whose sizes its force adds up.
+static double series_resultant(const SeriesPlace *place)
+{
+    return vec2_length(place->state->force_on_b);
 }
 
 // The coordinate of a joint that has limits, whichever of its kind.
-static void write_limit_heads(const Linkage *linkage, FILE *stream)
+static double series_coordinate(const SeriesPlace *place)
+{
+    return place->linkage->is_spatial
+               ? place->state->tilt
+               : coordinate_position(place->linkage,
+                                     trajectory_motion(place->trajectory, place->sample, 0),
+                                     (int)place->joint);
+}
+
+// clang-format off
+#define FINDER(name, member) \
+    static double series_##name(const SeriesPlace *place) \
+    { \
+        return place->member; \
+    }
+FINDER(eccentricity_x, state->eccentricity.x)
+FINDER(eccentricity_y, state->eccentricity.y)
+FINDER(gap, state->gap)
+FINDER(force, state->force)
+FINDER(tilt, state->tilt)
+FINDER(moment, state->moment_on_b)
+FINDER(pin_tilt, space->tilt)
+FINDER(pin_axial, space->axial)
+FINDER(pin_axial_force, space->axial_force)
+FINDER(gap_back, space->end_gaps[0])
+FINDER(gap_front, space->end_gaps[1])
+FINDER(force_back, space->end_forces[0])
+FINDER(force_front, space->end_forces[1])
+
+static const SeriesColumn OF_JOINTS[] = {
+    {"ex_m", SERIES_AS_NAMED, NULL, series_eccentricity_x},
+    {"ey_m", SERIES_AS_NAMED, NULL, series_eccentricity_y},
+    {"gap", SERIES_LENGTH, NULL, series_gap},
+    {"force", SERIES_FORCE, NULL, series_force},
+    {0},
+};
+// what a slider has more than a pin
+static const SeriesColumn OF_SLIDERS[] = {
+    {"tilt_rad", SERIES_AS_NAMED, series_slides, series_tilt},
+    {"moment_N_m", SERIES_AS_NAMED, series_slides, series_moment},
+    {"slide_acceleration_m_s2", SERIES_AS_NAMED, series_slides, series_slide_acceleration},
+    {"resultant_N", SERIES_AS_NAMED, series_is_guide, series_resultant},
+    {0},
+};
+static const SeriesColumn OF_LIMITS[] = {
+    {"coordinate", SERIES_LENGTH, series_has_limits, series_coordinate},
+    {0},
+};
+static const SeriesColumn OF_PINS_IN_SPACE[] = {
+    {"tilt_rad", SERIES_AS_NAMED, series_is_pin, series_pin_tilt},
+    {"axial_m", SERIES_AS_NAMED, series_is_pin, series_pin_axial},
+    {"axial_force_N", SERIES_AS_NAMED, series_is_pin, series_pin_axial_force},
+    {"gap_back_m", SERIES_AS_NAMED, series_is_pin, series_gap_back},
+    {"gap_front_m", SERIES_AS_NAMED, series_is_pin, series_gap_front},
+    {"force_back_N", SERIES_AS_NAMED, series_is_pin, series_force_back},
+    {"force_front_N", SERIES_AS_NAMED, series_is_pin, series_force_front},
+    {0},
+};
+// clang-format on
+
+static bool series_column_is_of(const SeriesColumn *column, const Joint *joint)
+{
+    return column->has == NULL || column->has(joint);
+}
+
+static void write_joint_heads(const SeriesColumn *columns, const Linkage *linkage, FILE *stream)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->limits.kind != LIMIT_NONE) {
-            fprintf(stream, ",%s_coordinate_%s", joint->name, joint_units(joint)->length_key);
+        const JointUnits *units = joint_units(joint);
+        for (const SeriesColumn *column = columns; column->name != NULL; column++) {
+            if (series_column_is_of(column, joint)) {
+                fprintf(stream, ",%s_%s%s%s", joint->name, column->name,
+                        column->unit == SERIES_AS_NAMED ? "" : "_",
+                        column->unit == SERIES_AS_NAMED ? ""
+                        : column->unit == SERIES_FORCE  ? units->force_key
+                                                        : units->length_key);
+            }
         }
     }
 }
 
-static void series_rows_write_limits(const Linkage *linkage, const Trajectory *trajectory,
-                                     size_t sample, FILE *stream)
+static void write_joint_cells(const SeriesColumn *columns, const Linkage *linkage,
+                              const Trajectory *trajectory, size_t sample, FILE *stream)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].limits.kind != LIMIT_NONE) {
-            const double at = linkage->is_spatial
-                                  ? trajectory_state(trajectory, sample, i)->tilt
-                                  : coordinate_position(
-                                        linkage, trajectory_motion(trajectory, sample, 0), (int)i);
-            write_cells(&at, 1, stream);
+        const SeriesPlace place = {
+            .linkage = linkage,
+            .trajectory = trajectory,
+            .sample = sample,
+            .joint = i,
+            .state = trajectory_state(trajectory, sample, i),
+            .space = linkage->is_spatial ? trajectory_space_state(trajectory, sample, i) : NULL,
+        };
+        for (const SeriesColumn *column = columns; column->name != NULL; column++) {
+            if (series_column_is_of(column, &linkage->joints[i])) {
+                const double value = column->find(&place);
+                write_cells(&value, 1, stream);
+            }
         }
     }
 }
@@ -170,14 +267,7 @@ static void write_space_heads(const Linkage *linkage, FILE *stream)
         const char *name = linkage->bodies[i].name;
         fprintf(stream, ",%s_z_m,%s_omega_x_rad_s,%s_omega_y_rad_s", name, name, name);
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const char *name = linkage->joints[i].name;
-        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
-            fprintf(stream, ",%s_tilt_rad,%s_axial_m,%s_axial_force_N", name, name, name);
-            fprintf(stream, ",%s_gap_back_m,%s_gap_front_m", name, name);
-            fprintf(stream, ",%s_force_back_N,%s_force_front_N", name, name);
-        }
-    }
+    write_joint_heads(OF_PINS_IN_SPACE, linkage, stream);
 }
 
 static void write_space(const Linkage *linkage, const Trajectory *trajectory, size_t sample,
@@ -188,16 +278,7 @@ static void write_space(const Linkage *linkage, const Trajectory *trajectory, si
         write_cells((const double[]){motion->position.z, motion->omega.x, motion->omega.y}, 3,
                     stream);
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const SpaceJointState *state = trajectory_space_state(trajectory, sample, i);
-        const double numbers[] = {
-            state->tilt,        state->axial,         state->axial_force,   state->end_gaps[0],
-            state->end_gaps[1], state->end_forces[0], state->end_forces[1],
-        };
-        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
-            write_cells(numbers, sizeof numbers / sizeof numbers[0], stream);
-        }
-    }
+    write_joint_cells(OF_PINS_IN_SPACE, linkage, trajectory, sample, stream);
 }
 
 // The rates by which motions are compared, but for what is written of every body anyway.
@@ -235,18 +316,13 @@ static void series_rows_write_head(const Scenario *scenario, const Trajectory *t
         const char *name = linkage->bodies[i].name;
         fprintf(stream, ",%s_angle_rad,%s_omega_rad_s,%s_alpha_rad_s2", name, name, name);
     }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const char *name = linkage->joints[i].name;
-        const JointUnits *units = joint_units(&linkage->joints[i]);
-        fprintf(stream, ",%s_ex_m,%s_ey_m,%s_gap_%s,%s_force_%s", name, name, name,
-                units->length_key, name, units->force_key);
-    }
+    write_joint_heads(OF_JOINTS, linkage, stream);
     for (size_t i = 0; i < scenario->point_count; i++) {
         const char *name = scenario->points[i].name;
         fprintf(stream, ",%s_x_m,%s_y_m", name, name);
     }
-    write_slide_heads(linkage, stream);
-    write_limit_heads(linkage, stream);
+    write_joint_heads(OF_SLIDERS, linkage, stream);
+    write_joint_heads(OF_LIMITS, linkage, stream);
     if (linkage->is_spatial) {
         write_space_heads(linkage, stream);
     }
@@ -267,20 +343,15 @@ static void series_rows_write_row(const Scenario *scenario, const Trajectory *tr
         const Motion *motion = trajectory_motion(trajectory, sample, i);
         write_cells((const double[]){motion->angle, motion->omega, motion->alpha}, 3, stream);
     }
-    for (size_t i = 0; i < trajectory->joint_count; i++) {
-        const JointState *state = trajectory_state(trajectory, sample, i);
-        const double numbers[] = {state->eccentricity.x, state->eccentricity.y, state->gap,
-                                  state->force};
-        write_cells(numbers, 4, stream);
-    }
+    write_joint_cells(OF_JOINTS, &scenario->linkage, trajectory, sample, stream);
     const Motion *motions = trajectory_motion(trajectory, sample, 0);
     for (size_t i = 0; i < scenario->point_count; i++) {
         const TracedPoint *point = &scenario->points[i];
         const Vec2 position = linkage_point(motions, point->body, point->local);
         write_cells((const double[]){position.x, position.y}, 2, stream);
     }
-    write_slides(&scenario->linkage, trajectory, sample, stream);
-    series_rows_write_limits(&scenario->linkage, trajectory, sample, stream);
+    write_joint_cells(OF_SLIDERS, &scenario->linkage, trajectory, sample, stream);
+    write_joint_cells(OF_LIMITS, &scenario->linkage, trajectory, sample, stream);
     if (scenario->linkage.is_spatial) {
         write_space(&scenario->linkage, trajectory, sample, stream);
     }

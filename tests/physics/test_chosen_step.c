@@ -9,6 +9,8 @@
 #include "casefile/casefile.h"
 #include "kept.h"
 #include "measure/chosen_run.h"
+#include "run/registry.h"
+#include "run/tracer.h"
 
 #include <string.h>
 
@@ -359,6 +361,52 @@ static void a_failure_ahead_of_another_mechanism_ends_no_trials(void **state)
     scenario_free(&scenario);
 }
 
+// A run that holds a tolerance of one error, as a reference of another tolerance sees it; returns
+// the error of a kind.
+static double error_held(ToleranceOf asked, ToleranceOf kind, double tolerance)
+{
+    Scenario scenario = loose(tolerance, 1);
+    scenario.run.tolerance_of = asked;
+    // peaks are those within steps
+    Trajectory *run = chosen_run_make(&scenario, NULL, NOBODY, &TRACER_PROBE);
+    Scenario other = kept_copy(&scenario);
+    other.reference.tolerance = JUDGE;
+    Trajectory *exact =
+        tracer_run(&other, registry_solver(BACKEND_REFERENCE), (RunWatch){.progress = NULL});
+    const TrajectoryError error = error_against(run, exact, run->estimate_s);
+    assert_true(run->is_complete && exact->is_complete);
+    assert_true(run->error_estimate <= tolerance);
+    if (asked == kind && !(error_of_kind(&error, kind, true) <= run->error_estimate)) {
+        fail_msg("estimated %g, delivered %g", run->error_estimate,
+                 error_of_kind(&error, kind, true));
+    }
+    assert_false(run->is_short);
+    trajectory_destroy(exact);
+    trajectory_destroy(run);
+    return error_of_kind(&error, kind, true);
+}
+
+static void a_tolerance_of_forces_or_peaks_is_held_where_that_of_motion_is_not(void **state)
+{
+    (void)state;
+    assert_true(error_held(TOLERANCE_OF_FORCES, TOLERANCE_OF_FORCES, 1e-3) <= 1e-3);
+    assert_true(error_held(TOLERANCE_OF_PEAKS, TOLERANCE_OF_PEAKS, 1e-4) <= 1e-4);
+    // the control: a motion that is right to so much has peaks that are not
+    assert_true(error_held(TOLERANCE_OF_MOTION, TOLERANCE_OF_PEAKS, 1e-5) > 1e-4);
+}
+
+static void forces_that_the_reference_does_not_know_so_well_are_refused(void **state)
+{
+    (void)state;
+    Scenario scenario = loose(1e-8, 1);
+    scenario.run.tolerance_of = TOLERANCE_OF_PEAKS;
+    scenario.reference.tolerance = 1e-9;
+    Trajectory *run = chosen_run_make(&scenario, NULL, NOBODY, NULL);
+    assert_false(run->is_complete);
+    assert_non_null(strstr(run->message, "ten times the uncertainty of the reference"));
+    trajectory_destroy(run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -375,6 +423,8 @@ int main(void)
         cmocka_unit_test(where_the_reference_is_not_sure_enough_the_window_ends),
         cmocka_unit_test(an_error_that_cannot_be_told_is_refused),
         cmocka_unit_test(without_a_reference_its_own_words_come_first),
+        cmocka_unit_test(a_tolerance_of_forces_or_peaks_is_held_where_that_of_motion_is_not),
+        cmocka_unit_test(forces_that_the_reference_does_not_know_so_well_are_refused),
         cmocka_unit_test(trials_that_fail_at_one_place_are_few),
         cmocka_unit_test(a_failure_ahead_of_another_mechanism_ends_no_trials),
     };

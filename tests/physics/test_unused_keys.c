@@ -95,7 +95,7 @@ static const struct {
               "ode: {solver: quick, collider: staves, iterations: 3}\n"},
     {"chosen step", "bodies: {arm: {mass: 0.1 kg, inertia: 20 kg mm^2, at: [50 mm, 0 mm]}}\n"
                     "joints: {hinge: {between: [ground, arm], at: [0 mm, 0 mm]}}\n"
-                    "run: {duration: 20 ms, samples: 20}\n"},
+                    "run: {duration: 20 ms, samples: 20, tolerance: 1e-8}\n"},
 };
 
 // Of what is printed or drawn from the runs, and of the limits for their cost: no number of a run

@@ -6,6 +6,8 @@
 
 #include "measure/error.h"
 
+#include <string.h>
+
 // A trajectory whose speeds are sin and cos of the sample, each body scaled.
 static Trajectory *made(const Scenario *scenario, double offset, double slip)
 {
@@ -172,6 +174,96 @@ static void a_number_that_is_not_finite_is_no_small_error(void **state)
     trajectory_destroy(broken);
 }
 
+// A run of the paper's mechanism with play, whose pin is pushed with 100 N but for one sample.
+static Trajectory *made_pushed(const Scenario *scenario, double force, const Spike *spikes,
+                               size_t count)
+{
+    Trajectory *trajectory = made(scenario, 0.0, 0.0);
+    for (size_t k = 0; k < trajectory->sample_count; k++) {
+        trajectory->states[k * trajectory->joint_count + 1].force = k == 7 ? force : 100.0;
+    }
+    JointExtremes *joint = &trajectory->joints[1];
+    joint->force_max.value = 400.0;
+    joint->spike_count = count;
+    for (size_t i = 0; i < count; i++) {
+        joint->spikes[i] = spikes[i];
+    }
+    return trajectory;
+}
+
+static JointError force_error(const Spike *run, size_t run_count, const Spike *truth,
+                              size_t truth_count, double horizon_s)
+{
+    Scenario scenario = mechanism_loose(1);
+    scenario.run.samples = 20;
+    scenario.run.revolutions = 1.0;
+    Trajectory *reference = made_pushed(&scenario, 100.0, truth, truth_count);
+    Trajectory *other = made_pushed(&scenario, 97.0, run, run_count);
+    assert_true(error_has_forces(other, reference, 1));
+    assert_false(error_has_forces(other, reference, 0));
+    const JointError error = error_of_joint(other, reference, 1, horizon_s);
+    trajectory_destroy(reference);
+    trajectory_destroy(other);
+    return error;
+}
+
+static void a_force_is_off_by_a_share_of_the_joints_largest(void **state)
+{
+    (void)state;
+    const JointError error = force_error(NULL, 0, NULL, 0, 0.02);
+    assert_near(error.force_max, 0.03, 1e-15);
+    // the horizon ends before that sample
+    assert_near(error.force_max_in_horizon, 0.0, 0.0);
+    assert_near(error.peak_max, 0.0, 0.0);
+}
+
+static void contacts_that_overlap_are_compared_and_others_are_off_by_all_they_have(void **state)
+{
+    (void)state;
+    const Spike truth[] = {
+        {.onset_s = 10e-3, .duration_s = 10e-3, .force_max = 400.0},
+        {.onset_s = 50e-3, .duration_s = 1e-4, .force_max = 40.0},
+    };
+    // one contact of the reference is two here, and the second stands elsewhere
+    const Spike run[] = {
+        {.onset_s = 11e-3, .duration_s = 2e-4, .force_max = 396.0},
+        {.onset_s = 15e-3, .duration_s = 10e-3, .force_max = 8.0},
+        {.onset_s = 60e-3, .duration_s = 1e-4, .force_max = 20.0},
+    };
+    JointError error = force_error(run, 2, truth, 1, INFINITY);
+    assert_near(error.peak_max, 0.01, 1e-15);
+    assert_int_equal(error.missed + error.extra, 0);
+    error = force_error(run, 3, truth, 2, INFINITY);
+    assert_near(error.peak_max, 0.1, 1e-15);
+    assert_int_equal(error.missed, 1);
+    assert_int_equal(error.extra, 1);
+    // up to a horizon before those, and to one in the first contact
+    error = force_error(run, 3, truth, 2, 40e-3);
+    assert_near(error.peak_max_in_horizon, 0.01, 1e-15);
+    assert_near(force_error(run, 3, truth, 2, 20e-3).peak_max_in_horizon, 0.0, 0.0);
+}
+
+static void a_contact_that_was_not_kept_is_no_stronger_than_those_that_were(void **state)
+{
+    (void)state;
+    Spike truth[TRAJECTORY_SPIKE_MAX];
+    for (size_t i = 0; i < TRAJECTORY_SPIKE_MAX; i++) {
+        truth[i] = (Spike){
+            .onset_s = 1e-4 * (double)i, .duration_s = 1e-5, .force_max = 400.0 - 10.0 * (double)i};
+    }
+    Spike run[TRAJECTORY_SPIKE_MAX];
+    memcpy(run, truth, sizeof run);
+    // one that the reference may have had, too, as the thirteenth
+    run[TRAJECTORY_SPIKE_MAX - 1].onset_s = 50e-4;
+    JointError error =
+        force_error(run, TRAJECTORY_SPIKE_MAX, truth, TRAJECTORY_SPIKE_MAX, INFINITY);
+    assert_near(error.peak_max, 0.0, 0.0);
+    // and one that it cannot have had
+    run[TRAJECTORY_SPIKE_MAX - 1].force_max = 330.0;
+    error = force_error(run, TRAJECTORY_SPIKE_MAX, truth, TRAJECTORY_SPIKE_MAX, INFINITY);
+    assert_near(error.peak_max, 0.1, 1e-15);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -181,6 +273,9 @@ int main(void)
         cmocka_unit_test(a_pin_is_measured_in_its_hole),
         cmocka_unit_test(a_failed_run_has_no_error),
         cmocka_unit_test(a_number_that_is_not_finite_is_no_small_error),
+        cmocka_unit_test(a_force_is_off_by_a_share_of_the_joints_largest),
+        cmocka_unit_test(contacts_that_overlap_are_compared_and_others_are_off_by_all_they_have),
+        cmocka_unit_test(a_contact_that_was_not_kept_is_no_stronger_than_those_that_were),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,6 +33,7 @@ static const char *const UNWRITTEN[] = {
     "run.settle-most",
     "run.samples",
     "run.tolerance",
+    "run.tolerance-of",
     "reference.tolerance",
     // replaced in this case: by its revolutions and its viscous damping
     "run.duration",

@@ -50,7 +50,7 @@ static void columns_have_names_with_units(void **state)
     const Spec bare = one_key(false);
     Layout short_one;
     metrics_layout(&bare, &scenario, &short_one);
-    assert_int_equal(short_one.result_count + 8, layout.result_count);
+    assert_int_equal(short_one.result_count + 14, layout.result_count);
 }
 
 static void names_that_become_one_are_numbered(void **state)

@@ -10,6 +10,7 @@
 #include "contact/law.h"
 #include "measure/chosen_run.h"
 #include "measure/truth.h"
+#include "model/joint_numbers.h"
 #include "model/perturb.h"
 #include "model/shake.h"
 #include "run/registry.h"
@@ -31,18 +32,30 @@ static double error_number(const TrajectoryError *error, ExpectedNumber number)
     if (error == NULL || !error->is_known) {
         return NAN;
     }
-    return number == EXPECTED_ERROR_MAX         ? error->max
-           : number == EXPECTED_ERROR_OMEGA_MAX ? error->omega_max
-           : number == EXPECTED_ERROR_OMEGA_RMS ? error->omega_rms
-                                                : error->alpha_max;
+    switch (number) {
+    case EXPECTED_ERROR_MAX:
+        return error->max;
+    case EXPECTED_ERROR_OMEGA_MAX:
+        return error->omega_max;
+    case EXPECTED_ERROR_OMEGA_RMS:
+        return error->omega_rms;
+    case EXPECTED_ERROR_ALPHA_MAX:
+        return error->alpha_max;
+    case EXPECTED_ERROR_FORCE_MAX:
+        return error->force_max;
+    case EXPECTED_ERROR_PEAK_FORCE_MAX:
+        return error->peak_force_max;
+    case EXPECTED_ERROR_PEAK_ALPHA_MAX:
+        return error->peak_alpha_max;
+    default:
+        return NAN;
+    }
 }
 
 bool expect_value_is_error(const Expectation *expectation)
 {
-    return expectation->number == EXPECTED_ERROR_MAX ||
-           expectation->number == EXPECTED_ERROR_OMEGA_MAX ||
-           expectation->number == EXPECTED_ERROR_OMEGA_RMS ||
-           expectation->number == EXPECTED_ERROR_ALPHA_MAX;
+    return expectation->number >= EXPECTED_ERROR_MAX &&
+           expectation->number <= EXPECTED_ERROR_PEAK_ALPHA_MAX;
 }
 
 bool expect_value_concerns(const Expectation *expectation, const Scenario *scenario,
@@ -63,7 +76,6 @@ static double expect_value_of(const Expectation *expectation, const Trajectory *
                               const TrajectoryError *error)
 {
     const BodyExtremes *body = &run->bodies[expectation->member];
-    const JointExtremes *joint = &run->joints[expectation->member];
     switch (expectation->number) {
     case EXPECTED_OMEGA_MAX:
         return body->omega_max.value;
@@ -75,18 +87,13 @@ static double expect_value_of(const Expectation *expectation, const Trajectory *
         return body->alpha_min.value;
     case EXPECTED_ALPHA_SPIKES:
         return spikes(&run->alpha_spikes[expectation->member]);
-    case EXPECTED_FORCE_MAX:
-        return joint->force_max.value;
     case EXPECTED_FORCE_SPIKES:
         return spikes(&run->force_spikes[expectation->member]);
-    case EXPECTED_IMPACTS:
-        return (double)joint->impacts;
-    case EXPECTED_IMPULSE:
-        return joint->impulse;
-    case EXPECTED_PENETRATION_MAX:
-        return joint->penetration_max.value;
-    case EXPECTED_CONTACT_FRACTION:
-        return joint->contact_time / run->duration_s;
+#define EXPECTED_OF_JOINT(id, ...)                                                                 \
+    case EXPECTED_##id:                                                                            \
+        return joint_numbers_find(JOINT_NUMBER_##id, run, (size_t)expectation->member).value;
+        JOINT_NUMBERS_OF_ANY_LIST(EXPECTED_OF_JOINT)
+        JOINT_NUMBERS_OF_PLAY_LIST(EXPECTED_OF_JOINT)
     case EXPECTED_DRIVE_WORK:
         return run->energy.drive_work;
     case EXPECTED_DISSIPATED:
@@ -254,30 +261,38 @@ static double force_at_samples(const Trajectory *run, size_t joint)
     return force;
 }
 
+// One number of a joint; the largest force of one without play as often from its samples.
+static void add_joint_number(CheckAdd *work, const Trajectory *run, BackendKind backend,
+                             JointNumberId id, size_t joint)
+{
+    const JointNumber *number = &JOINT_NUMBERS[id];
+    const Joint *of = &work->scenario->linkage.joints[joint];
+    const double value = joint_numbers_find(id, run, joint).value;
+    char name[CHECK_NAME_SIZE];
+    snprintf(name, sizeof name, "%s%s", number->keys[linkage_is_torsional(of)], number->check_end);
+    // the reference looks for the peak of a contact between its steps
+    if (id == JOINT_NUMBER_FORCE_MAX && is_by_samples(backend) && !linkage_has_play(of)) {
+        check_measure_add_force(work, run, of, "force_max_at_samples_N",
+                                force_at_samples(run, joint), 0.0);
+    } else if (number->kind == JOINT_NUMBER_OF_COUNT) {
+        add_count(work, run, of->name, name, (size_t)value);
+    } else if (number->kind == JOINT_NUMBER_OF_FORCE) {
+        check_measure_add_force(work, run, of, name, value, 0.0);
+    } else {
+        add_real(work, run, of->name, name, value, 0.0);
+    }
+}
+
 static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backend)
 {
     for (size_t i = 0; i < run->joint_count; i++) {
-        const Joint *joint = &work->scenario->linkage.joints[i];
-        const JointExtremes *extremes = &run->joints[i];
-        const bool is_turning = linkage_is_torsional(joint);
-        // the reference looks for the peak of a contact between its steps
-        if (is_by_samples(backend) && !linkage_has_play(joint)) {
-            check_measure_add_force(work, run, joint, "force_max_at_samples_N",
-                                    force_at_samples(run, i), 0.0);
-        } else {
-            check_measure_add_force(work, run, joint, is_turning ? "force_max_N_m" : "force_max_N",
-                                    extremes->force_max.value, 0.0);
+        const bool has_play = linkage_has_play(&work->scenario->linkage.joints[i]) &&
+                              OPTIONS_BACKEND_HAS_PLAY[backend];
+        for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
+            if (has_play || !JOINT_NUMBERS[id].is_of_play) {
+                add_joint_number(work, run, backend, id, i);
+            }
         }
-        if (!linkage_has_play(joint) || !OPTIONS_BACKEND_HAS_PLAY[backend]) {
-            continue;
-        }
-        add_count(work, run, joint->name, "impacts", extremes->impacts);
-        add_real(work, run, joint->name, is_turning ? "impulse_N_m_s" : "impulse_N_s",
-                 extremes->impulse, 0.0);
-        add_real(work, run, joint->name, is_turning ? "penetration_max_rad" : "penetration_max_m",
-                 extremes->penetration_max.value, 0.0);
-        add_real(work, run, joint->name, "contact_fraction_1", trajectory_contact_share(run, i),
-                 0.0);
     }
 }
 
@@ -366,6 +381,27 @@ static void check_add_error(CheckAdd *work, const Trajectory *run, const Traject
                                         .scale = values[i],
                                         .floor = ROUNDING + uncertainty +
                                                  (i == 3 ? alpha_rounding(run, 1.0) : 0.0)});
+    }
+}
+
+// The errors that the tolerance of a case is of, where they are not those of the motion.
+static void add_error_of_kind(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
+                              double uncertainty)
+{
+    const ToleranceOf kind = work->scenario->run.tolerance_of;
+    static const char *const NAMES[] = {"force_max_1", "peak_force_max_1", "peak_alpha_max_1"};
+    const double values[] = {error->force_max, error->peak_force_max, error->peak_alpha_max};
+    for (int i = 0; kind != TOLERANCE_OF_MOTION && i < 3; i++) {
+        const bool is_its = (kind == TOLERANCE_OF_FORCES) == (i == 0);
+        // without play there are no forces of contacts
+        if (is_its && !isnan(values[i])) {
+            check_measure_add(work, run, "error", NAMES[i],
+                              (CheckMetric){.kind = CHECK_REAL,
+                                            .value = values[i],
+                                            .scale = values[i],
+                                            .floor = ROUNDING + uncertainty +
+                                                     (i == 2 ? alpha_rounding(run, 1.0) : 0.0)});
+        }
     }
 }
 
@@ -496,6 +532,7 @@ static void measure_run(CheckAdd *work, BackendKind backend, Trajectory *run,
         return;
     }
     check_add_error(work, run, &error, plan->uncertainty);
+    add_error_of_kind(work, run, &error, plan->uncertainty);
     measure_expected(work, backend, run, &error);
     if (plan->is_full && backend == BACKEND_ODE && work->scenario->run.step > 0.0) {
         add_orders(work, run, truth, plan);
@@ -637,7 +674,7 @@ size_t check_measure_packed_size(const Scenario *scenario)
 {
     // in the same order: extremes and spikes; forces, contacts and spikes; energy, cost,
     // errors and orders
-    enum { OF_BODY = 6, OF_JOINT = 7, OF_RUN = 16, GROUPS = 2 };
+    enum { OF_BODY = 6, OF_JOINT = JOINT_NUMBER_COUNT + 2, OF_RUN = 18, GROUPS = 2 };
     const Linkage *linkage = &scenario->linkage;
     const size_t count = OF_BODY * linkage->body_count + OF_JOINT * linkage->joint_count + OF_RUN;
     return sizeof(CheckMeasure) +

@@ -41,6 +41,7 @@ static void keep_error(const Piece *piece, Trajectory *run, OutcomeRun *result)
 {
     const Truth *truth = piece->truth;
     const bool is_truth = piece->backend == truth_backend(&piece->scenario);
+    const ToleranceOf kind = piece->scenario.run.tolerance_of;
     result->error = is_truth ? truth->uncertainty : NAN;
     if (!is_truth) {
         const double horizon_s = truth->is_limited ? truth->horizon_s : INFINITY;
@@ -48,12 +49,13 @@ static void keep_error(const Piece *piece, Trajectory *run, OutcomeRun *result)
         if (error_fail_unstable(run, truth->trajectory, &error)) {
             return;
         }
-        result->error = error.is_known ? error.max_in_horizon : NAN;
+        result->error = error.is_known ? error_of_kind(&error, kind, true) : NAN;
     }
     result->has_error = isfinite(result->error);
     if (run->error_estimate > 0.0) {
         result->bound = run->error_estimate;
-        result->bound_error = error_against(run, truth->trajectory, run->estimate_s).max_in_horizon;
+        const TrajectoryError until = error_against(run, truth->trajectory, run->estimate_s);
+        result->bound_error = error_of_kind(&until, kind, true);
     }
 }
 
@@ -63,7 +65,8 @@ static void check_run_measure(const void *context, void *target)
     const Piece *piece = context;
     OutcomeRun *result = target;
     const ChosenWatch nobody = {.begin = NULL};
-    Trajectory *run = backend_run(&piece->scenario, piece->backend, piece->truth, nobody, NULL);
+    Trajectory *run = backend_run(&piece->scenario, piece->backend, piece->truth, nobody,
+                                  backend_run_probe(&piece->scenario));
     if (run->is_complete && piece->truth != NULL) {
         keep_error(piece, run, result);
     }

@@ -73,7 +73,7 @@ static void measure_errors(CaseRun *run)
 {
     const bool has_truth = run_report_has_truth(&run->report);
     const Trajectory *truth = has_truth ? run->truth.trajectory : find_run(run, BACKEND_ANALYTIC);
-    const double horizon = has_truth ? run->truth.horizon_s : INFINITY;
+    const double horizon = run_report_horizon(&run->report);
     for (size_t i = 0; truth != NULL && i < run->scenario.run.backend_count; i++) {
         if (run->runs[i] != truth && run->runs[i]->is_complete) {
             run->errors[i] = error_against(run->runs[i], truth, horizon);

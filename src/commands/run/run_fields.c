@@ -85,16 +85,17 @@ RunJoint run_fields_joint(const Linkage *linkage, const Trajectory *run, size_t 
 {
     const JointExtremes *extremes = &run->joints[number];
     const bool is_felt = trajectory_feels_play(run, &linkage->joints[number]);
-    return (RunJoint){
+    RunJoint joint = {
         .is_felt = is_felt,
-        .impacts = extremes->impacts,
-        .force_max = extremes->force_max,
-        .impulse = is_felt ? extremes->impulse : NAN,
-        .penetration_max = is_felt ? extremes->penetration_max.value : NAN,
         .tilt_max = is_felt ? extremes->tilt_max.value : NAN,
         .axial_max = is_felt ? extremes->axial_max.value : NAN,
-        .contact_share = is_felt ? trajectory_contact_share(run, number) : NAN,
     };
+    for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
+        const bool is_count = JOINT_NUMBERS[id].kind == JOINT_NUMBER_OF_COUNT;
+        joint.numbers[id] = joint_numbers_find(id, run, number);
+        joint.counts[id] = is_count && is_felt ? (size_t)joint.numbers[id].value : 0;
+    }
+    return joint;
 }
 
 #define RUN(member)     .offset = offsetof(Trajectory, member)
@@ -160,33 +161,6 @@ const Field RUN_BODY_FIELDS[] = {
     {0},
 };
 
-static const Field IMPACT_FIELDS[] = {
-    {"impacts", FIELD_COUNT, FIELD_JSON | FIELD_TABLE, "impacts", "", JOINT(impacts)},
-    {0},
-};
-const Field RUN_JOINT_FIELDS[] = {
-    {NULL, FIELD_LABEL, FIELD_TABLE, .title = "joint"},
-    {NULL, FIELD_LABEL, FIELD_TABLE, .title = "backend"},
-    {NULL, FIELD_PART, FIELD_JSON | FIELD_TABLE, .of = IMPACT_FIELDS, .has_nulls = true,
-     .part = if_felt},
-    {"force_max_N", FIELD_NUMBER, RUN_PUSHED, "force max", "N", JOINT(force_max.value)},
-    {"force_max_N_m", FIELD_NUMBER, RUN_TURNED, "torque max", "N m", JOINT(force_max.value)},
-    {"force_max_crank_deg", FIELD_DEGREES, FIELD_JSON | RUN_DRIVEN, "at crank", "deg", "%.1f",
-     JOINT(force_max.crank_rad)},
-    {NULL, FIELD_NUMBER, RUN_FREE, "at time", "ms", "%.4f", JOINT(force_max.time_s)},
-    {"impulse_N_s", FIELD_NUMBER, RUN_PUSHED, "impulse", "N s", JOINT(impulse),
-     .align = TABLE_DETAIL},
-    {"impulse_N_m_s", FIELD_NUMBER, RUN_TURNED, "impulse", "N m s", JOINT(impulse),
-     .align = TABLE_DETAIL},
-    {"penetration_max_m", FIELD_NUMBER, RUN_PUSHED, "deepest", "um", JOINT(penetration_max)},
-    {"penetration_max_rad", FIELD_NUMBER, RUN_TURNED, "deepest", "mrad", JOINT(penetration_max)},
-    {"tilt_max_rad", FIELD_NUMBER, RUN_SPATIAL, JOINT(tilt_max)},
-    {"axial_max_m", FIELD_NUMBER, RUN_SPATIAL, JOINT(axial_max)},
-    {"contact_fraction", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "in contact", "%", "%.1f",
-     JOINT(contact_share)},
-    {0},
-};
-
 const Field RUN_CONTACT_FIELDS[] = {
     {NULL, FIELD_LABEL, FIELD_TABLE, .title = "joint"},
     {"onset_s", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "onset", "ms", "%.4f", CONTACT(onset_s)},
@@ -244,6 +218,82 @@ const Field RUN_ENERGY_FIELDS[] = {
     {0},
 };
 // clang-format on
+
+// The fields of a joint: whole numbers in a part that is known with the play, then all others,
+// shares behind them.
+
+static void add_number(JointNumberId id, bool is_torsional, Field **next)
+{
+    const JointNumber *number = &JOINT_NUMBERS[id];
+    const size_t offset = offsetof(RunJoint, numbers) + id * sizeof(Extreme);
+    *(*next)++ = (Field){
+        .key = number->keys[is_torsional],
+        .type = FIELD_NUMBER,
+        .where = FIELD_JSON | FIELD_TABLE,
+        .title = number->titles[is_torsional],
+        .unit = number->units[is_torsional],
+        .format = number->format,
+        .offset = offset + offsetof(Extreme, value),
+        .align = number->is_detail ? TABLE_DETAIL : 0,
+    };
+    if (number->is_timed) {
+        *(*next)++ = (Field){.key = number->crank_key,
+                             .type = FIELD_DEGREES,
+                             .where = FIELD_JSON | RUN_DRIVEN,
+                             .title = "at crank",
+                             .unit = "deg",
+                             .format = "%.1f",
+                             .offset = offset + offsetof(Extreme, crank_rad)};
+        *(*next)++ = (Field){.type = FIELD_NUMBER,
+                             .where = RUN_FREE,
+                             .title = "at time",
+                             .unit = "ms",
+                             .format = "%.4f",
+                             .offset = offset + offsetof(Extreme, time_s)};
+    }
+}
+
+static void add_numbers(bool is_of_shares, bool is_torsional, Field **next)
+{
+    for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
+        const JointNumberKind kind = JOINT_NUMBERS[id].kind;
+        if (kind != JOINT_NUMBER_OF_COUNT && (kind == JOINT_NUMBER_OF_SHARE) == is_of_shares) {
+            add_number(id, is_torsional, next);
+        }
+    }
+}
+
+static void add_counts(Field *next)
+{
+    for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
+        if (JOINT_NUMBERS[id].kind == JOINT_NUMBER_OF_COUNT) {
+            *next++ = (Field){.key = JOINT_NUMBERS[id].keys[false],
+                              .type = FIELD_COUNT,
+                              .where = FIELD_JSON | FIELD_TABLE,
+                              .title = JOINT_NUMBERS[id].titles[false],
+                              .unit = "",
+                              .offset = offsetof(RunJoint, counts) + id * sizeof(size_t)};
+        }
+    }
+}
+
+void run_fields_of_joint(bool is_torsional, RunJointFields *fields)
+{
+    *fields = (RunJointFields){0};
+    Field *next = fields->rows;
+    *next++ = (Field){.type = FIELD_LABEL, .where = FIELD_TABLE, .title = "joint"};
+    *next++ = (Field){.type = FIELD_LABEL, .where = FIELD_TABLE, .title = "backend"};
+    add_counts(fields->counts);
+    *next++ = (Field){.type = FIELD_PART,
+                      .where = FIELD_JSON | FIELD_TABLE,
+                      .of = fields->counts,
+                      .has_nulls = true,
+                      .part = if_felt};
+    add_numbers(false, is_torsional, &next);
+    *next++ = (Field){"tilt_max_rad", FIELD_NUMBER, RUN_SPATIAL, JOINT(tilt_max)};
+    *next++ = (Field){"axial_max_m", FIELD_NUMBER, RUN_SPATIAL, JOINT(axial_max)};
+    add_numbers(true, is_torsional, &next);
+}
 
 // The size below which a number of a run is nothing but rounding.
 //
@@ -365,13 +415,22 @@ BodyExtremes run_floor_body(const BodyExtremes *body, const RunFloor *floor)
 RunJoint run_floor_joint(const RunJoint *joint, bool is_torsional, const RunFloor *floor)
 {
     RunJoint shown = *joint;
-    shown.force_max.value =
-        run_floor_cut(joint->force_max.value, is_torsional ? floor->energy : floor->force);
-    if (shown.force_max.value == 0.0) {
-        // what follows from it
-        shown.force_max.time_s = shown.force_max.crank_rad = NAN;
-        shown.impulse *= 0.0;
-        shown.penetration_max *= 0.0;
+    for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
+        if (JOINT_NUMBERS[id].kind == JOINT_NUMBER_OF_FORCE) {
+            shown.numbers[id].value = run_floor_cut(joint->numbers[id].value,
+                                                    is_torsional ? floor->energy : floor->force);
+        }
+    }
+    Extreme *force = &shown.numbers[JOINT_NUMBER_FORCE_MAX];
+    if (force->value == 0.0) {
+        force->time_s = force->crank_rad = NAN;
+    }
+    // what follows from it
+    for (JointNumberId id = 0; force->value == 0.0 && id < JOINT_NUMBER_COUNT; id++) {
+        const JointNumberKind kind = JOINT_NUMBERS[id].kind;
+        if (kind == JOINT_NUMBER_OF_IMPULSE || kind == JOINT_NUMBER_OF_DEPTH) {
+            shown.numbers[id].value *= 0.0;
+        }
     }
     return shown;
 }

@@ -43,6 +43,33 @@ static json_t *run_truth_json_truth(const RunReport *report)
     return object;
 }
 
+// The errors of forces by joint with play, and of peak accelerations by body.
+static void set_error_members(json_t *object, const RunReport *report, size_t index)
+{
+    const Trajectory *run = report->runs[index];
+    const Trajectory *against = run_report_against(report, index);
+    const Linkage *linkage = &report->scenario->linkage;
+    const double horizon_s = run_report_horizon(report);
+    json_t *joints = json_object();
+    json_t *bodies = json_object();
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (error_has_forces(run, against, i)) {
+            const JointError error = error_of_joint(run, against, i, horizon_s);
+            json_object_set_new(joints, linkage->joints[i].name,
+                                fields_json(ERROR_JOINT_FIELDS, FIELD_JSON, &error));
+        }
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        if ((int)i != against->driven_body) {
+            const BodyError error = error_of_body(run, against, i, horizon_s);
+            json_object_set_new(bodies, linkage->bodies[i].name,
+                                fields_json(ERROR_BODY_FIELDS, FIELD_JSON, &error));
+        }
+    }
+    json_object_set_new(object, "joints", joints);
+    json_object_set_new(object, "bodies", bodies);
+}
+
 static json_t *run_truth_json_error(const RunReport *report, size_t run)
 {
     const TrajectoryError *error = &report->errors[run];
@@ -54,6 +81,7 @@ static json_t *run_truth_json_error(const RunReport *report, size_t run)
     json_t *object = json_object();
     json_object_set_new(object, "against", json_string(error->against));
     fields_json_set(ERROR_FIELDS, FIELD_JSON, error, object);
+    set_error_members(object, report, run);
     json_object_set_new(object, "includes_play",
                         json_boolean(run_report_includes_play(report, run)));
     json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);
@@ -327,7 +355,9 @@ static json_t *joint_object(const Linkage *linkage, const Trajectory *run, size_
     const RunJoint numbers = run_fields_joint(linkage, run, number);
     const unsigned where =
         FIELD_JSON | run_report_contact(of) | (linkage->is_spatial ? RUN_SPATIAL : 0);
-    json_t *joint = fields_json(RUN_JOINT_FIELDS, where, &numbers);
+    RunJointFields fields;
+    run_fields_of_joint(linkage_is_torsional(of), &fields);
+    json_t *joint = fields_json(fields.rows, where, &numbers);
     if (slide_range_has(of)) {
         set_slide(joint, linkage, run, number, numbers.is_felt);
     }

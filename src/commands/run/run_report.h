@@ -7,10 +7,12 @@
 #include "measure/ensemble.h"
 #include "measure/error.h"
 #include "measure/truth.h"
+#include "model/joint_numbers.h"
 #include "model/trajectory.h"
 #include "write/fields.h"
 #include "write/table.h"
 
+#include <math.h>
 #include <string.h>
 
 // The contacts of one run beside the reference's, by joint.
@@ -36,6 +38,23 @@ typedef struct RunReport {
 static inline bool run_report_has_truth(const RunReport *report)
 {
     return report->truth != NULL && report->truth->trajectory->is_complete;
+}
+
+// The horizon up to which errors are stated, s.
+static inline double run_report_horizon(const RunReport *report)
+{
+    return run_report_has_truth(report) ? report->truth->horizon_s : INFINITY;
+}
+
+// The run that a run with a known error was held against.
+static inline const Trajectory *run_report_against(const RunReport *report, size_t index)
+{
+    const Trajectory *against = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const bool is_it = strcmp(report->runs[i]->backend, report->errors[index].against) == 0;
+        against = is_it ? report->runs[i] : against;
+    }
+    return against;
 }
 
 // Whether an error is against the certified solution, so that uncertainty and horizon belong to it.
@@ -100,13 +119,10 @@ enum {
 // What a joint did in a run. Without play that is felt there are no contacts to count: null, not 0.
 typedef struct RunJoint {
     bool is_felt;
-    size_t impacts;
-    Extreme force_max;      // N, or N m where limits turn it, as below
-    double impulse;         // N s
-    double penetration_max; // m
-    double tilt_max;        // rad
-    double axial_max;       // m
-    double contact_share;   // 1, of the time
+    size_t counts[JOINT_NUMBER_COUNT]; // of the numbers of model/joint_number_list.h that are whole
+    Extreme numbers[JOINT_NUMBER_COUNT];
+    double tilt_max;  // rad, in space
+    double axial_max; // m, likewise
 } RunJoint;
 
 RunJoint run_fields_joint(const Linkage *linkage, const Trajectory *run, size_t number);
@@ -129,10 +145,19 @@ static inline unsigned run_report_force(const Joint *joint)
     return linkage_is_torsional(joint) ? RUN_TORQUE : RUN_FORCE;
 }
 
-// The fields of Trajectory, BodyExtremes, RunJoint, Spike, SignalSpike and Energy.
+// The fields of a RunJoint, made of the rows of model/joint_number_list.h. Not to be copied.
+enum { RUN_JOINT_FIELD_MAX = 3 * JOINT_NUMBER_COUNT + 8 };
+
+typedef struct RunJointFields {
+    Field rows[RUN_JOINT_FIELD_MAX];
+    Field counts[JOINT_NUMBER_COUNT + 1];
+} RunJointFields;
+
+void run_fields_of_joint(bool is_torsional, RunJointFields *fields);
+
+// The fields of Trajectory, BodyExtremes, Spike, SignalSpike and Energy.
 extern const Field RUN_FIELDS[];
 extern const Field RUN_BODY_FIELDS[];
-extern const Field RUN_JOINT_FIELDS[];
 extern const Field RUN_CONTACT_FIELDS[];
 extern const Field RUN_SPIKE_FIELDS[];
 extern const Field RUN_ENERGY_FIELDS[];

@@ -124,8 +124,10 @@ static void write_untouched(const RunReport *report, bool is_torsional, size_t w
 static void write_contacts(const RunReport *report, bool is_torsional, const Style *style,
                            Text *text)
 {
-    const unsigned where = run_report_columns(report) | (is_torsional ? RUN_TURNED : RUN_PUSHED);
+    const unsigned where = run_report_columns(report);
     const Linkage *linkage = &report->scenario->linkage;
+    RunJointFields fields;
+    run_fields_of_joint(is_torsional, &fields);
     RunFloor *floors = run_floor_list(report);
     Table *table = NULL;
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
@@ -138,13 +140,13 @@ static void write_contacts(const RunReport *report, bool is_torsional, const Sty
             if (table == NULL) {
                 table = fields_table(is_torsional ? "Contacts at the limits of pivots"
                                                   : "Contacts in the joints with play",
-                                     RUN_JOINT_FIELDS, where, style, text);
+                                     fields.rows, where, style, text);
             }
             const RunJoint numbers = run_fields_joint(linkage, run, joint);
             table_cell(table, "%s", linkage->joints[joint].name);
             table_cell(table, "%s", run->backend);
             const RunJoint shown = run_floor_joint(&numbers, is_torsional, &floors[i]);
-            fields_table_row(RUN_JOINT_FIELDS, where, &shown, table);
+            fields_table_row(fields.rows, where, &shown, table);
         }
     }
     free(floors);
@@ -491,6 +493,50 @@ static void error_row(Table *table, const RunReport *report, size_t run)
                run_report_is_limited_by_reference(report, error) ? "limited by the reference" : "");
 }
 
+static void peak_cells(Table *table, double whole, double in_horizon, const char *in)
+{
+    section_number_or_dash(table, isfinite(whole), whole);
+    section_number_or_dash(table, isfinite(in_horizon), in_horizon);
+    table_cell(table, "%s", in);
+}
+
+// The errors that the motion's says nothing of.
+static void write_force_errors(const RunReport *report, const Style *style, Text *text)
+{
+    static const SectionHead HEADS[] = {
+        {"backend", "", TABLE_LEFT},
+        {"forces", "1", TABLE_RIGHT},
+        {"in horizon", "1", TABLE_RIGHT},
+        {"in", "", TABLE_WRAP},
+        {"peak forces", "1", TABLE_RIGHT},
+        {"in horizon", "1", TABLE_RIGHT | TABLE_MINOR},
+        {"in", "", TABLE_WRAP | TABLE_MINOR},
+        {"peak alpha", "1", TABLE_RIGHT},
+        {"in horizon", "1", TABLE_RIGHT | TABLE_MINOR},
+        {"in", "", TABLE_WRAP | TABLE_MINOR},
+    };
+    Table *table = NULL;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const TrajectoryError *error = &report->errors[i];
+        if (!report->runs[i]->is_complete || !error->is_known || isnan(error->force_max)) {
+            continue;
+        }
+        if (table == NULL) {
+            table = section_begin("Error of contact forces at the samples, and of peaks", 10, HEADS,
+                                  style, text);
+        }
+        table_cell(table, "%s", report->runs[i]->backend);
+        peak_cells(table, error->force_max, error->force_max_in_horizon, error->force_in);
+        peak_cells(table, error->peak_force_max, error->peak_force_max_in_horizon,
+                   error->peak_force_in);
+        peak_cells(table, error->peak_alpha_max, error->peak_alpha_max_in_horizon,
+                   error->peak_alpha_in);
+    }
+    if (table != NULL) {
+        section_end(table, text);
+    }
+}
+
 // What is to be known about the truth before an error is believed.
 static void write_horizon(const RunReport *report, Text *text)
 {
@@ -613,6 +659,7 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
         write_horizon(report, text);
         write_other_model(report, text);
     }
+    write_force_errors(report, style, text);
 }
 
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)

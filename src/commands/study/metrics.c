@@ -4,6 +4,7 @@
 // follower_omega_max_rad_s. What was not measured, or is not finite, is NAN.
 #include "commands/study/metrics.h"
 #include "base/text.h"
+#include "model/joint_numbers.h"
 
 #include <assert.h>
 #include <math.h>
@@ -14,7 +15,7 @@
 // What a number of a run is of; the columns stand in this order.
 typedef enum Owner {
     OF_BODY,  // each whose motion is not prescribed: BodyExtremes
-    OF_JOINT, // each with play: JointExtremes
+    OF_JOINT, // each with play: model/joint_number_list.h, whole numbers first
     OF_RUN,   // Trajectory
     OF_ERROR, // TrajectoryError, in studies with a truth
     OF_TRUTH, // Truth, likewise
@@ -24,7 +25,6 @@ typedef enum Owner {
 // What must hold for a number to be there.
 typedef enum Need {
     NOTHING,
-    FELT_PLAY,   // the solver let the joint's play happen
     FIXED_STEP,  // the solver has one
     TRIALS,      // the step was chosen for a tolerance
     CERTIFICATE, // the reference is certified
@@ -48,11 +48,6 @@ typedef struct Metric {
     double (*find)(const Measured *measured, size_t member); // NULL: the value at the offset
     const char *meaning;
 } Metric;
-
-static double find_contact_share(const Measured *measured, size_t joint)
-{
-    return trajectory_contact_share(measured->run, joint);
-}
 
 // In all joints; NAN where the solver let no play happen.
 static double find_impacts(const Measured *measured, size_t unused)
@@ -84,7 +79,6 @@ static double find_alpha_peak(const Measured *measured, size_t unused)
 #define ROW(owner, of, name, kind, need, field, meaning) \
     {owner, name, COLUMN_##kind, need, offsetof(of, field), NULL, meaning}
 #define BODY(...) ROW(OF_BODY, BodyExtremes, __VA_ARGS__)
-#define JOINT(...) ROW(OF_JOINT, JointExtremes, __VA_ARGS__)
 #define RUN(...) ROW(OF_RUN, Trajectory, __VA_ARGS__)
 #define ERROR(...) ROW(OF_ERROR, TrajectoryError, __VA_ARGS__)
 #define TRUTH(...) ROW(OF_TRUTH, Truth, __VA_ARGS__)
@@ -96,12 +90,6 @@ static const Metric METRICS[] = {
     BODY("omega_min_rad_s", REAL, NOTHING, omega_min.value, "smallest angular velocity"),
     BODY("alpha_max_rad_s2", REAL, NOTHING, alpha_max.value, "largest angular acceleration"),
     BODY("alpha_min_rad_s2", REAL, NOTHING, alpha_min.value, "smallest angular acceleration"),
-    JOINT("impacts", WHOLE, FELT_PLAY, impacts, "contacts begun"),
-    JOINT("force_max_N", REAL, NOTHING, force_max.value, "largest force"),
-    JOINT("impulse_N_s", REAL, FELT_PLAY, impulse, "impulse of all contacts"),
-    JOINT("penetration_max_m", REAL, FELT_PLAY, penetration_max.value, "deepest penetration"),
-    FOUND(OF_JOINT, "contact_fraction", REAL, FELT_PLAY, find_contact_share,
-          "share of the time in contact"),
     FOUND(OF_RUN, "impacts", WHOLE, NOTHING, find_impacts, "contacts begun in all joints"),
     FOUND(OF_RUN, "alpha_peak_rad_s2", REAL, NOTHING, find_alpha_peak,
           "largest magnitude of any body's angular acceleration"),
@@ -127,6 +115,18 @@ static const Metric METRICS[] = {
     ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the errors of omega"),
     ERROR("error_alpha_max", REAL, NOTHING, alpha_max,
           "largest error of alpha, relative to each body's largest alpha"),
+    ERROR("error_force_max", REAL, NOTHING, force_max,
+          "largest error of a contact force at samples, over the joint's largest"),
+    ERROR("error_force_max_in_horizon", REAL, NOTHING, force_max_in_horizon,
+          "the same up to the predictability horizon"),
+    ERROR("error_peak_force_max", REAL, NOTHING, peak_force_max,
+          "largest error of the peak force of a contact, over the joint's largest"),
+    ERROR("error_peak_force_max_in_horizon", REAL, NOTHING, peak_force_max_in_horizon,
+          "the same of contacts that end within the predictability horizon"),
+    ERROR("error_peak_alpha_max", REAL, NOTHING, peak_alpha_max,
+          "largest error of a body's extremes of alpha, over the larger of them"),
+    ERROR("error_peak_alpha_max_in_horizon", REAL, NOTHING, peak_alpha_max_in_horizon,
+          "the same up to the predictability horizon"),
     TRUTH("error_horizon_s", REAL, CERTIFICATE, horizon_s, "predictability horizon"),
     TRUTH("error_reference_uncertainty", REAL, CERTIFICATE, uncertainty,
           "uncertainty of the reference, relative in the same way"),
@@ -174,24 +174,6 @@ static void name_column(const Layout *layout, Column *column, const char *first,
     }
 }
 
-// The name of a result, whose unit is one of torques and angles at limits of a pivot.
-static const char *metric_name(const Metric *metric, const Linkage *linkage, size_t member)
-{
-    static const char *const TURNING[][2] = {
-        {"force_max_N", "force_max_N_m"},
-        {"impulse_N_s", "impulse_N_m_s"},
-        {"penetration_max_m", "penetration_max_rad"},
-    };
-    const bool is_turning =
-        metric->owner == OF_JOINT && linkage_is_torsional(&linkage->joints[member]);
-    for (size_t i = 0; is_turning && i < sizeof TURNING / sizeof *TURNING; i++) {
-        if (strcmp(metric->name, TURNING[i][0]) == 0) {
-            return TURNING[i][1];
-        }
-    }
-    return metric->name;
-}
-
 static void metrics_add_settings(const Spec *spec, Layout *layout)
 {
     for (size_t i = 0; i < spec->variable_count; i++) {
@@ -206,7 +188,8 @@ static void metrics_add_settings(const Spec *spec, Layout *layout)
 
 // One result of a linkage.
 typedef struct Result {
-    const Metric *metric;
+    const Metric *metric; // NULL: one of joints, which is the next
+    JointNumberId number;
     size_t member;  // number of its body or joint
     const char *of; // name of that, or empty
 } Result;
@@ -226,21 +209,48 @@ static bool metrics_find_member(const Linkage *linkage, Owner owner, size_t memb
     return true;
 }
 
+// The number of a joint that has a place among them, or JOINT_NUMBER_COUNT.
+static JointNumberId number_at(size_t place)
+{
+    for (int pass = 0; pass < 2; pass++) {
+        for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
+            const bool is_whole = JOINT_NUMBERS[id].kind == JOINT_NUMBER_OF_COUNT;
+            if (is_whole == (pass == 0) && place-- == 0) {
+                return id;
+            }
+        }
+    }
+    return JOINT_NUMBER_COUNT;
+}
+
+// The results of one body, joint or whole.
+static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Result *results)
+{
+    const char *name;
+    size_t count = 0;
+    if (!metrics_find_member(linkage, owner, member, &name)) {
+        return 0;
+    }
+    for (size_t k = 0; owner == OF_JOINT && k < JOINT_NUMBER_COUNT; k++) {
+        results[count++] = (Result){.number = number_at(k), .member = member, .of = name};
+    }
+    for (size_t k = 0; k < METRIC_COUNT; k++) {
+        if (METRICS[k].owner == owner) {
+            results[count++] = (Result){.metric = &METRICS[k], .member = member, .of = name};
+        }
+    }
+    return count;
+}
+
 // All results of a linkage in the order of their columns.
 static size_t list_results(const Linkage *linkage, Result results[RECORD_RESULT_MAX])
 {
     const size_t members[OWNER_COUNT] = {linkage->body_count, linkage->joint_count, 1, 1, 1};
     size_t count = 0;
-    const char *name;
     for (Owner owner = 0; owner < OWNER_COUNT; owner++) {
         for (size_t i = 0; i < members[owner]; i++) {
-            for (size_t k = 0; metrics_find_member(linkage, owner, i, &name) && k < METRIC_COUNT;
-                 k++) {
-                if (METRICS[k].owner == owner) {
-                    assert(count < RECORD_RESULT_MAX);
-                    results[count++] = (Result){&METRICS[k], i, name};
-                }
-            }
+            assert(count + METRIC_COUNT + JOINT_NUMBER_COUNT <= RECORD_RESULT_MAX);
+            count += list_member(linkage, owner, i, results + count);
         }
     }
     return count;
@@ -253,24 +263,28 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
     *layout = (Layout){0};
     metrics_add_settings(spec, layout);
     for (size_t i = 0; i < count; i++) {
-        const Metric *metric = results[i].metric;
-        if (metric->owner < OF_ERROR || spec->has_truth) {
+        const Result *result = &results[i];
+        const Metric *metric = result->metric;
+        const JointNumber *number = &JOINT_NUMBERS[result->number];
+        if (metric == NULL) {
+            const Joint *joint = &scenario->linkage.joints[result->member];
+            Column *column = &layout->results[layout->result_count++];
+            column->kind = number->kind == JOINT_NUMBER_OF_COUNT ? COLUMN_WHOLE : COLUMN_REAL;
+            name_column(layout, column, result->of, number->keys[linkage_is_torsional(joint)]);
+        } else if (metric->owner < OF_ERROR || spec->has_truth) {
             Column *column = &layout->results[layout->result_count++];
             column->kind = metric->kind;
-            name_column(layout, column, results[i].of,
-                        metric_name(metric, &scenario->linkage, results[i].member));
+            name_column(layout, column, result->of, metric->name);
         }
     }
 }
 
-static bool is_there(const Metric *metric, const Measured *measured, size_t member)
+static bool is_there(const Metric *metric, const Measured *measured)
 {
     if (metric->owner >= OF_ERROR && !measured->error.is_known) {
         return false;
     }
     switch (metric->need) {
-    case FELT_PLAY:
-        return trajectory_feels_play(measured->run, &measured->linkage->joints[member]);
     case FIXED_STEP:
         return measured->run->step_s > 0.0;
     case TRIALS:
@@ -286,7 +300,7 @@ static double metrics_read_value(const Metric *metric, const Measured *measured,
 {
     const void *const owners[OWNER_COUNT] = {
         &measured->run->bodies[metric->owner == OF_BODY ? member : 0],
-        &measured->run->joints[metric->owner == OF_JOINT ? member : 0],
+        NULL,
         measured->run,
         &measured->error,
         measured->truth,
@@ -295,6 +309,17 @@ static double metrics_read_value(const Metric *metric, const Measured *measured,
     return metric->find != NULL           ? metric->find(measured, member)
            : metric->kind == COLUMN_WHOLE ? (double)*(const size_t *)value
                                           : *(const double *)value;
+}
+
+// NAN where it is not known.
+static double metrics_read_result(const Result *result, const Measured *measured)
+{
+    if (result->metric == NULL) {
+        return joint_numbers_find(result->number, measured->run, result->member).value;
+    }
+    return is_there(result->metric, measured)
+               ? metrics_read_value(result->metric, measured, result->member)
+               : NAN;
 }
 
 bool metrics_take(const Scenario *scenario, Trajectory *trajectory, const Truth *truth,
@@ -311,20 +336,31 @@ bool metrics_take(const Scenario *scenario, Trajectory *trajectory, const Truth 
     Result list[RECORD_RESULT_MAX];
     const size_t count = list_results(measured.linkage, list);
     for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
-        const bool is_known = i < count && is_there(list[i].metric, &measured, list[i].member);
-        const double value =
-            is_known ? metrics_read_value(list[i].metric, &measured, list[i].member) : NAN;
+        const double value = i < count ? metrics_read_result(&list[i], &measured) : NAN;
         results[i] = isfinite(value) ? value : NAN;
     }
     return true;
 }
 
+static void describe_one(bool is_markdown, const char *owner, const char *name, const char *meaning,
+                         Text *text)
+{
+    text_append(text, is_markdown ? "| `%s%s` | %s |\n" : "    %s%s\n        %s\n", owner, name,
+                meaning);
+}
+
 void metrics_describe(bool is_markdown, Text *text)
 {
-    static const char *const OWNERS[OWNER_COUNT] = {"<body>_", "<joint>_"};
-    for (size_t i = 0; i < METRIC_COUNT; i++) {
-        const char *owner = OWNERS[METRICS[i].owner] == NULL ? "" : OWNERS[METRICS[i].owner];
-        text_append(text, is_markdown ? "| `%s%s` | %s |\n" : "    %s%s\n        %s\n", owner,
-                    METRICS[i].name, METRICS[i].meaning);
+    for (Owner owner = 0; owner < OWNER_COUNT; owner++) {
+        for (size_t k = 0; owner == OF_JOINT && k < JOINT_NUMBER_COUNT; k++) {
+            const JointNumber *number = &JOINT_NUMBERS[number_at(k)];
+            describe_one(is_markdown, "<joint>_", number->keys[false], number->meaning, text);
+        }
+        for (size_t i = 0; i < METRIC_COUNT; i++) {
+            if (METRICS[i].owner == owner) {
+                describe_one(is_markdown, owner == OF_BODY ? "<body>_" : "", METRICS[i].name,
+                             METRICS[i].meaning, text);
+            }
+        }
     }
 }

@@ -100,8 +100,8 @@ static void forget_results(Record *record)
 static void sweep_measure(const SweepRun *task, const Scenario *scenario, BackendKind backend,
                           Record *record)
 {
-    Trajectory *trajectory =
-        backend_run(scenario, backend, task->truth, (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *trajectory = backend_run(scenario, backend, task->truth,
+                                         (ChosenWatch){.begin = NULL}, backend_run_probe(scenario));
     if (trajectory->is_complete &&
         metrics_take(scenario, trajectory, task->truth, record->results)) {
         record->hash = trajectory->hash;

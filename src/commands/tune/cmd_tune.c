@@ -26,6 +26,7 @@
 typedef struct TuneOptions {
     CommonOptions common;
     double error;           // 1; 0 until it is given
+    const char *error_of;   // a word of OPTIONS_TOLERANCES_OF, or NULL
     double at_step_s;       // s, the only step that can be taken; 0: any
     const char *asked_cost; // of --cost, or NULL
     TuneCost cost;
@@ -88,6 +89,11 @@ static const OptionRow OPTIONS[] = {
      "The largest error allowed of any rate of the motion, relative to its own largest value, such "
      "as 1e-3",
      1, OPTION_READ, .read = read_error},
+    {"error-of", "motion|forces|peaks",
+     "Which error that is: of the motion, of the contact forces, or of the peaks of contacts and "
+     "of "
+     "angular accelerations (default: run.tolerance-of of the case)",
+     1, OPTION_CHOICE, AT(error_of), .words = OPTIONS_TOLERANCES_OF},
     {"max-cost", "COST",
      "What one run may cost: a time such as '50 ms', or world steps such as 2000", 1, OPTION_READ,
      .read = cmd_tune_read_limit},
@@ -221,6 +227,20 @@ static bool keep_writable(const TuneOptions *options, const Scenario *scenario, 
                    left_out > 1 ? " and others" : "", lacks);
     }
     return true;
+}
+
+// Of which error the target is. Fails with ERR_USAGE where the case has none of it.
+static bool settle_error(const TuneOptions *options, Scenario *scenario, Err *err)
+{
+    for (int i = 0; options->error_of != NULL && i < TOLERANCE_OF_COUNT; i++) {
+        if (strcmp(options->error_of, OPTIONS_TOLERANCES_OF[i]) == 0) {
+            scenario->run.tolerance_of = (ToleranceOf)i;
+        }
+    }
+    return scenario->run.tolerance_of != TOLERANCE_OF_FORCES || scenario_has_clearance(scenario) ||
+           err_set(err, ERR_USAGE,
+                   "--error-of forces: no joint has play, and no contact a force; allowed: motion, "
+                   "peaks");
 }
 
 // The search that the options ask for, with nothing run yet. Fails with ERR_USAGE for schemes that
@@ -493,7 +513,7 @@ static bool tune_case(void *target, Err *err)
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
     bool is_done = common_options_load(common, scenario, err) &&
-                   check_files(options, scenario, err) &&
+                   settle_error(options, scenario, err) && check_files(options, scenario, err) &&
                    tune_options_search(options, scenario, &tune, err) &&
                    results_claim(&RESULTS, common, scenario_path(scenario), err);
     if (is_done) {

@@ -235,6 +235,7 @@ Tune *tune_create(const Scenario *scenario, const Scheme *schemes, size_t scheme
     Tune *tune = calloc(1, sizeof *tune);
     assert(tune != NULL);
     tune->target = target;
+    tune->of = scenario->run.tolerance_of;
     tune->samples = scenario_sample_count(scenario);
     tune->winner = tune->plain = tune->within = TUNE_NONE;
     tune->held = tune->held_plain = tune->linear = tune->row = TUNE_NONE;
@@ -275,10 +276,12 @@ bool tune_is_plain_row(const Tune *tune, const Scenario *scenario, size_t scheme
 
 double tune_error(const Tune *tune, const LadderRun *run, char reason[LADDER_MESSAGE_SIZE])
 {
-    const double error = error_of_run(&run->error, tune->truth.is_limited);
+    const double error = error_of_kind(&run->error, tune->of, tune->truth.is_limited);
     const char *why = NULL;
     if (!run->is_complete) {
         why = run->message;
+    } else if (run->error.is_known && isnan(error)) {
+        why = "has no error of what was asked: only its motion is known";
     } else if (!run->error.is_known || !isfinite(error)) {
         why = "has no error: its numbers are not finite";
     } else {
@@ -600,7 +603,12 @@ void tune_setting_keys(const TuneReport *report, const TuneTrial *trial, const c
 {
     const Scheme *scheme = &report->tune->schemes[trial->scheme].scheme;
     if (!scheme_has_step(scheme)) {
-        text_append(text, "run.step=auto%srun.tolerance=", separator);
+        text_append(text, "run.step=auto%s", separator);
+        if (report->tune->of != TOLERANCE_OF_MOTION) {
+            text_append(text, "run.tolerance-of=%s%s", OPTIONS_TOLERANCES_OF[report->tune->of],
+                        separator);
+        }
+        text_append(text, "run.tolerance=");
         text_append(text, "%s", number_shortest(trial->value).text);
         write_collider(report, scheme, separator, text);
         return;

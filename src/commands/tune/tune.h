@@ -127,6 +127,7 @@ typedef struct TuneProgram {
 
 typedef struct Tune {
     double target;  // 1; INFINITY where any error will do
+    ToleranceOf of; // which error that is
     double held_s;  // s, the only step that its user can take; 0: any
     size_t samples; // of a run
     TuneCost cost;

@@ -194,6 +194,7 @@ static void set_asked(json_t *object, const Tune *tune)
     static const char *const COSTS[] = {
         [TUNE_TIME] = "time", [TUNE_STEPS] = "steps", [TUNE_LENGTH] = "step-length"};
     json_value_set(object, "error_asked", tune->target);
+    json_object_set_new(object, "error_of", json_string(OPTIONS_TOLERANCES_OF[tune->of]));
     json_object_set_new(object, "cost", json_string(COSTS[tune->cost]));
     json_value_set(object, "step_held_s", tune->held_s > 0.0 ? tune->held_s : NAN);
     json_value_set(object, "max_cost_s", tune->limit.time_s > 0.0 ? tune->limit.time_s : NAN);

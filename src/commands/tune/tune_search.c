@@ -513,6 +513,9 @@ bool tune_search_execute(const TuneSearch *asked, Err *err)
     const double started_s = clock_now_s();
     bool is_done = truth_child_make(&work, &truth, err);
     if (is_done) {
+        truth.uncertainty = truth_uncertainty_of(&truth, asked->scenario, tune->of,
+                                                 truth.is_limited ? truth.horizon_s : INFINITY,
+                                                 (RunWatch){.progress = NULL});
         tune->truth = ladder_truth_of(&truth, clock_now_s() - started_s);
     }
     is_done = is_done && tune_search_check_target(tune, err) &&

@@ -260,6 +260,9 @@ static void write_asked(const Tune *tune, Text *text)
         return;
     }
     text_append(text, "  asked for   error at most %.3g", tune->target);
+    if (tune->of != TOLERANCE_OF_MOTION) {
+        text_append(text, " of %s", OPTIONS_TOLERANCES_OF[tune->of]);
+    }
     if (tune->limit.steps > 0) {
         text_append(text, ", in at most %zu world steps", tune->limit.steps);
     } else if (tune->limit.time_s > 0.0) {
