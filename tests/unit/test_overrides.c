@@ -60,7 +60,8 @@ static void wrong_overrides_are_usage_errors(void **state)
            "--set run.stp=1 us: unknown key 'stp'; did you mean 'step'?\n"
            "    --set run.stp=1 us\n"
            "              ^~~\n"
-           "allowed: revolutions, duration, samples, step, tolerance, most-steps, spike-threshold, "
+           "allowed: revolutions, duration, samples, step, tolerance, tolerance-of, most-steps, "
+           "spike-threshold, "
            "report-from, start, settle-most, backends");
     refuse(IMPACT, "joints.follower-ground.hole=9 mm", ERR_USAGE,
            "--set joints.follower-ground.hole=9 mm: joints.follower-ground.pin is missing\n"
