@@ -22,7 +22,16 @@ typedef struct ContactState {
 // One that begins with a closing speed.
 static inline ContactState contact_state_begun(double speed)
 {
-    return (ContactState){.is_touching = true, .impact_speed = speed, .damping_speed = speed};
+    // every member in its order: C++ knows no other way
+    return (ContactState){
+        .is_touching = true,
+        .is_slack = false,
+        .is_released = false,
+        .is_resting = false,
+        .impact_speed = speed,
+        .damping_speed = speed,
+        .age_s = 0.0,
+    };
 }
 
 // Lets the impact of a contact be over.
