@@ -17,13 +17,13 @@ typedef struct ContactRow {
     Onset onset;
     ContactState state; // touching: the present step has a row; of a contact that does not touch
                         // the speed is that at which it closes
-    double depth;    // m, of the row, as the collider has it
-    double share;    // 1, of the step in which the place overlaps
-    double inside;   // m, depth where the bodies are, negative outside; of the row it may be
-                     // another where the place overlaps in a part of the step alone
-    double excess;   // m, by how much that is more than the exact penetration
-    Vec2 normal;     // of the row: unit, direction of the force on body b
-    Vec2 point;      // m, in the world, where the force acts
+    double depth;       // m, of the row, as the collider has it
+    double share;       // 1, of the step in which the place overlaps
+    double inside;      // m, depth where the bodies are, negative outside; of the row it may be
+                        // another where the place overlaps in a part of the step alone
+    double excess;      // m, by how much that is more than the exact penetration
+    Vec2 normal;        // of the row: unit, direction of the force on body b
+    Vec2 point;         // m, in the world, where the force acts
     Vec2 arms[2];    // m, from the joint's anchors on bodies a and b to where its force is said to
                      // act (ode/pair.h)
     Vec2 lever;      // m, from there to the point

@@ -2,7 +2,7 @@
 #include "ode/pair.h"
 
 #include "kernel/pin_hole.h"
-#include "ode/hole_geom.h"
+#include "ode/plane/collider.h"
 #include "ode/snapshot.h"
 #include "world/pressing_row.h"
 

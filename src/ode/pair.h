@@ -5,8 +5,8 @@
 #pragma once
 
 #include "contact/touch.h"
-#include "ode/collider.h"
 #include "ode/ends.h"
+#include "ode/plane/collider.h"
 
 typedef struct WorldPair {
     int joint;         // number in the linkage

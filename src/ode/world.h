@@ -4,10 +4,10 @@
 
 #include "model/trajectory.h"
 #include "ode/applied.h"
-#include "ode/collider.h"
 #include "ode/ends.h"
 #include "ode/jobs.h"
 #include "ode/pair.h"
+#include "ode/plane/collider.h"
 #include "ode/sliding.h"
 #include "ode/snapshot.h"
 #include "ode/world_hold.h"

@@ -108,7 +108,7 @@ fault "gravity off by 1 in 1000" src/ode/world.c \
     's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, -1.001 * scenario->gravity, 0.0);/'
 fault "gravity left out" src/ode/world.c \
     's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, 0.0, 0.0);/'
-fault "contact normal turned by 0.1 degree" src/ode/hole_geom.c \
+fault "contact normal turned by 0.1 degree" src/ode/plane/collider.c \
     's/\.normal = {-pose\.normal\.x, -pose\.normal\.y, 0\.0},/.normal = {-pose.normal.x + 1.7453e-3 * pose.normal.y, -pose.normal.y - 1.7453e-3 * pose.normal.x, 0.0},/'
 fault "ERP of the joints times .999" src/ode/world.c \
     's/dJointSetBallParam(ball, dParamERP, joint_erp(options));/dJointSetBallParam(ball, dParamERP, 0.999 * joint_erp(options));/'

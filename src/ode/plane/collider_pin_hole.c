@@ -1,6 +1,5 @@
-// Where does a pin touch a round hole? Exactly: two circles, one inside the other.
-#include "ode/collider.h"
-#include "ode/hole_geom.h"
+// Finds the contact of a pin with a round hole exactly: two circles, one inside the other.
+#include "ode/plane/collider.h"
 
 static void *pin_hole_open(const Scenario *scenario, int joint)
 {

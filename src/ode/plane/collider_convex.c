@@ -1,11 +1,11 @@
-// Where does a pin touch a ring of staves, asked through ODE?
+// Finds the contact of a pin with a ring of staves through ODE.
 //
 // A stave is a dConvex, the pin a dCylinder; dCollide hands both to libccd in metres, in the
 // world's coordinates, with an absolute tolerance of 1e-6 m that no program can change. All staves
 // of a ring are alike: one geom is put where the stave stands that faces the pin. A whole ring in a
 // space would answer the same and ask for nearly all N staves, because the pin's box meets their
 // boxes.
-#include "ode/polygon_hole.h"
+#include "ode/plane/collider.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,9 +1,9 @@
-// Where does a pin touch a hole that is a mesh of triangles?
+// Finds the contact of a pin with a hole that is a mesh of triangles.
 //
 // Two triangles a facet, their normals towards the axis. ODE asks every triangle that the pin's box
 // meets, in single precision inside its tree of boxes and for the vertices, and returns contacts of
 // all that it overlaps, in no order: the deepest counts. Debian's ODE has OPCODE built in.
-#include "ode/polygon_hole.h"
+#include "ode/plane/collider.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,4 +1,6 @@
-// How must libccd be asked so that it finds a contact a micron deep?
+// Finds the contact of a pin with a ring of convex staves by libccd directly, so that contacts of a
+// micron are found: by its Minkowski portal refinement (MPR), or by GJK and expanding polytopes
+// (EPA).
 //
 // A stave is a prism, its inner face one side of the polygon. Three things make the difference.
 // Units: libccd compares lengths with absolute tolerances and with 2.2e-16; lengths are given in
@@ -14,9 +16,7 @@
 // its direction, and asked for again with twice the margin.
 //
 // Source: G. Snethen, XenoCollide, Game Programming Gems 7 (2008); libccd 2.1, mpr.c and ccd.c.
-#include "ode/staves.h"
-
-#include "ode/polygon_hole.h"
+#include "ode/plane/collider.h"
 
 #include <assert.h>
 #include <ccd/ccd.h>
@@ -91,7 +91,7 @@ static void pin_centre(const void *object, ccd_vec3_t *centre)
     ccdVec3Set(centre, 0.0, 0.0, 0.0);
 }
 
-void *staves_open(const Scenario *scenario, int joint)
+static void *staves_open(const Scenario *scenario, int joint)
 {
     Staves *staves = calloc(1, sizeof *staves);
     assert(staves != NULL);
@@ -113,7 +113,7 @@ void *staves_open(const Scenario *scenario, int joint)
     return staves;
 }
 
-void staves_close(void *state)
+static void staves_close(void *state)
 {
     free(state);
 }
@@ -179,7 +179,7 @@ static bool ask(const Staves *staves, const PolygonSide *side, Query *query, Col
     return false;
 }
 
-bool staves_find_mpr(void *state, dGeomID hole, dGeomID pin, Collision *collision)
+static bool staves_find_mpr(void *state, dGeomID hole, dGeomID pin, Collision *collision)
 {
     const Staves *staves = state;
     PolygonSide side;
@@ -187,10 +187,24 @@ bool staves_find_mpr(void *state, dGeomID hole, dGeomID pin, Collision *collisio
            ask(staves, &side, ccdMPRPenetration, collision);
 }
 
-bool staves_find_gjk(void *state, dGeomID hole, dGeomID pin, Collision *collision)
+static bool staves_find_gjk(void *state, dGeomID hole, dGeomID pin, Collision *collision)
 {
     const Staves *staves = state;
     PolygonSide side;
     return polygon_hole_side(&staves->polygon, hole, pin, &side) &&
            ask(staves, &side, ccdGJKPenetration, collision);
 }
+
+const Collider collider_staves = {
+    .check = facets_check,
+    .open = staves_open,
+    .find = staves_find_mpr,
+    .close = staves_close,
+};
+
+const Collider collider_staves_gjk = {
+    .check = facets_check,
+    .open = staves_open,
+    .find = staves_find_gjk,
+    .close = staves_close,
+};
