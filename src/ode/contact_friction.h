@@ -3,7 +3,7 @@
 
 #include "model/options.h"
 #include "model/response.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 
 // Two bodies that touch in a step. The first eight are given.
 typedef struct FrictionRow {

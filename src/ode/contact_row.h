@@ -6,7 +6,7 @@
 #include "contact/tops.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 
 typedef struct ContactRow {
     ForceLaw law;
@@ -25,7 +25,7 @@ typedef struct ContactRow {
     Vec2 normal;        // of the row: unit, direction of the force on body b
     Vec2 point;         // m, in the world, where the force acts
     Vec2 arms[2];    // m, from the joint's anchors on bodies a and b to where its force is said to
-                     // act (ode/pair.h)
+                     // act (ode/plane/world.h)
     Vec2 lever;      // m, from there to the point
     double damping;  // N s/m, of the row; not of CONTACT_POISSON
     Tops tops;       // of the contact under way, where positions stand at mid-step

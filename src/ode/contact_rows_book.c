@@ -65,13 +65,13 @@ static Vec2 row_force(const ContactRows *rows, size_t number)
 }
 
 // Adds what a corner or an end does to what its joint does.
-static void add_corner(const ContactRow *row, const WorldPair *pair, Vec2 force, JointState *state)
+static void add_corner(const ContactRow *row, const WorldPair *pair, const Joint *joint, Vec2 force,
+                       JointState *state)
 {
     state->force_on_b = vec2_add(state->force_on_b, force);
     state->force += row->pressing;
     state->moment_on_b += vec2_cross(row->lever, force);
     if (pair->row != NULL) {
-        const Joint *joint = &pair->ends->linkage->joints[pair->joint];
         state->moment_on_b += coordinate_sense(joint) * pair->touch.sign * row->pressing;
     }
 }
@@ -90,7 +90,8 @@ static void read_row(ContactRows *rows, size_t number, Vec2 force, double step_s
     const WorldPair *pair = &rows->world->pairs[number];
     row->pressing = pair->row != NULL ? take_torque(row, pair) : vec2_length(force);
     if (pair->is_corner) {
-        add_corner(row, pair, force, state);
+        const Joint *joint = &rows->scenario->linkage.joints[pair->joint];
+        add_corner(row, pair, joint, force, state);
     } else {
         state->force_on_b = force;
         state->force = row->pressing;

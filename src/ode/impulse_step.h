@@ -7,8 +7,8 @@
 #include "model/trajectory.h"
 #include "ode/impulse_curves.h"
 #include "ode/impulse_scope.h"
+#include "ode/plane/world.h"
 #include "ode/stepping.h"
-#include "ode/world.h"
 
 // What a step works with: arrays by row of the response, by body three numbers each, by body and by
 // joint.

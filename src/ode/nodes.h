@@ -3,7 +3,7 @@
 #pragma once
 
 #include "model/scenario.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 
 enum {
     NODES_LEVEL_MAX = 6,

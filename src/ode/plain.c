@@ -214,7 +214,7 @@ static void plain_observe(const void *state, double time_s, Sample *sample)
         const Snapshot now = world_snapshot(&plain->world, i);
         Motion *motion = &sample->bodies[i];
         *motion = between(&plain->before[i], &now, share, plain->step_s);
-        motion->angle = ends_count_turns(plain->world.ends, i, motion->angle);
+        motion->angle = world_count_turns(&plain->world, i, motion->angle);
     }
     if (plain->driven >= 0) {
         sample->bodies[plain->driven] = stepping_driven(linkage, time_s);

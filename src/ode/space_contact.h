@@ -6,7 +6,7 @@
 #include "contact/onset.h"
 #include "contact/pin_space.h"
 #include "model/space_response.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 
 // What a pin does at one of its places.
 typedef struct SpaceContact {

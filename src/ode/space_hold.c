@@ -1,6 +1,6 @@
 // Which forces keep the ideal joints of a world in space closed?
 //
-// Those of ode/world_hold.c, J v' = -(ERP / h) phi, from the response of the linkage.
+// Those of ode/plane/world_hold.c, J v' = -(ERP / h) phi, from the response of the linkage.
 //
 // Plain stepping has ODE's own torque of turning inertias, implicit Euler's, that depends on the
 // body alone. It has to be known before the step and is worked out here, with L = I omega:
@@ -11,7 +11,7 @@
 #include "ode/space_hold.h"
 
 #include "base/zeroed.h"
-#include "ode/world_hold.h"
+#include "ode/plane/world_hold.h"
 
 struct SpaceHold {
     double gravity;

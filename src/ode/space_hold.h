@@ -1,10 +1,10 @@
 // The ideal joints of a world in space with many of them, held by forces that are found here
-// instead of by rows of ODE: ode/world_hold.h in space.
+// instead of by rows of ODE: ode/plane/world_hold.h in space.
 #pragma once
 
 #include "model/scenario.h"
 #include "model/space_response.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 
 typedef struct SpaceHold SpaceHold;
 

@@ -8,8 +8,8 @@
 #include "model/space_coordinate.h"
 #include "model/space_response.h"
 #include "ode/contact_rows.h"
+#include "ode/plane/world.h"
 #include "ode/space_joints.h"
-#include "ode/world.h"
 
 // One end.
 typedef struct SpaceStop {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "model/space_response.h"
+#include "ode/plane/world.h"
 #include "ode/space_hold.h"
-#include "ode/world.h"
 
 // Builds the world of a scenario with its bodies in the motions given, and the response of its
 // linkage with some places; and what holds its ideal joints, NULL where they are rows of ODE. Fails

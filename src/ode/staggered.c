@@ -356,7 +356,7 @@ static void staggered_observe(const void *state, double time_s, Sample *sample)
     for (size_t i = 0; i < linkage->body_count; i++) {
         Motion *motion = &sample->bodies[i];
         *motion = motion_at(staggered, i, time_s - staggered->now->start_s);
-        motion->angle = ends_count_turns(staggered->world.ends, i, motion->angle);
+        motion->angle = world_count_turns(&staggered->world, i, motion->angle);
     }
     if (staggered->driven >= 0) {
         sample->bodies[staggered->driven] = stepping_driven(linkage, time_s);

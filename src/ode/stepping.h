@@ -3,7 +3,7 @@
 #pragma once
 
 #include "model/solver.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 
 // The ways of stepping, each a solver behind ODE_SOLVER, in ode/NAME.c under its own name.
 #define STEPPING_DECLARE(id, word, solver) extern const Solver solver;

@@ -1,4 +1,4 @@
-// How do springs, dampers and a torque act on bodies in ODE?
+// Lets springs, dampers and a torque act on bodies in ODE.
 //
 // Springs, at the positions where the step stands, and the torque's mean over the step are forces.
 // A damper with coefficient c takes the rate r of its length (or angle) at the step's start and r'
@@ -8,7 +8,7 @@
 // J v' = r', CFM 2/c or 1/c. The first is the trapezoidal rule, second order and symmetric in time,
 // and both are stable for any c. ODE's distance joint has the row of a line: its right-hand side is
 // ERP / h (wanted distance - distance). An angular motor has that of a turn. The work is h f^2 / c.
-#include "ode/applied.h"
+#include "ode/plane/applied.h"
 
 #include "base/zeroed.h"
 

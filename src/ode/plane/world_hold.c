@@ -1,4 +1,5 @@
-// Which forces keep the ideal joints of a world closed?
+// Finds the forces that keep the ideal joints of a world closed, in time proportional to the
+// joints.
 //
 // What ODE's direct solver finds for the same rows, with CFM 0. J the rows, phi what they are open,
 // v and f the bodies' speeds and what acts on them before the step:
@@ -6,7 +7,7 @@
 //     D lambda h = -(J (v + h M^-1 f) + (ERP / h) phi),   D = J M^-1 J'
 // ODE factors D as a dense matrix, island by island, so that a chain of n joints takes n^3; here it
 // is sparse (model/response.h). The forces are then put on bodies that have no joints in ODE.
-#include "ode/world_hold.h"
+#include "ode/plane/world_hold.h"
 
 #include "base/zeroed.h"
 #include "model/forces.h"
