@@ -8,7 +8,7 @@
 // Where every joint is ideal the run starts `settle_steps` early: the joint rows lag behind the
 // start by a share (1 - ERP)^n, which would stand in the accelerations at any step size.
 #include "base/zeroed.h"
-#include "ode/contact_rows.h"
+#include "ode/plane/contact_rows.h"
 #include "ode/stepping.h"
 
 #include <assert.h>

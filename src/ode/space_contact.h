@@ -10,7 +10,7 @@
 
 // What a pin does at one of its places.
 typedef struct SpaceContact {
-    ContactState state; // as in ode/contact_row.h
+    ContactState state; // as in ode/plane/contact_rows.h
     double depth;       // m, of the row, like all that follows up to the friction
     PinSpacePose pose;
     Vec3 point;     // m, where the force acts

@@ -1,7 +1,7 @@
 // What does a pin that touches its hole in space become inside ODE, and which force came of it?
 //
 // Each place (contact/pin_space.h) that touches is one contact of ODE, with the place's own part of
-// the joint's law, by the map chosen, as in ode/contact_rows.c.
+// the joint's law, by the map chosen, as in ode/plane/contact_rows.c.
 #include "ode/space_contacts.h"
 
 #include "base/zeroed.h"
@@ -221,7 +221,7 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
     return true;
 }
 
-// What a contact lost and stored in the step, by its law; as in ode/contact_rows.c.
+// What a contact lost and stored in the step, by its law; as in ode/plane/contact_rows.c.
 static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
                         double step_s)
 {

@@ -2,9 +2,9 @@
 // contact of ODE each while they last.
 #pragma once
 
-#include "ode/contact_rows.h"
 #include "ode/space_contact.h"
 #include "ode/space_joints.h"
+#include "ode/stepping.h"
 
 // Lists the places of all joints with play, into zeroed memory. Fails with ERR_CASE where a law
 // does not fit. It is to be finished after a failure too.

@@ -1,7 +1,8 @@
 // How do two rows of ODE follow the friction law mu N tanh(|v| / v_s) against v?
 //
-// As in ode/contact_friction.c, the step is solved here first, and ODE's rows are then made to come
-// to the same forces. With N what presses, F the force along the wall, a vector, W the mobility:
+// As in ode/plane/contact_friction.c, the step is solved here first, and ODE's rows are then made
+// to come to the same forces. With N what presses, F the force along the wall, a vector, W the
+// mobility:
 //     u' = u + h (a + W_nn N + W_nt F),     u' + CFM N = (ERP / h) d,     N >= 0
 //     v' = v + h (a + W_tn N + W_tt F),     F = -mu N tanh(|w| / v_s) w / |w|
 //     w = theta v' + (1 - theta) v

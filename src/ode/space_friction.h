@@ -1,5 +1,5 @@
 // Friction of pins in space on their walls, as rows of ODE that follow the law of the other
-// solvers: ode/contact_friction.h with two directions along the wall.
+// solvers: ode/plane/contact_friction.h with two directions along the wall.
 #pragma once
 
 #include "model/options.h"

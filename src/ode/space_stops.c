@@ -187,7 +187,7 @@ bool space_stops_make(SpaceStops *stops, const SpaceMotion *motions, double step
     return true;
 }
 
-// As in ode/contact_rows_book.c.
+// As in ode/plane/contact_rows.c.
 static void book_energy(SpaceStops *stops, const SpaceMotion *motions, SpaceStop *stop,
                         double step_s)
 {

@@ -1,5 +1,5 @@
-// The ends of limited angles of hinges in space as rows of ODE: what ode/contact_rows.c does for
-// ends in the plane.
+// The ends of limited angles of hinges in space as rows of ODE: what ode/plane/contact_rows.c does
+// for ends in the plane.
 #pragma once
 
 #include "contact/map.h"
@@ -7,9 +7,9 @@
 #include "contact/tops.h"
 #include "model/space_coordinate.h"
 #include "model/space_response.h"
-#include "ode/contact_rows.h"
 #include "ode/plane/world.h"
 #include "ode/space_joints.h"
+#include "ode/stepping.h"
 
 // One end.
 typedef struct SpaceStop {
@@ -22,7 +22,7 @@ typedef struct SpaceStop {
     Vec3 axis; // of the row, of ODE's first body
     Onset onset;
     Tops tops;
-    ContactState state; // as in ode/contact_row.h
+    ContactState state; // as in ode/plane/contact_rows.h
     bool falls_back;    // the map is not stable at this step: the row is the textbook's
     double gap;         // rad, where the bodies are
     double depth;       // rad, of the row

@@ -20,7 +20,7 @@
 #include "base/zeroed.h"
 #include "model/joint_rows.h"
 #include "model/response.h"
-#include "ode/contact_rows.h"
+#include "ode/plane/contact_rows.h"
 #include "ode/stepping.h"
 
 #include <assert.h>

@@ -2,13 +2,21 @@
 // on it, labels and messages.
 #pragma once
 
+#include "model/forces.h"
 #include "model/solver.h"
-#include "ode/plane/world.h"
 
 // The ways of stepping, each a solver behind ODE_SOLVER, in ode/NAME.c under its own name.
 #define STEPPING_DECLARE(id, word, solver) extern const Solver solver;
 OPTIONS_ODE_STEPPING_LIST(STEPPING_DECLARE)
 extern const Solver STEPPING_IMPULSE; // where contacts are integrated within the step
+
+// What all contacts together lost in the step along the normal and in sliding, and store after it,
+// J.
+typedef struct ContactEnergy {
+    double dissipated;
+    double friction;
+    double elastic;
+} ContactEnergy;
 
 // How the driven body moves at a time: it turns about its joint with the ground, exactly. Zero
 // where there is no driver.

@@ -4,8 +4,19 @@
 
 #include "contact/map.h"
 #include "model/solver.h"
-#include "ode/contact_friction.h"
-#include "ode/contact_mass.h"
+#include "ode/plane/contact_friction.h"
+#include "ode/stepping.h"
+
+// The contact at one point, as ode/plane/contact_rows.c keeps it.
+typedef struct ContactRow ContactRow;
+
+// The effective masses with which the linkage meets what presses at its contact points.
+typedef struct ContactMass {
+    const World *world;
+    Response response; // its places are the pairs of the world
+    bool is_placed;    // the response is where the bodies are in this step, and so are the motions
+    Motion *motions;   // owned by the rows
+} ContactMass;
 
 typedef struct ContactRows {
     const Scenario *scenario;
@@ -42,24 +53,10 @@ void contact_rows_states(const ContactRows *rows, ContactState (*states)[JOINT_P
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err);
 
-// Whether a pair is the first of its joint's.
-bool contact_rows_is_first(const ContactRows *rows, size_t number);
-
-// What friction takes from a row along the normal.
-FrictionRow contact_rows_friction(const ContactRows *rows, size_t number);
-
 // By joint, from the anchor on a body to where the joint's force is said to act, m: of a pin or
 // stop at the contact, of a block or a prismatic joint at the anchor on body b. Zero for a joint
 // with play that has no row in this step.
 void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets);
-
-// What all contacts together lost in the step along the normal and in sliding, and store after it,
-// J.
-typedef struct ContactEnergy {
-    double dissipated;
-    double friction;
-    double elastic;
-} ContactEnergy;
 
 ContactEnergy contact_rows_energy(const ContactRows *rows);
 

@@ -1,4 +1,4 @@
-// How does a row of ODE follow the friction law mu N tanh(v / v_s)?
+// Makes a row of ODE follow the friction law mu N tanh(v / v_s).
 //
 // ODE knows a force along the wall that is bounded by a share of what presses (dContactApprox1),
 // and one that is proportional to a speed (dContactSlip1, dContactMotion1). Its direct solver sets
@@ -14,7 +14,7 @@
 // The force of the row is linear in the speed: the tangent of the law at the w that was found, so
 // that ODE comes to the same force. theta is 1/2, the midpoint rule, but where friction stops the
 // pin within the step it is as large as keeps the speed from changing sign.
-#include "ode/contact_friction.h"
+#include "ode/plane/contact_friction.h"
 
 #include "base/zeroed.h"
 
