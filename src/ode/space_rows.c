@@ -1,9 +1,10 @@
 // How does a linkage in space move in ODE with contacts as rows of the world?
 //
-// Plain and staggered stepping, as ode/plain.c and ode/staggered.c have them in the plane. Bodies
-// turn by finite rotations: staggered, by h omega from mid-step to mid-step. Turning inertias are
-// ODE's own affair in plain stepping; in staggered stepping a torque of second order stands for
-// them (ode/space_world.c), with the angular acceleration of the step before for what else acts.
+// Plain and staggered stepping, as ode/plane/plain.c and ode/plane/staggered.c have them in the
+// plane. Bodies turn by finite rotations: staggered, by h omega from mid-step to mid-step. Turning
+// inertias are ODE's own affair in plain stepping; in staggered stepping a torque of second order
+// stands for them (ode/space_world.c), with the angular acceleration of the step before for what
+// else acts.
 #include "base/zeroed.h"
 #include "ode/engine.h"
 #include "ode/space_between.h"

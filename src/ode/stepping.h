@@ -5,7 +5,7 @@
 #include "model/forces.h"
 #include "model/solver.h"
 
-// The ways of stepping, each a solver behind ODE_SOLVER, in ode/NAME.c under its own name.
+// The ways of stepping, each a solver behind ODE_SOLVER, in ode/plane/NAME.c under its own name.
 #define STEPPING_DECLARE(id, word, solver) extern const Solver solver;
 OPTIONS_ODE_STEPPING_LIST(STEPPING_DECLARE)
 extern const Solver STEPPING_IMPULSE; // where contacts are integrated within the step

@@ -98,7 +98,7 @@ fault "stiffness off by 1 %" src/kernel/force_law.c \
     's/^        \.stiffness = stiffness,/        .stiffness = 1.01 * stiffness,/'
 fault "restitution off by 0.01" src/contact/damping.c \
     's/factor(restitution);/factor(restitution - 0.01);/'
-fault "step 10 % larger" src/ode/plain.c \
+fault "step 10 % larger" src/ode/plane/plain.c \
     's/plain->step_s = scenario->run\.step;/plain->step_s = 1.1 * scenario->run.step;/'
 fault "another map" src/ode/plane/contact_rows.c \
     's/map_get(ODE_MAP_TEXTBOOK) : rows->map;/map_get(ODE_MAP_TEXTBOOK) : map_get(ODE_MAP_CORRECTED);/'

@@ -1,4 +1,4 @@
-// How does the linkage move in ODE, stepped as its manual says?
+// Steps a planar linkage in ODE as its manual says.
 //
 // Plain stepping, step n from t = n h:
 //     the driven body is put on its exact path at t, contacts are looked for there,

@@ -1,4 +1,4 @@
-// How does the linkage move in ODE, read as a leapfrog?
+// Steps a planar linkage in ODE as a leapfrog: positions stand half a step behind speeds.
 //
 // ODE's positions stand at mid-step when its speeds stand at the step's start. Step n, t = n h:
 //     positions at t + h/2, speeds v_n at t: contacts are looked for there
