@@ -1,12 +1,12 @@
 // How does the linkage move in ODE if its contacts are integrated within the step? (The steps
-// themselves: ode/impulse_step.c.)
+// themselves: ode/plane/impulse_step.c.)
 //
 // A step is handed on in parts (ode/impulse_part.c).
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "ode/impulse_islands.h"
 #include "ode/impulse_parts.h"
-#include "ode/impulse_step.h"
+#include "ode/plane/impulse_step.h"
 #include "ode/stepping.h"
 
 #include <assert.h>

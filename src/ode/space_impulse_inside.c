@@ -1,6 +1,6 @@
 // What is the state at a time inside a step of the world in space?
 //
-// As ode/impulse_inside.c has it; a body has turned since the start of the step by the vector
+// As ode/plane/impulse_inside.c has it; a body has turned since the start of the step by the vector
 //     theta(t) = omega t + a t^2 / 2 + A Q(t)
 // which is right to the order of the step, and ends where the step does.
 #include "ode/space_impulse_step.h"

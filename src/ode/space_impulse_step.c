@@ -1,6 +1,6 @@
 // How does a linkage in space move in ODE if its contacts are integrated within the step?
 //
-// The step of ode/impulse_step.c, with rotations for angles: bodies turn by (h/2) omega up to
+// The step of ode/plane/impulse_step.c, with rotations for angles: bodies turn by (h/2) omega up to
 // mid-step and by (h/2) omega' from there. The rows of the contacts are frozen at mid-step
 // (contact/pin_space_rows.h). Turning inertias are a torque in the step of the world
 // (ode/space_world.c); what omega will be at its end is known but for an error of the order of h^2,
@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-// as in ode/impulse_step.c
+// as in ode/plane/impulse_step.c
 static const double NEAR = 0.02;
 static const double SHORT = 0.1;
 
@@ -231,7 +231,7 @@ static void change_motions(SpaceImpulseStep *step, const SpaceChange *positions,
     }
 }
 
-// Puts the end back onto the ideal joints, in passes as in the plane (ode/impulse_step.c).
+// Puts the end back onto the ideal joints, in passes as in the plane (ode/plane/impulse_step.c).
 static void put_back(SpaceImpulseStep *step)
 {
     double *openings = step->ideal[0];

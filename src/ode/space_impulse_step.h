@@ -1,5 +1,5 @@
 // One step of a world in space with the contacts integrated inside it, and the state at any time in
-// it: ode/impulse_step.h in space.
+// it: ode/plane/impulse_step.h in space.
 #pragma once
 
 #include "contact/pin_space_rows.h"

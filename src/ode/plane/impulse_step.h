@@ -5,8 +5,8 @@
 #include "kernel/kernel.h"
 #include "model/response_drift.h"
 #include "model/trajectory.h"
-#include "ode/impulse_curves.h"
 #include "ode/impulse_scope.h"
+#include "ode/plane/impulse_curves.h"
 #include "ode/plane/world.h"
 #include "ode/stepping.h"
 
@@ -79,9 +79,6 @@ static inline bool impulse_step_is_free(const ImpulseStep *step, size_t body)
 bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);
 void impulse_step_finish(ImpulseStep *step);
 
-// How the places of a response move each other.
-KernelCoupling impulse_step_coupling(const Response *response);
-
 // Adds what a prismatic joint does to its body b: the values of its two rows, N and N m; a
 // linkage's bodies are where the motions say.
 void impulse_step_add_sliding(const Linkage *linkage, int joint, const double *values,
@@ -108,50 +105,10 @@ static inline void impulse_step_add_ideal(const ImpulseStep *step, size_t row, c
 void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pressing,
                           const Motion *motions, JointState *state);
 
-// Finds the mean forces of the joints with play and the works of the drive and of dampers in the
-// step that has just been taken, from the bodies at mid-step.
-void impulse_step_find_work(ImpulseStep *step, const Motion *middle);
-
-// Adds changes, three a body, to the free bodies' positions and speeds.
-void impulse_step_change_motions(const ImpulseStep *step, const double *positions,
-                                 const double *speeds, Motion *motions);
-
-// Sets what the accelerations beside the contacts' will be at mid-step: those of the step before.
-void impulse_step_look_ahead(ImpulseStep *step);
-
-// Finds the bodies at mid-step, with the speeds of its start; the step before was so long, s.
-void impulse_step_find_middle(ImpulseStep *step, double width_before_s, Motion *middle);
-
-// Before the response is taken at mid-step: writes the free accelerations of the rows in the step
-// before with what its contacts did to them, and finds whether that was little.
-void impulse_step_keep_free(ImpulseStep *step, double *free_before);
-
-// Finds the free accelerations of the rows of play at mid-step, where the contacts have not changed
-// the speeds.
-void impulse_step_find_free(ImpulseStep *step, const Motion *middle);
-
-// Lets what the rows of play feel change in the step: their mobility with the bodies, their free
-// acceleration beside that as it did from the middle of the step before.
-void impulse_step_set_drift(ImpulseStep *step, const double *free_before);
-
-// Of few rows: finds what 1 N s in each does, and how that changes, from the response at mid-step,
-// where the bodies are as given.
-void impulse_step_find_columns(ImpulseStep *step, const Motion *middle);
-
 // Writes what the contacts have done up to a time in the step to the speeds and to the positions of
 // all bodies, three each, from their sums.
 void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const KernelSums *sums,
                               double *speeds, double *positions);
-
-// Writes what the turning of the rows does in the whole step to the speeds of all bodies, three
-// each.
-void impulse_step_turn_bodies(const ImpulseStep *step, double *speeds);
-
-// Writes what forces in the rows of play do to the speeds of all bodies, per second, at a time
-// since the step's start: as the curves have it, or else as in the last step whose response is
-// known.
-void impulse_step_press_bodies(const ImpulseStep *step, double since_s, const double *forces,
-                               double *rates);
 
 // Whether the curves of the last step are known: of few rows, once there have been steps enough.
 static inline bool impulse_step_has_curves(const ImpulseStep *step)
@@ -161,11 +118,6 @@ static inline bool impulse_step_has_curves(const ImpulseStep *step)
 
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);
-
-// Of a step: springs, dampers and torque push the bodies, which move as given at mid-step; and once
-// the contacts are integrated, what the dampers feel of when in the step their impulse came.
-void impulse_step_push(ImpulseStep *step, const Motion *middle);
-void impulse_step_push_late(ImpulseStep *step, const Motion *middle);
 
 // How the bodies of a scope move and what its joints do then, from the contacts' sums up to then,
 // and how deep each place is, m.

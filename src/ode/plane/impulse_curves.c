@@ -1,8 +1,8 @@
-// How do bodies move inside a step of few rows?
+// Finds how bodies move inside a step of few rows, as polynomials in time.
 //
 // The parabola A + B s + C s^2 has Newton's form, through the last three steps' values at their
 // middles.
-#include "ode/impulse_curves.h"
+#include "ode/plane/impulse_curves.h"
 
 #include "base/zeroed.h"
 

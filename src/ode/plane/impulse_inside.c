@@ -1,13 +1,12 @@
-// What is the state at a time inside a step of the world?
+// Finds the state of a planar linkage at a time inside a step of the world.
 //
 //     v(t) = v + a_f t + A P(t),  q(t) = q + v t + a_f t^2 / 2 + A Q(t)
-// as ode/impulse_step.c has it. Accelerations: those beside the contacts', linear in time from the
-// means of the last two steps, and A f(t). Ideal joints: the mean forces of the step, and how the
-// joints answer what the contacts do beyond theirs.
-#include "ode/impulse_step.h"
+// as ode/plane/impulse_step.c has it. Accelerations: those beside the contacts', linear in time
+// from the means of the last two steps, and A f(t). Ideal joints: the mean forces of the step, and
+// how the joints answer what the contacts do beyond theirs.
+#include "ode/plane/impulse_step.h"
 
 #include "kernel/internal.h"
-#include "ode/stepping.h"
 
 #include <string.h>
 
