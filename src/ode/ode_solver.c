@@ -3,7 +3,6 @@
 // Hands on to the way of stepping that the scenario asks for; each is a solver of its own.
 #include "model/solver.h"
 #include "ode/impulse_parts.h"
-#include "ode/space_stepping.h"
 #include "ode/stepping.h"
 
 #include <assert.h>

@@ -1,13 +1,12 @@
 // How does a linkage in space move in ODE if its contacts are integrated within the step? (The
-// steps themselves: ode/space_impulse_step.c.)
+// steps themselves: ode/space/space_impulse_step.c.)
 //
 // A step is handed on in parts (ode/impulse_part.c).
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "ode/impulse_islands.h"
 #include "ode/impulse_parts.h"
-#include "ode/space_impulse_means.h"
-#include "ode/space_stepping.h"
+#include "ode/space/space_impulse_step.h"
 #include "ode/stepping.h"
 
 #include <string.h>

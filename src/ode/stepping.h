@@ -10,6 +10,12 @@
 OPTIONS_ODE_STEPPING_LIST(STEPPING_DECLARE)
 extern const Solver STEPPING_IMPULSE; // where contacts are integrated within the step
 
+// Those of a linkage in space, in ode/space.
+extern const Solver SPACE_PLAIN;
+extern const Solver SPACE_STAGGERED;
+extern const Solver SPACE_IMPULSE;
+extern const Solver SPACE_IMPULSE_PARTS; // of mechanisms that share nothing but the ground
+
 // What all contacts together lost in the step along the normal and in sliding, and store after it,
 // J.
 typedef struct ContactEnergy {

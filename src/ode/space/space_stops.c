@@ -1,19 +1,43 @@
-// How do flanks and stops press on a hinge in space that ODE steps?
+// Lets flanks and stops press on a hinge in space that ODE steps.
 //
 // By a row of the angle (world/pressing_row.h) with the torque that the law asks for, by the map
 // chosen, as in the plane: staggered, an end acts in that share of the step in which it is
 // overlapped (contact/overlap.h).
-#include "ode/space_stops.h"
+#include "ode/space/space_stops.h"
 
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "contact/law_row.h"
 #include "contact/overlap.h"
 #include "contact/stop_space.h"
-#include "ode/space_world.h"
+#include "ode/space/space_world.h"
 #include "world/pressing_row.h"
 
 #include <string.h>
+
+// One end.
+struct SpaceStop {
+    int joint;
+    double sign;  // 1 of the low end, -1 of the high one
+    double limit; // rad, where it is
+    ForceLaw law;
+    dJointID row;
+    dJointFeedback feedback;
+    Vec3 axis; // of the row, of ODE's first body
+    Onset onset;
+    Tops tops;
+    ContactState state; // as in ode/plane/contact_rows.h
+    bool falls_back;    // the map is not stable at this step: the row is the textbook's
+    double gap;         // rad, where the bodies are
+    double depth;       // rad, of the row
+    double share;       // 1, of the step in which the end is overlapped
+    double closing;     // rad/s, before the step
+    double mass;        // kg m^2, effective
+    double damping;     // N m s/rad
+    double pressing;    // N m, in the step
+    double elastic;     // J, stored after it
+    double dissipated;  // J, lost in it
+};
 
 bool space_stops_list(SpaceStops *stops, const Scenario *scenario, Err *err)
 {
@@ -39,6 +63,13 @@ bool space_stops_list(SpaceStops *stops, const Scenario *scenario, Err *err)
     }
     free(listed);
     return true;
+}
+
+void space_stops_response_places(const SpaceStops *stops, SpaceResponsePlace *places)
+{
+    for (size_t i = 0; i < stops->count; i++) {
+        places[i] = (SpaceResponsePlace){stops->stops[i].joint, 1};
+    }
 }
 
 void space_stops_init(SpaceStops *stops, World *world, SpaceResponse *response, size_t first_place,
@@ -258,5 +289,13 @@ void space_stops_tops(const SpaceStops *stops, JointTop *tops)
             top->force = fmax(top->force, stop->tops.force);
             top->depth = fmax(top->depth, stop->tops.depth);
         }
+    }
+}
+
+void space_stops_states(const SpaceStops *stops, ContactState (*states)[JOINT_PLACES])
+{
+    for (size_t i = 0; i < stops->count; i++) {
+        const SpaceStop *stop = &stops->stops[i];
+        states[stop->joint][stop->sign > 0.0 ? 0 : 1] = stop->state;
     }
 }

@@ -1,19 +1,157 @@
-// How does a linkage in space move in ODE with contacts as rows of the world?
+// Steps a linkage in space in ODE with contacts as rows of the world.
 //
 // Plain and staggered stepping, as ode/plane/plain.c and ode/plane/staggered.c have them in the
 // plane. Bodies turn by finite rotations: staggered, by h omega from mid-step to mid-step. Turning
 // inertias are ODE's own affair in plain stepping; in staggered stepping a torque of second order
-// stands for them (ode/space_world.c), with the angular acceleration of the step before for what
-// else acts.
+// stands for them (ode/space/space_world.c), with the angular acceleration of the step before for
+// what else acts.
 #include "base/zeroed.h"
+#include "model/space.h"
+#include "model/space_response.h"
 #include "ode/engine.h"
-#include "ode/space_between.h"
-#include "ode/space_stepping.h"
-#include "ode/space_stride.h"
-#include "ode/space_world.h"
+#include "ode/space/space_contacts.h"
+#include "ode/space/space_joints.h"
+#include "ode/space/space_stops.h"
+#include "ode/space/space_world.h"
 #include "ode/stepping.h"
 
 #include <string.h>
+
+// The motion of a body in space at a time inside a step.
+
+static Vec3 weigh(double share, Vec3 a, Vec3 b)
+{
+    return vec3_add(vec3_scale(1.0 - share, a), vec3_scale(share, b));
+}
+
+// Within a step of a leapfrog: `first` has the speeds of the step's start and positions of its
+// middle, `mean` and `other` the mean accelerations of this step and of the one beside it, on the
+// side of the time, s since the start. Speeds are linear, positions their integral, accelerations
+// linear between mid-steps.
+static SpaceMotion space_between_leapfrog(const SpaceMotion *first, const SpaceMotion *mean,
+                                          const SpaceMotion *other, double since_s, double step_s)
+{
+    const double off_s = since_s - 0.5 * step_s;
+    const double share = fabs(off_s) / step_s; // of the way to the other step's middle
+    const double square = 0.5 * since_s * since_s;
+    const SpaceChange place = {
+        vec3_add(vec3_scale(off_s, first->velocity), vec3_scale(square, mean->acceleration)),
+        vec3_add(vec3_scale(off_s, first->omega), vec3_scale(square, mean->alpha))};
+    const SpaceChange speed = {vec3_scale(since_s, mean->acceleration),
+                               vec3_scale(since_s, mean->alpha)};
+    SpaceMotion motion = *first;
+    space_change(&motion, &place, &speed);
+    motion.acceleration = weigh(share, mean->acceleration, other->acceleration);
+    motion.alpha = weigh(share, mean->alpha, other->alpha);
+    return motion;
+}
+
+// The step before the first has no accelerations: they go on as they come, from the first two.
+static void space_between_guess(const SpaceMotion *first, const SpaceMotion *second,
+                                SpaceMotion *before)
+{
+    before->acceleration = weigh(-1.0, first->acceleration, second->acceleration);
+    before->alpha = weigh(-1.0, first->alpha, second->alpha);
+}
+
+// Within a plain step, from its start to its end: positions and speeds are linear, accelerations
+// those of `last`, means of the step. ODE moves its bodies by the speed at the end.
+static SpaceMotion space_between_plain(const SpaceMotion *first, const SpaceMotion *last,
+                                       double since_s, double step_s)
+{
+    const double share = since_s / step_s;
+    const SpaceChange place = {vec3_scale(share, vec3_sub(last->position, first->position)),
+                               vec3_scale(since_s, last->omega)};
+    const SpaceChange speed = {vec3_scale(since_s, last->acceleration),
+                               vec3_scale(since_s, last->alpha)};
+    SpaceMotion motion = *first;
+    space_change(&motion, &place, &speed);
+    motion.acceleration = last->acceleration;
+    motion.alpha = last->alpha;
+    return motion;
+}
+
+typedef struct SpaceStride {
+    double start_s;
+    SpaceMotion *first; // by body: speeds at the step's start, and positions there (plain) or at
+                        // mid-step (staggered); owned, like the arrays below
+    SpaceMotion *last;  // as ODE leaves them; accelerations are means of the step
+    double *omega;      // rad/s, about z, at its end
+    double *alpha;      // rad/s^2, about z, mean
+    SpaceJoints joints;
+    double *impulse; // by joint
+    double *approach;
+    JointTop *tops;
+    double drive_work; // J
+    ContactEnergy energy;
+} SpaceStride;
+
+// One step with contacts as rows of the world, as it is handed on.
+
+static void space_stride_create(const Linkage *linkage, SpaceStride *stride)
+{
+    stride->first = zeroed(linkage->body_count, sizeof *stride->first);
+    stride->last = zeroed(linkage->body_count, sizeof *stride->last);
+    stride->omega = zeroed(linkage->body_count, sizeof *stride->omega);
+    stride->alpha = zeroed(linkage->body_count, sizeof *stride->alpha);
+    stride->joints = space_joints_create(linkage);
+    stride->impulse = zeroed(linkage->joint_count, sizeof *stride->impulse);
+    stride->tops = zeroed(linkage->joint_count, sizeof *stride->tops);
+    stride->approach = zeroed(linkage->joint_count, sizeof *stride->approach);
+}
+
+static void space_stride_free(SpaceStride *stride)
+{
+    free(stride->first);
+    free(stride->last);
+    free(stride->omega);
+    free(stride->alpha);
+    space_joints_free(&stride->joints);
+    free(stride->impulse);
+    free(stride->approach);
+    free(stride->tops);
+}
+
+// Fills in forces, energies, impulses and the drive's part of a step that has been taken, and
+// removes its contacts. `driven` is the motion of the driven body in its rows.
+static void space_stride_book(SpaceStride *stride, const SpaceMotion *driven, double step_s,
+                              const World *world, SpaceContacts *contacts, SpaceStops *stops)
+{
+    const Linkage *linkage = world->linkage;
+    const int body = linkage_driven_body(linkage);
+    SpaceChange others = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    space_contacts_clear(contacts, step_s, &stride->joints);
+    space_contacts_load(contacts, body, driven->position, &others);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (!linkage_is_ideal(linkage, i)) {
+            continue;
+        }
+        space_joints_hold(&stride->joints, i, space_world_force(world, i));
+        if (body >= 0 && (joint->body_a == body || joint->body_b == body)) {
+            const SpaceChange load = space_world_load(world, i, body);
+            others.move = vec3_add(others.move, load.move);
+            others.turn = vec3_add(others.turn, load.turn);
+        }
+    }
+    space_stops_clear(stops, step_s, &stride->joints);
+    space_stops_tops(stops, stride->tops);
+    stride->drive_work = 0.0;
+    if (body >= 0) {
+        Vec3 force;
+        stride->drive_work =
+            step_s * space_joints_drive(contacts->scenario, driven, &others, &force);
+        space_joints_hold(&stride->joints, (size_t)linkage->driver.joint, force);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        stride->impulse[i] = stride->joints.plane[i].force * step_s;
+    }
+    space_contacts_impulses(contacts, step_s, stride->impulse);
+    stride->energy = space_contacts_energy(contacts);
+    const ContactEnergy ends = space_stops_energy(stops);
+    stride->energy.dissipated += ends.dissipated;
+    stride->energy.elastic += ends.elastic;
+}
 
 typedef struct SpaceRows {
     const Scenario *scenario;
@@ -68,9 +206,7 @@ static bool build(SpaceRows *rows, Err *err)
     const size_t pins = rows->contacts.count;
     SpaceResponsePlace *places =
         space_contacts_response_places(&rows->contacts, pins + rows->stops.count);
-    for (size_t i = 0; i < rows->stops.count; i++) {
-        places[pins + i] = (SpaceResponsePlace){rows->stops.stops[i].joint, 1};
-    }
+    space_stops_response_places(&rows->stops, places + pins);
     const bool is_built = space_world_build(scenario, motions, places, pins + rows->stops.count,
                                             &rows->world, &rows->response, &rows->hold, err);
     free(places);
@@ -335,14 +471,8 @@ static void space_rows_observe(const void *state, double time_s, Sample *sample)
 static void space_rows_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
 {
     const SpaceRows *rows = state;
-    for (size_t i = 0; i < rows->contacts.count; i++) {
-        const PinSpace *place = &rows->contacts.places[i];
-        states[place->joint][place->place] = rows->contacts.contacts[i].state;
-    }
-    for (size_t i = 0; i < rows->stops.count; i++) {
-        const SpaceStop *stop = &rows->stops.stops[i];
-        states[stop->joint][stop->sign > 0.0 ? 0 : 1] = stop->state;
-    }
+    space_contacts_states(&rows->contacts, states);
+    space_stops_states(&rows->stops, states);
 }
 
 static SolverModel space_rows_model(const void *state)

@@ -1,10 +1,10 @@
-// How do pins stand in their holes in space, and what does the drive do?
+// Finds how pins stand in their holes in space, and what the drive does.
 //
 // Of the driven body, whose motion is given and whose angular velocity is constant along an axis:
 //     F_drive = m (a - g) - sum F_i,   P = m (a - g) . v - sum (F_i . v + M_i . omega)
 // with F_i and M_i the other forces and their moments about the centre of mass; the momentum of a
 // body that turns steadily about a fixed axis takes no power.
-#include "ode/space_joints.h"
+#include "ode/space/space_joints.h"
 
 #include "base/zeroed.h"
 #include "model/space_coordinate.h"

@@ -1,10 +1,14 @@
 // A linkage in space built in ODE: bodies with their full inertias, and ideal joints that are
-// hinges. Contacts are made step by step (ode/space_contacts.h).
+// hinges. Contacts are made step by step (ode/space/space_contacts.h).
 #pragma once
 
+#include "model/scenario.h"
 #include "model/space_response.h"
 #include "ode/plane/world.h"
-#include "ode/space_hold.h"
+
+// The ideal joints of a world in space with many of them, held by forces that are found here
+// instead of by rows of ODE: ode/plane/world_hold.h in space.
+typedef struct SpaceHold SpaceHold;
 
 // Builds the world of a scenario with its bodies in the motions given, and the response of its
 // linkage with some places; and what holds its ideal joints, NULL where they are rows of ODE. Fails
@@ -41,3 +45,11 @@ SpaceChange space_world_load(const World *world, size_t joint, int body);
 // acceleration that the torque alone makes.
 Vec3 space_world_gyration(const SpaceResponse *response, size_t body, const SpaceMotion *middle,
                           Vec3 rest, double step_s, Vec3 *alpha);
+
+void space_hold_free(SpaceHold *hold);
+
+// Pushes the bodies, on which all else acts already, so that a step keeps the joints closed, and
+// fills in the feedback of the joints as ODE does. The response is that of the motions given: the
+// bodies as the step has them.
+void space_hold_push(SpaceHold *hold, const SpaceResponse *response, const SpaceMotion *motions,
+                     double step_s, World *world);

@@ -2,9 +2,37 @@
 // contact of ODE each while they last.
 #pragma once
 
-#include "ode/space_contact.h"
-#include "ode/space_joints.h"
+#include "contact/law_row.h"
+#include "contact/onset.h"
+#include "contact/pin_space.h"
+#include "model/space_response.h"
+#include "ode/plane/world.h"
+#include "ode/space/space_joints.h"
 #include "ode/stepping.h"
+
+// What a pin does at one of its places, as ode/space/space_contacts.c keeps it.
+typedef struct SpaceContact SpaceContact;
+
+// Rows of a place in the response of the linkage: along its normal, and two along its wall.
+enum { SPACE_CONTACT_ROWS = 3 };
+
+typedef struct SpaceContacts {
+    const Scenario *scenario;
+    World *world;
+    SpaceResponse *response; // the linkage's
+    const Map *map;
+    double penalty; // N s/m, of CONTACT_POISSON, of a whole joint
+    dJointGroupID group;
+    size_t count;
+    PinSpace *places;       // owned, as are all arrays here
+    SpaceContact *contacts; // by place
+    SpaceRow *rows;         // room: SPACE_CONTACT_ROWS of each, for the response
+    SpaceMotion *motions;   // room: by body
+    size_t most_rows;
+    size_t fallback_count;
+    bool has_friction; // at any place
+    bool is_staggered; // positions stand half a step behind the speeds
+} SpaceContacts;
 
 // Lists the places of all joints with play, into zeroed memory. Fails with ERR_CASE where a law
 // does not fit. It is to be finished after a failure too.
@@ -37,3 +65,6 @@ void space_contacts_load(const SpaceContacts *contacts, int body, Vec3 centre, S
 void space_contacts_impulses(const SpaceContacts *contacts, double step_s, double *impulses);
 
 ContactEnergy space_contacts_energy(const SpaceContacts *contacts);
+
+// Writes what the contacts carry after the last step, by joint and its places.
+void space_contacts_states(const SpaceContacts *contacts, ContactState (*states)[JOINT_PLACES]);

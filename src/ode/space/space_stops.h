@@ -8,32 +8,11 @@
 #include "model/space_coordinate.h"
 #include "model/space_response.h"
 #include "ode/plane/world.h"
-#include "ode/space_joints.h"
+#include "ode/space/space_joints.h"
 #include "ode/stepping.h"
 
-// One end.
-typedef struct SpaceStop {
-    int joint;
-    double sign;  // 1 of the low end, -1 of the high one
-    double limit; // rad, where it is
-    ForceLaw law;
-    dJointID row;
-    dJointFeedback feedback;
-    Vec3 axis; // of the row, of ODE's first body
-    Onset onset;
-    Tops tops;
-    ContactState state; // as in ode/plane/contact_rows.h
-    bool falls_back;    // the map is not stable at this step: the row is the textbook's
-    double gap;         // rad, where the bodies are
-    double depth;       // rad, of the row
-    double share;       // 1, of the step in which the end is overlapped
-    double closing;     // rad/s, before the step
-    double mass;        // kg m^2, effective
-    double damping;     // N m s/rad
-    double pressing;    // N m, in the step
-    double elastic;     // J, stored after it
-    double dissipated;  // J, lost in it
-} SpaceStop;
+// One end, as ode/space/space_stops.c keeps it.
+typedef struct SpaceStop SpaceStop;
 
 typedef struct SpaceStops {
     const Scenario *scenario;
@@ -54,6 +33,9 @@ typedef struct SpaceStops {
 // not fit. To be finished after a failure too.
 bool space_stops_list(SpaceStops *stops, const Scenario *scenario, Err *err);
 
+// Writes the places as the response takes them, one row each.
+void space_stops_response_places(const SpaceStops *stops, SpaceResponsePlace *places);
+
 // Makes their rows in a world that has been built, with a response whose places from the one of
 // that number on are theirs, one row each. Must not be copied.
 void space_stops_init(SpaceStops *stops, World *world, SpaceResponse *response, size_t first_place,
@@ -72,3 +54,6 @@ ContactEnergy space_stops_energy(const SpaceStops *stops);
 
 // The largest force and depth of each joint that the steps up to the last one show, by joint.
 void space_stops_tops(const SpaceStops *stops, JointTop *tops);
+
+// Writes what the ends carry after the last step, by joint and its places.
+void space_stops_states(const SpaceStops *stops, ContactState (*states)[JOINT_PLACES]);

@@ -7,8 +7,8 @@
 #include "kernel/kernel.h"
 #include "model/space_response_groups.h"
 #include "ode/impulse_scope.h"
-#include "ode/space_joints.h"
-#include "ode/space_world.h"
+#include "ode/space/space_joints.h"
+#include "ode/space/space_world.h"
 
 enum { SPACE_IMPULSE_ROOMS = 3 };
 
@@ -79,11 +79,8 @@ static inline const StopSpace *space_impulse_step_stop(const SpaceImpulseStep *s
     return place < step->pin_count ? NULL : &step->stops[place - step->pin_count];
 }
 
-// How the places of a response move each other.
-KernelCoupling space_impulse_step_coupling(const SpaceResponse *response);
-
 // Takes the next step: all but its mean forces and the work of the drive, which
-// ode/space_impulse_means.h finds.
+// ode/space/space_impulse_step.h finds.
 bool space_impulse_step_take(SpaceImpulseStep *step, Err *err);
 
 // How the bodies of a scope move and what its joints do at a time within the step, from the
@@ -91,3 +88,6 @@ bool space_impulse_step_take(SpaceImpulseStep *step, Err *err);
 void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope *scope,
                                ImpulseTime at, const KernelSums *sums, SpaceMotion *motions,
                                SpaceJoints *joints);
+
+// Fills in both for a step that has been taken.
+void space_impulse_means_find(SpaceImpulseStep *step);

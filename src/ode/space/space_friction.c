@@ -1,4 +1,4 @@
-// How do two rows of ODE follow the friction law mu N tanh(|v| / v_s) against v?
+// Makes two rows of ODE follow the friction law mu N tanh(|v| / v_s) against v.
 //
 // As in ode/plane/contact_friction.c, the step is solved here first, and ODE's rows are then made
 // to come to the same forces. With N what presses, F the force along the wall, a vector, W the
@@ -13,7 +13,7 @@
 // with up to sqrt 2 mu N, in a direction that depends on the choice of the two.
 //
 // The ideal joints hold as in ODE, J v' = -(ERP / h) opening, which is part of a.
-#include "ode/space_friction.h"
+#include "ode/space/space_friction.h"
 
 #include "base/zeroed.h"
 
