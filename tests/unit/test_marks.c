@@ -90,7 +90,7 @@ static void a_contact_that_begins_at_the_very_end_is_touching_there(void **state
         marks_find(&marks, &pin);
         const size_t last = pin.node_count - 1;
         const Mark *end = &marks.marks[marks.count - 1];
-        assert_int_equal(pose_at(&pin, end).is_touching, pin.contacts[0].is_touching);
+        assert_int_equal(pose_at(&pin, end).is_touching, pin.contacts[0].state.is_touching);
         at_the_end += pin.times[last - 1] == pin.times[last] ? 1 : 0;
         marks_finish(&marks);
         kernel_finish(&pin);
