@@ -8,13 +8,14 @@
 // The ways of stepping, each a solver behind ODE_SOLVER, in ode/plane/NAME.c under its own name.
 #define STEPPING_DECLARE(id, word, solver) extern const Solver solver;
 OPTIONS_ODE_STEPPING_LIST(STEPPING_DECLARE)
-extern const Solver STEPPING_IMPULSE; // where contacts are integrated within the step
+extern const Solver STEPPING_IMPULSE;       // where contacts are integrated within the step
+extern const Solver STEPPING_IMPULSE_PARTS; // of mechanisms that share nothing but the ground
 
 // Those of a linkage in space, in ode/space.
 extern const Solver SPACE_PLAIN;
 extern const Solver SPACE_STAGGERED;
 extern const Solver SPACE_IMPULSE;
-extern const Solver SPACE_IMPULSE_PARTS; // of mechanisms that share nothing but the ground
+extern const Solver SPACE_IMPULSE_PARTS; // likewise
 
 // What all contacts together lost in the step along the normal and in sliding, and store after it,
 // J.

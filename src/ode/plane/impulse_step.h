@@ -5,7 +5,7 @@
 #include "kernel/kernel.h"
 #include "model/response_drift.h"
 #include "model/trajectory.h"
-#include "ode/impulse_scope.h"
+#include "ode/impulse.h"
 #include "ode/plane/impulse_curves.h"
 #include "ode/plane/world.h"
 #include "ode/stepping.h"

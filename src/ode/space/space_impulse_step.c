@@ -502,22 +502,6 @@ static void begin_step(SpaceImpulseStep *step)
     }
 }
 
-bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
-{
-    const double width_before_s = step->width_s;
-    SpaceMotion *const middle = step->middle;
-    SpaceChange *pushed = step->changes[0]; // what the contacts change of the speeds
-    begin_step(step);
-    find_middle(step, middle);
-    if (!run_kernel(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {
-        return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
-    }
-    find_end(step, middle);
-    prepare_inside(step, pushed, width_before_s);
-    step->count++;
-    return true;
-}
-
 // The mean forces with which the joints and the drive held the bodies in a step.
 //
 // The ideal joints: F = (what ODE's rows did + what put the speeds back onto the joints) / h. ODE's
@@ -619,10 +603,28 @@ static void find_drive_work(SpaceImpulseStep *step)
     }
 }
 
-void space_impulse_means_find(SpaceImpulseStep *step)
+// Fills in the mean forces and the work of the drive for a step that has been taken.
+static void space_impulse_means_find(SpaceImpulseStep *step)
 {
     find_means(step);
     find_drive_work(step);
+}
+
+bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
+{
+    const double width_before_s = step->width_s;
+    SpaceMotion *const middle = step->middle;
+    SpaceChange *pushed = step->changes[0]; // what the contacts change of the speeds
+    begin_step(step);
+    find_middle(step, middle);
+    if (!run_kernel(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {
+        return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
+    }
+    find_end(step, middle);
+    prepare_inside(step, pushed, width_before_s);
+    step->count++;
+    space_impulse_means_find(step);
+    return true;
 }
 
 // The state at a time inside a step.

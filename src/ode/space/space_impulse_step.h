@@ -6,7 +6,7 @@
 #include "contact/stop_space.h"
 #include "kernel/kernel.h"
 #include "model/space_response_groups.h"
-#include "ode/impulse_scope.h"
+#include "ode/impulse.h"
 #include "ode/space/space_joints.h"
 #include "ode/space/space_world.h"
 
@@ -79,8 +79,7 @@ static inline const StopSpace *space_impulse_step_stop(const SpaceImpulseStep *s
     return place < step->pin_count ? NULL : &step->stops[place - step->pin_count];
 }
 
-// Takes the next step: all but its mean forces and the work of the drive, which
-// ode/space/space_impulse_step.h finds.
+// Takes the next step.
 bool space_impulse_step_take(SpaceImpulseStep *step, Err *err);
 
 // How the bodies of a scope move and what its joints do at a time within the step, from the
@@ -88,6 +87,3 @@ bool space_impulse_step_take(SpaceImpulseStep *step, Err *err);
 void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope *scope,
                                ImpulseTime at, const KernelSums *sums, SpaceMotion *motions,
                                SpaceJoints *joints);
-
-// Fills in both for a step that has been taken.
-void space_impulse_means_find(SpaceImpulseStep *step);
