@@ -23,8 +23,8 @@ static const double SHARE = 0.01;
 // what is to be seen, over what a collider is sure to notice: depths are then right to a fifth
 static const double RESOLVED = 5.0;
 
-// of R: libccd asked by ode/staves.c, in units of R / 5000 with a tolerance of 1e-6 of them. Portal
-// refinement keeps to 1e-10, GJK and EPA to 1.1e-7 of R
+// of R: libccd asked by ode/plane/collider_staves.c, in units of R / 5000 with a tolerance of 1e-6
+// of them. Portal refinement keeps to 1e-10, GJK and EPA to 1.1e-7 of R
 static const double STAVES_SHARE = 2e-9;
 static const double GJK_SHARE = 4e-7;
 

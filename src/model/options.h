@@ -58,7 +58,7 @@
     member(ODE_STAGGERED, "staggered", STEPPING_STAGGERED, &SPACE_STAGGERED, true) \
     member(ODE_EXTRAPOLATED, "extrapolated", STEPPING_EXTRAPOLATED, NULL, false)
 
-// How ODE learns that a pin touches the wall of its hole; see ode/collider.h. First the exact one;
+// How ODE learns that a pin touches the wall of its hole; see ode/plane/collider.h. First the exact one;
 // all others take the hole for a polygon.
 #define OPTIONS_ODE_COLLIDER_LIST(member) \
     member(ODE_COLLIDER_PIN_HOLE, "pin-hole", collider_pin_hole) \

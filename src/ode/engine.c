@@ -1,4 +1,5 @@
-// How is an engine that ends the process on its errors kept from ending ours?
+// Starts ODE once in a process, and keeps an engine that ends the process on its errors from ending
+// ours.
 //
 // ODE calls a handler on an error and exits or aborts when the handler returns. In a step the
 // handlers here do not return: they jump back to where the step was called. ODE hands them no

@@ -1,117 +1,112 @@
-// How does the linkage move in ODE if its contacts are integrated within the step? (The steps
-// themselves: ode/impulse_step.c.)
+// Steps a linkage in ODE with contacts integrated within the step, in the plane or in space, and
+// hands each step on in parts (ode/impulse_part.c, ode/impulse_islands.c).
 //
-// A step is handed on in parts (ode/impulse_part.c).
+// Mechanisms that share nothing but the ground are stepped side by side (model/several.h), each in
+// a world of its own: a contact of one shortens no step of another, and nothing is solved for all
+// of them together. Memory is read into the cache once for all steps up to the time that is asked
+// for: a thousand mechanisms do not fit into it.
+#include "ode/impulse.h"
+
 #include "base/zeroed.h"
 #include "contact/law.h"
-#include "ode/impulse_islands.h"
-#include "ode/impulse_parts.h"
-#include "ode/impulse_step.h"
+#include "model/several.h"
 #include "ode/stepping.h"
 
-#include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 
+static size_t *make_numbers(size_t count)
+{
+    size_t *numbers = zeroed(count, sizeof *numbers);
+    for (size_t i = 0; i < count; i++) {
+        numbers[i] = i;
+    }
+    return numbers;
+}
+
+ImpulseScope impulse_scope_whole(const Linkage *linkage, size_t place_count)
+{
+    return (ImpulseScope){
+        .is_whole = true,
+        .has_drive = linkage_driven_body(linkage) >= 0,
+        .body_count = linkage->body_count,
+        .bodies = make_numbers(linkage->body_count),
+        .joint_count = linkage->joint_count,
+        .joints = make_numbers(linkage->joint_count),
+        .place_count = place_count,
+        .part.place_count = place_count,
+        .part.places = make_numbers(place_count),
+    };
+}
+
+void impulse_scope_finish(ImpulseScope *scope)
+{
+    free(scope->bodies);
+    free(scope->joints);
+    free(scope->part.groups);
+    free(scope->part.places);
+    *scope = (ImpulseScope){.body_count = 0};
+}
+
+KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands, size_t place,
+                              ImpulseTime at, const KernelSums *sums)
+{
+    return islands != NULL ? kernel_islands_pose(islands, place, at.since_s, sums)
+                           : kernel_pose(kernel, place, at.node, at.since_s, sums);
+}
+
 typedef struct Impulse {
-    ImpulseStep step;
-    ImpulsePart part;        // of it, the one that is handed on
-    ImpulseIslands *islands; // where the step has them; owned
-    Motion *motions;         // by body; owned, as the next two
-    JointState *joints;
-    double *depths;  // m, by place
-    KernelSums sums; // at the time that is asked for
+    const ImpulseKind *kind;
+    void *own; // of the kind; owned
+    ImpulseView view;
+    ImpulseSpan span;        // of the last step
+    size_t count;            // of steps
+    ImpulsePart part;        // of the last step, the one that is handed on
+    ImpulseIslands *islands; // where the kernel has them; owned
+    KernelSums sums;         // at the time that is asked for
 } Impulse;
 
-static void impulse_close(void *state)
+void impulse_close(void *state)
 {
     Impulse *impulse = state;
     if (impulse != NULL) {
         impulse_part_finish(&impulse->part);
         impulse_islands_destroy(impulse->islands);
-        impulse_step_finish(&impulse->step);
-        free(impulse->motions);
-        free(impulse->joints);
-        free(impulse->depths);
         kernel_sums_free(&impulse->sums);
+        impulse->kind->close(impulse->own);
         free(impulse);
     }
 }
 
-static ImpulseSpan span_of(const void *context)
+bool impulse_open(const ImpulseKind *kind, const Scenario *scenario, void **state, Err *err)
 {
-    const Impulse *impulse = context;
-    const ImpulseStep *step = &impulse->step;
-    return (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, step->damped};
-}
-
-static double mean_of(const void *context, size_t joint)
-{
-    const Impulse *impulse = context;
-    return impulse->step.mean[joint].force;
-}
-
-// Looks at a scope of the step, and tells how its bodies turn.
-static void look_at_impulse(void *context, const ImpulseScope *scope, ImpulseTime at,
-                            const KernelSums *sums)
-{
-    Impulse *impulse = context;
-    impulse_step_inside(&impulse->step, scope, at, sums, impulse->motions, impulse->joints,
-                        impulse->depths);
-    for (size_t n = 0; n < scope->body_count; n++) {
-        const size_t i = scope->bodies[n];
-        impulse->part.omega[i] = impulse->motions[i].omega;
-        impulse->part.alpha[i] = impulse->motions[i].alpha;
+    Impulse *impulse = zeroed(1, sizeof *impulse);
+    impulse->kind = kind;
+    if (!kind->open(scenario, &impulse->own, &impulse->view, err)) {
+        impulse_close(impulse);
+        return false;
     }
-}
-
-static ImpulseIslands *open_islands(Impulse *impulse)
-{
-    const ImpulseStep *step = &impulse->step;
-    return impulse_islands_create(&(ImpulseIslandsOf){
-        .linkage = &step->scenario->linkage,
-        .islands = step->islands,
-        .groups = &step->groups,
-        .whole = &step->whole,
-        .depths = impulse->depths,
-        .joints = impulse->joints,
-        .context = impulse,
-        .span = span_of,
-        .inside = look_at_impulse,
-        .mean = mean_of,
-    });
-}
-
-static bool impulse_open(const Scenario *scenario, void **state, Err *err)
-{
-    Impulse *impulse = calloc(1, sizeof *impulse);
-    assert(impulse != NULL);
-    if (impulse_step_init(scenario, &impulse->step, err)) {
-        const Linkage *linkage = &scenario->linkage;
-        const size_t rows = kernel_rows(&impulse->step.kernel);
-        impulse_part_init(&impulse->part, linkage, rows);
-        impulse->sums = kernel_sums(rows);
-        impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
-        impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
-        impulse->depths = zeroed(impulse->step.place_count, sizeof *impulse->depths);
-        if (impulse->step.islands != NULL) {
-            impulse->islands = open_islands(impulse);
-        }
-        *state = impulse;
-        return true;
+    const size_t rows = kernel_rows(impulse->view.kernel);
+    impulse_part_init(&impulse->part, &scenario->linkage, rows);
+    impulse->sums = kernel_sums(rows);
+    if (impulse->view.islands != NULL) {
+        impulse->islands = impulse_islands_create(&impulse->view, kind, impulse->own);
     }
-    impulse_close(impulse);
-    return false;
+    *state = impulse;
+    return true;
 }
 
+// Fails where a pin is deeper in its wall than its contact law holds.
 static bool check_depths(const Impulse *impulse, Err *err)
 {
-    const ImpulseStep *step = &impulse->step;
+    const ImpulseView *view = &impulse->view;
     const ImpulseScope *scope =
-        impulse->islands != NULL ? impulse_islands_scope(impulse->islands) : &step->whole;
+        impulse->islands != NULL ? impulse_islands_scope(impulse->islands) : view->whole;
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
-        const Joint *joint = &step->scenario->linkage.joints[step->places[i].joint];
-        if (!law_check_depth(&step->places[i].law, joint, impulse->depths[i], 1.0, err)) {
+        const KernelContact *place = &view->kernel->contacts[i];
+        const Joint *joint = &view->scenario->linkage.joints[place->joint];
+        if (!law_check_depth(&place->law, joint, view->depths[i], 1.0, err)) {
             return false;
         }
     }
@@ -121,36 +116,38 @@ static bool check_depths(const Impulse *impulse, Err *err)
 // Hands on the part of the step up to its next mark.
 static void take_part(Impulse *impulse)
 {
-    const ImpulseStep *step = &impulse->step;
+    const ImpulseView *view = &impulse->view;
+    const ImpulseSpan *span = &impulse->span;
     ImpulsePart *part = &impulse->part;
-    const Mark *mark = impulse_part_next(part, &step->kernel, step->start_s, step->end_s);
+    const Mark *mark = impulse_part_next(part, view->kernel, span->start_s, span->end_s);
     const ImpulseTime at = {mark->time_s, mark->node, !part->is_last};
-    look_at_impulse(impulse, &step->whole, at, &part->sums);
-    impulse_part_record(part, &step->scenario->linkage, impulse->joints);
-    impulse_part_add_contacts(part, &step->kernel, mark, impulse->depths, NULL);
-    part->record.drive_work = part->is_last ? step->drive_work : 0.0;
-    part->record.dissipated += part->is_last ? step->damped : 0.0;
+    impulse->kind->look(impulse->own, view->whole, at, &part->sums, part->omega, part->alpha);
+    impulse_part_record(part, &view->scenario->linkage, view->joints);
+    part->record.space_joints = view->space_joints;
+    impulse_part_add_contacts(part, view->kernel, mark, view->depths, view->counts);
+    part->record.drive_work = part->is_last ? span->drive_work : 0.0;
+    part->record.dissipated += part->is_last ? span->damped : 0.0;
 }
 
 // Takes the next step and begins to hand it on.
 static bool begin_step_of(Impulse *impulse, Err *err)
 {
-    if (!impulse_step_take(&impulse->step, err)) {
+    if (!impulse->kind->take(impulse->own, &impulse->span, err)) {
         return false;
     }
+    impulse->count++;
     if (impulse->islands != NULL) {
-        impulse_islands_begin(impulse->islands, &impulse->part);
+        impulse_islands_begin(impulse->islands, &impulse->span, &impulse->part);
     } else {
-        impulse_part_begin(&impulse->part, &impulse->step.kernel, impulse->step.start_s);
+        impulse_part_begin(&impulse->part, impulse->view.kernel, impulse->span.start_s);
     }
     return true;
 }
 
-static bool impulse_step(void *state, double stop_s, Err *err)
+bool impulse_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // samples are looked up inside the step
     Impulse *impulse = state;
-    const ImpulseStep *step = &impulse->step;
     const bool needs_step = impulse->islands != NULL ? impulse_islands_need_step(impulse->islands)
                                                      : impulse_part_needs_step(&impulse->part);
     if (needs_step && !begin_step_of(impulse, err)) {
@@ -161,71 +158,75 @@ static bool impulse_step(void *state, double stop_s, Err *err)
     } else {
         take_part(impulse);
     }
-    return check_depths(impulse, err) ||
-           stepping_fail(step->scenario, impulse->part.end_s, step->count, step->width_s, err);
+    return check_depths(impulse, err) || stepping_fail(impulse->view.scenario, impulse->part.end_s,
+                                                       impulse->count, impulse->span.width_s, err);
 }
 
-dWorldID impulse_world(const void *state)
-{
-    const Impulse *impulse = state;
-    return impulse->step.world.id;
-}
-
-static StepRecord impulse_record(const void *state)
+StepRecord impulse_record(const void *state)
 {
     const Impulse *impulse = state;
     return impulse->part.record;
 }
 
-static void impulse_observe(const void *state, double time_s, Sample *sample)
+void impulse_observe(const void *state, double time_s, Sample *sample)
 {
     const Impulse *impulse = state;
+    const ImpulseView *view = &impulse->view;
     KernelSums sums = impulse->sums; // which owns the arrays
-    const Linkage *linkage = &impulse->step.scenario->linkage;
-    const double since_s = fmin(fmax(time_s - impulse->step.start_s, 0.0), impulse->step.width_s);
+    const double since_s = fmin(fmax(time_s - impulse->span.start_s, 0.0), impulse->span.width_s);
     ImpulseTime at = {since_s, 0, true};
-    if (impulse->islands != NULL) {
-        kernel_islands_look(impulse->step.islands, since_s, &sums);
+    if (view->islands != NULL) {
+        kernel_islands_look(view->islands, since_s, &sums);
     } else {
-        at.node = kernel_node(&impulse->step.kernel, since_s);
-        kernel_at(&impulse->step.kernel, at.node, since_s, &sums);
+        at.node = kernel_node(view->kernel, since_s);
+        kernel_at(view->kernel, at.node, since_s, &sums);
     }
     sample->time_s = time_s;
-    sample->crank_rad = linkage_crank_angle(linkage, time_s);
-    impulse_step_inside(&impulse->step, &impulse->step.whole, at, &sums, sample->bodies,
-                        sample->joints, impulse->depths);
+    sample->crank_rad = linkage_crank_angle(&view->scenario->linkage, time_s);
+    impulse->kind->observe(impulse->own, at, &sums, sample);
 }
 
-static void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
 {
-    const ImpulseStep *step = &((const Impulse *)state)->step;
-    for (size_t i = 0; i < step->place_count; i++) {
-        const Touch *place = &step->places[i];
-        states[place->joint][place->place] = step->kernel.contacts[i].state;
+    const Impulse *impulse = state;
+    const Kernel *kernel = impulse->view.kernel;
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        const int place = impulse->kind->place(impulse->own, i);
+        states[kernel->contacts[i].joint][place] = kernel->contacts[i].state;
     }
 }
 
-static SolverModel impulse_model(const void *state)
+SolverModel impulse_model(const void *state)
 {
     const Impulse *impulse = state;
+    const ImpulseView *view = &impulse->view;
     SolverModel model = {
-        .step_s = impulse->step.scenario->run.step,
-        .constraint_rows = impulse->step.world.constraint_rows,
+        .step_s = view->scenario->run.step,
+        .constraint_rows = view->constraint_rows,
         .contact_rows = impulse->part.most_rows,
-        .steps = impulse->step.count,
-        .evaluations = impulse->step.kernel.evaluations,
+        .steps = impulse->count,
+        .evaluations = view->kernel->evaluations,
     };
-    stepping_label(impulse->step.scenario, "staggered", "impulse", model.label);
+    stepping_label(view->scenario, "staggered", "impulse", model.label);
     return model;
 }
 
-const Solver STEPPING_IMPULSE = {
-    .name = "impulse",
-    .open = impulse_open,
-    .step = impulse_step,
-    .record = impulse_record,
-    .observe = impulse_observe,
-    .contacts = impulse_contacts,
-    .model = impulse_model,
-    .close = impulse_close,
-};
+static dWorldID world_of(const void *state)
+{
+    const Impulse *impulse = state;
+    return impulse->view.world;
+}
+
+bool impulse_parts_open(const Scenario *scenario, const Solver *solver, void **state, Err *err)
+{
+    if (!several_open(scenario, solver, STEPPING_ROUNDING, state, err)) {
+        return false;
+    }
+    // they are stepped one after the other: one working memory will do
+    for (size_t i = 1; i < several_count(*state); i++) {
+        const dWorldID own = world_of(several_state(*state, i));
+        dWorldUseSharedWorkingMemory(own, NULL); // its own, yet empty
+        dWorldUseSharedWorkingMemory(own, world_of(several_state(*state, 0)));
+    }
+    return true;
+}

@@ -1,9 +1,9 @@
-// What does a part of a step say of one island of contacts?
+// Says what a part of a step holds of one island of contacts.
 //
 // Its bodies, joints and places at a mark of its own. All else is as it was when it was looked at
 // last: no contact begins or ends there in between, so that contacts begin, last and end in the
 // record when they do. The last part is the end of the step, of all.
-#include "ode/impulse_islands.h"
+#include "ode/impulse.h"
 
 #include "base/zeroed.h"
 
@@ -18,7 +18,9 @@ typedef struct IslandMark {
 } IslandMark;
 
 struct ImpulseIslands {
-    ImpulseIslandsOf of;
+    const ImpulseView *view;
+    const ImpulseKind *kind;
+    void *own;        // of the kind
     ImpulseSpan span; // of the step
     Marks marks;      // of one island at a time
     size_t count;
@@ -40,13 +42,15 @@ struct ImpulseIslands {
     bool *has_place;
 };
 
-ImpulseIslands *impulse_islands_create(const ImpulseIslandsOf *of)
+ImpulseIslands *impulse_islands_create(const ImpulseView *view, const ImpulseKind *kind, void *own)
 {
-    const Linkage *linkage = of->linkage;
-    const size_t rows = kernel_rows(of->islands->all);
-    const size_t places = of->islands->all->contact_count;
+    const Linkage *linkage = &view->scenario->linkage;
+    const size_t rows = kernel_rows(view->kernel);
+    const size_t places = view->kernel->contact_count;
     ImpulseIslands *islands = zeroed(1, sizeof *islands);
-    islands->of = *of;
+    islands->view = view;
+    islands->kind = kind;
+    islands->own = own;
     islands->is_ended = true;
     islands->sums = kernel_sums(rows);
     islands->before = zeroed(rows, sizeof *islands->before);
@@ -55,11 +59,11 @@ ImpulseIslands *impulse_islands_create(const ImpulseIslandsOf *of)
     islands->is_touching = zeroed(places, sizeof *islands->is_touching);
     islands->scope.bodies = zeroed(linkage->body_count, sizeof *islands->scope.bodies);
     islands->scope.joints = zeroed(linkage->joint_count, sizeof *islands->scope.joints);
-    islands->scope.part.groups = zeroed(of->groups->count, sizeof *islands->scope.part.groups);
+    islands->scope.part.groups = zeroed(view->groups->count, sizeof *islands->scope.part.groups);
     islands->scope.part.places = zeroed(places, sizeof *islands->scope.part.places);
     islands->has_body = zeroed(linkage->body_count, sizeof *islands->has_body);
     islands->has_joint = zeroed(linkage->joint_count, sizeof *islands->has_joint);
-    islands->has_group = zeroed(of->groups->count, sizeof *islands->has_group);
+    islands->has_group = zeroed(view->groups->count, sizeof *islands->has_group);
     islands->has_place = zeroed(places, sizeof *islands->has_place);
     return islands;
 }
@@ -100,7 +104,7 @@ static int compare_marks(const void *a, const void *b)
 // Lists the marks of an island but for that of the step's end.
 static void list_marks(ImpulseIslands *islands, size_t number)
 {
-    const KernelIsland *island = islands->of.islands->islands[number];
+    const KernelIsland *island = islands->view->islands->islands[number];
     marks_find(&islands->marks, &island->kernel);
     const size_t count = islands->marks.count - 1;
     if (islands->count + count > islands->room) {
@@ -116,10 +120,10 @@ static void list_marks(ImpulseIslands *islands, size_t number)
     marks_finish(&islands->marks);
 }
 
-void impulse_islands_begin(ImpulseIslands *islands, ImpulsePart *part)
+void impulse_islands_begin(ImpulseIslands *islands, const ImpulseSpan *span, ImpulsePart *part)
 {
-    const KernelIslands *all = islands->of.islands;
-    islands->span = islands->of.span(islands->of.context);
+    const KernelIslands *all = islands->view->islands;
+    islands->span = *span;
     islands->count = islands->next = 0;
     islands->is_ended = false;
     for (size_t i = 0; i < all->count; i++) {
@@ -140,12 +144,12 @@ bool impulse_islands_need_step(const ImpulseIslands *islands)
 
 const ImpulseScope *impulse_islands_scope(const ImpulseIslands *islands)
 {
-    return islands->is_ended ? islands->of.whole : &islands->scope;
+    return islands->is_ended ? islands->view->whole : &islands->scope;
 }
 
 static void add_group(ImpulseIslands *islands, size_t group)
 {
-    const ResponseGroups *groups = islands->of.groups;
+    const ResponseGroups *groups = islands->view->groups;
     ImpulseScope *scope = &islands->scope;
     islands->has_group[group] = true;
     scope->part.groups[scope->part.group_count++] = group;
@@ -167,10 +171,10 @@ static void add_group(ImpulseIslands *islands, size_t group)
 // Adds a place with its joint, its bodies, and all that its impulses move.
 static void add_place(ImpulseIslands *islands, size_t place)
 {
-    const ResponseGroups *groups = islands->of.groups;
-    const size_t number = (size_t)islands->of.islands->all->contacts[place].joint;
-    const Joint *joint = &islands->of.linkage->joints[number];
-    const int driven = linkage_driven_body(islands->of.linkage);
+    const ResponseGroups *groups = islands->view->groups;
+    const size_t number = (size_t)islands->view->islands->all->contacts[place].joint;
+    const Joint *joint = &islands->view->scenario->linkage.joints[number];
+    const int driven = linkage_driven_body(&islands->view->scenario->linkage);
     const int bodies[2] = {joint->body_a, joint->body_b};
     ImpulseScope *scope = &islands->scope;
     scope->part.places[scope->part.place_count++] = place;
@@ -199,13 +203,13 @@ static void add_place(ImpulseIslands *islands, size_t place)
 // Adds the places of other blocks that move the bodies of a block.
 static void add_neighbours(ImpulseIslands *islands)
 {
-    const ResponseGroups *groups = islands->of.groups;
+    const ResponseGroups *groups = islands->view->groups;
     ResponsePart *part = &islands->scope.part;
     for (size_t i = 0; i < part->group_count; i++) {
         const size_t group = part->groups[i];
         for (size_t n = groups->first_place[group]; n < groups->first_place[group + 1]; n++) {
             const size_t place = groups->places[n];
-            if (islands->of.islands->is_active[place] && !islands->has_place[place]) {
+            if (islands->view->islands->is_active[place] && !islands->has_place[place]) {
                 islands->has_place[place] = true;
                 part->places[part->place_count++] = place;
             }
@@ -236,7 +240,7 @@ static void set_scope(ImpulseIslands *islands, const KernelIsland *island)
         add_place(islands, island->members[i]);
     }
     scope->place_count = scope->part.place_count;
-    if (islands->of.islands->is_divided[island->members[0]]) {
+    if (islands->view->islands->is_divided[island->members[0]]) {
         add_neighbours(islands);
     }
 }
@@ -244,7 +248,7 @@ static void set_scope(ImpulseIslands *islands, const KernelIsland *island)
 // Writes the sums of an island's rows among those of all.
 static void scatter(ImpulseIslands *islands, const KernelIsland *island)
 {
-    const Kernel *all = islands->of.islands->all;
+    const Kernel *all = islands->view->islands->all;
     for (size_t i = 0; i < island->kernel.contact_count; i++) {
         const KernelContact *joint = &island->kernel.contacts[i];
         const size_t row = all->contacts[island->members[i]].first_row;
@@ -258,7 +262,7 @@ static void scatter(ImpulseIslands *islands, const KernelIsland *island)
 // Looks at the scope's island, and at others that move its bodies, and writes their sums.
 static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
 {
-    const KernelIslands *all = islands->of.islands;
+    const KernelIslands *all = islands->view->islands;
     const ImpulseScope *scope = &islands->scope;
     kernel_island_look(all->islands[mark->island], mark->node, mark->time_s);
     scatter(islands, all->islands[mark->island]);
@@ -278,8 +282,8 @@ static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
 static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const ImpulseScope *scope,
                          double since_s)
 {
-    const KernelIslands *all = islands->of.islands;
-    const bool *counts = islands->of.counts;
+    const KernelIslands *all = islands->view->islands;
+    const bool *counts = islands->view->counts;
     for (size_t n = 0; n < scope->joint_count; n++) {
         part->is_known[scope->joints[n]] = false;
     }
@@ -290,7 +294,7 @@ static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const Impul
         double *before = islands->before + place->first_row;
         const bool is_touching = kernel_islands_pose(all, i, since_s, &islands->sums).is_touching;
         const double elastic =
-            is_touching ? force_law_energy(&place->law, islands->of.depths[i]) : 0.0;
+            is_touching ? force_law_energy(&place->law, islands->view->depths[i]) : 0.0;
         const double pushed = hypot(impulse[0] - before[0], impulse[1] - before[1]);
         islands->elastic_total += elastic - islands->elastic[i];
         islands->elastic[i] = elastic;
@@ -310,13 +314,14 @@ static void add_contacts(ImpulseIslands *islands, ImpulsePart *part, const Impul
 // The part up to a mark of an island.
 static void take_island(ImpulseIslands *islands, ImpulsePart *part, const IslandMark *mark)
 {
-    KernelIsland *island = islands->of.islands->islands[mark->island];
+    KernelIsland *island = islands->view->islands->islands[mark->island];
     double *losses = islands->losses[mark->island];
     set_scope(islands, island);
     look_at_scope(islands, mark);
     part->end_s = islands->span.start_s + mark->time_s;
     const ImpulseTime at = {mark->time_s, mark->node, true};
-    islands->of.inside(islands->of.context, &islands->scope, at, &islands->sums);
+    islands->kind->look(islands->own, &islands->scope, at, &islands->sums, part->omega,
+                        part->alpha);
     part->record.dissipated = island->sums.dissipated - losses[0];
     part->record.friction = island->sums.friction - losses[1];
     losses[0] = island->sums.dissipated;
@@ -327,13 +332,13 @@ static void take_island(ImpulseIslands *islands, ImpulsePart *part, const Island
 // The part up to the end of the step.
 static void take_end(ImpulseIslands *islands, ImpulsePart *part)
 {
-    const KernelIslands *all = islands->of.islands;
-    const ImpulseScope *whole = islands->of.whole;
+    const KernelIslands *all = islands->view->islands;
+    const ImpulseScope *whole = islands->view->whole;
     const ImpulseSpan *span = &islands->span;
-    kernel_islands_look(islands->of.islands, span->width_s, &islands->sums);
+    kernel_islands_look(islands->view->islands, span->width_s, &islands->sums);
     part->end_s = span->end_s;
     const ImpulseTime at = {span->width_s, 0, false};
-    islands->of.inside(islands->of.context, whole, at, &islands->sums);
+    islands->kind->look(islands->own, whole, at, &islands->sums, part->omega, part->alpha);
     part->record.dissipated = islands->sums.dissipated + span->damped;
     part->record.friction = islands->sums.friction;
     for (size_t i = 0; i < all->count; i++) {
@@ -343,7 +348,7 @@ static void take_end(ImpulseIslands *islands, ImpulsePart *part)
     part->record.drive_work = span->drive_work;
     // of ideal joints in the whole step
     for (size_t i = 0; i < whole->joint_count; i++) {
-        part->impulse[i] = islands->of.mean(islands->of.context, i) * span->width_s;
+        part->impulse[i] = islands->kind->mean(islands->own, i) * span->width_s;
     }
     // what rounding left of sums of differences ends here
     memset(islands->elastic, 0, all->all->contact_count * sizeof *islands->elastic);
@@ -354,18 +359,18 @@ static void take_end(ImpulseIslands *islands, ImpulsePart *part)
 
 void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part)
 {
-    // what was pushed in the part before has been told
-    const ImpulseScope *told = islands->next == 0 ? islands->of.whole : &islands->scope;
-    for (size_t n = 0; n < told->joint_count; n++) {
-        part->impulse[told->joints[n]] = 0.0;
+    // what was pushed in the part before is in its record
+    const ImpulseScope *recorded = islands->next == 0 ? islands->view->whole : &islands->scope;
+    for (size_t n = 0; n < recorded->joint_count; n++) {
+        part->impulse[recorded->joints[n]] = 0.0;
     }
     part->start_s = part->end_s;
     part->is_last = islands->next == islands->count;
     part->record = (StepRecord){
         .omega = part->omega,
         .alpha = part->alpha,
-        .joints = islands->of.joints,
-        .space_joints = islands->of.space_joints,
+        .joints = islands->view->joints,
+        .space_joints = islands->view->space_joints,
         .impulse = part->impulse,
         .approach = part->approach,
     };

@@ -1,4 +1,4 @@
-// In which order are the pieces of a step done?
+// Does the pieces of a step of ODE one after the other, in the thread that steps the world.
 //
 // A job may start when none of the jobs that it waits for is left. Of those that may, the last one
 // posted goes first, as in ODE's own implementation for a single thread: the order of islands, from

@@ -1,9 +1,8 @@
-// How does the linkage move in ODE? (A solver.)
+// Steps a linkage in ODE: a solver.
 //
 // Hands on to the way of stepping that the scenario asks for; each is a solver of its own.
+#include "model/several.h"
 #include "model/solver.h"
-#include "ode/impulse_parts.h"
-#include "ode/space_stepping.h"
 #include "ode/stepping.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-// What do all ways of stepping ODE have in common?
+// Holds what all ways of stepping ODE have in common.
 //
 // On the driven body, whose motion is given: m a = m g + F_drive + sum of F_i, so that the drive's
 // force follows from the others, and its power is what they and gravity do not deliver:

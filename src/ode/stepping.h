@@ -2,13 +2,28 @@
 // on it, labels and messages.
 #pragma once
 
+#include "model/forces.h"
 #include "model/solver.h"
-#include "ode/world.h"
 
-// The ways of stepping, each a solver behind ODE_SOLVER, in ode/NAME.c under its own name.
+// The ways of stepping, each a solver behind ODE_SOLVER, in ode/plane/NAME.c under its own name.
 #define STEPPING_DECLARE(id, word, plane, ...) extern const Solver plane;
 OPTIONS_ODE_STEPPING_LIST(STEPPING_DECLARE)
-extern const Solver STEPPING_IMPULSE; // where contacts are integrated within the step
+extern const Solver STEPPING_IMPULSE;       // where contacts are integrated within the step
+extern const Solver STEPPING_IMPULSE_PARTS; // of mechanisms that share nothing but the ground
+
+// Those of a linkage in space, in ode/space.
+extern const Solver SPACE_PLAIN;
+extern const Solver SPACE_STAGGERED;
+extern const Solver SPACE_IMPULSE;
+extern const Solver SPACE_IMPULSE_PARTS; // likewise
+
+// What all contacts together lost in the step along the normal and in sliding, and store after it,
+// J.
+typedef struct ContactEnergy {
+    double dissipated;
+    double friction;
+    double elastic;
+} ContactEnergy;
 
 // How the driven body moves at a time: it turns about its joint with the ground, exactly. Zero
 // where there is no driver.

@@ -6,7 +6,7 @@
 #include "base/sorted.h"
 #include "kernel/pin_hole.h"
 #include "ode/engine.h"
-#include "ode/hole_geom.h"
+#include "ode/plane/collider.h"
 
 #include <stdio.h>
 

@@ -9,7 +9,7 @@
 #include "kept.h"
 #include "model/kinematics.h"
 #include "ode/engine.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 #include "run/registry.h"
 #include "run/run.h"
 

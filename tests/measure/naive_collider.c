@@ -1,7 +1,7 @@
 // What does libccd find if it is asked in the obvious way?
 #include "naive_collider.h"
 
-#include "ode/polygon_hole.h"
+#include "ode/plane/collider.h"
 
 #include <assert.h>
 #include <ccd/ccd.h>

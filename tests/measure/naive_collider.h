@@ -2,7 +2,7 @@
 // default tolerances, each body about its own centre.
 #pragma once
 
-#include "ode/collider.h"
+#include "ode/plane/collider.h"
 
 extern const Collider NAIVE_MPR;
 extern const Collider NAIVE_GJK;

@@ -98,27 +98,27 @@ fault "stiffness off by 1 %" src/kernel/force_law.c \
     's/^        \.stiffness = stiffness,/        .stiffness = 1.01 * stiffness,/'
 fault "restitution off by 0.01" src/contact/damping.c \
     's/const double e = restitution;/const double e = restitution - 0.01;/'
-fault "step 10 % larger" src/ode/plain.c \
+fault "step 10 % larger" src/ode/plane/plain.c \
     's/plain->step_s = scenario->run\.step;/plain->step_s = 1.1 * scenario->run.step;/'
-fault "another map" src/ode/contact_rows.c \
+fault "another map" src/ode/plane/contact_rows.c \
     's/map_get(ODE_MAP_TEXTBOOK) : rows->map;/map_get(ODE_MAP_TEXTBOOK) : map_get(ODE_MAP_CORRECTED);/'
 fault "clearance off by 1 %" src/model/linkage.c \
     's/return joint->clearance.hole_radius - joint->clearance.pin_radius;/return 1.01 * (joint->clearance.hole_radius - joint->clearance.pin_radius);/'
-fault "gravity off by 1 in 1000" src/ode/world.c \
+fault "gravity off by 1 in 1000" src/ode/plane/world.c \
     's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, -1.001 * scenario->gravity, 0.0);/'
-fault "gravity left out" src/ode/world.c \
+fault "gravity left out" src/ode/plane/world.c \
     's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, 0.0, 0.0);/'
-fault "contact normal turned by 0.1 degree" src/ode/hole_geom.c \
+fault "contact normal turned by 0.1 degree" src/ode/plane/collider.c \
     's/\.normal = {-pose\.normal\.x, -pose\.normal\.y, 0\.0},/.normal = {-pose.normal.x + 1.7453e-3 * pose.normal.y, -pose.normal.y - 1.7453e-3 * pose.normal.x, 0.0},/'
-fault "ERP of the joints times .999" src/ode/world.c \
+fault "ERP of the joints times .999" src/ode/plane/world.c \
     's/dJointSetBallParam(ball, dParamERP, joint_erp(options));/dJointSetBallParam(ball, dParamERP, 0.999 * joint_erp(options));/'
-fault "ERP of the contacts times .999" src/ode/contact_rows.c \
+fault "ERP of the contacts times .999" src/ode/plane/contact_rows.c \
     's/surface\.soft_erp = soft\.erp;/surface.soft_erp = 0.999 * soft.erp;/'
 fault "damping factor of Hunt and Crossley in place of Lankarani and Nikravesh" src/model/options.h \
     's/0\.75 \* (1\.0 - e) \* (1\.0 + e))/1.5 * (1.0 - e))/'
-fault "one contact in 1000 left out" src/ode/contact_rows.c \
+fault "one contact in 1000 left out" src/ode/plane/contact_rows.c \
     's/^        make_row(rows, i, &geom, step_s);/        static long made;\n        if (++made % 1000 == 0) {\n            row->feedback = (dJointFeedback){0};\n            continue;\n        }\n        make_row(rows, i, \&geom, step_s);/'
-fault "mass of the bodies off by 1 in 100 000" src/ode/world.c \
+fault "mass of the bodies off by 1 in 100 000" src/ode/plane/world.c \
     's/body->mass/(1.00001 * body->mass)/'
 fault "tolerance of the reference a hundred times coarser" src/model/options.c \
     's/\.tolerance = 3e-13,/.tolerance = 3e-11,/'

@@ -5,7 +5,7 @@
 
 #include "model/kinematics.h"
 #include "ode/engine.h"
-#include "ode/world.h"
+#include "ode/plane/world.h"
 #include "run/registry.h"
 #include "run/run.h"
 

@@ -3,7 +3,7 @@
 #include "close.h"
 #include "space_pin.h"
 
-#include "ode/space_friction.h"
+#include "ode/space/space_friction.h"
 
 #include <stdlib.h>
 #include <string.h>

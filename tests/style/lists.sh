@@ -55,14 +55,14 @@ forget map $options 'member(CORRECTED,' 'member(NEW, "new", new_map)' contact/ma
     measure/mapping_contact.c
 forget stepping $options 'member(ODE_STAGGERED,' 'member(ODE_NEW, "new", STEPPING_NEW, NULL, true)' \
     measure/chosen_run.c
-forget solver $options 'member(ODE_QUICK,' 'member(ODE_NEW, "new")' ode/world.c
+forget solver $options 'member(ODE_QUICK,' 'member(ODE_NEW, "new")' ode/plane/world.c
 forget collider $options 'member(ODE_COLLIDER_STAVES,' \
     'member(ODE_COLLIDER_NEW, "new", collider_new)' contact/facets.c
 forget 'kind of joint' model/linkage.h 'member(JOINT_GUIDE,' \
     'member(JOINT_NEW, "new", false, JOINT_ROWS, false)' model/linkage.c model/linkage_check.c \
     model/joint_rows.c contact/touch.c contact/law_depth.c casefile/check_joints.c \
     casefile/joint_kind.c commands/tune/tune_world.c
-forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/pair.c \
-    ode/impulse_init.c reference/plane/dynamics_slopes.c
+forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
+    ode/plane/impulse_step.c reference/plane/dynamics_slopes.c
 forget dimension casefile/units.h 'member(DIMENSION_MASS,' 'member(DIMENSION_NEW)' casefile/units.c
 echo "1..$number"

@@ -4,7 +4,7 @@
 #include "base/sorted.h"
 #include "contact/facets.h"
 #include "ode/engine.h"
-#include "ode/hole_geom.h"
+#include "ode/plane/collider.h"
 
 #include <assert.h>
 #include <math.h>

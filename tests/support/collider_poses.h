@@ -4,7 +4,7 @@
 // was drawn, in long double and without any of the program's geometry.
 #pragma once
 
-#include "ode/collider.h"
+#include "ode/plane/collider.h"
 
 #include <stddef.h>
 #include <stdint.h>

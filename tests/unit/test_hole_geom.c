@@ -2,7 +2,7 @@
 #include "close.h"
 
 #include "ode/engine.h"
-#include "ode/hole_geom.h"
+#include "ode/plane/collider.h"
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 // Do the curves inside a step pass through what they are made of, and are their rates their rates?
 #include "close.h"
 
-#include "ode/impulse_curves.h"
+#include "ode/plane/impulse_curves.h"
 
 enum { BODIES = 2, ROWS = 2, DRIVEN = 0, NUMBERS = 3 * BODIES * ROWS };
 

@@ -5,7 +5,7 @@
 // for a pin in its hole, and the closed form of the flight before.
 #include "lone_pin.h"
 
-#include "ode/impulse_curves.h"
+#include "ode/plane/impulse_curves.h"
 
 static const double DURATION_S = 1e-4; // flight, contact of 60 us, and flight again
 static const double SHARE = 0.02;      // of the mobility, that it changes by in the step

@@ -1,0 +1,241 @@
+// Lets springs, dampers and a torque act on bodies in ODE.
+//
+// Springs, at the positions where the step stands, and the torque's mean over the step are forces.
+// A damper with coefficient c takes the rate r of its length (or angle) at the step's start and r'
+// at its end:
+//     f = -c (r + r') / 2     is the row  J v' + (2/c) f = -r
+//     f = -c r'               is the row  J v' + (1/c) f = 0
+// J v' = r', CFM 2/c or 1/c. The first is the trapezoidal rule, second order and symmetric in time,
+// and both are stable for any c. ODE's distance joint has the row of a line: its right-hand side is
+// ERP / h (wanted distance - distance). An angular motor has that of a turn. The work is h f^2 / c.
+#include "ode/plane/applied.h"
+
+#include "base/zeroed.h"
+
+// m: below it ODE takes any direction for the line
+static const double LINE_LEAST = 1e-6;
+
+static dBodyID id_of(const Applied *applied, int body)
+{
+    return body == LINKAGE_GROUND ? 0 : applied->bodies[body];
+}
+
+// The distance joint of a spring's damper. Its first body is not the ground.
+static void make_line(const Applied *applied, dWorldID world, const Motion *motions,
+                      const Spring *spring, AppliedRow *row)
+{
+    const SpringLine line = forces_line(spring, motions);
+    const int first = spring->body_a == LINKAGE_GROUND ? 1 : 0;
+    const int bodies[2] = {spring->body_a, spring->body_b};
+    row->row = dJointCreateDBall(world, 0);
+    dJointAttach(row->row, id_of(applied, bodies[first]), id_of(applied, bodies[1 - first]));
+    dJointSetDBallAnchor1(row->row, line.ends[first].x, line.ends[first].y, 0.0);
+    dJointSetDBallAnchor2(row->row, line.ends[1 - first].x, line.ends[1 - first].y, 0.0);
+    dJointSetFeedback(row->row, &row->feedback);
+}
+
+static void make_turn(const Applied *applied, dWorldID world, int joint, AppliedRow *row)
+{
+    int turned;
+    int against;
+    linkage_turning(applied->linkage, joint, &turned, &against);
+    row->row = dJointCreateAMotor(world, 0);
+    dJointAttach(row->row, id_of(applied, turned), id_of(applied, against));
+    dJointSetAMotorMode(row->row, dAMotorUser);
+    dJointSetAMotorNumAxes(row->row, 1);
+    dJointSetAMotorAxis(row->row, 0, 0, 0.0, 0.0, 1.0);
+    dJointSetAMotorParam(row->row, dParamFMax, dInfinity);
+    dJointSetFeedback(row->row, &row->feedback);
+}
+
+void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
+                  const Motion *motions, Applied *applied)
+{
+    applied->linkage = linkage;
+    applied->bodies = bodies;
+    applied->is_any = forces_any(linkage);
+    applied->angles = zeroed(linkage->body_count, sizeof *applied->angles);
+    applied->dampers = zeroed(linkage->spring_count, sizeof *applied->dampers);
+    applied->torsions = zeroed(linkage->torsion_count, sizeof *applied->torsions);
+    applied->lines = zeroed(linkage->spring_count, sizeof *applied->lines);
+    applied->motions = zeroed(linkage->body_count, sizeof *applied->motions);
+    applied->seen = zeroed(linkage->body_count, sizeof *applied->seen);
+    applied->loads = zeroed(linkage->body_count, sizeof *applied->loads);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        applied->angles[i] = motions[i].angle;
+    }
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        if (linkage->springs[i].damping > 0.0) {
+            make_line(applied, world, motions, &linkage->springs[i], &applied->dampers[i]);
+        }
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        if (linkage->torsions[i].damping > 0.0) {
+            make_turn(applied, world, linkage->torsions[i].joint, &applied->torsions[i]);
+        }
+    }
+}
+
+void applied_finish(Applied *applied)
+{
+    free(applied->angles);
+    free(applied->dampers);
+    free(applied->torsions);
+    free(applied->lines);
+    free(applied->motions);
+    free(applied->seen);
+    free(applied->loads);
+    *applied = (Applied){.linkage = NULL};
+}
+
+// The bodies as the engine holds them, their angles in the turn that they were in last.
+static void read_motions(const Applied *applied, Motion *motions)
+{
+    for (size_t i = 0; i < applied->linkage->body_count; i++) {
+        const dReal *position = dBodyGetPosition(applied->bodies[i]);
+        const dReal *rotation = dBodyGetRotation(applied->bodies[i]);
+        const dReal *velocity = dBodyGetLinearVel(applied->bodies[i]);
+        const double angle = atan2(rotation[4], rotation[0]);
+        motions[i] = (Motion){
+            .position = {position[0], position[1]},
+            .angle = angle + 2.0 * M_PI * round((applied->angles[i] - angle) / (2.0 * M_PI)),
+            .velocity = {velocity[0], velocity[1]},
+            .omega = dBodyGetAngularVel(applied->bodies[i])[2],
+        };
+    }
+}
+
+// The row J v' + f / (share c) = wanted, share 1/2 or 1. Of two ways to write the wanted rate as a
+// distance, the one with the smaller rounding.
+static void set_line(const AppliedRow *row, const SpringLine *line, double softness, double wanted,
+                     double step_s)
+{
+    if (!(line->distance > LINE_LEAST)) {
+        dJointDisable(row->row);
+        return;
+    }
+    const double gain = fmax(1.0, 2.0 * fabs(wanted) / line->distance); // 1/s
+    dJointEnable(row->row);
+    dJointSetDBallParam(row->row, dParamERP, gain * step_s);
+    dJointSetDBallParam(row->row, dParamCFM, softness);
+    dJointSetDBallDistance(row->row, line->distance + wanted / gain);
+}
+
+static void set_rows(Applied *applied, double step_s, AppliedRule rule, int direction)
+{
+    const Linkage *linkage = applied->linkage;
+    const bool is_mean = rule == APPLIED_AT_MEAN;
+    const double share = direction * (is_mean ? 0.5 : 1.0);
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        if (applied->dampers[i].row != NULL) {
+            const SpringLine *line = &applied->lines[i];
+            set_line(&applied->dampers[i], line, 1.0 / (share * linkage->springs[i].damping),
+                     is_mean ? -line->rate : 0.0, step_s);
+        }
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        const dJointID row = applied->torsions[i].row;
+        if (row != NULL) {
+            const double rate = forces_turn(linkage, spring->joint, applied->motions).rate;
+            dJointSetAMotorParam(row, dParamCFM, 1.0 / (share * spring->damping));
+            dJointSetAMotorParam(row, dParamVel, is_mean ? -rate : 0.0);
+        }
+    }
+}
+
+void applied_push_at(Applied *applied, const Motion *motions, double start_s, double step_s,
+                     AppliedRule rule, int direction)
+{
+    const Linkage *linkage = applied->linkage;
+    if (!applied->is_any) {
+        return;
+    }
+    const Torque *torque = &linkage->torque;
+    const double end_s = start_s + direction * step_s;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        applied->motions[i] = motions[i];
+        applied->loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
+    }
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        applied->lines[i] = forces_line(&linkage->springs[i], motions);
+    }
+    applied->torque = time_table_mean(&torque->table, fmin(start_s, end_s), fmax(start_s, end_s));
+    applied->turning = torque->table.count > 0 ? forces_drive_rate(linkage, motions) : 0.0;
+    forces_add_springs(linkage, motions, applied->loads);
+    forces_add_torque(linkage, motions, applied->torque, applied->loads);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const BodyLoad *load = &applied->loads[i];
+        dBodyAddForce(applied->bodies[i], load->force.x, load->force.y, 0.0);
+        dBodyAddTorque(applied->bodies[i], 0.0, 0.0, load->moment);
+    }
+    set_rows(applied, step_s, rule, direction);
+    forces_add_dampers(linkage, motions, applied->loads);
+}
+
+void applied_push(Applied *applied, double start_s, double step_s, AppliedRule rule, int direction)
+{
+    if (!applied->is_any) {
+        return;
+    }
+    read_motions(applied, applied->seen);
+    for (size_t i = 0; i < applied->linkage->body_count; i++) {
+        applied->angles[i] = applied->seen[i].angle;
+    }
+    applied_push_at(applied, applied->seen, start_s, step_s, rule, direction);
+}
+
+// Adds what the dampers' rows did in the step. Returns the work they took, J.
+static double take_dampers(Applied *applied, double step_s)
+{
+    const Linkage *linkage = applied->linkage;
+    double work = 0.0;
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        const SpringLine *line = &applied->lines[i];
+        if (applied->dampers[i].row != NULL && line->distance > LINE_LEAST) {
+            const dReal *force = applied->dampers[i].feedback.f1;
+            const double along =
+                force[0] * line->direction.x + force[1] * line->direction.y; // on its first body
+            const double tension = spring->body_a == LINKAGE_GROUND ? -along : along;
+            forces_add_tension(spring, line, applied->motions, tension, applied->loads);
+            work += step_s * tension * tension / spring->damping;
+        }
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        if (applied->torsions[i].row != NULL) {
+            const double moment = applied->torsions[i].feedback.t1[2];
+            forces_add_moment(linkage, spring->joint, moment, applied->loads);
+            work += step_s * moment * moment / spring->damping;
+        }
+    }
+    return work;
+}
+
+AppliedWork applied_book(Applied *applied, double step_s)
+{
+    const Linkage *linkage = applied->linkage;
+    AppliedWork work = {0.0, 0.0};
+    if (!applied->is_any) {
+        return work;
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        applied->loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
+    }
+    forces_add_springs(linkage, applied->motions, applied->loads);
+    forces_add_torque(linkage, applied->motions, applied->torque, applied->loads);
+    work.damping = take_dampers(applied, step_s);
+    if (linkage->torque.table.count > 0) {
+        read_motions(applied, applied->seen);
+        const double turning = forces_drive_rate(linkage, applied->seen);
+        work.torque = step_s * applied->torque * 0.5 * (applied->turning + turning);
+    }
+    return work;
+}
+
+BodyLoad applied_on(const Applied *applied, int body)
+{
+    return applied->is_any && body != LINKAGE_GROUND ? applied->loads[body]
+                                                     : (BodyLoad){{0.0, 0.0}, 0.0};
+}

@@ -1,0 +1,139 @@
+// Steps a planar linkage in ODE with contacts integrated within the step: ode/impulse.c with the
+// steps of ode/plane/impulse_step.c.
+#include "ode/impulse.h"
+#include "base/zeroed.h"
+#include "model/several.h"
+#include "ode/plane/impulse_step.h"
+#include "ode/stepping.h"
+
+#include <stdlib.h>
+
+typedef struct PlaneImpulse {
+    ImpulseStep step;
+    Motion *motions; // by body; owned, as the next two
+    JointState *joints;
+    double *depths; // m, by place
+} PlaneImpulse;
+
+static bool plane_open(const Scenario *scenario, void **own, ImpulseView *view, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    PlaneImpulse *impulse = zeroed(1, sizeof *impulse);
+    ImpulseStep *step = &impulse->step;
+    *own = impulse;
+    if (!impulse_step_init(scenario, step, err)) {
+        return false;
+    }
+    impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
+    impulse->joints = zeroed(linkage->joint_count, sizeof *impulse->joints);
+    impulse->depths = zeroed(step->place_count, sizeof *impulse->depths);
+    *view = (ImpulseView){
+        .scenario = scenario,
+        .world = step->world.id,
+        .constraint_rows = step->world.constraint_rows,
+        .kernel = &step->kernel,
+        .islands = step->islands,
+        .groups = &step->groups,
+        .whole = &step->whole,
+        .depths = impulse->depths,
+        .joints = impulse->joints,
+    };
+    return true;
+}
+
+static void plane_close(void *own)
+{
+    PlaneImpulse *impulse = own;
+    impulse_step_finish(&impulse->step);
+    free(impulse->motions);
+    free(impulse->joints);
+    free(impulse->depths);
+    free(impulse);
+}
+
+static bool plane_take(void *own, ImpulseSpan *span, Err *err)
+{
+    PlaneImpulse *impulse = own;
+    const ImpulseStep *step = &impulse->step;
+    if (!impulse_step_take(&impulse->step, err)) {
+        return false;
+    }
+    *span =
+        (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, step->damped};
+    return true;
+}
+
+static void plane_look(void *own, const ImpulseScope *scope, ImpulseTime at, const KernelSums *sums,
+                       double *omega, double *alpha)
+{
+    PlaneImpulse *impulse = own;
+    impulse_step_inside(&impulse->step, scope, at, sums, impulse->motions, impulse->joints,
+                        impulse->depths);
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
+        omega[i] = impulse->motions[i].omega;
+        alpha[i] = impulse->motions[i].alpha;
+    }
+}
+
+static void plane_observe(const void *own, ImpulseTime at, const KernelSums *sums, Sample *sample)
+{
+    const PlaneImpulse *impulse = own;
+    impulse_step_inside(&impulse->step, &impulse->step.whole, at, sums, sample->bodies,
+                        sample->joints, impulse->depths);
+}
+
+static double plane_mean(const void *own, size_t joint)
+{
+    const PlaneImpulse *impulse = own;
+    return impulse->step.mean[joint].force;
+}
+
+static int plane_place(const void *own, size_t place)
+{
+    const PlaneImpulse *impulse = own;
+    return impulse->step.places[place].place;
+}
+
+static const ImpulseKind PLANE_KIND = {
+    .open = plane_open,
+    .close = plane_close,
+    .take = plane_take,
+    .look = plane_look,
+    .observe = plane_observe,
+    .mean = plane_mean,
+    .place = plane_place,
+};
+
+static bool open_plane(const Scenario *scenario, void **state, Err *err)
+{
+    return impulse_open(&PLANE_KIND, scenario, state, err);
+}
+
+const Solver STEPPING_IMPULSE = {
+    .name = "impulse",
+    .open = open_plane,
+    .step = impulse_step,
+    .record = impulse_record,
+    .observe = impulse_observe,
+    .contacts = impulse_contacts,
+    .model = impulse_model,
+    .close = impulse_close,
+};
+
+static bool open_plane_parts(const Scenario *scenario, void **state, Err *err)
+{
+    return impulse_parts_open(scenario, &STEPPING_IMPULSE, state, err);
+}
+
+const Solver STEPPING_IMPULSE_PARTS = {
+    .name = "impulse",
+    .open = open_plane_parts,
+    .step = several_step,
+    .record = several_record,
+    .observe = several_observe,
+    .observe_part = several_observe_part,
+    .contacts = several_contacts,
+    .model = several_model,
+    .close = several_close,
+};

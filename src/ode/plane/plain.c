@@ -1,0 +1,257 @@
+// Steps a planar linkage in ODE as its manual says.
+//
+// Plain stepping, step n from t = n h:
+//     the driven body is put on its exact path at t, contacts are looked for there,
+//     v' = v + h M^-1 (forces + J^T lambda),  x' = x + h v'      (dWorldStep or dWorldQuickStep)
+//     read at the end: positions, omega at t + h; alpha = (omega' - omega) / h
+// ODE is first order read like this. In between, positions and speeds are taken as linear.
+// Where every joint is ideal the run starts `settle_steps` early: the joint rows lag behind the
+// start by a share (1 - ERP)^n, which would stand in the accelerations at any step size.
+#include "base/zeroed.h"
+#include "ode/plane/contact_rows.h"
+#include "ode/stepping.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Plain {
+    const Scenario *scenario;
+    World world;
+    ContactRows contacts;
+    double step_s;
+    long index; // of the next step: it starts at index times step_s
+    size_t steps;
+    int driven;       // body, or LINKAGE_GROUND
+    Snapshot *before; // at the start of the last step; owned, as are the arrays below
+    double *omega;    // at its end
+    double *alpha;
+    JointState *joints;
+    double *impulse;
+    double *approach;
+    Vec2 *offsets;       // by joint, to work with
+    double drive_work;   // J, in the last step
+    AppliedWork applied; // in the last step
+} Plain;
+
+static void plain_close(void *state)
+{
+    Plain *plain = state;
+    if (plain == NULL) {
+        return;
+    }
+    contact_rows_finish(&plain->contacts);
+    world_finish(&plain->world);
+    free(plain->before);
+    free(plain->omega);
+    free(plain->alpha);
+    free(plain->joints);
+    free(plain->impulse);
+    free(plain->approach);
+    free(plain->offsets);
+    free(plain);
+}
+
+static void read_velocities(Plain *plain)
+{
+    for (size_t i = 0; i < plain->scenario->linkage.body_count; i++) {
+        plain->omega[i] = dBodyGetAngularVel(plain->world.bodies[i])[2];
+        plain->alpha[i] = (plain->omega[i] - plain->before[i].omega) / plain->step_s;
+    }
+    if (plain->driven >= 0) {
+        plain->omega[plain->driven] = plain->scenario->linkage.driver.speed;
+        plain->alpha[plain->driven] = 0.0;
+    }
+}
+
+// The force of each joint acts at its contact, where it has one.
+static double drive_power(Plain *plain, const Motion *driven)
+{
+    contact_rows_offsets(&plain->contacts, plain->driven, plain->offsets);
+    const BodyLoad load = applied_on(&plain->world.applied, plain->driven);
+    return stepping_drive(plain->scenario, driven, &load, plain->offsets, plain->joints);
+}
+
+static bool advance(Plain *plain, Err *err)
+{
+    const double start_s = (double)plain->index * plain->step_s;
+    const Motion driven = stepping_driven(&plain->scenario->linkage, start_s);
+    if (plain->driven >= 0) {
+        world_place(&plain->world, (size_t)plain->driven, &driven);
+    }
+    for (size_t i = 0; i < plain->scenario->linkage.body_count; i++) {
+        plain->before[i] = snapshot_of(plain->world.bodies[i]);
+    }
+    applied_push(&plain->world.applied, start_s, plain->step_s, APPLIED_AT_END, 1);
+    const bool is_quick = plain->scenario->ode.solver == ODE_QUICK;
+    if (!contact_rows_make(&plain->contacts, plain->step_s, plain->joints, plain->approach, err) ||
+        !world_step(&plain->world, plain->step_s, is_quick, err)) {
+        return stepping_fail(plain->scenario, start_s, plain->steps + 1, plain->step_s, err);
+    }
+    const bool is_lean = plain->scenario->run.is_lean;
+    if (!is_lean) {
+        world_joint_forces(&plain->world, plain->joints);
+    }
+    contact_rows_clear(&plain->contacts, plain->step_s, plain->joints);
+    read_velocities(plain);
+    if (!is_lean) {
+        plain->applied = applied_book(&plain->world.applied, plain->step_s);
+        plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque;
+    }
+    for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
+        plain->impulse[i] = plain->joints[i].force * plain->step_s;
+    }
+    if (!world_check(&plain->world, err)) {
+        return stepping_fail(plain->scenario, start_s, plain->steps + 1, plain->step_s, err);
+    }
+    plain->index++;
+    plain->steps++;
+    return true;
+}
+
+// Takes the steps before time zero, with the first one asked for, so that they are timed with it.
+static bool settle(Plain *plain, Err *err)
+{
+    while (plain->index < 0) {
+        if (!advance(plain, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void make_plain(const Linkage *linkage, Plain *plain)
+{
+    plain->before = zeroed(linkage->body_count, sizeof *plain->before);
+    plain->omega = zeroed(linkage->body_count, sizeof *plain->omega);
+    plain->alpha = zeroed(linkage->body_count, sizeof *plain->alpha);
+    plain->joints = zeroed(linkage->joint_count, sizeof *plain->joints);
+    plain->impulse = zeroed(linkage->joint_count, sizeof *plain->impulse);
+    plain->approach = zeroed(linkage->joint_count, sizeof *plain->approach);
+    plain->offsets = zeroed(linkage->joint_count, sizeof *plain->offsets);
+}
+
+static bool plain_open(const Scenario *scenario, void **state, Err *err)
+{
+    Plain *plain = calloc(1, sizeof *plain);
+    assert(plain != NULL);
+    plain->scenario = scenario;
+    plain->step_s = scenario->run.step;
+    plain->driven = linkage_driven_body(&scenario->linkage);
+    make_plain(&scenario->linkage, plain);
+    Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
+    plain->index =
+        -stepping_start(scenario, plain->step_s, (long)scenario->ode.settle_steps, motions);
+    const bool is_made = world_build(scenario, motions, &plain->world, err) &&
+                         contact_rows_init(&plain->contacts, scenario, &plain->world, false, err);
+    free(motions);
+    if (!is_made) {
+        plain_close(plain);
+        return false;
+    }
+    if (plain->driven >= 0 && scenario->run.is_lean) {
+        // it is put on its path at every step's start: only energies ask where a step leaves it
+        dBodySetFiniteRotationMode(plain->world.bodies[plain->driven], 0);
+    }
+    *state = plain;
+    return true;
+}
+
+static bool plain_step(void *state, double stop_s, Err *err)
+{
+    (void)stop_s; // a fixed step: the sample is looked up inside it
+    return settle(state, err) && advance(state, err);
+}
+
+static StepRecord plain_record(const void *state)
+{
+    const Plain *plain = state;
+    const ContactEnergy energy = contact_rows_energy(&plain->contacts);
+    return (StepRecord){
+        .start_s = (double)(plain->index - 1) * plain->step_s,
+        .end_s = (double)plain->index * plain->step_s,
+        .joint_s = (double)(plain->index - 1) * plain->step_s,
+        .is_mean = true,
+        .omega = plain->omega,
+        .alpha = plain->alpha,
+        .joints = plain->joints,
+        .impulse = plain->impulse,
+        .approach = plain->approach,
+        .drive_work = plain->drive_work,
+        .dissipated = energy.dissipated + plain->applied.damping,
+        .friction = energy.friction,
+        .elastic = energy.elastic,
+    };
+}
+
+// The motion at a share of the step between two snapshots.
+static Motion between(const Snapshot *first, const Snapshot *last, double share, double step_s)
+{
+    const double turn = atan2(vec2_cross(first->direction, last->direction),
+                              vec2_dot(first->direction, last->direction));
+    const Vec2 moved = vec2_sub(last->position, first->position);
+    const Vec2 change = vec2_sub(last->velocity, first->velocity);
+    return (Motion){
+        .position = vec2_add(first->position, vec2_scale(share, moved)),
+        .angle = atan2(first->direction.y, first->direction.x) + share * turn,
+        .velocity = vec2_add(first->velocity, vec2_scale(share, change)),
+        .omega = first->omega + share * (last->omega - first->omega),
+        .acceleration = vec2_scale(1.0 / step_s, change),
+        .alpha = (last->omega - first->omega) / step_s,
+    };
+}
+
+static void plain_observe(const void *state, double time_s, Sample *sample)
+{
+    const Plain *plain = state;
+    const Linkage *linkage = &plain->scenario->linkage;
+    const double start_s = (double)(plain->index - 1) * plain->step_s;
+    const double share = (time_s - start_s) / plain->step_s;
+    sample->time_s = time_s;
+    sample->crank_rad = linkage_crank_angle(linkage, time_s);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Snapshot now = world_snapshot(&plain->world, i);
+        Motion *motion = &sample->bodies[i];
+        *motion = between(&plain->before[i], &now, share, plain->step_s);
+        motion->angle = world_count_turns(&plain->world, i, motion->angle);
+    }
+    if (plain->driven >= 0) {
+        sample->bodies[plain->driven] = stepping_driven(linkage, time_s);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        sample->joints[i] = plain->joints[i];
+        stepping_observe_joint(linkage, i, sample);
+    }
+}
+
+static void plain_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    contact_rows_states(&((const Plain *)state)->contacts, states);
+}
+
+static SolverModel plain_model(const void *state)
+{
+    const Plain *plain = state;
+    SolverModel model = {
+        .step_s = plain->step_s,
+        .constraint_rows = plain->world.constraint_rows,
+        .contact_rows = plain->contacts.most_rows,
+        .fallback_rows = plain->contacts.fallback_count,
+        .steps = plain->steps,
+    };
+    stepping_label(plain->scenario, "plain", OPTIONS_ODE_MAPS[plain->scenario->ode.map],
+                   model.label);
+    return model;
+}
+
+const Solver STEPPING_PLAIN = {
+    .name = "plain",
+    .open = plain_open,
+    .step = plain_step,
+    .record = plain_record,
+    .observe = plain_observe,
+    .contacts = plain_contacts,
+    .model = plain_model,
+    .close = plain_close,
+};

@@ -1,0 +1,399 @@
+// Steps a planar linkage in ODE as a leapfrog: positions stand half a step behind speeds.
+//
+// ODE's positions stand at mid-step when its speeds stand at the step's start. Step n, t = n h:
+//     positions at t + h/2, speeds v_n at t: contacts are looked for there
+//     v_n+1 = v_n + h M^-1 (forces + J^T lambda),  positions move on by h v_n+1       (dWorldStep)
+// Everything in a contact row has its right time: depth and normal at t + h/2, the old speeds of
+// both bodies at t, the driven body's speed in the row at t + h. The joint rows' error is carried
+// off with ERP 1, which makes them a linearised SHAKE: second order.
+//
+// Its steady state leaves each row phi of an ideal joint open by phi = (h^2/2) (dJ/dt) v, for a
+// step keeps phi + h J v' = 0 and bodies turn meanwhile; of a revolute joint that is the difference
+// of its arms' centripetal accelerations. The run starts half a step on, moved to that opening
+// along M^-1 J', the directions of the joints' own forces: speeds are then right from the first
+// step. Where the drive determines the motion it starts four steps early, and accelerations are,
+// too.
+//
+// Read between: speeds linear in each step, positions their integral, accelerations linear between
+// mid-steps. That needs the step after: the run is one step ahead of what it hands on.
+// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. 2006, VII.1.4 on SHAKE.
+#include "base/zeroed.h"
+#include "model/joint_rows.h"
+#include "model/response.h"
+#include "ode/plane/contact_rows.h"
+#include "ode/stepping.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+// what is left of the start's error is gone after two
+enum { SETTLE_STEPS = 4 };
+
+// One step, as it is handed on.
+typedef struct Stride {
+    double start_s;
+    Snapshot *middle; // positions at mid-step, speeds at its start; owned, as are the arrays below
+    Vec2 *velocity;   // at its end
+    double *omega;
+    double *alpha; // mean
+    JointState *joints;
+    JointTop *tops;
+    double *impulse;
+    double *approach;
+    double drive_work; // J
+    double damped;     // J, in dampers
+    ContactEnergy energy;
+} Stride;
+
+typedef struct Staggered {
+    const Scenario *scenario;
+    World world;
+    ContactRows contacts;
+    double step_s;
+    long index; // of the next step: it starts at that many times step_s
+    size_t steps;
+    int driven;
+    Vec2 *offsets;     // by joint, to work with; owned
+    Stride strides[3]; // before the one handed on, that one, and the one ahead of it
+    Stride *before;
+    Stride *now;
+    Stride *ahead;
+} Staggered;
+
+static void stride_init(const Linkage *linkage, Stride *stride)
+{
+    stride->middle = zeroed(linkage->body_count, sizeof *stride->middle);
+    stride->velocity = zeroed(linkage->body_count, sizeof *stride->velocity);
+    stride->omega = zeroed(linkage->body_count, sizeof *stride->omega);
+    stride->alpha = zeroed(linkage->body_count, sizeof *stride->alpha);
+    stride->joints = zeroed(linkage->joint_count, sizeof *stride->joints);
+    stride->tops = zeroed(linkage->joint_count, sizeof *stride->tops);
+    stride->impulse = zeroed(linkage->joint_count, sizeof *stride->impulse);
+    stride->approach = zeroed(linkage->joint_count, sizeof *stride->approach);
+}
+
+static void stride_finish(Stride *stride)
+{
+    free(stride->middle);
+    free(stride->velocity);
+    free(stride->omega);
+    free(stride->alpha);
+    free(stride->joints);
+    free(stride->tops);
+    free(stride->impulse);
+    free(stride->approach);
+}
+
+static void staggered_close(void *state)
+{
+    Staggered *staggered = state;
+    if (staggered == NULL) {
+        return;
+    }
+    contact_rows_finish(&staggered->contacts);
+    world_finish(&staggered->world);
+    for (size_t i = 0; i < 3; i++) {
+        stride_finish(&staggered->strides[i]);
+    }
+    free(staggered->offsets);
+    free(staggered);
+}
+
+// Moves the bodies so that each ideal joint is as far open as it stays, the response having been
+// taken there.
+static void open_joints(const Linkage *linkage, double step_s, const Response *response,
+                        Motion *motions)
+{
+    double *openings = zeroed(response->ideal_rows, sizeof *openings);
+    double *rates = zeroed(response->ideal_rows, sizeof *rates);
+    double *changes = zeroed(3 * linkage->body_count, sizeof *changes);
+    response_openings(response, motions, openings, rates);
+    for (size_t row = 0; row < response->ideal_rows; row += JOINT_ROWS) {
+        JointRows joint;
+        joint_rows_find(linkage, motions, response->joint_of[row], &joint);
+        openings[row] -= 0.5 * step_s * step_s * joint.bias[0];
+        openings[row + 1] -= 0.5 * step_s * step_s * joint.bias[1];
+    }
+    response_close(response, openings, rates, changes);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].position.x += changes[3 * i];
+        motions[i].position.y += changes[3 * i + 1];
+        motions[i].angle += changes[3 * i + 2];
+    }
+    free(openings);
+    free(rates);
+    free(changes);
+}
+
+// The bodies half a step on, with the speeds of the start, each ideal joint as far open as it
+// stays.
+static bool move_on(const Scenario *scenario, double start_s, Response *response, Motion *motions,
+                    Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const double step_s = scenario->run.step;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        Motion *motion = &motions[i];
+        motion->position = vec2_add(motion->position, vec2_scale(0.5 * step_s, motion->velocity));
+        motion->angle += 0.5 * step_s * motion->omega;
+    }
+    if (linkage->driver.is_present) {
+        motions[linkage_driven_body(linkage)] = stepping_driven(linkage, start_s + 0.5 * step_s);
+    }
+    if (!response_place(response, motions)) {
+        return err_set(err, ERR_SOLVER,
+                       "the ideal joints are redundant at the start: give one joint of the "
+                       "loop some play");
+    }
+    open_joints(linkage, step_s, response, motions);
+    return true;
+}
+
+static bool staggered_open(const Scenario *scenario, void **state, Err *err)
+{
+    Staggered *staggered = calloc(1, sizeof *staggered);
+    assert(staggered != NULL);
+    staggered->scenario = scenario;
+    staggered->step_s = scenario->run.step;
+    staggered->driven = linkage_driven_body(&scenario->linkage);
+    staggered->before = &staggered->strides[0];
+    staggered->now = &staggered->strides[1];
+    staggered->ahead = &staggered->strides[2];
+    staggered->offsets = zeroed(scenario->linkage.joint_count, sizeof *staggered->offsets);
+    for (size_t i = 0; i < 3; i++) {
+        stride_init(&scenario->linkage, &staggered->strides[i]);
+    }
+    Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
+    staggered->index = -stepping_start(scenario, staggered->step_s, SETTLE_STEPS, motions);
+    const double start_s = (double)staggered->index * staggered->step_s;
+    // built closed, so that every joint gets its anchors where they belong, and moved then
+    const bool is_made =
+        world_build(scenario, motions, &staggered->world, err) &&
+        contact_rows_init(&staggered->contacts, scenario, &staggered->world, true, err) &&
+        move_on(scenario, start_s, &staggered->contacts.mass.response, motions, err);
+    for (size_t i = 0; is_made && i < scenario->linkage.body_count; i++) {
+        world_place(&staggered->world, i, &motions[i]);
+    }
+    free(motions);
+    if (!is_made) {
+        staggered_close(staggered);
+        return false;
+    }
+    *state = staggered;
+    return true;
+}
+
+// Puts the driven body to mid-step with its speed at another time.
+static void place_driven(Staggered *staggered, const Motion *middle, double speed_s)
+{
+    if (staggered->driven >= 0) {
+        Motion placed = stepping_driven(&staggered->scenario->linkage, speed_s);
+        placed.position = middle->position;
+        placed.angle = middle->angle;
+        world_place(&staggered->world, (size_t)staggered->driven, &placed);
+    }
+}
+
+static void read_speeds(const Staggered *staggered, Stride *stride)
+{
+    for (size_t i = 0; i < staggered->scenario->linkage.body_count; i++) {
+        const dReal *velocity = dBodyGetLinearVel(staggered->world.bodies[i]);
+        stride->velocity[i] = (Vec2){velocity[0], velocity[1]};
+        stride->omega[i] = dBodyGetAngularVel(staggered->world.bodies[i])[2];
+        stride->alpha[i] = (stride->omega[i] - stride->middle[i].omega) / staggered->step_s;
+    }
+    if (staggered->driven >= 0) {
+        stride->alpha[staggered->driven] = 0.0;
+    }
+}
+
+// Energies, impulses and the drive's part of a step that has been taken.
+static void book(Staggered *staggered, const Motion *middle, Stride *stride)
+{
+    const Linkage *linkage = &staggered->scenario->linkage;
+    contact_rows_offsets(&staggered->contacts, staggered->driven, staggered->offsets);
+    const AppliedWork applied = applied_book(&staggered->world.applied, staggered->step_s);
+    const BodyLoad load = applied_on(&staggered->world.applied, staggered->driven);
+    const double power =
+        stepping_drive(staggered->scenario, middle, &load, staggered->offsets, stride->joints);
+    stride->drive_work = staggered->step_s * power + applied.torque;
+    stride->damped = applied.damping;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        stride->impulse[i] = stride->joints[i].force * staggered->step_s;
+    }
+    stride->energy = contact_rows_energy(&staggered->contacts);
+}
+
+static bool advance(Staggered *staggered, Stride *stride, Err *err)
+{
+    const double step_s = staggered->step_s;
+    World *world = &staggered->world;
+    stride->start_s = (double)staggered->index * step_s;
+    const double end_s = (double)(staggered->index + 1) * step_s;
+    const Motion middle =
+        stepping_driven(&staggered->scenario->linkage, stride->start_s + 0.5 * step_s);
+    place_driven(staggered, &middle, stride->start_s);
+    for (size_t i = 0; i < staggered->scenario->linkage.body_count; i++) {
+        stride->middle[i] = world_snapshot(world, i);
+    }
+    applied_push(&world->applied, stride->start_s, step_s, APPLIED_AT_MEAN, 1);
+    if (!contact_rows_make(&staggered->contacts, step_s, stride->joints, stride->approach, err)) {
+        return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
+                             err);
+    }
+    place_driven(staggered, &middle, end_s);
+    const bool is_quick = staggered->scenario->ode.solver == ODE_QUICK;
+    if (!world_step(world, step_s, is_quick, err) || !world_check(world, err)) {
+        return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
+                             err);
+    }
+    world_joint_forces(world, stride->joints);
+    contact_rows_clear(&staggered->contacts, step_s, stride->joints);
+    contact_rows_tops(&staggered->contacts, stride->tops);
+    read_speeds(staggered, stride);
+    book(staggered, &middle, stride);
+    staggered->index++;
+    staggered->steps++;
+    return true;
+}
+
+// The step before the first has no accelerations: they go on as they come.
+static void guess_before(Staggered *staggered)
+{
+    for (size_t i = 0; i < staggered->scenario->linkage.body_count; i++) {
+        staggered->before->alpha[i] = 2.0 * staggered->now->alpha[i] - staggered->ahead->alpha[i];
+        const Vec2 *next = &staggered->now->velocity[i];
+        const Vec2 first = staggered->now->middle[i].velocity;
+        const Vec2 change = vec2_sub(staggered->ahead->velocity[i], *next);
+        const Vec2 gained = vec2_sub(*next, first);
+        // a change before the first step of 2 gained - change
+        staggered->before->middle[i].velocity =
+            vec2_sub(first, vec2_sub(vec2_scale(2.0, gained), change));
+        staggered->before->velocity[i] = first;
+    }
+}
+
+static bool staggered_step(void *state, double stop_s, Err *err)
+{
+    (void)stop_s; // a fixed step: samples are looked up inside it
+    Staggered *staggered = state;
+    // the first time also the steps before time zero, so that they are timed, and one ahead
+    do {
+        Stride *const spare = staggered->before;
+        staggered->before = staggered->now;
+        staggered->now = staggered->ahead;
+        staggered->ahead = spare;
+        if (!advance(staggered, staggered->ahead, err)) {
+            return false;
+        }
+    } while (staggered->index < 2);
+    if (staggered->steps == 2) {
+        guess_before(staggered);
+    }
+    return true;
+}
+
+static StepRecord staggered_record(const void *state)
+{
+    const Staggered *staggered = state;
+    const Stride *now = staggered->now;
+    return (StepRecord){
+        .start_s = now->start_s,
+        .end_s = staggered->ahead->start_s,
+        .joint_s = now->start_s + 0.5 * staggered->step_s,
+        .is_mean = true,
+        .omega = now->omega,
+        .alpha = now->alpha,
+        .joints = now->joints,
+        .tops = now->tops,
+        .impulse = now->impulse,
+        .approach = now->approach,
+        .drive_work = now->drive_work,
+        .dissipated = now->energy.dissipated + now->damped,
+        .friction = now->energy.friction,
+        .elastic = now->energy.elastic,
+    };
+}
+
+// The mean acceleration of a body's centre in a step.
+static Vec2 centre_acceleration(const Stride *stride, size_t body, double step_s)
+{
+    return vec2_scale(1.0 / step_s,
+                      vec2_sub(stride->velocity[body], stride->middle[body].velocity));
+}
+
+static Motion motion_at(const Staggered *staggered, size_t body, double since_s)
+{
+    const Stride *now = staggered->now;
+    const double step_s = staggered->step_s;
+    const Snapshot *middle = &now->middle[body];
+    const double off_s = since_s - 0.5 * step_s;
+    const Stride *other = off_s < 0.0 ? staggered->before : staggered->ahead;
+    const double share = fabs(off_s) / step_s; // of the way to the other step's middle
+    const Vec2 mean = centre_acceleration(now, body, step_s);
+    const Vec2 beside = centre_acceleration(other, body, step_s);
+    // positions: v_n t + a t^2 / 2 from the start, where they are h/2 v_n behind mid-step
+    const Vec2 moved =
+        vec2_add(vec2_scale(off_s, middle->velocity), vec2_scale(0.5 * since_s * since_s, mean));
+    return (Motion){
+        .position = vec2_add(middle->position, moved),
+        .angle = atan2(middle->direction.y, middle->direction.x) + off_s * middle->omega +
+                 0.5 * since_s * since_s * now->alpha[body],
+        .velocity = vec2_add(middle->velocity, vec2_scale(since_s, mean)),
+        .omega = middle->omega + since_s * now->alpha[body],
+        .acceleration = vec2_add(vec2_scale(1.0 - share, mean), vec2_scale(share, beside)),
+        .alpha = (1.0 - share) * now->alpha[body] + share * other->alpha[body],
+    };
+}
+
+static void staggered_observe(const void *state, double time_s, Sample *sample)
+{
+    const Staggered *staggered = state;
+    const Linkage *linkage = &staggered->scenario->linkage;
+    sample->time_s = time_s;
+    sample->crank_rad = linkage_crank_angle(linkage, time_s);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        Motion *motion = &sample->bodies[i];
+        *motion = motion_at(staggered, i, time_s - staggered->now->start_s);
+        motion->angle = world_count_turns(&staggered->world, i, motion->angle);
+    }
+    if (staggered->driven >= 0) {
+        sample->bodies[staggered->driven] = stepping_driven(linkage, time_s);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        sample->joints[i] = staggered->now->joints[i];
+        stepping_observe_joint(linkage, i, sample);
+    }
+}
+
+static void staggered_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
+{
+    contact_rows_states(&((const Staggered *)state)->contacts, states);
+}
+
+static SolverModel staggered_model(const void *state)
+{
+    const Staggered *staggered = state;
+    SolverModel model = {
+        .step_s = staggered->step_s,
+        .constraint_rows = staggered->world.constraint_rows,
+        .contact_rows = staggered->contacts.most_rows,
+        .fallback_rows = staggered->contacts.fallback_count,
+        .steps = staggered->steps,
+    };
+    stepping_label(staggered->scenario, "staggered", OPTIONS_ODE_MAPS[staggered->scenario->ode.map],
+                   model.label);
+    return model;
+}
+
+const Solver STEPPING_STAGGERED = {
+    .name = "staggered",
+    .open = staggered_open,
+    .step = staggered_step,
+    .record = staggered_record,
+    .observe = staggered_observe,
+    .contacts = staggered_contacts,
+    .model = staggered_model,
+    .close = staggered_close,
+};
