@@ -108,6 +108,10 @@ static const char *const OF_OUTPUT[] = {
 // --laws may choose, read the width of a pin that is given with its hole.
 static const char *const OF_PARTS[] = {"width"};
 
+// Of what a motion may do or not: no contact of some of these short runs outlasts its impact. That
+// it counts where one does, test_settled_motion.c shows.
+static const char *const OF_MOTION[] = {"contact.resting-speed"};
+
 // Keys without which the case is none, which are refused or make another mechanism, and which
 // nobody can leave out: their values need not matter, as the inertia of what does not turn.
 static bool is_structure(const SchemaRow *row)
@@ -131,6 +135,11 @@ static bool is_of_part(const char *key)
 {
     const char *dot = strrchr(key, '.');
     return dot != NULL && strcmp(dot + 1, OF_PARTS[0]) == 0;
+}
+
+static bool is_of_motion(const char *key)
+{
+    return strcmp(key, OF_MOTION[0]) == 0;
 }
 
 static uint64_t mix(uint64_t print, uint64_t number)
@@ -291,7 +300,7 @@ static void no_key_is_passed_over_in_silence(void **state)
         CasefileWalk walk = casefile_walk(&scenario);
         while (casefile_next(&walk, &setting)) {
             if (is_structure(row_of(&walk)) || is_of_part(setting.key) ||
-                strchr(setting.key, '*') != NULL) {
+                is_of_motion(setting.key) || strchr(setting.key, '*') != NULL) {
                 continue;
             }
             asked++;
