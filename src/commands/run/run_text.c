@@ -563,6 +563,10 @@ static void run_text_write_damping(const ContactOptions *contact, bool is_turnin
                     is_turning ? "N m s/rad" : "N s/m");
     } else if (contact->damping != DAMPING_NONE) {
         text_append(text, ", restitution %.4g", contact->restitution);
+        if (contact->resting_speed > 0.0) {
+            text_append(text, ", resting speed %.4g %s", contact->resting_speed,
+                        is_turning ? "rad/s" : "m/s");
+        }
     }
 }
 
