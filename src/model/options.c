@@ -70,7 +70,7 @@ RunOptions run_options_default(void)
         .step = 0.0,      // chosen for the tolerance: no one step suits every mechanism
         .tolerance = 1e-4,
         .start = START_WRITTEN,
-        .settle_most = 100, // ten times what the slowest of the cases takes
+        .settle_most = 100,                  // ten times what the slowest of the cases takes
         .tolerance_of = TOLERANCE_OF_MOTION, // what of all errors is most sure of
         .most_steps = 3000000, // a minute of world steps that are full of contacts, 20 us each
         // as much as ideal joints show by themselves, so that they show no spike

@@ -167,21 +167,21 @@ typedef struct ContactOptions {
     double friction_speed;      // m/s, sliding speed over which the reference's friction sets in
     double impact_speed_floor;  // m/s, smallest impact speed the damping laws divide by
     double resting_speed;       // m/s, by which they divide where a contact has outlasted its
-                                // impact (kernel/contact_state.h); 0: by that of its impact for ever
-    double penalty;             // N s/m, of CONTACT_POISSON; 0: the paper's Eq. (9) at the speed
-    double bounce_speed;        // m/s, CONTACT_POISSON: slower impacts do not bounce
+                          // impact (kernel/contact_state.h); 0: by that of its impact for ever
+    double penalty;      // N s/m, of CONTACT_POISSON; 0: the paper's Eq. (9) at the speed
+    double bounce_speed; // m/s, CONTACT_POISSON: slower impacts do not bounce
 } ContactOptions;
 
 typedef struct RunOptions {
-    double revolutions;     // of a driver of constant speed
-    double duration;        // s, where there is none
-    size_t samples;         // per revolution of that driver, or in the whole run without it
+    double revolutions; // of a driver of constant speed
+    double duration;    // s, where there is none
+    size_t samples;     // per revolution of that driver, or in the whole run without it
     RunStart start;
-    size_t settle_most;     // revolutions of START_SETTLED until it is taken as it is
-    double interval;        // no key, s: samples stand so far apart, as many as the run has room
-                            // for; 0: as `samples` says
-    double step;            // s; 0: chosen for the tolerance
-    double tolerance;       // 1, largest error wanted of a step that is chosen
+    size_t settle_most; // revolutions of START_SETTLED until it is taken as it is
+    double interval;    // no key, s: samples stand so far apart, as many as the run has room
+                        // for; 0: as `samples` says
+    double step;        // s; 0: chosen for the tolerance
+    double tolerance;   // 1, largest error wanted of a step that is chosen
     ToleranceOf tolerance_of;
     size_t most_steps;      // world steps of all trials of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show

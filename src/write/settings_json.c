@@ -1,10 +1,10 @@
 // Builds the JSON of versions and settings with which a result was made.
-#include "write/settled.h"
 #include "write/settings_json.h"
 #include "base/hash.h"
 #include "casefile/casefile.h"
 #include "version.h"
 #include "write/json_value.h"
+#include "write/settled.h"
 
 #include <inttypes.h>
 #include <stdio.h>
