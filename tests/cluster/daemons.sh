@@ -109,7 +109,7 @@ cluster_daemon_kill() {
 
 # Ends everything on a node at once, as a power cut does: its daemon and what the jobs there began.
 cluster_node_kill() {
-    local script keeper
+    local script keeper socket job
     cluster_daemon_kill "slurmd-$1"
     for script in $(pgrep -f "^/bin/bash $CLUSTER/spool-$1/"); do
         # the keeper of a job is the parent of its script, and stands above all of it; a child that
@@ -117,6 +117,14 @@ cluster_node_kill() {
         keeper=$(cluster_parent "$script")
         [ "$(ps -o comm= -p "${keeper:-0}")" != slurmstepd ] ||
             cluster_tree "$keeper" | xargs -r kill -9
+    done 2>/dev/null
+    # a keeper whose script was not seen is known by the socket of its job: one that outlived its
+    # node would end the next try of the job together with itself
+    for socket in "$CLUSTER/spool-$1/$1_"*; do
+        job=${socket##*_}
+        for keeper in $(pgrep -f "^slurmstepd: \\[${job%%.*}\\."); do
+            cluster_tree "$keeper" | xargs -r kill -9
+        done
     done 2>/dev/null
     # a process that was gone before its turn came is no failure
     return 0

@@ -90,6 +90,7 @@ static void it_is_what_a_long_run_comes_to(void **state)
     const Scenario slow = load(CASE, LONG, 4);
     Scenario settled = load(CASE, SETTLED, 2);
     settle_scenario(&settled);
+    kept_hold(settled.settled.joints);
     assert_int_equal(settled.settled.period, 1);
     Trajectory *truth = traced_run(&slow, &REFERENCE_SOLVER);
     Trajectory *run = traced_run(&settled, &REFERENCE_SOLVER);
@@ -106,6 +107,7 @@ static void ode_starts_in_it(void **state)
                                            "ode.stepping=staggered"};
     Scenario scenario = load(CASE, SETTINGS, 5);
     settle_scenario(&scenario);
+    kept_hold(scenario.settled.joints);
     Trajectory *truth = traced_run(&scenario, &REFERENCE_SOLVER);
     Trajectory *run = traced_run(&scenario, &ODE_SOLVER);
     const TrajectoryError error = error_against(run, truth, INFINITY);

@@ -74,6 +74,7 @@ static inline Scenario kept_instead(Scenario *scenario)
     kept_hold(copy.expectations);
     kept_hold(copy.outcomes);
     kept_hold(copy.keys);
+    kept_hold(copy.settled.joints);
     linkage_free(&scenario->linkage);
     return copy;
 }

@@ -93,7 +93,8 @@ RunJoint run_fields_joint(const Linkage *linkage, const Trajectory *run, size_t 
     for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
         const bool is_count = JOINT_NUMBERS[id].kind == JOINT_NUMBER_OF_COUNT;
         joint.numbers[id] = joint_numbers_find(id, run, number);
-        joint.counts[id] = is_count && is_felt ? (size_t)joint.numbers[id].value : 0;
+        const double value = joint.numbers[id].value; // NaN of what a joint of that kind has not
+        joint.counts[id] = is_count && is_felt && isfinite(value) ? (size_t)value : 0;
     }
     return joint;
 }
