@@ -281,6 +281,16 @@ static inline bool linkage_has_play(const Joint *joint)
     return !linkage_kind_is_ideal(joint->kind) || joint->limits.kind != LIMIT_NONE;
 }
 
+// Whether a contact of a joint is under way at time zero.
+static inline bool linkage_starts_touching(const Joint *joint)
+{
+    bool is_touching = false;
+    for (size_t i = 0; i < JOINT_PLACES; i++) {
+        is_touching = is_touching || joint->contacts[i].is_touching;
+    }
+    return is_touching;
+}
+
 // Whether what touches in a joint are flanks or stops that turn it: its contact has torques, N m,
 // and angles, rad, in place of forces and lengths.
 static inline bool linkage_is_torsional(const Joint *joint)

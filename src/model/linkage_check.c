@@ -22,17 +22,6 @@ static bool check_bodies(const Linkage *linkage, Err *err)
     return true;
 }
 
-// Whether a contact is under way at the start: then what touches is in the metal.
-static bool touches_at_start(const Joint *joint)
-{
-    for (size_t i = 0; i < JOINT_PLACES; i++) {
-        if (joint->contacts[i].is_touching) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool check_pin(const Joint *joint, Err *err)
 {
     const Clearance *clearance = &joint->clearance;
@@ -42,7 +31,7 @@ static bool check_pin(const Joint *joint, Err *err)
                        "0 and smaller than its hole",
                        joint->name, clearance->pin_radius, clearance->hole_radius);
     }
-    if (!touches_at_start(joint) &&
+    if (!linkage_starts_touching(joint) &&
         !(vec2_length(clearance->start) <= linkage_radial_clearance(joint))) {
         return err_set(err, ERR_CASE,
                        "joint '%s': start eccentricity %.9g m, allowed: up to the radial "
@@ -63,7 +52,8 @@ static bool check_guide(const Joint *joint, Err *err)
                        joint->name, guide->opening, guide->height, guide->length);
     }
     const double gap = linkage_guide_gap(guide, guide->start.x, guide->start.y);
-    if (!touches_at_start(joint) && !(gap >= -LINKAGE_SEATED * linkage_radial_clearance(joint))) {
+    if (!linkage_starts_touching(joint) &&
+        !(gap >= -LINKAGE_SEATED * linkage_radial_clearance(joint))) {
         return err_set(err, ERR_CASE, "joint '%s': the block starts %.9g m inside the metal",
                        joint->name, -gap);
     }

@@ -9,6 +9,7 @@
 #include "run/settle.h"
 
 #include "base/memory.h"
+#include "base/sorted.h"
 #include "base/zeroed.h"
 
 #include <math.h>
@@ -120,9 +121,7 @@ bool settling_turn(Settling *settling, Err *err)
     }
     bool *touches = zeroed(scenario->linkage.joint_count, sizeof *touches);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        for (size_t k = 0; k < JOINT_PLACES; k++) {
-            touches[i] = touches[i] || scenario->linkage.joints[i].contacts[k].is_touching;
-        }
+        touches[i] = linkage_starts_touching(&scenario->linkage.joints[i]);
     }
     Revolution *revolution = add_revolution(settling);
     double reached_s = 0.0;
@@ -207,13 +206,6 @@ static void take_start(const Linkage *from, Linkage *to)
     to->driver.start = from->driver.start;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // What a joint did; of a motion that does not repeat over its second half.
 static SettledJoint sum_up(const Settling *settling, size_t joint)
 {
@@ -226,7 +218,7 @@ static SettledJoint sum_up(const Settling *settling, size_t joint)
         found.impacts +=
             (double)settling->revolutions[last - many + k].impacts[joint] / (double)many;
     }
-    qsort(forces, many, sizeof *forces, compare_doubles);
+    sorted_make(forces, many);
     const double most = (double)(many - 1);
     found.force = settling->period > 0 ? forces[many - 1] : forces[(many - 1) / 2];
     found.low = settling->period > 0 ? found.force : forces[(size_t)(FEW * most)];

@@ -2,7 +2,6 @@
 #include "write/settled.h"
 
 #include "write/json_value.h"
-#include "write/units.h"
 
 static void append_joint(const SettledStart *settled, const Joint *joint, const SettledJoint *did,
                          Text *text)
@@ -28,11 +27,13 @@ void settled_text(const Scenario *scenario, Text *text)
     if (settled->revolutions == 0) {
         return;
     }
-    const bool is_one = settled->period == 1;
     text_append(text, "  start       settled: ");
     if (settled->period > 0) {
-        text_append(text, "repeats every %.0zu%srevolution%s, found in %zu\n",
-                    is_one ? (size_t)0 : settled->period, is_one ? "" : " ", is_one ? "" : "s",
+        text_append(text, "repeats every ");
+        if (settled->period > 1) {
+            text_append(text, "%zu ", settled->period);
+        }
+        text_append(text, "revolution%s, found in %zu\n", settled->period > 1 ? "s" : "",
                     settled->revolutions);
     } else {
         text_append(text, "does not repeat in %zu revolutions\n", settled->revolutions);
