@@ -27,6 +27,10 @@ static const double PACE_STEP_SHARE = 5e-8; // twenty million steps a turn: minu
 
 enum { EVENTS_MOST = 1000, STEPS_COUNTED = 50000 };
 
+// of a turn of the drive
+static const double FIRST_STEP_SHARE = 1e-3;
+static const double FIRST_STEP_S = 1e-5; // without one
+
 static double pace_turn_of(const System *system)
 {
     const Scenario *scenario = system->scenario;
@@ -500,8 +504,12 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     integrator->context = system;
     stepper->scale = scale_speeds(scenario);
     set_tolerances(stepper);
-    // the first step finds its own length: a thousandth of the run is long enough to be shortened
-    integrator->step = 1e-3 * stepper->duration_s;
+    // The first step finds its own length: a thousandth of a turn is long enough to be shortened,
+    // and a start without turns grows from ten microseconds in a few steps. The length of the run
+    // has no part in it: what happens does not depend on how long one looks.
+    integrator->step = drive_is_steady(&scenario->linkage.driver)
+                           ? FIRST_STEP_SHARE * linkage_period(&scenario->linkage)
+                           : FIRST_STEP_S;
     stepper->onset_step = integrator->step;
     stepper->ending = ending_start();
     dop853_start(integrator, 0.0, integrator->y);
