@@ -79,7 +79,8 @@ typedef enum JpDamping {
     JP_DAMPING_GONTHIER,
     JP_DAMPING_HU_GUO,
     JP_DAMPING_EXACT,
-    JP_DAMPING_VISCOUS, /* D = damper: the spring and damper of kp and kd */
+    JP_DAMPING_VISCOUS,     /* D = damper: the spring and damper of kp and kd */
+    JP_DAMPING_DISSIPATION, /* D = dissipation F_el: it has no memory of the impact */
 } JpDamping;
 
 typedef struct JpContact {
@@ -90,6 +91,7 @@ typedef struct JpContact {
     JpDamping damping;
     double restitution; /* 1, 0 to 1, of the hysteretic kinds; some want more than 0 */
     double damper;      /* N s/m, of JP_DAMPING_VISCOUS */
+    double dissipation; /* s/m, of JP_DAMPING_DISSIPATION */
     double speed_floor; /* m/s, > 0: slower impacts are damped as if they had this speed */
     /* m/s, of the hysteretic kinds: a contact that has outlasted its impact (it was compressed,
      * released, and is compressed again) is damped as if it had this speed; 0: as at its impact */

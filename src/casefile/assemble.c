@@ -102,6 +102,29 @@ static void store_partners(const Entries *entries, Scenario *scenario)
     }
 }
 
+// How a case starts that does not say so: settled, unless it says where its joints start, or there
+// is no motion to settle or no time for it.
+static void store_run_start(const Entries *entries, Scenario *scenario)
+{
+    RunOptions *run = &scenario->run;
+    run->is_start_given = entries_find(entries, "run.start", 0) != NULL;
+    if (run->is_start_given || !scenario_has_clearance(scenario)) {
+        return;
+    }
+    bool is_given = false;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        is_given = is_given || entries_find(entries, "joints.*.start", i) != NULL;
+    }
+    run->centred_because =
+        !scenario->linkage.driver.is_present          ? "nothing drives it at a given speed"
+        : !drive_is_steady(&scenario->linkage.driver) ? "the speed of its drive changes"
+        : scenario->contact.model == CONTACT_POISSON  ? "contacts of model poisson have no state"
+        : is_given                                    ? "the case gives where a joint starts"
+        : run->revolutions < 1.0                      ? "it runs for less than a revolution"
+                                                      : NULL;
+    run->start = run->centred_because != NULL ? START_CENTRED : START_SETTLED;
+}
+
 // Stores every value in the order of the schema, so that the same mistake is reported first
 // wherever the keys stand.
 static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
@@ -122,6 +145,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         return false;
     }
     store_partners(entries, scenario);
+    store_run_start(entries, scenario);
     scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
     space_complete(&scenario->linkage);
     return true;

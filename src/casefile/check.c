@@ -36,6 +36,9 @@ static const EntryGroup *group_above(const Entries *entries, const SchemaRow *ro
     return entries_group(entries, "", 0);
 }
 
+// It is required beside a hole; what else needs it says so in check_joints.c.
+static const char PIN[] = "joints.*.pin";
+
 static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t index, Err *err)
 {
     const EntryGroup *group = group_above(entries, row, index);
@@ -43,7 +46,7 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     schema_path(row, entries_name(entries, row, index), path);
     Text allowed;
     text_init(&allowed);
-    if (row->rivalry == SCHEMA_SIZES) {
+    if (row->rivalry == SCHEMA_SIZES || strcmp(row->path, PIN) == 0) {
         text_append(&allowed, "hole and pin, or radial-clearance");
     } else if (row->rivalry == SCHEMA_STOPPING) {
         text_append(&allowed, "normal of a line, or discs");
@@ -62,6 +65,10 @@ static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index
         return false;
     }
     if (row->family == SCHEMA_JOINT && !schema_is_of_kind(row, joint_kind_find(entries, index))) {
+        return false;
+    }
+    if (strcmp(row->path, PIN) == 0 &&
+        entries_find(entries, "joints.*.radial-clearance", index) != NULL) {
         return false;
     }
     const bool is_drive = strncmp(row->path, "drive.", strlen("drive.")) == 0;
@@ -97,12 +104,12 @@ static bool check_contact(const Entries *entries, const Scenario *scenario, Err 
                               "the paper's estimate of the penalty needs the speed of a "
                               "drive\nallowed: impact, or contact.penalty such as 973.33 N s/mm");
     }
-    const Entry *damping = entries_find(entries, "contact.damping", 0);
+    const Entry *damping = entries_blame(entries, "contact.restitution contact.damping", 0);
     if (damping == NULL || contact->model != CONTACT_IMPACT) {
         return true;
     }
     if (contact->damping == DAMPING_VISCOUS && contact->viscous_coefficient == 0.0) {
-        return entries_refuse(damping, err,
+        return entries_refuse(entries_find(entries, "contact.damping", 0), err,
                               "damping viscous needs contact.viscous-coefficient\nallowed: another "
                               "damping, or contact.viscous-coefficient such as 100 N s/m");
     }

@@ -7,12 +7,19 @@
 
 #include <math.h>
 
+// Whether the stiffness of a joint is that of a law of its sizes.
+static bool needs_sizes(const Scenario *scenario, const Joint *joint)
+{
+    const ContactOptions *contact = &scenario->contact;
+    return contact->model == CONTACT_IMPACT && contact->stiffness == 0.0 &&
+           joint->contact.stiffness == 0.0;
+}
+
 // Whether the law's force depends on the length of the cylinders.
 static bool needs_width(const Scenario *scenario, const Joint *joint)
 {
     const ContactOptions *contact = &scenario->contact;
-    return law_get(contact->law)->needs_width && contact->stiffness == 0.0 &&
-           joint->contact.stiffness == 0.0 && contact->model == CONTACT_IMPACT;
+    return law_get(contact->law)->needs_width && needs_sizes(scenario, joint);
 }
 
 static bool check_sizes(const Entries *entries, size_t index, const Joint *joint, Err *err)
@@ -48,6 +55,15 @@ static bool check_pin(const Entries *entries, size_t index, const Scenario *scen
             "the pin starts %.6g um off the centre, inside the metal\n"
             "allowed: up to the radial clearance, %.6g um",
             1e6 * start, 1e6 * radial);
+    }
+    const Entry *clearance = entries_find(entries, "joints.*.radial-clearance", index);
+    if (needs_sizes(scenario, joint) && clearance != NULL &&
+        entries_find(entries, "joints.*.pin", index) == NULL) {
+        return entries_refuse(clearance, err,
+                              "the law %s needs the diameter of the pin\nallowed: pin: 10 mm "
+                              "beside radial-clearance, or contact.stiffness such as 6.6e10 "
+                              "N/m^1.5",
+                              OPTIONS_LAWS[scenario->contact.law]);
     }
     if (needs_width(scenario, joint) && joint->clearance.width == 0.0) {
         const Entry *law = entries_find(entries, "contact.law", 0);

@@ -107,7 +107,7 @@ static void append_kinds(const SchemaRow *row, Text *text)
 static void describe_default(size_t row_number, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
-    if (row->is_required) {
+    if (row->is_required && row->default_words == NULL) {
         text_append(text, row->rivalry == SCHEMA_SIZES      ? "required without radial-clearance"
                           : row->rivalry == SCHEMA_DRIVING  ? "required without torque or force"
                           : row->rivalry == SCHEMA_STOPPING ? "required of a stop, or discs"
@@ -117,6 +117,9 @@ static void describe_default(size_t row_number, Text *text)
     }
     if (row->default_words != NULL) {
         text_append(text, "%s", row->default_words);
+        if (row->is_required) {
+            append_kinds(row, text);
+        }
         return;
     }
     const Scenario defaults = scenario_default();

@@ -79,7 +79,7 @@ typedef struct SchemaFormRow {
 // Keys of which only one side may be given.
 typedef enum SchemaRivalry {
     SCHEMA_NO_RIVAL,
-    SCHEMA_SIZES,      // hole and pin against radial-clearance
+    SCHEMA_SIZES,      // hole against radial-clearance
     SCHEMA_ELASTICITY, // law against stiffness
     SCHEMA_DRIVING,    // speed against torque
     SCHEMA_STOPPING,   // the normal of a line, and a radius, against two discs

@@ -32,6 +32,7 @@ static const Condition CONDITIONS[] = {
     {STIFFNESS, IMPACT, {"contact.model: impact", "contact.model", false}},
     {LAW, IMPACT, {"a pin with play that has no stiffness of its own", "contact.stiffness", false}},
     {VISCOUS, IMPACT, {"contact.damping: viscous", "contact.damping contact.model", true}},
+    {DISSIPATING, IMPACT, {"contact.damping: dissipation", "contact.damping contact.model", true}},
     {MATERIAL, PLAY, {"contact.law, or contact.model: poisson without contact.penalty", "contact.model", false}},
     {FRICTION, PLAY, {"a friction above 0", "contact.friction", false}},
     {REFERENCE, 0, {"reference among run.backends", "run.backends", false}},
@@ -59,6 +60,8 @@ static const Condition WANTS[] = {
     {SMOOTHED, 0, {"contact.model: impact, and reference among run.backends or ode.solver: direct", "", false}},
     {SHUFFLED, 0, {"ode.iterations above 8", "ode.iterations", false}},
     {SETTLED, 0, {"run.start: settled", "run.start", false}},
+    {REMEMBERED, 0, {"a contact.damping but none, viscous and dissipation", "contact.damping", false}},
+    {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
 };
 // clang-format on
@@ -139,6 +142,7 @@ static unsigned contact_bits(const Scenario *scenario)
            bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
            bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
            bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
+           bit(DISSIPATING, is_impact && contact->damping == DAMPING_DISSIPATION) |
            bit(FRICTION, law_has_friction(scenario)) | step_bits(scenario, is_impact);
 }
 
@@ -228,7 +232,10 @@ static unsigned row_bits(const Scenario *scenario)
            bit(SMOOTHED, is_smoothed && scenario->contact.model == CONTACT_IMPACT) |
            bit(SHUFFLED, scenario->ode.iterations > SHUFFLE_ITERATIONS) |
            bit(MOVED, build_is_determined(&scenario->linkage)) |
-           bit(SETTLED, scenario->run.start == START_SETTLED);
+           bit(SETTLED, scenario->run.start == START_SETTLED) |
+           bit(REMEMBERED, scenario->contact.damping != DAMPING_DISSIPATION) |
+           bit(DERIVED, scenario->contact.damping != DAMPING_DISSIPATION ||
+                            scenario->contact.dissipation == 0.0);
 }
 
 static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)

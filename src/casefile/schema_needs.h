@@ -26,16 +26,17 @@ enum {
     CHOSEN_STEP = 1 << 18,
     PLAIN = 1 << 19, // the stepping of a given step
     EXTRAPOLATED = 1 << 20,
-    LOCAL = 1 << 21,       // the contact is integrated within the step
-    LATER = 1 << 22,       // what is reported begins after the start
-    FACETED = 1 << 23,     // the collider takes holes for polygons
-    SPATIAL = 1 << 24,     // bodies move in space
-    TORQUE = 1 << 25,      // a torque drives
-    FORCE = 1 << 29,       // or a force
-    DRIVEN = 1 << 26,      // there is a drive, a torque or a force
-    OWN = 1 << 27,         // the joint notes that it has the value of its own
-    OWN_VISCOUS = 1 << 30, // or a viscous coefficient
-    TURNING = 1 << 28,     // the drive's speed is constant: revolutions measure the run
+    LOCAL = 1 << 21,               // the contact is integrated within the step
+    LATER = 1 << 22,               // what is reported begins after the start
+    FACETED = 1 << 23,             // the collider takes holes for polygons
+    SPATIAL = 1 << 24,             // bodies move in space
+    TORQUE = 1 << 25,              // a torque drives
+    FORCE = 1 << 29,               // or a force
+    DRIVEN = 1 << 26,              // there is a drive, a torque or a force
+    OWN = 1 << 27,                 // the joint notes that it has the value of its own
+    OWN_VISCOUS = 1 << 30,         // or a viscous coefficient
+    DISSIPATING = (int)(1U << 31), // the damping dissipates without a memory
+    TURNING = 1 << 28,             // the drive's speed is constant: revolutions measure the run
 };
 
 // Likewise, of a key that stays a setting of a run without them: it is named as one without effect.
@@ -51,5 +52,7 @@ enum {
     MOVED = 1 << 8,            // a drive determines the motion before time zero
     COMMON_FRICTION = 1 << 10, // some joint with play has no friction of its own
     SETTLED = 1 << 11,         // runs start in the settled motion
+    REMEMBERED = 1 << 12,      // the damping divides by the speed of the impact
+    DERIVED = 1 << 13,         // what is lost follows from a restitution
     SHUFFLED = 1 << 9,         // the quick solver comes to change the order of the rows
 };

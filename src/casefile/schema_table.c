@@ -265,7 +265,7 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "damping law of the impact model, by its hysteresis factor chi for a restitution e"
             OPTIONS_DAMPING_LIST(DAMPING_DOC)},
     {.path = "contact.restitution", AT(contact.restitution), .low = 0.0, .high = 1.0,
-     .needs = PLAY, .wants = REBOUND, .doc = "desired ratio of the speeds after and before an impact"},
+     .needs = PLAY, .wants = REBOUND | DERIVED, .doc = "desired ratio of the speeds after and before an impact"},
     {.path = "contact.viscous-coefficient", .dimension = DIMENSION_DAMPING,
      AT(contact.viscous_coefficient), .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "none", .needs = VISCOUS,
@@ -285,13 +285,23 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "in the poisson model, impacts below this speed do not bounce"},
     {.path = "contact.impact-speed-floor", .dimension = DIMENSION_SPEED,
      AT(contact.impact_speed_floor), .low = 0.0, .high = 1e3, .low_is_open = true,
-     .needs = IMPACT, .wants = REBOUND, .doc = "smallest impact speed by which the damping laws divide"},
+     .needs = IMPACT, .wants = REBOUND | REMEMBERED,
+     .doc = "smallest impact speed by which the damping laws divide"},
     {.path = "contact.resting-speed", .dimension = DIMENSION_SPEED, AT(contact.resting_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .zero_word = "none",
-     .default_words = "none: by the speed of the impact, however long the contact lasts",
-     .needs = IMPACT, .wants = REBOUND,
+     .needs = IMPACT, .wants = REBOUND | REMEMBERED,
      .doc = "speed by which the damping laws divide once a contact has outlasted its impact: it was "
             "compressed, released, and is compressed again"},
+    {.path = "contact.dissipation", .dimension = DIMENSION_DISSIPATION, AT(contact.dissipation),
+     .low = 0.0, .high = 1e6, .low_is_open = true,
+     .default_words = "that which gives back restitution at restitution-speed",
+     .needs = DISSIPATING, .wants = COMMON_DAMPING,
+     .doc = "c of damping: dissipation, F = F_el (1 + c d'), a constant of the material: at small "
+            "speeds v it gives back a restitution of 1 - 2 c v / 3"},
+    {.path = "contact.restitution-speed", .dimension = DIMENSION_SPEED,
+     AT(contact.restitution_speed), .low = 0.0, .high = 1e3, .low_is_open = true,
+     .needs = DISSIPATING, .wants = COMMON_DAMPING | DERIVED,
+     .doc = "impact speed at which damping: dissipation gives back the restitution"},
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
      .low_is_open = true, .needs = TURNING,
@@ -333,12 +343,19 @@ const SchemaRow SCHEMA_ROWS[] = {
             "to exclude an assumed start; errors, energy, series and picture cover the whole run"},
     {.path = "run.start", .type = SCHEMA_CHOICE, AT(run.start), .words = OPTIONS_RUN_STARTS,
      .needs = PLAY | TURNING | IMPACT,
-     .doc = "as-written: pins in the middle of their holes, or where the case puts them; settled: in "
-            "the motion that the reference comes to from there, where every backend starts, with "
-            "what its contacts carry"},
+     .default_words = "settled; centred of a case that gives a joint's start or runs for less than "
+                      "a revolution",
+     .doc = "settled: in the motion that the reference comes to from several starts, where every "
+            "backend starts, with what its contacts carry; centred: pins in the middle of their "
+            "holes, or where the case puts them; pressed: each pin on the wall of its hole where "
+            "the reaction of an ideal joint would hold it"},
     {.path = "run.settle-most", .type = SCHEMA_INTEGER, AT(run.settle_most), .low = 2.0,
      .high = 1e6, .needs = PLAY | TURNING | IMPACT, .wants = SETTLED,
      .doc = "revolutions after which a motion that does not repeat is taken as it is"},
+    {.path = "run.settle-starts", .type = SCHEMA_INTEGER, AT(run.settle_starts), .low = 1.0,
+     .high = 64.0, .needs = PLAY | TURNING | IMPACT, .wants = SETTLED,
+     .doc = "starts from which the settled motion is looked for: as written, pressed, and with "
+            "other velocities; the run is in the motion that most of them come to"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
      .doc = "the solvers to run, in this order: a word or a list; the default of a case with "

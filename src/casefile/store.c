@@ -11,9 +11,16 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double PIN_RADIUS = 5e-3; // m, where only the radial clearance is given: the paper's
+static const double PIN_RADIUS = 5e-3; // m, where nothing needs the size of the pin: the paper's
 
 static const double ROUNDING = 1e-9; // of a radial clearance, and far below a nanometre
+
+// Makes the hole of a pin; the row of the pin stands before.
+static void store_radial_clearance(double radial, Clearance *clearance)
+{
+    clearance->pin_radius = clearance->pin_radius > 0.0 ? clearance->pin_radius : PIN_RADIUS;
+    clearance->hole_radius = clearance->pin_radius + radial;
+}
 
 // A number of any kind, or the word that stands for 0.
 static bool store_number(const Target *target, Scenario *scenario)
@@ -52,8 +59,7 @@ static bool store_number(const Target *target, Scenario *scenario)
         scenario->run.is_report_from_in_turns = number.is_in_turns;
         break;
     case SCHEMA_RADIAL_CLEARANCE:
-        ((Clearance *)target->field)->pin_radius = PIN_RADIUS;
-        ((Clearance *)target->field)->hole_radius = PIN_RADIUS + number.value;
+        store_radial_clearance(number.value, target->field);
         break;
     default: // SCHEMA_ALONG is moved once the links are known
         *(double *)target->field = row->type == SCHEMA_DIAMETER ? 0.5 * number.value : number.value;

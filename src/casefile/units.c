@@ -46,6 +46,8 @@ static const Unit UNITS[] = {
     {"N/mm^2",  DIMENSION_PRESSURE,      1e6,    1.0},
     {"N s/m",   DIMENSION_DAMPING,       1.0,    1.0},
     {"N s/mm",  DIMENSION_DAMPING,       1e3,    1.0},
+    {"s/m",     DIMENSION_DISSIPATION,   1.0,    1.0},
+    {"s/mm",    DIMENSION_DISSIPATION,   1e3,    1.0},
     {"GB",      DIMENSION_MEMORY,        1e9,    1.0},
     {"MB",      DIMENSION_MEMORY,        1e6,    1.0},
     {"kB",      DIMENSION_MEMORY,        1e3,    1.0},

@@ -26,6 +26,7 @@ enum { UNITS_NAME_SIZE = 32 };
     member(DIMENSION_SPEED, "a speed", "1 mm/s", "m/s") \
     member(DIMENSION_PRESSURE, "a pressure", "207 GPa", "Pa") \
     member(DIMENSION_DAMPING, "a damping coefficient", "973.33 N s/mm", "N s/m") \
+    member(DIMENSION_DISSIPATION, "a dissipation", "0.3 s/m", "s/m") \
     member(DIMENSION_MEMORY, "an amount of memory", "2 GB", "B") \
     member(DIMENSION_FORCE, "a force", "1.2 kN", "N") \
     member(DIMENSION_IMPULSE, "an impulse", "0.2 N s", "N s") \

@@ -71,6 +71,11 @@ ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material
     };
 }
 
+double law_restitution(const ForceLaw *law, double speed)
+{
+    return damping_delivered(law->hysteresis * speed / fmax(speed, law->impact_speed_floor));
+}
+
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err)
 {
@@ -90,10 +95,19 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
         built.hysteresis = 0.0; // some factors are infinite there, and its loss is the bounce
     } else if (contact->damping == DAMPING_VISCOUS) {
         built.viscous = contact->viscous_coefficient;
+    } else if (contact->damping == DAMPING_DISSIPATION) {
+        law_set_dissipation(contact->dissipation > 0.0
+                                ? contact->dissipation
+                                : damping_factor(contact->damping, contact->restitution) /
+                                      contact->restitution_speed,
+                            &built);
     } else {
         built.hysteresis = damping_factor(contact->damping, contact->restitution);
     }
-    built.resting_speed = built.hysteresis > 0.0 ? contact->resting_speed : 0.0;
+    built.viscous *= contact->damping_scale;
+    built.hysteresis *= contact->damping_scale;
+    const bool has_memory = built.hysteresis > 0.0 && contact->damping != DAMPING_DISSIPATION;
+    built.resting_speed = has_memory ? contact->resting_speed : 0.0;
     *law = built;
     return true;
 }

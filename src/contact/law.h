@@ -39,6 +39,26 @@ ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err);
 
+// The speed that a law without memory divides by, whatever its impact, m/s: beyond any.
+static const double LAW_NO_MEMORY = 1e6;
+
+// Makes the hysteretic damping of a law F = F_el (1 + c d'), c >= 0 in s/m: what the material
+// dissipates, with no memory of the impact (Hunt and Crossley 1975; so in Simbody and Drake).
+static inline void law_set_dissipation(double dissipation, ForceLaw *law)
+{
+    law->hysteresis = dissipation * LAW_NO_MEMORY;
+    law->impact_speed_floor = LAW_NO_MEMORY;
+}
+
+// c of that, s/m; 0 of a law that has a memory.
+static inline double law_dissipation(const ForceLaw *law)
+{
+    return law->impact_speed_floor == LAW_NO_MEMORY ? law->hysteresis / LAW_NO_MEMORY : 0.0;
+}
+
+// The restitution, 1, that the hysteretic damping of a law delivers at an impact speed, m/s.
+double law_restitution(const ForceLaw *law, double speed);
+
 // The contact's options with what the joint has of its own in their place.
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint);
 

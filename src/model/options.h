@@ -32,7 +32,8 @@
     member(GONTHIER, "gonthier", "(1 - e^2) / e", (1.0 - e) * (1.0 + e) / e) \
     member(HU_GUO, "hu-guo", "3 (1 - e) / (2 e)", 1.5 * (1.0 - e) / e) \
     member(EXACT, "exact", "the root of chi (1 + e) = ln((1 + chi) / (1 - chi e))", exact_factor(e)) \
-    member(VISCOUS, "viscous", "0, and viscous-coefficient in its place", 0.0)
+    member(VISCOUS, "viscous", "0, and viscous-coefficient in its place", 0.0) \
+    member(DISSIPATION, "dissipation", "of exact at restitution-speed, by which it divides whatever the impact", exact_factor(e))
 
 // How stiffness and damping become ERP and CFM of a row; see contact/map.h. The name follows
 // ODE_MAP_ here and JP_MAP_ in the library; the row is that of contact/map.c. After them comes
@@ -67,11 +68,13 @@
     member(ODE_COLLIDER_CONVEX, "ode-convex", collider_convex) \
     member(ODE_COLLIDER_TRIMESH, "trimesh", collider_trimesh)
 
-// How a run starts: as the case has it, with pins in the middle of their holes unless it says
-// otherwise, or in the motion that is left of that once it has turned long enough.
+// How a run starts: in the motion that is left of its start once the mechanism has turned long
+// enough; with pins in the middle of their holes unless the case says otherwise; or with each pin on
+// the wall of its hole where the reaction of an ideal joint would hold it.
 #define OPTIONS_RUN_START_LIST(member) \
-    member(START_WRITTEN, "as-written") \
-    member(START_SETTLED, "settled")
+    member(START_SETTLED, "settled") \
+    member(START_CENTRED, "centred") \
+    member(START_PRESSED, "pressed")
 
 // The solvers, see model/solver.h, and whether they model play: others take every joint as ideal.
 #define OPTIONS_BACKEND_LIST(member) \
@@ -162,8 +165,12 @@ typedef struct ContactOptions {
     bool is_for_all;  // whether it holds for joints that have a stiffness of their own, too
     DampingKind damping;
     double viscous_coefficient; // N s/m, of DAMPING_VISCOUS
+    double dissipation;         // s/m, c of DAMPING_DISSIPATION, F = F_el (1 + c d'); 0: that which
+                                // gives back the restitution of an impact at the speed below
+    double restitution_speed;   // m/s
     double restitution;         // 1, asked for
     double friction;            // 1, Coulomb's coefficient; 0 for none
+    double damping_scale;       // no key, 1: times which hysteretic and viscous damping are taken
     double friction_speed;      // m/s, sliding speed over which the reference's friction sets in
     double impact_speed_floor;  // m/s, smallest impact speed the damping laws divide by
     double resting_speed;       // m/s, by which they divide where a contact has outlasted its
@@ -177,11 +184,15 @@ typedef struct RunOptions {
     double duration;    // s, where there is none
     size_t samples;     // per revolution of that driver, or in the whole run without it
     RunStart start;
-    size_t settle_most; // revolutions of START_SETTLED until it is taken as it is
-    double interval;    // no key, s: samples stand so far apart, as many as the run has room
-                        // for; 0: as `samples` says
-    double step;        // s; 0: chosen for the tolerance
-    double tolerance;   // 1, largest error wanted of a step that is chosen
+    const char *centred_because; // no key: why a case that does not name its start does not
+                                 // settle; NULL: it settles, or names it
+    bool is_start_given;         // no key: whether the case names its start
+    size_t settle_most;          // revolutions of START_SETTLED until it is taken as it is
+    size_t settle_starts;        // from which it is looked for
+    double interval;  // no key, s: samples stand so far apart, as many as the run has room
+                      // for; 0: as `samples` says
+    double step;      // s; 0: chosen for the tolerance
+    double tolerance; // 1, largest error wanted of a step that is chosen
     ToleranceOf tolerance_of;
     size_t most_steps;      // world steps of all trials of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show

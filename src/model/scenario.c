@@ -30,6 +30,38 @@ static void *copied(const void *array, size_t count, size_t size)
     return copy;
 }
 
+static SettledMotion settled_motion_copy(const SettledMotion *motion, size_t joint_count)
+{
+    SettledMotion copy = *motion;
+    copy.joints = copied(motion->joints, joint_count, sizeof *motion->joints);
+    return copy;
+}
+
+static SettledStart settled_start_copy(const SettledStart *settled, size_t joint_count)
+{
+    SettledStart copy = *settled;
+    copy.first = copied(settled->first, joint_count, sizeof *settled->first);
+    copy.motions = copied(settled->motions, settled->motion_count, sizeof *settled->motions);
+    for (size_t i = 0; i < settled->motion_count; i++) {
+        copy.motions[i] = settled_motion_copy(&settled->motions[i], joint_count);
+    }
+    copy.halved = settled_motion_copy(&settled->halved, joint_count);
+    copy.doubled = settled_motion_copy(&settled->doubled, joint_count);
+    return copy;
+}
+
+void settled_start_free(SettledStart *settled)
+{
+    for (size_t i = 0; i < settled->motion_count; i++) {
+        free(settled->motions[i].joints);
+    }
+    free(settled->motions);
+    free(settled->first);
+    free(settled->halved.joints);
+    free(settled->doubled.joints);
+    *settled = (SettledStart){0};
+}
+
 Scenario scenario_copy(const Scenario *scenario)
 {
     Scenario copy = *scenario;
@@ -38,8 +70,7 @@ Scenario scenario_copy(const Scenario *scenario)
     copy.expectations =
         copied(scenario->expectations, scenario->expectation_count, sizeof *scenario->expectations);
     copy.keys = copied(scenario->keys, scenario->key_count, sizeof *scenario->keys);
-    copy.settled.joints = copied(scenario->settled.joints, scenario->linkage.joint_count,
-                                 sizeof *scenario->settled.joints);
+    copy.settled = settled_start_copy(&scenario->settled, scenario->linkage.joint_count);
     copy.outcomes = copied(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
     return copy;
 }
@@ -50,7 +81,9 @@ Scenario scenario_around(const Scenario *scenario, Linkage linkage)
     around.linkage = linkage;
     around.path = NULL;
     around.expectations = NULL;
-    around.settled.joints = NULL;
+    // that the start is found holds for whatever is a part of it
+    around.settled = (SettledStart){.revolutions = scenario->settled.revolutions,
+                                    .is_pressed = scenario->settled.is_pressed};
     around.outcomes = NULL;
     around.keys = NULL;
     around.key_count = 0;
@@ -74,8 +107,7 @@ void scenario_free(Scenario *scenario)
     linkage_free(&scenario->linkage);
     free(scenario->path);
     free(scenario->expectations);
-    free(scenario->settled.joints);
-    scenario->settled.joints = NULL;
+    settled_start_free(&scenario->settled);
     free(scenario->outcomes);
     free(scenario->keys);
     scenario->path = NULL;
@@ -148,6 +180,14 @@ bool scenario_settles(const Scenario *scenario)
 {
     return scenario->run.start == START_SETTLED && drive_is_steady(&scenario->linkage.driver) &&
            scenario->contact.model == CONTACT_IMPACT && scenario_has_clearance(scenario);
+}
+
+bool scenario_lacks_start(const Scenario *scenario)
+{
+    const SettledStart *settled = &scenario->settled;
+    const bool presses = scenario->run.start == START_PRESSED && scenario_has_clearance(scenario);
+    return (scenario_settles(scenario) && settled->revolutions == 0) ||
+           (presses && !settled->is_pressed);
 }
 
 void scenario_set_stiffness(Scenario *scenario, double stiffness, double exponent)

@@ -31,22 +31,35 @@ typedef struct ScenarioKey {
     size_t line;   // of the case file, from 1; 0 of the command line
 } ScenarioKey;
 
-// What a joint with play did on the way to the settled motion.
+// What a joint with play does in a settled motion.
 typedef struct SettledJoint {
-    double first;   // N, its largest force in the first revolution, from the start as written
-    double force;   // N, over the last period; of a motion that does not repeat the median of the
-                    // revolutions' largest forces
+    double force;   // N, its largest over the period; of a motion that does not repeat the median
+                    // of the revolutions' largest forces
     double low;     // N, 5 % of them are below; of one that repeats the same
     double high;    // N, and 5 % above
     double impacts; // contacts begun in a revolution
 } SettledJoint;
 
+// One that starts have come to.
+typedef struct SettledMotion {
+    size_t starts;        // how many
+    size_t period;        // revolutions after which it repeats; 0: it does not
+    double change;        // 1, over the last of them
+    SettledJoint *joints; // by joint; owned
+} SettledMotion;
+
 // How the start of a scenario was found (run/settle.h).
 typedef struct SettledStart {
     size_t revolutions;          // that it took; 0: the start is as written
-    size_t period;               // revolutions after which the motion repeats; 0: it does not
-    double change;               // 1, over the last of them
-    SettledJoint *joints;        // by joint; owned
+    bool is_pressed;             // START_PRESSED: the pins were put on their walls
+    bool is_continued;           // it was looked for from the state of another run alone
+    size_t starts;               // from which a motion was found
+    double *first;               // N, by joint: its largest force in the first revolution from the
+                                 // start as written; owned
+    size_t motion_count;         // different ones
+    SettledMotion *motions;      // that of most starts first, which runs start in; owned
+    SettledMotion halved;        // from there with half the damping; no joints: nobody has looked
+    SettledMotion doubled;       // and with twice as much
     char message[ERR_TEXT_SIZE]; // why there is none
 } SettledStart;
 
@@ -74,7 +87,7 @@ typedef struct Scenario {
     Expectation *expectations; // for the checks of runs; no solver reads them; owned
     size_t outcome_count;
     ExpectedOutcome *outcomes; // likewise
-    SettledStart settled;      // of START_SETTLED
+    SettledStart settled;      // of START_SETTLED and START_PRESSED
     size_t key_count;
     ScenarioKey *keys; // that were given, in the order of the text; no solver reads them; owned
 } Scenario;
@@ -121,6 +134,12 @@ static inline double scenario_restitution(const Scenario *scenario, const Joint 
 
 // Whether runs are to start in a settled motion: it is asked for, and there is one to come to.
 bool scenario_settles(const Scenario *scenario);
+
+// Whether its start is still to be found, that motion or that of START_PRESSED.
+bool scenario_lacks_start(const Scenario *scenario);
+
+// Forgets how the start was found; the start itself stays.
+void settled_start_free(SettledStart *settled);
 
 // Gives all joints with play one stiffness, N/m^exponent, in place of the contact's and of their
 // own; 0 where the contact's law is to say it.

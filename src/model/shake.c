@@ -154,6 +154,8 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
         &scenario->contact.friction_speed,
         &scenario->contact.impact_speed_floor,
         &scenario->contact.resting_speed,
+        &scenario->contact.dissipation,
+        &scenario->contact.restitution_speed,
         &scenario->contact.penalty,
         &scenario->contact.bounce_speed,
         &scenario->run.step,

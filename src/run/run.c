@@ -479,12 +479,13 @@ static double driven_until(const Loop *loop)
     return driven != LINKAGE_GROUND ? loop->turning.told_s[driven] : loop->reached_s;
 }
 
-// No solver starts anywhere but in the settled motion where that is what was asked for.
+// No solver starts anywhere but where the case asks for.
 static bool run_check_start(const Scenario *scenario, Err *err)
 {
     const SettledStart *settled = &scenario->settled;
-    return !scenario_settles(scenario) || settled->revolutions > 0 ||
-           err_set(err, ERR_SOLVER, "the settled motion is not known: %s",
+    return !scenario_lacks_start(scenario) ||
+           err_set(err, ERR_SOLVER, "the %s start is not known: %s",
+                   OPTIONS_RUN_STARTS[scenario->run.start],
                    settled->message[0] != '\0' ? settled->message : "nobody has looked for it");
 }
 

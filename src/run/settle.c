@@ -6,11 +6,20 @@
 // motion repeats after p revolutions where
 //     d_n = max(|x_n - x_(n-p)|, |F_n - F_(n-p)| / F_n)
 // is small and so is what is still to come of it: with r = d_n / d_(n-p), the sum d_n r / (1 - r).
+// A motion that comes near no earlier section does not repeat. Then the largest force of a
+// revolution is a random number, which has settled where Mann and Whitney's rank test tells the
+// later revolutions from earlier ones no more.
+//
+// Several starts are settled side by side. Two of them have come to one motion where the sections
+// and forces of one period agree, whichever revolution is its first.
 #include "run/settle.h"
 
 #include "base/memory.h"
+#include "base/side_by_side.h"
 #include "base/sorted.h"
 #include "base/zeroed.h"
+#include "model/perturb.h"
+#include "run/pressed.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,6 +38,23 @@ static const double CHANGE_LEAST = 1e-9;
 // digits that a drawing takes, and two more.
 static const double SETTLE_TOLERANCE = 1e-7;
 
+// Of the reference while it settles: each revolution then takes half the time of one at the default
+// tolerance, and peaks differ from those by less than 1e-7.
+static const double SETTLE_REFERENCE = 1e-10;
+
+// 1: sections and forces of one motion, from two starts, differ by less: a peak's five digits
+static const double MOTION_TOLERANCE = 1e-5;
+
+// 1: a section that comes as near to an earlier one may be on its way to repeat
+static const double NEAR_RETURN = 1e-2;
+
+// Of a motion that is to count as one that does not repeat: revolutions at least, and of its last
+// ones those that come near no earlier section.
+enum { RANDOM_LEAST = 30, RANDOM_LAST = 10 };
+
+// Of a rank test: in standard deviations, what one in a hundred samples exceeds by chance.
+static const double DRIFT_LEAST = 2.6;
+
 Settling settling_start(const Scenario *scenario)
 {
     Settling settling = {
@@ -38,6 +64,8 @@ Settling settling_start(const Scenario *scenario)
         .left = INFINITY,
     };
     settling.scenario.run.revolutions = 1.0;
+    settling.scenario.reference.tolerance =
+        fmax(settling.scenario.reference.tolerance, SETTLE_REFERENCE);
     return settling;
 }
 
@@ -145,22 +173,27 @@ bool settling_turn(Settling *settling, Err *err)
     return is_taken;
 }
 
-// d_n above, over p revolutions.
-static double change_over(const Settling *settling, size_t last, size_t period)
+// The larger of the differences of two revolutions' sections and largest forces, relative.
+static double revolutions_apart(const Linkage *linkage, const Revolution *now,
+                                const Revolution *then, double fastest)
 {
-    const Linkage *linkage = &settling->scenario.linkage;
-    const Revolution *now = &settling->revolutions[last];
-    const Revolution *then = &settling->revolutions[last - period];
-    double change = 0.0;
+    double apart = 0.0;
     for (size_t i = 0; i < RATES * linkage->body_count; i++) {
-        change = fmax(change, fabs(now->section[i] - then->section[i]) / settling->fastest);
+        apart = fmax(apart, fabs(now->section[i] - then->section[i]) / fastest);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const double force = fmax(now->force_max[i], then->force_max[i]);
-        const double apart = fabs(now->force_max[i] - then->force_max[i]);
-        change = force > 0.0 ? fmax(change, apart / force) : change;
+        const double by = fabs(now->force_max[i] - then->force_max[i]);
+        apart = force > 0.0 ? fmax(apart, by / force) : apart;
     }
-    return change;
+    return apart;
+}
+
+// d_n above, over p revolutions.
+static double change_over(const Settling *settling, size_t last, size_t period)
+{
+    return revolutions_apart(&settling->scenario.linkage, &settling->revolutions[last],
+                             &settling->revolutions[last - period], settling->fastest);
 }
 
 // Looks for the shortest period after which nothing more than the tolerance is to come.
@@ -184,15 +217,75 @@ static bool settling_repeats(Settling *settling, double tolerance)
     return false;
 }
 
+// How far the ranks of the later half of some numbers are from those of the earlier half, in
+// standard deviations: U = (number of pairs of which the later is larger) - its mean, n m / 2.
+static double drift_of(const double *values, size_t count)
+{
+    const size_t half = count / 2;
+    const double pairs = (double)half * (double)(count - half);
+    double larger = 0.0;
+    for (size_t i = 0; i < half; i++) {
+        for (size_t k = half; k < count; k++) {
+            larger += values[k] > values[i] ? 1.0 : values[k] == values[i] ? 0.5 : 0.0;
+        }
+    }
+    return fabs(larger - 0.5 * pairs) / sqrt(pairs * (double)(count + 1) / 12.0);
+}
+
+// The number of revolutions that count of a motion that does not repeat: its later half.
+static size_t settling_counted(const Settling *settling)
+{
+    return settling->period > 0 ? settling->period : (settling->count + 1) / 2;
+}
+
+// The largest forces of a joint in the revolutions that count.
+static size_t counted_forces(const Settling *settling, size_t joint, double *forces)
+{
+    const size_t many = settling_counted(settling);
+    for (size_t k = 0; k < many; k++) {
+        forces[k] = settling->revolutions[settling->count - many + k].force_max[joint];
+    }
+    return many;
+}
+
+static bool settling_drifts(const Settling *settling)
+{
+    double *forces = zeroed(settling->count, sizeof *forces);
+    bool drifts = false;
+    for (size_t i = 0; i < settling->scenario.linkage.joint_count; i++) {
+        const size_t many = counted_forces(settling, i, forces);
+        drifts = drifts || drift_of(forces, many) > DRIFT_LEAST;
+    }
+    free(forces);
+    return drifts;
+}
+
+// Whether the last revolutions come near no earlier one, and do not drift.
+static bool settling_is_random(const Settling *settling)
+{
+    if (settling->count < RANDOM_LEAST) {
+        return false;
+    }
+    for (size_t k = 1; k <= RANDOM_LAST; k++) {
+        for (size_t p = 1; p <= SETTLE_PERIOD_MAX; p++) {
+            if (change_over(settling, settling->count - k, p) < NEAR_RETURN) {
+                return false;
+            }
+        }
+    }
+    return !settling_drifts(settling);
+}
+
 bool settling_run(Settling *settling, double tolerance, size_t most, Err *err)
 {
-    while (settling->count < most) {
+    while (settling->count < most && !settling->is_random) {
         if (!settling_turn(settling, err)) {
             return false;
         }
         if (settling_repeats(settling, tolerance)) {
             return true;
         }
+        settling->is_random = settling_is_random(settling);
     }
     return true;
 }
@@ -206,47 +299,290 @@ static void take_start(const Linkage *from, Linkage *to)
     to->driver.start = from->driver.start;
 }
 
-// What a joint did; of a motion that does not repeat over its second half.
-static SettledJoint sum_up(const Settling *settling, size_t joint)
+// One of several starts on its way.
+typedef struct Start {
+    Settling settling;
+    bool is_made;    // whether there is such a start
+    bool is_settled; // false: `err` says why
+    Err err;
+    size_t motion; // the number of that which it came to
+} Start;
+
+static void start_run(size_t index, bool is_callers, void *context)
 {
-    const size_t last = settling->count;
-    const size_t many = settling->period > 0 ? settling->period : (last + 1) / 2;
-    double *forces = zeroed(many, sizeof *forces);
-    SettledJoint found = {.first = settling->revolutions[0].force_max[joint]};
-    for (size_t k = 0; k < many; k++) {
-        forces[k] = settling->revolutions[last - many + k].force_max[joint];
-        found.impacts +=
-            (double)settling->revolutions[last - many + k].impacts[joint] / (double)many;
+    (void)is_callers;
+    Start *start = (Start *)context + index;
+    if (start->is_made) {
+        const size_t most = start->settling.scenario.run.settle_most;
+        start->is_settled = settling_run(&start->settling, SETTLE_TOLERANCE, most, &start->err);
+    }
+}
+
+static void starts_run(Start *starts, size_t count)
+{
+    side_by_side_run(count, side_by_side_processors(), start_run, starts);
+}
+
+static void starts_finish(Start *starts, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (starts[i].is_made) {
+            settling_finish(&starts[i].settling);
+        }
+    }
+    free(starts);
+}
+
+// Of the drive's speed at the bodies' reach: by how much the third start and those after it differ
+// from that as written.
+static const double START_SIZES[] = {0.05, 0.2, 0.01};
+enum { START_SIZE_COUNT = sizeof START_SIZES / sizeof *START_SIZES };
+
+// Gives the bodies other velocities. False where joints and drive leave none.
+static bool start_perturbed(Scenario *scenario, size_t number)
+{
+    const Linkage *linkage = &scenario->linkage;
+    PerturbUnit *units = zeroed(linkage->body_count, sizeof *units);
+    const double omega = fabs(linkage->driver.speed);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        units[i] = (PerturbUnit){omega * linkage_reach(linkage, (int)i), omega};
+    }
+    const double size = START_SIZES[number % START_SIZE_COUNT];
+    const bool is_changed = perturb_start(scenario, units, size, (unsigned)number + 1);
+    free(units);
+    return is_changed;
+}
+
+// The starts that a motion is looked for from: as written, pressed, and with other velocities.
+static Start *starts_create(const Scenario *scenario, size_t count)
+{
+    Start *starts = zeroed(count, sizeof *starts);
+    for (size_t i = 0; i < count; i++) {
+        starts[i].settling = settling_start(scenario);
+        starts[i].is_made = true;
+        Scenario *own = &starts[i].settling.scenario;
+        Err err = {ERR_NONE, ""};
+        const bool has_own =
+            i == 0 || (i == 1 && pressed_start(own, &err)) || start_perturbed(own, i);
+        if (!has_own) {
+            settling_finish(&starts[i].settling);
+            starts[i].is_made = false;
+        }
+    }
+    return starts;
+}
+
+// Whether the last period of a motion is that of another, from a revolution of that on.
+static bool agree_from(const Settling *a, const Settling *b, size_t shift)
+{
+    const Linkage *linkage = &a->scenario.linkage;
+    for (size_t k = 0; k < a->period; k++) {
+        const Revolution *of_a = &a->revolutions[a->count - a->period + k];
+        const Revolution *of_b = &b->revolutions[b->count - b->period + (k + shift) % b->period];
+        const double fastest = fmax(a->fastest, b->fastest);
+        if (revolutions_apart(linkage, of_a, of_b, fastest) > MOTION_TOLERANCE) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Whether two starts have come to one motion. All that do not repeat count as one.
+static bool is_same_motion(const Settling *a, const Settling *b)
+{
+    if (a->period != b->period) {
+        return false;
+    }
+    bool agree = a->period == 0;
+    for (size_t shift = 0; !agree && shift < a->period; shift++) {
+        agree = agree_from(a, b, shift);
+    }
+    return agree;
+}
+
+// Numbers the motions in the order of the starts; returns how many there are.
+static size_t starts_number(Start *starts, size_t count)
+{
+    size_t motions = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (!starts[i].is_settled) {
+            continue;
+        }
+        size_t k = 0;
+        while (k < i && !(starts[k].is_settled &&
+                          is_same_motion(&starts[k].settling, &starts[i].settling))) {
+            k++;
+        }
+        starts[i].motion = k < i ? starts[k].motion : motions++;
+    }
+    return motions;
+}
+
+// What a joint does in a motion, over all starts that have come to it.
+static SettledJoint sum_up(const Start *starts, size_t count, size_t motion, size_t joint)
+{
+    size_t room = 0;
+    for (size_t i = 0; i < count; i++) {
+        room += starts[i].is_settled ? starts[i].settling.count : 0;
+    }
+    double *forces = zeroed(room, sizeof *forces);
+    SettledJoint found = {0};
+    size_t many = 0;
+    size_t period = 0;
+    for (size_t i = 0; i < count; i++) {
+        const Settling *settling = &starts[i].settling;
+        if (!starts[i].is_settled || starts[i].motion != motion || (period > 0 && many > 0)) {
+            continue;
+        }
+        period = settling->period;
+        const size_t added = counted_forces(settling, joint, forces + many);
+        for (size_t k = 0; k < added; k++) {
+            found.impacts += (double)settling->revolutions[settling->count - 1 - k].impacts[joint];
+        }
+        many += added;
     }
     sorted_make(forces, many);
     const double most = (double)(many - 1);
-    found.force = settling->period > 0 ? forces[many - 1] : forces[(many - 1) / 2];
-    found.low = settling->period > 0 ? found.force : forces[(size_t)(FEW * most)];
-    found.high = settling->period > 0 ? found.force : forces[(size_t)ceil((1.0 - FEW) * most)];
+    found.impacts /= (double)many;
+    found.force = period > 0 ? forces[many - 1] : sorted_median(forces, many);
+    found.low = period > 0 ? found.force : forces[(size_t)(FEW * most)];
+    found.high = period > 0 ? found.force : forces[(size_t)ceil((1.0 - FEW) * most)];
     free(forces);
     return found;
+}
+
+static SettledMotion describe_motion(const Start *starts, size_t count, size_t motion)
+{
+    SettledMotion found = {0};
+    const Linkage *linkage = NULL;
+    for (size_t i = 0; i < count; i++) {
+        if (starts[i].is_settled && starts[i].motion == motion) {
+            found.period = starts[i].settling.period;
+            found.change = starts[i].settling.change;
+            found.starts++;
+            linkage = &starts[i].settling.scenario.linkage;
+        }
+    }
+    found.joints = zeroed(linkage->joint_count, sizeof *found.joints);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        found.joints[i] = sum_up(starts, count, motion, i);
+    }
+    return found;
+}
+
+// The first start of those that came to the motion of most starts.
+static size_t chosen_start(const Start *starts, size_t count, size_t motions)
+{
+    size_t chosen = 0;
+    size_t most = 0;
+    for (size_t motion = 0; motion < motions; motion++) {
+        size_t came = 0;
+        size_t first = count;
+        for (size_t i = 0; i < count; i++) {
+            if (starts[i].is_settled && starts[i].motion == motion) {
+                first = first < count ? first : i;
+                came++;
+            }
+        }
+        if (came > most) {
+            most = came;
+            chosen = first;
+        }
+    }
+    return chosen;
+}
+
+// Puts what the starts have come to into the scenario.
+static void take_starts(Start *starts, size_t count, Scenario *scenario)
+{
+    SettledStart *settled = &scenario->settled;
+    const size_t motions = starts_number(starts, count);
+    if (motions == 0) {
+        snprintf(settled->message, sizeof settled->message, "revolution %zu: %.1900s",
+                 starts[0].settling.count, starts[0].err.text);
+        if (!scenario->run.is_start_given) {
+            scenario->run.start = START_CENTRED;
+            scenario->run.centred_because = "it fails before its motion has settled";
+        }
+        return;
+    }
+    const size_t chosen = chosen_start(starts, count, motions);
+    const Settling *settling = &starts[chosen].settling;
+    take_start(&settling->scenario.linkage, &scenario->linkage);
+    settled->revolutions = settling->count;
+    settled->motion_count = motions;
+    settled->motions = zeroed(motions, sizeof *settled->motions);
+    settled->motions[0] = describe_motion(starts, count, starts[chosen].motion);
+    for (size_t motion = 0, at = 1; motion < motions; motion++) {
+        if (motion != starts[chosen].motion) {
+            settled->motions[at++] = describe_motion(starts, count, motion);
+        }
+    }
+    for (size_t i = 0; i < motions; i++) {
+        settled->starts += settled->motions[i].starts;
+    }
+    settled->first = zeroed(scenario->linkage.joint_count, sizeof *settled->first);
+    if (starts[0].settling.count > 0) {
+        memcpy(settled->first, starts[0].settling.revolutions[0].force_max,
+               scenario->linkage.joint_count * sizeof *settled->first);
+    }
 }
 
 void settle_scenario(Scenario *scenario)
 {
     SettledStart *settled = &scenario->settled;
-    if (!scenario_settles(scenario) || settled->revolutions > 0) {
+    if (!scenario_lacks_start(scenario)) {
         return;
     }
-    Settling settling = settling_start(scenario);
-    Err err = {ERR_NONE, ""};
-    if (settling_run(&settling, SETTLE_TOLERANCE, scenario->run.settle_most, &err)) {
-        take_start(&settling.scenario.linkage, &scenario->linkage);
-        settled->revolutions = settling.count;
-        settled->period = settling.period;
-        settled->change = settling.change;
-        settled->joints = zeroed(scenario->linkage.joint_count, sizeof *settled->joints);
-        for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-            settled->joints[i] = sum_up(&settling, i);
-        }
-    } else {
-        snprintf(settled->message, sizeof settled->message, "revolution %zu: %s", settling.count,
-                 err.text);
+    if (scenario->run.start == START_PRESSED) {
+        Err err = {ERR_NONE, ""};
+        settled->is_pressed = pressed_start(scenario, &err);
+        snprintf(settled->message, sizeof settled->message, "%s", err.text);
+        return;
     }
-    settling_finish(&settling);
+    const size_t count = scenario->run.settle_starts;
+    Start *starts = starts_create(scenario, count);
+    starts_run(starts, count);
+    take_starts(starts, count, scenario);
+    starts_finish(starts, count);
+}
+
+void settle_from(const RunState *state, Scenario *scenario)
+{
+    Start *start = zeroed(1, sizeof *start);
+    start->settling = settling_start(scenario);
+    start->is_made = true;
+    run_state_start(state, &start->settling.scenario);
+    starts_run(start, 1);
+    if (start->is_settled) {
+        take_starts(start, 1, scenario);
+        scenario->settled.is_continued = true;
+    }
+    starts_finish(start, 1);
+    settle_scenario(scenario);
+}
+
+void settle_damping(Scenario *scenario)
+{
+    static const double SCALES[] = {0.5, 2.0};
+    SettledStart *settled = &scenario->settled;
+    if (settled->motion_count == 0) {
+        return;
+    }
+    Start *starts = zeroed(2, sizeof *starts);
+    for (size_t i = 0; i < 2; i++) {
+        starts[i].settling = settling_start(scenario);
+        starts[i].settling.scenario.contact.damping_scale *= SCALES[i];
+        starts[i].is_made = true;
+    }
+    starts_run(starts, 2);
+    for (size_t i = 0; i < 2; i++) {
+        starts[i].motion = i;
+        if (starts[i].is_settled) {
+            SettledMotion *found = i == 0 ? &settled->halved : &settled->doubled;
+            free(found->joints);
+            *found = describe_motion(starts, 2, i);
+        }
+    }
+    starts_finish(starts, 2);
 }

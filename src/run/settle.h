@@ -23,9 +23,10 @@ typedef struct Settling {
     Revolution *revolutions; // owned
     RunState state;          // at the end of the last
     size_t evaluations;
-    size_t period; // revolutions after which it repeats; 0: it has not yet
-    double change; // 1: over the last period, of sections and largest forces
-    double left;   // 1: what is estimated to be still to come of it
+    bool is_random; // it does not repeat, and what it does in a revolution no longer drifts
+    size_t period;  // revolutions after which it repeats; 0: it has not yet
+    double change;  // 1: over the last period, of sections and largest forces
+    double left;    // 1: what is estimated to be still to come of it
 } Settling;
 
 // Prepares a scenario with a drive of constant speed; it starts as the scenario does.
@@ -35,11 +36,19 @@ void settling_finish(Settling *settling);
 // Goes on by one revolution. Fails with ERR_SOLVER.
 bool settling_turn(Settling *settling, Err *err);
 
-// Gives a scenario that is to start in its settled motion that start, and says how it was found;
-// one that has it, or is to start as written, stays as it is. Where there is none the scenario says
-// why.
+// Gives a scenario that is to start settled or pressed that start, and says how it was found; one
+// that has it, or starts as written, stays as it is. The settled motion is looked for from
+// run.settle-starts starts side by side. Where there is none the scenario says why.
 void settle_scenario(Scenario *scenario);
 
-// Goes on until the motion repeats to within a tolerance, relative, or so many revolutions are
-// over. Fails with ERR_SOLVER.
+// The same from the state of a motion that is near alone, such as that of the last point of a
+// sweep; of the same linkage but for its numbers.
+void settle_from(const RunState *state, Scenario *scenario);
+
+// Finds how the largest forces of a settled scenario move when its damping is halved and doubled.
+void settle_damping(Scenario *scenario);
+
+// Goes on until the motion repeats to within a tolerance, relative, until what it does in a
+// revolution no longer drifts though nothing repeats, or so many revolutions are over. Fails with
+// ERR_SOLVER.
 bool settling_run(Settling *settling, double tolerance, size_t most, Err *err);

@@ -15,12 +15,7 @@
 // Source: prominence is the persistence of a maximum, H. Edelsbrunner and J. Harer, Computational
 // Topology, 2010, VII.1; knees: V. Satopaa and others, Finding a Kneedle in a Haystack, 2011.
 #include "run/spikes.h"
-#include "analytic/closed_form.h"
-#include "analytic/inverse_dynamics.h"
-#include "base/dense.h"
-#include "base/zeroed.h"
-#include "model/kinematics.h"
-#include "model/space.h"
+#include "run/ideal.h"
 
 #include <assert.h>
 #include <math.h>
@@ -268,89 +263,19 @@ size_t spikes_find(const Trace *trace, double threshold, SignalSpike **spikes)
     return count;
 }
 
-// How much accelerations and forces vary without any play.
-//
-// The linkage is closed at angles of the crank a degree apart, and the forces follow from the
-// equations of motion (analytic/inverse_dynamics.c). Between two of the angles a curve with a swing
-// in 30 degrees rises by half a percent of itself at most.
-
-enum { ANGLES = 360, POSES_MAX = 100 * ANGLES };
-
-// of the largest pivot: a linkage that moves freely has none below 1e-3; at a change point, where a
-// joint is found to the root of rounding alone, they are some 1e-8, now more and now less
-static const double MOVES_FREELY = 1e-6;
-
-// Whether the linkage is clear of every dead centre, whichever way its numbers are rounded.
-static bool moves_freely(const Linkage *linkage, const Motion *motions)
-{
-    Jacobian jacobian;
-    kinematics_jacobian(linkage, motions, NULL, true, &jacobian);
-    return dense_rank(jacobian.rows, jacobian.columns, jacobian.entries, MOVES_FREELY) ==
-           jacobian.columns;
-}
-
-static bool move_to(const Scenario *scenario, const DriveState *drive, Motion *motions)
-{
-    const bool is_steady = drive_is_steady(&scenario->linkage.driver);
-    if (scenario_has_closed_form(scenario)) {
-        return is_steady ? closed_form_bodies(scenario, drive->angle, motions)
-                         : closed_form_driven(scenario, drive, motions);
-    }
-    Err unused = {ERR_NONE, ""};
-    return kinematics_solve_driven(&scenario->linkage, drive, motions, &unused) &&
-           moves_freely(&scenario->linkage, motions);
-}
-
-// How many poses are looked at: of a turn, or of what a speed over time turns at most.
-static int pose_count(const Scenario *scenario)
-{
-    const Driver *driver = &scenario->linkage.driver;
-    const double turns = fabs(driver->speed) * scenario_duration(scenario) / (2.0 * M_PI);
-    return drive_is_steady(driver) ? ANGLES
-                                   : (int)fmin(fmax(ANGLES, ceil(ANGLES * turns)), POSES_MAX);
-}
-
-static DriveState pose(const Scenario *scenario, int number, int count)
-{
-    const Driver *driver = &scenario->linkage.driver;
-    if (drive_is_steady(driver)) {
-        return (DriveState){.angle = driver->start + 2.0 * M_PI * number / ANGLES,
-                            .omega = driver->speed};
-    }
-    return drive_at(driver, scenario_duration(scenario) * number / count);
-}
-
 SpikeScale spike_scale(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    SpikeScale scale = {.is_known = linkage->driver.is_present && space_has_plane(linkage) &&
-                                    kinematics_is_small(linkage)};
-    scale.alpha = linkage->driver.speed * linkage->driver.speed;
-    double *least = zeroed(linkage->body_count, sizeof *least);
-    double *most = zeroed(linkage->body_count, sizeof *most);
-    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
-    linkage_start(linkage, motions);
-    const int count = scale.is_known ? pose_count(scenario) : 0;
-    for (int k = 0; scale.is_known && k < count; k++) {
-        Err unused = {ERR_NONE, ""};
-        Reactions reactions;
-        const DriveState drive = pose(scenario, k, count);
-        scale.is_known =
-            move_to(scenario, &drive, motions) &&
-            inverse_dynamics_solve(linkage, motions, scenario->gravity, &reactions, &unused);
-        for (size_t i = 0; scale.is_known && i < linkage->body_count; i++) {
-            least[i] = fmin(least[i], motions[i].alpha);
-            most[i] = fmax(most[i], motions[i].alpha);
-            scale.alpha = fmax(scale.alpha, most[i] - least[i]);
-        }
-        for (size_t i = 0; scale.is_known && i < linkage->joint_count; i++) {
-            scale.force = fmax(scale.force, vec2_length(reactions.force_on_b[i]));
-        }
+    IdealSizes sizes = ideal_sizes(scenario);
+    SpikeScale scale = {.alpha = linkage->driver.speed * linkage->driver.speed};
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        scale.alpha = fmax(scale.alpha, sizes.alpha_range[i]);
     }
-    free(motions);
-    free(most);
-    free(least);
-    scale.is_known = scale.is_known && scale.force > 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        scale.force = fmax(scale.force, sizes.force_max[i]);
+    }
+    scale.is_known = sizes.is_known && scale.force > 0.0;
+    ideal_sizes_free(&sizes);
     return scale;
 }
 

@@ -80,6 +80,8 @@ static JpStatus check_damping(const JpContact *contact, JpError *error)
         return JP_OK;
     case JP_DAMPING_VISCOUS:
         return refusal_of_negative(contact->damper, "the contact's damper", error);
+    case JP_DAMPING_DISSIPATION:
+        return refusal_of_negative(contact->dissipation, "the contact's dissipation", error);
     default:
         REFUSAL_TRY(
             refusal_of_negative(contact->resting_speed, "the contact's resting speed", error));
@@ -103,6 +105,8 @@ JpStatus contact_law(const JpContact *contact, ForceLaw *law, JpError *error)
     law->impact_speed_floor = contact->speed_floor;
     if (contact->damping == JP_DAMPING_VISCOUS) {
         law->viscous = contact->damper;
+    } else if (contact->damping == JP_DAMPING_DISSIPATION) {
+        law_set_dissipation(contact->dissipation, law);
     } else if (contact->damping != JP_DAMPING_NONE) {
         law->resting_speed = contact->resting_speed;
         law->hysteresis = damping_factor(KINDS[contact->damping], contact->restitution);

@@ -2,76 +2,284 @@
 #include "write/settled.h"
 
 #include "write/json_value.h"
+#include "write/units.h"
 
-static void append_joint(const SettledStart *settled, const Joint *joint, const SettledJoint *did,
-                         Text *text)
+#include <stdio.h>
+#include <string.h>
+
+static void append_joint(const SettledStart *settled, size_t number, const Joint *joint, Text *text)
 {
     const char *unit = linkage_is_torsional(joint) ? "N m" : "N";
+    const SettledMotion *motion = &settled->motions[0];
+    const SettledJoint *did = &motion->joints[number];
     text_append(text, "              ");
     text_append_shown(text, joint->name);
     text_append(text, ": %.5g %s", did->force, unit);
-    if (settled->period == 0) {
-        text_append(text,
-                    " in the median revolution, %.4g to %.4g in 5 to 95 %%;\n"
-                    "             ",
-                    did->low, did->high);
-    } else {
-        text_append(text, ";");
+    if (motion->period == 0) {
+        text_append(text, " in the median revolution, %.4g to %.4g in 5 to 95 %%", did->low,
+                    did->high);
     }
-    text_append(text, " %.5g %s from the start, not counted\n", did->first, unit);
+    text_append(text, "\n");
+    if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
+        text_append(
+            text, "                with half the damping %.4g %s, with twice as much %.4g\n",
+            settled->halved.joints[number].force, unit, settled->doubled.joints[number].force);
+    }
+    text_append(text, "                from the assumed start %.5g %s, not counted\n",
+                settled->first[number], unit);
+}
+
+static void append_period(const SettledMotion *motion, Text *text)
+{
+    if (motion->period == 0) {
+        text_append(text, "does not repeat");
+    } else if (motion->period == 1) {
+        text_append(text, "repeats every revolution");
+    } else {
+        text_append(text, "repeats every %zu revolutions", motion->period);
+    }
+}
+
+// Another motion that starts have come to.
+static void append_other(const Scenario *scenario, const SettledMotion *motion, Text *text)
+{
+    text_append(text, "              %zu of %zu starts come to another, which ", motion->starts,
+                scenario->settled.starts);
+    append_period(motion, text);
+    text_append(text, ":");
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (linkage_has_play(joint)) {
+            text_append(text, " ");
+            text_append_shown(text, joint->name);
+            text_append(text, " %.5g %s", motion->joints[i].force,
+                        linkage_is_torsional(joint) ? "N m" : "N");
+        }
+    }
+    text_append(text, "\n");
 }
 
 void settled_text(const Scenario *scenario, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
-    if (settled->revolutions == 0) {
+    if (scenario->run.centred_because != NULL) {
+        text_append(text, "  start       as written: %s\n", scenario->run.centred_because);
+    }
+    if (settled->motion_count == 0) {
         return;
     }
     text_append(text, "  start       settled: ");
-    if (settled->period > 0) {
-        text_append(text, "repeats every ");
-        if (settled->period > 1) {
-            text_append(text, "%zu ", settled->period);
-        }
-        text_append(text, "revolution%s, found in %zu\n", settled->period > 1 ? "s" : "",
-                    settled->revolutions);
-    } else {
-        text_append(text, "does not repeat in %zu revolutions\n", settled->revolutions);
-    }
+    append_period(&settled->motions[0], text);
+    text_append(text, ", found in %zu from %zu of %zu start%s\n", settled->revolutions,
+                settled->motions[0].starts, settled->starts, settled->starts > 1 ? "s" : "");
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         if (linkage_has_play(&scenario->linkage.joints[i])) {
-            append_joint(settled, &scenario->linkage.joints[i], &settled->joints[i], text);
+            append_joint(settled, i, &scenario->linkage.joints[i], text);
+        }
+    }
+    for (size_t i = 1; i < settled->motion_count; i++) {
+        append_other(scenario, &settled->motions[i], text);
+    }
+}
+
+// The first screen.
+
+enum { SHOWN_JOINTS = 2, LINE_MOST = 80 }; // of a line, those of the largest forces
+
+// The numbers of the joints with play whose forces are the largest; returns how many.
+static size_t largest_joints(const Scenario *scenario, size_t numbers[SHOWN_JOINTS])
+{
+    const SettledJoint *joints = scenario->settled.motions[0].joints;
+    size_t count = 0;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        if (!linkage_has_play(&scenario->linkage.joints[i])) {
+            continue;
+        }
+        size_t at = count;
+        while (at > 0 && joints[i].force > joints[numbers[at - 1]].force) {
+            at--;
+        }
+        if (at < SHOWN_JOINTS) {
+            const size_t kept = count < SHOWN_JOINTS ? count : SHOWN_JOINTS - 1;
+            memmove(numbers + at + 1, numbers + at, (kept - at) * sizeof *numbers);
+            numbers[at] = i;
+            count = kept + 1;
+        }
+    }
+    return count;
+}
+
+static void append_force(const Scenario *scenario, size_t number, double force, Text *text)
+{
+    units_append(text, force,
+                 linkage_is_torsional(&scenario->linkage.joints[number]) ? "N m" : "N");
+}
+
+// "crank-coupler 2.36 kN, rod-slider 1.12 kN" of one motion.
+static void append_forces(const Scenario *scenario, const SettledMotion *motion, Text *text)
+{
+    size_t numbers[SHOWN_JOINTS];
+    const size_t count = largest_joints(scenario, numbers);
+    for (size_t i = 0; i < count; i++) {
+        const SettledJoint *did = &motion->joints[numbers[i]];
+        text_append(text, "%s", i > 0 ? ", " : "");
+        text_append_shown(text, scenario->linkage.joints[numbers[i]].name);
+        text_append(text, " ");
+        append_force(scenario, numbers[i], did->force, text);
+        if (motion->period == 0) {
+            text_append(text, " (");
+            append_force(scenario, numbers[i], did->low, text);
+            text_append(text, " to ");
+            append_force(scenario, numbers[i], did->high, text);
+            text_append(text, ")");
         }
     }
 }
 
-void settled_json(json_t *object, const Scenario *scenario)
+static void append_line(Text *line, Text *text)
+{
+    text_append(line, "\n");
+    text_fold(line, LINE_MOST);
+    text_append(text, "%s", line->data);
+    text_finish(line);
+}
+
+// What the run shows, and how it was found.
+static void append_motion(const Scenario *scenario, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
-    if (settled->revolutions == 0) {
+    const SettledMotion *motion = &settled->motions[0];
+    Text line;
+    text_init(&line);
+    text_append(&line, "  Settled motion, ");
+    if (motion->period == 0) {
+        text_append(&line,
+                    "which does not repeat in %zu revolutions; largest force of a "
+                    "revolution, median (5 to 95 %%): ",
+                    settled->revolutions);
+        append_forces(scenario, motion, &line);
+    } else {
+        text_append(&line, "which ");
+        append_period(motion, &line);
+        if ((double)motion->period > scenario->run.revolutions) {
+            text_append(&line, " (run.revolutions: %zu shows all)", motion->period);
+        }
+    }
+    text_append(&line, "; %zu of %zu starts come to it.", motion->starts, settled->starts);
+    append_line(&line, text);
+}
+
+// What the case as it is written says of its first revolution, and other damping of the settled
+// one.
+static void append_beside(const Scenario *scenario, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    size_t numbers[SHOWN_JOINTS];
+    if (largest_joints(scenario, numbers) == 0) {
         return;
     }
+    Text line;
+    text_init(&line);
+    text_append(&line, "  From the assumed start: ");
+    text_append_shown(&line, scenario->linkage.joints[numbers[0]].name);
+    text_append(&line, " ");
+    append_force(scenario, numbers[0], settled->first[numbers[0]], &line);
+    text_append(&line, ", not counted.");
+    if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
+        text_append(&line, " With half the damping: ");
+        append_force(scenario, numbers[0], settled->halved.joints[numbers[0]].force, &line);
+        text_append(&line, ", with twice as much: ");
+        append_force(scenario, numbers[0], settled->doubled.joints[numbers[0]].force, &line);
+        text_append(&line, ".");
+    }
+    append_line(&line, text);
+}
+
+void settled_lines(const Scenario *scenario, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    if (scenario->run.centred_because != NULL) {
+        Text line;
+        text_init(&line);
+        text_append(&line, "  Starts as written, and the first impacts count: %s.",
+                    scenario->run.centred_because);
+        append_line(&line, text);
+    }
+    if (settled->motion_count == 0) {
+        return;
+    }
+    append_motion(scenario, text);
+    if (settled->motion_count > 1) {
+        Text line;
+        text_init(&line);
+        text_append(&line, "  %zu of %zu starts come to %s: ", settled->motions[1].starts,
+                    settled->starts,
+                    settled->motion_count > 2 ? "others, the next" : "another motion");
+        append_forces(scenario, &settled->motions[1], &line);
+        text_append(&line, ".");
+        append_line(&line, text);
+    }
+    append_beside(scenario, text);
+}
+
+static void set_force(json_t *of, const Joint *joint, const char *name, double value)
+{
+    char key[64];
+    const bool is_turn = linkage_is_torsional(joint);
+    snprintf(key, sizeof key, "%s_%s", is_turn ? "torque" : "force", name);
+    snprintf(key + strlen(key), sizeof key - strlen(key), "_%s", is_turn ? "Nm" : "N");
+    json_value_set(of, key, value);
+}
+
+static json_t *motion_json(const Scenario *scenario, const SettledMotion *motion)
+{
     json_t *joints = json_array();
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         if (!linkage_has_play(joint)) {
             continue;
         }
-        const SettledJoint *did = &settled->joints[i];
-        const bool is_turn = linkage_is_torsional(joint);
+        const SettledJoint *did = &motion->joints[i];
         json_t *of = json_object();
         json_object_set_new(of, "name", json_value_text(joint->name));
-        json_value_set(of, is_turn ? "torque_max_Nm" : "force_max_N", did->force);
-        json_value_set(of, is_turn ? "torque_max_low_Nm" : "force_max_low_N", did->low);
-        json_value_set(of, is_turn ? "torque_max_high_Nm" : "force_max_high_N", did->high);
-        json_value_set(of, is_turn ? "first_torque_max_Nm" : "first_force_max_N", did->first);
+        set_force(of, joint, "max", did->force);
+        set_force(of, joint, "max_low", did->low);
+        set_force(of, joint, "max_high", did->high);
+        set_force(of, joint, "max_from_start", scenario->settled.first[i]);
         json_value_set(of, "impacts_per_revolution", did->impacts);
         json_array_append_new(joints, of);
     }
     json_t *found = json_object();
-    json_object_set_new(found, "revolutions", json_integer((json_int_t)settled->revolutions));
-    json_object_set_new(found, "period", json_integer((json_int_t)settled->period));
-    json_value_set(found, "change", settled->change);
+    json_object_set_new(found, "starts", json_integer((json_int_t)motion->starts));
+    json_object_set_new(found, "period", json_integer((json_int_t)motion->period));
+    json_value_set(found, "change", motion->change);
     json_object_set_new(found, "joints", joints);
+    return found;
+}
+
+void settled_json(json_t *object, const Scenario *scenario)
+{
+    const SettledStart *settled = &scenario->settled;
+    if (scenario->run.centred_because != NULL) {
+        json_object_set_new(object, "starts_as_written_because",
+                            json_string(scenario->run.centred_because));
+    }
+    if (settled->motion_count == 0) {
+        return;
+    }
+    json_t *found = motion_json(scenario, &settled->motions[0]);
+    json_object_set_new(found, "revolutions", json_integer((json_int_t)settled->revolutions));
+    json_object_set_new(found, "starts_tried", json_integer((json_int_t)settled->starts));
+    json_t *others = json_array();
+    for (size_t i = 1; i < settled->motion_count; i++) {
+        json_array_append_new(others, motion_json(scenario, &settled->motions[i]));
+    }
+    json_object_set_new(found, "other_motions", others);
+    if (settled->halved.joints != NULL) {
+        json_object_set_new(found, "half_damping", motion_json(scenario, &settled->halved));
+    }
+    if (settled->doubled.joints != NULL) {
+        json_object_set_new(found, "double_damping", motion_json(scenario, &settled->doubled));
+    }
     json_object_set_new(object, "settled", found);
 }

@@ -12,5 +12,9 @@
 // counted.
 void settled_text(const Scenario *scenario, Text *text);
 
+// The same on the first screen, in four lines of 80 columns at most: of the joints whose forces are
+// the largest.
+void settled_lines(const Scenario *scenario, Text *text);
+
 // The same as an object "settled", in SI units.
 void settled_json(json_t *object, const Scenario *scenario);

@@ -2,6 +2,8 @@
 #include "write/units.h"
 
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 double units_per_si(const char *unit)
@@ -20,4 +22,24 @@ double units_per_si(const char *unit)
         }
     }
     return 1.0;
+}
+
+void units_append(Text *text, double value, const char *unit)
+{
+    static const char *const PREFIXES[] = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
+    enum { NONE = 4, MOST = sizeof PREFIXES / sizeof *PREFIXES - 1 };
+    if (!isfinite(value)) {
+        text_append(text, "-");
+        return;
+    }
+    // as it is rounded: 999.7 is 1.00 k
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.2e", value);
+    const double rounded = strtod(digits, NULL);
+    const int exponent = rounded == 0.0 ? 0 : (int)floor(log10(fabs(rounded)) + 1e-9);
+    int prefix = NONE + (int)floor(exponent / 3.0);
+    prefix = prefix < 0 ? 0 : prefix > MOST ? MOST : prefix;
+    const double shown = rounded / pow(10.0, 3.0 * (prefix - NONE));
+    const int before = fabs(shown) >= 100.0 ? 3 : fabs(shown) >= 10.0 ? 2 : 1;
+    text_append(text, "%.*f %s%s", 3 - before, shown, PREFIXES[prefix], unit);
 }

@@ -3,6 +3,7 @@
 // Units are written in ASCII, as a case file writes them, so that a number can be copied back.
 #pragma once
 
+#include "base/text.h"
 #include "model/linkage.h"
 
 #include <math.h>
@@ -27,6 +28,10 @@ static inline double units_wrapped_deg(double angle_rad)
     const double wrapped = turned < 0.0 ? turned + 360.0 : turned;
     return wrapped >= 359.95 ? 0.0 : wrapped;
 }
+
+// Three digits with a prefix, for people: "2.36 kN", "28.4 krad/s^2". Of a number that is not
+// finite a dash.
+void units_append(Text *text, double value, const char *unit);
 
 // The units of what touches in a joint: those of forces and lengths, or where limits turn it those
 // of torques and angles.

@@ -58,7 +58,7 @@ static void write_pin(const ScenePin *pin, size_t number, FILE *file)
     }
     fprintf(file, ", link-%d], at: [%.15g m, %.15g m]", pin->link_b, pin->at.x, pin->at.y);
     if (pin->play > 0.0) {
-        fprintf(file, ", radial-clearance: %.9g um, width: 10 mm", 1e6 * pin->play);
+        fprintf(file, ", radial-clearance: %.9g um, pin: 10 mm, width: 10 mm", 1e6 * pin->play);
     }
     if (pin->start.x != 0.0 || pin->start.y != 0.0) {
         // every digit counts: on the wall is not near it

@@ -128,7 +128,7 @@ static void write_play(SpaceSketch *sketch, FILE *file)
 {
     Draw *draw = &sketch->draw;
     const double clearance_um = draw_log_between(draw, 2.0, 500.0);
-    fprintf(file, ",\n    radial-clearance: %.9g um, width: %.4g mm", clearance_um,
+    fprintf(file, ",\n    radial-clearance: %.9g um, pin: 10 mm, width: %.4g mm", clearance_um,
             draw_between(draw, 5.0, 30.0));
     if (draw_chance(draw, 0.75)) {
         fprintf(file, ", axial-clearance: %.6g um", draw_log_between(draw, 5.0, 1000.0));

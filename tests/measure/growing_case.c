@@ -33,7 +33,7 @@ static void write_joint(const Case *made, const char *name, size_t number, const
 {
     printf("  %s-%zu: {between: [%s], at: [%.17g m, %.17g m]", name, number, between, at.x, at.y);
     if (made->clearance_um > 0.0) {
-        printf(", radial-clearance: %.17g um", made->clearance_um);
+        printf(", radial-clearance: %.17g um, pin: 10 mm", made->clearance_um);
     }
     printf("}\n");
 }

@@ -39,7 +39,7 @@ bool draw_chance(Draw *draw, double probability)
 void draw_play(Draw *draw, FILE *file)
 {
     const double clearance_um = draw_log_between(draw, 1.0, 500.0);
-    fprintf(file, "radial-clearance: %.9g um, width: %.4g mm", clearance_um,
+    fprintf(file, "radial-clearance: %.9g um, pin: 10 mm, width: %.4g mm", clearance_um,
             draw_between(draw, 5.0, 30.0));
     if (draw_chance(draw, 0.3)) {
         // a little less than the play: rounding of the text must not put the pin into the wall
@@ -69,7 +69,7 @@ static void write_stiffness(Draw *draw, FILE *file)
 void draw_contact(Draw *draw, FILE *file)
 {
     static const char *const DAMPINGS[] = {OPTIONS_DAMPING_LIST(DRAW_WORD)};
-    const size_t damping = draw_below(draw, DAMPING_COUNT);
+    const size_t damping = draw_below(draw, DAMPING_DISSIPATION); // the others lose by speed
     fprintf(file, "contact: {");
     write_stiffness(draw, file);
     fprintf(file, ", damping: %s, restitution: %.3g", DAMPINGS[damping],

@@ -1,6 +1,7 @@
 #include "random_scenario.h"
 
 #include "../support/kept.h"
+#include "../support/of_one_start.h"
 
 #include "casefile/casefile.h"
 #include "model/distance.h"
@@ -17,8 +18,11 @@ bool random_scenario(const CaseKind *kind, uint64_t seed, const char *const *set
     assert(file != NULL);
     kind->write(seed, file);
     fclose(file);
-    const bool is_loaded =
-        casefile_load_text("random case", text, size, settings, count, scenario, err);
+    const char **all = calloc(count + OF_ONE_START_MAX, sizeof *all);
+    assert(all != NULL);
+    const size_t used = of_one_start(settings, count, all);
+    const bool is_loaded = casefile_load_text("random case", text, size, all, used, scenario, err);
+    free(all);
     free(text);
     return is_loaded;
 }

@@ -52,11 +52,86 @@ static double spread(const char *resting)
     return most;
 }
 
+// A law without any memory does so as well.
 static void every_start_comes_to_one_motion(void **state)
 {
     (void)state;
     assert_true(spread("contact.resting-speed=50 mm/s") < 1e-6);
+    assert_true(spread("contact.damping=dissipation") < 1e-6);
     assert_true(spread("contact.resting-speed=none") > 1e-2);
+}
+
+static Scenario settled(const char *const *overrides, size_t count)
+{
+    Scenario scenario = load(CASE, overrides, count);
+    settle_scenario(&scenario);
+    kept_settled(&scenario);
+    return scenario;
+}
+
+// Where starts come to different motions each is listed, and none lost.
+static void different_motions_are_told_apart(void **state)
+{
+    (void)state;
+    static const char *const ONE[] = {"run.start=settled", "contact.resting-speed=50 mm/s"};
+    static const char *const MANY[] = {"run.start=settled", "contact.resting-speed=none"};
+    const Scenario one = settled(ONE, 2);
+    assert_int_equal(one.settled.motion_count, 1);
+    assert_int_equal(one.settled.motions[0].starts, one.run.settle_starts);
+    const Scenario many = settled(MANY, 2);
+    size_t starts = 0;
+    for (size_t i = 0; i < many.settled.motion_count; i++) {
+        starts += many.settled.motions[i].starts;
+    }
+    assert_true(many.settled.motion_count > 1);
+    assert_int_equal(starts, many.settled.starts);
+}
+
+// The pin lies where the reaction of the ideal joint, by the closed form, presses it to.
+static void a_pressed_pin_lies_where_the_reaction_holds_it(void **state)
+{
+    (void)state;
+    static const char *const PRESSED[] = {"run.start=pressed"};
+    const Scenario scenario = settled(PRESSED, 1);
+    assert_true(scenario.settled.is_pressed);
+    Trajectory *ideal = run_scenario(&scenario, &ANALYTIC_SOLVER, (RunWatch){.progress = NULL});
+    assert_true(ideal->is_complete);
+    for (size_t i = 0; i < scenario.linkage.joint_count; i++) {
+        const Joint *joint = &scenario.linkage.joints[i];
+        if (linkage_has_play(joint)) {
+            const Vec2 reaction = trajectory_state(ideal, 0, i)->force_on_b;
+            const Vec2 start = joint->clearance.start;
+            const double play = linkage_radial_clearance(joint);
+            assert_near(vec2_length(start), play, 1e-12 * play);
+            assert_near(vec2_dot(start, reaction), -play * vec2_length(reaction),
+                        1e-6 * play * vec2_length(reaction));
+        }
+    }
+    trajectory_destroy(ideal);
+}
+
+// Half the damping and twice as much are runs of the same case with another law: here, where the
+// damper is given, of the case with that damper.
+static void the_damping_is_halved_and_doubled(void **state)
+{
+    (void)state;
+    static const char *const WHOLE[] = {"run.start=settled", "contact.damping=viscous",
+                                        "contact.viscous-coefficient=1000 N s/m"};
+    static const char *const TWICE[] = {"run.start=settled", "contact.damping=viscous",
+                                        "contact.viscous-coefficient=2000 N s/m"};
+    Scenario scenario = load(CASE, WHOLE, 3);
+    settle_scenario(&scenario);
+    settle_damping(&scenario);
+    kept_settled(&scenario);
+    const Scenario twice = settled(TWICE, 3);
+    for (size_t i = 0; i < scenario.linkage.joint_count; i++) {
+        if (linkage_has_play(&scenario.linkage.joints[i])) {
+            assert_close(scenario.settled.doubled.joints[i].force,
+                         twice.settled.motions[0].joints[i].force, 1e-6);
+            assert_true(scenario.settled.halved.joints[i].force >
+                        scenario.settled.doubled.joints[i].force);
+        }
+    }
 }
 
 // The extremes within the steps are looked for.
@@ -90,8 +165,9 @@ static void it_is_what_a_long_run_comes_to(void **state)
     const Scenario slow = load(CASE, LONG, 4);
     Scenario settled = load(CASE, SETTLED, 2);
     settle_scenario(&settled);
-    kept_hold(settled.settled.joints);
-    assert_int_equal(settled.settled.period, 1);
+    kept_settled(&settled);
+    assert_int_equal(settled.settled.motion_count, 1);
+    assert_int_equal(settled.settled.motions[0].period, 1);
     Trajectory *truth = traced_run(&slow, &REFERENCE_SOLVER);
     Trajectory *run = traced_run(&settled, &REFERENCE_SOLVER);
     assert_close(largest_force(run), largest_force(truth), 1e-6);
@@ -107,7 +183,7 @@ static void ode_starts_in_it(void **state)
                                            "ode.stepping=staggered"};
     Scenario scenario = load(CASE, SETTINGS, 5);
     settle_scenario(&scenario);
-    kept_hold(scenario.settled.joints);
+    kept_settled(&scenario);
     Trajectory *truth = traced_run(&scenario, &REFERENCE_SOLVER);
     Trajectory *run = traced_run(&scenario, &ODE_SOLVER);
     const TrajectoryError error = error_against(run, truth, INFINITY);
@@ -124,7 +200,7 @@ static void no_solver_starts_elsewhere(void **state)
     const Scenario scenario = load_with(CASE, "run.start=settled");
     Trajectory *run = run_scenario(&scenario, &REFERENCE_SOLVER, (RunWatch){.progress = NULL});
     assert_false(run->is_complete);
-    assert_non_null(strstr(run->message, "the settled motion is not known"));
+    assert_non_null(strstr(run->message, "the settled start is not known"));
     trajectory_destroy(run);
 }
 
@@ -132,6 +208,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_start_comes_to_one_motion),
+        cmocka_unit_test(different_motions_are_told_apart),
+        cmocka_unit_test(a_pressed_pin_lies_where_the_reaction_holds_it),
+        cmocka_unit_test(the_damping_is_halved_and_doubled),
         cmocka_unit_test(it_is_what_a_long_run_comes_to),
         cmocka_unit_test(ode_starts_in_it),
         cmocka_unit_test(no_solver_starts_elsewhere),

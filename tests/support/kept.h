@@ -52,10 +52,14 @@ static inline Linkage kept_linkage_copy(const Linkage *linkage)
     return copy;
 }
 
+// With the start and the law of tests/support/load_case.h.
 static inline Scenario kept_default(void)
 {
     Scenario scenario = scenario_default();
     scenario.linkage = kept_linkage();
+    scenario.run.start = START_CENTRED;
+    scenario.contact.resting_speed = 0.0;
+    scenario.contact.damping = DAMPING_LANKARANI_NIKRAVESH;
     return scenario;
 }
 
@@ -66,6 +70,19 @@ static inline Scenario kept_copy(const Scenario *scenario)
     return copy;
 }
 
+// What settling has found belongs to the scenario, as does the linkage of a start that is pressed.
+static inline void kept_settled(const Scenario *scenario)
+{
+    kept_hold(scenario->linkage.bodies);
+    kept_hold(scenario->linkage.joints);
+    kept_hold(scenario->linkage.springs);
+    kept_hold(scenario->linkage.torsions);
+    kept_hold(scenario->settled.first);
+    kept_hold(scenario->settled.motions);
+    kept_hold(scenario->settled.halved.joints);
+    kept_hold(scenario->settled.doubled.joints);
+}
+
 // One that was read or built otherwise: it is freed.
 static inline Scenario kept_instead(Scenario *scenario)
 {
@@ -74,7 +91,7 @@ static inline Scenario kept_instead(Scenario *scenario)
     kept_hold(copy.expectations);
     kept_hold(copy.outcomes);
     kept_hold(copy.keys);
-    kept_hold(copy.settled.joints);
+    kept_settled(&copy);
     linkage_free(&scenario->linkage);
     return copy;
 }

@@ -5,12 +5,18 @@
 
 #include "close.h"
 #include "kept.h"
+#include "of_one_start.h"
+
+enum { LOAD_OVERRIDE_MAX = 32 };
 
 static inline Scenario load(const char *path, const char *const *overrides, size_t count)
 {
+    const char *all[LOAD_OVERRIDE_MAX];
+    assert_true(count + OF_ONE_START_MAX <= LOAD_OVERRIDE_MAX);
+    const size_t used = of_one_start(overrides, count, all);
     Scenario scenario;
     Err err = {0};
-    if (!casefile_load(path, overrides, count, &scenario, &err)) {
+    if (!casefile_load(path, all, used, &scenario, &err)) {
         fail_msg("%s", err.text);
     }
     return kept_instead(&scenario);

@@ -75,14 +75,14 @@ Scenario rocker_make(RockerView view)
     write_length(&writer, 15e-3);
     text_append(&writer.text, "}\n");
     write_joint(&writer, "far", "ground, rocker", (Vec2){pin.x, -view.length});
-    text_append(&writer.text,
-                "}\n"
-                "drive: {joint: main, speed: 5000 rpm}\n"
-                "gravity: 0 m/s^2\n"
-                "contact: {stiffness: 6.6e10 N/m^1.5, damping: lankarani-nikravesh, "
-                "restitution: 0.9}\n"
-                "run: {revolutions: 1, samples: 3600, step: 1 us, backends: [reference, ode]}\n"
-                "ode: {map: impulse, stepping: staggered}\n");
+    text_append(&writer.text, "}\n"
+                              "drive: {joint: main, speed: 5000 rpm}\n"
+                              "gravity: 0 m/s^2\n"
+                              "contact: {stiffness: 6.6e10 N/m^1.5, damping: lankarani-nikravesh, "
+                              "restitution: 0.9, resting-speed: none}\n"
+                              "run: {start: centred, revolutions: 1, samples: 3600, step: 1 us, "
+                              "backends: [reference, ode]}\n"
+                              "ode: {map: impulse, stepping: staggered}\n");
     Scenario scenario;
     Err err = {ERR_NONE, ""};
     const bool is_made = casefile_load_text("rocker", writer.text.data, writer.text.length, NULL, 0,

@@ -48,7 +48,8 @@ static int set_up(void **state)
     measure(bench, 2, &bench->members[1]);
     const CheckPlan plan = {.has_truth = true, .uncertainty = 1e-7, .is_full = true};
     Err err = {0};
-    baseline_set_head(&bench->made, &bench->scenario, &plan);
+    baseline_begin(&bench->made, &bench->scenario);
+    bench->made.plan = plan;
     snprintf(bench->made.case_path, sizeof bench->made.case_path, "drop.yaml");
     assert_true(baseline_set_metrics(&bench->made, &bench->run, bench->members, 2, &err));
     assert_true(baseline_json_write(bench->path, &bench->made, &err));

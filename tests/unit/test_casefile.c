@@ -107,8 +107,8 @@ static void a_pin_starts_where_the_case_says(void **state)
     (void)state;
     static const char *const OVERRIDES[] = {
         "joints.crank-coupler.start=[10 um, -8 um]",
-        "joints.coupler-follower={radial-clearance: 20 um, start: [-10 um, 10 um]}",
-        "joints.follower-ground={radial-clearance: 20 um, start: [3 um, 15 um]}",
+        "joints.coupler-follower={radial-clearance: 20 um, pin: 10 mm, start: [-10 um, 10 um]}",
+        "joints.follower-ground={radial-clearance: 20 um, pin: 10 mm, start: [3 um, 15 um]}",
     };
     const Scenario scenario = load(IMPACT, OVERRIDES, 3);
     check_eccentricity(&scenario, "ground-crank", 0.0, 0.0);
@@ -261,13 +261,14 @@ static void defaults_are_those_of_the_options(void **state)
 static void a_collider_brings_the_map_and_the_step_it_needs(void **state)
 {
     (void)state;
-    static const char TEXT[] = "four-bar:\n"
-                               "  ground: {length: 254 mm}\n"
-                               "  crank: {length: 108 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
-                               "  coupler: {length: 279.4 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
-                               "  follower: {length: 270.5 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
-                               "joints: {crank-coupler: {radial-clearance: 20 um, width: 9 mm}}\n"
-                               "drive: {speed: 1000 rpm}\n";
+    static const char TEXT[] =
+        "four-bar:\n"
+        "  ground: {length: 254 mm}\n"
+        "  crank: {length: 108 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
+        "  coupler: {length: 279.4 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
+        "  follower: {length: 270.5 mm, mass: 1 kg, inertia: 1 kg m^2}\n"
+        "joints: {crank-coupler: {radial-clearance: 20 um, pin: 10 mm, width: 9 mm}}\n"
+        "drive: {speed: 1000 rpm}\n";
     static const char *const COLLIDERS[] = {"ode.collider=pin-hole", "ode.collider=staves"};
     for (int i = 0; i < 2; i++) {
         Scenario scenario;

@@ -160,7 +160,7 @@ static void a_pin_off_the_centre_moves_the_bodies(void **state)
     assert_near(eccentricity(&linkage.linkage, 2).y, -4e-6, 1e-13);
     assert_near(eccentricity(&linkage.linkage, 1).x, 0.0, 1e-13);
     static const char *const PLAY[] = {
-        "joints.elbow={radial-clearance: 1 mm, start: [0.3 mm, 0.4 mm]}"};
+        "joints.elbow={radial-clearance: 1 mm, pin: 10 mm, start: [0.3 mm, 0.4 mm]}"};
     const Scenario chain = load(CHAIN, PLAY, 1);
     assert_near(eccentricity(&chain.linkage, 1).x, 3e-4, 1e-15);
     assert_near(chain.linkage.bodies[0].start.angle, 0.0, 1e-13);
@@ -173,7 +173,7 @@ static void redundant_play_is_no_hindrance(void **state)
     static const char *const OVERRIDES[] = {
         "bodies.third={mass: 0.1 kg, inertia: 90 kg mm^2, at: [100 mm, 50 mm]}",
         "joints.foot={between: [ground, third], at: [100 mm, 0 mm]}",
-        "joints.head={between: [coupler, third], at: [100 mm, 100 mm], radial-clearance: 10 um}",
+        "joints.head={between: [coupler, third], at: [100 mm, 100 mm], pin: 5 mm, hole: 5.02 mm}",
     };
     Scenario scenario;
     Err err = {0};
@@ -206,7 +206,7 @@ static void a_body_far_from_its_joints_is_placed(void **state)
         "  wrist: {between: [coupler, follower], at: [472.10494212 mm, 260.712729497 mm]}\n"
         "  heel: {between: [ground, follower], at: [400 mm, 0 mm]}\n"
         "  hook: {between: [coupler, pendulum], at: [348.6 mm, 195 mm],\n"
-        "         radial-clearance: 50 um}\n"
+        "         radial-clearance: 50 um, pin: 10 mm}\n"
         "drive: {joint: pivot, speed: 300 rpm}\n"
         "run: {revolutions: 0.1}\n";
     const Scenario scenario = load(FAR, NULL, 0);

@@ -31,6 +31,7 @@ static const char *const UNWRITTEN[] = {
     "run.report-from",
     "run.start",
     "run.settle-most",
+    "run.settle-starts",
     "run.samples",
     "run.tolerance",
     "run.tolerance-of",
@@ -39,6 +40,8 @@ static const char *const UNWRITTEN[] = {
     "run.duration",
     "contact.restitution",
     "contact.resting-speed",
+    "contact.dissipation",
+    "contact.restitution-speed",
     // of the contact model and the rows of the program's own world, which the library has not
     "contact.model",
     "contact.penalty",

@@ -3,6 +3,7 @@
 
 #include "contact/damping.h"
 #include "contact/law.h"
+#include "contact/map_impact.h"
 
 #include <string.h>
 
@@ -135,6 +136,7 @@ static void the_options_make_the_whole_law(void **state)
     const MaterialOptions steel = material_options_default();
     ContactOptions contact = contact_options_default();
     contact.impact_speed_floor = 2e-3;
+    contact.damping = DAMPING_LANKARANI_NIKRAVESH;
     ForceLaw law;
     Err err = {0};
 
@@ -166,6 +168,41 @@ static void the_options_make_the_whole_law(void **state)
     assert_false(law_build(&contact, &steel, &thin, 0.0, &law, &err));
 }
 
+// What the material dissipates grows with the speed of the impact, whatever came before: from the
+// law itself, integrated. The control, a law with a memory, gives back the same at every speed.
+static void a_dissipating_law_gives_back_less_the_faster(void **state)
+{
+    (void)state;
+    const Clearance clearance = {.hole_radius = 5.0075e-3, .pin_radius = 4.993e-3, .width = 13e-3};
+    const MaterialOptions steel = material_options_default();
+    ContactOptions contact = contact_options_default();
+    ForceLaw with_memory;
+    ForceLaw law;
+    Err err = {0};
+    assert_true(law_build(&contact, &steel, &clearance, 0.0, &with_memory, &err));
+    contact.damping = DAMPING_DISSIPATION;
+    assert_true(law_build(&contact, &steel, &clearance, 0.0, &law, &err));
+    const double dissipation = law_dissipation(&law);
+    static const double SPEEDS[] = {0.01, 0.1, 0.3, 1.0};
+    double before = 1.0;
+    for (size_t i = 0; i < sizeof SPEEDS / sizeof *SPEEDS; i++) {
+        MapImpactCase impact = {.law = law, .mass = 0.2, .speed = SPEEDS[i]};
+        const double given = map_impact_law(&impact).restitution;
+        assert_near(given, law_restitution(&law, SPEEDS[i]), 1e-6);
+        assert_true(given < before);
+        before = given;
+        // Hunt and Crossley's line, where the speed is small
+        const double line = 1.0 - 2.0 / 3.0 * dissipation * SPEEDS[i];
+        assert_near(given, line, pow(dissipation * SPEEDS[i], 2.0));
+        impact.law = with_memory;
+        assert_near(map_impact_law(&impact).restitution, contact.restitution, 1e-6);
+    }
+    assert_near(law_restitution(&law, contact.restitution_speed), contact.restitution, 1e-9);
+    contact.dissipation = 0.25;
+    assert_true(law_build(&contact, &steel, &clearance, 0.0, &law, &err));
+    assert_near(law_dissipation(&law), 0.25, 1e-15);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,6 +211,7 @@ int main(void)
         cmocka_unit_test(the_cylinder_laws_satisfy_their_books_formulas),
         cmocka_unit_test(johnson_gives_the_known_approach_at_the_real_pin_force),
         cmocka_unit_test(a_pair_out_of_range_is_refused),
+        cmocka_unit_test(a_dissipating_law_gives_back_less_the_faster),
         cmocka_unit_test(the_options_make_the_whole_law),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,7 +13,9 @@
 #include "commands/check/baseline.h"
 #include "base/sorted.h"
 #include "base/text.h"
+#include "base/zeroed.h"
 #include "casefile/casefile.h"
+#include "model/start.h"
 #include "version.h"
 #include "write/file.h"
 #include "write/json_value.h"
@@ -46,6 +48,7 @@ void baseline_finish(Baseline *baseline)
 {
     free(baseline->settings);
     free(baseline->metrics);
+    free(baseline->start.numbers);
     *baseline = (Baseline){.settings = NULL};
 }
 
@@ -91,7 +94,7 @@ static void baseline_set_settings(Baseline *baseline, const Scenario *scenario)
     }
 }
 
-void baseline_set_head(Baseline *baseline, const Scenario *scenario, const CheckPlan *plan)
+void baseline_begin(Baseline *baseline, const Scenario *scenario)
 {
     text_copy(baseline->version, sizeof baseline->version, JOINTPLAY_VERSION);
     text_copy(baseline->ode, sizeof baseline->ode, JOINTPLAY_ODE_VERSION);
@@ -102,8 +105,78 @@ void baseline_set_head(Baseline *baseline, const Scenario *scenario, const Check
     text_copy(baseline->compiler, sizeof baseline->compiler, "gcc " __VERSION__);
 #endif
     build_print(baseline->build);
-    baseline->plan = *plan;
     baseline_set_settings(baseline, scenario);
+}
+
+void baseline_set_head(Baseline *baseline, const Baseline *head, const CheckPlan *plan)
+{
+    text_copy(baseline->version, sizeof baseline->version, head->version);
+    text_copy(baseline->ode, sizeof baseline->ode, head->ode);
+    text_copy(baseline->ccd, sizeof baseline->ccd, head->ccd);
+    text_copy(baseline->compiler, sizeof baseline->compiler, head->compiler);
+    text_copy(baseline->build, sizeof baseline->build, head->build);
+    baseline->plan = *plan;
+    free(baseline->settings);
+    baseline->setting_count = head->setting_count;
+    baseline->settings = calloc(head->setting_count + 1, sizeof *baseline->settings);
+    assert(baseline->settings != NULL);
+    memcpy(baseline->settings, head->settings, head->setting_count * sizeof *head->settings);
+}
+
+void baseline_set_start(Baseline *baseline, const Scenario *scenario)
+{
+    const SettledStart *settled = &scenario->settled;
+    if (settled->motion_count == 0) {
+        return;
+    }
+    BaselineStart *start = &baseline->start;
+    free(start->numbers);
+    start->revolutions = settled->revolutions;
+    start->period = settled->motions[0].period;
+    start->count = start_number_count(&scenario->linkage);
+    start->numbers = zeroed(start->count, sizeof *start->numbers);
+    start_numbers(&scenario->linkage, start->numbers);
+}
+
+// Whether a setting says how a run is computed and not what of.
+static bool is_of_computing(const char *key)
+{
+    return strncmp(key, "run.", strlen("run.")) == 0 || strncmp(key, "ode.", strlen("ode.")) == 0;
+}
+
+static bool is_of_one_case(const Baseline *baseline, const Baseline *now)
+{
+    size_t i = 0;
+    size_t k = 0;
+    for (;;) {
+        while (i < baseline->setting_count && is_of_computing(baseline->settings[i].key)) {
+            i++;
+        }
+        while (k < now->setting_count && is_of_computing(now->settings[k].key)) {
+            k++;
+        }
+        if (i == baseline->setting_count || k == now->setting_count) {
+            return i == baseline->setting_count && k == now->setting_count;
+        }
+        if (strcmp(baseline->settings[i].key, now->settings[k].key) != 0 ||
+            strcmp(baseline->settings[i].value, now->settings[k].value) != 0) {
+            return false;
+        }
+        i++;
+        k++;
+    }
+}
+
+bool baseline_start_scenario(const Baseline *baseline, const Baseline *now, Scenario *scenario)
+{
+    const BaselineStart *start = &baseline->start;
+    if (start->revolutions == 0 || !scenario_lacks_start(scenario) ||
+        start->count != start_number_count(&scenario->linkage) || !is_of_one_case(baseline, now)) {
+        return false;
+    }
+    start_set_numbers(start->numbers, &scenario->linkage);
+    scenario->settled.revolutions = start->revolutions;
+    return true;
 }
 
 size_t baseline_find(const CheckMeasure *measure, const char *name, size_t near)
@@ -388,6 +461,17 @@ static void append_head(Text *text, const Baseline *baseline)
     text_append(text, "},\n");
 }
 
+static void append_start(Text *text, const BaselineStart *start)
+{
+    text_append(text, "  \"start\": {\"revolutions\": %zu, \"period\": %zu, \"numbers\": [",
+                start->revolutions, start->period);
+    for (size_t i = 0; i < start->count; i++) {
+        text_append(text, "%s", i > 0 ? ", " : "");
+        text_append_number(text, start->numbers[i]);
+    }
+    text_append(text, "]},\n");
+}
+
 static void append_sample(Text *text, const BaselineMetric *metric)
 {
     text_append(text, ", \"mean\": ");
@@ -429,6 +513,9 @@ bool baseline_json_write(const char *path, const Baseline *baseline, Err *err)
     Text text;
     text_init(&text);
     append_head(&text, baseline);
+    if (baseline->start.revolutions > 0) {
+        append_start(&text, &baseline->start);
+    }
     text_append(&text, "  \"settings\": {");
     for (size_t i = 0; i < baseline->setting_count; i++) {
         text_append(&text, i > 0 ? ",\n    " : "\n    ");
@@ -511,6 +598,38 @@ static bool read_truth(const json_t *root, CheckPlan *plan, Err *err)
     }
     return (plan->uncertainty >= 0.0 && plan->horizon_s >= 0.0) ||
            baseline_fail("truth", "it holds a negative number", err);
+}
+
+static bool read_start(const json_t *root, BaselineStart *start, Err *err)
+{
+    static const char *const KEYS[] = {"revolutions", "period", "numbers", NULL};
+    const json_t *object = json_object_get(root, "start");
+    if (object == NULL) {
+        return true;
+    }
+    double revolutions = 0.0;
+    double period = 0.0;
+    if (!check_keys(object, "start", KEYS, err) ||
+        !baseline_read_number(object, "start", "revolutions", &revolutions, err) ||
+        !baseline_read_number(object, "start", "period", &period, err)) {
+        return false;
+    }
+    const json_t *numbers = json_object_get(object, "numbers");
+    start->count = json_array_size(numbers);
+    if (start->count == 0 || !(revolutions >= 1.0) || !(period >= 0.0)) {
+        return baseline_fail("start", "it holds no numbers, or no revolutions", err);
+    }
+    start->revolutions = (size_t)revolutions;
+    start->period = (size_t)period;
+    start->numbers = zeroed(start->count, sizeof *start->numbers);
+    for (size_t i = 0; i < start->count; i++) {
+        const json_t *number = json_array_get(numbers, i);
+        start->numbers[i] = json_number_value(number);
+        if (!json_is_number(number) || !isfinite(start->numbers[i])) {
+            return baseline_fail("start", "'numbers' is not a list of numbers", err);
+        }
+    }
+    return true;
 }
 
 static bool read_settings(const json_t *root, Baseline *baseline, Err *err)
@@ -663,8 +782,8 @@ static bool read_metrics(const json_t *root, Baseline *baseline, Err *err)
 
 static bool read_root(const json_t *root, Baseline *baseline, Err *err)
 {
-    static const char *const KEYS[] = {"format", "case",     "tool",    "compiler", "build",
-                                       "truth",  "settings", "metrics", NULL};
+    static const char *const KEYS[] = {"format", "case",   "tool",     "compiler", "build",
+                                       "truth",  "?start", "settings", "metrics",  NULL};
     static const char *const TOOL_KEYS[] = {"version", "ode", "ccd", NULL};
     // those of programs that used GSL
     static const char *const FORMER_TOOL_KEYS[] = {"version", "ode", "ccd", "gsl", NULL};
@@ -688,8 +807,8 @@ static bool read_root(const json_t *root, Baseline *baseline, Err *err)
            read_text(tool, "ccd", baseline->ccd, sizeof baseline->ccd, err) &&
            read_text(root, "compiler", baseline->compiler, sizeof baseline->compiler, err) &&
            read_text(root, "build", baseline->build, sizeof baseline->build, err) &&
-           read_truth(root, &baseline->plan, err) && read_settings(root, baseline, err) &&
-           read_metrics(root, baseline, err);
+           read_truth(root, &baseline->plan, err) && read_start(root, &baseline->start, err) &&
+           read_settings(root, baseline, err) && read_metrics(root, baseline, err);
 }
 
 bool baseline_json_read(const char *path, Baseline *baseline, Err *err)

@@ -52,6 +52,14 @@ typedef struct BaselineSetting {
     char value[BASELINE_VALUE_SIZE];
 } BaselineSetting;
 
+// The settled start that the numbers are of: neither compiler nor processor make another of it.
+typedef struct BaselineStart {
+    size_t revolutions; // that it took; 0: there is none
+    size_t period;      // of the motion; 0: it does not repeat
+    size_t count;
+    double *numbers; // of model/start.h; owned
+} BaselineStart;
+
 typedef struct Baseline {
     char case_path[SCENARIO_PATH_SIZE]; // relative to the baseline's folder
     char version[BASELINE_TEXT_SIZE];   // of the program, as the three below of its libraries
@@ -62,14 +70,26 @@ typedef struct Baseline {
     CheckPlan plan;
     size_t setting_count;
     BaselineSetting *settings; // owned
+    BaselineStart start;
     size_t count;
     BaselineMetric *metrics; // owned
 } Baseline;
 
 void baseline_finish(Baseline *baseline);
 
-// Fills versions, compiler, fingerprint and settings for this program and a scenario.
-void baseline_set_head(Baseline *baseline, const Scenario *scenario, const CheckPlan *plan);
+// Fills versions, compiler, fingerprint and settings for this program and a scenario that is not
+// settled yet: settings are what the case says.
+void baseline_begin(Baseline *baseline, const Scenario *scenario);
+
+// Takes those over from another baseline.
+void baseline_set_head(Baseline *baseline, const Baseline *head, const CheckPlan *plan);
+
+// Keeps the settled start of a scenario that has one.
+void baseline_set_start(Baseline *baseline, const Scenario *scenario);
+
+// Gives a scenario that is to settle the start that is kept, if it is one of the same case: all
+// settings but those of run. and ode. are the same. Returns whether it has one now.
+bool baseline_start_scenario(const Baseline *baseline, const Baseline *now, Scenario *scenario);
 
 // The start of a member of the ensemble of rounding, from 1; and of the sample, from 1 on: a check
 // takes its own from behind those of the baseline.

@@ -359,7 +359,8 @@ static bool make_baseline(Making *making, Baseline *made, CheckMeasure *run, siz
         return false;
     }
     *run = check_measure_copy(&measures[0]);
-    baseline_set_head(made, making->item->scenario, &making->plan);
+    baseline_set_head(made, &making->item->now, &making->plan);
+    baseline_set_start(made, making->item->scenario);
     text_copy(made->case_path, sizeof made->case_path, making->item->relative);
     if (!baseline_set_metrics(made, run, &measures[1], BASELINE_MEMBERS, err)) {
         return false;

@@ -110,9 +110,18 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
         return false;
     }
     warnings_say(item->scenario, &options->common);
-    settle_scenario(item->scenario);
-    baseline_set_head(&item->now, item->scenario, &item->baseline.plan);
+    baseline_begin(&item->now, item->scenario);
+    item->now.plan = item->baseline.plan;
     return true;
+}
+
+// Finds where the case starts: where the numbers of its baseline did, if there are such.
+static void settle_item(CheckItem *item, const CheckOptions *options)
+{
+    if (options->is_blessing ||
+        !baseline_start_scenario(&item->baseline, &item->now, item->scenario)) {
+        settle_scenario(item->scenario);
+    }
 }
 
 // A case that was named: its baseline must be its own.
@@ -136,10 +145,12 @@ static void add_named(CheckItem *item, const CheckOptions *options)
         return;
     }
     if (is_by_limits(item, options)) {
+        settle_item(item, options);
         return;
     }
     item->has_baseline = true;
     read_baseline(item, options->is_blessing);
+    settle_item(item, options);
     const char *other = item->baseline.case_path;
     if (item->baseline.count > 0 && strcmp(other, item->relative) != 0) {
         err_set(&item->err, ERR_FILE,
@@ -171,7 +182,9 @@ static void add_found(CheckItem *item, const char *file, const CheckOptions *opt
         return;
     }
     show_path(whole, item->path);
-    read_case(item, options);
+    if (read_case(item, options)) {
+        settle_item(item, options);
+    }
 }
 
 static int is_baseline(const struct dirent *entry)

@@ -48,10 +48,13 @@ static const EmbeddedText TEXTS[EMBEDDED_COUNT] = {
 
 bool embedded_load(EmbeddedCase which, Scenario *scenario, Err *err)
 {
-    static const char *const CLOCKWISE[] = {"drive.speed=-1000 rpm"};
+    // The paper starts with pins in the middle of their holes, and its law knows no other speed
+    // than that of the impact.
+    static const char *const AS_IN_PAPER[] = {"drive.speed=-1000 rpm", "run.start=centred",
+                                              "contact.resting-speed=none"};
     const EmbeddedText *text = &TEXTS[which];
-    return casefile_load_text(text->name, text->begin, (size_t)(text->end - text->begin), CLOCKWISE,
-                              1, scenario, err);
+    return casefile_load_text(text->name, text->begin, (size_t)(text->end - text->begin),
+                              AS_IN_PAPER, 3, scenario, err);
 }
 
 // The extremes of coupler and follower, by the paper and recomputed.

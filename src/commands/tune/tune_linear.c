@@ -407,7 +407,7 @@ static void list_linears(const TuneSearch *search, const ForceLaw *law, Tune *tu
     const Joint *joint = &scenario->linkage.joints[contact->joint];
     const bool is_viscous = law_options(&scenario->contact, joint).damping == DAMPING_VISCOUS;
     const bool is_linear = law->family == FORCE_LAW_POWER && law->exponent == 1.0;
-    contact->restitution = is_viscous ? NAN : damping_delivered(law->hysteresis);
+    contact->restitution = is_viscous ? NAN : law_restitution(law, contact->speed);
     for (size_t i = 0; i < (is_linear ? 1 : SHARE_COUNT); i++) {
         const double depth = SHARES[i] * contact->depth;
         const double stiffness = force_law_secant(law, depth);

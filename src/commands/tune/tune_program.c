@@ -254,6 +254,9 @@ static bool tune_program_fill_contact(const Scenario *scenario, const Joint *joi
     contact->damping = DAMPINGS[own.damping];
     if (own.damping == DAMPING_VISCOUS) {
         contact->damper = law.viscous;
+    } else if (own.damping == DAMPING_DISSIPATION) {
+        contact->dissipation = law_dissipation(&law);
+        return true;
     } else if (own.damping != DAMPING_NONE) {
         contact->restitution = own.restitution;
     }

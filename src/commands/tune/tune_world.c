@@ -249,6 +249,9 @@ static bool tune_world_write_contact(const Scenario *scenario, const Joint *join
     text_append(text, "    %s.damping = %s;\n", name, DAMPINGS[own.damping]);
     if (own.damping == DAMPING_VISCOUS) {
         write_field(name, "damper", law.viscous, is_turn ? "N m s/rad" : "N s/m", text);
+    } else if (own.damping == DAMPING_DISSIPATION) {
+        write_field(name, "dissipation", law_dissipation(&law), is_turn ? "s/rad" : "s/m", text);
+        return true;
     } else if (own.damping != DAMPING_NONE) {
         write_field(name, "restitution", own.restitution, "", text);
     }
