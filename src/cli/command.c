@@ -27,7 +27,10 @@ const Command *command_find_topic(const char *name, const char *topic, Err *err)
         names[count++] = topic;
     }
     const char *nearest = text_nearest(name, names, count);
-    if (nearest != NULL) {
+    const char *ending = strrchr(name, '.');
+    if (ending != NULL && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0)) {
+        err_set(err, ERR_USAGE, "'%s' is no command; did you mean 'jointplay run %s'?", name, name);
+    } else if (nearest != NULL) {
         err_set(err, ERR_USAGE, "unknown command '%s'; did you mean '%s'?", name, nearest);
     } else {
         err_set(err, ERR_USAGE, "unknown command '%s'; 'jointplay help' lists the commands", name);

@@ -21,6 +21,7 @@ typedef struct CommonOptions {
     double time_limit_s; // of one run
     const char *folder;  // of --out, or NULL
     bool is_json;
+    bool is_full; // all tables, and not the first screen alone
     bool is_wide; // tables need not fit the terminal
     bool is_quiet;
 } CommonOptions;
@@ -43,6 +44,8 @@ typedef struct CommonOptions {
 #define COMMON_OUT(help_group, words) {"out", "DIR", words, help_group, OPTION_TEXT, COMMON_AT(folder)}
 #define COMMON_JSON(help_group) \
     {"json", NULL, "Print one JSON object instead of tables", help_group, OPTION_FLAG, COMMON_AT(is_json)}
+#define COMMON_FULL(help_group) \
+    {"full", NULL, "All tables, and not the first screen alone", help_group, OPTION_FLAG, COMMON_AT(is_full)}
 #define COMMON_WIDE(help_group) \
     {"wide", NULL, "All columns of the tables, however wide the terminal is", help_group, OPTION_FLAG, COMMON_AT(is_wide)}
 #define COMMON_QUIET(help_group) \

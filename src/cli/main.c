@@ -64,6 +64,9 @@ static bool run_program(int argc, char **argv, Err *err)
     if (argv[1][0] == '-') {
         return answer_option(argv, err);
     }
+    if (argc == 3 && strcmp(argv[2], "--version") == 0 && command_find(argv[1], err) != NULL) {
+        return print_versions(NULL, NULL, err);
+    }
     const Command *command = command_find(argv[1], err);
     return command != NULL && command->run(argc - 1, argv + 1, err);
 }

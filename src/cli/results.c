@@ -20,7 +20,8 @@ void results_print(const Results *results, const CommonOptions *options, const v
     Text text;
     text_init(&text);
     const Style style = output_style(stdout, options->is_wide);
-    results->text(report, &style, &text);
+    const bool is_whole = results->screen == NULL || options->is_full || options->is_wide;
+    (is_whole ? results->text : results->screen)(report, &style, &text);
     text_append(&text, "%s", results->is_followed ? "\n" : "");
     output_text(&text, &style);
     text_finish(&text);

@@ -27,6 +27,8 @@ typedef struct Results {
     bool is_followed;   // by an empty line, where the text is printed
     json_t *(*json)(const void *report);
     void (*text)(const void *report, const Style *style, Text *text);
+    // What is printed without --full: the answer alone; NULL: the whole text is.
+    void (*screen)(const void *report, const Style *style, Text *text);
     const ResultFile *files; // in the order in which they are written
     size_t file_count;
 } Results;

@@ -15,7 +15,7 @@ export XDG_CACHE_HOME
 
 pin='bodies: {pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}}
 joints:
-  hole: {between: [ground, pin], at: [0 mm, 0 mm], radial-clearance: 0.1 mm, width: 15 mm}'
+  hole: {between: [ground, pin], at: [0 mm, 0 mm], radial-clearance: 0.1 mm, pin: 10 mm, width: 15 mm}'
 run='run: {duration: 6 ms, samples: 60, step: 5 us}'
 mkdir cases
 printf '%s\n' "$pin" 'contact: {stiffness: 1e8 N/m, restitution: 0.9}' "$run" >cases/play.yaml

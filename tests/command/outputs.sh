@@ -17,7 +17,7 @@ cat >k.yaml <<'END'
 bodies:
   pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}
 joints:
-  hole: {between: [ground, pin], at: [0 mm, 0 mm], radial-clearance: 0.1 mm, width: 15 mm}
+  hole: {between: [ground, pin], at: [0 mm, 0 mm], radial-clearance: 0.1 mm, pin: 10 mm, width: 15 mm}
 contact: {stiffness: 6.6e10 N/m^1.5, restitution: 0.9}
 run: {duration: 6 ms, samples: 100, step: 5 us, backends: [reference, ode]}
 END
@@ -25,7 +25,7 @@ END
 cat >k.json <<'END'
 {"bodies": {"pin": {"mass": "0.1 kg", "inertia": "2 kg mm^2", "at": ["0 mm", "0 mm"]}},
  "joints": {"hole": {"between": ["ground", "pin"], "at": ["0 mm", "0 mm"],
-                     "radial-clearance": "0.1 mm", "width": "15 mm"}},
+                     "radial-clearance": "0.1 mm", "pin": "10 mm", "width": "15 mm"}},
  "contact": {"stiffness": "6.6e10 N/m^1.5", "restitution": 0.9},
  "run": {"duration": "6 ms", "samples": 100, "step": "5 us", "backends": ["reference", "ode"]}}
 END

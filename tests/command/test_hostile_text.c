@@ -102,7 +102,8 @@ static const char CASE[] =
     "bodies:\n"
     "  pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}\n"
     "joints:\n"
-    "  hole: {between: [ground, pin], at: [0 mm, 0 mm], radial-clearance: 0.1 mm, width: 15 mm}\n"
+    "  hole: {between: [ground, pin], at: [0 mm, 0 mm], radial-clearance: 0.1 mm, pin: 10 mm, "
+    "width: 15 mm}\n"
     "contact: {stiffness: 6.6e10 N/m^1.5, restitution: 0.9}\n"
     "run: {duration: 6 ms, samples: 20, step: 50 us, backends: [reference, ode]}\n";
 

@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-static const char PAPER[] = "map $cases/paper/impact-k66.yaml ";
+static const char PAPER[] = "map $cases/paper/impact-k66.yaml --set run.start=centred "
+                            "--set contact.resting-speed=none --full ";
 
 static void run_words(Program *program, const char *start, const char *more)
 {
@@ -174,7 +175,7 @@ static void a_lone_contact_needs_no_case(void **state)
         assert_true(json_is_true(json_object_get(setting, "restitution_met")));
     }
     json_decref(root);
-    program_run(program, "map --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --at-step '1 ms'");
+    program_run(program, "map --full --stiffness '1e9 N/m^1.5' --mass '0.1 kg' --at-step '1 ms'");
     assert_says(program->output, "Best constants at 1000 us");
     assert_says(program->output, "Gazebo: nothing is right at 1000 us");
     program_fails_usage(program, "map --stiffness '1e9 N/m'", "needs the effective mass");
@@ -294,14 +295,14 @@ static void a_joint_that_never_touches_hides_no_other(void **state)
     assert_non_null(file);
     fputs(CASE, file);
     fclose(file);
-    program_run(program, "map ball.yaml -q --steps '10 us' --maps midpoint");
+    program_run(program, "map ball.yaml --full -q --steps '10 us' --maps midpoint");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "floor, K = 1e+07 N/m\n");
     assert_says(program->output, "roof, given stiffness\n");
     assert_says(program->output, "not mapped  no contact of the case's run begins with a closing");
     assert_says(program->output, "midpoint    10");
     // the control: where none touches there is nothing to map
-    program_run(program, "map ball.yaml -q --set run.duration='10 ms'");
+    program_run(program, "map ball.yaml --full -q --set run.duration='10 ms'");
     assert_int_equal(program->status, 2);
     assert_says(program->errors, "floor: no contact of the case's run begins with a closing speed");
 }

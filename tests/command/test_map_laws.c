@@ -103,7 +103,10 @@ static void every_law_asked_for_has_its_rows(void **state)
     };
     for (size_t i = 0; i < sizeof QUESTIONS / sizeof *QUESTIONS; i++) {
         char words[PROGRAM_PATH_SIZE];
-        snprintf(words, sizeof words, "map -q --csv rows.csv $cases/paper/%s", QUESTIONS[i].words);
+        snprintf(words, sizeof words,
+                 "map --full -q --csv rows.csv --set run.start=centred "
+                 "--set contact.resting-speed=none $cases/paper/%s",
+                 QUESTIONS[i].words);
         program_run(program, words);
         assert_int_equal(program->status, 0);
         check_answer(program, &QUESTIONS[i]);

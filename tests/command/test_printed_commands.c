@@ -82,7 +82,7 @@ static char *cut_out(const char *text, const char *from, const char *to)
     return strndup(start, (size_t)(end - start));
 }
 
-static const char TUNE[] = "tune --error 0.1 --schemes direct/plain --cost steps --quiet "
+static const char TUNE[] = "tune --full --error 0.1 --schemes direct/plain --cost steps --quiet "
                            "--set \"title=$TITLE\" --code code.c";
 
 static void what_tune_prints_runs_the_same_case_and_nothing_else(void **state)

@@ -32,7 +32,7 @@ static void a_missing_case_ends_with_status_5(void **state)
 static void a_run_prints_extremes_error_and_cost(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/paper/ideal-nominal.yaml");
+    program_run(program, "run --full $cases/paper/ideal-nominal.yaml");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "transmission angle 30.74 to 82.32 deg");
     assert_says(program->output, "coupler   analytic    42.2008     237.6   -78.6973       5.0");
@@ -207,7 +207,7 @@ static void a_failed_solver_ends_with_status_4_after_the_others_are_told(void **
 {
     Program *program = *state;
     char path[PROGRAM_PATH_SIZE];
-    program_run(program, "run $cases/paper/stackup-impact.yaml --set run.step=1ms "
+    program_run(program, "run --full $cases/paper/stackup-impact.yaml --set run.step=1ms "
                          "--backend analytic,ode --set contact.stiffness='1e11 N/m^1.5' --out out");
     assert_int_equal(program->status, 4);
     assert_says(program->output, "coupler   analytic    42.2008");
@@ -386,7 +386,7 @@ static void settings_without_effect_are_said_a_line_each(void **state)
 static void a_stack_up_that_fails_says_so(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/paper/ideal-stackup.yaml --backend analytic "
+    program_run(program, "run --full $cases/paper/ideal-stackup.yaml --backend analytic "
                          "--set four-bar.follower.length='270.5 +- 200 mm' --set run.samples=90");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "\n  no tolerance stack-up: within its tolerances the crank does "
@@ -432,7 +432,7 @@ static void the_same_command_twice_prints_the_same_hash(void **state)
 static void rotation_in_space_is_that_of_the_whole_vector(void **state)
 {
     Program *program = *state;
-    static const char RUN[] = "run -q --uncertified --backend reference ";
+    static const char RUN[] = "run --full -q --uncertified --backend reference ";
     char words[PROGRAM_PATH_SIZE];
     snprintf(words, sizeof words, "%s$cases/space/bennett.yaml --plot b.svg", RUN);
     program_run(program, words);

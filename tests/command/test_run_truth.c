@@ -16,7 +16,8 @@ static double number_of(const json_t *object, const char *group, const char *key
 static void errors_are_against_the_certified_reference(void **state)
 {
     Program *program = *state;
-    program_run(program, "run --json $cases/paper/impact-k66.yaml");
+    program_run(program, "run --json $cases/paper/impact-k66.yaml --set run.start=centred "
+                         "--set contact.resting-speed=none");
     assert_int_equal(program->status, 0);
     json_t *root = program_json(program);
     const json_t *truth = json_object_get(root, "truth");
@@ -49,7 +50,7 @@ static void errors_are_against_the_certified_reference(void **state)
 static void beyond_the_horizon_distributions_stand_in_for_errors(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/literature/four-bar-half-mm.yaml --set run.step=10us "
+    program_run(program, "run --full $cases/literature/four-bar-half-mm.yaml --set run.step=10us "
                          "--set run.revolutions=0.5");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "The motion cannot be predicted beyond ");
@@ -95,11 +96,12 @@ static void a_reference_that_is_not_certified_says_so(void **state)
     assert_true(json_is_null(json_object_get(error, "reference_uncertainty")));
     assert_true(json_is_null(json_object_get(error, "horizon_s")));
     json_decref(root);
-    program_run(program, "run --uncertified --backend reference $cases/paper/impact-k66.yaml");
+    program_run(program,
+                "run --full --uncertified --backend reference $cases/paper/impact-k66.yaml");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "The reference is not certified (--uncertified)");
     // a step that is chosen needs to know how sure the reference is
-    program_run(program, "run --uncertified $cases/literature/three-clearances.yaml");
+    program_run(program, "run --full --uncertified $cases/literature/three-clearances.yaml");
     assert_int_equal(program->status, 2);
     assert_says(program->errors, "with --uncertified give --step TIME");
 }
@@ -107,7 +109,7 @@ static void a_reference_that_is_not_certified_says_so(void **state)
 static void a_pin_in_a_hole_runs_without_a_drive(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/literature/pin-in-hole-drop.yaml");
+    program_run(program, "run --full $cases/literature/pin-in-hole-drop.yaml");
     assert_int_equal(program->status, 0);
     // it falls 0.1 mm: sqrt(2 c / g) = 4.516 ms
     assert_says(program->output, "4.5160");
@@ -119,16 +121,17 @@ static void an_error_that_is_not_known_is_said_to_be(void **state)
 {
     Program *program = *state;
     const char *words = "The error of ode is not known";
-    program_run(program,
-                "run -q --backend ode --step '5 us' $cases/literature/pin-in-hole-drop.yaml");
+    program_run(
+        program,
+        "run --full -q --backend ode --step '5 us' $cases/literature/pin-in-hole-drop.yaml");
     assert_int_equal(program->status, 0);
     assert_says(program->output, words);
     // the controls: with the reference, and with a step chosen for an error, it is known
-    program_run(program, "run -q --backend reference --backend ode --step '5 us' "
+    program_run(program, "run --full -q --backend reference --backend ode --step '5 us' "
                          "$cases/literature/pin-in-hole-drop.yaml");
     assert_int_equal(program->status, 0);
     assert_true(strstr(program->output, words) == NULL);
-    program_run(program, "run -q --backend ode $cases/literature/pin-in-hole-drop.yaml");
+    program_run(program, "run --full -q --backend ode $cases/literature/pin-in-hole-drop.yaml");
     assert_int_equal(program->status, 0);
     assert_true(strstr(program->output, words) == NULL);
 }

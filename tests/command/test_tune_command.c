@@ -2,7 +2,9 @@
 #include "program.h"
 
 // its contacts are all in the first degrees
-#define K66_CASE "$cases/paper/impact-k66.yaml --set run.revolutions=0.1"
+#define K66_CASE                                                                                   \
+    "$cases/paper/impact-k66.yaml --set run.start=centred --set contact.resting-speed=none --set " \
+    "run.revolutions=0.1"
 static const char K66[] = K66_CASE;
 static const char IDEAL[] = "$cases/paper/ideal-nominal.yaml";
 
@@ -122,7 +124,8 @@ static void the_reference_stands_beside_the_settings_of_ode(void **state)
         tune(program, K66_CASE " --at-step '20 us' --schemes direct/staggered/impulse", 0);
     assert_true(json_is_null(json_object_get(root, "reference")));
     json_decref(root);
-    program_run(program, "tune " K66_CASE " -q --error 1e-2 --schemes direct/staggered/impulse");
+    program_run(program,
+                "tune --full " K66_CASE " -q --error 1e-2 --schemes direct/staggered/impulse");
     assert_says(program->output, "Without ODE");
     assert_says(program->output, "reference, tolerance ");
 }
@@ -289,7 +292,8 @@ static void a_linear_law_has_one_spring(void **state)
 {
     Program *program = *state;
     json_t *root = tune(program,
-                        "$cases/paper/impact-k66.yaml --set run.revolutions=0.05 "
+                        "$cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --set run.revolutions=0.05 "
                         "--set 'contact.stiffness=1e8 N/m' "
                         "--error 1e-2 --schemes direct/staggered/impulse",
                         0);
@@ -368,7 +372,8 @@ static void files_hold_what_was_asked_for(void **state)
 {
     Program *program = *state;
     char path[PROGRAM_PATH_SIZE];
-    program_run(program, "tune $cases/paper/impact-k66.yaml --error 3e-2 --schemes "
+    program_run(program, "tune --full $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                         "contact.resting-speed=none --error 3e-2 --schemes "
                          "direct/plain/corrected --sdf c.sdf --mjcf c.xml --out out --quiet");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "soft_cfm");
@@ -400,26 +405,46 @@ static void what_cannot_be_asked_is_refused(void **state)
 {
     Program *program = *state;
     program_fails_usage(program, "tune", "no case given");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml", "no error given");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 0",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none",
+                        "no error given");
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --error 0",
                         "--error is 0; allowed: a number above 0, up to 0.5");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 1e-3 --max-cost 50kg",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --error 1e-3 --max-cost 50kg",
                         "--max-cost is 50kg; allowed: a time above 0");
     program_fails_usage(program,
-                        "tune $cases/paper/impact-k66.yaml --error 1e-3 --cost steps --max-cost 1s",
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --error 1e-3 --cost steps --max-cost 1s",
                         "--cost steps and a --max-cost in time do not go together");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 1e-3 --schemes plian",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --error 1e-3 --schemes plian",
                         "no scheme of this case is 'plian'");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --error 1e-14 --quiet",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --error 1e-14 --quiet",
                         "is below ten times the uncertainty of the reference");
     program_fails_usage(program, "tune a.yaml --error 1e-3 --code x --sdf x", "would both write x");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --cost steps",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --at-step 1ms --cost steps",
                         "--cost and --at-step do not go together");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --max-cost 9",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --at-step 1ms --max-cost 9",
                         "--max-cost and --at-step do not go together");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step 1ms --schemes auto",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --at-step 1ms --schemes auto",
                         "--at-step needs one that takes the step it is given");
-    program_fails_usage(program, "tune $cases/paper/impact-k66.yaml --at-step '1 s'",
+    program_fails_usage(program,
+                        "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                        "contact.resting-speed=none --at-step '1 s'",
                         "is longer than the run");
     program_run(program, "tune $cases/paper/stackup-poisson.yaml --error 1e-3");
     assert_int_equal(program->status, 3);

@@ -165,7 +165,9 @@ static void check_worlds(void **state, const Wanted *wanted, size_t count)
     }
 }
 
-#define K66 "$cases/paper/impact-k66.yaml --schemes direct/staggered"
+#define K66                                                                                        \
+    "$cases/paper/impact-k66.yaml --set run.start=centred --set contact.resting-speed=none "       \
+    "--schemes direct/staggered"
 
 static void pins_in_holes_make_the_same_run(void **state)
 {
@@ -233,7 +235,8 @@ static void what_the_library_cannot_do_is_refused(void **state)
     expect_refused(*state, "$cases/paper/ideal-nominal.yaml --error 1e-2 --schemes extrapolated",
                    "libjointplay does not extrapolate from several worlds");
     expect_refused(*state,
-                   "$cases/paper/impact-k66.yaml --error 3e-2 --set ode.facets=64 "
+                   "$cases/paper/impact-k66.yaml --set run.start=centred --set "
+                   "contact.resting-speed=none --error 3e-2 --set ode.facets=64 "
                    "--schemes direct/plain/textbook/staves",
                    "libjointplay has round holes and no polygons");
     expect_refused(*state, "$cases/space/offset-coupler.yaml --error 1e-2",
@@ -244,8 +247,9 @@ static void what_the_library_cannot_do_is_refused(void **state)
 static void what_the_library_lacks_is_left_out(void **state)
 {
     Program *program = *state;
-    program_run(program, "tune $cases/paper/ideal-nominal.yaml --error 1e-2 --cost steps --schemes "
-                         "extrapolated,direct/staggered --set run.revolutions=0.1 --code some.c");
+    program_run(program,
+                "tune --full $cases/paper/ideal-nominal.yaml --error 1e-2 --cost steps --schemes "
+                "extrapolated,direct/staggered --set run.revolutions=0.1 --code some.c");
     assert_int_equal(program->status, 0);
     assert_says(program->errors, "left out for --code: ");
     assert_says(program->errors, "libjointplay does not extrapolate from several worlds");
@@ -256,7 +260,8 @@ static void the_program_is_short(void **state)
 {
     Program *program = *state;
     char path[PROGRAM_PATH_SIZE];
-    program_run(program, "tune $cases/paper/impact-k66.yaml --at-step '20 us' --schemes "
+    program_run(program, "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                         "contact.resting-speed=none --at-step '20 us' --schemes "
                          "direct/staggered/impulse --set run.revolutions=0.1 --code short.c");
     assert_int_equal(program->status, 0);
     program_path(program, "short.c", path);

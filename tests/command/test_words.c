@@ -79,7 +79,7 @@ static void every_line_fits_a_terminal(void **state)
 static void wide_tables_have_what_was_left_out(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/paper/impact-k66.yaml --step '20 us'");
+    program_run(program, "run --full $cases/paper/impact-k66.yaml --step '20 us'");
     assert_says(program->output, "--wide shows them: at time, omega max");
     assert_null(strstr(program->output, "alpha max  angle max"));
     program_run(program, "run $cases/paper/impact-k66.yaml --step '20 us' --wide");
@@ -90,7 +90,7 @@ static void wide_tables_have_what_was_left_out(void **state)
 static void errors_stand_before_theory(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/paper/impact-k66.yaml --step '20 us' "
+    program_run(program, "run --full $cases/paper/impact-k66.yaml --step '20 us' "
                          "--backend analytic,reference,ode");
     const char *errors = strstr(program->output, "Error at the samples");
     const char *extremes = strstr(program->output, "Extremes of the motion");
@@ -99,7 +99,7 @@ static void errors_stand_before_theory(void **state)
     assert_true(errors < extremes && extremes < theory);
     assert_says(program->output, "The paper's bands");
     // anybody's four-bar is not the paper's
-    program_run(program, "run $cases/paper/impact-k66.yaml --step '20 us' "
+    program_run(program, "run --full $cases/paper/impact-k66.yaml --step '20 us' "
                          "--set four-bar.follower.length='271 mm'");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "Spikes of the signals");
@@ -157,13 +157,13 @@ static void a_slip_of_the_finger_is_understood(void **state)
 static void a_run_without_a_contact_says_so(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
+    program_run(program, "run --full $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
                          "--set run.duration='2 ms' --backend ode");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "hole, ode: no contact in the whole run.");
     assert_says(program->output, "the run of 2 ms is too short");
     // the control: it lands after 4.5 ms
-    program_run(program, "run $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
+    program_run(program, "run --full $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
                          "--set run.duration='6 ms' --backend ode");
     assert_null(strstr(program->output, "no contact"));
 }
@@ -171,11 +171,11 @@ static void a_run_without_a_contact_says_so(void **state)
 static void a_joint_far_from_its_bodies_is_doubted(void **state)
 {
     Program *program = *state;
-    program_run(program, "run $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
+    program_run(program, "run --full $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
                          "--set joints.hole.at='[900 mm, 0 mm]' --backend ode "
                          "--set run.duration='2 ms'");
     assert_says(program->errors, "warning: joint 'hole' is 0.9 m from the centre of mass of 'pin'");
-    program_run(program, "run $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
+    program_run(program, "run --full $cases/literature/pin-in-hole-drop.yaml --step '20 us' "
                          "--backend ode --set run.duration='2 ms'");
     assert_null(strstr(program->errors, "warning"));
 }

@@ -89,7 +89,7 @@ kept_run() { :; }
 timeless() {
     case $1 in
     *.json) sed -E '/"(wall_s|us_per_step|real_time_factor)":/d' "$1" ;;
-    *.txt) sed '/^Cost$/,/^Kinematics/d' "$1" ;;
+    *.txt) sed '/^  Time: /d; /^Cost$/,/^Kinematics/d' "$1" ;;
     *compare.csv | c.csv) cut -d, -f1-11 "$1" ;;
     c.svg) tail -n 1 "$1" ;;
     *) cat "$1" ;;

@@ -47,11 +47,12 @@ def json_of(program, case, backend, sets):
         return done
 
 def text_of(program, case):
-    done = call(program, ["run", "-q", "--wide"], case)
+    done = call(program, ["run", "-q", "--full", "--wide"], case)
     if done is None:
         return "longer than %d s" % SECONDS
     # the cost of the machine
     text = re.sub(r"(?ms)^Cost[^\n]*\n.*?(?=^\S|\Z)", "", done[1])
+    text = re.sub(r"(?m)^  Time: .*\n", "", text)
     return done[0], text, done[2]
 
 def compare(job):

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // The options.
 
@@ -25,14 +26,20 @@ static const double DEFAULT_DURATION = 0.06;
 
 // World steps of a run at a usual step, at most: all schemes, five times each, take some minutes.
 static const double DEFAULT_STEPS_MOST = 1e6;
+
+// World steps of all runs together at the usual steps: half a minute to a minute. They are counted
+// and not timed, so that a case has the same ladder everywhere.
+static const double DEFAULT_WORK_MOST = 1e7;
+
+static const char ALL_STEPS[] = "all";          // of --steps: the usual steps, whatever they take
 static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the longest usual run
 
 #define AT(field) .offset = offsetof(CompareOptions, field)
 
 static const OptionRow OPTIONS[] = {
     {"steps", "LIST",
-     "The steps, such as '10 us, 3 us, 1 us' (default: up to eleven, of some 2000 to "
-     "1,000,000 steps in the run)",
+     "The steps, such as '10 us, 3 us, 1 us', or all: up to eleven, of some 2000 to 1,000,000 "
+     "steps in the run (default: those of them that take a minute together)",
      1, OPTION_TEXT, AT(steps)},
     COMMON_SCHEMES(1),
     COMMON_SET(1),
@@ -44,6 +51,7 @@ static const OptionRow OPTIONS[] = {
     {"store", "FILE", "Where finished runs are stored and read from", 2, OPTION_TEXT, AT(store)},
     {"fresh", NULL, "Discard the contents of the store", 2, OPTION_FLAG, AT(is_fresh)},
     COMMON_JSON(3),
+    COMMON_FULL(3),
     COMMON_WIDE(3),
     {"csv", "FILE.csv", "Write one row per point", 3, OPTION_TEXT, AT(csv)},
     {"plot", "FILE.svg", "Draw error over wall time", 3, OPTION_PICTURE, AT(plot)},
@@ -103,6 +111,32 @@ static double step_factor(const Scenario *scenario)
     return pow(10.0, fmax(0.0, ceil(log10(scenario_duration(scenario) / DEFAULT_DURATION) - 0.5)));
 }
 
+// World steps of all runs at a step: of each scheme one for the error and the timing runs.
+static double work_of(const CompareOptions *options, const Scenario *scenario, size_t schemes,
+                      double step_s)
+{
+    return (double)(schemes * (1 + options->repeats)) * scenario_duration(scenario) / step_s;
+}
+
+// How many of the steps, coarse to fine, are within the work allowed; at least one. Says what the
+// finer ones would take.
+static size_t affordable_steps(const CompareOptions *options, const Scenario *scenario,
+                               size_t schemes, const double *steps, size_t count, LadderLeft *left)
+{
+    double work = 0.0;
+    double whole = 0.0;
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        whole += work_of(options, scenario, schemes, steps[i]);
+        if (kept == i && (i == 0 || whole <= DEFAULT_WORK_MOST)) {
+            work = whole;
+            kept++;
+        }
+    }
+    *left = (LadderLeft){.finest_s = kept < count ? steps[count - 1] : 0.0, .ratio = whole / work};
+    return kept;
+}
+
 // Those of the usual steps that the scenario can be run at; its own where that is none.
 static size_t usual_steps(const CompareOptions *options, const Scenario *scenario, double *steps)
 {
@@ -124,7 +158,7 @@ static size_t usual_steps(const CompareOptions *options, const Scenario *scenari
 // The ladder that the options ask for: schemes of the scenario, steps coarse to fine. Fails with
 // ERR_USAGE for a step that is none or that the scenario cannot be run at.
 static bool compare_options_ladder(const CompareOptions *options, const Scenario *scenario,
-                                   Ladder **ladder, Err *err)
+                                   Ladder **ladder, LadderLeft *left, Err *err)
 {
     if (!scheme_check(scenario, err)) {
         return false;
@@ -136,8 +170,12 @@ static bool compare_options_ladder(const CompareOptions *options, const Scenario
     if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err)) {
         return false;
     }
-    if (options->steps == NULL) {
+    *left = (LadderLeft){.finest_s = 0.0};
+    if (options->steps == NULL || strcmp(options->steps, ALL_STEPS) == 0) {
         step_count = usual_steps(options, scenario, steps);
+        if (options->steps == NULL) {
+            step_count = affordable_steps(options, scenario, scheme_count, steps, step_count, left);
+        }
     } else if (!cmd_compare_read_steps(options, steps, &step_count, err)) {
         return false;
     }
@@ -286,6 +324,7 @@ static const Results RESULTS = {
     .is_followed = true,
     .json = compare_json_build,
     .text = compare_text_write,
+    .screen = compare_screen_write,
     RESULT_FILES(FILES),
 };
 
@@ -305,7 +344,7 @@ static bool check_points(const Ladder *ladder, Err *err)
 }
 
 static bool compare_ladder(const CompareOptions *options, const Scenario *scenario, Ladder *ladder,
-                           Err *err)
+                           LadderLeft left, Err *err)
 {
     Listening listening = {
         .progress = compare_progress_start(ladder, options->common.jobs, options->common.is_quiet)};
@@ -329,7 +368,7 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
         return false;
     }
     ladder_conclude(ladder);
-    const CompareReport report = {scenario, ladder, listening.store.machine};
+    const CompareReport report = {scenario, ladder, listening.store.machine, left};
     results_print(&RESULTS, &options->common, &report);
     return results_write(&RESULTS, &options->common, scenario_path(scenario), &report, err) &&
            check_points(ladder, err);
@@ -355,14 +394,15 @@ static bool compare_case(void *target, Err *err)
 {
     const CompareOptions *options = target;
     Ladder *ladder = NULL;
+    LadderLeft left = {.finest_s = 0.0};
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
     bool is_done = common_options_load(&options->common, scenario, err) &&
-                   compare_options_ladder(options, scenario, &ladder, err) &&
+                   compare_options_ladder(options, scenario, &ladder, &left, err) &&
                    results_claim(&RESULTS, &options->common, scenario_path(scenario), err);
     if (is_done) {
         cmd_compare_warn(options, scenario);
-        is_done = compare_ladder(options, scenario, ladder, err);
+        is_done = compare_ladder(options, scenario, ladder, left, err);
     }
     ladder_destroy(ladder);
     scenario_destroy(scenario);

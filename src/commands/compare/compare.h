@@ -15,10 +15,17 @@
 
 // Everything there is to say about a comparison, and the forms in which it is said.
 
+// The usual steps that were left out for the time that they take.
+typedef struct LadderLeft {
+    double finest_s; // s; 0: none was
+    double ratio;    // 1: world steps with them over those without
+} LadderLeft;
+
 typedef struct CompareReport {
     const Scenario *scenario;
     const Ladder *ladder; // concluded
     const char *machine;  // the processor that the times are of
+    LadderLeft left;
 } CompareReport;
 
 // Whether the errors contain more than ODE's own: the reference knows contact by its elastic law
@@ -32,6 +39,7 @@ static inline bool compare_report_mixes_models(const CompareReport *report)
 // The forms, each of a CompareReport. The CSV is a file of its own, a row a point, with its reason
 // and no numbers where it failed: ERR_FILE.
 void compare_text_write(const void *report, const Style *style, Text *text);
+void compare_screen_write(const void *report, const Style *style, Text *text);
 bool compare_rows_write_csv(const void *report, const char *path, Err *err);
 void compare_plot_write(const void *report, Text *svg);
 json_t *compare_json_build(const void *report);

@@ -292,6 +292,15 @@ static void compare_spread_write(const CompareReport *report, const Style *style
 
 // The text.
 
+// What a finer ladder would cost.
+static void compare_report_left(const CompareReport *report, Text *text)
+{
+    if (report->left.finest_s > 0.0) {
+        text_append(text, "  --steps all: steps down to %.4g us, in %.2g times the world steps\n",
+                    report->left.finest_s * UNITS_US, report->left.ratio);
+    }
+}
+
 static void compare_report_write_head(const CompareReport *report, const Style *style, Text *text)
 {
     const Scenario *scenario = report->scenario;
@@ -384,7 +393,79 @@ void compare_text_write(const void *of, const Style *style, Text *text)
     text_append(text, "  none: the error does not fall alike over any three steps in a row.\n");
     compare_rows_write_cheapest(report->ladder, style, text);
     write_others(report->ladder, text);
+    compare_report_left(report, text);
     compare_spread_write(report, style, text);
+}
+
+// The first screen.
+
+enum { SCREEN_LINE = 80 }; // characters
+
+static void compare_screen_line(Text *words, Text *text)
+{
+    text_append(words, "\n");
+    text_fold(words, SCREEN_LINE);
+    text_append(text, "%s", words->data);
+    text_finish(words);
+}
+
+// The order of each scheme that has one, in a sentence, and how many points failed.
+static void compare_screen_orders(const Ladder *ladder, Text *text)
+{
+    Text words;
+    text_init(&words);
+    text_append(&words, "  Order of the error in the step: ");
+    size_t count = 0;
+    for (size_t i = 0; i < ladder->scheme_count; i++) {
+        if (scheme_has_step(&ladder->schemes[i]) && ladder->orders[i].is_known) {
+            text_append(&words, "%s%s %.2g", count++ > 0 ? ", " : "", ladder->schemes[i].name,
+                        ladder->orders[i].order);
+        }
+    }
+    text_append(&words, "%s", count > 0 ? "; the others none." : "none of any scheme.");
+    compare_screen_line(&words, text);
+    size_t failed = 0;
+    for (size_t i = 0; i < ladder->point_count; i++) {
+        failed += ladder->points[i].is_failed ? 1 : 0;
+    }
+    if (failed > 0) {
+        text_append(text, "  %zu of %zu settings failed: --full says why.\n", failed,
+                    ladder->point_count);
+    }
+}
+
+static void compare_screen_truth(const CompareReport *report, Text *text)
+{
+    const LadderTruth *truth = &report->ladder->truth;
+    Text words;
+    text_init(&words);
+    if (truth->message[0] != '\0') {
+        text_append(&words, "  Errors are against %s, which could not be certified: %.300s",
+                    truth->backend, truth->message);
+    } else {
+        text_append(&words, "  Errors are against %s, which is right to %.2g", truth->backend,
+                    truth->uncertainty);
+    }
+    if (truth->is_limited && truth->message[0] == '\0') {
+        text_append(&words, ", up to %.4g ms: beyond, the motion cannot be predicted",
+                    truth->horizon_s * UNITS_MS);
+    }
+    text_append(&words, ".");
+    compare_screen_line(&words, text);
+}
+
+void compare_screen_write(const void *of, const Style *style, Text *text)
+{
+    const CompareReport *report = of;
+    const Scenario *scenario = report->scenario;
+    section_title(scenario->title, scenario_path(scenario), style, text);
+    compare_rows_write_cheapest(report->ladder, style, text);
+    write_others(report->ladder, text);
+    compare_screen_orders(report->ladder, text);
+    compare_screen_truth(report, text);
+    settled_lines(scenario, text);
+    compare_report_left(report, text);
+    text_append(text, "  --full: every scheme at every step\n");
 }
 
 // The JSON.
@@ -461,6 +542,9 @@ json_t *compare_json_build(const void *of)
     json_object_set_new(object, "machine", json_value_text(report->machine));
     json_object_set_new(object, "repeats", json_integer((json_int_t)ladder->repeats));
     json_object_set_new(object, "truth", compare_report_truth_object(report));
+    const bool is_cut = report->left.finest_s > 0.0;
+    json_value_set(object, "left_out_finest_step_s", is_cut ? report->left.finest_s : NAN);
+    json_value_set(object, "left_out_work_ratio", is_cut ? report->left.ratio : NAN);
     json_t *schemes = json_array();
     for (size_t i = 0; i < ladder->scheme_count; i++) {
         json_array_append_new(schemes, compare_report_scheme_object(report, i));

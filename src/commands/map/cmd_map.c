@@ -140,6 +140,7 @@ static const OptionRow OPTIONS[] = {
     {"clearance", "C", "Of --stiffness: the radial clearance (default: as wide as the steps need)",
      3, OPTION_TEXT, AT(clearance)},
     COMMON_JSON(4),
+    COMMON_FULL(4),
     COMMON_WIDE(4),
     {"csv", "FILE.csv", "Write one row per joint, law, map and step", 4, OPTION_TEXT, AT(csv)},
     {"plot", "FILE.svg", "Draw the errors of restitution and peak force", 4, OPTION_PICTURE,
@@ -583,6 +584,7 @@ static const Results RESULTS = {
     .is_followed = true,
     .json = mapping_json_build,
     .text = mapping_text_write,
+    .screen = mapping_screen_write,
     RESULT_FILES(FILES),
 };
 

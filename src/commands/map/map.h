@@ -85,6 +85,7 @@ void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_L
 
 // The forms, each of a MappingReport. The CSV is a file of its own, a row a joint, law, map and
 // step: ERR_FILE.
+void mapping_screen_write(const void *report, const Style *style, Text *text);
 void mapping_text_write(const void *report, const Style *style, Text *text);
 bool mapping_rows_write_csv(const void *report, const char *path, Err *err);
 void mapping_plot_write(const void *report, Text *svg);

@@ -510,3 +510,73 @@ void mapping_text_write(const void *of, const Style *style, Text *text)
         mapping_penalty_text_write(report->penalty, style, text);
     }
 }
+
+// The first screen: of each contact the longest valid step of each map.
+
+enum { SCREEN_CONTACTS = 8, SCREEN_NAME = 20 };
+
+static void map_screen_row(const MappingReport *report, const MappingContact *contact, Table *table)
+{
+    const MappingSettings *settings = &report->mapping->settings;
+    Text words;
+    text_init(&words);
+    text_append_shown(&words, mapping_report_joint(contact)->name);
+    table_cell(table, "%.*s", SCREEN_NAME, words.data);
+    text_finish(&words);
+    section_finite(table, "%.3g", contact->impact.speed);
+    for (size_t i = 0; i < settings->map_count; i++) {
+        const double step_s = contact->largest_s[settings->maps[i]];
+        const bool is_step = isfinite(step_s) && step_s > 0.0;
+        char cell[32];
+        snprintf(cell, sizeof cell, "%.3g", step_s * UNITS_US);
+        table_cell(table, "%s", is_step ? cell : isinf(step_s) ? "any" : "none");
+    }
+}
+
+static void map_screen_table(const MappingReport *report, Text *text)
+{
+    const MappingSettings *settings = &report->mapping->settings;
+    const size_t count = report->mapping->contact_count;
+    Table *table = table_create(2 + settings->map_count);
+    table_head(table, 0, "joint", "", TABLE_LEFT | TABLE_KEY);
+    table_head(table, 1, "impact", "m/s", TABLE_RIGHT);
+    for (size_t i = 0; i < settings->map_count; i++) {
+        table_head(table, 2 + i, OPTIONS_ODE_MAPS[settings->maps[i]], "us", TABLE_RIGHT);
+    }
+    for (size_t i = 0; i < count && i < SCREEN_CONTACTS; i++) {
+        map_screen_row(report, &report->mapping->contacts[i], table);
+    }
+    table_write(table, text);
+    table_destroy(table);
+    if (count > SCREEN_CONTACTS) {
+        text_append(text, "  And %zu more contacts: --full shows them.\n", count - SCREEN_CONTACTS);
+    }
+}
+
+void mapping_screen_write(const void *of, const Style *style, Text *text)
+{
+    const MappingReport *report = of;
+    const Scenario *scenario = report->scenario;
+    if (report->penalty != NULL) {
+        mapping_text_write(of, style, text); // the table that was asked for is a long one
+        return;
+    }
+    section_title(scenario->title, scenario_path(scenario), style, text);
+    const Mapping *mapping = report->mapping;
+    const MappingContact *first = &mapping->contacts[0];
+    if (mapping->settings.is_held && first->held != NULL) {
+        mapping_held_text(first, style, text);
+    } else if (mapping_report_is_poisson(report)) {
+        // a row has no spring: what a step gives back is all there is to say
+        write_figures(first, &mapping->rows[first->first_row], style, text);
+    } else {
+        text_append(
+            text,
+            "\n  Longest valid step of each map: ODE then gives the law's impact to %.0f %%.\n\n",
+            MAPPING_VALID_SHARE * UNITS_PERCENT);
+        map_screen_table(report, text);
+        text_append(text, "  any: the map impulse integrates the contact within the step.\n");
+    }
+    settled_lines(scenario, text);
+    text_append(text, "  --full: ERP and CFM of each step, and what ODE delivers with them\n");
+}

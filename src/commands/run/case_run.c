@@ -146,6 +146,7 @@ void case_run_execute(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
     settle_scenario(&run->scenario);
+    settle_damping(&run->scenario);
     run->report = (RunReport){
         .scenario = &run->scenario,
         .run_count = options->backend_count,

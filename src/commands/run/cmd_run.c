@@ -5,6 +5,7 @@
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/run/case_run.h"
+#include "commands/run/run_overview.h"
 #include "measure/chosen_run.h"
 #include "write/file.h"
 
@@ -70,6 +71,7 @@ static const OptionRow OPTIONS[] = {
      "Run the reference alone, in a fifth of the time: its uncertainty and horizon are not known",
      1, OPTION_FLAG, AT(is_uncertified)},
     COMMON_JSON(2),
+    COMMON_FULL(2),
     COMMON_WIDE(2),
     {"series", "FILE.csv", "Write every sample; with several backends to FILE-<backend>.csv each",
      2, OPTION_TEXT, AT(series)},
@@ -137,6 +139,7 @@ static const Results RESULTS = {
     .is_followed = true,
     .json = run_json_build,
     .text = run_text_write,
+    .screen = run_overview_screen,
     RESULT_FILES(FILES),
 };
 

@@ -1,6 +1,8 @@
 // Builds the JSON object of the runs of a case.
+#include "commands/run/run_overview.h"
 #include "commands/run/run_report.h"
 #include "model/coordinate.h"
+#include "write/assumed.h"
 #include "write/json_value.h"
 #include "write/measured_fields.h"
 #include "write/settings_json.h"
@@ -413,6 +415,8 @@ json_t *run_json_build(const void *of)
     const RunReport *report = of;
     json_t *object = json_object();
     settings_json_begin(object, report->scenario);
+    assumed_json(object, report->scenario);
+    run_overview_json(object, report);
     if (report->summary != NULL) {
         json_object_set_new(object, "kinematics", analytic_json_kinematics(report));
         json_object_set_new(object, "inverse_dynamics", analytic_json_forces(report));

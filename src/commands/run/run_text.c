@@ -1,7 +1,9 @@
 // Writes the text of a run: the model, the closed form, and what came out.
 #include "analytic/closed_form.h"
 #include "base/zeroed.h"
+#include "commands/run/run_overview.h"
 #include "commands/run/run_report.h"
+#include "contact/damping.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
 #include "model/kinematics.h"
@@ -555,12 +557,30 @@ static void write_drive(const Scenario *scenario, Text *text)
     }
 }
 
+// The restitution depends on the speed of the impact: what it is at some.
+static void run_text_write_dissipation(const ContactOptions *contact, Text *text)
+{
+    static const double SPEEDS[] = {0.1, 0.3, 1.0}; // m/s
+    const double given = contact->dissipation;
+    const double dissipation =
+        given > 0.0
+            ? given
+            : damping_factor(contact->damping, contact->restitution) / contact->restitution_speed;
+    text_append(text, " %.4g s/m, which gives back", dissipation);
+    for (size_t i = 0; i < sizeof SPEEDS / sizeof *SPEEDS; i++) {
+        text_append(text, "%s %.3g at %.3g m/s", i > 0 ? "," : "",
+                    damping_delivered(dissipation * SPEEDS[i]), SPEEDS[i]);
+    }
+}
+
 static void run_text_write_damping(const ContactOptions *contact, bool is_turning, Text *text)
 {
     text_append(text, ", damping %s", OPTIONS_DAMPINGS[contact->damping]);
     if (contact->damping == DAMPING_VISCOUS) {
         text_append(text, " %.4g %s", contact->viscous_coefficient,
                     is_turning ? "N m s/rad" : "N s/m");
+    } else if (contact->damping == DAMPING_DISSIPATION) {
+        run_text_write_dissipation(contact, text);
     } else if (contact->damping != DAMPING_NONE) {
         text_append(text, ", restitution %.4g", contact->restitution);
         if (contact->resting_speed > 0.0) {
@@ -715,6 +735,8 @@ void run_text_write(const void *of, const Style *style, Text *text)
     const RunReport *report = of;
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
+    run_overview_write(report, false, style, text);
+    text_append(text, "\n");
     write_mechanism(report, style->width, text);
     run_loads_write(report, style->width, text);
     write_drive(scenario, text);

@@ -113,6 +113,7 @@ static const OptionRow OPTIONS[] = {
     {"sdf", "FILE.sdf", "Write the contact in Gazebo's form", 3, OPTION_TEXT, AT(sdf)},
     {"mjcf", "FILE.xml", "Write the contact in MuJoCo's form", 3, OPTION_TEXT, AT(mjcf)},
     COMMON_JSON(3),
+    COMMON_FULL(3),
     COMMON_WIDE(3),
     COMMON_OUT(3, "Write <case>-tune.json, .txt, .c, .sdf and .xml there"),
     COMMON_QUIET(3),
@@ -383,6 +384,7 @@ static const Results RESULTS = {
     .suffix = "-tune",
     .json = tune_json_build,
     .text = tune_text_write,
+    .screen = tune_screen_write,
     RESULT_FILES(FILES),
 };
 

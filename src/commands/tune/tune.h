@@ -250,6 +250,7 @@ static inline bool tune_report_has_limit(const TuneReport *report)
 // Each is of a TuneReport: for other programs, a new reference; and for people.
 json_t *tune_json_build(const void *report);
 void tune_text_write(const void *report, const Style *style, Text *text);
+void tune_screen_write(const void *report, const Style *style, Text *text);
 
 // What can be had at a step that is held, for people.
 

@@ -512,3 +512,122 @@ void tune_text_write(const void *target, const Style *style, Text *text)
         write_trials(report, style, text);
     }
 }
+
+// The first screen: the setting, what it takes, and the schemes beside it, a row each.
+
+enum { SCREEN_LINE = 80, SCREEN_SCHEMES = 6 };
+
+static void tune_screen_line(Text *words, Text *text)
+{
+    text_append(words, "\n");
+    text_fold(words, SCREEN_LINE);
+    text_append(text, "%s", words->data);
+    text_finish(words);
+}
+
+// The trial that answers the question, or NULL.
+static const TuneTrial *tune_screen_best(const Tune *tune)
+{
+    if (tune->held_s > 0.0) {
+        return tune->held != TUNE_NONE ? &tune->trials[tune->held] : NULL;
+    }
+    return tune_best(tune, tune->winner);
+}
+
+static void tune_screen_answer(const TuneReport *report, Text *text)
+{
+    const Tune *tune = report->tune;
+    const TuneTrial *best = tune_screen_best(tune);
+    const bool is_met = tune->held_s > 0.0 ? tune_is_met_held(tune) : tune_report_is_met(report);
+    Text words;
+    text_init(&words);
+    text_append(&words, "  ");
+    if (!is_met) {
+        text_append(&words, "NOTHING that was tried meets an error of %.3g%s. ", tune->target,
+                    best != NULL ? "; the nearest:" : "");
+    }
+    if (best == NULL && tune->within != TUNE_NONE) {
+        text_append(&words, "The least error, %.3g: ", tune->trials[tune->within].error);
+        tune_setting_words(report, &tune->trials[tune->within], &words);
+        text_append(&words, ".");
+    }
+    if (best != NULL) {
+        tune_setting_words(report, best, &words);
+        text_append(&words, ": error %.3g, %zu world steps, %.4g ms of the processor.", best->error,
+                    best->run.steps, tune_setting_time(tune, best) * UNITS_MS);
+    }
+    tune_screen_line(&words, text);
+    if (best != NULL) {
+        text_init(&words);
+        text_append(&words, "  In a case: ");
+        tune_setting_keys(report, best, ", ", &words);
+        tune_screen_line(&words, text);
+    }
+}
+
+static void tune_screen_schemes(const TuneReport *report, Text *text)
+{
+    const Tune *tune = report->tune;
+    enum { COLUMNS = 5 };
+    static const SectionHead HEADS[COLUMNS] = {
+        {"scheme", "", TABLE_LEFT | TABLE_KEY},
+        {"setting", "", TABLE_RIGHT},
+        {"error", "1", TABLE_RIGHT},
+        {"CPU", "ms", TABLE_RIGHT},
+        {"", "", TABLE_LEFT},
+    };
+    Table *table = table_create(COLUMNS);
+    for (size_t i = 0; i < COLUMNS; i++) {
+        table_head(table, i, HEADS[i].title, HEADS[i].unit, HEADS[i].align);
+    }
+    for (size_t i = 0; i < tune->scheme_count && i < SCREEN_SCHEMES; i++) {
+        const TuneScheme *scheme = &tune->schemes[i];
+        const TuneTrial *best = tune_best(tune, (int)i);
+        const TuneTrial *shown =
+            best != NULL || scheme->least == TUNE_NONE ? best : &tune->trials[scheme->least];
+        table_cell(table, "%s", scheme->scheme.name);
+        if (shown != NULL) {
+            value_cell(table, scheme, shown->value);
+            section_finite(table, "%.2g", shown->error);
+            section_finite(table, "%.4g", tune_setting_time(tune, shown) * UNITS_MS);
+        } else {
+            for (size_t k = 1; k + 1 < COLUMNS; k++) {
+                table_cell(table, "-");
+            }
+        }
+        table_cell(table, "%s", best != NULL ? "meets it" : shown != NULL ? "misses it" : "failed");
+    }
+    table_write(table, text);
+    table_destroy(table);
+}
+
+void tune_screen_write(const void *target, const Style *style, Text *text)
+{
+    const TuneReport *report = target;
+    const Tune *tune = report->tune;
+    section_title(report->scenario->title, scenario_path(report->scenario), style, text);
+    write_asked(tune, text);
+    text_append(text, "\n");
+    tune_screen_answer(report, text);
+    if (!(tune->held_s > 0.0) || !tune_is_met_held(tune)) {
+        tune_screen_schemes(report, text);
+    }
+    if (tune->reference.tolerance > 0.0) {
+        text_append(text, "  Without ODE: reference.tolerance=%.3g, error %.3g, %.4g ms.\n",
+                    tune->reference.tolerance, tune->reference.error,
+                    tune->reference.processor_median_s * UNITS_MS);
+    }
+    Text words;
+    text_init(&words);
+    text_append(&words, "  Errors are against %s, which is right to %.2g", tune->truth.backend,
+                tune->truth.uncertainty);
+    if (tune->truth.is_limited) {
+        text_append(&words, ", up to %.4g ms: beyond, the motion cannot be predicted",
+                    tune->truth.horizon_s * UNITS_MS);
+    }
+    text_append(&words, ".");
+    tune_screen_line(&words, text);
+    settled_lines(report->scenario, text);
+    text_append(text,
+                "  --full: all settings tried; --code FILE.c writes the setting as a program\n");
+}

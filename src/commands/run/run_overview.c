@@ -1,0 +1,494 @@
+// Gathers the few numbers of a run that are asked for first, and writes them.
+//
+// Drive torque of a body that turns about a fixed pivot, from the moments about it, with the forces
+// F_k of its other joints at their points r_k:
+//     T = I alpha + m r_c x a_c - sum of r_k x F_k + M_k - r_c x m g
+#include "commands/run/run_overview.h"
+
+#include "base/zeroed.h"
+#include "contact/damping.h"
+#include "contact/law.h"
+#include "model/joint_rows.h"
+#include "run/ideal.h"
+#include "write/assumed.h"
+#include "write/json_value.h"
+#include "write/settled.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// One line: a joint, a body or the drive.
+typedef struct OverviewRow {
+    const char *name;
+    const char *unit;  // of the largest
+    double largest;    // its size
+    double crank_rad;  // where that was; NAN without a crank
+    double time_s;     // and when
+    double ratio;      // 1, to that with ideal joints; NAN: not known
+    double impacts;    // a revolution, or in the run; NAN of what is no joint with play
+    double contact;    // 1, share of the time
+    double deepest;    // m or rad
+    const char *depth; // unit of that
+} OverviewRow;
+
+typedef struct Overview {
+    const Trajectory *run; // NULL: none is complete
+    size_t joint_count;
+    OverviewRow *joints; // the largest first; owned, as the next
+    size_t body_count;
+    OverviewRow *bodies;
+    bool has_drive;
+    OverviewRow drive;
+} Overview;
+
+// The run whose numbers are shown: the best that is known, with the play that the case has.
+static const Trajectory *overview_run(const RunReport *report)
+{
+    const Trajectory *shown = NULL;
+    bool is_truth = false;
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        const bool fits =
+            !scenario_has_clearance(report->scenario) || options_backend_has_play(run->backend);
+        if (run->is_complete && !is_truth && (fits || shown == NULL)) {
+            shown = run;
+            is_truth = strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_REFERENCE]) == 0;
+        }
+    }
+    return shown;
+}
+
+static double ratio_of(double value, double ideal)
+{
+    return ideal > 0.0 ? value / ideal : NAN;
+}
+
+static OverviewRow joint_row(const RunReport *report, const Trajectory *run, size_t number,
+                             const IdealSizes *ideal)
+{
+    const Scenario *scenario = report->scenario;
+    const Joint *joint = &scenario->linkage.joints[number];
+    const JointExtremes *extremes = &run->joints[number];
+    const bool is_turn = linkage_is_torsional(joint);
+    const bool is_ideal = ideal->is_known && !is_turn;
+    const double turns =
+        drive_is_steady(&scenario->linkage.driver)
+            ? (run->duration_s - run->report_from_s) / linkage_period(&scenario->linkage)
+            : 1.0;
+    return (OverviewRow){
+        .name = joint->name,
+        .unit = is_turn ? "N m" : "N",
+        .largest = extremes->force_max.value,
+        .crank_rad = extremes->force_max.crank_rad,
+        .time_s = extremes->force_max.time_s,
+        .ratio = is_ideal ? ratio_of(extremes->force_max.value, ideal->force_max[number]) : NAN,
+        .impacts = (double)extremes->impacts / turns,
+        .contact = trajectory_contact_share(run, number),
+        .deepest = extremes->penetration_max.value,
+        .depth = is_turn ? "rad" : "m",
+    };
+}
+
+static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSizes *ideal)
+{
+    const BodyExtremes *extremes = &run->bodies[number];
+    const Extreme *largest = fabs(extremes->alpha_min.value) > fabs(extremes->alpha_max.value)
+                                 ? &extremes->alpha_min
+                                 : &extremes->alpha_max;
+    const double size = fabs(largest->value);
+    return (OverviewRow){
+        .name = run->linkage.bodies[number].name,
+        .unit = "rad/s^2",
+        .largest = size,
+        .crank_rad = largest->crank_rad,
+        .time_s = largest->time_s,
+        .ratio = ideal->is_known ? ratio_of(size, ideal->alpha_max[number]) : NAN,
+        .impacts = NAN,
+        .contact = NAN,
+        .deepest = NAN,
+    };
+}
+
+static double cross(Vec2 a, Vec2 b)
+{
+    return a.x * b.y - a.y * b.x;
+}
+
+// The torque of the drive at one sample.
+static double drive_torque(const Scenario *scenario, const Trajectory *run, size_t sample)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int driven = linkage_driven_body(linkage);
+    const Motion *motions = trajectory_motion(run, sample, 0);
+    const Motion *body = &motions[driven];
+    const double mass = linkage->bodies[driven].mass;
+    const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_a;
+    const Vec2 arm = vec2_sub(body->position, pivot);
+    double torque = linkage->bodies[driven].inertia * body->alpha +
+                    mass * cross(arm, body->acceleration) + mass * scenario->gravity * arm.x;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if ((int)i == linkage->driver.joint ||
+            (joint->body_a != driven && joint->body_b != driven)) {
+            continue;
+        }
+        const JointState *state = trajectory_state(run, sample, i);
+        const double sign = joint->body_b == driven ? 1.0 : -1.0;
+        const Vec2 point = linkage_point(motions, joint->body_b, joint->anchor_b);
+        torque -= sign * (cross(vec2_sub(point, pivot), state->force_on_b) + state->moment_on_b);
+    }
+    return torque;
+}
+
+// Whether that holds: a crank on the ground, in the plane, that nothing but joints acts on.
+static bool has_drive_torque(const Linkage *linkage)
+{
+    return linkage->driver.is_present && !linkage->is_spatial && linkage->spring_count == 0 &&
+           linkage->torsion_count == 0 &&
+           linkage->joints[linkage->driver.joint].body_a == LINKAGE_GROUND;
+}
+
+static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run,
+                             const IdealSizes *ideal)
+{
+    OverviewRow row = {.name = "drive",
+                       .unit = "N m",
+                       .crank_rad = NAN,
+                       .impacts = NAN,
+                       .contact = NAN,
+                       .deepest = NAN};
+    for (size_t k = 0; k < run->sample_count; k++) {
+        const double size = fabs(drive_torque(scenario, run, k));
+        if (run->times[k] >= run->report_from_s && size > row.largest) {
+            row.largest = size;
+            row.crank_rad = run->crank_angles[k];
+            row.time_s = run->times[k];
+        }
+    }
+    row.ratio = ideal->is_known ? ratio_of(row.largest, ideal->torque_max) : NAN;
+    return row;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const OverviewRow *first = a;
+    const OverviewRow *second = b;
+    return (first->largest < second->largest) - (first->largest > second->largest);
+}
+
+static Overview overview_make(const RunReport *report)
+{
+    const Scenario *scenario = report->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    Overview overview = {.run = overview_run(report)};
+    if (overview.run == NULL) {
+        return overview;
+    }
+    overview.joints = zeroed(linkage->joint_count, sizeof *overview.joints);
+    overview.bodies = zeroed(linkage->body_count, sizeof *overview.bodies);
+    IdealSizes ideal = ideal_sizes(scenario);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (trajectory_feels_play(overview.run, &linkage->joints[i])) {
+            overview.joints[overview.joint_count++] = joint_row(report, overview.run, i, &ideal);
+        }
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const OverviewRow row = body_row(overview.run, i, &ideal);
+        if ((int)i != linkage_driven_body(linkage) && row.largest > 0.0) {
+            overview.bodies[overview.body_count++] = row;
+        }
+    }
+    qsort(overview.joints, overview.joint_count, sizeof *overview.joints, by_size);
+    qsort(overview.bodies, overview.body_count, sizeof *overview.bodies, by_size);
+    overview.has_drive = has_drive_torque(linkage);
+    if (overview.has_drive) {
+        overview.drive = drive_row(scenario, overview.run, &ideal);
+    }
+    ideal_sizes_free(&ideal);
+    return overview;
+}
+
+static void overview_free(Overview *overview)
+{
+    free(overview->joints);
+    free(overview->bodies);
+}
+
+// The table.
+
+enum { NAME_MOST = 17, JOINTS_MOST = 5, BODIES_MOST = 3, LINE_MOST = 80 };
+
+static void cell_units(Table *table, double value, const char *unit)
+{
+    Text text;
+    text_init(&text);
+    if (isfinite(value)) {
+        units_append(&text, value, unit);
+    }
+    table_cell(table, "%s", text.data != NULL ? text.data : "");
+    text_finish(&text);
+}
+
+static void cell_number(Table *table, const char *format, double value)
+{
+    char words[32];
+    snprintf(words, sizeof words, format, value);
+    table_cell(table, "%s", isfinite(value) ? words : "");
+}
+
+static void overview_row(const OverviewRow *row, bool has_crank, Table *table)
+{
+    Text name;
+    text_init(&name);
+    text_append_shown(&name, row->name);
+    const bool is_long = strlen(name.data) > NAME_MOST;
+    table_cell(table, "%.*s%s", is_long ? NAME_MOST - 1 : NAME_MOST, name.data, is_long ? "~" : "");
+    text_finish(&name);
+    cell_units(table, row->largest, row->unit);
+    cell_number(table, has_crank ? "%.1f" : "%.4g",
+                has_crank ? units_wrapped_deg(row->crank_rad) : row->time_s * UNITS_MS);
+    cell_number(table, "%.3g", row->ratio);
+    cell_number(table, "%.3g", row->impacts);
+    cell_number(table, "%.1f %%", row->contact * UNITS_PERCENT);
+    cell_units(table, row->deepest, row->depth);
+}
+
+static void write_table(const Overview *overview, const Scenario *scenario, Text *text)
+{
+    const bool has_crank = drive_is_steady(&scenario->linkage.driver);
+    const size_t joints = overview->joint_count < JOINTS_MOST ? overview->joint_count : JOINTS_MOST;
+    const size_t bodies = overview->body_count < BODIES_MOST ? overview->body_count : BODIES_MOST;
+    if (joints + bodies == 0) {
+        return;
+    }
+    const SectionHead heads[] = {
+        {overview->joint_count > 0 ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY},
+        {"largest", "", TABLE_RIGHT},
+        {"at", has_crank ? "deg" : "ms", TABLE_RIGHT},
+        {"x ideal", "", TABLE_RIGHT},
+        {"impacts", has_crank ? "a turn" : "", TABLE_RIGHT},
+        {"contact", "", TABLE_RIGHT},
+        {"deepest", "", TABLE_RIGHT},
+    };
+    enum { COLUMNS = sizeof heads / sizeof *heads };
+    Table *table = table_create(COLUMNS);
+    for (size_t i = 0; i < COLUMNS; i++) {
+        table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
+    }
+    for (size_t i = 0; i < joints; i++) {
+        overview_row(&overview->joints[i], has_crank, table);
+    }
+    for (size_t i = 0; i < bodies; i++) {
+        overview_row(&overview->bodies[i], has_crank, table);
+    }
+    if (overview->has_drive) {
+        overview_row(&overview->drive, has_crank, table);
+    }
+    table_write(table, text);
+    table_destroy(table);
+    if (overview->joint_count > joints || overview->body_count > bodies) {
+        text_append(text, "  And %zu more joints with play, %zu more bodies: --full shows them.\n",
+                    overview->joint_count - joints, overview->body_count - bodies);
+    }
+}
+
+// How sure it is.
+
+// A paragraph of at most two lines, indented by two.
+static void append_paragraph(const char *words, Text *text)
+{
+    Text own;
+    text_init(&own);
+    text_append(&own, "  %s\n", words);
+    text_fold(&own, LINE_MOST);
+    text_append(text, "%s", own.data);
+    text_finish(&own);
+}
+
+static void append_error(const RunReport *report, size_t number, Text *text)
+{
+    const Trajectory *run = report->runs[number];
+    const TrajectoryError *error = &report->errors[number];
+    text_append(text, "%s, ", run->label[0] != '\0' ? run->label : run->backend);
+    if (run->step_s > 0.0) {
+        text_append(text, "step ");
+        units_append(text, run->step_s, "s");
+        text_append(text, ", ");
+    }
+    text_append(text, "%zu steps", run->steps);
+    if (!error->is_known) {
+        text_append(text, ".");
+        return;
+    }
+    const double motion = isfinite(error->max_in_horizon) ? error->max_in_horizon : error->max;
+    text_append(text, ": off by %.2g in motion", motion);
+    if (isfinite(error->force_max_in_horizon)) {
+        text_append(text, ", %.2g in forces", error->force_max_in_horizon);
+    }
+    text_append(text, ".");
+}
+
+static void write_certainty(const RunReport *report, Text *text)
+{
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        Text words;
+        text_init(&words);
+        if (!run->is_complete) {
+            text_append(&words, "%s FAILED: %.200s", run->backend, run->message);
+        } else if (strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0) {
+            append_error(report, i, &words);
+        }
+        if (words.length > 0) {
+            append_paragraph(words.data, text);
+        }
+        text_finish(&words);
+    }
+    if (!run_report_has_truth(report)) {
+        return;
+    }
+    const Truth *truth = report->truth;
+    char words[512];
+    if (truth->message[0] != '\0') {
+        snprintf(words, sizeof words, "The reference is not certified: %.400s", truth->message);
+    } else if (truth->is_limited) {
+        snprintf(words, sizeof words,
+                 "The motion cannot be predicted beyond %.4g ms; to there the reference is right "
+                 "to %.2g.",
+                 truth->horizon_s * UNITS_MS, truth->uncertainty);
+    } else {
+        snprintf(words, sizeof words, "The reference is right to %.2g through the whole run.",
+                 truth->uncertainty);
+    }
+    append_paragraph(words, text);
+}
+
+// What the runs took: the one line that two runs of a case do not share.
+static void write_time(const RunReport *report, Text *text)
+{
+    Text words;
+    text_init(&words);
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        if (run->is_complete) {
+            text_append(&words, "%s%s ", words.length > 0 ? ", " : "Time: ", run->backend);
+            units_append(&words, run->wall_s, "s");
+        }
+    }
+    if (words.length > 0) {
+        text_append(text, "  %s\n", words.data);
+    }
+    text_finish(&words);
+}
+
+// 1: of a restitution, what a law may be off by without a word
+static const double RESTITUTION_NEAR = 0.005;
+
+// Where a damping law does not give back what is asked of it.
+static void write_restitution(const Scenario *scenario, Text *text)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (!linkage_has_play(joint) || scenario->contact.model != CONTACT_IMPACT) {
+            continue;
+        }
+        const ContactOptions own = law_options(&scenario->contact, joint);
+        const double chi = damping_factor(own.damping, own.restitution);
+        const double given = damping_delivered(chi);
+        if (chi > 0.0 && own.damping != DAMPING_DISSIPATION &&
+            fabs(given - own.restitution) > RESTITUTION_NEAR) {
+            char words[256];
+            snprintf(words, sizeof words,
+                     "Of the restitution asked for, %.3g, damping %s gives back %.3g; damping "
+                     "exact gives back what is asked for.",
+                     own.restitution, OPTIONS_DAMPINGS[own.damping], given);
+            append_paragraph(words, text);
+            return;
+        }
+    }
+}
+
+void run_overview_write(const RunReport *report, bool is_alone, const Style *style, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    Overview overview = overview_make(report);
+    text_append(text, "\n");
+    write_table(&overview, scenario, text);
+    overview_free(&overview);
+    settled_lines(scenario, text);
+    (void)style;
+    write_certainty(report, text);
+    write_restitution(scenario, text);
+    write_time(report, text);
+    Text assumed;
+    text_init(&assumed);
+    assumed_text(scenario, &assumed);
+    if (assumed.length > 0 && scenario_has_clearance(scenario)) {
+        Text words;
+        text_init(&words);
+        text_append(&words, "Assumed: %s.", assumed.data);
+        append_paragraph(words.data, text);
+        text_finish(&words);
+    }
+    text_finish(&assumed);
+    if (is_alone) {
+        text_append(text, "  --full: all tables\n");
+    }
+}
+
+void run_overview_screen(const void *of, const Style *style, Text *text)
+{
+    const RunReport *report = of;
+    section_title(report->scenario->title, scenario_path(report->scenario), style, text);
+    run_overview_write(report, true, style, text);
+}
+
+static json_t *row_json(const OverviewRow *row, const char *number)
+{
+    const bool is_body = strcmp(row->unit, "rad/s^2") == 0;
+    const char *unit = is_body ? "rad_s2" : strcmp(row->unit, "N m") == 0 ? "N_m" : "N";
+    json_t *object = json_object();
+    char key[64];
+    json_object_set_new(object, "name", json_value_text(row->name));
+    snprintf(key, sizeof key, "%s_%s", number, unit);
+    json_value_set(object, key, row->largest);
+    snprintf(key, sizeof key, "%s_crank_deg", number);
+    json_value_set(object, key, units_wrapped_deg(row->crank_rad));
+    snprintf(key, sizeof key, "%s_time_s", number);
+    json_value_set(object, key, row->time_s);
+    json_value_set(object, "ratio_to_ideal", row->ratio);
+    if (row->depth != NULL) {
+        json_value_set(object, "impacts_per_revolution", row->impacts);
+        json_value_set(object, "contact_fraction", row->contact);
+        snprintf(key, sizeof key, "penetration_max_%s", row->depth);
+        json_value_set(object, key, row->deepest);
+    }
+    return object;
+}
+
+void run_overview_json(json_t *object, const RunReport *report)
+{
+    Overview overview = overview_make(report);
+    json_t *joints = json_array();
+    json_t *bodies = json_array();
+    for (size_t i = 0; i < overview.joint_count; i++) {
+        const bool is_turn = strcmp(overview.joints[i].unit, "N m") == 0;
+        json_array_append_new(joints,
+                              row_json(&overview.joints[i], is_turn ? "torque_max" : "force_max"));
+    }
+    for (size_t i = 0; i < overview.body_count; i++) {
+        json_array_append_new(bodies, row_json(&overview.bodies[i], "alpha_size_max"));
+    }
+    json_t *made = json_object();
+    json_object_set_new(made, "backend",
+                        overview.run != NULL ? json_string(overview.run->backend) : json_null());
+    json_object_set_new(made, "joints", joints);
+    json_object_set_new(made, "bodies", bodies);
+    json_object_set_new(made, "drive",
+                        overview.has_drive ? row_json(&overview.drive, "torque_max") : json_null());
+    json_object_set_new(object, "overview", made);
+    overview_free(&overview);
+}

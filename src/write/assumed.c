@@ -1,0 +1,116 @@
+// Lists what a case leaves open and its runs depend on.
+#include "write/assumed.h"
+
+#include "casefile/casefile.h"
+#include "casefile/schema.h"
+#include "write/json_value.h"
+#include "write/units.h"
+
+#include <string.h>
+
+// A key and its word in the sentence.
+typedef struct Assumption {
+    const char *key;
+    const char *word;
+} Assumption;
+
+static const Assumption ASSUMPTIONS[] = {
+    {"contact.model", "model"},
+    {"contact.law", "law"},
+    {"material.youngs-modulus", "E"},
+    {"material.poisson-ratio", "nu"},
+    {"contact.damping", "damping"},
+    {"contact.restitution", "restitution"},
+    {"contact.resting-speed", "resting speed"},
+    {"contact.restitution-speed", "at"},
+    {"contact.friction", "friction"},
+    {"contact.penalty", "penalty"},
+    {"gravity", "gravity"},
+    {"run.start", "start"},
+};
+
+static const char *word_of(const char *key)
+{
+    for (size_t i = 0; i < sizeof ASSUMPTIONS / sizeof *ASSUMPTIONS; i++) {
+        if (strcmp(ASSUMPTIONS[i].key, key) == 0) {
+            return ASSUMPTIONS[i].word;
+        }
+    }
+    return NULL;
+}
+
+static bool is_given(const Scenario *scenario, const char *key)
+{
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        if (strcmp(SCHEMA_ROWS[scenario->keys[i].row].path, key) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void append_value(const CasefileSetting *setting, Text *text)
+{
+    if (setting->number_count == 0 || setting->kind == CASEFILE_WORD) {
+        text_append(text, "%s", setting->text);
+    } else if (setting->unit[0] == '\0') {
+        text_append(text, "%.4g", setting->numbers[0]);
+    } else if (strcmp(setting->unit, "m/s^2") == 0) {
+        text_append(text, "%.3g %s", setting->numbers[0], setting->unit);
+    } else {
+        units_append(text, setting->numbers[0], setting->unit);
+    }
+}
+
+// Calls back with each assumption.
+static void each_assumption(const Scenario *scenario,
+                            void (*take)(const CasefileSetting *, const char *word, void *),
+                            void *context)
+{
+    const unsigned met = schema_met(scenario);
+    CasefileSetting setting;
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, &setting)) {
+        const char *word = word_of(setting.key);
+        if (word == NULL || !setting.applies || is_given(scenario, setting.key)) {
+            continue;
+        }
+        SchemaLack lack;
+        if (!schema_lacks(schema_find(setting.key), scenario, 0, met, &lack)) {
+            take(&setting, word, context);
+        }
+    }
+}
+
+static void take_text(const CasefileSetting *setting, const char *word, void *context)
+{
+    Text *text = context;
+    text_append(text, "%s%s ", text->length > 0 ? ", " : "", word);
+    append_value(setting, text);
+}
+
+void assumed_text(const Scenario *scenario, Text *text)
+{
+    Text own;
+    text_init(&own);
+    each_assumption(scenario, take_text, &own);
+    text_append(text, "%s", own.data != NULL ? own.data : "");
+    text_finish(&own);
+}
+
+static void take_json(const CasefileSetting *setting, const char *word, void *context)
+{
+    (void)word;
+    Text value;
+    text_init(&value);
+    append_value(setting, &value);
+    json_object_set_new(context, setting->key, json_value_text(value.data));
+    text_finish(&value);
+}
+
+void assumed_json(json_t *object, const Scenario *scenario)
+{
+    json_t *assumed = json_object();
+    each_assumption(scenario, take_json, assumed);
+    json_object_set_new(object, "assumed", assumed);
+}
