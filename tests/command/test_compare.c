@@ -7,7 +7,7 @@
 
 // a part of a turn is as good as all of it
 #define PART "run.revolutions=0.1"
-static const char CHEAP[] = "compare $cases/paper/ideal-nominal.yaml --store s.jsonl "
+static const char CHEAP[] = "compare --full $cases/paper/ideal-nominal.yaml --store s.jsonl "
                             "--steps '100 us, 30us, 50 us' --set " PART " ";
 
 static const json_t *find_scheme(const json_t *root, const char *name)
@@ -295,7 +295,7 @@ static void the_usual_store_is_found_by_its_key(void **state)
     Program *program = *state;
     char words[PROGRAM_PATH_SIZE];
     setenv("XDG_CACHE_HOME", program->folder, 1);
-    static const char LINE[] = "compare $cases/paper/ideal-nominal.yaml --steps '100us' "
+    static const char LINE[] = "compare --full $cases/paper/ideal-nominal.yaml --steps '100us' "
                                "--schemes direct --jobs 2 %s";
     snprintf(words, sizeof words, LINE, "");
     program_run(program, words);
@@ -368,7 +368,7 @@ static void when_every_run_of_ode_fails_the_status_is_4(void **state)
 static void a_collider_is_a_part_of_the_scheme(void **state)
 {
     Program *program = *state;
-    static const char CASE[] = "compare $cases/paper/impact-k66.yaml --set run.revolutions=0.02 "
+    static const char CASE[] = "compare --full $cases/paper/impact-k66.yaml --set run.revolutions=0.02 "
                                "--steps 10us -q --json --fresh --store colliders.jsonl ";
     char words[PROGRAM_PATH_SIZE];
     snprintf(words, sizeof words, "%s%s", CASE,

@@ -178,7 +178,7 @@ static void what_they_have_not_is_said(void **state)
     assert_says(program->errors, "jointplay: warning: not written: all/gear-pair-tune.xml (Gazebo");
     assert_true(is_absent(program, "all/gear-pair-tune.sdf"));
     assert_false(is_absent(program, "all/gear-pair-tune.json"));
-    program_run(program, GEARS);
+    program_run(program, GEARS "--full");
     assert_says(program->output, "As Gazebo SDF and MuJoCo MJCF There is none: Gazebo and MuJoCo");
     // flanks without a gap: ODE's stop has them, a range of MuJoCo has not
     program_run(program, "tune $cases/mechanisms/servo-backlash.yaml --error 0.1 --at-step '1 ms' "
