@@ -48,9 +48,14 @@ static const double MOTION_TOLERANCE = 1e-5;
 // 1: a section that comes as near to an earlier one may be on its way to repeat
 static const double NEAR_RETURN = 1e-2;
 
-// Of a motion that is to count as one that does not repeat: revolutions at least, and of its last
-// ones those that come near no earlier section.
-enum { RANDOM_LEAST = 30, RANDOM_LAST = 10 };
+// Of a motion that is to count as one that does not repeat: revolutions at least of each start, and
+// of its last ones those that come near no earlier section. Four starts then have 32 that count.
+enum { RANDOM_LEAST = 16, RANDOM_LAST = 6 };
+
+// Of the reference where the last revolution came near no earlier one: what is random is so at any
+// tolerance, and a revolution takes half the time.
+static const double SETTLE_LOOSE = 1e-7;
+enum { LOOSE_FROM = 6 }; // revolutions, before which a motion has not had the time to come near
 
 // Of a rank test: in standard deviations, what one in a hundred samples exceeds by chance.
 static const double DRIFT_LEAST = 2.6;
@@ -260,6 +265,17 @@ static bool settling_drifts(const Settling *settling)
     return drifts;
 }
 
+// Whether a revolution comes near one of the last before it.
+static bool is_near_return(const Settling *settling, size_t number)
+{
+    for (size_t p = 1; p <= SETTLE_PERIOD_MAX && p <= number; p++) {
+        if (change_over(settling, number, p) < NEAR_RETURN) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Whether the last revolutions come near no earlier one, and do not drift.
 static bool settling_is_random(const Settling *settling)
 {
@@ -267,10 +283,8 @@ static bool settling_is_random(const Settling *settling)
         return false;
     }
     for (size_t k = 1; k <= RANDOM_LAST; k++) {
-        for (size_t p = 1; p <= SETTLE_PERIOD_MAX; p++) {
-            if (change_over(settling, settling->count - k, p) < NEAR_RETURN) {
-                return false;
-            }
+        if (is_near_return(settling, settling->count - k)) {
+            return false;
         }
     }
     return !settling_drifts(settling);
@@ -278,16 +292,19 @@ static bool settling_is_random(const Settling *settling)
 
 bool settling_run(Settling *settling, double tolerance, size_t most, Err *err)
 {
-    while (settling->count < most && !settling->is_random) {
-        if (!settling_turn(settling, err)) {
-            return false;
-        }
-        if (settling_repeats(settling, tolerance)) {
-            return true;
-        }
-        settling->is_random = settling_is_random(settling);
+    ReferenceOptions *reference = &settling->scenario.reference;
+    const double tight = reference->tolerance;
+    bool is_run = true;
+    while (is_run && settling->count < most && settling->period == 0 && !settling->is_random) {
+        const bool is_loose =
+            settling->count >= LOOSE_FROM && !is_near_return(settling, settling->count - 1);
+        reference->tolerance = is_loose ? fmax(tight, SETTLE_LOOSE) : tight;
+        is_run = settling_turn(settling, err);
+        settling->is_random =
+            is_run && !settling_repeats(settling, tolerance) && settling_is_random(settling);
     }
-    return true;
+    reference->tolerance = tight;
+    return is_run;
 }
 
 // The start of one scenario becomes that of another of the same linkage.

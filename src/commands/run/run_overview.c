@@ -219,7 +219,13 @@ static void overview_free(Overview *overview)
 
 // The table.
 
-enum { NAME_MOST = 17, JOINTS_MOST = 5, BODIES_MOST = 3, LINE_MOST = 80 };
+enum { NAME_MOST = 17, JOINTS_MOST = 5, JOINTS_LEAST = 3, BODIES_MOST = 3, LINE_MOST = 80 };
+
+// How many of each are shown.
+typedef struct OverviewRows {
+    size_t joints;
+    size_t bodies;
+} OverviewRows;
 
 static void cell_units(Table *table, double value, const char *unit)
 {
@@ -256,11 +262,12 @@ static void overview_row(const OverviewRow *row, bool has_crank, Table *table)
     cell_units(table, row->deepest, row->depth);
 }
 
-static void write_table(const Overview *overview, const Scenario *scenario, Text *text)
+static void write_table(const Overview *overview, const Scenario *scenario, OverviewRows rows,
+                        Text *text)
 {
     const bool has_crank = drive_is_steady(&scenario->linkage.driver);
-    const size_t joints = overview->joint_count < JOINTS_MOST ? overview->joint_count : JOINTS_MOST;
-    const size_t bodies = overview->body_count < BODIES_MOST ? overview->body_count : BODIES_MOST;
+    const size_t joints = overview->joint_count < rows.joints ? overview->joint_count : rows.joints;
+    const size_t bodies = overview->body_count < rows.bodies ? overview->body_count : rows.bodies;
     if (joints + bodies == 0) {
         return;
     }
@@ -411,15 +418,14 @@ static void write_restitution(const Scenario *scenario, Text *text)
     }
 }
 
-void run_overview_write(const RunReport *report, bool is_alone, const Style *style, Text *text)
+// All of it but the title.
+static void write_all(const RunReport *report, const Overview *overview, OverviewRows rows,
+                      bool is_alone, Text *text)
 {
     const Scenario *scenario = report->scenario;
-    Overview overview = overview_make(report);
     text_append(text, "\n");
-    write_table(&overview, scenario, text);
-    overview_free(&overview);
+    write_table(overview, scenario, rows, text);
     settled_lines(scenario, text);
-    (void)style;
     write_certainty(report, text);
     write_restitution(scenario, text);
     write_time(report, text);
@@ -439,11 +445,47 @@ void run_overview_write(const RunReport *report, bool is_alone, const Style *sty
     }
 }
 
+static size_t count_lines(const char *text)
+{
+    size_t lines = 0;
+    for (; *text != '\0'; text++) {
+        lines += *text == '\n' ? 1 : 0;
+    }
+    return lines;
+}
+
+enum { TITLE_LINES = 3 };
+
+void run_overview_write(const RunReport *report, bool is_alone, Text *text)
+{
+    Overview overview = overview_make(report);
+    OverviewRows rows = {JOINTS_MOST, BODIES_MOST};
+    for (;;) {
+        Text own;
+        text_init(&own);
+        write_all(report, &overview, rows, is_alone, &own);
+        const bool fits = count_lines(own.data) + TITLE_LINES <= RUN_OVERVIEW_LINES;
+        // bodies first, then joints: what is left out is said, and --full has it
+        if (fits || (rows.bodies == 0 && rows.joints == JOINTS_LEAST)) {
+            text_append(text, "%s", own.data);
+            text_finish(&own);
+            break;
+        }
+        text_finish(&own);
+        if (rows.bodies > 0) {
+            rows.bodies--;
+        } else {
+            rows.joints--;
+        }
+    }
+    overview_free(&overview);
+}
+
 void run_overview_screen(const void *of, const Style *style, Text *text)
 {
     const RunReport *report = of;
     section_title(report->scenario->title, scenario_path(report->scenario), style, text);
-    run_overview_write(report, true, style, text);
+    run_overview_write(report, true, text);
 }
 
 static json_t *row_json(const OverviewRow *row, const char *number)

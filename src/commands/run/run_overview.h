@@ -9,7 +9,7 @@ enum { RUN_OVERVIEW_LINES = 24 };
 // largest force, of each body its largest angular acceleration, of the drive its largest torque,
 // each beside that with ideal joints; how the motion settled and what the damping does to it; how
 // far ODE is off; and what was assumed. `is_alone` without the tables of run_text.c below it.
-void run_overview_write(const RunReport *report, bool is_alone, const Style *style, Text *text);
+void run_overview_write(const RunReport *report, bool is_alone, Text *text);
 
 // The whole first screen: title and overview.
 void run_overview_screen(const void *report, const Style *style, Text *text);
