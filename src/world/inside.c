@@ -99,7 +99,13 @@ static Kernel *make_kernel(Answer *answer)
         *kernel = kernel_start(LOCAL_PHASE);
         visit_sides(answer, lay_out);
         kernel_make_room(kernel, kernel->row_count);
+        if (world->pace.is_set) {
+            memcpy(kernel->longest_s, world->pace.longest_s, sizeof kernel->longest_s);
+            kernel->duration_before_s = world->pace.duration_before_s;
+            kernel->stiff_width_s = world->pace.stiff_width_s;
+        }
     }
+    world->pace.is_set = false;
     return kernel;
 }
 

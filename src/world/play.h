@@ -71,6 +71,15 @@ typedef struct RecallPause {
     size_t until; // number of the step
 } RecallPause;
 
+// How long the next local steps of a world's contacts are to be (kernel/kernel.h), of a world that
+// is resumed (world/saved.c) until its kernel is made.
+typedef struct WorldPace {
+    bool is_set;
+    double longest_s[2];
+    double duration_before_s;
+    double stiff_width_s;
+} WorldPace;
+
 // What a step found of a world (world/found.h).
 typedef struct WorldFound {
     bool is_kept;     // whether the last step can be taken back
@@ -89,6 +98,7 @@ struct JpWorld {
     dJointGroupID rows;     // contacts of the step under way
     dJointGroupID contacts; // of the geoms of the caller's space, likewise
     Kernel *kernel;         // owned, NULL before the first
+    WorldPace pace;
     RecallPause pause;
     struct Recall *recall; // owned, NULL before the first (world/recall.h)
     JpWorldStats stats;

@@ -12,6 +12,7 @@
 // (h/J) (D - s F). The map's row is of the rate of q - p:
 //     s (q' - p') + CFM F = (ERP/h) d    is    s q' + (CFM + h/J) F = (ERP/h) d + s (p + (h/J) D)
 // a row of ODE's bodies alone.
+#include "world/step.h"
 #include "world/coarse.h"
 #include "world/fault.h"
 #include "world/found.h"
@@ -518,6 +519,12 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     world->stats.steps++;
     world->last_step = step;
     return coarse_end(world, error);
+}
+
+JpStatus step_know_bodies(JpWorld *world, JpError *error)
+{
+    REFUSAL_TRY(check_joints(world, error));
+    return gather(world, error);
 }
 
 JpStatus jp_world_undo(JpWorld *world, JpError *error)

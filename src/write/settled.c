@@ -169,6 +169,15 @@ static void append_motion(const Scenario *scenario, Text *text)
     append_line(&line, text);
 }
 
+// The force of a joint with other damping; of a motion that does not repeat one of few revolutions.
+static void append_damped(const Scenario *scenario, size_t number, const SettledMotion *motion,
+                          Text *text)
+{
+    text_append(text, "%s", motion->period == 0 ? "some " : "");
+    append_force(scenario, number, motion->joints[number].force, text);
+    text_append(text, "%s", motion->period == 0 ? " in the median" : "");
+}
+
 // What the case as it is written says of its first revolution, and other damping of the settled
 // one.
 static void append_beside(const Scenario *scenario, Text *text)
@@ -187,9 +196,9 @@ static void append_beside(const Scenario *scenario, Text *text)
     text_append(&line, ", not counted.");
     if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
         text_append(&line, " With half the damping: ");
-        append_force(scenario, numbers[0], settled->halved.joints[numbers[0]].force, &line);
+        append_damped(scenario, numbers[0], &settled->halved, &line);
         text_append(&line, ", with twice as much: ");
-        append_force(scenario, numbers[0], settled->doubled.joints[numbers[0]].force, &line);
+        append_damped(scenario, numbers[0], &settled->doubled, &line);
         text_append(&line, ".");
     }
     append_line(&line, text);
