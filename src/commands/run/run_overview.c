@@ -296,9 +296,18 @@ static void write_table(const Overview *overview, const Scenario *scenario, Over
     }
     table_write(table, text);
     table_destroy(table);
-    if (overview->joint_count > joints || overview->body_count > bodies) {
-        text_append(text, "  And %zu more joints with play, %zu more bodies: --full shows them.\n",
-                    overview->joint_count - joints, overview->body_count - bodies);
+    const size_t more_joints = overview->joint_count - joints;
+    const size_t more_bodies = overview->body_count - bodies;
+    if (more_joints > 0) {
+        text_append(text, "  And %zu more joint%s with play", more_joints,
+                    more_joints > 1 ? "s" : "");
+    }
+    if (more_bodies > 0) {
+        text_append(text, "%s %zu more %s", more_joints > 0 ? "," : "  And", more_bodies,
+                    more_bodies > 1 ? "bodies" : "body");
+    }
+    if (more_joints + more_bodies > 0) {
+        text_append(text, ": --full shows them.\n");
     }
 }
 
@@ -345,7 +354,7 @@ static void write_certainty(const RunReport *report, Text *text)
         Text words;
         text_init(&words);
         if (!run->is_complete) {
-            text_append(&words, "%s FAILED: %.200s", run->backend, run->message);
+            text_append(&words, "%s FAILED: %.120s", run->backend, run->message);
         } else if (strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0) {
             append_error(report, i, &words);
         }
