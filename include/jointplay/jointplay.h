@@ -319,14 +319,15 @@ JP_API JpStatus jp_world_undo(JpWorld *world, JpError *error);
  * the library on the same machine, with the same bodies and joints made known to it in the same
  * order, in another process if you like: it continues as the world that was saved does, at equal
  * steps bit for bit where the library makes the forces (JP_STEPPING_STAGGERED, JP_STEPPING_IMPULSE,
- * pins and stops that touch at one place), else to rounding, for what ODE keeps for itself is no part
- * of it. Nor are its random numbers, and what it counts, such as the time after which a body is
- * disabled.
+ * pins and stops that touch at one place), else to rounding, for what ODE keeps for itself is no
+ * part of it. Nor are its random numbers, and what it counts, such as the time after which a body
+ * is disabled.
  *
  * jp_world_save writes *size, and where `state` has so many bytes, the state; with `state` NULL the
  * size alone. The answers of bodies that were found in earlier steps are forgotten, so that both
  * worlds find them anew. JP_ERROR_ARGUMENT where `room` is too small. jp_world_resume puts a state
- * into a world; JP_ERROR_ARGUMENT, the world untouched, where it is not one of a world like this. */
+ * into a world; JP_ERROR_ARGUMENT, the world untouched, where it is not one of a world like this.
+ */
 JP_API JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size,
                               JpError *error);
 JP_API JpStatus jp_world_resume(JpWorld *world, const void *state, size_t size, JpError *error);
