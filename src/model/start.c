@@ -53,9 +53,9 @@ static void walk_body(Walk *walk, Body *body, bool is_spatial)
     BodySpace *space = &body->space;
     walk_flag(walk, &space->is_elsewhere);
     double *const beside[] = {
-        &space->height,     &space->velocity_z, &space->omega_x, &space->omega_y,
-        &space->position.x, &space->position.y, &space->position.z,
-        &space->turn.w,     &space->turn.x,     &space->turn.y,  &space->turn.z,
+        &space->height,     &space->velocity_z, &space->omega_x,    &space->omega_y,
+        &space->position.x, &space->position.y, &space->position.z, &space->turn.w,
+        &space->turn.x,     &space->turn.y,     &space->turn.z,
     };
     for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
         walk_number(walk, beside[i]);
