@@ -368,8 +368,9 @@ static void when_every_run_of_ode_fails_the_status_is_4(void **state)
 static void a_collider_is_a_part_of_the_scheme(void **state)
 {
     Program *program = *state;
-    static const char CASE[] = "compare --full $cases/paper/impact-k66.yaml --set run.revolutions=0.02 "
-                               "--steps 10us -q --json --fresh --store colliders.jsonl ";
+    static const char CASE[] =
+        "compare --full $cases/paper/impact-k66.yaml --set run.revolutions=0.02 "
+        "--steps 10us -q --json --fresh --store colliders.jsonl ";
     char words[PROGRAM_PATH_SIZE];
     snprintf(words, sizeof words, "%s%s", CASE,
              "--schemes direct/plain/textbook,direct/plain/textbook/staves");

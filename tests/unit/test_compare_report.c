@@ -65,7 +65,8 @@ static int set_up(void **state)
             (Distribution){1e-6, 2e-6, 3e-6, 2e-6, 5e-7};
     }
     ladder_conclude(fixture->ladder);
-    fixture->report = (CompareReport){&fixture->scenario, fixture->ladder, "A Processor", {0.0, 0.0}};
+    fixture->report =
+        (CompareReport){&fixture->scenario, fixture->ladder, "A Processor", {0.0, 0.0}};
     text_init(&fixture->text);
     *state = fixture;
     return 0;
