@@ -2,6 +2,7 @@
 #include "write/settled.h"
 
 #include "write/json_value.h"
+#include "write/table.h"
 #include "write/units.h"
 
 #include <stdio.h>
@@ -84,7 +85,7 @@ void settled_text(const Scenario *scenario, Text *text)
 
 // The first screen.
 
-enum { SHOWN_JOINTS = 2, LINE_MOST = 80 }; // of a line, those of the largest forces
+enum { SHOWN_JOINTS = 2 }; // of a line, those of the largest forces
 
 // The numbers of the joints with play whose forces are the largest; returns how many.
 static size_t largest_joints(const Scenario *scenario, size_t numbers[SHOWN_JOINTS])
@@ -136,14 +137,6 @@ static void append_forces(const Scenario *scenario, const SettledMotion *motion,
     }
 }
 
-static void append_line(Text *line, Text *text)
-{
-    text_append(line, "\n");
-    text_fold(line, LINE_MOST);
-    text_append(text, "%s", line->data);
-    text_finish(line);
-}
-
 // What the run shows, and how it was found.
 static void append_motion(const Scenario *scenario, Text *text)
 {
@@ -166,7 +159,7 @@ static void append_motion(const Scenario *scenario, Text *text)
         }
     }
     text_append(&line, "; %zu of %zu starts come to it.", motion->starts, settled->starts);
-    append_line(&line, text);
+    screen_line(&line, text);
 }
 
 // The force of a joint with other damping; of a motion that does not repeat one of few revolutions.
@@ -201,7 +194,7 @@ static void append_beside(const Scenario *scenario, Text *text)
         append_damped(scenario, numbers[0], &settled->doubled, &line);
         text_append(&line, ".");
     }
-    append_line(&line, text);
+    screen_line(&line, text);
 }
 
 void settled_lines(const Scenario *scenario, Text *text)
@@ -212,7 +205,7 @@ void settled_lines(const Scenario *scenario, Text *text)
         text_init(&line);
         text_append(&line, "  Starts as written, and the first impacts count: %s.",
                     scenario->run.centred_because);
-        append_line(&line, text);
+        screen_line(&line, text);
     }
     if (settled->motion_count == 0) {
         return;
@@ -226,7 +219,7 @@ void settled_lines(const Scenario *scenario, Text *text)
                     settled->motion_count > 2 ? "others, the next" : "another motion");
         append_forces(scenario, &settled->motions[1], &line);
         text_append(&line, ".");
-        append_line(&line, text);
+        screen_line(&line, text);
     }
     append_beside(scenario, text);
 }

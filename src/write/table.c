@@ -466,6 +466,14 @@ void section_title(const char *title, const char *path, const Style *style, Text
     }
 }
 
+void screen_line(Text *words, Text *text)
+{
+    text_append(words, "\n");
+    text_fold(words, STYLE_WIDTH);
+    text_append(text, "%s", words->data);
+    text_finish(words);
+}
+
 Table *section_begin(const char *heading, size_t columns, const SectionHead *heads,
                      const Style *style, Text *text)
 {

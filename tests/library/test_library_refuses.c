@@ -52,6 +52,10 @@ static void a_contact_that_is_none_is_refused(void **state)
     contact.damping = JP_DAMPING_VISCOUS;
     contact.damper = -1.0;
     assert_refused(jp_contact_check(&contact, &error));
+    contact = good();
+    contact.damping = JP_DAMPING_DISSIPATION;
+    contact.dissipation = -0.1;
+    assert_refused(jp_contact_check(&contact, &error));
     // and a right one is none
     contact = good();
     assert_int_equal(jp_contact_check(&contact, NULL), JP_OK);

@@ -232,6 +232,10 @@ static void what_is_no_such_state_is_refused(void **state)
     assert_non_null(strstr(error.text, "made in another way"));
     assert_int_equal(jp_world_resume(plain.play, saved, size, &error), JP_ERROR_ARGUMENT);
     assert_int_equal(jp_world_resume(scene.play, saved, size - 1, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_world_save(NULL, saved, size, &size, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_world_save(scene.play, saved, size, NULL, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_world_resume(NULL, saved, size, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_world_resume(scene.play, NULL, size, &error), JP_ERROR_ARGUMENT);
     saved[0] = 'x';
     assert_int_equal(jp_world_resume(scene.play, saved, size, &error), JP_ERROR_ARGUMENT);
     assert_non_null(strstr(error.text, "not a state that was saved"));

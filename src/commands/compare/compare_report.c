@@ -399,16 +399,6 @@ void compare_text_write(const void *of, const Style *style, Text *text)
 
 // The first screen.
 
-enum { SCREEN_LINE = 80 }; // characters
-
-static void compare_screen_line(Text *words, Text *text)
-{
-    text_append(words, "\n");
-    text_fold(words, SCREEN_LINE);
-    text_append(text, "%s", words->data);
-    text_finish(words);
-}
-
 // The order of each scheme that has one, in a sentence, and how many points failed.
 static void compare_screen_orders(const Ladder *ladder, Text *text)
 {
@@ -423,7 +413,7 @@ static void compare_screen_orders(const Ladder *ladder, Text *text)
         }
     }
     text_append(&words, "%s", count > 0 ? "; the others none." : "none of any scheme.");
-    compare_screen_line(&words, text);
+    screen_line(&words, text);
     size_t failed = 0;
     for (size_t i = 0; i < ladder->point_count; i++) {
         failed += ladder->points[i].is_failed ? 1 : 0;
@@ -451,7 +441,7 @@ static void compare_screen_truth(const CompareReport *report, Text *text)
                     truth->horizon_s * UNITS_MS);
     }
     text_append(&words, ".");
-    compare_screen_line(&words, text);
+    screen_line(&words, text);
 }
 
 void compare_screen_write(const void *of, const Style *style, Text *text)

@@ -219,7 +219,7 @@ static void overview_free(Overview *overview)
 
 // The table.
 
-enum { NAME_MOST = 17, JOINTS_MOST = 5, JOINTS_LEAST = 3, BODIES_MOST = 3, LINE_MOST = 80 };
+enum { NAME_MOST = 17, JOINTS_MOST = 5, JOINTS_LEAST = 3, BODIES_MOST = 3 };
 
 // How many of each are shown.
 typedef struct OverviewRows {
@@ -313,15 +313,12 @@ static void write_table(const Overview *overview, const Scenario *scenario, Over
 
 // How sure it is.
 
-// A paragraph of at most two lines, indented by two.
 static void append_paragraph(const char *words, Text *text)
 {
     Text own;
     text_init(&own);
-    text_append(&own, "  %s\n", words);
-    text_fold(&own, LINE_MOST);
-    text_append(text, "%s", own.data);
-    text_finish(&own);
+    text_append(&own, "  %s", words);
+    screen_line(&own, text);
 }
 
 static void append_error(const RunReport *report, size_t number, Text *text)

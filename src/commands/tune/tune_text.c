@@ -515,15 +515,7 @@ void tune_text_write(const void *target, const Style *style, Text *text)
 
 // The first screen: the setting, what it takes, and the schemes beside it, a row each.
 
-enum { SCREEN_LINE = 80, SCREEN_SCHEMES = 6 };
-
-static void tune_screen_line(Text *words, Text *text)
-{
-    text_append(words, "\n");
-    text_fold(words, SCREEN_LINE);
-    text_append(text, "%s", words->data);
-    text_finish(words);
-}
+enum { SCREEN_SCHEMES = 6 };
 
 // The trial that answers the question, or NULL.
 static const TuneTrial *tune_screen_best(const Tune *tune)
@@ -556,12 +548,12 @@ static void tune_screen_answer(const TuneReport *report, Text *text)
         text_append(&words, ": error %.3g, %zu world steps, %.4g ms of the processor.", best->error,
                     best->run.steps, tune_setting_time(tune, best) * UNITS_MS);
     }
-    tune_screen_line(&words, text);
+    screen_line(&words, text);
     if (best != NULL) {
         text_init(&words);
         text_append(&words, "  In a case: ");
         tune_setting_keys(report, best, ", ", &words);
-        tune_screen_line(&words, text);
+        screen_line(&words, text);
     }
 }
 
@@ -626,7 +618,7 @@ void tune_screen_write(const void *target, const Style *style, Text *text)
                     tune->truth.horizon_s * UNITS_MS);
     }
     text_append(&words, ".");
-    tune_screen_line(&words, text);
+    screen_line(&words, text);
     settled_lines(report->scenario, text);
     text_append(text,
                 "  --full: all settings tried; --code FILE.c writes the setting as a program\n");
