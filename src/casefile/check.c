@@ -36,9 +36,6 @@ static const EntryGroup *group_above(const Entries *entries, const SchemaRow *ro
     return entries_group(entries, "", 0);
 }
 
-// It is required beside a hole; what else needs it says so in check_joints.c.
-static const char PIN[] = "joints.*.pin";
-
 static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t index, Err *err)
 {
     const EntryGroup *group = group_above(entries, row, index);
@@ -46,7 +43,7 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     schema_path(row, entries_name(entries, row, index), path);
     Text allowed;
     text_init(&allowed);
-    if (row->rivalry == SCHEMA_SIZES || strcmp(row->path, PIN) == 0) {
+    if (row->rivalry == SCHEMA_SIZES || row->excused_by != NULL) {
         text_append(&allowed, "hole and pin, or radial-clearance");
     } else if (row->rivalry == SCHEMA_STOPPING) {
         text_append(&allowed, "normal of a line, or discs");
@@ -67,8 +64,7 @@ static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index
     if (row->family == SCHEMA_JOINT && !schema_is_of_kind(row, joint_kind_find(entries, index))) {
         return false;
     }
-    if (strcmp(row->path, PIN) == 0 &&
-        entries_find(entries, "joints.*.radial-clearance", index) != NULL) {
+    if (row->excused_by != NULL && entries_find(entries, row->excused_by, index) != NULL) {
         return false;
     }
     const bool is_drive = strncmp(row->path, "drive.", strlen("drive.")) == 0;

@@ -108,6 +108,7 @@ typedef struct SchemaRow {
     int side;                  // of the rivalry; of an anchor, the end that it is of
     const char *const *words;  // of a choice, ends in NULL
     const char *zero_word;     // what may be written for the number 0; NULL: nothing
+    const char *excused_by;    // the path beside which a required key may miss; NULL: none
     const char *default_words; // in place of the default's number; NULL: the number says it
     unsigned kinds;            // of joints: SCHEMA_OF each kind that has the key; 0: all
     unsigned needs;            // what a scenario must have for the key to be among its settings

@@ -49,40 +49,13 @@ static const struct argp_option *find_option(const struct argp_option *options, 
     return found;
 }
 
-// What other programs call an option.
-typedef struct Habit {
-    const char *theirs;
-    const char *ours;
-} Habit;
-
-static const Habit HABITS[] = {{"--format", "json"}, {"--output", "out"}, {"--all", "full"}};
-
-// The name of the option that stands for another program's, where this command has it.
-static const char *habit_of(const Reading *reading, const char *bare)
-{
-    for (size_t i = 0; i < sizeof HABITS / sizeof *HABITS; i++) {
-        for (const struct argp_option *option = reading->options;
-             strcmp(HABITS[i].theirs, bare) == 0 && option->name != NULL; option++) {
-            if (strcmp(option->name, HABITS[i].ours) == 0) {
-                return HABITS[i].ours;
-            }
-        }
-    }
-    return NULL;
-}
-
 static bool fail_unknown(const Reading *reading, const char *word)
 {
     char bare[OPTION_NAME_SIZE];
     snprintf(bare, sizeof bare, "%.*s", (int)strcspn(word, "="), word);
     Text hint;
     text_init(&hint);
-    const char *ours = habit_of(reading, bare);
-    if (ours != NULL) {
-        text_append(&hint, "'--%s'", ours);
-    } else {
-        option_hint_write(reading->options, word, &hint);
-    }
+    option_hint_write(reading->options, word, &hint);
     if (hint.length > 0) {
         err_set(reading->err, ERR_USAGE, "unknown option '%s'; did you mean %s?", bare, hint.data);
     } else {

@@ -42,14 +42,33 @@ static const char *nearest_part(const char *name)
     return nearest;
 }
 
-static bool has_set(const struct argp_option *options)
+static bool has_option(const struct argp_option *options, const char *name)
 {
     for (const struct argp_option *option = options; option->name != NULL; option++) {
-        if (strcmp(option->name, "set") == 0) {
+        if (strcmp(option->name, name) == 0) {
             return true;
         }
     }
     return false;
+}
+
+// What other programs call an option, and what it is called here.
+typedef struct Habit {
+    const char *theirs;
+    const char *ours;
+} Habit;
+
+static const Habit HABITS[] = {{"format", "json"}, {"output", "out"}, {"all", "full"}};
+
+// The option that stands for another program's, where the command has it; else NULL.
+static const char *habitual_option(const struct argp_option *options, const char *name)
+{
+    for (size_t i = 0; i < sizeof HABITS / sizeof *HABITS; i++) {
+        if (strcmp(HABITS[i].theirs, name) == 0 && has_option(options, HABITS[i].ours)) {
+            return HABITS[i].ours;
+        }
+    }
+    return NULL;
 }
 
 // Appends every key that is the name or ends in it; false where there is none.
@@ -76,7 +95,12 @@ void option_hint_write(const struct argp_option *options, const char *word, Text
     snprintf(name, sizeof name, "%.*s", (int)length, word + dashes);
     const char *given = word + dashes + length;
     const char *value = *given == '=' && given[1] != '\0' ? given + 1 : "VALUE";
-    const bool takes_keys = dashes == 2 && has_set(options);
+    const char *habitual = dashes == 2 ? habitual_option(options, name) : NULL;
+    if (habitual != NULL) {
+        text_append(text, "'--%s'", habitual);
+        return;
+    }
+    const bool takes_keys = dashes == 2 && has_option(options, "set");
     if (takes_keys && write_keys(name, value, text)) {
         return;
     }

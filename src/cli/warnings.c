@@ -39,9 +39,9 @@ static double body_length(const Linkage *linkage, int body)
     double length = 0.0;
     for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
         const JointEnd one = linkage_end(&linkage->joints[i / 2], (int)(i % 2));
-        for (size_t k = 0; k < i; k++) {
+        for (size_t k = 0; one.body == body && k < i; k++) {
             const JointEnd other = linkage_end(&linkage->joints[k / 2], (int)(k % 2));
-            if (one.body == body && other.body == body) {
+            if (other.body == body) {
                 length = fmax(length, vec2_length(vec2_sub(one.anchor, other.anchor)));
             }
         }
@@ -53,8 +53,8 @@ static bool turns_on_ground(const Linkage *linkage, int body)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (fmin(joint->body_a, joint->body_b) == LINKAGE_GROUND &&
-            (joint->body_a == body || joint->body_b == body)) {
+        if ((joint->body_a == LINKAGE_GROUND && joint->body_b == body) ||
+            (joint->body_b == LINKAGE_GROUND && joint->body_a == body)) {
             return true;
         }
     }

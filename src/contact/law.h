@@ -50,10 +50,10 @@ static inline void law_set_dissipation(double dissipation, ForceLaw *law)
     law->impact_speed_floor = LAW_NO_MEMORY;
 }
 
-// c of that, s/m; 0 of a law that has a memory.
+// c of a law that this has made, s/m.
 static inline double law_dissipation(const ForceLaw *law)
 {
-    return law->impact_speed_floor == LAW_NO_MEMORY ? law->hysteresis / LAW_NO_MEMORY : 0.0;
+    return law->hysteresis / law->impact_speed_floor;
 }
 
 // The restitution, 1, that the hysteretic damping of a law delivers at an impact speed, m/s.

@@ -52,7 +52,6 @@ typedef struct SettledMotion {
 typedef struct SettledStart {
     size_t revolutions;          // that it took; 0: the start is as written
     bool is_pressed;             // START_PRESSED: the pins were put on their walls
-    bool is_continued;           // it was looked for from the state of another run alone
     size_t starts;               // from which a motion was found
     double *first;               // N, by joint: its largest force in the first revolution from the
                                  // start as written; owned

@@ -564,21 +564,6 @@ void settle_scenario(Scenario *scenario)
     starts_finish(starts, count);
 }
 
-void settle_from(const RunState *state, Scenario *scenario)
-{
-    Start *start = zeroed(1, sizeof *start);
-    start->settling = settling_start(scenario);
-    start->is_made = true;
-    run_state_start(state, &start->settling.scenario);
-    starts_run(start, 1);
-    if (start->is_settled) {
-        take_starts(start, 1, scenario);
-        scenario->settled.is_continued = true;
-    }
-    starts_finish(start, 1);
-    settle_scenario(scenario);
-}
-
 void settle_damping(Scenario *scenario)
 {
     static const double SCALES[] = {0.5, 2.0};

@@ -41,10 +41,6 @@ bool settling_turn(Settling *settling, Err *err);
 // run.settle-starts starts side by side. Where there is none the scenario says why.
 void settle_scenario(Scenario *scenario);
 
-// The same from the state of a motion that is near alone, such as that of the last point of a
-// sweep; of the same linkage but for its numbers.
-void settle_from(const RunState *state, Scenario *scenario);
-
 // Finds how the largest forces of a settled scenario move when its damping is halved and doubled.
 void settle_damping(Scenario *scenario);
 

@@ -4,7 +4,6 @@
 // as they are in memory: they are for the same library on the same machine, and come back exactly.
 #include "world/found.h"
 #include "world/play.h"
-#include "world/recall.h"
 #include "world/step.h"
 
 #include <stdlib.h>
@@ -91,6 +90,39 @@ static void write_world(JpWorld *world, char *at)
     }
 }
 
+// What a joint carries, as if a step had found it so. The laws and where sides are stay its own.
+static void find_joint(const JointFound *carried, JpJoint *joint)
+{
+    joint->found = *carried;
+    for (size_t i = 0; i < joint->place_count; i++) {
+        for (size_t k = 0; k < SIDE_COUNT; k++) {
+            const Side *own = &joint->places[i].sides[k];
+            Side *found = &joint->found.places[i].sides[k];
+            found->law = own->law;
+            found->sign = own->sign;
+            found->limit = own->limit;
+        }
+    }
+}
+
+static void find_body(const SavedBody *saved, BodyRecord *record)
+{
+    record->found = saved->moment;
+    memcpy(record->last_omega, saved->last_omega, sizeof record->last_omega);
+    memcpy(record->last_alpha, saved->last_alpha, sizeof record->last_alpha);
+    record->has_last = saved->has_last;
+    memcpy(record->opening, saved->opening, sizeof record->opening);
+}
+
+// Puts back what is found, with a kernel that begins at a pace.
+static void go_on_from_found(JpWorld *world, WorldPace pace)
+{
+    Answer none = {0};
+    world->found.pause = (RecallPause){0};
+    found_put_back(world, &none);
+    world->pace = pace;
+}
+
 JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size, JpError *error)
 {
     REFUSAL_TRY(refusal_of_null(world, "the world", error));
@@ -105,11 +137,6 @@ JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size, J
                        "the state takes %zu bytes, and there is room for %zu", *size, room);
     }
     found_keep(world);
-    // turns are normalized as in the world that is resumed
-    bodies_put_back_all(&world->bodies);
-    recall_free(world->recall);
-    world->recall = NULL;
-    world->pause = (RecallPause){0};
     SavedHead head;
     memset(&head, 0, sizeof head);
     memcpy(head.magic, MAGIC, sizeof MAGIC);
@@ -122,41 +149,9 @@ JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size, J
     head.pace = pace_of(world);
     memcpy(state, &head, sizeof head);
     write_world(world, (char *)state + sizeof head);
+    // as the world that is resumed does
+    go_on_from_found(world, head.pace);
     return refusal_none(error);
-}
-
-// What a side carries; its law and where it is are the joint's own.
-static void resume_side(const Side *saved, Side *side)
-{
-    const Side own = *side;
-    *side = *saved;
-    side->law = own.law;
-    side->sign = own.sign;
-    side->limit = own.limit;
-}
-
-static void resume_joint(const JointFound *carried, JpJoint *joint)
-{
-    joint->rotor = carried->rotor;
-    joint->force = carried->force;
-    joint->coordinate.last = carried->last;
-    for (size_t i = 0; i < joint->place_count; i++) {
-        Place *place = &joint->places[i];
-        for (size_t k = 0; k < SIDE_COUNT; k++) {
-            resume_side(&carried->places[i].sides[k], &place->sides[k]);
-            place->inside[k] = carried->places[i].inside[k];
-        }
-        place->slid = carried->places[i].slid;
-    }
-}
-
-static void resume_body(const SavedBody *saved, BodyRecord *record)
-{
-    record->found = saved->moment;
-    memcpy(record->last_omega, saved->last_omega, sizeof record->last_omega);
-    memcpy(record->last_alpha, saved->last_alpha, sizeof record->last_alpha);
-    record->has_last = saved->has_last;
-    memcpy(record->opening, saved->opening, sizeof record->opening);
 }
 
 // Whether the joints are of the same kinds, with as many places.
@@ -176,28 +171,21 @@ static bool has_joints(const JpWorld *world, const char *at)
 static void resume_world(JpWorld *world, const SavedHead *head, const char *bodies,
                          const char *joints)
 {
+    found_keep(world); // what is no part of the state, such as gravity
+    world->found.last_step = head->last_step;
+    world->found.stats = head->stats;
     for (size_t i = 0; i < head->body_count; i++) {
         SavedBody saved;
         memcpy(&saved, bodies + i * sizeof saved, sizeof saved);
-        resume_body(&saved, &world->bodies.records[i]);
+        find_body(&saved, &world->bodies.records[i]);
     }
-    bodies_put_back_all(&world->bodies);
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         SavedJoint saved;
         memcpy(&saved, joints, sizeof saved);
-        resume_joint(&saved.carried, joint);
+        find_joint(&saved.carried, joint);
         joints += sizeof saved;
     }
-    world->last_step = head->last_step;
-    world->stats = head->stats;
-    world->pause = (RecallPause){0};
-    world->pace = head->pace;
-    world->found.is_kept = false;
-    recall_free(world->recall);
-    world->recall = NULL;
-    if (world->kernel != NULL) {
-        kernel_finish(world->kernel);
-    }
+    go_on_from_found(world, head->pace);
 }
 
 JpStatus jp_world_resume(JpWorld *world, const void *state, size_t size, JpError *error)

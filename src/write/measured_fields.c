@@ -1,5 +1,7 @@
-// The field tables of errors and distributions.
+// The field tables of errors and distributions, and what first screens say of the truth.
 #include "write/measured_fields.h"
+
+#include "write/units.h"
 
 #define ERROR(member)    .offset = offsetof(TrajectoryError, member)
 #define OF_JOINT(member) .offset = offsetof(JointError, member)
@@ -107,4 +109,23 @@ bool ensemble_joints_read(const Linkage *linkage, const json_t *joints, Ensemble
                              json_object_get(joints, linkage->joints[i].name), ensemble->joints[i]);
     }
     return is_right;
+}
+
+void screen_truth(const LadderTruth *truth, Text *text)
+{
+    Text words;
+    text_init(&words);
+    if (truth->message[0] != '\0') {
+        text_append(&words, "  Errors are against %s, which could not be certified: %.300s",
+                    truth->backend, truth->message);
+    } else {
+        text_append(&words, "  Errors are against %s, which is right to %.2g", truth->backend,
+                    truth->uncertainty);
+    }
+    if (truth->is_limited && truth->message[0] == '\0') {
+        text_append(&words, ", up to %.4g ms: beyond, the motion cannot be predicted",
+                    truth->horizon_s * UNITS_MS);
+    }
+    text_append(&words, ".");
+    screen_line(&words, text);
 }

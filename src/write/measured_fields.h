@@ -3,6 +3,7 @@
 
 #include "measure/ensemble.h"
 #include "measure/error.h"
+#include "measure/ladder.h"
 #include "write/fields.h"
 
 // Of a TrajectoryError.
@@ -19,3 +20,6 @@ json_t *ensemble_joints_json(const Linkage *linkage, const Ensemble *ensemble);
 
 // Reads them back. False where a number is missing.
 bool ensemble_joints_read(const Linkage *linkage, const json_t *joints, Ensemble *ensemble);
+
+// Appends a line of a first screen: what the errors are against, how right that is, and up to when.
+void screen_truth(const LadderTruth *truth, Text *text);

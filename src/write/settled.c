@@ -10,7 +10,7 @@
 
 static void append_joint(const SettledStart *settled, size_t number, const Joint *joint, Text *text)
 {
-    const char *unit = linkage_is_torsional(joint) ? "N m" : "N";
+    const char *unit = joint_units(joint)->force;
     const SettledMotion *motion = &settled->motions[0];
     const SettledJoint *did = &motion->joints[number];
     text_append(text, "              ");
@@ -53,8 +53,7 @@ static void append_other(const Scenario *scenario, const SettledMotion *motion, 
         if (linkage_has_play(joint)) {
             text_append(text, " ");
             text_append_shown(text, joint->name);
-            text_append(text, " %.5g %s", motion->joints[i].force,
-                        linkage_is_torsional(joint) ? "N m" : "N");
+            text_append(text, " %.5g %s", motion->joints[i].force, joint_units(joint)->force);
         }
     }
     text_append(text, "\n");
@@ -112,8 +111,7 @@ static size_t largest_joints(const Scenario *scenario, size_t numbers[SHOWN_JOIN
 
 static void append_force(const Scenario *scenario, size_t number, double force, Text *text)
 {
-    units_append(text, force,
-                 linkage_is_torsional(&scenario->linkage.joints[number]) ? "N m" : "N");
+    units_append(text, force, joint_units(&scenario->linkage.joints[number])->force);
 }
 
 // "crank-coupler 2.36 kN, rod-slider 1.12 kN" of one motion.
@@ -228,8 +226,7 @@ static void set_force(json_t *of, const Joint *joint, const char *name, double v
 {
     char key[64];
     const bool is_turn = linkage_is_torsional(joint);
-    snprintf(key, sizeof key, "%s_%s", is_turn ? "torque" : "force", name);
-    snprintf(key + strlen(key), sizeof key - strlen(key), "_%s", is_turn ? "Nm" : "N");
+    snprintf(key, sizeof key, "%s_%s_%s", is_turn ? "torque" : "force", name, is_turn ? "Nm" : "N");
     json_value_set(of, key, value);
 }
 

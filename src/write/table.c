@@ -474,16 +474,22 @@ void screen_line(Text *words, Text *text)
     text_finish(words);
 }
 
+Table *table_headed(size_t columns, const SectionHead *heads)
+{
+    Table *table = table_create(columns);
+    for (size_t i = 0; i < columns; i++) {
+        table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
+    }
+    return table;
+}
+
 Table *section_begin(const char *heading, size_t columns, const SectionHead *heads,
                      const Style *style, Text *text)
 {
     section_heading(heading, style, text);
     text_append(text, "\n");
-    Table *table = table_create(columns);
+    Table *table = table_headed(columns, heads);
     table_fit(table, style->width);
-    for (size_t i = 0; i < columns; i++) {
-        table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
-    }
     return table;
 }
 

@@ -87,6 +87,9 @@ typedef struct SectionHead {
     TableAlign align;
 } SectionHead;
 
+// A table with these heads, for table_destroy.
+Table *table_headed(size_t columns, const SectionHead *heads);
+
 // Appends a heading on a line of its own, behind an empty one. It may be a path.
 void section_heading(const char *heading, const Style *style, Text *text);
 

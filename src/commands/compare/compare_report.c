@@ -424,26 +424,6 @@ static void compare_screen_orders(const Ladder *ladder, Text *text)
     }
 }
 
-static void compare_screen_truth(const CompareReport *report, Text *text)
-{
-    const LadderTruth *truth = &report->ladder->truth;
-    Text words;
-    text_init(&words);
-    if (truth->message[0] != '\0') {
-        text_append(&words, "  Errors are against %s, which could not be certified: %.300s",
-                    truth->backend, truth->message);
-    } else {
-        text_append(&words, "  Errors are against %s, which is right to %.2g", truth->backend,
-                    truth->uncertainty);
-    }
-    if (truth->is_limited && truth->message[0] == '\0') {
-        text_append(&words, ", up to %.4g ms: beyond, the motion cannot be predicted",
-                    truth->horizon_s * UNITS_MS);
-    }
-    text_append(&words, ".");
-    screen_line(&words, text);
-}
-
 void compare_screen_write(const void *of, const Style *style, Text *text)
 {
     const CompareReport *report = of;
@@ -452,7 +432,7 @@ void compare_screen_write(const void *of, const Style *style, Text *text)
     compare_rows_write_cheapest(report->ladder, style, text);
     write_others(report->ladder, text);
     compare_screen_orders(report->ladder, text);
-    compare_screen_truth(report, text);
+    screen_truth(&report->ladder->truth, text);
     settled_lines(scenario, text);
     compare_report_left(report, text);
     text_append(text, "  --full: every scheme at every step\n");

@@ -443,6 +443,16 @@ static void write_run(const MappingContact *contact, Text *text)
         units->length, stable);
 }
 
+// The longest valid step of a map, us; infinite: any, 0: none.
+static void longest_cell(Table *table, double step_s)
+{
+    if (isinf(step_s) || step_s == 0.0) {
+        table_cell(table, "%s", isinf(step_s) ? "any" : "none");
+    } else {
+        section_finite(table, "%.3g", step_s * UNITS_US);
+    }
+}
+
 static void map_text_write_longest(const MappingReport *report, const MappingContact *contact,
                                    const Style *style, Text *text)
 {
@@ -459,13 +469,9 @@ static void map_text_write_longest(const MappingReport *report, const MappingCon
         const double step_s = contact->largest_s[settings->maps[i]];
         const double hardest_s = contact->hardest_s[settings->maps[i]];
         table_cell(table, "%s", OPTIONS_ODE_MAPS[settings->maps[i]]);
-        if (isinf(step_s) || step_s == 0.0) {
-            table_cell(table, "%s", isinf(step_s) ? "any" : "none");
-            table_cell(table, "-");
-        } else {
-            section_finite(table, "%.3g", step_s * UNITS_US);
-            section_finite(table, "%.3g", contact->half_period_s / step_s);
-        }
+        longest_cell(table, step_s);
+        section_finite(table, "%.3g",
+                       step_s == 0.0 || isinf(step_s) ? NAN : contact->half_period_s / step_s);
         section_finite(table, "%.3g", hardest_s > 0.0 ? hardest_s * UNITS_US : NAN);
     }
     section_end(table, text);
@@ -525,11 +531,7 @@ static void map_screen_row(const MappingReport *report, const MappingContact *co
     text_finish(&words);
     section_finite(table, "%.3g", contact->impact.speed);
     for (size_t i = 0; i < settings->map_count; i++) {
-        const double step_s = contact->largest_s[settings->maps[i]];
-        const bool is_step = isfinite(step_s) && step_s > 0.0;
-        char cell[32];
-        snprintf(cell, sizeof cell, "%.3g", step_s * UNITS_US);
-        table_cell(table, "%s", is_step ? cell : isinf(step_s) ? "any" : "none");
+        longest_cell(table, contact->largest_s[settings->maps[i]]);
     }
 }
 

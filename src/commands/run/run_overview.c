@@ -8,7 +8,6 @@
 #include "base/zeroed.h"
 #include "contact/damping.h"
 #include "contact/law.h"
-#include "model/joint_rows.h"
 #include "run/ideal.h"
 #include "write/assumed.h"
 #include "write/json_value.h"
@@ -23,15 +22,17 @@
 // One line: a joint, a body or the drive.
 typedef struct OverviewRow {
     const char *name;
-    const char *unit;  // of the largest
-    double largest;    // its size
-    double crank_rad;  // where that was; NAN without a crank
-    double time_s;     // and when
-    double ratio;      // 1, to that with ideal joints; NAN: not known
-    double impacts;    // a revolution, or in the run; NAN of what is no joint with play
-    double contact;    // 1, share of the time
-    double deepest;    // m or rad
-    const char *depth; // unit of that
+    const char *number;   // what is the largest, in keys
+    const char *unit;     // of that
+    const char *unit_key; // in keys
+    double largest;       // its size
+    double crank_rad;     // where that was; NAN without a crank
+    double time_s;        // and when
+    double ratio;         // 1, to that with ideal joints; NAN: not known
+    double impacts;       // a revolution, or in the run; NAN of what is no joint with play
+    double contact;       // 1, share of the time
+    double deepest;       // m or rad
+    const char *depth;    // unit of that
 } OverviewRow;
 
 typedef struct Overview {
@@ -72,6 +73,7 @@ static OverviewRow joint_row(const RunReport *report, const Trajectory *run, siz
     const Scenario *scenario = report->scenario;
     const Joint *joint = &scenario->linkage.joints[number];
     const JointExtremes *extremes = &run->joints[number];
+    const JointUnits *units = joint_units(joint);
     const bool is_turn = linkage_is_torsional(joint);
     const bool is_ideal = ideal->is_known && !is_turn;
     const double turns =
@@ -80,7 +82,9 @@ static OverviewRow joint_row(const RunReport *report, const Trajectory *run, siz
             : 1.0;
     return (OverviewRow){
         .name = joint->name,
-        .unit = is_turn ? "N m" : "N",
+        .number = is_turn ? "torque_max" : "force_max",
+        .unit = units->force,
+        .unit_key = units->force_key,
         .largest = extremes->force_max.value,
         .crank_rad = extremes->force_max.crank_rad,
         .time_s = extremes->force_max.time_s,
@@ -88,7 +92,7 @@ static OverviewRow joint_row(const RunReport *report, const Trajectory *run, siz
         .impacts = (double)extremes->impacts / turns,
         .contact = trajectory_contact_share(run, number),
         .deepest = extremes->penetration_max.value,
-        .depth = is_turn ? "rad" : "m",
+        .depth = units->length_key,
     };
 }
 
@@ -101,7 +105,9 @@ static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSiz
     const double size = fabs(largest->value);
     return (OverviewRow){
         .name = run->linkage.bodies[number].name,
+        .number = "alpha_size_max",
         .unit = "rad/s^2",
+        .unit_key = "rad_s2",
         .largest = size,
         .crank_rad = largest->crank_rad,
         .time_s = largest->time_s,
@@ -110,11 +116,6 @@ static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSiz
         .contact = NAN,
         .deepest = NAN,
     };
-}
-
-static double cross(Vec2 a, Vec2 b)
-{
-    return a.x * b.y - a.y * b.x;
 }
 
 // The torque of the drive at one sample.
@@ -128,7 +129,7 @@ static double drive_torque(const Scenario *scenario, const Trajectory *run, size
     const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_a;
     const Vec2 arm = vec2_sub(body->position, pivot);
     double torque = linkage->bodies[driven].inertia * body->alpha +
-                    mass * cross(arm, body->acceleration) + mass * scenario->gravity * arm.x;
+                    mass * vec2_cross(arm, body->acceleration) + mass * scenario->gravity * arm.x;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if ((int)i == linkage->driver.joint ||
@@ -138,7 +139,8 @@ static double drive_torque(const Scenario *scenario, const Trajectory *run, size
         const JointState *state = trajectory_state(run, sample, i);
         const double sign = joint->body_b == driven ? 1.0 : -1.0;
         const Vec2 point = linkage_point(motions, joint->body_b, joint->anchor_b);
-        torque -= sign * (cross(vec2_sub(point, pivot), state->force_on_b) + state->moment_on_b);
+        torque -=
+            sign * (vec2_cross(vec2_sub(point, pivot), state->force_on_b) + state->moment_on_b);
     }
     return torque;
 }
@@ -155,7 +157,9 @@ static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run,
                              const IdealSizes *ideal)
 {
     OverviewRow row = {.name = "drive",
+                       .number = "torque_max",
                        .unit = "N m",
+                       .unit_key = "N_m",
                        .crank_rad = NAN,
                        .impacts = NAN,
                        .contact = NAN,
@@ -281,10 +285,7 @@ static void write_table(const Overview *overview, const Scenario *scenario, Over
         {"deepest", "", TABLE_RIGHT},
     };
     enum { COLUMNS = sizeof heads / sizeof *heads };
-    Table *table = table_create(COLUMNS);
-    for (size_t i = 0; i < COLUMNS; i++) {
-        table_head(table, i, heads[i].title, heads[i].unit, heads[i].align);
-    }
+    Table *table = table_headed(COLUMNS, heads);
     for (size_t i = 0; i < joints; i++) {
         overview_row(&overview->joints[i], has_crank, table);
     }
@@ -494,18 +495,16 @@ void run_overview_screen(const void *of, const Style *style, Text *text)
     run_overview_write(report, true, text);
 }
 
-static json_t *row_json(const OverviewRow *row, const char *number)
+static json_t *row_json(const OverviewRow *row)
 {
-    const bool is_body = strcmp(row->unit, "rad/s^2") == 0;
-    const char *unit = is_body ? "rad_s2" : strcmp(row->unit, "N m") == 0 ? "N_m" : "N";
     json_t *object = json_object();
     char key[64];
     json_object_set_new(object, "name", json_value_text(row->name));
-    snprintf(key, sizeof key, "%s_%s", number, unit);
+    snprintf(key, sizeof key, "%s_%s", row->number, row->unit_key);
     json_value_set(object, key, row->largest);
-    snprintf(key, sizeof key, "%s_crank_deg", number);
+    snprintf(key, sizeof key, "%s_crank_deg", row->number);
     json_value_set(object, key, units_wrapped_deg(row->crank_rad));
-    snprintf(key, sizeof key, "%s_time_s", number);
+    snprintf(key, sizeof key, "%s_time_s", row->number);
     json_value_set(object, key, row->time_s);
     json_value_set(object, "ratio_to_ideal", row->ratio);
     if (row->depth != NULL) {
@@ -523,12 +522,10 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_t *joints = json_array();
     json_t *bodies = json_array();
     for (size_t i = 0; i < overview.joint_count; i++) {
-        const bool is_turn = strcmp(overview.joints[i].unit, "N m") == 0;
-        json_array_append_new(joints,
-                              row_json(&overview.joints[i], is_turn ? "torque_max" : "force_max"));
+        json_array_append_new(joints, row_json(&overview.joints[i]));
     }
     for (size_t i = 0; i < overview.body_count; i++) {
-        json_array_append_new(bodies, row_json(&overview.bodies[i], "alpha_size_max"));
+        json_array_append_new(bodies, row_json(&overview.bodies[i]));
     }
     json_t *made = json_object();
     json_object_set_new(made, "backend",
@@ -536,7 +533,7 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_object_set_new(made, "joints", joints);
     json_object_set_new(made, "bodies", bodies);
     json_object_set_new(made, "drive",
-                        overview.has_drive ? row_json(&overview.drive, "torque_max") : json_null());
+                        overview.has_drive ? row_json(&overview.drive) : json_null());
     json_object_set_new(object, "overview", made);
     overview_free(&overview);
 }

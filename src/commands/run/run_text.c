@@ -3,7 +3,6 @@
 #include "base/zeroed.h"
 #include "commands/run/run_overview.h"
 #include "commands/run/run_report.h"
-#include "contact/damping.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
 #include "model/kinematics.h"
@@ -558,29 +557,28 @@ static void write_drive(const Scenario *scenario, Text *text)
 }
 
 // The restitution depends on the speed of the impact: what it is at some.
-static void run_text_write_dissipation(const ContactOptions *contact, Text *text)
+static void run_text_write_dissipation(const ForceLaw *law, Text *text)
 {
     static const double SPEEDS[] = {0.1, 0.3, 1.0}; // m/s
-    const double given = contact->dissipation;
-    const double dissipation =
-        given > 0.0
-            ? given
-            : damping_factor(contact->damping, contact->restitution) / contact->restitution_speed;
-    text_append(text, " %.4g s/m, which gives back", dissipation);
+    text_append(text, " %.4g s/m, which gives back", law_dissipation(law));
     for (size_t i = 0; i < sizeof SPEEDS / sizeof *SPEEDS; i++) {
-        text_append(text, "%s %.3g at %.3g m/s", i > 0 ? "," : "",
-                    damping_delivered(dissipation * SPEEDS[i]), SPEEDS[i]);
+        text_append(text, "%s %.3g at %.3g m/s", i > 0 ? "," : "", law_restitution(law, SPEEDS[i]),
+                    SPEEDS[i]);
     }
 }
 
-static void run_text_write_damping(const ContactOptions *contact, bool is_turning, Text *text)
+// `law` is what the options make, NULL where that fails.
+static void run_text_write_damping(const ContactOptions *contact, const ForceLaw *law,
+                                   bool is_turning, Text *text)
 {
     text_append(text, ", damping %s", OPTIONS_DAMPINGS[contact->damping]);
     if (contact->damping == DAMPING_VISCOUS) {
         text_append(text, " %.4g %s", contact->viscous_coefficient,
                     is_turning ? "N m s/rad" : "N s/m");
     } else if (contact->damping == DAMPING_DISSIPATION) {
-        run_text_write_dissipation(contact, text);
+        if (law != NULL) {
+            run_text_write_dissipation(law, text);
+        }
     } else if (contact->damping != DAMPING_NONE) {
         text_append(text, ", restitution %.4g", contact->restitution);
         if (contact->resting_speed > 0.0) {
@@ -597,8 +595,9 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
     ForceLaw law;
     Err err = {0};
     text_append(text, "%s", own.stiffness > 0.0 ? "given stiffness" : OPTIONS_LAWS[own.law]);
-    if (!law_build(&own, &scenario->material, &joint->clearance, scenario->linkage.driver.speed,
-                   &law, &err)) {
+    const bool is_built = law_build(&own, &scenario->material, &joint->clearance,
+                                    scenario->linkage.driver.speed, &law, &err);
+    if (!is_built) {
         text_append(text, " (%s)", err.text);
     } else if (law.family == FORCE_LAW_POWER) {
         text_append(text, ", K = %.4g %s", law.stiffness, is_turning ? "N m/rad" : "N/m");
@@ -609,7 +608,7 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
         text_append(text, ", d = A F (B - ln F) with A = %.4g m/N, B = %.4g", law.compliance,
                     law.offset);
     }
-    run_text_write_damping(&own, is_turning, text);
+    run_text_write_damping(&own, is_built ? &law : NULL, is_turning, text);
 }
 
 static void write_penalty(const Scenario *scenario, const Joint *joint, Text *text)

@@ -2,6 +2,7 @@
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_search.h"
+#include "write/measured_fields.h"
 #include "write/number.h"
 #include "write/settled.h"
 #include "write/table.h"
@@ -568,10 +569,7 @@ static void tune_screen_schemes(const TuneReport *report, Text *text)
         {"CPU", "ms", TABLE_RIGHT},
         {"", "", TABLE_LEFT},
     };
-    Table *table = table_create(COLUMNS);
-    for (size_t i = 0; i < COLUMNS; i++) {
-        table_head(table, i, HEADS[i].title, HEADS[i].unit, HEADS[i].align);
-    }
+    Table *table = table_headed(COLUMNS, HEADS);
     for (size_t i = 0; i < tune->scheme_count && i < SCREEN_SCHEMES; i++) {
         const TuneScheme *scheme = &tune->schemes[i];
         const TuneTrial *best = tune_best(tune, (int)i);
@@ -609,16 +607,7 @@ void tune_screen_write(const void *target, const Style *style, Text *text)
                     tune->reference.tolerance, tune->reference.error,
                     tune->reference.processor_median_s * UNITS_MS);
     }
-    Text words;
-    text_init(&words);
-    text_append(&words, "  Errors are against %s, which is right to %.2g", tune->truth.backend,
-                tune->truth.uncertainty);
-    if (tune->truth.is_limited) {
-        text_append(&words, ", up to %.4g ms: beyond, the motion cannot be predicted",
-                    tune->truth.horizon_s * UNITS_MS);
-    }
-    text_append(&words, ".");
-    screen_line(&words, text);
+    screen_truth(&tune->truth, text);
     settled_lines(report->scenario, text);
     text_append(text,
                 "  --full: all settings tried; --code FILE.c writes the setting as a program\n");
