@@ -195,7 +195,8 @@ static void find_reach(JpWorld *world)
     bodies_reach(&world->bodies);
 }
 
-JpStatus impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done, JpError *error)
+JpStatus world_impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done,
+                            JpError *error)
 {
     find_reach(world);
     if (!answer_make(world, step, answer)) {

@@ -5,7 +5,8 @@
 
 // Makes the world's step in velocities, from bodies that are kept at mid-step. `is_done` is false
 // where that could not be done; bodies are as they were kept then.
-JpStatus impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done, JpError *error);
+JpStatus world_impulse_step(JpWorld *world, double step, Answer *answer, bool *is_done,
+                            JpError *error);
 
 // Moves bodies and rotors on to where the impulses of the step were late or early, and books what
 // the contacts did.

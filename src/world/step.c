@@ -330,7 +330,7 @@ static JpStatus step_with_rows(JpWorld *world, double step, JpError *error)
 static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, bool *is_done,
                                    JpError *error)
 {
-    REFUSAL_TRY(impulse_step(world, step, answer, is_done, error));
+    REFUSAL_TRY(world_impulse_step(world, step, answer, is_done, error));
     bodies_wake(&world->bodies);
     if (*is_done) {
         return JP_OK;
