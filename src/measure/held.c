@@ -31,6 +31,9 @@ static const double CLOSEST = 1e-5;
 // m/s: nothing is as fast, so that nothing bounces
 static const double NO_BOUNCE = 1e100;
 
+// 1: sums of squares are compared with room for their rounding
+static const double SUM_ROUNDING = 1.0 + 1e-12;
+
 // beyond the outermost springs and dampers that a contact could want
 static const double WIDE = 30.0;
 
@@ -72,9 +75,22 @@ static double square_of_log(double value, double asked)
     return log_ratio * log_ratio;
 }
 
-// Makes the row and predicts it; the search gives up early, the prediction that is shown does not.
+// When a search gives up a setting, which then has an infinite misfit.
+typedef struct Patience {
+    size_t step_most;   // of one impact; 0 for a prediction that is shown, which is never given up
+    double misfit_most; // of a setting that is of any use
+} Patience;
+
+// Of the terms of the misfit one of a phase's three is the penetration's: the depth, m, at which
+// that term alone makes the whole too large.
+static double worst_depth(const MapImpact *asked, double misfit_most)
+{
+    return asked->penetration_max * exp(misfit_most * sqrt(3.0 * MAP_IMPACT_PHASES));
+}
+
+// Makes the row and predicts it.
 static HeldSetting held_predict(const MappingContact *contact, double step_s, OdeMap map,
-                                double stiffness, double damping, size_t step_most)
+                                double stiffness, double damping, const Patience *patience)
 {
     const MapImpact *asked = &contact->asked;
     HeldSetting setting = {.map = map, .stiffness = stiffness, .damping = damping};
@@ -87,7 +103,11 @@ static HeldSetting held_predict(const MappingContact *contact, double step_s, Od
     };
     setting.row = map_get(map)->convert(&at);
     MapImpactCase impact = impact_of(contact, step_s, &setting);
-    impact.step_most = step_most;
+    const bool is_search = patience->step_most > 0;
+    impact.step_most = patience->step_most;
+    impact.end = is_search ? worst_depth(asked, patience->misfit_most) : 0.0;
+    const double sum_most =
+        patience->misfit_most * patience->misfit_most * MAP_IMPACT_PHASES * SUM_ROUNDING;
     const double restitution_unit = fmax(asked->restitution, MAPPING_VALID_SHARE);
     setting.is_restitution_met = true;
     setting.misfit = 0.0;
@@ -100,7 +120,8 @@ static HeldSetting held_predict(const MappingContact *contact, double step_s, Od
         setting.misfit += (off * off + square_of_log(phase.force_max, asked->force_max) +
                            square_of_log(phase.penetration_max, asked->penetration_max)) /
                           3.0;
-        if (!phase.is_ended || (step_most > 0 && !setting.is_restitution_met)) {
+        if (!phase.is_ended ||
+            (is_search && (!setting.is_restitution_met || setting.misfit > sum_most))) {
             setting.misfit = INFINITY;
             break; // neither would the others do
         }
@@ -112,7 +133,8 @@ static HeldSetting held_predict(const MappingContact *contact, double step_s, Od
 HeldSetting held_setting(const MappingContact *contact, double step_s, OdeMap map, double stiffness,
                          double damping)
 {
-    HeldSetting setting = held_predict(contact, step_s, map, stiffness, damping, 0);
+    const Patience endless = {.misfit_most = INFINITY};
+    HeldSetting setting = held_predict(contact, step_s, map, stiffness, damping, &endless);
     setting.verdict = verdict_judge(contact, map, step_s, &setting.predicted);
     return setting;
 }
@@ -138,11 +160,14 @@ typedef struct Point {
     HeldSetting setting;
 } Point;
 
-static Point held_look(const Search *search, double log_stiffness, double log_damping)
+// A setting whose misfit is larger than is of any use is given up.
+static Point held_look(const Search *search, double log_stiffness, double log_damping,
+                       double misfit_most)
 {
+    const Patience patience = {search->step_most, misfit_most};
     return (Point){log_stiffness, log_damping,
                    held_predict(search->contact, search->step_s, search->map, exp(log_stiffness),
-                                exp(log_damping), search->step_most)};
+                                exp(log_damping), &patience)};
 }
 
 // Keeps a point among the best, the best first.
@@ -184,9 +209,9 @@ static void look_closer(const Search *search, double across_k, double across_c, 
         bool is_moved = false;
         for (int i = -CLOSER; i <= CLOSER; i++) {
             for (int k = -CLOSER; k <= CLOSER; k++) {
-                const Point tried =
-                    held_look(search, middle.log_stiffness + share * across_k * i / CLOSER,
-                              middle.log_damping + share * across_c * k / CLOSER);
+                const Point tried = held_look(
+                    search, middle.log_stiffness + share * across_k * i / CLOSER,
+                    middle.log_damping + share * across_c * k / CLOSER, point->setting.misfit);
                 if (held_is_better(&tried.setting, &point->setting)) {
                     *point = tried;
                     is_moved = true;
@@ -215,8 +240,8 @@ static void find_constants(const Search *search, double *stiffness, double *damp
     Point *grid = malloc(GRID * GRID * sizeof *grid);
     assert(grid != NULL);
     for (int i = 0; i < GRID * GRID; i++) {
-        grid[i] =
-            held_look(search, log(low) + across_k * (i / GRID), log(low_c) + across_c * (i % GRID));
+        grid[i] = held_look(search, log(low) + across_k * (i / GRID),
+                            log(low_c) + across_c * (i % GRID), INFINITY);
     }
     Point best[STARTS];
     size_t count = 0;
@@ -226,6 +251,10 @@ static void find_constants(const Search *search, double *stiffness, double *damp
         }
     }
     free(grid);
+    // beside a start that meets the restitution, those that do not are no use
+    while (best[0].setting.is_restitution_met && !best[count - 1].setting.is_restitution_met) {
+        count--;
+    }
     for (size_t i = 0; i < count; i++) {
         look_closer(search, across_k, across_c, &best[i]);
     }
