@@ -21,8 +21,10 @@ leave() {
 trap leave EXIT
 trap 'exit 1' INT TERM HUP
 
-JOB_WAIT=240 # s for an array and what gathers it: some 30 s on two free cores
-RUNS=72      # of the study below, some 0.2 s each: a shard takes longer than it takes to hit it
+JOB_WAIT=240  # s for an array and what gathers it: some 30 s on two free cores
+SPEEDS_CALM=2 # of a study whose shards are left alone
+SPEEDS_HIT=6  # of one whose shards take longer than it takes to hit them
+DRAWS=12      # a speed: runs of some 0.2 s each
 number=0
 
 # A sentence, and whether it is true: the status of the command behind it.
@@ -38,15 +40,17 @@ check() {
     fi
 }
 
+# A folder of its own for a study, of a number of speeds.
 write_study() {
-    cat >"$work/two words.yaml" <<STUDY
+    mkdir "$work/$1"
+    cat >"$work/$1/two words.yaml" <<STUDY
 title: Speed and length
 case: "$cases/paper/ideal-nominal.yaml"
 set: {run.step: 1 us}
 vary:
-  drive.speed: {from: 300 rpm, to: 1500 rpm, count: 6}
+  drive.speed: {from: 300 rpm, to: 1500 rpm, count: $2}
 draw:
-  count: 12
+  count: $DRAWS
   method: random
   seed: 1
   keys:
@@ -58,10 +62,16 @@ rows() {
     study_rows "$program" "$1"
 }
 
-# A folder with the scripts for four shards.
+# The study whole, in one process: whether it has all of its runs.
+make_whole() {
+    "$program" study "$work/$1/two words.yaml" --store "$work/$1/whole.sqlite" >/dev/null 2>&1
+    rows "$work/$1/whole.sqlite" >"$work/$1/whole.csv"
+    [ "$(wc -l <"$work/$1/whole.csv")" = $(($2 * DRAWS + 1)) ]
+}
+
+# The scripts for four shards, beside their study.
 make_scripts() {
-    mkdir "$work/$1" &&
-        (cd "$work/$1" && "$program" study slurm "../two words.yaml" --shards 4 --mem 100M --time 60)
+    (cd "$work/$1" && "$program" study slurm "two words.yaml" --shards 4 --mem 100M --time 60)
 }
 
 # What each shard and the gather job said, for whoever looks for what went wrong.
@@ -70,8 +80,9 @@ show_logs() {
 }
 
 equals_unsharded() {
-    if ! rows "$work/$1/two words.sqlite" >"$work/$1.csv" ||
-        ! cmp "$work/whole.csv" "$work/$1.csv"; then
+    if ! rows "$work/$1/two words.sqlite" >"$work/$1/gathered.csv" ||
+        ! [ -s "$work/$1/whole.csv" ] ||
+        ! cmp "$work/$1/whole.csv" "$work/$1/gathered.csv"; then
         show_logs "$1"
         return 1
     fi
@@ -139,7 +150,7 @@ went_on() {
     local shard made
     for shard in 1 2 3 4; do
         made=$(sed -n 's/^Made \([0-9]*\) runs .*/\1/p' "$work/hit/two_words.$shard-of-4.log")
-        [ "${made:-$RUNS}" -lt $((RUNS / 4)) ] || { show_logs hit; return 1; }
+        [ -n "$made" ] && [ "$made" -lt $((SPEEDS_HIT * DRAWS / 4)) ] || { show_logs hit; return 1; }
     done
 }
 
@@ -151,7 +162,7 @@ submit() {
 
 # A task that its owner has cancelled is not put back by its own script.
 stays_cancelled() {
-    make_scripts cancelled && submit cancelled && await_rows cancelled 1 || return 1
+    write_study cancelled $SPEEDS_HIT && make_scripts cancelled && submit cancelled && await_rows cancelled 1 || return 1
     scancel "${array}_1" && scancel "$array" && cluster_await_jobs $JOB_WAIT || return 1
     [ "$(tries_of cancelled 1)" = 1 ]
 }
@@ -167,12 +178,12 @@ nothing_is_left() {
 }
 
 echo 1..14
-write_study
+write_study calm $SPEEDS_CALM
+write_study hit $SPEEDS_HIT
 check "a Slurm of two nodes begins" cluster_begin "$cluster"
 check "it listens on this machine alone" listens_here_alone
-"$program" study "$work/two words.yaml" --store "$work/whole.sqlite" >/dev/null 2>&1
-rows "$work/whole.sqlite" >"$work/whole.csv"
-check "the study is made whole in one process" [ "$(wc -l <"$work/whole.csv")" = $((RUNS + 1)) ]
+check "the studies are made whole in one process" \
+    eval "make_whole calm $SPEEDS_CALM && make_whole hit $SPEEDS_HIT"
 
 check "scripts are written and submitted" eval 'make_scripts calm && submit calm'
 check "the array and the gather job end" cluster_await_jobs $JOB_WAIT

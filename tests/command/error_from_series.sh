@@ -12,6 +12,7 @@ recompute_forces=$(realpath "$4")
 randoms="four-bar:1 four-bar:2 four-bar:3 bodies:1 bodies:4 bodies:5 sliders:1 sliders:3 sliders:4 limits:1
     limits:2 limits:6 limits:8 sprung:2 sprung:3 sprung:4 balls:1 pendula:1 pendula:3 four-bars:1"
 spatial="overhung-pin bennett"
+python=${JOINTPLAY_PYTHON:-python3}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
@@ -24,7 +25,7 @@ report() {
 
 # Whether the errors of run.json, with the scale's least share, are those of the series.
 agrees() {
-    python3 - "$recompute" <<'END'
+    "$python" - "$recompute" <<'END'
 import contextlib, io, json, math, runpy, sys
 error = json.load(open("run.json"))["runs"][1]["error"]
 horizon = str(error["horizon_s"] or math.inf)
@@ -40,7 +41,7 @@ END
 
 # Whether those of forces and peaks are, of a case in which a joint has play.
 forces_agree() {
-    python3 - "$recompute_forces" <<'END'
+    "$python" - "$recompute_forces" <<'END'
 import contextlib, io, json, math, runpy, sys
 error = json.load(open("run.json"))["runs"][1]["error"]
 if error["force_max"] is None:
@@ -75,7 +76,7 @@ for name in $spatial; do
     check_case "$name" "$length"
 done
 # the control: one angular velocity of the reference's twice as large
-python3 -c 'import csv
+"$python" -c 'import csv
 rows = list(csv.DictReader(open("s-reference.csv")))
 column = [c for c in rows[0] if c.endswith("_omega_rad_s")][1]
 out = csv.DictWriter(open("s-reference.csv", "w"), rows[0])
@@ -86,7 +87,7 @@ report $? "a changed column is seen"
 # and one force of the reference's in a joint with play
 cp "$JOINTPLAY_CASES/paper/impact-k66.yaml" case.yaml
 check_case impact-k66 run.revolutions=0.05
-python3 -c 'import csv
+"$python" -c 'import csv
 rows = list(csv.DictReader(open("s-reference.csv")))
 largest = max(rows, key=lambda row: float(row["crank-coupler_force_N"]))
 largest["crank-coupler_force_N"] = 1.001 * float(largest["crank-coupler_force_N"])
@@ -97,7 +98,7 @@ out.writerows(rows)'
 report $? "a changed force is seen"
 # the contacts of the reference with one peak changed
 "$jointplay" run case.yaml --set run.revolutions=0.05 --set run.backends='[reference, ode]' --json -q --series s.csv >run.json
-python3 -c 'import json
+"$python" -c 'import json
 runs = json.load(open("run.json"))
 runs["runs"][0]["joints"]["crank-coupler"]["spikes"][0]["force_max_N"] *= 1.5
 json.dump(runs, open("run.json", "w"))'

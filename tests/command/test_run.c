@@ -128,12 +128,13 @@ static double setting_length(const json_t *root, const char *key, size_t count)
 static void a_direction_among_the_settings_is_a_list_and_a_tolerated_length_is_not(void **state)
 {
     Program *program = *state;
-    program_run(program, "run -q --json --backend reference $cases/space/bennett.yaml");
+    program_run(program, "run -q --json --uncertified --backend reference "
+                         "$cases/space/bennett.yaml");
     assert_int_equal(program->status, 0);
     json_t *root = program_json(program);
     assert_near(setting_length(root, "joints.ground-crank.axis", 3), 1.0, 1e-12);
     json_decref(root);
-    program_run(program, "run -q --json --uncertified --backend reference "
+    program_run(program, "run -q --json --uncertified --backend reference --set run.start=centred "
                          "$cases/paper/stackup-impact.yaml");
     assert_int_equal(program->status, 0);
     root = program_json(program);
@@ -208,7 +209,8 @@ static void a_failed_solver_ends_with_status_4_after_the_others_are_told(void **
     Program *program = *state;
     char path[PROGRAM_PATH_SIZE];
     program_run(program, "run --full $cases/paper/stackup-impact.yaml --set run.step=1ms "
-                         "--backend analytic,ode --set contact.stiffness='1e11 N/m^1.5' --out out");
+                         "--set run.start=centred --backend analytic,ode --set "
+                         "contact.stiffness='1e11 N/m^1.5' --out out");
     assert_int_equal(program->status, 4);
     assert_says(program->output, "coupler   analytic    42.2008");
     assert_says(program->output, "ode       failed      -");
@@ -223,7 +225,8 @@ static void json_of_a_failed_run_holds_no_number(void **state)
 {
     Program *program = *state;
     program_run(program, "run $cases/paper/stackup-impact.yaml --set run.step=1ms "
-                         "--backend analytic,ode --set contact.stiffness='1e11 N/m^1.5' --json");
+                         "--set run.start=centred --backend analytic,ode --set "
+                         "contact.stiffness='1e11 N/m^1.5' --json");
     assert_int_equal(program->status, 4);
     json_t *root = program_json(program);
     json_t *run = json_array_get(json_object_get(root, "runs"), 1);
@@ -379,7 +382,8 @@ static void settings_without_effect_are_said_a_line_each(void **state)
     assert_string_equal(program->errors, "");
     // the control: with play the law matters
     program_run(program, "run $cases/paper/stackup-impact.yaml --set contact.law=johnson "
-                         "--set contact.damping=none --backend ode --step 5us");
+                         "--set contact.damping=none --set run.start=centred --backend ode "
+                         "--step 5us");
     assert_null(strstr(program->errors, "has no effect"));
 }
 
@@ -417,7 +421,8 @@ static void the_same_command_twice_prints_the_same_hash(void **state)
     Program *program = *state;
     char hashes[2][32];
     for (int i = 0; i < 2; i++) {
-        program_run(program, "run --json $cases/paper/stackup-impact.yaml --backend ode");
+        program_run(program, "run --json $cases/paper/stackup-impact.yaml --backend ode "
+                             "--set run.start=centred");
         json_t *root = program_json(program);
         const json_t *run = json_array_get(json_object_get(root, "runs"), 0);
         snprintf(hashes[i], sizeof hashes[i], "%s",

@@ -16,6 +16,7 @@ programs=${PROGRAMS:-"four-bar:1 four-bar:2 four-bar:3 four-bar:4 bodies:1 bodie
     sliders:1 balls:1"}
 # shellcheck disable=SC2086
 set -- $programs
+python=${JOINTPLAY_PYTHON:-python3}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
@@ -25,7 +26,7 @@ written=0
 
 # Of the JSON: how far the truth goes, its uncertainty, and the error that was promised.
 values() {
-    python3 -c 'import json
+    "$python" -c 'import json
 tune = json.load(open("tune.json"))
 truth = tune["truth"]
 print(truth["horizon_s"] if truth["is_limited"] else "inf", truth["uncertainty"],

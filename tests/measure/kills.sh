@@ -25,20 +25,21 @@ write_case() { # samples of the run
     sed "s/samples: 3600, step: 10 us/samples: $1, step: 100 us/" \
         "$root/cases/paper/ideal-nominal.yaml" >k.yaml
 }
-write_study() {
+RUNS=12 # of the study that is killed
+write_study() { # runs, truth
     cat >s.yaml <<END
 title: A study to be killed
 case: k.yaml
 vary:
-  drive.speed: {from: 500 rpm, to: 1500 rpm, count: 18}
+  drive.speed: {from: 500 rpm, to: 1500 rpm, count: $(($1 / 2))}
   scheme: [direct/plain, direct/staggered]
-truth: ${1:-true}
+truth: $2
 END
 }
 
 # For each command: what it needs, its words, the numbers of its result that do not depend on the clock,
 # what it had finished when it was killed, and whether all of that is there in the end.
-prepare_study() { write_case 36 && write_study; }
+prepare_study() { write_case 36 && write_study $RUNS true; }
 words_study=(study s.yaml --json -q --jobs 2)
 result_study() { rows s.sqlite; }
 held_study() { rows s.sqlite 2>error || grep -q 'is not the store of a study\|No such file' error; }
@@ -46,7 +47,7 @@ kept_study() {
     local made
     made=$(sed -n 's/.*"made": \([0-9]*\).*/\1/p' output)
     # without the line of names
-    [ "$((made + $(grep -c '^[0-9]' held)))" = 36 ] && ! grep -vxFf result held
+    [ "$((made + $(grep -c '^[0-9]' held)))" = $RUNS ] && ! grep -vxFf result held
 }
 rows() { "$program" study export "$1" | sed 's/,[^,]*$//'; }
 
@@ -166,8 +167,7 @@ make_shards() {
     mkdir "$work/shards"
     cd "$work/shards" || exit 2
     write_case 36
-    write_study false
-    sed -i 's/count: 18/count: 150/' s.yaml
+    write_study 60 false
     local i=0 name
     for name in a b c; do
         i=$((i + 1))
