@@ -402,6 +402,21 @@ JP_API JpStatus jp_stops_create(JpWorld *world, dJointID joint, const JpStops *s
 
 JP_API void jp_joint_destroy(JpJoint *joint);
 
+/* How a contact began that is under way when its joint is made, because the bodies come from
+ * elsewhere in the middle of it. */
+typedef struct JpBegun {
+    double impact_speed; /* rad/s or m/s, >= 0, with which it began */
+    double age;          /* s, >= 0, since then */
+    bool is_released;    /* it has been compressed and released since */
+    bool is_resting;     /* and compressed again: it is damped by the contact's resting speed */
+} JpBegun;
+
+/* Says that of one side, before the first step; without it the contact begins in that step, with
+ * the speed that it has then. Sides of a hinge or slider: 0 the low, 1 the high one; of a pin: 0
+ * and 1 its ends, 2 and 3 its collars. JP_ERROR_ARGUMENT where the joint has no such side,
+ * JP_ERROR_NONE where it does not touch as the bodies stand. */
+JP_API JpStatus jp_joint_begun(JpJoint *joint, size_t side, const JpBegun *begun, JpError *error);
+
 /* One side of the gap. */
 typedef struct JpSide {
     double gap;          /* rad or m to it; below 0 inside; infinite where there is none */

@@ -156,6 +156,27 @@ static double apart(const Seen *one, const Seen *other)
     return most;
 }
 
+// Tells a joint how the contacts of another began, in their first two steps.
+static void tell_how_they_began(SceneKind kind, const Scene *from, const Scene *to)
+{
+    JpSide sides[2] = {{.gap = INFINITY}, {.gap = INFINITY}};
+    if (kind == SCENE_STOP) {
+        JpJointState state;
+        must(jp_joint_state(from->joint, &state, NULL));
+        sides[0] = state.low;
+    } else {
+        JpPinState state;
+        must(jp_pin_state(from->joint, &state, NULL));
+        memcpy(sides, state.ends, state.end_count * sizeof *sides);
+    }
+    for (size_t i = 0; i < 2; i++) {
+        if (sides[i].gap < 0.0) {
+            must(jp_joint_begun(to->joint, i, &(JpBegun){.impact_speed = sides[i].impact_speed},
+                                NULL));
+        }
+    }
+}
+
 static void check_scene(SceneKind kind, JpStepping stepping)
 {
     const double step = stepping == JP_STEPPING_PLAIN ? 2e-6 : 2e-5;
@@ -180,10 +201,14 @@ static void check_scene(SceneKind kind, JpStepping stepping)
     must(jp_world_resume(other.play, state, size, NULL));
     Scene bodies_alone = make(kind, stepping);
     copy_bodies(&scene, &bodies_alone);
+    Scene begun = make(kind, stepping);
+    copy_bodies(&scene, &begun);
+    tell_how_they_began(kind, &scene, &begun);
 
     run(&scene, step, more);
     run(&other, step, more);
     run(&bodies_alone, step, more);
+    run(&begun, step, more);
     const Seen truth = look(kind, &scene);
     const Seen resumed = look(kind, &other);
     const Seen control = look(kind, &bodies_alone);
@@ -193,7 +218,12 @@ static void check_scene(SceneKind kind, JpStepping stepping)
     }
     assert_true(apart(&truth, &resumed) < ROUNDING);
     assert_true(apart(&truth, &control) > 1e3 * ROUNDING);
+    const Seen told = look(kind, &begun);
+    print_message("# scene %d, stepping %d: told how they began %.1e, not told %.1e\n", kind,
+                  stepping, apart(&truth, &told), apart(&truth, &control));
+    assert_true(apart(&truth, &told) < 0.05 * apart(&truth, &control));
     free(state);
+    destroy(&begun);
     destroy(&bodies_alone);
     destroy(&other);
     destroy(&scene);
@@ -232,6 +262,15 @@ static void what_is_no_such_state_is_refused(void **state)
     assert_non_null(strstr(error.text, "made in another way"));
     assert_int_equal(jp_world_resume(plain.play, saved, size, &error), JP_ERROR_ARGUMENT);
     assert_int_equal(jp_world_resume(scene.play, saved, size - 1, &error), JP_ERROR_ARGUMENT);
+    JpBegun begun = {.impact_speed = 1.0};
+    assert_int_equal(jp_joint_begun(NULL, 0, &begun, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_joint_begun(plain.joint, 0, NULL, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_joint_begun(plain.joint, 1, &begun, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_joint_begun(other.joint, 2, &begun, &error), JP_ERROR_ARGUMENT);
+    assert_int_equal(jp_joint_begun(other.joint, 1, &begun, &error), JP_ERROR_NONE);
+    assert_non_null(strstr(error.text, "does not touch"));
+    begun.age = -1.0;
+    assert_int_equal(jp_joint_begun(plain.joint, 0, &begun, &error), JP_ERROR_ARGUMENT);
     assert_int_equal(jp_world_save(NULL, saved, size, &size, &error), JP_ERROR_ARGUMENT);
     assert_int_equal(jp_world_save(scene.play, saved, size, NULL, &error), JP_ERROR_ARGUMENT);
     assert_int_equal(jp_world_resume(NULL, saved, size, &error), JP_ERROR_ARGUMENT);

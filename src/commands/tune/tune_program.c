@@ -265,6 +265,25 @@ static bool tune_program_fill_contact(const Scenario *scenario, const Joint *joi
     return true;
 }
 
+// Hands on what the contacts of a joint carry at the start.
+static bool begin_contacts(const Joint *joint, JpJoint *made, Err *err)
+{
+    for (size_t i = 0; i < JOINT_PLACES; i++) {
+        const ContactState *state = &joint->contacts[i];
+        const JpBegun begun = {
+            .impact_speed = state->impact_speed,
+            .age = state->age_s,
+            .is_released = state->is_released,
+            .is_resting = state->is_resting,
+        };
+        JpError error;
+        if (state->is_touching && !accept(jp_joint_begun(made, i, &begun, &error), &error, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool make_pin(LibraryWorld *world, int number, Err *err)
 {
     const Scenario *scenario = world->scenario;
@@ -289,7 +308,8 @@ static bool make_pin(LibraryWorld *world, int number, Err *err)
     return tune_program_fill_contact(scenario, joint, &pin.contact, err) &&
            accept(jp_pin_create(world->play, tune_program_body_of(world, joint->body_a),
                                 tune_program_body_of(world, joint->body_b), &pin, &made, &error),
-                  &error, err);
+                  &error, err) &&
+           begin_contacts(joint, made, err);
 }
 
 static bool make_limits(LibraryWorld *world, int number, const Motion *motions, Err *err)
@@ -306,14 +326,16 @@ static bool make_limits(LibraryWorld *world, int number, const Motion *motions, 
         return tune_program_fill_contact(scenario, joint, &backlash.tooth, err) &&
                accept(
                    jp_backlash_create(world->play, world->joints[number], &backlash, &made, &error),
-                   &error, err);
+                   &error, err) &&
+               begin_contacts(joint, made, err);
     }
     JpStops stops = jp_stops_default();
     stops.low = joint->limits.low - start;
     stops.high = joint->limits.high - start;
     return tune_program_fill_contact(scenario, joint, &stops.contact, err) &&
            accept(jp_stops_create(world->play, world->joints[number], &stops, &made, &error),
-                  &error, err);
+                  &error, err) &&
+           begin_contacts(joint, made, err);
 }
 
 static bool make_play(LibraryWorld *world, const Motion *motions, Err *err)
