@@ -8,6 +8,7 @@
 #include "casefile/closure.h"
 #include "casefile/joint_kind.h"
 #include "casefile/limits.h"
+#include "casefile/over_time.h"
 #include "casefile/slider.h"
 #include "casefile/store.h"
 #include "casefile/unused.h"
@@ -115,13 +116,17 @@ static void store_run_start(const Entries *entries, Scenario *scenario)
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         is_given = is_given || entries_find(entries, "joints.*.start", i) != NULL;
     }
+    const Driver *driver = &scenario->linkage.driver;
+    const double period_s = linkage_period(&scenario->linkage);
+    const bool is_steady = drive_is_steady(driver);
     run->centred_because =
-        !scenario->linkage.driver.is_present          ? "nothing drives it at a given speed"
-        : !drive_is_steady(&scenario->linkage.driver) ? "the speed of its drive changes"
-        : scenario->contact.model == CONTACT_POISSON  ? "contacts of model poisson have no state"
-        : is_given                                    ? "the case gives where a joint starts"
-        : run->revolutions < 1.0                      ? "it runs for less than a revolution"
-                                                      : NULL;
+        !driver->is_present ? "nothing drives it at a given speed"
+        : period_s == 0.0   ? "the speed of its drive changes without a drive.period"
+        : scenario->contact.model == CONTACT_POISSON ? "contacts of model poisson have no state"
+        : is_given                                   ? "the case gives where a joint starts"
+        : is_steady && run->revolutions < 1.0        ? "it runs for less than a revolution"
+        : !is_steady && run->duration < period_s     ? "it runs for less than a period of its drive"
+                                                     : NULL;
     run->start = run->centred_because != NULL ? START_CENTRED : START_SETTLED;
 }
 
@@ -141,7 +146,8 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         }
     }
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
-    if (!limits_join_gears(entries, &scenario->linkage, err)) {
+    if (!limits_join_gears(entries, &scenario->linkage, err) ||
+        !over_time_repeat(entries, &scenario->linkage.driver, err)) {
         return false;
     }
     store_partners(entries, scenario);

@@ -3,6 +3,8 @@
 
 #include "casefile/quantity.h"
 
+#include "model/drive.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -150,4 +152,63 @@ bool over_time_store_speed(const Entry *entry, Driver *driver, Err *err)
         driver->speeds = (TimeTable){.count = 0};
     }
     return true;
+}
+
+// 1: of a period or of a turn, what rounding may leave
+static const double PERIOD_ROUNDING = 1e-12;
+static const double TURN_ROUNDING = 1e-9;
+
+static bool over_time_check_turns(const Entry *entry, const TimeTable *speeds, Err *err)
+{
+    const double turns = (double)time_table_integral(speeds, speeds->period_s) / (2.0 * M_PI);
+    const double whole = round(turns);
+    if (fabs(turns - whole) <= TURN_ROUNDING) {
+        return true;
+    }
+    if (whole == 0.0) {
+        return entries_refuse(
+            entry, err,
+            "the drive turns by %.9g of a revolution in a period, and would start "
+            "the next elsewhere\nallowed: whole turns in a period, or none",
+            turns);
+    }
+    return entries_refuse(entry, err,
+                          "the drive turns by %.9g revolutions in a period, and would start the "
+                          "next elsewhere\nallowed: whole turns in a period, as with all speeds "
+                          "times %.9g",
+                          turns, whole / turns);
+}
+
+bool over_time_repeat(const Entries *entries, Driver *driver, Err *err)
+{
+    const Entry *entry = entries_find(entries, "drive.period", 0);
+    TimeTable *speeds = &driver->speeds;
+    if (entry == NULL) {
+        return true;
+    }
+    if (!driver->is_present) {
+        return entries_refuse(entry, err,
+                              "only a speed over time repeats\nallowed: drive.period beside "
+                              "drive.speed alone");
+    }
+    if (speeds->count == 0) {
+        return true; // a constant speed has no use for it, which is said elsewhere
+    }
+    const size_t last = speeds->count - 1;
+    const double end_s = speeds->times[last];
+    const bool is_at_end = fabs(end_s - speeds->period_s) <= PERIOD_ROUNDING * speeds->period_s;
+    if (is_at_end && speeds->times[0] == 0.0 && speeds->values[last] != speeds->values[0]) {
+        return entries_refuse(entry, err,
+                              "the speed at the end of a period is not that at its start\nallowed: "
+                              "the same at both, or a period longer than %.6g s",
+                              end_s);
+    }
+    if (!is_at_end && end_s > speeds->period_s) {
+        return entries_refuse(entry, err,
+                              "the points of drive.speed do not fit into a period\nallowed: a "
+                              "period of at least %.6g s, the time of the last point",
+                              end_s);
+    }
+    speeds->count -= is_at_end && speeds->times[0] == 0.0 ? 1 : 0;
+    return over_time_check_turns(entry, speeds, err);
 }

@@ -9,3 +9,8 @@ bool over_time_store(const Entry *entry, TimeTable *table, Err *err);
 
 // The same for the speed of a drive: the same value at all times is a constant speed.
 bool over_time_store_speed(const Entry *entry, Driver *driver, Err *err);
+
+// Lets a speed over time repeat, once speed and period are read: a last point that is the first of
+// the next period is left out. Fails with ERR_CASE where the points do not fit into the period, or
+// the drive does not turn by whole turns in it.
+bool over_time_repeat(const Entries *entries, Driver *driver, Err *err);

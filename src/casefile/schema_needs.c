@@ -19,13 +19,14 @@ typedef struct Condition {
 
 // A key that lacks several is told the first. A mistake is what changes the mechanism or its
 // contact and takes one word of another key; what chooses among ways to compute may well be kept
-// for another setting. What a key asks of itself (OWN_STIFFNESS, LATER and such) and what check.c
+// for another setting. What a key asks of itself (OWN_STIFFNESS, VALUED and such) and what check.c
 // refuses (FREE, DRIVE and such) has no row.
 // clang-format off
 static const Condition CONDITIONS[] = {
     {SPATIAL, 0, {"space: spatial", "space", true}},
     {PLAY, 0, {"a joint with play", "", false}},
     {TURNING, 0, {"a drive of constant speed", "", false}},
+    {REPEATING, 0, {"a drive of constant speed, or with drive.period", "", false}},
     {IDEAL, 0, {"a case whose joints are all ideal", "", false}},
     {IMPACT, PLAY, {"contact.model: impact", "contact.model", false}},
     {POISSON, PLAY, {"contact.model: poisson", "contact.model", true}},
@@ -62,6 +63,7 @@ static const Condition WANTS[] = {
     {SETTLED, 0, {"run.start: settled", "run.start", false}},
     {REMEMBERED, 0, {"a contact.damping but none, viscous and dissipation", "contact.damping", false}},
     {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
+    {UNSTEADY, 0, {"a drive.speed over time", "drive.speed", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
 };
 // clang-format on
@@ -127,7 +129,7 @@ static unsigned drive_bits(const Scenario *scenario)
     return bit(DRIVE, linkage->driver.is_present) | bit(TORQUE, is_torque && !is_force) |
            bit(FORCE, is_torque && is_force) |
            bit(DRIVEN, linkage->driver.is_present || is_torque) | bit(TURNING, is_steady) |
-           bit(TIMED, !is_steady);
+           bit(TIMED, !is_steady) | bit(REPEATING, linkage_period(linkage) > 0.0);
 }
 
 static unsigned contact_bits(const Scenario *scenario)
@@ -152,8 +154,7 @@ unsigned schema_met(const Scenario *scenario)
                    bit(FREE, !build_is_determined(&scenario->linkage)) |
                    bit(QUICK, scenario->ode.solver == ODE_QUICK) |
                    bit(FACETED, scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) |
-                   bit(SPATIAL, scenario->linkage.is_spatial) |
-                   bit(LATER, scenario->run.report_from > 0.0);
+                   bit(SPATIAL, scenario->linkage.is_spatial);
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         met |= bit(REFERENCE, scenario->run.backends[i] == BACKEND_REFERENCE);
         met |= bit(ODE, scenario->run.backends[i] == BACKEND_ODE);
@@ -165,7 +166,7 @@ static unsigned joint_bits(const Scenario *scenario, const Joint *joint)
 {
     const bool is_own = joint->contact.stiffness > 0.0 &&
                         (!scenario->contact.is_for_all || linkage_is_torsional(joint));
-    return bit(OWN_STIFFNESS, is_own) | bit(OWN_VISCOUS, joint->contact.viscous > 0.0);
+    return bit(OWN_STIFFNESS, is_own);
 }
 
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met)
@@ -175,6 +176,9 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     }
     const bool is_member = index < schema_member_count(scenario, row->family);
     met |= bit(MEMBER, is_member);
+    if (is_member && (row->needs & VALUED) != 0) {
+        met |= bit(VALUED, *(const double *)schema_field_const(row, scenario, index) > 0.0);
+    }
     if (row->family == SCHEMA_JOINT && is_member) {
         const Joint *joint = &scenario->linkage.joints[index];
         met |= joint_bits(scenario, joint);
@@ -233,6 +237,7 @@ static unsigned row_bits(const Scenario *scenario)
            bit(SHUFFLED, scenario->ode.iterations > SHUFFLE_ITERATIONS) |
            bit(MOVED, build_is_determined(&scenario->linkage)) |
            bit(SETTLED, scenario->run.start == START_SETTLED) |
+           bit(UNSTEADY, scenario->linkage.driver.speeds.count > 0) |
            bit(REMEMBERED, scenario->contact.damping != DAMPING_DISSIPATION) |
            bit(DERIVED, scenario->contact.damping != DAMPING_DISSIPATION ||
                             scenario->contact.dissipation == 0.0);

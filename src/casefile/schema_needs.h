@@ -27,14 +27,14 @@ enum {
     PLAIN = 1 << 19, // the stepping of a given step
     EXTRAPOLATED = 1 << 20,
     LOCAL = 1 << 21,               // the contact is integrated within the step
-    LATER = 1 << 22,               // what is reported begins after the start
+    VALUED = 1 << 22,              // the key has a value above 0
     FACETED = 1 << 23,             // the collider takes holes for polygons
     SPATIAL = 1 << 24,             // bodies move in space
     TORQUE = 1 << 25,              // a torque drives
     FORCE = 1 << 29,               // or a force
     DRIVEN = 1 << 26,              // there is a drive, a torque or a force
     OWN = 1 << 27,                 // the joint notes that it has the value of its own
-    OWN_VISCOUS = 1 << 30,         // or a viscous coefficient
+    REPEATING = 1 << 30,           // the drive has a period: constant speed, or one that repeats
     DISSIPATING = (int)(1U << 31), // the damping dissipates without a memory
     TURNING = 1 << 28,             // the drive's speed is constant: revolutions measure the run
 };
@@ -54,5 +54,6 @@ enum {
     SETTLED = 1 << 11,         // runs start in the settled motion
     REMEMBERED = 1 << 12,      // the damping divides by the speed of the impact
     DERIVED = 1 << 13,         // what is lost follows from a restitution
+    UNSTEADY = 1 << 14,        // the drive's speed is not constant
     SHUFFLED = 1 << 9,         // the quick solver comes to change the order of the rows
 };

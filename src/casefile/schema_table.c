@@ -224,6 +224,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      .rivalry = SCHEMA_DRIVING, .side = 0, .needs = DRIVE,
      .doc = "angular velocity of the driven body, counter-clockwise positive: constant and not 0, "
             "or linear in time between points with constant ends, at most 32, not all 0"},
+    {.path = "drive.period", .dimension = DIMENSION_TIME, AT(linkage.driver.speeds.period_s),
+     .low = 0.0, .high = 1e6, .low_is_open = true, .default_words = "none", .needs = DRIVE | VALUED,
+     .wants = UNSTEADY,
+     .doc = "time after which a speed over time repeats, for ever: it is linear from its last point "
+            "to the first of the next period, and turns the drive by whole turns in each"},
     {.path = "drive.torque", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
      .dimension = DIMENSION_TORQUE, AT(linkage.torque.table), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 1, .default_words = "none", .needs = TORQUE,
@@ -338,22 +343,23 @@ const SchemaRow SCHEMA_ROWS[] = {
             "angular acceleration, the largest force; without a drive, relative to a tenth of "
             "the signal's range"},
     {.path = "run.report-from", .type = SCHEMA_SPAN, .dimension = DIMENSION_TIME,
-     AT(run.report_from), .low = 0.0, .high = 1e6, .needs = LATER,
+     AT(run.report_from), .low = 0.0, .high = 1e6, .needs = VALUED,
      .doc = "extremes, contacts and spikes are reported from this time on, such as 1 revolution, "
             "to exclude an assumed start; errors, energy, series and picture cover the whole run"},
     {.path = "run.start", .type = SCHEMA_CHOICE, AT(run.start), .words = OPTIONS_RUN_STARTS,
-     .needs = PLAY | TURNING | IMPACT,
+     .needs = PLAY | REPEATING | IMPACT,
      .default_words = "settled; centred of a case that gives a joint's start or runs for less than "
-                      "a revolution",
+                      "a revolution or a period of its drive",
      .doc = "settled: in the motion that the reference comes to from several starts, where every "
             "backend starts, with what its contacts carry; centred: pins in the middle of their "
             "holes, or where the case puts them; pressed: each pin on the wall of its hole where "
             "the reaction of an ideal joint would hold it"},
     {.path = "run.settle-most", .type = SCHEMA_INTEGER, AT(run.settle_most), .low = 2.0,
-     .high = 1e6, .needs = PLAY | TURNING | IMPACT, .wants = SETTLED,
-     .doc = "revolutions after which a motion that does not repeat is taken as it is"},
+     .high = 1e6, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
+     .doc = "revolutions, or periods of the drive, after which a motion that does not repeat is "
+            "taken as it is"},
     {.path = "run.settle-starts", .type = SCHEMA_INTEGER, AT(run.settle_starts), .low = 1.0,
-     .high = 64.0, .needs = PLAY | TURNING | IMPACT, .wants = SETTLED,
+     .high = 64.0, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
      .doc = "starts from which the settled motion is looked for: as written, pressed, and with "
             "other velocities; the run is in the motion that most of them come to"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),

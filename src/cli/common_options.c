@@ -2,6 +2,7 @@
 #include "cli/common_options.h"
 
 #include "casefile/casefile.h"
+#include "cli/progress.h"
 #include "run/settle.h"
 
 #include <assert.h>
@@ -22,7 +23,10 @@ bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *
     if (!casefile_load(options->path, options->overrides, options->override_count, scenario, err)) {
         return false;
     }
-    settle_scenario(scenario);
+    Progress progress;
+    progress_begin(&progress, options->is_quiet);
+    settle_scenario(scenario, progress_watch(&progress, SETTLING));
+    progress_end(&progress);
     return true;
 }
 

@@ -4,6 +4,9 @@
 #include "cli/status_line.h"
 #include "measure/chosen_run.h"
 
+// What is watched while the settled motion is looked for (run/settle.h).
+#define SETTLING "settling, of run.settle-most"
+
 typedef struct Progress {
     const char *backend; // of the run that is watched
     char doing[64];      // which of its trials; empty where there are none

@@ -1,6 +1,7 @@
 // How the drive turns its body about its joint with the ground: at constant speed, or at a speed
-// over time. The speed is then linear between the points of its table, so that the angle is a
-// parabola and the angular acceleration constant; it jumps at the points, the kinks of the speed.
+// over time, which may repeat in periods of whole turns. The speed is then linear between the
+// points of its table, so that the angle is a parabola and the angular acceleration constant; it
+// jumps at the points, the kinks of the speed.
 #pragma once
 
 #include "model/time_table.h"

@@ -77,7 +77,10 @@ void linkage_describe_instant(const Linkage *linkage, double time_s,
 
 double linkage_period(const Linkage *linkage)
 {
-    return drive_is_steady(&linkage->driver) ? 2.0 * M_PI / fabs(linkage->driver.speed) : 0.0;
+    const Driver *driver = &linkage->driver;
+    return drive_is_steady(driver)    ? 2.0 * M_PI / fabs(driver->speed)
+           : driver->speeds.count > 0 ? driver->speeds.period_s
+                                      : 0.0;
 }
 
 // How far a body goes beyond its anchor in a joint that slides or stops, m.

@@ -186,7 +186,7 @@ static bool check_driver(const Linkage *linkage, Err *err)
                        driver->speed);
     }
     return time_table_is_ordered(&driver->speeds) ||
-           err_set(err, ERR_CASE, "the times of a speed must increase");
+           err_set(err, ERR_CASE, "the times of a speed must increase, within its period");
 }
 
 static bool check_springs(const Linkage *linkage, Err *err)

@@ -178,7 +178,7 @@ double scenario_sample_time(const Scenario *scenario, size_t sample)
 
 bool scenario_settles(const Scenario *scenario)
 {
-    return scenario->run.start == START_SETTLED && drive_is_steady(&scenario->linkage.driver) &&
+    return scenario->run.start == START_SETTLED && linkage_period(&scenario->linkage) > 0.0 &&
            scenario->contact.model == CONTACT_IMPACT && scenario_has_clearance(scenario);
 }
 

@@ -1,6 +1,7 @@
 // What is a quantity that is given by points over time?
 //
 //     f(t) = f_i + (f_i+1 - f_i) (t - t_i) / (t_i+1 - t_i)     t_i <= t < t_i+1
+//     f(t + T) = f(t)                                          with a period T
 #include "model/time_table.h"
 
 #include <math.h>
@@ -13,36 +14,51 @@ bool time_table_is_ordered(const TimeTable *table)
             return false;
         }
     }
-    return true;
+    const size_t last = table->count - 1;
+    return table->period_s == 0.0 || table->count == 0 ||
+           (isfinite(table->period_s) && table->times[last] - table->times[0] < table->period_s);
 }
 
-// The line between two points of the table, at a time on it or beyond it.
-static double on_line(const TimeTable *table, size_t first, double time_s)
+// Points are numbered from 0. Those of a table that repeats go on in both directions: number 0 is
+// the first of the table, at time zero or later.
+
+// The number of the period that a point is of.
+static long period_of(const TimeTable *table, long point)
 {
-    const double width_s = table->times[first + 1] - table->times[first];
-    const double share = (time_s - table->times[first]) / width_s;
-    return table->values[first] + share * (table->values[first + 1] - table->values[first]);
+    const long count = (long)table->count;
+    return point >= 0 ? point / count : -((count - 1 - point) / count);
+}
+
+static size_t place_of(const TimeTable *table, long point)
+{
+    return (size_t)(point - period_of(table, point) * (long)table->count);
+}
+
+static double time_of(const TimeTable *table, long point)
+{
+    return (double)period_of(table, point) * table->period_s + table->times[place_of(table, point)];
+}
+
+// Whether there is a point of that number.
+static bool is_there(const TimeTable *table, long point)
+{
+    return table->period_s > 0.0 || (point >= 0 && point < (long)table->count);
 }
 
 // The first point after a time, and after time zero.
-static size_t point_after(const TimeTable *table, double time_s)
+static long point_after(const TimeTable *table, double time_s)
 {
-    size_t after = 0;
-    while (after < table->count && table->times[after] <= fmax(time_s, 0.0)) {
+    const double from_s = fmax(time_s, 0.0);
+    long after = 0;
+    if (table->period_s > 0.0) {
+        // rounding may make it one period too many
+        const double periods = floor((from_s - table->times[0]) / table->period_s);
+        after = ((long)periods - 1) * (long)table->count;
+    }
+    while (is_there(table, after) && time_of(table, after) <= from_s) {
         after++;
     }
     return after;
-}
-
-double time_table_at(const TimeTable *table, double time_s)
-{
-    if (table->count == 0) {
-        return 0.0;
-    }
-    const size_t after = point_after(table, time_s);
-    return after == 0              ? table->values[0]
-           : after == table->count ? table->values[after - 1]
-                                   : on_line(table, after - 1, time_s);
 }
 
 TimePiece time_table_piece(const TimeTable *table, double time_s)
@@ -50,17 +66,42 @@ TimePiece time_table_piece(const TimeTable *table, double time_s)
     if (table->count == 0) {
         return (TimePiece){.value = 0.0};
     }
-    const size_t after = point_after(table, time_s);
-    const size_t first = after == 0 ? 0 : after - 1;
-    TimePiece piece = {.time_s = table->times[first], .value = table->values[first]};
-    if (after > 0 && after < table->count) {
-        piece.slope = (table->values[after] - piece.value) / (table->times[after] - piece.time_s);
+    const long after = point_after(table, time_s);
+    const long first = is_there(table, after - 1) ? after - 1 : 0;
+    const size_t from = place_of(table, first);
+    TimePiece piece = {.time_s = time_of(table, first), .value = table->values[from]};
+    if (first < after && is_there(table, after)) {
+        const size_t to = place_of(table, after);
+        const double width_s = table->times[to] - table->times[from];
+        piece.slope =
+            (table->values[to] - piece.value) / (to > from ? width_s : width_s + table->period_s);
     }
     return piece;
 }
 
+double time_table_at(const TimeTable *table, double time_s)
+{
+    if (table->count == 0) {
+        return 0.0;
+    }
+    const long after = point_after(table, time_s);
+    const TimePiece piece = time_table_piece(table, time_s);
+    if (!is_there(table, after) || !is_there(table, after - 1)) {
+        return piece.value;
+    }
+    const size_t from = place_of(table, after - 1);
+    const size_t to = place_of(table, after);
+    const double width_s = table->times[to] - table->times[from];
+    const double share =
+        (time_s - piece.time_s) / (to > from ? width_s : width_s + table->period_s);
+    return piece.value + share * (table->values[to] - piece.value);
+}
+
 double time_table_next_bend(const TimeTable *table, double time_s)
 {
+    if (table->period_s > 0.0 && table->count > 0) {
+        return time_of(table, point_after(table, time_s));
+    }
     for (size_t i = 0; i < table->count; i++) {
         if (table->times[i] > time_s) {
             return table->times[i];
@@ -88,7 +129,8 @@ static long double piece_integral(const TimePiece *piece, long double from_s, lo
     return (to_s - from_s) * (piece->value + piece->slope * middle_s);
 }
 
-long double time_table_integral(const TimeTable *table, long double time_s)
+// From time zero to a time in the first period.
+static long double integral_to(const TimeTable *table, long double time_s)
 {
     long double sum = 0.0L;
     double start_s = 0.0;
@@ -100,6 +142,16 @@ long double time_table_integral(const TimeTable *table, long double time_s)
     }
     const TimePiece piece = time_table_piece(table, start_s);
     return sum + piece_integral(&piece, start_s, time_s);
+}
+
+long double time_table_integral(const TimeTable *table, long double time_s)
+{
+    const long double period_s = table->period_s;
+    if (!(period_s > 0.0L && time_s > period_s)) {
+        return integral_to(table, time_s);
+    }
+    const long double periods = floorl(time_s / period_s);
+    return periods * integral_to(table, period_s) + integral_to(table, time_s - periods * period_s);
 }
 
 double time_table_largest(const TimeTable *table)

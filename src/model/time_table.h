@@ -1,4 +1,5 @@
-// A quantity over time: linear between its points, constant before the first and after the last.
+// A quantity over time: linear between its points, constant before the first and after the last, or
+// the same again in every period, with a line from its last point to the first of the next.
 //
 // A run may look a little behind time zero. There the piece that holds at and after time zero goes
 // on, so that no bend lies in its past.
@@ -13,6 +14,7 @@ typedef struct TimeTable {
     size_t count;                  // of points; 0: there is no table, and every value is 0
     double times[TIME_TABLE_MAX];  // s, increasing
     double values[TIME_TABLE_MAX]; // in the quantity's unit
+    double period_s;               // longer than from the first point to the last; 0: none
 } TimeTable;
 
 // A piece of a table: value + slope (t - time_s).
@@ -22,7 +24,7 @@ typedef struct TimePiece {
     double slope; // of the value, per s
 } TimePiece;
 
-// Whether all numbers are finite and the times increase.
+// Whether all numbers are finite, and the times increase and lie within one period.
 bool time_table_is_ordered(const TimeTable *table);
 
 double time_table_at(const TimeTable *table, double time_s);

@@ -1,9 +1,9 @@
 // Turns a mechanism until its motion repeats.
 //
-// Each revolution is a run of the reference by itself, from the state of the last (model/state.h),
-// so that what comes out of n revolutions does not depend on how many follow. With x_n the section
-// after n revolutions, velocities over the fastest, and F_n the largest forces of each joint, the
-// motion repeats after p revolutions where
+// Each revolution, or period of a drive whose speed repeats, is a run of the reference by itself,
+// from the state of the last (model/state.h), so that what comes out of n revolutions does not
+// depend on how many follow. With x_n the section after n revolutions, velocities over the fastest,
+// and F_n the largest forces of each joint, the motion repeats after p revolutions where
 //     d_n = max(|x_n - x_(n-p)|, |F_n - F_(n-p)| / F_n)
 // is small and so is what is still to come of it: with r = d_n / d_(n-p), the sum d_n r / (1 - r).
 // A motion that comes near no earlier section does not repeat. Then the largest force of a
@@ -14,6 +14,7 @@
 // and forces of one period agree, whichever revolution is its first.
 #include "run/settle.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/side_by_side.h"
 #include "base/sorted.h"
@@ -22,6 +23,7 @@
 #include "run/pressed.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,6 +71,7 @@ Settling settling_start(const Scenario *scenario)
         .left = INFINITY,
     };
     settling.scenario.run.revolutions = 1.0;
+    settling.scenario.run.duration = linkage_period(&scenario->linkage);
     settling.scenario.reference.tolerance =
         fmax(settling.scenario.reference.tolerance, SETTLE_REFERENCE);
     return settling;
@@ -300,6 +303,9 @@ bool settling_run(Settling *settling, double tolerance, size_t most, Err *err)
             settling->count >= LOOSE_FROM && !is_near_return(settling, settling->count - 1);
         reference->tolerance = is_loose ? fmax(tight, SETTLE_LOOSE) : tight;
         is_run = settling_turn(settling, err);
+        if (settling->turned != NULL) {
+            settling->turned(settling->context);
+        }
         settling->is_random =
             is_run && !settling_repeats(settling, tolerance) && settling_is_random(settling);
     }
@@ -323,20 +329,58 @@ typedef struct Start {
     bool is_settled; // false: `err` says why
     Err err;
     size_t motion; // the number of that which it came to
+    struct StartsWatch *watch;
 } Start;
+
+// How far all starts have come together.
+typedef struct StartsWatch {
+    RunWatch watch;
+    double started_s;     // by the clock
+    atomic_size_t turned; // revolutions of all
+    size_t most;          // of all
+} StartsWatch;
+
+static void count_turn(void *context)
+{
+    StartsWatch *watch = context;
+    atomic_fetch_add(&watch->turned, 1);
+}
+
+static void tell_turn(void *context)
+{
+    StartsWatch *watch = context;
+    count_turn(watch);
+    watch->watch.progress((double)atomic_load(&watch->turned) / (double)watch->most,
+                          clock_now_s() - watch->started_s, watch->watch.context);
+}
 
 static void start_run(size_t index, bool is_callers, void *context)
 {
-    (void)is_callers;
     Start *start = (Start *)context + index;
     if (start->is_made) {
+        // only the caller's thread may show anything
+        start->settling.turned = is_callers ? tell_turn : count_turn;
+        start->settling.context = start->watch;
         const size_t most = start->settling.scenario.run.settle_most;
         start->is_settled = settling_run(&start->settling, SETTLE_TOLERANCE, most, &start->err);
     }
 }
 
-static void starts_run(Start *starts, size_t count)
+static void tell_nobody(double share, double wall_s, void *context)
 {
+    (void)share;
+    (void)wall_s;
+    (void)context;
+}
+
+static void starts_run(Start *starts, size_t count, RunWatch watch)
+{
+    StartsWatch all = {.watch = watch, .started_s = clock_now_s()};
+    all.watch.progress = watch.progress != NULL ? watch.progress : tell_nobody;
+    for (size_t i = 0; i < count; i++) {
+        starts[i].watch = &all;
+        all.most += starts[i].is_made ? starts[i].settling.scenario.run.settle_most : 0;
+    }
     side_by_side_run(count, side_by_side_processors(), start_run, starts);
 }
 
@@ -545,7 +589,7 @@ static void take_starts(Start *starts, size_t count, Scenario *scenario)
     }
 }
 
-void settle_scenario(Scenario *scenario)
+void settle_scenario(Scenario *scenario, RunWatch watch)
 {
     SettledStart *settled = &scenario->settled;
     if (!scenario_lacks_start(scenario)) {
@@ -559,12 +603,12 @@ void settle_scenario(Scenario *scenario)
     }
     const size_t count = scenario->run.settle_starts;
     Start *starts = starts_create(scenario, count);
-    starts_run(starts, count);
+    starts_run(starts, count, watch);
     take_starts(starts, count, scenario);
     starts_finish(starts, count);
 }
 
-void settle_damping(Scenario *scenario)
+void settle_damping(Scenario *scenario, RunWatch watch)
 {
     static const double SCALES[] = {0.5, 2.0};
     SettledStart *settled = &scenario->settled;
@@ -577,7 +621,7 @@ void settle_damping(Scenario *scenario)
         starts[i].settling.scenario.contact.damping_scale *= SCALES[i];
         starts[i].is_made = true;
     }
-    starts_run(starts, 2);
+    starts_run(starts, 2, watch);
     for (size_t i = 0; i < 2; i++) {
         starts[i].motion = i;
         if (starts[i].is_settled) {

@@ -1,11 +1,12 @@
 // The settled motion of a mechanism: what is left of its start once it has turned long enough.
 //
-// A drive of constant speed maps the state at one crank angle to that a revolution later. Where a
-// revolution, or some of them, bring a state back, the motion repeats; else it goes on for ever
-// without.
+// A drive of constant speed maps the state at one crank angle to that a revolution later, and one
+// whose speed repeats to that a period later, which counts as a revolution here. Where one of them,
+// or some, bring a state back, the motion repeats; else it goes on for ever without.
 #pragma once
 
 #include "model/state.h"
+#include "run/run.h"
 
 enum { SETTLE_PERIOD_MAX = 12 }; // revolutions after which a motion is seen to repeat, at most
 
@@ -27,9 +28,11 @@ typedef struct Settling {
     size_t period;  // revolutions after which it repeats; 0: it has not yet
     double change;  // 1: over the last period, of sections and largest forces
     double left;    // 1: what is estimated to be still to come of it
+    void (*turned)(void *context); // called after each revolution; NULL: nobody wants to know
+    void *context;
 } Settling;
 
-// Prepares a scenario with a drive of constant speed; it starts as the scenario does.
+// Prepares a scenario whose drive has a period; it starts as the scenario does.
 Settling settling_start(const Scenario *scenario);
 void settling_finish(Settling *settling);
 
@@ -38,11 +41,12 @@ bool settling_turn(Settling *settling, Err *err);
 
 // Gives a scenario that is to start settled or pressed that start, and says how it was found; one
 // that has it, or starts as written, stays as it is. The settled motion is looked for from
-// run.settle-starts starts side by side. Where there is none the scenario says why.
-void settle_scenario(Scenario *scenario);
+// run.settle-starts starts side by side. Where there is none the scenario says why. The watch is
+// told of all revolutions as a share of run.settle-most of each start.
+void settle_scenario(Scenario *scenario, RunWatch watch);
 
 // Finds how the largest forces of a settled scenario move when its damping is halved and doubled.
-void settle_damping(Scenario *scenario);
+void settle_damping(Scenario *scenario, RunWatch watch);
 
 // Goes on until the motion repeats to within a tolerance, relative, until what it does in a
 // revolution no longer drifts though nothing repeats, or so many revolutions are over. Fails with

@@ -8,8 +8,16 @@
 #include <stdio.h>
 #include <string.h>
 
-static void append_joint(const SettledStart *settled, size_t number, const Joint *joint, Text *text)
+// What the motion is told by: a revolution, or a period of a drive whose speed repeats.
+static const char *turn_word(const Scenario *scenario)
 {
+    return drive_is_steady(&scenario->linkage.driver) ? "revolution" : "period";
+}
+
+static void append_joint(const Scenario *scenario, size_t number, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    const Joint *joint = &scenario->linkage.joints[number];
     const char *unit = joint_units(joint)->force;
     const SettledMotion *motion = &settled->motions[0];
     const SettledJoint *did = &motion->joints[number];
@@ -17,8 +25,8 @@ static void append_joint(const SettledStart *settled, size_t number, const Joint
     text_append_shown(text, joint->name);
     text_append(text, ": %.5g %s", did->force, unit);
     if (motion->period == 0) {
-        text_append(text, " in the median revolution, %.4g to %.4g in 5 to 95 %%", did->low,
-                    did->high);
+        text_append(text, " in the median %s, %.4g to %.4g in 5 to 95 %%", turn_word(scenario),
+                    did->low, did->high);
     }
     text_append(text, "\n");
     if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
@@ -30,14 +38,14 @@ static void append_joint(const SettledStart *settled, size_t number, const Joint
                 settled->first[number], unit);
 }
 
-static void append_period(const SettledMotion *motion, Text *text)
+static void append_period(const Scenario *scenario, const SettledMotion *motion, Text *text)
 {
     if (motion->period == 0) {
         text_append(text, "does not repeat");
     } else if (motion->period == 1) {
-        text_append(text, "repeats every revolution");
+        text_append(text, "repeats every %s", turn_word(scenario));
     } else {
-        text_append(text, "repeats every %zu revolutions", motion->period);
+        text_append(text, "repeats every %zu %ss", motion->period, turn_word(scenario));
     }
 }
 
@@ -46,7 +54,7 @@ static void append_other(const Scenario *scenario, const SettledMotion *motion, 
 {
     text_append(text, "              %zu of %zu starts come to another, which ", motion->starts,
                 scenario->settled.starts);
-    append_period(motion, text);
+    append_period(scenario, motion, text);
     text_append(text, ":");
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
@@ -69,12 +77,12 @@ void settled_text(const Scenario *scenario, Text *text)
         return;
     }
     text_append(text, "  start       settled: ");
-    append_period(&settled->motions[0], text);
+    append_period(scenario, &settled->motions[0], text);
     text_append(text, ", found in %zu from %zu of %zu start%s\n", settled->revolutions,
                 settled->motions[0].starts, settled->starts, settled->starts > 1 ? "s" : "");
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         if (linkage_has_play(&scenario->linkage.joints[i])) {
-            append_joint(settled, i, &scenario->linkage.joints[i], text);
+            append_joint(scenario, i, text);
         }
     }
     for (size_t i = 1; i < settled->motion_count; i++) {
@@ -135,6 +143,20 @@ static void append_forces(const Scenario *scenario, const SettledMotion *motion,
     }
 }
 
+// How long a run shows all of a motion that repeats, where this one does not.
+static void append_length(const Scenario *scenario, size_t period, Text *text)
+{
+    const double whole_s = (double)period * linkage_period(&scenario->linkage);
+    if (whole_s <= (1.0 + 1e-9) * scenario_duration(scenario)) {
+        return;
+    }
+    if (drive_is_steady(&scenario->linkage.driver)) {
+        text_append(text, " (run.revolutions: %zu shows all)", period);
+    } else {
+        text_append(text, " (run.duration: %.6g s shows all)", whole_s);
+    }
+}
+
 // What the run shows, and how it was found.
 static void append_motion(const Scenario *scenario, Text *text)
 {
@@ -145,16 +167,14 @@ static void append_motion(const Scenario *scenario, Text *text)
     text_append(&line, "  Settled motion, ");
     if (motion->period == 0) {
         text_append(&line,
-                    "which does not repeat in %zu revolutions; largest force of a "
-                    "revolution, median (5 to 95 %%): ",
-                    settled->revolutions);
+                    "which does not repeat in %zu %ss; largest force of a %s, median (5 to 95 "
+                    "%%): ",
+                    settled->revolutions, turn_word(scenario), turn_word(scenario));
         append_forces(scenario, motion, &line);
     } else {
         text_append(&line, "which ");
-        append_period(motion, &line);
-        if ((double)motion->period > scenario->run.revolutions) {
-            text_append(&line, " (run.revolutions: %zu shows all)", motion->period);
-        }
+        append_period(scenario, motion, &line);
+        append_length(scenario, motion->period, &line);
     }
     text_append(&line, "; %zu of %zu starts come to it.", motion->starts, settled->starts);
     screen_line(&line, text);

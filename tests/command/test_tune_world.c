@@ -180,6 +180,10 @@ static void pins_in_holes_make_the_same_run(void **state)
         {"$cases/mechanisms/slider-crank-pin.yaml --schemes direct/staggered/impulse "
          "--at-step '2 us' --set run.revolutions=0.05 --set run.samples=3000",
          1e-4, 1e-4, "s/stiffness = 6.6e+10/stiffness = 6.6e+9/"},
+        // in the settled motion, whose contacts have begun long before
+        {"$cases/paper/impact-k66.yaml --schemes direct/staggered/impulse --at-step '5 us' "
+         "--set run.start=settled --set run.revolutions=0.1 --set run.samples=300",
+         1e-3, 1e-5, "s/impact_speed = 0.0/impact_speed = 10.0/"},
     };
     check_worlds(state, RUNS, sizeof RUNS / sizeof *RUNS);
 }
@@ -203,6 +207,10 @@ static void what_drives_and_pushes_makes_the_same_run(void **state)
         {"$cases/mechanisms/start-and-stop.yaml --schemes direct/staggered/impulse "
          "--at-step '10 us' --set run.duration='12 ms' --set run.samples=1200",
          1e-4, 1e-5, "s/(i + 1) \\* STEP))/i * STEP))/"},
+        {"$cases/mechanisms/start-and-stop.yaml --schemes direct/staggered/impulse "
+         "--at-step '20 us' --set drive.speed='[[10 ms, 400 rpm], [60 ms, 800 rpm]]' "
+         "--set drive.period='100 ms' --set run.duration='150 ms' --set run.samples=150",
+         1e-3, 2e-4, "s/fmod((i + 1) \\* STEP, 0.1)/(i + 1) * STEP/"},
         {"$cases/mechanisms/run-up.yaml --schemes direct/staggered/impulse --at-step '10 us' "
          "--set run.duration='10 ms' --set run.samples=1000",
          1e-3, 2e-4, "s/middle = (i + 0.5)/middle = 1.01 * (i + 0.5)/"},

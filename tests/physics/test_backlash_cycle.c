@@ -227,7 +227,11 @@ static void a_reversed_torque_moves_a_hinge_by_its_gap_and_what_the_flanks_give(
     Scenario scenario = scenario_of(&rest);
     const double torque = 0.8;
     TimeTable *table = &scenario.linkage.torque.table;
-    *table = (TimeTable){4, {0.5, 1.0, 1.5, 2.0}, {torque, torque, -torque, -torque}};
+    *table = (TimeTable){
+        .count = 4,
+        .times = {0.5, 1.0, 1.5, 2.0},
+        .values = {torque, torque, -torque, -torque},
+    };
     scenario.linkage.torsion_count = 1;
     scenario.linkage.torsions[0] = (TorsionSpring){.name = "grease", .damping = 1.0};
     scenario.run.duration = 3.0;

@@ -12,6 +12,9 @@
 #include "run/settle.h"
 #include "run/tracer.h"
 
+#include <stdio.h>
+#include <string.h>
+
 enum { STARTS = 4, MOST = 30 };
 
 static const char *const CASE = "cases/paper/impact-k66.yaml";
@@ -64,7 +67,7 @@ static void every_start_comes_to_one_motion(void **state)
 static Scenario settled(const char *const *overrides, size_t count)
 {
     Scenario scenario = load(CASE, overrides, count);
-    settle_scenario(&scenario);
+    settle_scenario(&scenario, (RunWatch){.progress = NULL});
     kept_settled(&scenario);
     return scenario;
 }
@@ -120,8 +123,8 @@ static void the_damping_is_halved_and_doubled(void **state)
     static const char *const TWICE[] = {"run.start=settled", "contact.damping=viscous",
                                         "contact.viscous-coefficient=2000 N s/m"};
     Scenario scenario = load(CASE, WHOLE, 3);
-    settle_scenario(&scenario);
-    settle_damping(&scenario);
+    settle_scenario(&scenario, (RunWatch){.progress = NULL});
+    settle_damping(&scenario, (RunWatch){.progress = NULL});
     kept_settled(&scenario);
     const Scenario twice = settled(TWICE, 3);
     for (size_t i = 0; i < scenario.linkage.joint_count; i++) {
@@ -164,7 +167,7 @@ static void it_is_what_a_long_run_comes_to(void **state)
     static const char *const SETTLED[] = {"contact.resting-speed=50 mm/s", "run.start=settled"};
     const Scenario slow = load(CASE, LONG, 4);
     Scenario settled = load(CASE, SETTLED, 2);
-    settle_scenario(&settled);
+    settle_scenario(&settled, (RunWatch){.progress = NULL});
     kept_settled(&settled);
     assert_int_equal(settled.settled.motion_count, 1);
     assert_int_equal(settled.settled.motions[0].period, 1);
@@ -175,6 +178,56 @@ static void it_is_what_a_long_run_comes_to(void **state)
     trajectory_destroy(run);
 }
 
+enum { PERIODS = 12 };
+
+static Scenario repeating(const char *speeds, const char *const *more, size_t count)
+{
+    const char *overrides[8] = {speeds, "contact.resting-speed=50 mm/s", "run.samples=36",
+                                "run.step=20us"};
+    for (size_t i = 0; i < count; i++) {
+        overrides[4 + i] = more[i];
+    }
+    return load("cases/mechanisms/start-and-stop.yaml", overrides, 4 + count);
+}
+
+// A drive whose speed repeats: the truth is a run whose table has all periods written down.
+static void a_speed_that_repeats_settles_as_its_periods_in_a_row(void **state)
+{
+    (void)state;
+    char whole[2048] = "drive.speed=[[0 ms, 400 rpm]";
+    for (int k = 0; k < PERIODS; k++) {
+        const size_t used = strlen(whole);
+        snprintf(whole + used, sizeof whole - used, ", [%d ms, 800 rpm], [%d ms, 400 rpm]",
+                 100 * k + 60, 100 * k + 100);
+    }
+    strcat(whole, "]");
+    static const char *const LONG[] = {"run.duration=1200 ms", "run.report-from=1100 ms"};
+    static const char *const SETTLED[] = {"run.duration=100 ms", "drive.period=100 ms",
+                                          "run.start=settled"};
+    const Scenario slow = repeating(whole, LONG, 2);
+    Scenario settled = repeating("drive.speed=[[0 ms, 400 rpm], [60 ms, 800 rpm]]", SETTLED, 3);
+    settle_scenario(&settled, (RunWatch){.progress = NULL});
+    kept_settled(&settled);
+    assert_int_equal(settled.settled.motions[0].period, 1);
+    Trajectory *truth = traced_run(&slow, &REFERENCE_SOLVER);
+    Trajectory *run = traced_run(&settled, &REFERENCE_SOLVER);
+    assert_close(largest_force(run), largest_force(truth), 1e-6);
+    Trajectory *ode = traced_run(&settled, &ODE_SOLVER);
+    assert_close(largest_force(ode), largest_force(truth), 1e-2);
+    // the control: with a longer way back from 800 rpm the force is another
+    static const char *const LONGER[] = {"run.duration=200 ms", "drive.period=200 ms",
+                                         "run.start=settled"};
+    Scenario other = repeating("drive.speed=[[0 ms, 400 rpm], [60 ms, 800 rpm]]", LONGER, 3);
+    settle_scenario(&other, (RunWatch){.progress = NULL});
+    kept_settled(&other);
+    Trajectory *slower = traced_run(&other, &REFERENCE_SOLVER);
+    assert_true(fabs(largest_force(slower) / largest_force(truth) - 1.0) > 1e-2);
+    trajectory_destroy(truth);
+    trajectory_destroy(run);
+    trajectory_destroy(ode);
+    trajectory_destroy(slower);
+}
+
 static void ode_starts_in_it(void **state)
 {
     (void)state;
@@ -182,7 +235,7 @@ static void ode_starts_in_it(void **state)
                                            "run.step=10us", "ode.map=impulse",
                                            "ode.stepping=staggered"};
     Scenario scenario = load(CASE, SETTINGS, 5);
-    settle_scenario(&scenario);
+    settle_scenario(&scenario, (RunWatch){.progress = NULL});
     kept_settled(&scenario);
     Trajectory *truth = traced_run(&scenario, &REFERENCE_SOLVER);
     Trajectory *run = traced_run(&scenario, &ODE_SOLVER);
@@ -212,6 +265,7 @@ int main(void)
         cmocka_unit_test(a_pressed_pin_lies_where_the_reaction_holds_it),
         cmocka_unit_test(the_damping_is_halved_and_doubled),
         cmocka_unit_test(it_is_what_a_long_run_comes_to),
+        cmocka_unit_test(a_speed_that_repeats_settles_as_its_periods_in_a_row),
         cmocka_unit_test(ode_starts_in_it),
         cmocka_unit_test(no_solver_starts_elsewhere),
     };

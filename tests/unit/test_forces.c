@@ -1,5 +1,6 @@
 // Do springs pull as their energy says, dampers take what they feel, and is a torque over time
 // summed right?
+#include "base/lcg.h"
 #include "model/forces.h"
 
 #include "close.h"
@@ -172,6 +173,49 @@ static void a_torque_over_time_is_linear_between_its_points(void **state)
     assert_near(time_table_mean(&ramp, -1.0, 1.0), 1.0, 1e-15);
 }
 
+// The truth of a table that repeats: one that has all of its periods written down.
+static void a_table_that_repeats_is_one_of_many_periods(void **state)
+{
+    (void)state;
+    enum { PERIODS = 6 };
+    for (int late = 0; late < 2; late++) {
+        // a first point later than time zero leaves a line from the last period's there
+        const TimeTable once = {
+            .count = 3,
+            .times = {0.7 * late, 1.0, 2.2},
+            .values = {3.0, 5.0, -1.0},
+            .period_s = 2.9,
+        };
+        TimeTable whole = {.count = 0};
+        for (int k = -late; k < PERIODS; k++) {
+            for (size_t i = 0; i < once.count; i++) {
+                whole.times[whole.count] = once.times[i] + k * once.period_s;
+                whole.values[whole.count++] = once.values[i];
+            }
+        }
+        uint64_t seed = lcg_stirred(17);
+        for (int i = 0; i < 1000; i++) {
+            const double last_s = whole.times[whole.count - 1];
+            const double time_s = (i % 7 == 0 ? 0.0 : fabs(lcg_draw(&seed))) * last_s;
+            const double to_s = fmin(time_s + 1e-3 + fabs(lcg_draw(&seed)), last_s);
+            assert_near(time_table_at(&once, time_s), time_table_at(&whole, time_s), 1e-13);
+            assert_near(time_table_next_bend(&once, time_s),
+                        fmin(time_table_next_bend(&whole, time_s), 1e9), 1e-13);
+            assert_near(time_table_piece(&once, time_s).slope,
+                        time_table_piece(&whole, time_s).slope, 1e-12);
+            assert_near((double)time_table_integral(&once, time_s),
+                        (double)time_table_integral(&whole, time_s), 1e-13);
+            if (to_s > time_s) {
+                assert_near(time_table_mean(&once, time_s, to_s),
+                            time_table_mean(&whole, time_s, to_s), 1e-12);
+            }
+        }
+        // control: it does go on changing
+        assert_true(fabs(time_table_at(&once, 40.0 * once.period_s + 1.0) - 5.0) < 1e-12);
+        assert_true(fabs(time_table_at(&once, 40.0 * once.period_s + 1.1) - 5.0) > 0.1);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -180,6 +224,7 @@ int main(void)
         cmocka_unit_test(a_force_along_a_line_gives_its_power_and_no_momentum),
         cmocka_unit_test(bodies_that_nothing_else_holds_keep_their_momentum),
         cmocka_unit_test(a_torque_over_time_is_linear_between_its_points),
+        cmocka_unit_test(a_table_that_repeats_is_one_of_many_periods),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

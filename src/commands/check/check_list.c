@@ -120,7 +120,7 @@ static void settle_item(CheckItem *item, const CheckOptions *options)
 {
     if (options->is_blessing ||
         !baseline_start_scenario(&item->baseline, &item->now, item->scenario)) {
-        settle_scenario(item->scenario);
+        settle_scenario(item->scenario, (RunWatch){.progress = NULL});
     }
 }
 

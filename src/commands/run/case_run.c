@@ -145,8 +145,8 @@ static void ask_closed_form(CaseRun *run)
 void case_run_execute(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
-    settle_scenario(&run->scenario);
-    settle_damping(&run->scenario);
+    settle_scenario(&run->scenario, progress_watch(progress, SETTLING));
+    settle_damping(&run->scenario, progress_watch(progress, SETTLING));
     run->report = (RunReport){
         .scenario = &run->scenario,
         .run_count = options->backend_count,

@@ -128,7 +128,7 @@ static void sweep_run(const SweepRun *task, Record *record)
     BackendKind backend;
     Err err = {0};
     if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
-        settle_scenario(scenario);
+        settle_scenario(scenario, (RunWatch){.progress = NULL});
         sweep_measure(task, scenario, backend, record);
     } else {
         give_reason(record, RUN_OUTCOME_REFUSED, err.text);
@@ -143,7 +143,7 @@ static void sweep_certify(const SweepTruth *truth, void *packed)
     assert(task != NULL);
     *task = truth->task;
     task->scenario = scenario_copy(&truth->task.scenario);
-    settle_scenario(&task->scenario);
+    settle_scenario(&task->scenario, (RunWatch){.progress = NULL});
     task_certify(task, packed);
     scenario_free(&task->scenario);
     free(task);

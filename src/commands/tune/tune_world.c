@@ -286,11 +286,36 @@ static Made begin_made(const Linkage *linkage, int joint, const char *type, cons
     return made;
 }
 
+// What the contacts of a joint bring along at the start.
+static void write_begun(const Linkage *linkage, int joint, Text *text)
+{
+    const Joint *of = &linkage->joints[joint];
+    const char *unit = linkage_is_torsional(of) ? "rad/s" : "m/s";
+    for (size_t i = 0; i < JOINT_PLACES; i++) {
+        const ContactState *state = &of->contacts[i];
+        if (state->is_touching) {
+            text_append(text,
+                        "    const JpBegun begun_%zu_%zu = {\n"
+                        "        .impact_speed = %s, // %s\n        .age = %s, // s\n"
+                        "        .is_released = %s,\n        .is_resting = %s,\n    };\n",
+                        tune_world_number(linkage, joint), i,
+                        number_shortest(state->impact_speed).text, unit,
+                        number_shortest(state->age_s).text, state->is_released ? "true" : "false",
+                        state->is_resting ? "true" : "false");
+            text_append(text,
+                        "    check(jp_joint_begun(plays[%zu], %zu, &begun_%zu_%zu, &error), "
+                        "&error);\n",
+                        tune_world_number(linkage, joint), i, tune_world_number(linkage, joint), i);
+        }
+    }
+}
+
 // Ends with the call that makes the joint.
 static void end_made(Made *made, const Linkage *linkage, int joint, const char *what, Text *text)
 {
     text_append(text, "    check(jp_%s_create(play, %s, &%s, &plays[%zu], &error), &error);\n",
                 what, made->on.data, made->options.data, tune_world_number(linkage, joint));
+    write_begun(linkage, joint, text);
     text_finish(&made->options);
     text_finish(&made->contact);
     text_finish(&made->on);
@@ -383,13 +408,25 @@ bool tune_world_pushes(const Linkage *linkage)
     return is_any;
 }
 
+static void write_point(double time_s, double value, Text *text)
+{
+    text_append(text, " {%s, %s},", number_shortest(time_s).text, number_shortest(value).text);
+}
+
+// Of a table that repeats the points of one period from time zero on.
 static void tune_world_write_table(const char *name, const TimeTable *table, const char *unit,
                                    Text *text)
 {
     text_append(text, "\nstatic const double %s[][2] = { // s, %s\n   ", name, unit);
+    const bool repeats = table->period_s > 0.0;
+    if (repeats && table->times[0] > 0.0) {
+        write_point(0.0, time_table_at(table, 0.0), text);
+    }
     for (size_t i = 0; i < table->count; i++) {
-        text_append(text, " {%s, %s},", number_shortest(table->times[i]).text,
-                    number_shortest(table->values[i]).text);
+        write_point(table->times[i], table->values[i], text);
+    }
+    if (repeats) {
+        write_point(table->period_s, time_table_at(table, 0.0), text);
     }
     text_append(text, "\n};\n");
 }
@@ -589,9 +626,18 @@ static void tune_world_motors(const Linkage *linkage, Text *text)
 static void tune_world_drive(const Linkage *linkage, Text *text)
 {
     if (linkage->driver.speeds.count > 0) {
+        const double period_s = linkage->driver.speeds.period_s;
+        Text speed;
+        text_init(&speed);
+        text_append(&speed, "at(DRIVE, sizeof DRIVE / sizeof *DRIVE, ");
+        if (period_s > 0.0) {
+            text_append(&speed, "fmod((i + 1) * STEP, %s))", number_shortest(period_s).text);
+        } else {
+            text_append(&speed, "(i + 1) * STEP)");
+        }
         text_append(text, "    ");
-        write_param(linkage, linkage->driver.joint, "dParamVel",
-                    "at(DRIVE, sizeof DRIVE / sizeof *DRIVE, (i + 1) * STEP)", text);
+        write_param(linkage, linkage->driver.joint, "dParamVel", speed.data, text);
+        text_finish(&speed);
     }
     if (linkage->torque.table.count > 0) {
         text_append(text, "        middle = (i + 0.5) * STEP;\n");
