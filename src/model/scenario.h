@@ -52,6 +52,8 @@ typedef struct SettledMotion {
 typedef struct SettledStart {
     size_t revolutions;          // that it took; 0: the start is as written
     bool is_pressed;             // START_PRESSED: the pins were put on their walls
+    bool is_followed;            // it was found from that of a neighbour in a study
+    double followed_from;        // of the key that is followed, SI: the neighbour's value
     size_t starts;               // from which a motion was found
     double *first;               // N, by joint: its largest force in the first revolution from the
                                  // start as written; owned

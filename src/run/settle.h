@@ -45,6 +45,11 @@ bool settling_turn(Settling *settling, Err *err);
 // told of all revolutions as a share of run.settle-most of each start.
 void settle_scenario(Scenario *scenario, RunWatch watch);
 
+// The same from the settled start of a neighbour alone: the scenario of another value of one key,
+// in the plane, without limits of its coordinates. Returns false where that cannot be made a start
+// of this one; it is then settled as above.
+bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch);
+
 // Finds how the largest forces of a settled scenario move when its damping is halved and doubled.
 void settle_damping(Scenario *scenario, RunWatch watch);
 

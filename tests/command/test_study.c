@@ -126,6 +126,49 @@ static void a_study_of_which_every_run_fails_ends_with_status_4(void **state)
     assert_says(program->output, "refused");
 }
 
+// Of an export without the time that each run took: the rows, one after another.
+static void read_rows(Program *program, const char *store, char *rows, size_t size)
+{
+    char words[PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "study export %s", store);
+    run_well(program, words);
+    size_t length = 0;
+    for (char *line = strtok(program->output, "\n"); line != NULL; line = strtok(NULL, "\n")) {
+        *strrchr(line, ',') = '\0';
+        length += (size_t)snprintf(rows + length, size - length, "%s\n", line);
+        assert_true(length < size);
+    }
+}
+
+// What a run follows is found by its own process: in whatever order, and on whatever machine, the
+// runs are made, they are the same.
+static void a_study_that_follows_a_key_has_the_same_rows_in_parts(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "f.yaml", path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fprintf(stream,
+            "case: %s/paper/impact-k66.yaml\n"
+            "set: {run.samples: 36, run.step: 20 us, contact.resting-speed: none}\n"
+            "vary:\n  drive.speed: [900 rpm, 950 rpm, 1000 rpm]\n"
+            "follow: {key: drive.speed, direction: both}\ntruth: false\n",
+            getenv("JOINTPLAY_CASES"));
+    fclose(stream);
+    static char whole[PROGRAM_OUTPUT_SIZE];
+    static char parts[PROGRAM_OUTPUT_SIZE];
+    run_well(program, "study f.yaml -q --jobs 1");
+    read_rows(program, "f.sqlite", whole, sizeof whole);
+    assert_non_null(strstr(whole, "followed_from"));
+    assert_non_null(strstr(whole, "backward"));
+    run_well(program, "study f.yaml -q --shard 1/2 --store a.sqlite");
+    run_well(program, "study f.yaml -q --shard 2/2 --store b.sqlite");
+    run_well(program, "study merge m.sqlite a.sqlite b.sqlite");
+    read_rows(program, "m.sqlite", parts, sizeof parts);
+    assert_string_equal(whole, parts);
+}
+
 static void shards_of_several_divisions_are_not_guessed_at(void **state)
 {
     Program *program = *state;
@@ -207,6 +250,7 @@ int main(void)
         STUDY_TEST(what_came_of_it_is_printed),
         STUDY_TEST(rows_are_exported_and_drawn),
         STUDY_TEST(a_study_of_which_every_run_fails_ends_with_status_4),
+        STUDY_TEST(a_study_that_follows_a_key_has_the_same_rows_in_parts),
         STUDY_TEST(shards_of_several_divisions_are_not_guessed_at),
         STUDY_TEST(a_division_into_more_parts_than_there_can_be_is_refused),
         STUDY_TEST(what_is_wrong_on_the_command_line_is_told),

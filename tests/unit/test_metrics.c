@@ -77,7 +77,7 @@ static void results_are_those_of_the_trajectory(void **state)
     Trajectory *exact = complete_run(&scenario, BACKEND_REFERENCE);
     const Truth truth = {.trajectory = exact, .uncertainty = 1e-9, .horizon_s = 0.01};
     double results[RECORD_RESULT_MAX];
-    metrics_take(&scenario, run, &truth, results);
+    metrics_take(&layout, &scenario, run, &truth, results);
 
     const JointExtremes *joint = &run->joints[1];
     const TrajectoryError error = error_against(run, exact, 0.01);
@@ -116,13 +116,13 @@ static void without_a_truth_there_is_no_error(void **state)
     metrics_layout(&spec, &scenario, &layout);
     Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
     double results[RECORD_RESULT_MAX];
-    metrics_take(&scenario, run, NULL, results);
+    metrics_take(&layout, &scenario, run, NULL, results);
     assert_true(isnan(results[column(&layout, "error_max")]));
     assert_true(isnan(results[column(&layout, "error_horizon_s")]));
     // a truth that is not certified gives errors, and no horizon to trust
     Truth open = {.trajectory = run, .horizon_s = 0.01};
     strcpy(open.message, "its two runs differ");
-    metrics_take(&scenario, run, &open, results);
+    metrics_take(&layout, &scenario, run, &open, results);
     assert_true(results[column(&layout, "error_max")] == 0.0);
     assert_true(isnan(results[column(&layout, "error_horizon_s")]));
     // the reference has no step of its own
@@ -141,7 +141,7 @@ static void what_was_not_felt_is_no_number(void **state)
     Trajectory *run = complete_run(&scenario, BACKEND_ANALYTIC);
     double results[RECORD_RESULT_MAX];
     run->energy.residual = INFINITY;
-    metrics_take(&scenario, run, NULL, results);
+    metrics_take(&layout, &scenario, run, NULL, results);
     assert_true(isnan(results[column(&layout, "crank_coupler_impacts")]));
     assert_true(isnan(results[column(&layout, "impacts")]));
     assert_true(isnan(results[column(&layout, "crank_coupler_penetration_max_m")]));

@@ -189,6 +189,19 @@ static double range_number(const Variable *variable, uint64_t digit)
     return variable->is_whole ? round(number) : number;
 }
 
+double design_number(const Variable *variable, uint64_t digit)
+{
+    return variable->kind == VARIABLE_LIST ? variable->numbers[digit]
+                                           : range_number(variable, digit);
+}
+
+// Whether the values of a variable are those of a key of the case.
+static bool is_of_case(const Variable *variable)
+{
+    return strcmp(variable->key, SPEC_SCHEME_KEY) != 0 &&
+           strcmp(variable->key, SPEC_DIRECTION_KEY) != 0;
+}
+
 // Takes the digits of one half of the grid off the run's number, the fastest first.
 static void take_digits(const Spec *spec, bool changes_truth, uint64_t *rest, Cell *values)
 {
@@ -201,10 +214,8 @@ static void take_digits(const Spec *spec, bool changes_truth, uint64_t *rest, Ce
         *rest /= variable->count;
         if (variable->is_word) {
             text_copy(values[i].word, sizeof values[i].word, variable->words[digit]);
-        } else if (variable->kind == VARIABLE_LIST) {
-            values[i].number = variable->numbers[digit];
         } else {
-            values[i].number = range_number(variable, digit);
+            values[i].number = design_number(variable, digit);
         }
     }
 }
@@ -296,7 +307,7 @@ static void overrides_make(const Spec *spec, const Cell *values, Overrides *over
     }
     for (size_t i = 0; i < spec->variable_count; i++) {
         text_init(&overrides->texts[i]);
-        if (strcmp(spec->variables[i].key, SPEC_SCHEME_KEY) != 0) {
+        if (is_of_case(&spec->variables[i])) {
             design_add_value(&spec->variables[i], &values[i], &overrides->texts[i]);
             overrides->all[overrides->count++] = overrides->texts[i].data;
         }

@@ -19,6 +19,9 @@ typedef struct Shard {
 // The number of runs, 1 to 2^53.
 uint64_t design_run_count(const Spec *spec);
 
+// One of the values of a variable of the grid that takes numbers, from 0.
+double design_number(const Variable *variable, uint64_t digit);
+
 // The values of the variables of a run, in the order of the spec.
 void design_values(const Spec *spec, uint64_t run, Cell values[RECORD_SETTING_MAX]);
 

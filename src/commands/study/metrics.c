@@ -14,11 +14,12 @@
 
 // What a number of a run is of; the columns stand in this order.
 typedef enum Owner {
-    OF_BODY,  // each whose motion is not prescribed: BodyExtremes
-    OF_JOINT, // each with play: model/joint_number_list.h, whole numbers first
-    OF_RUN,   // Trajectory
-    OF_ERROR, // TrajectoryError, in studies with a truth
-    OF_TRUTH, // Truth, likewise
+    OF_BODY,    // each whose motion is not prescribed: BodyExtremes
+    OF_JOINT,   // each with play: model/joint_number_list.h, whole numbers first
+    OF_RUN,     // Trajectory
+    OF_SETTLED, // SettledStart, in studies whose case is settled
+    OF_ERROR,   // TrajectoryError, in studies with a truth
+    OF_TRUTH,   // Truth, likewise
     OWNER_COUNT,
 } Owner;
 
@@ -28,11 +29,13 @@ typedef enum Need {
     FIXED_STEP,  // the solver has one
     TRIALS,      // the step was chosen for a tolerance
     CERTIFICATE, // the reference is certified
+    FOLLOWED,    // the run started in the motion of its neighbour
 } Need;
 
 // What the results of a run are taken from.
 typedef struct Measured {
     const Linkage *linkage;
+    const SettledStart *settled;
     const Trajectory *run;
     const Truth *truth;    // NULL where there is none
     TrajectoryError error; // known only where there is a truth to compare with
@@ -75,11 +78,18 @@ static double find_alpha_peak(const Measured *measured, size_t unused)
     return peak;
 }
 
+static double find_period(const Measured *measured, size_t unused)
+{
+    (void)unused;
+    return (double)measured->settled->motions[0].period;
+}
+
 // clang-format off
 #define ROW(owner, of, name, kind, need, field, meaning) \
     {owner, name, COLUMN_##kind, need, offsetof(of, field), NULL, meaning}
 #define BODY(...) ROW(OF_BODY, BodyExtremes, __VA_ARGS__)
 #define RUN(...) ROW(OF_RUN, Trajectory, __VA_ARGS__)
+#define SETTLED(...) ROW(OF_SETTLED, SettledStart, __VA_ARGS__)
 #define ERROR(...) ROW(OF_ERROR, TrajectoryError, __VA_ARGS__)
 #define TRUTH(...) ROW(OF_TRUTH, Truth, __VA_ARGS__)
 #define FOUND(owner, name, kind, need, find, meaning) \
@@ -104,6 +114,14 @@ static const Metric METRICS[] = {
     RUN("error_estimate", REAL, TRIALS, error_estimate,
         "upper bound of the error, for a step chosen for a tolerance"),
     RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds"),
+    FOUND(OF_SETTLED, "settled_period", WHOLE, NOTHING, find_period,
+          "revolutions after which the settled motion repeats; 0: it does not"),
+    SETTLED("settled_revolutions", WHOLE, NOTHING, revolutions,
+            "revolutions that it took to settle"),
+    SETTLED("settled_motions", WHOLE, NOTHING, motion_count,
+            "different motions that its starts came to"),
+    SETTLED("followed_from", REAL, FOLLOWED, followed_from,
+            "value of the followed key at the run whose motion it started in"),
     ERROR("error_max", REAL, NOTHING, max,
           "largest error of any velocity of bodies and pins, over its own largest"),
     ERROR("error_max_in_horizon", REAL, NOTHING, max_in_horizon,
@@ -223,8 +241,15 @@ static JointNumberId number_at(size_t place)
     return JOINT_NUMBER_COUNT;
 }
 
+// Of which results there are none in some studies.
+typedef struct Lists {
+    bool has_settled;
+    bool is_following;
+} Lists;
+
 // The results of one body, joint or whole.
-static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Result *results)
+static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Lists lists,
+                          Result *results)
 {
     const char *name;
     size_t count = 0;
@@ -235,7 +260,7 @@ static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Re
         results[count++] = (Result){.number = number_at(k), .member = member, .of = name};
     }
     for (size_t k = 0; k < METRIC_COUNT; k++) {
-        if (METRICS[k].owner == owner) {
+        if (METRICS[k].owner == owner && (lists.is_following || METRICS[k].need != FOLLOWED)) {
             results[count++] = (Result){.metric = &METRICS[k], .member = member, .of = name};
         }
     }
@@ -243,14 +268,15 @@ static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Re
 }
 
 // All results of a linkage in the order of their columns.
-static size_t list_results(const Linkage *linkage, Result results[RECORD_RESULT_MAX])
+static size_t list_results(const Linkage *linkage, Lists lists, Result results[RECORD_RESULT_MAX])
 {
-    const size_t members[OWNER_COUNT] = {linkage->body_count, linkage->joint_count, 1, 1, 1};
+    const size_t members[OWNER_COUNT] = {
+        linkage->body_count, linkage->joint_count, 1, lists.has_settled ? 1 : 0, 1, 1};
     size_t count = 0;
     for (Owner owner = 0; owner < OWNER_COUNT; owner++) {
         for (size_t i = 0; i < members[owner]; i++) {
             assert(count + METRIC_COUNT + JOINT_NUMBER_COUNT <= RECORD_RESULT_MAX);
-            count += list_member(linkage, owner, i, results + count);
+            count += list_member(linkage, owner, i, lists, results + count);
         }
     }
     return count;
@@ -259,7 +285,8 @@ static size_t list_results(const Linkage *linkage, Result results[RECORD_RESULT_
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
 {
     Result results[RECORD_RESULT_MAX];
-    const size_t count = list_results(&scenario->linkage, results);
+    const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0'};
+    const size_t count = list_results(&scenario->linkage, lists, results);
     *layout = (Layout){0};
     metrics_add_settings(spec, layout);
     for (size_t i = 0; i < count; i++) {
@@ -281,7 +308,8 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
 
 static bool is_there(const Metric *metric, const Measured *measured)
 {
-    if (metric->owner >= OF_ERROR && !measured->error.is_known) {
+    if ((metric->owner >= OF_ERROR && !measured->error.is_known) ||
+        (metric->owner == OF_SETTLED && measured->settled->motion_count == 0)) {
         return false;
     }
     switch (metric->need) {
@@ -291,6 +319,8 @@ static bool is_there(const Metric *metric, const Measured *measured)
         return measured->run->trials > 0;
     case CERTIFICATE:
         return measured->truth->message[0] == '\0';
+    case FOLLOWED:
+        return measured->settled->is_followed;
     default:
         return true;
     }
@@ -302,6 +332,7 @@ static double metrics_read_value(const Metric *metric, const Measured *measured,
         &measured->run->bodies[metric->owner == OF_BODY ? member : 0],
         NULL,
         measured->run,
+        measured->settled,
         &measured->error,
         measured->truth,
     };
@@ -322,11 +353,27 @@ static double metrics_read_result(const Result *result, const Measured *measured
                : NAN;
 }
 
-bool metrics_take(const Scenario *scenario, Trajectory *trajectory, const Truth *truth,
-                  double results[RECORD_RESULT_MAX])
+// Whether the columns of a study have one of a name.
+static bool metrics_has(const Layout *layout, const char *name)
+{
+    for (size_t i = 0; i < layout->result_count; i++) {
+        if (strcmp(layout->results[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *trajectory,
+                  const Truth *truth, double results[RECORD_RESULT_MAX])
 {
     assert(trajectory->is_complete);
-    Measured measured = {.linkage = &scenario->linkage, .run = trajectory, .truth = truth};
+    Measured measured = {
+        .linkage = &scenario->linkage,
+        .settled = &scenario->settled,
+        .run = trajectory,
+        .truth = truth,
+    };
     if (truth != NULL && truth->trajectory->is_complete) {
         measured.error = error_against(trajectory, truth->trajectory, truth->horizon_s);
         if (error_fail_unstable(trajectory, truth->trajectory, &measured.error)) {
@@ -334,7 +381,9 @@ bool metrics_take(const Scenario *scenario, Trajectory *trajectory, const Truth 
         }
     }
     Result list[RECORD_RESULT_MAX];
-    const size_t count = list_results(measured.linkage, list);
+    const Lists lists = {metrics_has(layout, "settled_period"),
+                         metrics_has(layout, "followed_from")};
+    const size_t count = list_results(measured.linkage, lists, list);
     for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
         const double value = i < count ? metrics_read_result(&list[i], &measured) : NAN;
         results[i] = isfinite(value) ? value : NAN;

@@ -10,8 +10,8 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout);
 
 // The results of a complete run, in the order of metrics_layout. Without a truth (NULL) there is
 // no error. Returns false where error_fail_unstable makes it one that failed.
-bool metrics_take(const Scenario *scenario, Trajectory *trajectory, const Truth *truth,
-                  double results[RECORD_RESULT_MAX]);
+bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *trajectory,
+                  const Truth *truth, double results[RECORD_RESULT_MAX]);
 
 // Appends what each result is, for people: a line or more each, or the rows of a Markdown table.
 void metrics_describe(bool is_markdown, Text *text);

@@ -516,6 +516,9 @@ static uint64_t spec_print(const Spec *spec)
     print = hash_number(print, (double)spec->draws);
     print = hash_number(print, spec->method);
     print = hash_number(print, (double)spec->seed);
+    if (spec->follow[0] != '\0') {
+        print = hash_number(add_text(print, spec->follow), spec->direction);
+    }
     return hash_number(print, spec->has_truth ? 1.0 : 0.0);
 }
 
@@ -880,4 +883,67 @@ bool spec_read_vary(Reading *reading, const Node *vary)
 {
     reading->vary = vary;
     return spec_read_each(reading, vary, spec_read_vary_read_key);
+}
+
+// Along which key runs follow one another.
+//
+//     follow: KEY    follow: {key: KEY, direction: both}
+
+bool spec_read_follow_key(Reading *reading, const Node *value)
+{
+    static const char ALLOWED[] = "a key under vary that takes several numbers";
+    Spec *spec = reading->spec;
+    if (!spec_read_single(reading, value, "a key", ALLOWED)) {
+        return false;
+    }
+    const Variable *variable = spec_variable(spec, value->text);
+    if (variable == NULL || variable->is_word || !variable->changes_truth || variable->count < 2) {
+        return spec_read_refuse(reading, value, ALLOWED,
+                                variable == NULL      ? "'%.60s' does not vary"
+                                : variable->is_word   ? "the values of %.60s are not numbers"
+                                : variable->count < 2 ? "%.60s has one value"
+                                                      : "%.60s leaves the motion as it is",
+                                value->text);
+    }
+    text_copy(spec->follow, sizeof spec->follow, value->text);
+    return true;
+}
+
+// Both directions are one more variable, of two words.
+static bool add_direction(Reading *reading, const Node *value)
+{
+    Spec *spec = reading->spec;
+    if (spec->variable_count == SPEC_VARIABLE_MAX) {
+        return spec_read_refuse(reading, value, "at most 47 keys under vary",
+                                "there is no room for a column of the direction");
+    }
+    Variable *variable = &spec->variables[spec->variable_count++];
+    *variable = (Variable){
+        .kind = VARIABLE_LIST,
+        .is_word = true,
+        .changes_truth = true,
+        .count = 2,
+        .words = calloc(2, sizeof *variable->words),
+    };
+    assert(variable->words != NULL);
+    text_copy(variable->key, sizeof variable->key, SPEC_DIRECTION_KEY);
+    text_copy(variable->words[0], RECORD_WORD_SIZE, "forward");
+    text_copy(variable->words[1], RECORD_WORD_SIZE, "backward");
+    return true;
+}
+
+bool spec_read_follow(Reading *reading, const Node *value)
+{
+    const Spec *spec = reading->spec;
+    if (!(value->kind == NODE_SCALAR ? spec_read_follow_key(reading, value)
+                                     : spec_keys_read(reading, SPEC_FOLLOW, value))) {
+        return false;
+    }
+    if (!scenario_settles(spec->base)) {
+        return spec_read_refuse(reading, value,
+                                "a case with play and a drive of constant speed or with "
+                                "drive.period, and run.start: settled",
+                                "there is no settled motion to follow in this case");
+    }
+    return spec->direction != FOLLOW_BOTH || add_direction(reading, value);
 }

@@ -50,6 +50,11 @@ typedef struct Variable {
     double deviation;                // SI: of VARIABLE_NORMAL, before it is cut off
 } Variable;
 
+// In which order a study follows the settled motion from value to value of a key, and the variable
+// that says so where it does both.
+typedef enum FollowDirection { FOLLOW_FORWARD, FOLLOW_BACKWARD, FOLLOW_BOTH } FollowDirection;
+static const char SPEC_DIRECTION_KEY[] = "direction";
+
 typedef enum DrawMethod { DRAW_RANDOM, DRAW_LATIN_HYPERCUBE } DrawMethod;
 
 typedef struct Spec {
@@ -68,6 +73,9 @@ typedef struct Spec {
     uint64_t draws; // each of which is run at every point of the grid; 1 where nothing is drawn
     DrawMethod method;
     uint64_t seed;
+    char follow[CASEFILE_KEY_SIZE]; // the key along which runs start in the motion of the one
+                                    // before; empty: each finds its own
+    FollowDirection direction;
     bool has_truth;     // each run is held against the certified reference
     ChildLimits limits; // of one run; a truth may take the time of several
     uint64_t print;     // fingerprint of all that decides what the runs are: not of the limits,
@@ -106,6 +114,7 @@ typedef enum SpecGroup {
     SPEC_TOP,
     SPEC_LIMITS,
     SPEC_DRAW,
+    SPEC_FOLLOW,
     SPEC_RANGE, // from here on of one variable
     SPEC_DISTRIBUTION,
     SPEC_NORMAL,
@@ -164,6 +173,10 @@ bool spec_read_set(Reading *reading, const Node *value);
 
 // What varies.
 bool spec_read_vary(Reading *reading, const Node *value);
+
+// Along which key runs follow one another.
+bool spec_read_follow(Reading *reading, const Node *value);
+bool spec_read_follow_key(Reading *reading, const Node *value);
 
 // What is drawn, and the distributions of one key.
 bool spec_read_draws(Reading *reading, const Node *value);

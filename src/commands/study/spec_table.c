@@ -18,6 +18,8 @@ static const double EXACT_MAX = 9007199254740992.0; // 2^53: whole numbers up to
 
 static const char *const METHODS[] = {
     [DRAW_RANDOM] = "random", [DRAW_LATIN_HYPERCUBE] = "latin-hypercube", NULL};
+static const char *const DIRECTIONS[] = {
+    [FOLLOW_FORWARD] = "forward", [FOLLOW_BACKWARD] = "backward", [FOLLOW_BOTH] = "both", NULL};
 static const char *const SCALES[] = {"linear", "log", NULL};
 static const char *const FLAGS[] = {"false", "true", NULL};
 
@@ -35,6 +37,10 @@ const SpecKey SPEC_KEYS[] = {
      .value = "KEY: value, KEY: [value, value], KEY: {from: value, to: value, count: 8}, ...",
      .doc = "A grid: every combination of all values is run. KEY is a key of the case, or scheme: "
             "the way to run it by the names of 'jointplay compare'"},
+    {SPEC_TOP, "follow", SPEC_KEY_PART, .read = spec_read_follow,
+     .value = "KEY under vary, or {key: KEY, direction: both}",
+     .doc = "Each run starts in the settled motion of the run before it along this key, and not in "
+            "one that it finds from several starts"},
     {SPEC_TOP, "draw", SPEC_KEY_MAP, .of = SPEC_DRAW, .doc = "Random values"},
     {SPEC_TOP, "limits", SPEC_KEY_MAP, .of = SPEC_LIMITS, .doc = "Limits of one run"},
     {SPEC_TOP, "truth", SPEC_KEY_FLAG, AT(has_truth), .words = FLAGS, .what = "truth",
@@ -56,6 +62,13 @@ const SpecKey SPEC_KEYS[] = {
      .doc = "latin-hypercube takes one value from each of `count` equal shares of a distribution"},
     {SPEC_DRAW, "seed", SPEC_KEY_WHOLE, AT(seed), .low = 0.0, .high = EXACT_MAX, .what = "the seed",
      .doc = "The same seed gives the same values on every machine"},
+
+    {SPEC_FOLLOW, "key", SPEC_KEY_PART, true, .read = spec_read_follow_key,
+     .value = "a key under vary that takes numbers", .doc = "Whose values follow one another"},
+    {SPEC_FOLLOW, "direction", SPEC_KEY_CHOICE, AT(direction), .words = DIRECTIONS,
+     .what = "the direction",
+     .doc = "In the order of the values, against it, or each of both, which shows hysteresis: "
+            "there is a column direction then"},
 
     {SPEC_RANGE, "from", SPEC_KEY_VALUE, true, IN(low), .doc = "The first number"},
     {SPEC_RANGE, "to", SPEC_KEY_VALUE, true, IN(high), .doc = "The last number, above the first"},
@@ -92,6 +105,7 @@ const SpecGroupRow SPEC_GROUPS[SPEC_GROUP_COUNT] = {
     [SPEC_TOP] = {"", "case: with the path of a case file, relative to the study file"},
     [SPEC_LIMITS] = {"limits", ""},
     [SPEC_DRAW] = {"draw", "count: 1000, and keys: with a distribution each"},
+    [SPEC_FOLLOW] = {"follow", "key: with a key under vary, such as key: drive.speed"},
     [SPEC_RANGE] = {"vary.KEY", "{from: VALUE, to: VALUE, count: 8}, and scale: log"},
     [SPEC_DISTRIBUTION] = {"draw.keys.KEY", ""},
     [SPEC_NORMAL] = {"draw.keys.KEY.normal", "{mean: VALUE, deviation: VALUE}, and low: and high:"},

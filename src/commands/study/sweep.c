@@ -3,10 +3,10 @@
 #include "base/clock.h"
 #include "base/printable.h"
 #include "commands/study/design.h"
+#include "commands/study/follow.h"
 #include "commands/study/worker.h"
 #include "measure/chosen_run.h"
 #include "run/registry.h"
-#include "run/settle.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -103,7 +103,7 @@ static void sweep_measure(const SweepRun *task, const Scenario *scenario, Backen
     Trajectory *trajectory = backend_run(scenario, backend, task->truth,
                                          (ChosenWatch){.begin = NULL}, backend_run_probe(scenario));
     if (trajectory->is_complete &&
-        metrics_take(scenario, trajectory, task->truth, record->results)) {
+        metrics_take(task->layout, scenario, trajectory, task->truth, record->results)) {
         record->hash = trajectory->hash;
         check_results(task->layout, record);
     } else {
@@ -128,7 +128,7 @@ static void sweep_run(const SweepRun *task, Record *record)
     BackendKind backend;
     Err err = {0};
     if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
-        settle_scenario(scenario, (RunWatch){.progress = NULL});
+        follow_settle(task->spec, task->run, scenario);
         sweep_measure(task, scenario, backend, record);
     } else {
         give_reason(record, RUN_OUTCOME_REFUSED, err.text);
@@ -143,7 +143,7 @@ static void sweep_certify(const SweepTruth *truth, void *packed)
     assert(task != NULL);
     *task = truth->task;
     task->scenario = scenario_copy(&truth->task.scenario);
-    settle_scenario(&task->scenario, (RunWatch){.progress = NULL});
+    follow_settle(truth->spec, truth->run, &task->scenario);
     task_certify(task, packed);
     scenario_free(&task->scenario);
     free(task);
@@ -279,6 +279,8 @@ static bool prepare_truth(const Spec *spec, uint64_t run, SweepGroup *group)
         group->wanted = NULL;
         return false;
     }
+    group->wanted->spec = spec;
+    group->wanted->run = run;
     group->packed_size = truth_pack_size(&group->wanted->task.scenario);
     group->packed = malloc(group->packed_size);
     assert(group->packed != NULL);

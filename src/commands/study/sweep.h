@@ -65,7 +65,9 @@ typedef struct SweepRun {
 // A truth as its process sees it.
 typedef struct SweepTruth {
     SweepSlot slot;
-    Task task; // its scenario alone
+    const Spec *spec;
+    uint64_t run; // one of those that it is of
+    Task task;    // its scenario alone
 } SweepTruth;
 
 struct SweepWork {
