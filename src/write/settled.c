@@ -246,7 +246,8 @@ static void set_force(json_t *of, const Joint *joint, const char *name, double v
 {
     char key[64];
     const bool is_turn = linkage_is_torsional(joint);
-    snprintf(key, sizeof key, "%s_%s_%s", is_turn ? "torque" : "force", name, is_turn ? "Nm" : "N");
+    snprintf(key, sizeof key, "%s_%s_%s", is_turn ? "torque" : "force", name,
+             is_turn ? "N_m" : "N");
     json_value_set(of, key, value);
 }
 

@@ -401,8 +401,16 @@ static void write_time(const RunReport *report, Text *text)
 // 1: of a restitution, what a law may be off by without a word
 static const double RESTITUTION_NEAR = 0.005;
 
-// Where a damping law does not give back what is asked of it.
-static void write_restitution(const Scenario *scenario, Text *text)
+// What a damping law gives back of an impact.
+typedef struct Rebound {
+    DampingKind damping;
+    double asked;     // 1, the restitution
+    double delivered; // 1
+} Rebound;
+
+// The first joint whose damping law does not give back what is asked of it; false where there is
+// none.
+static bool find_rebound(const Scenario *scenario, Rebound *found)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
@@ -411,17 +419,25 @@ static void write_restitution(const Scenario *scenario, Text *text)
         }
         const ContactOptions own = law_options(&scenario->contact, joint);
         const double chi = damping_factor(own.damping, own.restitution);
-        const double given = damping_delivered(chi);
+        *found = (Rebound){own.damping, own.restitution, damping_delivered(chi)};
         if (chi > 0.0 && own.damping != DAMPING_DISSIPATION &&
-            fabs(given - own.restitution) > RESTITUTION_NEAR) {
-            char words[256];
-            snprintf(words, sizeof words,
-                     "Of the restitution asked for, %.3g, damping %s gives back %.3g; damping "
-                     "exact gives back what is asked for.",
-                     own.restitution, OPTIONS_DAMPINGS[own.damping], given);
-            append_paragraph(words, text);
-            return;
+            fabs(found->delivered - found->asked) > RESTITUTION_NEAR) {
+            return true;
         }
+    }
+    return false;
+}
+
+static void write_restitution(const Scenario *scenario, Text *text)
+{
+    Rebound rebound;
+    if (find_rebound(scenario, &rebound)) {
+        char words[256];
+        snprintf(words, sizeof words,
+                 "Of the restitution asked for, %.3g, damping %s gives back %.3g; damping exact "
+                 "gives back what is asked for.",
+                 rebound.asked, OPTIONS_DAMPINGS[rebound.damping], rebound.delivered);
+        append_paragraph(words, text);
     }
 }
 
@@ -534,6 +550,9 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_object_set_new(made, "bodies", bodies);
     json_object_set_new(made, "drive",
                         overview.has_drive ? row_json(&overview.drive) : json_null());
+    Rebound rebound;
+    const bool is_other = find_rebound(report->scenario, &rebound);
+    json_value_set(made, "restitution_delivered", is_other ? rebound.delivered : NAN);
     json_object_set_new(object, "overview", made);
     overview_free(&overview);
 }
