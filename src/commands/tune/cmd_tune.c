@@ -507,6 +507,19 @@ static void cmd_tune_warn(const TuneOptions *options, const Scenario *scenario)
     }
 }
 
+// Constants are written whatever their error, which is in the file and worth a word.
+static void warn_of_constants(const TuneOptions *options, const TuneReport *report)
+{
+    TuneGazebo gazebo;
+    const Tune *tune = report->tune;
+    if (options->sdf != NULL && !options->common.is_quiet && tune_gazebo_find(tune, &gazebo) &&
+        !(gazebo.error <= tune->target)) {
+        output_say("jointplay: warning: --sdf: Gazebo's contact with constants has an error of "
+                   "%.2g at %.3g us, where %.3g was asked for\n",
+                   gazebo.error, gazebo.step_s * UNITS_US, tune->target);
+    }
+}
+
 static bool tune_case(void *target, Err *err)
 {
     const TuneOptions *options = target;
@@ -532,6 +545,7 @@ static bool tune_case(void *target, Err *err)
             // that an error is not met says why a program is not written
             is_done = err_set_lines(err, unwritten.kind, unwritten.text);
         }
+        warn_of_constants(options, &report);
     }
     tune_destroy(tune);
     scenario_destroy(scenario);
