@@ -1,4 +1,4 @@
-// Several arrays in one piece of memory, which one free() gives back.
+// Independent arrays in one piece of memory, which one free() gives back.
 //
 // A function that takes its arrays from a layout is called twice: with a layout that only counts,
 // then with one that has the memory.

@@ -216,14 +216,14 @@ static void describe_groups(bool is_page, Text *text)
 {
     for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
         const SchemaGroup *group = &SCHEMA_GROUPS[g];
-        const bool is_top = group->path[0] == '\0';
+        const bool is_peak = group->path[0] == '\0';
         if (is_page) {
-            text_append(text, is_top ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
-                        is_top ? "Top level" : group->path, group->doc);
+            text_append(text, is_peak ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
+                        is_peak ? "Top level" : group->path, group->doc);
             text_append(text, "| key | value | range, SI | default | meaning |\n"
                               "|---|---|---|---|---|\n");
         } else {
-            text_append(text, "\n%s\n", is_top ? "top level" : group->path);
+            text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
             append_wrapped(group->doc, 2, text);
         }
         for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {

@@ -51,9 +51,9 @@ static void warn_of_all(Progress *progress, double share)
 {
     const double all_s = all_time(progress);
     const bool may_end = part_left(progress, share) < STATUS_LINE_SOON;
-    if (progress->line.is_quiet && !progress->is_warned && !progress->is_told &&
+    if (progress->line.is_quiet && !progress->is_warned && !progress->is_reported &&
         all_s > (may_end ? WARN_ANYWAY : WARN_QUIET)) {
-        progress->is_told = true;
+        progress->is_reported = true;
         output_say("jointplay: warning: %s%s goes on for longer than %.0f s%s\n", progress->backend,
                    progress->doing, WARN_QUIET,
                    progress->before_s > 0.0 ? ", with the runs before it" : "");
@@ -96,7 +96,7 @@ RunWatch progress_watch(Progress *progress, const char *backend)
 {
     progress->backend = backend;
     progress->doing[0] = '\0';
-    progress->is_told = progress->is_told || progress->is_warned;
+    progress->is_reported = progress->is_reported || progress->is_warned;
     progress->is_warned = false;
     progress->before_s += progress->run_wall_s;
     progress->run_wall_s = 0.0;

@@ -12,7 +12,7 @@ typedef struct Progress {
     char doing[64];      // which of its trials; empty where there are none
     StatusLine line;
     bool is_warned;    // that the run takes long
-    bool is_told;      // that the work as a whole takes long
+    bool is_reported;  // that the work as a whole takes long
     double before_s;   // wall time of the runs before this one
     double run_wall_s; // of this one so far
     // A run with a chosen step is made of trials, each with shares from 0 on.

@@ -21,7 +21,7 @@
 // well, and islands that have grown by them are run again, from the start of the step.
 #include "kernel/internal.h"
 
-#include "base/leaders.h"
+#include "base/union_find.h"
 #include "base/zeroed.h"
 
 #include <math.h>
@@ -229,7 +229,7 @@ static bool choose_divided(KernelIslands *islands)
     size_t *sizes = zeroed(count, sizeof *sizes);
     bool is_any = false;
     for (size_t i = 0; i < count; i++) {
-        islands->parents[i] = leaders_find(islands->leaders, i);
+        islands->parents[i] = union_find_root(islands->joined, i);
         sizes[islands->parents[i]] += islands->is_active[i] ? 1 : 0;
     }
     for (size_t i = 0; i < count; i++) {
@@ -252,14 +252,14 @@ static void divide_islands(KernelIslands *islands)
         return;
     }
     for (size_t i = 0; i < count; i++) {
-        islands->leaders[i] = islands->is_divided[i] ? i : islands->leaders[i];
+        islands->joined[i] = islands->is_divided[i] ? i : islands->joined[i];
     }
     for (size_t i = 0; i < count; i++) {
         for (size_t n = coupling->first_partner[i];
              islands->is_divided[i] && n < coupling->first_partner[i + 1]; n++) {
             const size_t partner = coupling->partners[n];
             if (islands->is_active[partner] && islands->clusters[partner] == islands->clusters[i]) {
-                leaders_join(islands->leaders, i, partner);
+                union_find_join(islands->joined, i, partner);
             }
         }
     }
@@ -482,7 +482,7 @@ KernelIslands *kernel_islands_create(Kernel *all, const KernelCoupling *coupling
     islands->number_in = zeroed(count, sizeof *islands->number_in);
     islands->is_active = zeroed(count, sizeof *islands->is_active);
     islands->pushes = zeroed(count, sizeof *islands->pushes);
-    islands->leaders = zeroed(count, sizeof *islands->leaders);
+    islands->joined = zeroed(count, sizeof *islands->joined);
     islands->longest_s = zeroed(count, sizeof *islands->longest_s);
     islands->undivided_most = KERNEL_UNDIVIDED_MOST;
     islands->events_most = KERNEL_UNDIVIDED_EVENTS_MOST;
@@ -523,7 +523,7 @@ void kernel_islands_destroy(KernelIslands *islands)
     free(islands->number_in);
     free(islands->is_active);
     free(islands->pushes);
-    free(islands->leaders);
+    free(islands->joined);
     free(islands->longest_s);
     free(islands);
 }
@@ -546,18 +546,18 @@ static bool may_touch(const Kernel *all, const KernelContact *contact, double du
     return gap <= duration * fastest;
 }
 
-// Finds which contacts belong together: the leader of each is the first of them.
+// Finds which contacts belong together: the root of each is the first of them.
 static void join_partners(KernelIslands *islands)
 {
     const KernelCoupling *coupling = &islands->coupling;
     const size_t count = islands->all->contact_count;
-    leaders_start(islands->leaders, count);
+    union_find_start(islands->joined, count);
     for (size_t i = 0; i < count; i++) {
         for (size_t n = coupling->first_partner[i];
              islands->is_active[i] && n < coupling->first_partner[i + 1]; n++) {
             const size_t partner = coupling->partners[n];
             if (islands->is_active[partner]) {
-                leaders_join(islands->leaders, i, partner);
+                union_find_join(islands->joined, i, partner);
             }
         }
     }
@@ -572,7 +572,7 @@ static size_t *number_active(KernelIslands *islands)
     for (size_t i = 0; i < count; i++) {
         islands->island_of[i] = count;
         if (islands->is_active[i]) {
-            const size_t leader = leaders_find(islands->leaders, i);
+            const size_t leader = union_find_root(islands->joined, i);
             const size_t number = leader == i ? islands->count++ : islands->island_of[leader];
             islands->island_of[i] = number;
             islands->number_in[i] = sizes[number]++;

@@ -280,7 +280,7 @@ typedef struct KernelIslands {
     size_t *number_in;        // by contact: which of its island's it is
     bool *is_active;          // by contact
     double *pushes;           // m/s, by contact: how fast others may make one that flies
-    size_t *leaders;          // by contact, of contacts that belong together
+    size_t *joined;           // by contact, of contacts that belong together
     double (*longest_s)[2];   // by contact: of the next explicit step
     double duration_before_s; // of the step before
     size_t undivided_most;    // active contacts of an island that is not divided, whatever happens

@@ -369,7 +369,7 @@ void child_describe(const Child *child, char text[CHILD_TEXT_SIZE])
     }
 }
 
-// Several pieces of work at a time.
+// Independent pieces of work at a time.
 //
 // fill the free slots -> wait -> take in what has ended.
 

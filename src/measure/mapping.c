@@ -1,7 +1,7 @@
 // Gives ERP, CFM and step for each joint with play, and what they deliver.
 //
 // Each joint with play under each law is a contact (measure/mapping_contact.h); each map and step
-// of it is a row: predicted, judged, and run in ODE as a lone pin (measure/mapping_contact.h).
+// of it is a row: predicted, judged, and run in ODE as a single pin (measure/mapping_contact.h).
 #include "measure/mapping.h"
 #include "base/text.h"
 
@@ -258,7 +258,7 @@ static void mapping_make_rows(Mapping *mapping, MappingWatch watch)
         if (settings->is_held && has_maps) {
             contact->held = malloc(sizeof *contact->held);
             assert(contact->held != NULL);
-            held_find(contact, settings->steps[0], contact->held);
+            constants_find(contact, settings->steps[0], contact->held);
         }
     }
 }

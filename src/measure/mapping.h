@@ -2,7 +2,7 @@
 // law, map and step, predicted, judged and measured.
 #pragma once
 
-#include "measure/held.h"
+#include "measure/constants.h"
 
 enum {
     MAPPING_STEP_MAX = 32,

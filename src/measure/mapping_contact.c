@@ -1,7 +1,7 @@
 // What an impact on a joint asks for, what ODE makes of it, and whether that is valid.
 //
 // Asked is the law's own impact at the mass and speed of the joint's contacts; predicted, the same
-// impact on ODE's row (contact/map_impact.h); delivered, a lone pin run in ODE.
+// impact on ODE's row (contact/map_impact.h); delivered, a single pin run in ODE.
 //
 // k = F(d)/d, dF/dd and c are those at the law's deepest point d of that impact: the row that ODE
 // has there is the one whose ERP and CFM are shown. omega = sqrt((dF/dd) / m). Tc is the length of
@@ -649,7 +649,7 @@ void verdict_describe(const MappingContact *contact, MappingRow *row)
     text_finish(&words);
 }
 
-// One impact of a lone pin in ODE.
+// One impact of a single pin in ODE.
 //
 // Of a block between guides, a stop or the end of a coordinate a disc stands for the pin, and a
 // line for the wall; what turns is run with its inertia for a mass and its angles for lengths.
@@ -672,9 +672,9 @@ static const double STEPS_BEHIND = 2.5;
 // of one run: some tens of milliseconds of wall time
 static const double STEPS_MOST = 1e5;
 
-// The joint of the lone body: its pin in its hole, or a disc against a line across the x axis that
-// touches as far from the origin as the pin would.
-static Joint lone_joint(const Joint *from, double play)
+// The joint of the single body: its pin in its hole, or a disc against a line across the x axis
+// that touches as far from the origin as the pin would.
+static Joint single_joint(const Joint *from, double play)
 {
     Joint joint = {
         .kind = JOINT_CLEARANCE,
@@ -694,8 +694,9 @@ static Joint lone_joint(const Joint *from, double play)
     return joint;
 }
 
-// How far the lone body flies from the middle to the wall, m. A stop has no wall on the other side.
-static double lone_play(const Joint *from)
+// How far the single body flies from the middle to the wall, m. A stop has no wall on the other
+// side.
+static double single_play(const Joint *from)
 {
     if (from->limits.kind != LIMIT_NONE) {
         return coordinate_play(from);
@@ -704,32 +705,32 @@ static double lone_play(const Joint *from)
 }
 
 // The scenario's world with nothing in it but the pin; for scenario_free.
-static void lone_pin(const Scenario *scenario, int joint, double mass, Scenario *lone)
+static void single_pin(const Scenario *scenario, int joint, double mass, Scenario *single)
 {
     const Joint *from = &scenario->linkage.joints[joint];
     const double radius = law_touching_radius(from);
     const double size = isfinite(radius) ? radius : 1e-2; // m: it does not turn
-    *lone = scenario_around(scenario, linkage_create((LinkageRoom){.bodies = 1, .joints = 1}));
-    lone->has_fourbar = false;
-    lone->has_slidercrank = false;
-    lone->point_count = 0;
-    lone->gravity = 0.0;
-    lone->linkage.body_count = 1;
-    lone->linkage.bodies[0] = (Body){
+    *single = scenario_around(scenario, linkage_create((LinkageRoom){.bodies = 1, .joints = 1}));
+    single->has_fourbar = false;
+    single->has_slidercrank = false;
+    single->point_count = 0;
+    single->gravity = 0.0;
+    single->linkage.body_count = 1;
+    single->linkage.bodies[0] = (Body){
         .name = "pin",
         .mass = mass,
         .inertia = 0.5 * mass * size * size,
     };
-    const double play = lone_play(from);
-    lone->linkage.joint_count = 1;
-    lone->linkage.joints[0] = lone_joint(from, isfinite(play) ? play : 0.0);
-    lone->run.samples = 2;
+    const double play = single_play(from);
+    single->linkage.joint_count = 1;
+    single->linkage.joints[0] = single_joint(from, isfinite(play) ? play : 0.0);
+    single->run.samples = 2;
 }
 
 // One run; false where it says nothing of one impact.
-static bool run_phase(const Scenario *lone, double speed, MapImpact *impact, char *message)
+static bool run_phase(const Scenario *single, double speed, MapImpact *impact, char *message)
 {
-    Trajectory *run = run_scenario(lone, registry_solver(BACKEND_ODE), (RunWatch){0});
+    Trajectory *run = run_scenario(single, registry_solver(BACKEND_ODE), (RunWatch){0});
     const JointExtremes *joint = &run->joints[0];
     const bool is_single = run->is_complete && joint->impacts == 1;
     if (!run->is_complete) {
@@ -757,7 +758,7 @@ ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass,
 {
     ImpactDelivered delivered = {.figures = {.is_ended = true}};
     const double step_s = scenario->run.step;
-    const double play = lone_play(&scenario->linkage.joints[joint]);
+    const double play = single_play(&scenario->linkage.joints[joint]);
     const double wall = isfinite(play) ? play : 0.0;                  // m
     const double room = 2.0 * FLIGHT_SHARE * play / (speed * step_s); // steps
     const double whole = fmin(FLIGHT_STEPS, floor(room) - 1.0);
@@ -773,21 +774,21 @@ ImpactDelivered impact_deliver(const Scenario *scenario, int joint, double mass,
                  STEPS_MOST);
         return delivered;
     }
-    Scenario lone;
-    lone_pin(scenario, joint, mass, &lone);
+    Scenario single;
+    single_pin(scenario, joint, mass, &single);
     delivered.is_measured = true;
     for (int i = 0; i < MAP_IMPACT_PHASES && delivered.is_measured; i++) {
         const double flight_s = (whole + map_impact_phase(i)) * step_s;
-        Motion *start = &lone.linkage.bodies[0].start;
+        Motion *start = &single.linkage.bodies[0].start;
         start->position.x = wall - speed * flight_s;
         start->velocity.x = speed;
-        lone.run.duration = flight_s + rest_s;
+        single.run.duration = flight_s + rest_s;
         MapImpact impact;
-        delivered.is_measured = run_phase(&lone, speed, &impact, delivered.message);
+        delivered.is_measured = run_phase(&single, speed, &impact, delivered.message);
         if (delivered.is_measured) {
             impact_add_phase(&delivered.figures, i, &impact);
         }
     }
-    scenario_free(&lone);
+    scenario_free(&single);
     return delivered;
 }

@@ -6,7 +6,7 @@
 #include "model/scenario.h"
 #include "run/run.h"
 
-// One impact of a lone pin on the wall of its hole, or of a corner or stop on its line: what ODE
+// One impact of a single pin on the wall of its hole, or of a corner or stop on its line: what ODE
 // delivers when it is run.
 
 // What a run in ODE delivered.
@@ -16,8 +16,8 @@ typedef struct ImpactDelivered {
     ImpactFigures figures;
 } ImpactDelivered;
 
-// Runs a lone pin of a mass, kg, in the hole of a joint of the scenario, or a lone body against a
-// wall where the joint is no pin in a hole, without gravity, at a closing speed, m/s, and the
+// Runs a single pin of a mass, kg, in the hole of a joint of the scenario, or a single body against
+// a wall where the joint is no pin in a hole, without gravity, at a closing speed, m/s, and the
 // scenario's own step, contact and map, over all phases. `contact_s` is the longest that the
 // contact is expected to last, s. Nothing is measured, and the message says why, where a step takes
 // the pin across the hole, a run would be too long or failed, or had another number of contacts
@@ -82,7 +82,8 @@ typedef struct MappingContact {
                                          // run; 0 also where these are not known
     size_t first_row;
     size_t row_count;
-    struct Held *held; // owned by the mapping: the best constants at the step; NULL: not wanted
+    struct Constants
+        *held; // owned by the mapping: the best constants at the step; NULL: not wanted
 } MappingContact;
 
 // Whether its rows are those of the velocity-level model, which has no law and no maps.

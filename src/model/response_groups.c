@@ -4,7 +4,7 @@
 // can give way: their columns of the factor have nothing in common.
 #include "model/response_groups.h"
 
-#include "base/leaders.h"
+#include "base/union_find.h"
 #include "base/zeroed.h"
 #include "model/joint_nodes.h"
 
@@ -26,17 +26,17 @@ static void number_groups(const ResponseNodes *nodes, ResponseGroups *groups)
 {
     const size_t body_count = nodes->linkage->body_count;
     const int driven = linkage_driven_body(nodes->linkage);
-    size_t *leaders = zeroed(body_count, sizeof *leaders);
-    leaders_start(leaders, body_count);
+    size_t *parents = zeroed(body_count, sizeof *parents);
+    union_find_start(parents, body_count);
     for (size_t node = 0; node < nodes->ideal; node++) {
         int movers[2];
         find_movers(nodes, node, movers);
         if (movers[1] != LINKAGE_GROUND) {
-            leaders_join(leaders, (size_t)movers[0], (size_t)movers[1]);
+            union_find_join(parents, (size_t)movers[0], (size_t)movers[1]);
         }
     }
     for (size_t i = 0; i < body_count; i++) {
-        const size_t leader = leaders_find(leaders, i);
+        const size_t leader = union_find_root(parents, i);
         if ((int)i != driven) {
             groups->group_of[i] = leader == i ? groups->count++ : groups->group_of[leader];
         }
@@ -44,7 +44,7 @@ static void number_groups(const ResponseNodes *nodes, ResponseGroups *groups)
     if (driven >= 0) {
         groups->group_of[driven] = groups->count;
     }
-    free(leaders);
+    free(parents);
 }
 
 // Sorts things into groups, in their order: `group_of` of each, or the number of groups.

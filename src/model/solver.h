@@ -10,12 +10,12 @@
 
 // The largest force, N, and depth, m, in a joint, and when they were reached, s; 0 where that is
 // not known more exactly than by the step.
-typedef struct JointTop {
+typedef struct JointPeak {
     double force;
     double depth;
     double force_s;
     double depth_s;
-} JointTop;
+} JointPeak;
 
 // Bodies and joints of a linkage that share nothing but the ground with the others, by their
 // numbers there.
@@ -43,7 +43,7 @@ typedef struct StepRecord {
     const double *alpha;      // rad/s^2, of each body
     const JointState *joints; // force and gap as the force arose
     const SpaceJointState *space_joints; // likewise, of a linkage in space; else NULL
-    const JointTop *tops;                // of each joint, which the steps up to this one show to
+    const JointPeak *peaks;              // of each joint, which the steps up to this one show to
                                          // lie between them, beside those of `joints`; or NULL
     const double *impulse;               // N s, of each joint in the step
     const double *approach;              // m/s, closing speed at which each joint's contact began

@@ -16,7 +16,7 @@ static const double SPACE_INDEPENDENT = 1e-9;
 enum { BEST_OF = 64 };
 
 // of what is left of two rows: a difference that is none
-static const double SAME = 1e-6;
+static const double ROUNDING = 1e-6;
 
 SpaceRow space_row_along(const SpaceMotion *motions, int body_a, Vec3 at_a, int body_b, Vec3 at_b,
                          Vec3 direction)
@@ -246,7 +246,7 @@ static bool add_axes(Basis *basis, const SpaceMotion *motions, const bool *is_as
         // of two that hold the same, the one that holds more of it
         int order[2] = {SPACE_POINT_ROWS, SPACE_POINT_ROWS + 1};
         if (share_left(basis, &rows[order[1]]) >
-            (1.0 + SAME) * share_left(basis, &rows[order[0]])) {
+            (1.0 + ROUNDING) * share_left(basis, &rows[order[0]])) {
             order[0] = SPACE_POINT_ROWS + 1;
             order[1] = SPACE_POINT_ROWS;
         }
@@ -276,7 +276,7 @@ static void add_best_axes(Basis *basis, const SpaceMotion *motions, const bool *
                 }
                 space_rows_of_joint(basis->linkage, motions, joint, rows);
                 const double share = share_left(basis, &rows[i]);
-                if (share > (1.0 + SAME) * best) {
+                if (share > (1.0 + ROUNDING) * best) {
                     best = share;
                     best_joint = joint;
                     best_part = i;

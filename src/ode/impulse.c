@@ -1,15 +1,15 @@
 // Steps a linkage in ODE with contacts integrated within the step, in the plane or in space, and
 // hands each step on in parts (ode/impulse_part.c, ode/impulse_islands.c).
 //
-// Mechanisms that share nothing but the ground are stepped side by side (model/several.h), each in
-// a world of its own: a contact of one shortens no step of another, and nothing is solved for all
-// of them together. Memory is read into the cache once for all steps up to the time that is asked
-// for: a thousand mechanisms do not fit into it.
+// Mechanisms that share nothing but the ground are stepped side by side (model/independent.h), each
+// in a world of its own: a contact of one shortens no step of another, and nothing is solved for
+// all of them together. Memory is read into the cache once for all steps up to the time that is
+// asked for: a thousand mechanisms do not fit into it.
 #include "ode/impulse.h"
 
 #include "base/zeroed.h"
 #include "contact/law.h"
-#include "model/several.h"
+#include "model/independent.h"
 #include "ode/stepping.h"
 
 #include <math.h>
@@ -219,14 +219,14 @@ static dWorldID world_of(const void *state)
 
 bool impulse_parts_open(const Scenario *scenario, const Solver *solver, void **state, Err *err)
 {
-    if (!several_open(scenario, solver, STEPPING_ROUNDING, state, err)) {
+    if (!independent_open(scenario, solver, STEPPING_ROUNDING, state, err)) {
         return false;
     }
     // they are stepped one after the other: one working memory will do
-    for (size_t i = 1; i < several_count(*state); i++) {
-        const dWorldID own = world_of(several_state(*state, i));
+    for (size_t i = 1; i < independent_count(*state); i++) {
+        const dWorldID own = world_of(independent_state(*state, i));
         dWorldUseSharedWorkingMemory(own, NULL); // its own, yet empty
-        dWorldUseSharedWorkingMemory(own, world_of(several_state(*state, 0)));
+        dWorldUseSharedWorkingMemory(own, world_of(independent_state(*state, 0)));
     }
     return true;
 }

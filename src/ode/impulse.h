@@ -47,7 +47,7 @@ KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands
 typedef struct Mark {
     double time_s; // since the start of the step
     size_t node;   // of the kernel: the state there is that of the interval behind it
-    bool is_top;   // whether it is there for a maximum alone
+    bool is_peak;  // whether it is there for a maximum alone
 } Mark;
 
 typedef struct Marks {
@@ -185,6 +185,6 @@ void impulse_observe(const void *state, double time_s, Sample *sample);
 void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES]);
 SolverModel impulse_model(const void *state);
 
-// Opens mechanisms that share nothing but the ground (model/several.h), each stepped by that
+// Opens mechanisms that share nothing but the ground (model/independent.h), each stepped by that
 // solver, whose functions are those above.
 bool impulse_parts_open(const Scenario *scenario, const Solver *solver, void **state, Err *err);

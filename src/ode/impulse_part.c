@@ -18,7 +18,7 @@ enum { MARKS_FEW = 16 };
 // square of this where they are seen so much too early or too late.
 static const double ALIKE = 1e-4;
 
-static void add_mark(Marks *marks, double time_s, size_t node, bool is_top)
+static void add_mark(Marks *marks, double time_s, size_t node, bool is_peak)
 {
     if (marks->count == marks->room) {
         marks->room = 2 * marks->room + 16;
@@ -31,7 +31,7 @@ static void add_mark(Marks *marks, double time_s, size_t node, bool is_top)
         marks->marks[at] = marks->marks[at - 1];
         at--;
     }
-    marks->marks[at] = (Mark){time_s, node, is_top};
+    marks->marks[at] = (Mark){time_s, node, is_peak};
 }
 
 // The square of a joint's force at a node.
@@ -124,10 +124,10 @@ static void thin(Marks *marks, double alike_s)
     double top_s = -INFINITY;
     for (size_t i = 0; i < marks->count; i++) {
         const Mark mark = marks->marks[i];
-        if (mark.is_top && mark.time_s - top_s < alike_s) {
+        if (mark.is_peak && mark.time_s - top_s < alike_s) {
             continue;
         }
-        top_s = mark.is_top ? mark.time_s : top_s;
+        top_s = mark.is_peak ? mark.time_s : top_s;
         marks->marks[kept++] = mark;
     }
     marks->count = kept;

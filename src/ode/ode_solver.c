@@ -1,7 +1,7 @@
 // Steps a linkage in ODE: a solver.
 //
 // Hands on to the way of stepping that the scenario asks for; each is a solver of its own.
-#include "model/several.h"
+#include "model/independent.h"
 #include "model/solver.h"
 #include "ode/stepping.h"
 
@@ -23,7 +23,7 @@ static const Solver *choose(const Scenario *scenario)
     const bool is_spatial = scenario->linkage.is_spatial;
     if (scenario_integrates_contacts(scenario)) {
         const Linkage *linkage = &scenario->linkage;
-        const bool has_parts = linkage->body_count > 0 && members_count(linkage) > 1;
+        const bool has_parts = linkage->body_count > 0 && components_count(linkage) > 1;
         return is_spatial ? (has_parts ? &SPACE_IMPULSE_PARTS : &SPACE_IMPULSE)
                           : (has_parts ? &STEPPING_IMPULSE_PARTS : &STEPPING_IMPULSE);
     }

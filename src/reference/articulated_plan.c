@@ -6,7 +6,7 @@
 #include "reference/articulated_plan.h"
 
 #include "base/grouped.h"
-#include "base/leaders.h"
+#include "base/union_find.h"
 #include "base/zeroed.h"
 
 #include <assert.h>
@@ -340,20 +340,20 @@ void articulated_plan_finish(Plan *plan)
 static void number_parts(const PlanShape *shape, ArticulatedParts *parts)
 {
     size_t *roots = zeroed(shape->node_count, sizeof *roots);
-    leaders_start(roots, shape->node_count);
+    union_find_start(roots, shape->node_count);
     for (size_t i = 0; i < shape->node_count; i++) {
         if (shape->parents[i] >= 0) {
-            leaders_join(roots, i, (size_t)shape->parents[i]);
+            union_find_join(roots, i, (size_t)shape->parents[i]);
         }
     }
     for (size_t i = 0; i < shape->loop_count; i++) {
         const int *ends = shape->ends[i];
         if (ends[0] >= 0 && ends[1] >= 0) {
-            leaders_join(roots, (size_t)ends[0], (size_t)ends[1]);
+            union_find_join(roots, (size_t)ends[0], (size_t)ends[1]);
         }
     }
     for (size_t i = 0; i < shape->node_count; i++) {
-        const size_t root = leaders_find(roots, i);
+        const size_t root = union_find_root(roots, i);
         parts->of_node[i] = root == i ? parts->count++ : parts->of_node[root];
     }
     free(roots);

@@ -22,7 +22,7 @@ static PeaksBatch peaks_batch_create(const System *system, SystemState *scratch)
     const size_t count = system->scenario->linkage.joint_count;
     return (PeaksBatch){
         .scratch = scratch,
-        .tops = zeroed(count, sizeof(JointTop)),
+        .peaks = zeroed(count, sizeof(JointPeak)),
         .joints = zeroed(count, sizeof(JointState)),
         .space_joints = zeroed(count, sizeof(SpaceJointState)),
         .forces = zeroed(CURVE_NODES * count, sizeof(double)),
@@ -32,7 +32,7 @@ static PeaksBatch peaks_batch_create(const System *system, SystemState *scratch)
 
 static void peaks_batch_finish(PeaksBatch *batch)
 {
-    free(batch->tops);
+    free(batch->peaks);
     free(batch->joints);
     free(batch->space_joints);
     free(batch->forces);
@@ -49,11 +49,11 @@ static void note_node(PeaksBatch *batch, const System *system, const SystemState
     }
 }
 
-static JointTop find_top(const PeaksBatch *batch, size_t joint, double start_s, double width_s)
+static JointPeak find_top(const PeaksBatch *batch, size_t joint, double start_s, double width_s)
 {
     double force_share = 0.0;
     double depth_share = 0.0;
-    JointTop top = {
+    JointPeak top = {
         .force = curve_top(batch->forces + CURVE_NODES * joint, &force_share),
         .depth = curve_top(batch->depths + CURVE_NODES * joint, &depth_share),
     };
@@ -62,7 +62,7 @@ static JointTop find_top(const PeaksBatch *batch, size_t joint, double start_s, 
     return top;
 }
 
-// Writes the tops of all joints between two times of the present step, of which the state at the
+// Writes the peaks of all joints between two times of the present step, of which the state at the
 // later one is given. Returns false where the accelerations are not determined in between.
 static bool peaks_batch_find(PeaksBatch *batch, Stepper *stepper, double start_s, double end_s,
                              const SystemState *state)
@@ -80,9 +80,9 @@ static bool peaks_batch_find(PeaksBatch *batch, Stepper *stepper, double start_s
     note_node(batch, system, state, CURVE_NODES - 1);
     const double since_s = system->kind->time(system, start_s);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        batch->tops[i] = (JointTop){.force = 0.0};
+        batch->peaks[i] = (JointPeak){.force = 0.0};
         if (linkage_has_play(&linkage->joints[i])) {
-            batch->tops[i] = find_top(batch, i, since_s, end_s - start_s);
+            batch->peaks[i] = find_top(batch, i, since_s, end_s - start_s);
         }
     }
     return true;
@@ -236,9 +236,9 @@ double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
 {
     const System *system = stepper->system;
     const size_t count = peaks_evaluate_all(peaks, system, state);
-    peaks->has_tops = count > PEAKS_SOUGHT_MOST &&
-                      peaks_batch_find(&peaks->batch, stepper, start_s, end_s, state);
-    if (count > 0 && !peaks->has_tops) {
+    peaks->has_peaks = count > PEAKS_SOUGHT_MOST &&
+                       peaks_batch_find(&peaks->batch, stepper, start_s, end_s, state);
+    if (count > 0 && !peaks->has_peaks) {
         const double earliest = seek_first(peaks, stepper, start_s, end_s);
         if (earliest < end_s) {
             pass(peaks, system, earliest);

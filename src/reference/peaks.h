@@ -7,7 +7,7 @@
 // The maxima of many contacts in one step, found together.
 typedef struct PeaksBatch {
     SystemState *scratch; // of the stepper's system, owned by whoever has the batch
-    JointTop *tops;       // by joint; owned, as are the arrays below
+    JointPeak *peaks;     // by joint; owned, as are the arrays below
     JointState *joints;
     SpaceJointState *space_joints;
     double *forces; // N, by joint at the nodes of a curve
@@ -30,7 +30,7 @@ typedef struct Peaks {
     SystemState *scratch; // of the stepper's system, owned by whoever has the peaks
     Peak *peaks;          // owned: two a contact, of its force and of its depth
     PeaksBatch batch;     // for more of them than are worth a part of the step each
-    bool has_tops;        // whether the last part is one that the batch has evaluated
+    bool has_peaks;       // whether the last part is one that the batch has evaluated
 } Peaks;
 
 Peaks peaks_create(const System *system, SystemState *scratch);
@@ -38,6 +38,6 @@ void peaks_finish(Peaks *peaks);
 
 // The earliest maximum of a pressing contact's force or depth between two times of the present
 // step, or the later of them. The state is that at the later time. Where many contacts have one, it
-// is the later time, and the batch's tops say when.
+// is the later time, and the batch's peaks say when.
 double peaks_next(Peaks *peaks, Stepper *stepper, double start_s, double end_s,
                   const SystemState *state);

@@ -5,8 +5,8 @@
 
 #include "base/layout.h"
 #include "base/zeroed.h"
-#include "model/members.h"
-#include "model/several.h"
+#include "model/components.h"
+#include "model/independent.h"
 #include "model/solver.h"
 #include "reference/stepper.h"
 
@@ -156,7 +156,7 @@ static bool record_onset(Mechanism *mechanism, Err *err)
         return pace_undetermined(err);
     }
     mechanism->start_s = mechanism->end_s;
-    mechanism->peaks.has_tops = false;
+    mechanism->peaks.has_peaks = false;
     fill_record(mechanism, mechanism->scratch);
     return true;
 }
@@ -263,7 +263,7 @@ static StepRecord mechanism_record(const void *state)
         .alpha = mechanism->alpha,
         .joints = mechanism->joints,
         .space_joints = is_spatial ? mechanism->space_joints : NULL,
-        .tops = mechanism->peaks.has_tops ? mechanism->peaks.batch.tops : NULL,
+        .peaks = mechanism->peaks.has_peaks ? mechanism->peaks.batch.peaks : NULL,
         .impulse = mechanism->impulse,
         .approach = mechanism->approach,
         .drive_work = now[SYSTEM_DRIVE_WORK] - then[SYSTEM_DRIVE_WORK],
@@ -372,39 +372,39 @@ static const Solver MECHANISM_SOLVER = {
 
 // Mechanisms that share nothing but the ground move side by side.
 //
-// Each by itself (model/several.h): an event of one ends no step of another.
+// Each by itself (model/independent.h): an event of one ends no step of another.
 
 // of a step
 static const double MECHANISMS_ROUNDING_SHARE = 1e-9;
 
 static bool open_each(const Scenario *scenario, void **state, Err *err)
 {
-    return several_open(scenario, &MECHANISM_SOLVER, MECHANISMS_ROUNDING_SHARE, state, err);
+    return independent_open(scenario, &MECHANISM_SOLVER, MECHANISMS_ROUNDING_SHARE, state, err);
 }
 
 static SolverModel model_of_all(const void *state)
 {
-    SolverModel model = several_model(state);
+    SolverModel model = independent_model(state);
     size_t coordinates = 0;
-    for (size_t i = 0; i < several_count(state); i++) {
-        coordinates += mechanism_coordinates(several_state(state, i));
+    for (size_t i = 0; i < independent_count(state); i++) {
+        coordinates += mechanism_coordinates(independent_state(state, i));
     }
-    reference_label(several_scenario(state), coordinates, model.label);
+    reference_label(independent_scenario(state), coordinates, model.label);
     return model;
 }
 
 static const Solver MECHANISMS_SOLVER = {
     .name = "reference",
     .open = open_each,
-    .step = several_step,
-    .stride = several_stride,
-    .record = several_record,
-    .observe = several_observe,
-    .observe_part = several_observe_part,
-    .glance = several_glance,
-    .contacts = several_contacts,
+    .step = independent_step,
+    .stride = independent_stride,
+    .record = independent_record,
+    .observe = independent_observe,
+    .observe_part = independent_observe_part,
+    .glance = independent_glance,
+    .contacts = independent_contacts,
     .model = model_of_all,
-    .close = several_close,
+    .close = independent_close,
 };
 
 typedef struct Reference {
@@ -416,7 +416,7 @@ static bool reference_open(const Scenario *scenario, void **state, Err *err)
 {
     Reference *reference = zeroed(1, sizeof *reference);
     const Linkage *linkage = &scenario->linkage;
-    const bool is_several = linkage->body_count > 0 && members_count(linkage) > 1;
+    const bool is_several = linkage->body_count > 0 && components_count(linkage) > 1;
     reference->solver = is_several ? &MECHANISMS_SOLVER : &MECHANISM_SOLVER;
     if (!reference->solver->open(scenario, &reference->state, err)) {
         free(reference);

@@ -245,19 +245,19 @@ static void end_contact(Recorder *recorder, size_t number)
 }
 
 // The force and depth of a joint at a time.
-static JointTop top_at(const JointState *state, double time_s)
+static JointPeak top_at(const JointState *state, double time_s)
 {
-    return (JointTop){state->force, joint_state_depth(state), time_s, time_s};
+    return (JointPeak){state->force, joint_state_depth(state), time_s, time_s};
 }
 
 // The largest force and depth of a joint in a step, as far as it knows.
-static JointTop top_of(const StepRecord *step, size_t index)
+static JointPeak top_of(const StepRecord *step, size_t index)
 {
-    JointTop top = top_at(&step->joints[index], step->joint_s);
-    if (step->tops == NULL) {
+    JointPeak top = top_at(&step->joints[index], step->joint_s);
+    if (step->peaks == NULL) {
         return top;
     }
-    const JointTop *between = &step->tops[index];
+    const JointPeak *between = &step->peaks[index];
     if (between->force > top.force) {
         top.force = between->force;
         top.force_s = between->force_s > 0.0 ? between->force_s : step->joint_s;
@@ -290,7 +290,7 @@ static void recorder_add_contact(Recorder *recorder, const StepRecord *step, siz
     if (state->is_touching) {
         spike->duration_s += duration;
         spike->impulse += step->impulse[index];
-        const JointTop top = top_of(step, index);
+        const JointPeak top = top_of(step, index);
         spike->force_max = fmax(spike->force_max, top.force);
         spike->penetration_max = fmax(spike->penetration_max, top.depth);
         joint->contact_time += is_reported ? duration : 0.0;
@@ -313,7 +313,7 @@ static inline void raise_body(BodyExtremes *body, bool is_first, double omega, d
 
 // The tilt is that of a block between guides.
 static inline void raise_joint(JointExtremes *extremes, bool is_first, const Joint *joint,
-                               const JointTop *top, double tilt, double time_s)
+                               const JointPeak *top, double tilt, double time_s)
 {
     raise_to(&extremes->force_max, is_first, top->force, top->force_s);
     raise_to(&extremes->penetration_max, is_first, top->depth, top->depth_s);
@@ -343,7 +343,7 @@ static void recorder_raise_all(Recorder *recorder, const StepRecord *step)
     }
     for (size_t k = 0; k < joint_count; k++) {
         const size_t i = solver_joint(step->part, k);
-        const JointTop top = top_of(step, k);
+        const JointPeak top = top_of(step, k);
         const bool is_first = !recorder->has_joint[i];
         JointExtremes *joint = &trajectory->joints[i];
         if (step->space_joints != NULL) {
@@ -405,7 +405,7 @@ void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *samp
             continue;
         }
         const JointState *state = &sample->joints[i];
-        const JointTop top = top_at(state, time_s);
+        const JointPeak top = top_at(state, time_s);
         raise_joint(&trajectory->joints[i], false, &linkage->joints[i], &top, state->tilt, time_s);
         if (linkage->is_spatial) {
             raise_joint_space(&trajectory->joints[i], false, &sample->space_joints[i], time_s);

@@ -18,9 +18,9 @@
 
 typedef struct Turning {
     const Linkage *linkage;
-    double *told_s; // by body, the end of its last record; owned, like the next two
-    double *angle;  // rad, there
-    double *omega;  // rad/s, there
+    double *reported_s; // by body, the end of its last record; owned, like the next two
+    double *angle;      // rad, there
+    double *omega;      // rad/s, there
 } Turning;
 
 typedef struct PartSamples {
@@ -70,7 +70,7 @@ static Turning turning_start(const Linkage *linkage)
     const size_t count = linkage->body_count;
     Turning turning = {
         .linkage = linkage,
-        .told_s = zeroed(count, sizeof *turning.told_s),
+        .reported_s = zeroed(count, sizeof *turning.reported_s),
         .angle = zeroed(count, sizeof *turning.angle),
         .omega = zeroed(count, sizeof *turning.omega),
     };
@@ -84,7 +84,7 @@ static Turning turning_start(const Linkage *linkage)
 // The bodies where they are at time zero.
 static void turning_finish(Turning *turning)
 {
-    free(turning->told_s);
+    free(turning->reported_s);
     free(turning->angle);
     free(turning->omega);
 }
@@ -94,10 +94,10 @@ static void turning_add(Turning *turning, const StepRecord *record)
     const size_t count = solver_body_count(record->part, turning->linkage);
     for (size_t k = 0; k < count; k++) {
         const size_t i = solver_body(record->part, k);
-        const double width_s = record->end_s - turning->told_s[i];
+        const double width_s = record->end_s - turning->reported_s[i];
         turning->angle[i] += 0.5 * width_s * (turning->omega[i] + record->omega[k]);
         turning->omega[i] = record->omega[k];
-        turning->told_s[i] = record->end_s;
+        turning->reported_s[i] = record->end_s;
     }
 }
 
@@ -112,7 +112,7 @@ static void turning_unwrap(const Turning *turning, const SolverPart *part, Sampl
         if ((int)i == driven) {
             continue;
         }
-        const double ahead = turning->omega[i] * (turning->told_s[i] - sample->time_s);
+        const double ahead = turning->omega[i] * (turning->reported_s[i] - sample->time_s);
         double *angle = &sample->bodies[i].angle;
         const double apart = turning->angle[i] - ahead - *angle;
         // hardly ever is it another turn than that of the solver
@@ -476,7 +476,7 @@ static void show_extremes(const Scenario *scenario, Trajectory *trajectory)
 static double driven_until(const Loop *loop)
 {
     const int driven = linkage_driven_body(&loop->scenario->linkage);
-    return driven != LINKAGE_GROUND ? loop->turning.told_s[driven] : loop->reached_s;
+    return driven != LINKAGE_GROUND ? loop->turning.reported_s[driven] : loop->reached_s;
 }
 
 // No solver starts anywhere but where the case asks for.

@@ -10,8 +10,8 @@
 // revolution is a random number, which has settled where Mann and Whitney's rank test tells the
 // later revolutions from earlier ones no more.
 //
-// Several starts are settled side by side. Two of them have come to one motion where the sections
-// and forces of one period agree, whichever revolution is its first.
+// Independent starts are settled side by side. Two of them have come to one motion where the
+// sections and forces of one period agree, whichever revolution is its first.
 #include "run/settle.h"
 
 #include "base/clock.h"
@@ -119,8 +119,8 @@ static void take_record(const Linkage *linkage, const StepRecord *record, bool *
         }
         const JointState *joint = &record->joints[k];
         double force = joint->force;
-        if (record->tops != NULL) {
-            force = fmax(force, record->tops[k].force);
+        if (record->peaks != NULL) {
+            force = fmax(force, record->peaks[k].force);
         }
         revolution->force_max[i] = fmax(revolution->force_max[i], force);
         revolution->impacts[i] += joint->is_touching && !touches[i] ? 1 : 0;

@@ -29,7 +29,8 @@ static const double ALIKE = 1e-12;
 enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
 
 // Signals that are climbed to the top of one by one in a step: the others are seen at the same
-// looks, which for signals of one impact are near their tops. A crowd takes as many looks as two.
+// looks, which for signals of one impact are near their peaks. A cluster takes as many looks as
+// two.
 enum { SOUGHT_MOST = 16 };
 
 enum { CLIMBS_MAX = 12 }; // a parabola gains half as many digits again each time
@@ -43,8 +44,8 @@ Looker looker_start(const Scenario *scenario, const Solver *solver, const void *
                     .state = state,
                     .recorder = recorder,
                     .sample = sample_create(linkage),
-                    .alpha_tops = zeroed(linkage->body_count, sizeof(LookTop[LOOK_SIGNS])),
-                    .force_tops = zeroed(linkage->joint_count, sizeof(LookTop[LOOK_SIGNS]))};
+                    .alpha_peaks = zeroed(linkage->body_count, sizeof(LookPeak[LOOK_SIGNS])),
+                    .force_peaks = zeroed(linkage->joint_count, sizeof(LookPeak[LOOK_SIGNS]))};
 }
 
 void looker_finish(Looker *looker)
@@ -53,8 +54,8 @@ void looker_finish(Looker *looker)
         free(looker->blocks[i]);
     }
     free(looker->blocks);
-    free(looker->alpha_tops);
-    free(looker->force_tops);
+    free(looker->alpha_peaks);
+    free(looker->force_peaks);
     sample_free(&looker->sample);
 }
 
@@ -100,7 +101,7 @@ void looker_keep(Looker *looker, Look *first, const Look *look)
         first->force[i] = look->force[i];
     }
     looker->look_count = 1;
-    looker->has_tops = false;
+    looker->has_peaks = false;
 }
 
 Look look_inside(Looker *looker, double time_s)
@@ -343,7 +344,7 @@ static size_t look_for_turns(Looker *looker, const Look *first, const Look *last
     return sought;
 }
 
-bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks)
+bool look_is_cluster(Looker *looker, const Look *before, int parts, const Look *looks)
 {
     const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
     const size_t joint_count = solver_joint_count(looker->part, &looker->scenario->linkage);
@@ -414,12 +415,12 @@ typedef struct Signal {
     double sign;
 } Signal;
 
-typedef struct Crowd {
-    Looker *looker; // receives the tops
+typedef struct Cluster {
+    Looker *looker; // receives the peaks
     double start_s;
     double width_s;
     Look looks[CURVE_NODES];
-} Crowd;
+} Cluster;
 
 static double step_extremes_value_of(const Look *look, const Signal *signal)
 {
@@ -433,39 +434,39 @@ static double step_extremes_value_of(const Look *look, const Signal *signal)
     }
 }
 
-static LookTop *tops_of(const Looker *looker, RecorderSignal which, size_t number)
+static LookPeak *peaks_of(const Looker *looker, RecorderSignal which, size_t number)
 {
-    return which == RECORDER_FORCE ? looker->force_tops[number] : looker->alpha_tops[number];
+    return which == RECORDER_FORCE ? looker->force_peaks[number] : looker->alpha_peaks[number];
 }
 
 // Lets the looker have a top of an acceleration or a force, with the speed there.
-static void note_top(const Crowd *crowd, const Signal *signal, double share, double value)
+static void note_peak(const Cluster *cluster, const Signal *signal, double share, double value)
 {
     const Signal speed = {RECORDER_OMEGA, signal->number, 1.0};
-    LookTop top = {crowd->start_s + share * crowd->width_s, signal->sign * value, 0.0, true};
+    LookPeak top = {cluster->start_s + share * cluster->width_s, signal->sign * value, 0.0, true};
     if (signal->which == RECORDER_OMEGA) {
         return;
     }
     if (signal->which == RECORDER_ALPHA) {
         double speeds[CURVE_NODES];
         for (size_t k = 0; k < CURVE_NODES; k++) {
-            speeds[k] = step_extremes_value_of(&crowd->looks[k], &speed);
+            speeds[k] = step_extremes_value_of(&cluster->looks[k], &speed);
         }
         top.omega = curve_at(speeds, share);
     }
-    tops_of(crowd->looker, signal->which, signal->number)[signal->sign > 0.0 ? 1 : 0] = top;
+    peaks_of(cluster->looker, signal->which, signal->number)[signal->sign > 0.0 ? 1 : 0] = top;
 }
 
 // Raises an extreme to the top of its signal.
-static void raise_signal(const Crowd *crowd, Signal signal)
+static void raise_signal(const Cluster *cluster, Signal signal)
 {
-    Recorder *recorder = crowd->looker->recorder;
+    Recorder *recorder = cluster->looker->recorder;
     const Extreme *extreme = recorder_extreme(recorder, signal.which, signal.number, signal.sign);
     const double so_far = signal.sign * extreme->value;
     double values[CURVE_NODES];
     size_t largest = 0;
     for (size_t k = 0; k < CURVE_NODES; k++) {
-        values[k] = signal.sign * step_extremes_value_of(&crowd->looks[k], &signal);
+        values[k] = signal.sign * step_extremes_value_of(&cluster->looks[k], &signal);
         largest = values[k] > values[largest] ? k : largest;
     }
     const bool is_inside = largest > 0 && largest + 1 < CURVE_NODES;
@@ -474,66 +475,66 @@ static void raise_signal(const Crowd *crowd, Signal signal)
     }
     double share = 0.0;
     const double top = curve_top(values, &share);
-    note_top(crowd, &signal, share, top);
+    note_peak(cluster, &signal, share, top);
     if (top > so_far) {
-        const double time_s = crowd->start_s + share * crowd->width_s;
+        const double time_s = cluster->start_s + share * cluster->width_s;
         recorder_raise(recorder, signal.which, signal.number, signal.sign,
                        (Extreme){.time_s = time_s, .value = signal.sign * top});
     }
 }
 
-static void forget_tops(LookTop *tops)
+static void forget_peaks(LookPeak *peaks)
 {
     for (size_t i = 0; i < LOOK_SIGNS; i++) {
-        tops[i].is_known = false;
+        peaks[i].is_known = false;
     }
 }
 
-static void step_extremes_raise_all(const Crowd *crowd)
+static void step_extremes_raise_all(const Cluster *cluster)
 {
-    const Linkage *linkage = &crowd->looker->scenario->linkage;
-    const SolverPart *part = crowd->looker->part;
+    const Linkage *linkage = &cluster->looker->scenario->linkage;
+    const SolverPart *part = cluster->looker->part;
     const size_t body_count = solver_body_count(part, linkage);
     const size_t joint_count = solver_joint_count(part, linkage);
     const int driven = linkage_driven_body(linkage);
     for (size_t k = 0; k < body_count; k++) {
         const size_t body = solver_body(part, k);
-        forget_tops(crowd->looker->alpha_tops[body]);
+        forget_peaks(cluster->looker->alpha_peaks[body]);
         if ((int)body == driven) {
             continue; // it moves as it is told
         }
         for (int sign = -1; sign <= 1; sign += 2) {
-            raise_signal(crowd, (Signal){RECORDER_OMEGA, body, sign});
-            raise_signal(crowd, (Signal){RECORDER_ALPHA, body, sign});
+            raise_signal(cluster, (Signal){RECORDER_OMEGA, body, sign});
+            raise_signal(cluster, (Signal){RECORDER_ALPHA, body, sign});
         }
     }
     for (size_t k = 0; k < joint_count; k++) {
         const size_t joint = solver_joint(part, k);
-        forget_tops(crowd->looker->force_tops[joint]);
-        raise_signal(crowd, (Signal){RECORDER_FORCE, joint, 1.0});
+        forget_peaks(cluster->looker->force_peaks[joint]);
+        raise_signal(cluster, (Signal){RECORDER_FORCE, joint, 1.0});
     }
 }
 
-void look_at_crowd(Looker *looker, const Look *before, const Look *end)
+void look_at_cluster(Looker *looker, const Look *before, const Look *end)
 {
-    Crowd crowd = {
+    Cluster cluster = {
         .looker = looker, .start_s = before->time_s, .width_s = end->time_s - before->time_s};
-    crowd.looks[0] = *before;
-    crowd.looks[CURVE_NODES - 1] = *end;
+    cluster.looks[0] = *before;
+    cluster.looks[CURVE_NODES - 1] = *end;
     for (size_t k = 1; k + 1 < CURVE_NODES; k++) {
-        crowd.looks[k] = look_inside(looker, crowd.start_s + curve_node(k) * crowd.width_s);
+        cluster.looks[k] = look_inside(looker, cluster.start_s + curve_node(k) * cluster.width_s);
     }
-    step_extremes_raise_all(&crowd);
-    looker->has_tops = true;
+    step_extremes_raise_all(&cluster);
+    looker->has_peaks = true;
 }
 
-// Adds the tops between two times to a path, the earlier one first.
-static size_t add_tops(const LookTop *tops, double from_s, double to_s, LookPoint *path,
-                       size_t count)
+// Adds the peaks between two times to a path, the earlier one first.
+static size_t add_peaks(const LookPeak *peaks, double from_s, double to_s, LookPoint *path,
+                        size_t count)
 {
-    const size_t first = tops[0].time_s <= tops[1].time_s ? 0 : 1;
+    const size_t first = peaks[0].time_s <= peaks[1].time_s ? 0 : 1;
     for (size_t i = 0; i < LOOK_SIGNS; i++) {
-        const LookTop *top = &tops[i == 0 ? first : 1 - first];
+        const LookPeak *top = &peaks[i == 0 ? first : 1 - first];
         if (top->is_known && top->time_s > from_s && top->time_s < to_s) {
             path[count++] = (LookPoint){top->time_s, top->value, top->omega};
         }
@@ -548,9 +549,10 @@ size_t look_path(const Looker *looker, RecorderSignal signal, size_t number, dou
     size_t points = 0;
     for (int k = 0; k < count; k++) {
         const Look *look = &looks[k];
-        if (looker->has_tops) {
+        if (looker->has_peaks) {
             const double from_s = k > 0 ? looks[k - 1].time_s : before_s;
-            points = add_tops(tops_of(looker, signal, number), from_s, look->time_s, path, points);
+            points =
+                add_peaks(peaks_of(looker, signal, number), from_s, look->time_s, path, points);
         }
         path[points++] =
             (LookPoint){look->time_s, is_force ? look->force[number] : look->alpha[number],

@@ -20,12 +20,12 @@ typedef struct Look {
 enum { LOOK_SIGNS = 2 };
 
 // Where a signal in a step has one of them.
-typedef struct LookTop {
+typedef struct LookPeak {
     double time_s;
     double value;
     double omega; // rad/s, of a body
     bool is_known;
-} LookTop;
+} LookPeak;
 
 // Whom to ask. What it says the recorder sees, too. Looks are in its room until that is emptied.
 typedef struct Looker {
@@ -38,9 +38,9 @@ typedef struct Looker {
     size_t look_count;      // looks that are in the room
     size_t block_count;     // of them there is room for
     double **blocks;        // of one look each
-    bool has_tops;          // whether the last step was one in which a crowd was looked at
-    LookTop (*alpha_tops)[LOOK_SIGNS]; // of it, by body; owned, like the next
-    LookTop (*force_tops)[LOOK_SIGNS]; // by joint
+    bool has_peaks;         // whether the last step was one in which a cluster was looked at
+    LookPeak (*alpha_peaks)[LOOK_SIGNS]; // of it, by body; owned, like the next
+    LookPeak (*force_peaks)[LOOK_SIGNS]; // by joint
 } Looker;
 
 Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
@@ -60,7 +60,7 @@ Look look_at_end(Looker *looker, const StepRecord *step);
 
 // Whether so many signals of a step may come near the run's extremes that these are found together
 // for less than one by one. Arguments as below.
-bool look_is_crowd(Looker *looker, const Look *before, int parts, const Look *looks);
+bool look_is_cluster(Looker *looker, const Look *before, int parts, const Look *looks);
 
 // Looks in a step for maxima and minima of the signals that come near the run's extremes, down to
 // rounding; of many signals some are, and the others are seen at the looks that these take.
@@ -71,8 +71,8 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
 // The extremes of many signals in one step, found together.
 
 // Tells the recorder what the signals of the part reach between two looks at a step's ends, where
-// that may be beyond the run's extremes so far, and lets the looker have the tops.
-void look_at_crowd(Looker *looker, const Look *before, const Look *end);
+// that may be beyond the run's extremes so far, and lets the looker have the peaks.
+void look_at_cluster(Looker *looker, const Look *before, const Look *end);
 
 // A signal at one instant.
 typedef struct LookPoint {
@@ -83,7 +83,7 @@ typedef struct LookPoint {
 
 enum { LOOK_PATH_MAX = LOOK_MAX + LOOK_SIGNS };
 
-// Alpha of a body or force of a joint at looks, and at its tops between them where a crowd was
+// Alpha of a body or force of a joint at looks, and at its peaks between them where a cluster was
 // looked at since the room was emptied. `before` is when the looks begin.
 size_t look_path(const Looker *looker, RecorderSignal signal, size_t number, double before_s,
                  int count, const Look *looks, LookPoint path[LOOK_PATH_MAX]);

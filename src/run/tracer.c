@@ -9,8 +9,8 @@
 // middle, and n parts bring that down to 1 / n^2 of it.
 #include "run/tracer.h"
 #include "base/grouped.h"
-#include "base/leaders.h"
 #include "base/sorted.h"
+#include "base/union_find.h"
 #include "base/zeroed.h"
 #include "run/spikes.h"
 #include "run/step_extremes.h"
@@ -30,23 +30,23 @@ static bool hands_on(const Linkage *linkage, int body)
 // By body: the first of those that ideal joints connect with it.
 static size_t *tracer_connect(const Linkage *linkage)
 {
-    size_t *leaders = zeroed(linkage->body_count, sizeof *leaders);
-    leaders_start(leaders, linkage->body_count);
+    size_t *parents = zeroed(linkage->body_count, sizeof *parents);
+    union_find_start(parents, linkage->body_count);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if (linkage_kind_is_ideal(joint->kind) && hands_on(linkage, joint->body_a) &&
             hands_on(linkage, joint->body_b)) {
-            leaders_join(leaders, (size_t)joint->body_a, (size_t)joint->body_b);
+            union_find_join(parents, (size_t)joint->body_a, (size_t)joint->body_b);
         }
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
-        leaders[i] = leaders_find(leaders, i);
+        parents[i] = union_find_root(parents, i);
     }
-    return leaders;
+    return parents;
 }
 
 // The set that one end of a joint with play acts on; none where its other end does already.
-static size_t set_of(const Linkage *linkage, const size_t *leaders, size_t end)
+static size_t set_of(const Linkage *linkage, const size_t *parents, size_t end)
 {
     const Joint *joint = &linkage->joints[end / 2];
     const bool is_a = end % 2 == 0;
@@ -54,8 +54,8 @@ static size_t set_of(const Linkage *linkage, const size_t *leaders, size_t end)
     if (!linkage_has_play(joint) || !hands_on(linkage, body)) {
         return GROUPED_NONE;
     }
-    const size_t set = leaders[body];
-    return !is_a && set_of(linkage, leaders, end - 1) == set ? GROUPED_NONE : set;
+    const size_t set = parents[body];
+    return !is_a && set_of(linkage, parents, end - 1) == set ? GROUPED_NONE : set;
 }
 
 Causes causes_find(const Linkage *linkage)
@@ -278,8 +278,8 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
     }
     looks[parts - 1] = look_at_end(&tracer->looker, step);
     int count = parts;
-    if (step->is_smooth && look_is_crowd(&tracer->looker, &tracer->last, parts, looks)) {
-        look_at_crowd(&tracer->looker, &tracer->last, &looks[parts - 1]);
+    if (step->is_smooth && look_is_cluster(&tracer->looker, &tracer->last, parts, looks)) {
+        look_at_cluster(&tracer->looker, &tracer->last, &looks[parts - 1]);
     } else {
         count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);
     }

@@ -6,7 +6,7 @@
 #include "world/found.h"
 
 #include "world/pressing_row.h"
-#include "world/recall.h"
+#include "world/response_cache.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -58,10 +58,10 @@ void found_keep(JpWorld *world)
     }
 }
 
-void found_put_back(JpWorld *world, Answer *answer)
+void found_put_back(JpWorld *world, WorldResponse *response)
 {
     const WorldFound *found = &world->found;
-    closing_put_back(&answer->closing);
+    closing_put_back(&response->closing);
     dWorldSetGravity(world->id, found->gravity[0], found->gravity[1], found->gravity[2]);
     dWorldSetERP(world->id, found->erp);
     world->last_step = found->last_step;
@@ -73,8 +73,8 @@ void found_put_back(JpWorld *world, Answer *answer)
     }
     free(world->settling);
     world->settling = NULL;
-    recall_free(world->recall);
-    world->recall = NULL;
+    response_cache_free(world->cache);
+    world->cache = NULL;
     if (world->kernel != NULL) {
         kernel_finish(world->kernel);
     }

@@ -124,15 +124,15 @@ JpStatus jp_impact_of_rows(JpMap map, const JpContact *contact, double mass, dou
 }
 
 JpStatus jp_step_is_right(JpMap map, const JpContact *contact, double mass, double speed,
-                          double step, double share, bool *answer, JpError *error)
+                          double step, double share, bool *response, JpError *error)
 {
     Question question;
-    REFUSAL_TRY(refusal_of_null(answer, "the answer", error));
+    REFUSAL_TRY(refusal_of_null(response, "the response", error));
     REFUSAL_TRY(refusal_of_positive(share, "the share", error));
     REFUSAL_TRY(ask_rows(map, contact, mass, speed, &question, error));
     REFUSAL_TRY(check_step(&question, step, error));
     question.share = share;
-    *answer = is_right(step, &question);
+    *response = is_right(step, &question);
     return refusal_none(error);
 }
 

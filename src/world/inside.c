@@ -45,15 +45,16 @@ static size_t rows_of_side(const Place *place)
 }
 
 // Calls a function for the active sides, in order, until it says no.
-typedef bool (*SideVisit)(Answer *answer, const AnswerPlace *of, size_t side, size_t number);
+typedef bool (*SideVisit)(WorldResponse *response, const ResponsePlace *of, size_t side,
+                          size_t number);
 
-static bool visit_sides(Answer *answer, SideVisit visit)
+static bool visit_sides(WorldResponse *response, SideVisit visit)
 {
     size_t number = 0;
-    for (size_t i = 0; i < answer->place_count; i++) {
-        const AnswerPlace *of = &answer->places[i];
+    for (size_t i = 0; i < response->place_count; i++) {
+        const ResponsePlace *of = &response->places[i];
         for (size_t k = 0; of->is_active && k < SIDE_COUNT; k++) {
-            if (has_side(of->place, k) && !visit(answer, of, k, number++)) {
+            if (has_side(of->place, k) && !visit(response, of, k, number++)) {
                 return false;
             }
         }
@@ -62,42 +63,43 @@ static bool visit_sides(Answer *answer, SideVisit visit)
 }
 
 // Whether a side is of the same form as a joint of the kernel.
-static bool is_laid_out(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+static bool is_laid_out(WorldResponse *response, const ResponsePlace *of, size_t side,
+                        size_t number)
 {
     (void)side;
-    const Kernel *kernel = answer->world->kernel;
+    const Kernel *kernel = response->world->kernel;
     return number < kernel->contact_count &&
            kernel->contacts[number].row_count == rows_of_side(of->place);
 }
 
-static bool lay_out(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+static bool lay_out(WorldResponse *response, const ResponsePlace *of, size_t side, size_t number)
 {
     (void)number;
-    kernel_add(answer->world->kernel, &of->place->inside[side], rows_of_side(of->place));
+    kernel_add(response->world->kernel, &of->place->inside[side], rows_of_side(of->place));
     return true;
 }
 
-static bool count_side(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+static bool count_side(WorldResponse *response, const ResponsePlace *of, size_t side, size_t number)
 {
     (void)of;
     (void)side;
-    answer->side_count = number + 1;
+    response->side_count = number + 1;
     return true;
 }
 
 // The world's kernel with a joint for each active side. What it keeps is laid out by its rows.
-static Kernel *make_kernel(Answer *answer)
+static Kernel *make_kernel(WorldResponse *response)
 {
-    JpWorld *world = answer->world;
+    JpWorld *world = response->world;
     if (world->kernel == NULL) {
         world->kernel = memory_zeroed(1, sizeof *world->kernel);
     }
     Kernel *kernel = world->kernel;
-    visit_sides(answer, count_side);
-    if (kernel->contact_count != answer->side_count || !visit_sides(answer, is_laid_out)) {
+    visit_sides(response, count_side);
+    if (kernel->contact_count != response->side_count || !visit_sides(response, is_laid_out)) {
         kernel_finish(kernel);
         *kernel = kernel_start(LOCAL_PHASE);
-        visit_sides(answer, lay_out);
+        visit_sides(response, lay_out);
         kernel_make_room(kernel, kernel->row_count);
         if (world->pace.is_set) {
             memcpy(kernel->longest_s, world->pace.longest_s, sizeof kernel->longest_s);
@@ -110,24 +112,24 @@ static Kernel *make_kernel(Answer *answer)
 }
 
 // Fills in the rows of a side, of which a line's second moves nothing.
-static void fill_rows(Answer *answer, const AnswerPlace *of, size_t number, size_t first)
+static void fill_rows(WorldResponse *response, const ResponsePlace *of, size_t number, size_t first)
 {
-    Kernel *kernel = answer->world->kernel;
+    Kernel *kernel = response->world->kernel;
     const Place *place = of->place;
     const Side *side = &place->sides[number];
     const bool is_line = place->shape == PLACE_LINE;
     for (size_t own = 0; own < rows_of_side(place); own++) {
         const size_t row = first + own;
         if (is_line && own > 0) {
-            answer->inside[row] = 0;
+            response->inside[row] = 0;
             kernel->position[row] = kernel->speed[row] = kernel->free[row] = 0.0;
             continue;
         }
         const double sign = is_line ? side->sign : 1.0;
-        answer->inside[row] = of->first_row + own + 1;
-        answer->signs[row] = sign;
+        response->inside[row] = of->first_row + own + 1;
+        response->signs[row] = sign;
         kernel->speed[row] = sign * place->start_rate[own];
-        kernel->free[row] = sign * answer->free[of->first_row + own];
+        kernel->free[row] = sign * response->free[of->first_row + own];
         kernel->position[row] = is_line                  ? side_gap(side, place->start[0])
                                 : own < PLACE_ROWS_PLANE ? place->start[own]
                                                          : 0.0;
@@ -135,9 +137,9 @@ static void fill_rows(Answer *answer, const AnswerPlace *of, size_t number, size
 }
 
 // Fills in one side, as the step before left it.
-static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+static bool fill_side(WorldResponse *response, const ResponsePlace *of, size_t side, size_t number)
 {
-    KernelContact *joint = &answer->world->kernel->contacts[number];
+    KernelContact *joint = &response->world->kernel->contacts[number];
     const KernelContact laid_out = *joint;
     const Place *place = of->place;
     const Side *from = &place->sides[side];
@@ -158,47 +160,47 @@ static bool fill_side(Answer *answer, const AnswerPlace *of, size_t side, size_t
         joint->frequency = sqrt(force_law_tangent(&from->law, fmax(from->inside, DBL_MIN)) *
                                 play_mobility(of->joint, place));
     }
-    fill_rows(answer, of, side, joint->first_row);
+    fill_rows(response, of, side, joint->first_row);
     return true;
 }
 
 // The mobility between two rows of the kernel.
-static double mobility_between(const Answer *answer, size_t i, size_t k)
+static double mobility_between(const WorldResponse *response, size_t i, size_t k)
 {
-    const size_t n = answer->row_count;
-    const size_t row = answer->inside[i];
-    const size_t other = answer->inside[k];
+    const size_t n = response->row_count;
+    const size_t row = response->inside[i];
+    const size_t other = response->inside[k];
     if (row == 0 || other == 0) {
         return 0.0;
     }
-    const double there = answer->columns[(other - 1) * n + row - 1];
-    const double back = answer->columns[(row - 1) * n + other - 1];
-    const double rotor = row == other ? answer->rotors[row - 1] : 0.0;
-    return answer->signs[i] * answer->signs[k] * (0.5 * (there + back) + rotor);
+    const double there = response->columns[(other - 1) * n + row - 1];
+    const double back = response->columns[(row - 1) * n + other - 1];
+    const double rotor = row == other ? response->rotors[row - 1] : 0.0;
+    return response->signs[i] * response->signs[k] * (0.5 * (there + back) + rotor);
 }
 
-static void fill_mobility(Answer *answer)
+static void fill_mobility(WorldResponse *response)
 {
-    Kernel *kernel = answer->world->kernel;
+    Kernel *kernel = response->world->kernel;
     for (size_t i = 0; i < kernel->row_count; i++) {
         for (size_t k = 0; k < kernel->row_count; k++) {
-            *kernel_mobility(kernel, i, k) = mobility_between(answer, i, k);
+            *kernel_mobility(kernel, i, k) = mobility_between(response, i, k);
         }
     }
 }
 
 // Sums what the kernel's rows did by row here.
-static void add_totals(Answer *answer, double step)
+static void add_totals(WorldResponse *response, double step)
 {
-    const Kernel *kernel = answer->world->kernel;
-    const KernelSums *total = &answer->sums;
-    kernel_at(kernel, kernel->node_count - 1, step, &answer->sums);
-    memset(answer->net, 0, answer->row_count * sizeof(double));
-    memset(answer->moment, 0, answer->row_count * sizeof(double));
+    const Kernel *kernel = response->world->kernel;
+    const KernelSums *total = &response->sums;
+    kernel_at(kernel, kernel->node_count - 1, step, &response->sums);
+    memset(response->net, 0, response->row_count * sizeof(double));
+    memset(response->moment, 0, response->row_count * sizeof(double));
     for (size_t i = 0; i < kernel->row_count; i++) {
-        if (answer->inside[i] > 0) {
-            answer->net[answer->inside[i] - 1] += answer->signs[i] * total->impulse[i];
-            answer->moment[answer->inside[i] - 1] += answer->signs[i] * total->moment[i];
+        if (response->inside[i] > 0) {
+            response->net[response->inside[i] - 1] += response->signs[i] * total->impulse[i];
+            response->moment[response->inside[i] - 1] += response->signs[i] * total->moment[i];
         }
     }
 }
@@ -225,15 +227,15 @@ static bool is_in_range(const Kernel *kernel)
 // Of a side between two nodes and a row: read at some instants, with searches now and then.
 static const double READING_WORK = 80.0;
 
-// What needs memory: all of it belongs to the world's kernel or to the answer.
-static bool run(Answer *answer, double step)
+// What needs memory: all of it belongs to the world's kernel or to the response.
+static bool run(WorldResponse *response, double step)
 {
-    Kernel *kernel = make_kernel(answer);
-    visit_sides(answer, fill_side);
-    fill_mobility(answer);
-    kernel_sums_free(&answer->sums);
-    answer->sums = kernel_sums(kernel->row_count);
-    JpWorld *world = answer->world;
+    Kernel *kernel = make_kernel(response);
+    visit_sides(response, fill_side);
+    fill_mobility(response);
+    kernel_sums_free(&response->sums);
+    response->sums = kernel_sums(kernel->row_count);
+    JpWorld *world = response->world;
     kernel->work_done = 0.0;
     kernel->work_most = world->work_most - world->work;
     bool is_done = kernel->work_most > 0.0 && is_in_range(kernel) && kernel_run(kernel, step);
@@ -242,7 +244,7 @@ static bool run(Answer *answer, double step)
     world->work += kernel->work_done;
     is_done = is_done && world->work + reading <= world->work_most;
     if (is_done) {
-        add_totals(answer, step);
+        add_totals(response, step);
     }
     return is_done;
 }
@@ -256,17 +258,17 @@ static JpStatus forget(JpWorld *world, JpError *error)
     return refusal(error, JP_ERROR_MEMORY, "there is no memory for the contacts of a step");
 }
 
-JpStatus inside_run(Answer *answer, double step, bool *is_found, JpError *error)
+JpStatus inside_run(WorldResponse *response, double step, bool *is_found, JpError *error)
 {
     MemoryGuard guard;
     memory_guard_begin(&guard);
     if (setjmp(guard.left) == 0) {
-        *is_found = run(answer, step);
+        *is_found = run(response, step);
         memory_guard_end(&guard);
         return JP_OK;
     }
     memory_guard_end(&guard);
-    return forget(answer->world, error);
+    return forget(response->world, error);
 }
 
 // A side at an instant.
@@ -431,11 +433,11 @@ static void read_side(Reading *reading)
 }
 
 // A side of a place, from its joint in the kernel.
-static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size_t joint)
+static bool book_side(WorldResponse *response, const ResponsePlace *of, size_t number, size_t joint)
 {
-    const Kernel *kernel = answer->world->kernel;
+    const Kernel *kernel = response->world->kernel;
     Side *side = &of->place->sides[number];
-    KernelSums *sums = &answer->sums;
+    KernelSums *sums = &response->sums;
     Reading reading = {.kernel = kernel, .sums = sums, .number = joint, .side = side};
     of->place->inside[number] = kernel->contacts[joint];
     side->step_force = 0.0;
@@ -451,21 +453,21 @@ static bool book_side(Answer *answer, const AnswerPlace *of, size_t number, size
     }
     of->place->slid += reading.slid;
     side->impulse += reading.impulse;
-    side->force = fmax(reading.impulse, 0.0) / answer->step; // rounding may be below 0
+    side->force = fmax(reading.impulse, 0.0) / response->step; // rounding may be below 0
     side->share = 1.0;
     return true;
 }
 
-void inside_book(Answer *answer)
+void inside_book(WorldResponse *response)
 {
-    for (size_t i = 0; i < answer->place_count; i++) {
-        const AnswerPlace *of = &answer->places[i];
+    for (size_t i = 0; i < response->place_count; i++) {
+        const ResponsePlace *of = &response->places[i];
         for (size_t k = 0; !of->is_active && k < SIDE_COUNT; k++) {
             of->place->sides[k].force = 0.0;
             of->place->sides[k].state.is_touching = false;
         }
     }
-    visit_sides(answer, book_side);
+    visit_sides(response, book_side);
 }
 
 // What a contact's force may be wrong by at the step's end, of the largest in the step, or of a
@@ -482,14 +484,14 @@ static Vec3 axis_of_row(const Direction *row)
 
 // How far a side is from where its contacts have brought it, along its first rows, m and m/s: what
 // the world's response changes within the step.
-static void find_drift(const Answer *answer, const AnswerPlace *of, size_t number, double end,
-                       double drift[2])
+static void find_drift(const WorldResponse *response, const ResponsePlace *of, size_t number,
+                       double end, double drift[2])
 {
-    const Kernel *kernel = answer->world->kernel;
+    const Kernel *kernel = response->world->kernel;
     const Place *place = of->place;
     const size_t row = kernel->contacts[number].first_row;
     const PinHole pose =
-        kernel_pose(kernel, number, kernel->node_count - 1, end, &answer->sums).pose;
+        kernel_pose(kernel, number, kernel->node_count - 1, end, &response->sums).pose;
     double at[2];
     double rate[2];
     joints_now(of->joint, place, at, rate);
@@ -499,19 +501,19 @@ static void find_drift(const Answer *answer, const AnswerPlace *of, size_t numbe
         const double before =
             is_line ? place->line_before : vec3_dot(axis_of_row(&place->rows[i]), place->offset);
         const double moved =
-            is_line ? answer->signs[row] * (-pose.penetration - kernel->position[row])
+            is_line ? response->signs[row] * (-pose.penetration - kernel->position[row])
                     : (i == 0 ? pose.eccentricity.x : pose.eccentricity.y) - place->start[i];
-        const double speed =
-            answer->signs[row + i] *
-            kernel_motion_speed(kernel, row + i, end, answer->sums.impulse, answer->sums.moment);
+        const double speed = response->signs[row + i] * kernel_motion_speed(kernel, row + i, end,
+                                                                            response->sums.impulse,
+                                                                            response->sums.moment);
         drift[0] = hypot(drift[0], at[i] - before - moved);
         drift[1] = hypot(drift[1], rate[i] - speed);
     }
 }
 
-static bool judge_side(Answer *answer, const AnswerPlace *of, size_t side, size_t number)
+static bool judge_side(WorldResponse *response, const ResponsePlace *of, size_t side, size_t number)
 {
-    JpWorld *world = answer->world;
+    JpWorld *world = response->world;
     const Kernel *kernel = world->kernel;
     const KernelContact *joint = &kernel->contacts[number];
     const Side *judged = &of->place->sides[side];
@@ -521,8 +523,8 @@ static bool judge_side(Answer *answer, const AnswerPlace *of, size_t side, size_
     const size_t last = kernel->node_count - 1;
     const double end = kernel->times[last];
     double drift[2];
-    kernel_at(kernel, last, end, &answer->sums);
-    find_drift(answer, of, number, end, drift);
+    kernel_at(kernel, last, end, &response->sums);
+    find_drift(response, of, number, end, drift);
     const double slope =
         judged->state.is_touching ? force_law_tangent(&judged->law, judged->inside) : 0.0;
     const double wrong = slope * drift[0] + joint->force_per_speed * drift[1];
@@ -531,12 +533,12 @@ static bool judge_side(Answer *answer, const AnswerPlace *of, size_t side, size_
         coarse_note(world,
                     "bodies turn too far in the step of %g s for the contacts in it: a force is "
                     "uncertain by %.2g of %.2g",
-                    answer->step, wrong, force);
+                    response->step, wrong, force);
     }
     return true;
 }
 
-void inside_judge(Answer *answer)
+void inside_judge(WorldResponse *response)
 {
-    visit_sides(answer, judge_side);
+    visit_sides(response, judge_side);
 }

@@ -1,16 +1,16 @@
-// The contacts of joints with play within one step of a world whose answer to them is linear.
+// The contacts of joints with play within one step of a world whose response to them is linear.
 #pragma once
 
-#include "world/answer.h"
+#include "world/world_response.h"
 
 // Integrates the contacts of the active places over a step, s, to the impulses and their integrals.
 // `is_found` is false where there are too many of them, or where that takes more local steps than
 // there can be sense in. Fails where there is no memory.
-JpStatus inside_run(Answer *answer, double step, bool *is_found, JpError *error);
+JpStatus inside_run(WorldResponse *response, double step, bool *is_found, JpError *error);
 
 // Books what the contacts that were integrated last did.
-void inside_book(Answer *answer);
+void inside_book(WorldResponse *response);
 
 // Notes where the bodies, once they are moved, are not where the contacts of the step have brought
 // them, by so much that forces are wrong.
-void inside_judge(Answer *answer);
+void inside_judge(WorldResponse *response);

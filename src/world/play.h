@@ -65,11 +65,11 @@ struct JpJoint {
     JointFound found;
 };
 
-// Steps without recall, after one that was wrong (world/recall.h).
-typedef struct RecallPause {
-    size_t steps; // of the last pause; 0 after a recall that was right
+// Steps without the cache, after one in which it was wrong (world/response_cache.h).
+typedef struct CachePause {
+    size_t steps; // of the last pause; 0 after one in which it was right
     size_t until; // number of the step
-} RecallPause;
+} CachePause;
 
 // How long the next local steps of a world's contacts are to be (kernel/kernel.h), of a world that
 // is resumed (world/saved.c) until its kernel is made.
@@ -87,7 +87,7 @@ typedef struct WorldFound {
     dVector3 gravity; // m/s^2
     double erp;
     JpWorldStats stats;
-    RecallPause pause;
+    CachePause pause;
 } WorldFound;
 
 struct JpWorld {
@@ -99,8 +99,8 @@ struct JpWorld {
     dJointGroupID contacts; // of the geoms of the caller's space, likewise
     Kernel *kernel;         // owned, NULL before the first
     WorldPace pace;
-    RecallPause pause;
-    struct Recall *recall; // owned, NULL before the first (world/recall.h)
+    CachePause pause;
+    struct ResponseCache *cache; // owned, NULL before the first (world/response_cache.h)
     JpWorldStats stats;
     double last_step;                     // s, of the step before; 0: there was none
     size_t known_when_counted;            // bodies, when it was last made sure that all are known

@@ -117,8 +117,8 @@ static void find_body(const SavedBody *saved, BodyRecord *record)
 // Puts back what is found, with a kernel that begins at a pace.
 static void go_on_from_found(JpWorld *world, WorldPace pace)
 {
-    Answer none = {0};
-    world->found.pause = (RecallPause){0};
+    WorldResponse none = {0};
+    world->found.pause = (CachePause){0};
     found_put_back(world, &none);
     world->pace = pace;
 }

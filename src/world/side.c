@@ -21,7 +21,7 @@ void side_begin(Side *side, double closing)
     side->state = contact_state_begun(fmax(closing, 0.0));
     side->impacts++;
     side->mobility = 0.0;
-    tops_begin(&side->tops, side->law.viscous * side->state.impact_speed, 0.0);
+    contact_peaks_begin(&side->peaks, side->law.viscous * side->state.impact_speed, 0.0);
 }
 
 void side_find(Side *side, const SideMotion *motion, double step)
@@ -46,7 +46,7 @@ void side_find(Side *side, const SideMotion *motion, double step)
             side->last_step > 0.0 ? (start - side->last_closing) / side->last_step : 0.0;
         const double late = earlier > 0.0 ? overlap.onset : -side->depth / start;
         side_begin(side, start + (start > 0.0 ? change * late : 0.0));
-        side->tops.since = earlier > 0.0 ? earlier - late : -late;
+        side->peaks.since = earlier > 0.0 ? earlier - late : -late;
     }
     side->last_closing = start;
     side->last_step = side->state.is_touching ? 0.0 : step;
@@ -71,22 +71,22 @@ bool side_is_stable(const Side *side, const Map *map, double mobility, double st
 // Notes what is the largest now.
 static void keep_largest(Side *side)
 {
-    side->force_max = fmax(side->force_max, side->tops.force);
-    side->depth_max = fmax(side->depth_max, side->tops.depth);
+    side->force_max = fmax(side->force_max, side->peaks.force);
+    side->depth_max = fmax(side->depth_max, side->peaks.depth);
 }
 
 void side_note(Side *side, double force)
 {
-    tops_begin(&side->tops, force, 0.0);
-    side->tops.force = force;
-    side->tops.depth = side->inside;
+    contact_peaks_begin(&side->peaks, force, 0.0);
+    side->peaks.force = force;
+    side->peaks.depth = side->inside;
     keep_largest(side);
 }
 
 void side_book(Side *side, double force, double rate_before, double rate_after, double step)
 {
     if (side->state.is_touching) {
-        tops_note_step(&side->tops, force, side->inside, side->share, step);
+        contact_peaks_note_step(&side->peaks, force, side->inside, side->share, step);
         keep_largest(side);
     }
     side->force = force;

@@ -1,9 +1,9 @@
 // One side of a joint with play: where it touches, how hard, and what came of it since it was made.
 #pragma once
 
+#include "contact/contact_peaks.h"
 #include "contact/law_row.h"
 #include "contact/overlap.h"
-#include "contact/tops.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 
@@ -29,8 +29,8 @@ typedef struct Side {
     double last_step;    // s, of that step; 0 where it is not known
     double mobility;     // of the coordinate, found by trial in the contact under way; 0: not yet
     // what came of it
-    double force; // N m or N, mean of the last step, >= 0
-    Tops tops;    // of the contact under way
+    double force;       // N m or N, mean of the last step, >= 0
+    ContactPeaks peaks; // of the contact under way
     double force_max;
     double depth_max;
     double impulse;

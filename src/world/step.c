@@ -327,10 +327,10 @@ static JpStatus step_with_rows(JpWorld *world, double step, JpError *error)
 }
 
 // The same with contacts integrated within the step; with rows where that cannot be.
-static JpStatus step_with_impulses(JpWorld *world, double step, Answer *answer, bool *is_done,
-                                   JpError *error)
+static JpStatus step_with_impulses(JpWorld *world, double step, WorldResponse *response,
+                                   bool *is_done, JpError *error)
 {
-    REFUSAL_TRY(world_impulse_step(world, step, answer, is_done, error));
+    REFUSAL_TRY(world_impulse_step(world, step, response, is_done, error));
     bodies_wake(&world->bodies);
     if (*is_done) {
         return JP_OK;
@@ -351,13 +351,13 @@ static void book_joints(JpWorld *world, double step)
     }
 }
 
-static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse)
+static void move_on(JpWorld *world, double step, WorldResponse *response, bool is_impulse)
 {
     if (is_staggered(world)) {
         bodies_drift_kept(&world->bodies, 0.5 * step);
     }
     if (is_impulse) {
-        impulse_finish(world, step, answer);
+        impulse_finish(world, step, response);
     } else {
         book_joints(world, step);
     }
@@ -365,7 +365,7 @@ static void move_on(JpWorld *world, double step, Answer *answer, bool is_impulse
         gyration_finish(&world->bodies, step);
     }
     if (is_impulse) {
-        inside_judge(answer);
+        inside_judge(response);
     }
 }
 
@@ -377,7 +377,7 @@ static JpStatus settle(JpWorld *world, double step, JpError *error)
     return JP_OK;
 }
 
-static JpStatus step_bodies(JpWorld *world, double step, Answer *answer, JpError *error)
+static JpStatus step_bodies(JpWorld *world, double step, WorldResponse *response, JpError *error)
 {
     if (is_staggered(world)) {
         gyration_push(&world->bodies, step);
@@ -388,9 +388,9 @@ static JpStatus step_bodies(JpWorld *world, double step, Answer *answer, JpError
     }
     const bool has_impulses = world->options.stepping == JP_STEPPING_IMPULSE;
     bool is_impulse = false;
-    REFUSAL_TRY(has_impulses ? step_with_impulses(world, step, answer, &is_impulse, error)
+    REFUSAL_TRY(has_impulses ? step_with_impulses(world, step, response, &is_impulse, error)
                              : step_with_rows(world, step, error));
-    move_on(world, step, answer, is_impulse);
+    move_on(world, step, response, is_impulse);
     return JP_OK;
 }
 
@@ -434,10 +434,10 @@ static JpStatus check_pins(const JpWorld *world, PinMoment moment, JpError *erro
     return JP_OK;
 }
 
-static JpStatus make_step(JpWorld *world, double step, Answer *answer, JpError *error)
+static JpStatus make_step(JpWorld *world, double step, WorldResponse *response, JpError *error)
 {
     go_there(world, step);
-    REFUSAL_TRY(step_bodies(world, step, answer, error));
+    REFUSAL_TRY(step_bodies(world, step, response, error));
     REFUSAL_TRY(check_bodies(world, step, true, error));
     REFUSAL_TRY(check_pins(world, PIN_STEPPED, error));
     return check_joints_after(world, step, error);
@@ -455,12 +455,13 @@ static void note_messages(JpWorld *world, const Fault *fault, double step)
 }
 
 // A step that ODE cannot make fails, and no more.
-static JpStatus make_step_guarded(JpWorld *world, double step, Answer *answer, JpError *error)
+static JpStatus make_step_guarded(JpWorld *world, double step, WorldResponse *response,
+                                  JpError *error)
 {
     Fault fault;
     fault_begin(&fault);
     if (setjmp(fault.left) == 0) {
-        const JpStatus status = make_step(world, step, answer, error);
+        const JpStatus status = make_step(world, step, response, error);
         fault_end(&fault);
         note_messages(world, &fault, step);
         return status;
@@ -504,12 +505,12 @@ JpStatus jp_world_step(JpWorld *world, double step, JpError *error)
     REFUSAL_TRY(check_pins(world, PIN_FOUND, error));
     found_keep(world);
     coarse_begin(world);
-    Answer answer = {0};
-    const JpStatus status = make_step_guarded(world, step, &answer, error);
+    WorldResponse response = {0};
+    const JpStatus status = make_step_guarded(world, step, &response, error);
     if (status != JP_OK) {
-        found_put_back(world, &answer);
+        found_put_back(world, &response);
     }
-    answer_free(&answer);
+    world_response_free(&response);
     dJointGroupEmpty(world->rows);
     dJointGroupEmpty(world->contacts);
     if (status != JP_OK) {
@@ -536,7 +537,7 @@ JpStatus jp_world_undo(JpWorld *world, JpError *error)
                        "there is no step to take back: the last one failed or was taken back, or "
                        "joints or bodies have changed since");
     }
-    Answer none = {0};
+    WorldResponse none = {0};
     found_put_back(world, &none);
     world->found.is_kept = false;
     return refusal_none(error);

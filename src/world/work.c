@@ -1,7 +1,7 @@
 // Counts what rows of ODE take: n of them that hang together about n^3, by dWorldStep.
 #include "world/work.h"
 
-#include "base/leaders.h"
+#include "base/union_find.h"
 
 #include <stdlib.h>
 
@@ -31,9 +31,9 @@ static size_t number_of(const JpWorld *world, dBodyID body)
 }
 
 // Joins the bodies that joints of ODE and our pins connect; the world connects nothing.
-static void join_bodies(const JpWorld *world, size_t *leaders)
+static void join_bodies(const JpWorld *world, size_t *parents)
 {
-    leaders_start(leaders, world->bodies.count);
+    union_find_start(parents, world->bodies.count);
     for (size_t i = 0; i < world->bodies.count; i++) {
         const dBodyID body = world->bodies.records[i].id;
         for (int k = 0; k < dBodyGetNumJoints(body); k++) {
@@ -41,15 +41,15 @@ static void join_bodies(const JpWorld *world, size_t *leaders)
             for (int end = 0; end < 2; end++) {
                 const dBodyID other = dJointGetBody(joint, end);
                 if (other != NULL && bodies_find(&world->bodies, other) != NULL) {
-                    leaders_join(leaders, i, number_of(world, other));
+                    union_find_join(parents, i, number_of(world, other));
                 }
             }
         }
     }
     for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         if (joint->bodies[0] != NULL && joint->bodies[1] != NULL && touching_rows(joint) > 0) {
-            leaders_join(leaders, number_of(world, joint->bodies[0]),
-                         number_of(world, joint->bodies[1]));
+            union_find_join(parents, number_of(world, joint->bodies[0]),
+                            number_of(world, joint->bodies[1]));
         }
     }
 }
@@ -65,23 +65,23 @@ double work_of_rows(const JpWorld *world)
     // where even one island of all is within the limit, there is no need to look closer
     const bool is_little = world->options.is_quick || all * all * all <= world->work_most;
     // without memory for that, they count as one island
-    size_t *leaders = is_little ? NULL : malloc((2 * count + 1) * sizeof *leaders);
-    if (leaders == NULL) {
+    size_t *parents = is_little ? NULL : malloc((2 * count + 1) * sizeof *parents);
+    if (parents == NULL) {
         return world->options.is_quick ? all : all * all * all;
     }
-    size_t *rows = leaders + count;
-    join_bodies(world, leaders);
+    size_t *rows = parents + count;
+    join_bodies(world, parents);
     for (size_t i = 0; i < count; i++) {
         rows[i] = 0;
     }
     for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         const dBodyID body = joint->bodies[joint->bodies[0] != NULL ? 0 : 1];
-        rows[leaders_find(leaders, number_of(world, body))] += touching_rows(joint);
+        rows[union_find_root(parents, number_of(world, body))] += touching_rows(joint);
     }
     for (size_t i = 0; i < count; i++) {
         const double own = (double)rows[i];
         work += own * own * own;
     }
-    free(leaders);
+    free(parents);
     return work;
 }

@@ -1,7 +1,7 @@
 // What does a caller's world hold besides ODE's?
 #include "world/fault.h"
 #include "world/listing.h"
-#include "world/recall.h"
+#include "world/response_cache.h"
 #include "world/threads.h"
 
 #include <math.h>
@@ -57,7 +57,7 @@ void jp_world_destroy(JpWorld *world)
     dJointGroupDestroy(world->rows);
     dJointGroupDestroy(world->contacts);
     bodies_finish(&world->bodies);
-    recall_free(world->recall);
+    response_cache_free(world->cache);
     if (world->kernel != NULL) {
         kernel_finish(world->kernel);
     }

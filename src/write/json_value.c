@@ -79,11 +79,11 @@ void turned_key(const char *key, char turned[TURNED_KEY_SIZE])
     snprintf(turned, TURNED_KEY_SIZE, "%s", key);
 }
 
-json_t *turned_keys(json_t *value)
+json_t *torsional_keys(json_t *value)
 {
     if (json_is_array(value)) {
         for (size_t i = 0; i < json_array_size(value); i++) {
-            json_array_set_new(value, i, turned_keys(json_incref(json_array_get(value, i))));
+            json_array_set_new(value, i, torsional_keys(json_incref(json_array_get(value, i))));
         }
         return value;
     }
@@ -97,7 +97,7 @@ json_t *turned_keys(json_t *value)
     {
         char turned[TURNED_KEY_SIZE];
         turned_key(key, turned);
-        json_object_set_new(made, turned, turned_keys(json_incref(member)));
+        json_object_set_new(made, turned, torsional_keys(json_incref(member)));
     }
     json_decref(value);
     return made;

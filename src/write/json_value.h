@@ -41,4 +41,4 @@ void turned_key(const char *key, char turned[TURNED_KEY_SIZE]);
 
 // The same value with such keys in all its objects, in their order; a new reference, for the one
 // given, which is taken.
-json_t *turned_keys(json_t *value);
+json_t *torsional_keys(json_t *value);

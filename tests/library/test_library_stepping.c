@@ -225,14 +225,14 @@ static void a_world_that_changes_within_a_contact_is_answered_anew(void **state)
 
 // The rod's hinge where somebody reads its force, and where nobody does: after a step in which the
 // stop pressed.
-typedef struct Held {
+typedef struct Constants {
     double angle;
     double rate;
     double gained[2]; // N s in x and y, of the rod in the step
     double held[2];   // N s likewise, of the hinge as it is read
-} Held;
+} Constants;
 
-static Held pressed_arm(bool is_read)
+static Constants pressed_arm(bool is_read)
 {
     const double step = 1e-4;
     const dWorldID world = dWorldCreate();
@@ -247,7 +247,7 @@ static Held pressed_arm(bool is_read)
     dJointFeedback feedback = {{0.0}, {0.0}, {0.0}, {0.0}};
     dJointSetFeedback(hinge, is_read ? &feedback : NULL);
     JpJointState now = {0};
-    Held held = {0};
+    Constants held = {0};
     for (int i = 0; i < 4000 && now.low.force < 1000.0; i++) {
         const dReal *velocity = dBodyGetLinearVel(rod);
         const double before[2] = {velocity[0], velocity[1]};
@@ -271,8 +271,8 @@ static Held pressed_arm(bool is_read)
 static void a_joint_that_is_read_moves_alike_and_shows_its_force(void **state)
 {
     (void)state;
-    const Held alone = pressed_arm(false);
-    const Held read = pressed_arm(true);
+    const Constants alone = pressed_arm(false);
+    const Constants read = pressed_arm(true);
     assert_near(read.angle, alone.angle, 1e-12);
     assert_near(read.rate, alone.rate, 1e-9);
     // a step that closes velocities holds a thousandth of that

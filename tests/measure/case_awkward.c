@@ -158,8 +158,8 @@ static void write_change_point(uint64_t seed, FILE *file)
     scene_write_run(&scene, file);
 }
 
-// Several pins in holes of the ground, all on the wall from the start: at rest on the floor, at the
-// ceiling, moving in, out, along, and rolling; the last kinds with a restitution of next to
+// Independent pins in holes of the ground, all on the wall from the start: at rest on the floor, at
+// the ceiling, moving in, out, along, and rolling; the last kinds with a restitution of next to
 // nothing.
 static void write_touching(uint64_t seed, FILE *file)
 {

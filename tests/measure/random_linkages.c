@@ -130,9 +130,9 @@ static void judge_reference(const Scenario *scenario, const Truth *truth, Result
         tell(result, REFERENCE, DETECTED, judge->message, 0.0);
     } else {
         const double error = error_against(run, judge, horizon_of(truth)).omega_max_in_horizon;
-        const bool is_told = truth->message[0] != '\0' || isnan(error);
+        const bool is_reported = truth->message[0] != '\0' || isnan(error);
         const bool agrees = error <= fmax(AGREES_EXACT, 3.0 * truth->uncertainty);
-        tell(result, REFERENCE, agrees ? AGREES : is_told ? REPORTED : SILENT, "error", error);
+        tell(result, REFERENCE, agrees ? AGREES : is_reported ? REPORTED : SILENT, "error", error);
     }
     trajectory_destroy(judge);
 }

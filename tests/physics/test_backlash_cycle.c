@@ -218,8 +218,8 @@ static void a_flank_chatters_in_the_periodic_motion_that_shooting_finds(void **s
     trajectory_destroy(run);
 }
 
-// Held by a torque to one side and then to the other, what has backlash moves by the gap and twice
-// what the flanks give way.
+// Constants by a torque to one side and then to the other, what has backlash moves by the gap and
+// twice what the flanks give way.
 static void a_reversed_torque_moves_a_hinge_by_its_gap_and_what_the_flanks_give(void **state)
 {
     (void)state;

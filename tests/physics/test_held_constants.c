@@ -8,7 +8,7 @@
 #include "close.h"
 #include "random_joint.h"
 
-#include "measure/held.h"
+#include "measure/constants.h"
 
 #include <stdlib.h>
 
@@ -62,7 +62,7 @@ static double scan(const RandomJoint *joint, double erp_most)
     double least = INFINITY;
     for (int i = 0; i < SCAN; i++) {
         for (int k = 0; k < SCAN; k++) {
-            // textbook rows crowd where ERP is nearly 1
+            // textbook rows cluster where ERP is nearly 1
             const double x = (i + 0.5) / SCAN;
             const double erp =
                 erp_most > 1.0 ? pow(10.0, -4.0 + 8.0 * x) : 1.0 - pow(10.0, -6.0 * x);
@@ -79,7 +79,7 @@ static double scan(const RandomJoint *joint, double erp_most)
 // A joint and what was found for it, which all tests look at.
 typedef struct Found {
     RandomJoint joint;
-    Held held;
+    Constants held;
 } Found;
 
 // At steps of a third of a contact to fifty a contact.
@@ -97,7 +97,7 @@ static int find_all(void **state)
     assert_non_null(found);
     for (int i = 0; i < JOINTS; i++) {
         found[i].joint = draw(draws, i);
-        held_find(&found[i].joint.contact, found[i].joint.step_s, &found[i].held);
+        constants_find(&found[i].joint.contact, found[i].joint.step_s, &found[i].held);
     }
     *state = found;
     return 0;
@@ -117,7 +117,7 @@ static void no_constants_of_a_scan_are_better(void **state)
     for (int i = 0; i < JOINTS; i++) {
         const RandomJoint *joint = &found[i].joint;
         for (int k = 0; k < 2; k++) {
-            const HeldSetting *best = &found[i].held.settings[k];
+            const ConstantsSetting *best = &found[i].held.settings[k];
             const double least = scan(joint, k == 0 ? 1.0 : INFINITY);
             print_message("# joint %d, %.3g steps, %s: misfit %.5f, scan %.5f\n", i,
                           joint->contact.asked.duration / joint->step_s,
@@ -128,10 +128,11 @@ static void no_constants_of_a_scan_are_better(void **state)
                 assert_true(best->misfit <= SLACK * least);
             }
             // control: the law's own spring and damper, as the textbook has them, are beaten
-            const HeldSetting law = held_setting(&joint->contact, joint->step_s, best->map,
-                                                 joint->contact.secant, joint->contact.equivalent);
+            const ConstantsSetting law =
+                constants_setting(&joint->contact, joint->step_s, best->map, joint->contact.secant,
+                                  joint->contact.equivalent);
             law_is_worse += !law.is_restitution_met || law.misfit > SLACK * SLACK * least;
-            assert_false(held_is_better(&law, best));
+            assert_false(constants_is_better(&law, best));
         }
     }
     assert_true(met >= JOINTS);
@@ -142,8 +143,8 @@ static void the_engine_delivers_what_constants_are_said_to(void **state)
 {
     const Found *found = *state;
     for (int i = 0; i < JOINTS; i++) {
-        for (int k = 0; k < HELD_MAP_COUNT; k++) {
-            const HeldSetting *best = &found[i].held.settings[k];
+        for (int k = 0; k < CONSTANTS_MAP_COUNT; k++) {
+            const ConstantsSetting *best = &found[i].held.settings[k];
             if (!best->delivered.is_measured) {
                 fail_msg("joint %d, %s: %s", i, OPTIONS_ODE_MAPS[best->map],
                          best->delivered.message);
@@ -159,14 +160,14 @@ static void no_kp_and_kd_run_in_the_engine_are_better(void **state)
     const Found *found = *state;
     const RandomJoint *joint = &found[1].joint;
     const MapImpact *asked = &joint->contact.asked;
-    const HeldSetting *best = &found[1].held.settings[0];
+    const ConstantsSetting *best = &found[1].held.settings[0];
     assert_int_equal(best->map, ODE_MAP_TEXTBOOK);
     size_t right = 0;
     for (int i = 0; i < ENGINE_SCAN * ENGINE_SCAN; i++) {
         const double kp = best->stiffness * pow(3.0, 2.0 * (i % ENGINE_SCAN) / 8.0 - 1.0);
         const double kd = best->damping * pow(3.0, 2.0 * (double)(i / ENGINE_SCAN) / 8.0 - 1.0);
         const ImpactDelivered run =
-            held_deliver(&joint->contact, joint->step_s, ODE_MAP_TEXTBOOK, kp, kd);
+            constants_deliver(&joint->contact, joint->step_s, ODE_MAP_TEXTBOOK, kp, kd);
         if (!run.is_measured) {
             continue;
         }

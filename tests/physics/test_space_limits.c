@@ -144,7 +144,7 @@ static void an_upright_hinge_rebounds_as_in_the_plane(void **state)
 }
 
 // A joint with backlash that turns with its body a, several times round: the angle goes on beyond a
-// turn. Held up by nothing else, both bodies keep the angular momentum about the axis.
+// turn. Constants up by nothing else, both bodies keep the angular momentum about the axis.
 static void backlash_on_a_body_that_turns_keeps_the_momentum(void **state)
 {
     (void)state;

@@ -3,16 +3,16 @@
 //
 // Outside truths: the closed forms of an impact, of a weight that sinks into a damper, of a disc
 // that is braked; in whole runs the reference. The control is the explicit method alone.
-#include "lone_pin.h"
 #include "mechanism.h"
 #include "ode_error.h"
+#include "single_pin.h"
 #include "sinking.h"
 
 static const double WEIGHT = 9.80665; // m/s^2, towards the wall
 
 static ForceLaw sticking(double restitution)
 {
-    return lone_pin_hertz(damping_factor(DAMPING_FLORES, restitution));
+    return single_pin_hertz(damping_factor(DAMPING_FLORES, restitution));
 }
 
 static const double BESIDE = 1e-13; // m, next to nothing
@@ -20,7 +20,7 @@ static const double BESIDE = 1e-13; // m, next to nothing
 // The pin at rest beside its wall.
 static Kernel resting(double restitution)
 {
-    Kernel pin = lone_pin(sticking(restitution), LONE_PIN_PHASE);
+    Kernel pin = single_pin(sticking(restitution), LONE_PIN_PHASE);
     pin.position[0] = ONE_IMPACT_CLEARANCE - BESIDE;
     pin.speed[0] = 0.0;
     pin.free[0] = WEIGHT;
@@ -62,7 +62,7 @@ static void a_weight_sinks_into_its_damper(void **state)
         assert_true(sinking_error(&pin, restitution, 0.1) < 1e-5);
         assert_true(pin.contacts[0].state.is_touching);
         assert_true(pin.node_count < 400);
-        assert_close(lone_pin_end(&pin).force[0], -ONE_IMPACT_MASS * WEIGHT, 1e-5);
+        assert_close(single_pin_end(&pin).force[0], -ONE_IMPACT_MASS * WEIGHT, 1e-5);
         kernel_finish(&pin);
     }
     // control: explicit steps throw the weight off the wall again and again, or are too many
@@ -81,12 +81,12 @@ static void next_to_no_restitution_is_delivered(void **state)
         const double chi = damping_factor(DAMPING_FLORES, asked);
         const double depth =
             damping_depth_max(ONE_IMPACT_HERTZ, 1.5, chi, ONE_IMPACT_MASS, ONE_IMPACT_SPEED);
-        Kernel pin = lone_pin(sticking(asked), LONE_PIN_PHASE);
+        Kernel pin = single_pin(sticking(asked), LONE_PIN_PHASE);
         // the flight, and three times what the way back takes at the speed given back
         const double duration_s = 1e-4 + 3.0 * depth / (asked * ONE_IMPACT_SPEED);
         assert_true(kernel_run(&pin, duration_s));
         assert_false(pin.contacts[0].state.is_touching);
-        const double given_back = -lone_pin_speed_after(&pin) / ONE_IMPACT_SPEED;
+        const double given_back = -single_pin_speed_after(&pin) / ONE_IMPACT_SPEED;
         assert_near(given_back, damping_delivered(chi), 1e-8);
         double deepest = 0.0;
         for (size_t node = 0; node < pin.node_count; node++) {
@@ -97,7 +97,7 @@ static void next_to_no_restitution_is_delivered(void **state)
         assert_close(deepest, depth, 1e-4);
         // all that the pin had is lost but for the square of the restitution
         const double kinetic = 0.5 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED * ONE_IMPACT_SPEED;
-        assert_close(lone_pin_end(&pin).dissipated, kinetic * (1.0 - given_back * given_back),
+        assert_close(single_pin_end(&pin).dissipated, kinetic * (1.0 - given_back * given_back),
                      1e-6);
         kernel_finish(&pin);
     }
@@ -138,7 +138,7 @@ static void a_damper_presses_hardest_at_its_onset(void **state)
     (void)state;
     ForceLaw law = force_law_power(2e7, 1.0);
     law.viscous = 4e3;
-    Kernel pin = lone_pin(law, LONE_PIN_PHASE);
+    Kernel pin = single_pin(law, LONE_PIN_PHASE);
     assert_true(kernel_run(&pin, 4e-5));
     const double most = law.viscous * ONE_IMPACT_SPEED;
     double highest = 0.0;
@@ -187,7 +187,7 @@ static void a_pressed_disc_is_braked_by_friction(void **state)
     assert_true(kernel_run(&pin, duration_s));
     assert_true(pin.contacts[0].state.is_touching);
     assert_true(pin.node_count < 400);
-    const PinSums end = lone_pin_end(&pin);
+    const PinSums end = single_pin_end(&pin);
     const double braking = friction * load;
     // the wall turns by s t / r = 1e-4, which needs s^2 / r = 2e-4 of the load
     const double within = 1e-3;
@@ -202,13 +202,13 @@ static void usual_contacts_take_no_implicit_step(void **state)
 {
     (void)state;
     for (double asked = 0.5; asked < 1.0; asked += 0.1) {
-        Kernel pin = lone_pin(sticking(asked), LONE_PIN_PHASE);
+        Kernel pin = single_pin(sticking(asked), LONE_PIN_PHASE);
         assert_true(kernel_run(&pin, 2e-4));
         assert_true(pin.stages == NULL);
         kernel_finish(&pin);
     }
     // control: the same with next to no restitution
-    Kernel pin = lone_pin(sticking(1e-6), LONE_PIN_PHASE);
+    Kernel pin = single_pin(sticking(1e-6), LONE_PIN_PHASE);
     assert_true(kernel_run(&pin, 2e-4));
     assert_true(pin.stages != NULL);
     kernel_finish(&pin);

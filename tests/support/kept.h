@@ -30,13 +30,13 @@ static inline Linkage kept_linkage(void)
 
 static inline void kept_hold(void *memory)
 {
-    static struct Held {
+    static struct Constants {
         void *memory;
-        struct Held *before;
+        struct Constants *before;
     } * last;
-    struct Held *held = malloc(sizeof *held);
+    struct Constants *held = malloc(sizeof *held);
     assert(held != NULL);
-    *held = (struct Held){memory, last};
+    *held = (struct Constants){memory, last};
     last = held;
 }
 

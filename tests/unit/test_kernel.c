@@ -1,5 +1,5 @@
 // Do contacts that are integrated by themselves do what their law's closed forms say?
-#include "lone_pin.h"
+#include "single_pin.h"
 
 static const double DURATION_S = 2e-4; // flight, contact of 60 us, and flight again
 
@@ -12,10 +12,10 @@ static void run(Kernel *kernel, double duration_s)
 // Speed after one impact over the speed before.
 static double restitution(ForceLaw law, double phase)
 {
-    Kernel pin = lone_pin(law, phase);
+    Kernel pin = single_pin(law, phase);
     run(&pin, DURATION_S);
     assert_false(pin.contacts[0].state.is_touching);
-    const double speed = lone_pin_speed_after(&pin);
+    const double speed = single_pin_speed_after(&pin);
     kernel_finish(&pin);
     return -speed / ONE_IMPACT_SPEED;
 }
@@ -23,7 +23,7 @@ static double restitution(ForceLaw law, double phase)
 static void an_undamped_impact_is_hertz_closed_form(void **state)
 {
     (void)state;
-    Kernel pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+    Kernel pin = single_pin(single_pin_hertz(0.0), LONE_PIN_PHASE);
     run(&pin, DURATION_S);
     double deepest = 0.0;
     double force = 0.0;
@@ -45,12 +45,12 @@ static void an_undamped_impact_is_hertz_closed_form(void **state)
         }
     }
     // the method's own error at this phase is 1e-8; sixteenths of a local step see the top to 1e-6
-    assert_close(deepest, lone_pin_depth(), 2e-6);
-    assert_close(force, ONE_IMPACT_HERTZ * pow(lone_pin_depth(), 1.5), 3e-6);
-    assert_close(end_s - begin_s, lone_pin_duration(), 1e-7);
-    assert_close(lone_pin_speed_after(&pin), -ONE_IMPACT_SPEED, 1e-7);
+    assert_close(deepest, single_pin_depth(), 2e-6);
+    assert_close(force, ONE_IMPACT_HERTZ * pow(single_pin_depth(), 1.5), 3e-6);
+    assert_close(end_s - begin_s, single_pin_duration(), 1e-7);
+    assert_close(single_pin_speed_after(&pin), -ONE_IMPACT_SPEED, 1e-7);
     // two 10 mm spheres of the literature: 2.943275 is the published duration's factor
-    assert_close(lone_pin_duration() / lone_pin_depth() * ONE_IMPACT_SPEED, 2.943275, 1e-6);
+    assert_close(single_pin_duration() / single_pin_depth() * ONE_IMPACT_SPEED, 2.943275, 1e-6);
     kernel_finish(&pin);
 }
 
@@ -60,10 +60,10 @@ static void each_damping_law_gives_back_what_its_closed_form_says(void **state)
     for (int kind = DAMPING_LANKARANI_NIKRAVESH; kind <= DAMPING_EXACT; kind++) {
         for (double asked = 0.3; asked < 1.0; asked += 0.2) {
             const double chi = damping_factor((DampingKind)kind, asked);
-            assert_near(restitution(lone_pin_hertz(chi), 0.02), damping_delivered(chi), 1e-6);
+            assert_near(restitution(single_pin_hertz(chi), 0.02), damping_delivered(chi), 1e-6);
             // control: the factor of another restitution
-            assert_true(
-                fabs(restitution(lone_pin_hertz(1.1 * chi), 0.02) - damping_delivered(chi)) > 1e-3);
+            assert_true(fabs(restitution(single_pin_hertz(1.1 * chi), 0.02) -
+                             damping_delivered(chi)) > 1e-3);
         }
     }
 }
@@ -92,7 +92,7 @@ static void the_error_falls_with_the_fourth_power_of_the_phase(void **state)
     double errors[5];
     double phase = 0.2;
     for (int i = 0; i < 5; i++, phase *= 0.5) {
-        errors[i] = fabs(restitution(lone_pin_hertz(chi), phase) - damping_delivered(chi));
+        errors[i] = fabs(restitution(single_pin_hertz(chi), phase) - damping_delivered(chi));
     }
     // over four halvings, as single ones hang on how the last local step falls
     assert_near(log2(errors[0] / errors[4]) / 4.0, 4.0, 0.5);
@@ -103,7 +103,7 @@ static void an_onset_stands_where_the_flight_meets_the_wall(void **state)
 {
     (void)state;
     for (double acceleration = -2000.0; acceleration < 6000.0; acceleration += 1500.0) {
-        Kernel pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+        Kernel pin = single_pin(single_pin_hertz(0.0), LONE_PIN_PHASE);
         pin.free[0] = acceleration;
         run(&pin, 1e-4);
         const double v = ONE_IMPACT_SPEED;
@@ -128,7 +128,7 @@ static void a_slow_pin_turns_back_before_the_wall(void **state)
 {
     (void)state;
     const double square = ONE_IMPACT_SPEED * ONE_IMPACT_SPEED;
-    Kernel pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+    Kernel pin = single_pin(single_pin_hertz(0.0), LONE_PIN_PHASE);
     pin.free[0] = -square / (2.0 * 0.99 * LONE_PIN_GAP);
     run(&pin, 2.0 * ONE_IMPACT_SPEED / -pin.free[0]);
     assert_int_equal(pin.node_count, 2);
@@ -144,7 +144,7 @@ static void a_pin_that_turns_by_rounding_flies_on(void **state)
 {
     (void)state;
     for (double away = 1e-20; away < 1e-12; away *= 1e2) {
-        Kernel pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+        Kernel pin = single_pin(single_pin_hertz(0.0), LONE_PIN_PHASE);
         pin.speed[0] = -away;
         pin.free[0] = 100.0;
         run(&pin, 6e-4);
@@ -163,7 +163,7 @@ static void a_pin_that_turns_by_rounding_flies_on(void **state)
 static void a_pin_that_falls_back_touches_again(void **state)
 {
     (void)state;
-    Kernel pin = lone_pin(lone_pin_hertz(0.6), LONE_PIN_PHASE);
+    Kernel pin = single_pin(single_pin_hertz(0.6), LONE_PIN_PHASE);
     pin.free[0] = 100.0;
     const double e = damping_delivered(0.6);
     // arrivals at 0, and 2 v e / a, 2 v e^2 / a, .. after one another: three of them
@@ -186,8 +186,8 @@ static void a_pin_that_crosses_the_hole_meets_the_other_wall(void **state)
     (void)state;
     enum { IMPACTS = 8 };
     const double crossing_s = 2.0 * ONE_IMPACT_CLEARANCE / ONE_IMPACT_SPEED;
-    const double cycle_s = crossing_s + lone_pin_duration();
-    Kernel pin = lone_pin(lone_pin_hertz(0.0), 0.01);
+    const double cycle_s = crossing_s + single_pin_duration();
+    Kernel pin = single_pin(single_pin_hertz(0.0), 0.01);
     run(&pin, (IMPACTS - 0.5) * cycle_s);
     size_t impacts = 0;
     for (size_t node = 1; node < pin.node_count; node++) {
@@ -207,15 +207,15 @@ static void a_pin_moved_off_its_wall_comes_back_to_it(void **state)
 {
     (void)state;
     static const double FREE = 1000.0; // m/s^2
-    Kernel pin = lone_pin(lone_pin_hertz(0.0), 0.01);
-    run(&pin, LONE_PIN_GAP / ONE_IMPACT_SPEED + 0.9 * lone_pin_duration());
+    Kernel pin = single_pin(single_pin_hertz(0.0), 0.01);
+    run(&pin, LONE_PIN_GAP / ONE_IMPACT_SPEED + 0.9 * single_pin_duration());
     assert_true(pin.contacts[0].state.is_touching);
     pin.position[0] = ONE_IMPACT_CLEARANCE - 4e-6;
     pin.speed[0] = 5e-3;
     pin.free[0] = FREE;
     run(&pin, 2.3e-4);
     assert_false(pin.contacts[0].state.is_touching);
-    const PinSums sums = lone_pin_end(&pin);
+    const PinSums sums = single_pin_end(&pin);
     const double time_s = pin.times[pin.node_count - 1];
     const double speed = pin.speed[0] + FREE * time_s + sums.impulse[0] / ONE_IMPACT_MASS;
     const double moved =
@@ -234,7 +234,7 @@ static void a_weight_let_go_on_the_wall_sinks_at_once(void **state)
     const double depth = pow(2.5 * ONE_IMPACT_MASS * gravity / ONE_IMPACT_HERTZ, 2.0 / 3.0);
     const double rounding[] = {-0x1p-52, 0.0, 0x1p-52};
     for (size_t i = 0; i < sizeof rounding / sizeof *rounding; i++) {
-        Kernel pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+        Kernel pin = single_pin(single_pin_hertz(0.0), LONE_PIN_PHASE);
         pin.position[0] = ONE_IMPACT_CLEARANCE;
         pin.position[1] = 0.0;
         pin.speed[0] = 0.0;
@@ -261,7 +261,7 @@ static void a_weight_let_go_on_the_wall_sinks_at_once(void **state)
 static void impulses_are_integrals_of_forces_and_move_the_pin(void **state)
 {
     (void)state;
-    Kernel pin = lone_pin(lone_pin_hertz(0.3), LONE_PIN_PHASE);
+    Kernel pin = single_pin(single_pin_hertz(0.3), LONE_PIN_PHASE);
     pin.free[0] = -300.0;
     pin.free[1] = 200.0;
     pin.speed[1] = -0.1;
@@ -282,7 +282,7 @@ static void impulses_are_integrals_of_forces_and_move_the_pin(void **state)
                 (sums[0].impulse[row] + 4.0 * sums[1].impulse[row] + sums[2].impulse[row]);
         }
     }
-    const PinSums end = lone_pin_end(&pin);
+    const PinSums end = single_pin_end(&pin);
     const KernelPose pose = pin_pose_at(&pin, 0, pin.node_count - 1, DURATION_S);
     for (int row = 0; row < 2; row++) {
         const double scale = fabs(end.impulse[0]);
@@ -303,13 +303,13 @@ static void the_kinetic_energy_that_is_lost_is_what_the_damping_took(void **stat
 {
     (void)state;
     for (double chi = 0.0; chi < 2.0; chi += 0.4) {
-        Kernel pin = lone_pin(lone_pin_hertz(chi), 0.02);
+        Kernel pin = single_pin(single_pin_hertz(chi), 0.02);
         run(&pin, DURATION_S);
-        const double after = lone_pin_speed_after(&pin);
+        const double after = single_pin_speed_after(&pin);
         const double before = ONE_IMPACT_SPEED;
         const double kinetic = 0.5 * ONE_IMPACT_MASS * before * before;
         const double lost = kinetic - 0.5 * ONE_IMPACT_MASS * after * after;
-        const PinSums end = lone_pin_end(&pin);
+        const PinSums end = single_pin_end(&pin);
         assert_near(end.dissipated, lost, 1e-6 * kinetic);
         assert_near(end.friction, 0.0, 0.0);
         // control: damping takes something
@@ -327,7 +327,7 @@ static Kernel disc(double friction, double sideways)
 {
     Kernel pin = kernel_start(LONE_PIN_PHASE);
     const KernelContact joint = {
-        .law = force_law_with_friction(lone_pin_hertz(0.3), friction, 5e-3),
+        .law = force_law_with_friction(single_pin_hertz(0.3), friction, 5e-3),
         .radial_clearance = DISC_CLEARANCE,
         .hole_radius = DISC_CLEARANCE + DISC_RADIUS,
     };
@@ -351,7 +351,7 @@ static void a_sliding_disc_is_braked_until_it_rolls(void **state)
         for (double friction = 0.02; friction < 0.7; friction *= 5.0) {
             Kernel pin = disc(friction, sideways);
             run(&pin, DURATION_S);
-            const PinSums end = lone_pin_end(&pin);
+            const PinSums end = single_pin_end(&pin);
             const double pressed = -end.impulse[0];
             const double needed = ONE_IMPACT_MASS / 3.0 * fabs(sideways);
             const double braked = fmin(friction * pressed, needed);
@@ -379,10 +379,10 @@ static void the_hole_is_turned_against_the_disc(void **state)
     (void)state;
     Kernel pin = disc(0.2, 0.2);
     run(&pin, DURATION_S);
-    const PinSums end = lone_pin_end(&pin);
+    const PinSums end = single_pin_end(&pin);
     assert_true(end.impulse[2] > 0.0 && end.impulse[3] < 0.0);
     // of the disc: its centre's, at the wall, and its own
-    const double own = (DISC_CLEARANCE + lone_pin_depth()) * end.impulse[1] + end.impulse[3];
+    const double own = (DISC_CLEARANCE + single_pin_depth()) * end.impulse[1] + end.impulse[3];
     // the wall turns by a few 1e-4 of it, and the arm is ten times the disc's radius
     assert_close(end.impulse[2], -own, 5e-3);
     // control: the disc's own moment is not all of it
@@ -395,12 +395,12 @@ static void many_short_runs_are_one_long_one(void **state)
 {
     (void)state;
     const double chi = damping_factor(DAMPING_LANKARANI_NIKRAVESH, 0.9);
-    Kernel whole = lone_pin(lone_pin_hertz(chi), 0.01);
+    Kernel whole = single_pin(single_pin_hertz(chi), 0.01);
     whole.speed[1] = 0.05;
-    Kernel parts = lone_pin(lone_pin_hertz(chi), 0.01);
+    Kernel parts = single_pin(single_pin_hertz(chi), 0.01);
     parts.speed[1] = 0.05;
     run(&whole, DURATION_S);
-    const PinSums end = lone_pin_end(&whole);
+    const PinSums end = single_pin_end(&whole);
     const double lost = end.dissipated;
     double speeds[2];
     for (int row = 0; row < 2; row++) {
@@ -411,7 +411,7 @@ static void many_short_runs_are_one_long_one(void **state)
     for (int part = 0; part < PARTS; part++) {
         const double width_s = DURATION_S / PARTS;
         run(&parts, width_s);
-        const PinSums now = lone_pin_end(&parts);
+        const PinSums now = single_pin_end(&parts);
         dissipated += now.dissipated;
         for (int row = 0; row < 2; row++) {
             parts.position[row] += width_s * parts.speed[row] + now.moment[row] / ONE_IMPACT_MASS;
@@ -434,13 +434,13 @@ static void between_nodes_it_is_as_good_as_at_them(void **state)
     (void)state;
     static const double WANTED_S[] = {4.1e-5, 4.7e-5, 5.3e-5, 6.3e-5, 7.2e-5};
     enum { TIMES = sizeof WANTED_S / sizeof *WANTED_S };
-    Kernel fine = lone_pin(lone_pin_hertz(0.2), 0.001);
+    Kernel fine = single_pin(single_pin_hertz(0.2), 0.001);
     run(&fine, DURATION_S);
     double errors[2][3] = {{0.0}};
     for (int i = 0; i < 2; i++) {
-        Kernel pin = lone_pin(lone_pin_hertz(0.2), i == 0 ? 0.2 : LONE_PIN_PHASE);
+        Kernel pin = single_pin(single_pin_hertz(0.2), i == 0 ? 0.2 : LONE_PIN_PHASE);
         run(&pin, DURATION_S);
-        const PinSums end = lone_pin_end(&pin);
+        const PinSums end = single_pin_end(&pin);
         for (int k = 0; k < TIMES; k++) {
             PinSums truth;
             PinSums now;

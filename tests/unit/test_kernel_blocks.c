@@ -2,7 +2,7 @@
 //
 // A row of pins whose neighbours move each other, as those of a chain: W = 2/m on the diagonal,
 // -1/m beside it. Each comes to its wall at a time of its own.
-#include "lone_pin.h"
+#include "single_pin.h"
 
 #include "base/lcg.h"
 #include "base/zeroed.h"
@@ -153,8 +153,8 @@ static void blocks_of_bouncing_pins_do_what_the_whole_does(void **state)
 {
     (void)state;
     // local steps are allowed an error of 1e-10 each
-    check_row(lone_pin_hertz(0.0), ONE_IMPACT_SPEED, 1e-8);
-    check_row(lone_pin_hertz(0.3), ONE_IMPACT_SPEED, 1e-8);
+    check_row(single_pin_hertz(0.0), ONE_IMPACT_SPEED, 1e-8);
+    check_row(single_pin_hertz(0.3), ONE_IMPACT_SPEED, 1e-8);
 }
 
 static void blocks_of_pins_whose_forces_jump_do_what_the_whole_does(void **state)
@@ -170,7 +170,7 @@ static void blocks_of_pins_that_stop_at_once_do_what_the_whole_does(void **state
 {
     (void)state;
     // restitution 0.05, integrated by implicit steps of their own tolerance
-    check_row(lone_pin_hertz(damping_factor(DAMPING_EXACT, 0.05)), ONE_IMPACT_SPEED, 1e-4);
+    check_row(single_pin_hertz(damping_factor(DAMPING_EXACT, 0.05)), ONE_IMPACT_SPEED, 1e-4);
 }
 
 int main(void)

@@ -3,7 +3,7 @@
 // Outside truth: classical Runge-Kutta steps, a thousandth as long as the contact, of
 //     u'' = g + g' (t - h/2) + 2 S P + (W + (t - h/2) (S + S^T)) f(u),   P' = f
 // for a pin in its hole, and the closed form of the flight before.
-#include "lone_pin.h"
+#include "single_pin.h"
 
 #include "ode/plane/impulse_curves.h"
 
@@ -84,7 +84,7 @@ static State truth_at_end(void)
 
 static Kernel turning_pin(bool has_drift)
 {
-    Kernel pin = lone_pin(lone_pin_hertz(0.0), 0.01);
+    Kernel pin = single_pin(single_pin_hertz(0.0), 0.01);
     pin.speed[1] = SIDE_SPEED;
     if (has_drift) {
         double drift[4];
@@ -100,7 +100,7 @@ static Kernel turning_pin(bool has_drift)
 static void find_errors(Kernel *pin, const State *truth, double errors[2])
 {
     assert_true(kernel_run(pin, DURATION_S));
-    const PinSums end = lone_pin_end(pin);
+    const PinSums end = single_pin_end(pin);
     KernelSums at = {.impulse = (double *)end.impulse,
                      .moment = (double *)end.moment,
                      .force = (double *)end.force};
@@ -136,7 +136,7 @@ static void rows_that_turn_move_as_their_equations_say(void **state)
 static void a_flight_ends_where_a_changing_acceleration_ends_it(void **state)
 {
     (void)state;
-    Kernel pin = lone_pin(lone_pin_hertz(0.0), 0.01);
+    Kernel pin = single_pin(single_pin_hertz(0.0), 0.01);
     const double drift[4] = {0.0};
     pin.position[0] = ONE_IMPACT_CLEARANCE;
     pin.speed[0] = -0.01;

@@ -1,5 +1,5 @@
 // Do contacts at lines and outside discs do what the closed forms and the balances say?
-#include "lone_pin.h"
+#include "single_pin.h"
 
 #include "kernel/internal.h"
 
@@ -12,7 +12,7 @@ static void run(Kernel *kernel)
     assert_true(kernel_run(kernel, DURATION_S));
 }
 
-// The pin of lone_pin.h against a line. Its rows: the gap, and sliding.
+// The pin of single_pin.h against a line. Its rows: the gap, and sliding.
 static Kernel at_line(ForceLaw law, double friction, double sliding)
 {
     Kernel pin = kernel_start(LONE_PIN_PHASE);
@@ -70,15 +70,15 @@ static double span_of_contact(const Kernel *kernel)
 static void head_on_all_shapes_are_hertz_closed_form(void **state)
 {
     (void)state;
-    Kernel pins[2] = {at_line(lone_pin_hertz(0.0), 0.0, 0.0),
-                      at_disc(lone_pin_hertz(0.0), 0.0, 0.0)};
+    Kernel pins[2] = {at_line(single_pin_hertz(0.0), 0.0, 0.0),
+                      at_disc(single_pin_hertz(0.0), 0.0, 0.0)};
     for (int i = 0; i < 2; i++) {
         run(&pins[i]);
-        const PinSums end = lone_pin_end(&pins[i]);
+        const PinSums end = single_pin_end(&pins[i]);
         const double pressed = 2.0 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED;
         assert_close(fabs(end.impulse[0]), pressed, 1e-7);
         assert_near(end.impulse[1], 0.0, 1e-15);
-        assert_close(span_of_contact(&pins[i]), lone_pin_duration(), 1e-7);
+        assert_close(span_of_contact(&pins[i]), single_pin_duration(), 1e-7);
         // a line pushes along its normal, the disc back where it came from
         assert_true(i == 0 ? end.impulse[0] > 0.0 : end.impulse[0] < 0.0);
         kernel_finish(&pins[i]);
@@ -91,11 +91,11 @@ static void damping_gives_back_what_its_closed_form_says(void **state)
     // the last is overdamped: implicit steps
     static const double FACTORS[3] = {0.3, 2.0, 1e3};
     for (int k = 0; k < 3; k++) {
-        Kernel pins[2] = {at_line(lone_pin_hertz(FACTORS[k]), 0.0, 0.0),
-                          at_disc(lone_pin_hertz(FACTORS[k]), 0.0, 0.0)};
+        Kernel pins[2] = {at_line(single_pin_hertz(FACTORS[k]), 0.0, 0.0),
+                          at_disc(single_pin_hertz(FACTORS[k]), 0.0, 0.0)};
         for (int i = 0; i < 2; i++) {
             run(&pins[i]);
-            const double pressed = fabs(lone_pin_end(&pins[i]).impulse[0]);
+            const double pressed = fabs(single_pin_end(&pins[i]).impulse[0]);
             const double given = pressed / (ONE_IMPACT_MASS * ONE_IMPACT_SPEED) - 1.0;
             const double left = pins[i].contacts[0].state.is_touching ? 0.0 : 1.0;
             assert_near(given, damping_delivered(FACTORS[k]), left > 0.0 ? 2e-6 : 1e-3);
@@ -111,9 +111,9 @@ static void a_disc_on_a_line_is_braked_until_it_rolls(void **state)
     int rolling = 0;
     for (double sliding = -0.3; sliding < 0.31; sliding += 0.2) {
         for (double friction = 0.02; friction < 0.7; friction *= 5.0) {
-            Kernel pin = at_line(lone_pin_hertz(0.3), friction, sliding);
+            Kernel pin = at_line(single_pin_hertz(0.3), friction, sliding);
             run(&pin);
-            const PinSums end = lone_pin_end(&pin);
+            const PinSums end = single_pin_end(&pin);
             const double needed = ONE_IMPACT_MASS / 3.0 * fabs(sliding);
             const double braked = fmin(friction * end.impulse[0], needed);
             // of friction's law near rest: a fifth of the least speed is its own
@@ -136,9 +136,9 @@ static void discs_that_graze_keep_energy_and_angular_momentum(void **state)
     (void)state;
     static const double FRICTION[2] = {0.0, 0.3};
     for (int i = 0; i < 2; i++) {
-        Kernel pin = at_disc(lone_pin_hertz(0.0), FRICTION[i], 0.6);
+        Kernel pin = at_disc(single_pin_hertz(0.0), FRICTION[i], 0.6);
         run(&pin);
-        const PinSums end = lone_pin_end(&pin);
+        const PinSums end = single_pin_end(&pin);
         assert_false(pin.contacts[0].state.is_touching);
         const double vx = ONE_IMPACT_SPEED + end.impulse[0] / ONE_IMPACT_MASS;
         const double vy = end.impulse[1] / ONE_IMPACT_MASS;
@@ -178,7 +178,7 @@ static void two_corners_at_once_share_the_impact(void **state)
     Kernel pin = kernel_start(LONE_PIN_PHASE);
     for (int i = 0; i < 2; i++) {
         const KernelContact joint = {
-            .law = lone_pin_hertz(0.0), .shape = KERNEL_LINE, .siblings = {-i, 1 - i}};
+            .law = single_pin_hertz(0.0), .shape = KERNEL_LINE, .siblings = {-i, 1 - i}};
         kernel_add(&pin, &joint, KERNEL_ROWS_PLAIN);
     }
     kernel_make_room(&pin, pin.row_count);
@@ -190,11 +190,11 @@ static void two_corners_at_once_share_the_impact(void **state)
     pin.mobility[0] = pin.mobility[10] = 51.0 / ONE_IMPACT_MASS;
     pin.mobility[2] = pin.mobility[8] = -49.0 / ONE_IMPACT_MASS;
     run(&pin);
-    const PinSums end = lone_pin_end(&pin);
+    const PinSums end = single_pin_end(&pin);
     assert_near(end.impulse[0], end.impulse[2], 1e-15);
     assert_close(end.impulse[0], ONE_IMPACT_MASS * ONE_IMPACT_SPEED, 1e-7);
     // half the mass each: 2 / m of mobility
-    assert_close(span_of_contact(&pin), lone_pin_duration() * pow(0.5, 0.4), 1e-7);
+    assert_close(span_of_contact(&pin), single_pin_duration() * pow(0.5, 0.4), 1e-7);
     kernel_finish(&pin);
 }
 
@@ -251,7 +251,7 @@ static double energy_of_balls(const Kernel *balls, size_t *touching)
 static void many_damped_balls_keep_the_balance_of_energy(void **state)
 {
     (void)state;
-    ForceLaw law = lone_pin_hertz(0.0);
+    ForceLaw law = single_pin_hertz(0.0);
     law.viscous = 2e5;
     double ends[2];
     for (int i = 0; i < 2; i++) {
@@ -278,9 +278,9 @@ static void a_hundred_balls_hand_an_impact_on(void **state)
     (void)state;
     enum { PLACES = BALL_PLACES };
     const double gap = 1e-3; // m, many times what they deform
-    Kernel pin = balls_in_a_row(lone_pin_hertz(0.0), gap, KERNEL_ROWS_PLAIN);
+    Kernel pin = balls_in_a_row(single_pin_hertz(0.0), gap, KERNEL_ROWS_PLAIN);
     // each ball has gone half a contact's way when it is let go
-    const double contact_s = lone_pin_duration() * pow(0.5, 0.4);
+    const double contact_s = single_pin_duration() * pow(0.5, 0.4);
     const double next_s = gap / ONE_IMPACT_SPEED + 0.5 * contact_s;
     assert_true(kernel_run(&pin, PLACES * next_s + 0.4 * contact_s));
     const size_t last = pin.node_count - 1;
@@ -302,7 +302,7 @@ static void forces_between_nodes_are_no_rounding(void **state)
     (void)state;
     Kernel pin = kernel_start(LONE_PIN_PHASE);
     for (int i = 0; i < 2; i++) {
-        const KernelContact joint = {.law = lone_pin_hertz(0.3), .shape = KERNEL_LINE};
+        const KernelContact joint = {.law = single_pin_hertz(0.3), .shape = KERNEL_LINE};
         kernel_add(&pin, &joint, KERNEL_ROWS_PLAIN);
     }
     kernel_make_room(&pin, pin.row_count);

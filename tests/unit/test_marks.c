@@ -1,5 +1,5 @@
 // Are the instants at which a contact shows its greatest force found, and its ends?
-#include "lone_pin.h"
+#include "single_pin.h"
 
 #include "ode/impulse.h"
 
@@ -24,7 +24,7 @@ static void the_greatest_force_and_depth_are_marked(void **state)
         const double true_force = one_impact_law_force(&impact);
         const double true_depth =
             damping_depth_max(ONE_IMPACT_HERTZ, 1.5, chi, ONE_IMPACT_MASS, ONE_IMPACT_SPEED);
-        Kernel pin = lone_pin(lone_pin_hertz(chi), LONE_PIN_PHASE);
+        Kernel pin = single_pin(single_pin_hertz(chi), LONE_PIN_PHASE);
         Marks marks = {.count = 0};
         assert_true(kernel_run(&pin, DURATION_S));
         marks_find(&marks, &pin);
@@ -54,7 +54,7 @@ static void the_greatest_force_and_depth_are_marked(void **state)
 static void marks_come_in_order_and_the_last_is_the_end(void **state)
 {
     (void)state;
-    Kernel pin = lone_pin(lone_pin_hertz(0.3), LONE_PIN_PHASE);
+    Kernel pin = single_pin(single_pin_hertz(0.3), LONE_PIN_PHASE);
     Marks marks = {.count = 0};
     assert_true(kernel_run(&pin, DURATION_S));
     marks_find(&marks, &pin);
@@ -82,7 +82,7 @@ static void a_contact_that_begins_at_the_very_end_is_touching_there(void **state
     (void)state;
     size_t at_the_end = 0;
     for (int bits = 0; bits < 16; bits++) {
-        Kernel pin = lone_pin(lone_pin_hertz(0.0), LONE_PIN_PHASE);
+        Kernel pin = single_pin(single_pin_hertz(0.0), LONE_PIN_PHASE);
         Marks marks = {.count = 0};
         pin.contacts[0].radial_clearance = 0x1p-10;
         pin.position[0] = 0x1p-10 - 0x1p-14;

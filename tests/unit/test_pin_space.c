@@ -15,7 +15,7 @@ static const double WIDTH = 12e-3;
 static const double AXIAL = 50e-6;
 
 // A pin in a hole of the ground whose axis is z, both about the origin.
-static Scenario lone_pin(void)
+static Scenario single_pin(void)
 {
     Scenario scenario = mechanism_pin(0.1, RADIAL);
     scenario.linkage.is_spatial = true;
@@ -45,7 +45,7 @@ static size_t places_of(const Scenario *scenario, PinSpace places[PIN_SPACE_PLAC
 static void a_pin_that_stands_straight_is_the_planes_twice(void **state)
 {
     (void)state;
-    const Scenario scenario = lone_pin();
+    const Scenario scenario = single_pin();
     PinSpace places[PIN_SPACE_PLACES];
     assert_int_equal(places_of(&scenario, places), 3);
     SpaceMotion motion;
@@ -76,7 +76,7 @@ static void a_pin_that_stands_straight_is_the_planes_twice(void **state)
 static void a_pin_tilts_to_twice_the_play_over_the_width(void **state)
 {
     (void)state;
-    const Scenario scenario = lone_pin();
+    const Scenario scenario = single_pin();
     PinSpace places[PIN_SPACE_PLACES];
     places_of(&scenario, places);
     const double limit = asin(2.0 * RADIAL / WIDTH);
@@ -108,7 +108,7 @@ static SpaceMotion moved_by(SpaceMotion motion, double step)
 static void the_approach_speed_is_the_rate_of_the_depth_and_the_power_goes_with_it(void **state)
 {
     (void)state;
-    Scenario scenario = lone_pin();
+    Scenario scenario = single_pin();
     Linkage *linkage = &scenario.linkage;
     linkage->bodies[1] = linkage->bodies[0];
     snprintf(linkage->bodies[1].name, LINKAGE_NAME_SIZE, "holder");

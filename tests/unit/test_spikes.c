@@ -197,7 +197,8 @@ static void the_threshold_is_the_least_prominence(void **state)
     trace_finish(&trace);
 }
 
-// Two tops upon one pulse, 1000 and 800 high, with a valley of 600 between; then a flat one of 300.
+// Two peaks upon one pulse, 1000 and 800 high, with a valley of 600 between; then a flat one of
+// 300.
 static double mountain(double time_s)
 {
     static const double TIMES[] = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0};

@@ -98,13 +98,13 @@ static void a_trace_goes_through_the_extremes(void **state)
     int passed = 0;
     for (int i = 40; i + 40 < COUNT; i++) {
         const double *value = &signal->values[i];
-        const bool is_top = value[0] > value[-1] && value[0] > value[1] &&
-                            value[0] - fmax(value[-40], value[40]) > 4e-3;
-        while (is_top && signal->trace.points[next].time_s < signal->times[i]) {
+        const bool is_peak = value[0] > value[-1] && value[0] > value[1] &&
+                             value[0] - fmax(value[-40], value[40]) > 4e-3;
+        while (is_peak && signal->trace.points[next].time_s < signal->times[i]) {
             next++;
         }
-        passed += is_top ? 1 : 0;
-        assert_true(!is_top || signal->trace.points[next].time_s == signal->times[i]);
+        passed += is_peak ? 1 : 0;
+        assert_true(!is_peak || signal->trace.points[next].time_s == signal->times[i]);
     }
     assert_in_range(passed, 80, 200);
     finish(signal);

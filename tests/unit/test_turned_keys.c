@@ -34,8 +34,8 @@ static void all_objects_of_a_value_have_such_keys_in_their_order(void **state)
 {
     (void)state;
     json_t *value =
-        turned_keys(json_pack("{s:f, s:[{s:f, s:s}], s:{s:n}}", "mass_kg", 2.0, "rows",
-                              "force_max_N", 3.0, "word", "force_N", "asked", "depth_m"));
+        torsional_keys(json_pack("{s:f, s:[{s:f, s:s}], s:{s:n}}", "mass_kg", 2.0, "rows",
+                                 "force_max_N", 3.0, "word", "force_N", "asked", "depth_m"));
     char *text = json_dumps(value, JSON_COMPACT);
     assert_string_equal(text, "{\"mass_kg_m2\":2.0,\"rows\":[{\"force_max_N_m\":3.0,\"word\":"
                               "\"force_N\"}],\"asked\":{\"depth_rad\":null}}");

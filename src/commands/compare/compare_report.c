@@ -338,8 +338,8 @@ static void write_without_error(const Ladder *ladder, Text *text)
     size_t last_scheme = ladder->scheme_count;
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        const bool is_told = point->scheme == last_scheme && strcmp(point->reason, last) == 0;
-        if (!point->is_failed && point->reason[0] != '\0' && !is_told) {
+        const bool is_reported = point->scheme == last_scheme && strcmp(point->reason, last) == 0;
+        if (!point->is_failed && point->reason[0] != '\0' && !is_reported) {
             text_append(text, "\n  %s %s\n", point->name, point->reason);
         }
         last = point->is_failed ? "" : point->reason;

@@ -503,8 +503,8 @@ static bool fit_hole(const MapOptions *options, const MappingSettings *settings,
 // Makes the scenario of one pin at its wall from the options, with the same words and checks as a
 // case file, and puts mass, speed and steps into the settings. Without --clearance the hole is as
 // wide as the steps need. Fails with ERR_USAGE.
-static bool map_lone_make(const MapOptions *options, Scenario *scenario, MappingSettings *settings,
-                          Err *err)
+static bool map_without_case_make(const MapOptions *options, Scenario *scenario,
+                                  MappingSettings *settings, Err *err)
 {
     Overrides overrides = {.count = 0};
     list_overrides(options, &overrides);
@@ -549,7 +549,7 @@ static void cmd_map_show(Watching *watching, const char *words)
 // Says it of long work, before it begins.
 static void show_plan(double steps, void *context)
 {
-    // s of a lone pin's step, within a factor of two
+    // s of a single pin's step, within a factor of two
     const double step_s = 1.2e-6;
     Watching *watching = context;
     const bool is_warned = long_work_warn("running the settings in ODE", steps * step_s, true);
@@ -714,10 +714,10 @@ static bool map_case(const MapOptions *options, Scenario *scenario, Err *err)
            map_scenario(options, scenario, &settings, err);
 }
 
-static bool map_lone(const MapOptions *options, Scenario *scenario, Err *err)
+static bool map_without_case(const MapOptions *options, Scenario *scenario, Err *err)
 {
     MappingSettings settings;
-    return map_lone_make(options, scenario, &settings, err) &&
+    return map_without_case_make(options, scenario, &settings, err) &&
            map_scenario(options, scenario, &settings, err);
 }
 
@@ -728,7 +728,7 @@ static bool do_map(void *target, Err *err)
     assert(scenario != NULL);
     const bool is_done = options->is_inverse ? load(options, scenario, err) &&
                                                    cmd_map_read_row(options, scenario, err)
-                         : options->stiffness != NULL ? map_lone(options, scenario, err)
+                         : options->stiffness != NULL ? map_without_case(options, scenario, err)
                                                       : map_case(options, scenario, err);
     scenario_destroy(scenario);
     return is_done;

@@ -16,7 +16,7 @@
 //                                  damper c = 2 zeta sqrt(k m) of the case's restitution
 //   a velocity-level penalty,      F = p d', Eq. (2): CFM = 1 / p, bounce e
 //   N s/mm
-// Each is run in ODE as a lone pin at the mass and the closing speed that the reference finds at
+// Each is run in ODE as a single pin at the mass and the closing speed that the reference finds at
 // that speed of the crank. The approach of Table III is static, at the force of Table I; beside it
 // stands F / k, the depth at which the stiffness would carry that force.
 

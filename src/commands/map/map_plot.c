@@ -166,9 +166,10 @@ static void map_plot_draw_legend(const MappingReport *report, Text *svg)
         plot_text(svg, x + 38.0, 82.0, "start", "", OPTIONS_ODE_MAPS[settings->maps[i]]);
         x += LEGEND_DISTANCE;
     }
-    plot_text(svg, PANEL_LEFT, 56.0, "start", "note",
-              "lines: predicted; dots: delivered by ODE, a lone pin of the joint's effective mass; "
-              "the largest error wherever the steps fall");
+    plot_text(
+        svg, PANEL_LEFT, 56.0, "start", "note",
+        "lines: predicted; dots: delivered by ODE, a single pin of the joint's effective mass; "
+        "the largest error wherever the steps fall");
 }
 
 void mapping_plot_write(const void *of, Text *svg)

@@ -132,7 +132,7 @@ enum {
 #define IMPACT(member)    .offset = offsetof(MapImpact, member)
 #define ROW(member)       .offset = offsetof(MappingRow, member)
 #define CONTACT(member)   .offset = offsetof(MappingContact, member)
-#define SETTING(member)   .offset = offsetof(HeldSetting, member)
+#define SETTING(member)   .offset = offsetof(ConstantsSetting, member)
 
 // clang-format off
 static const Field SPREAD_FIELDS[] = {
@@ -274,18 +274,18 @@ static const Field SETTING_FIELDS[] = {
     {"restitution_met", FIELD_FLAG, HELD, SETTING(is_restitution_met)},
     {"misfit", FIELD_NUMBER, HELD, SETTING(misfit)},
     {"predicted", FIELD_IF, HELD, SETTING(predicted),
-     .known = offsetof(HeldSetting, predicted.is_ended), .of = FIGURE_FIELDS},
+     .known = offsetof(ConstantsSetting, predicted.is_ended), .of = FIGURE_FIELDS},
     {"delivered", FIELD_IF, HELD, SETTING(delivered.figures),
-     .known = offsetof(HeldSetting, delivered.is_measured), .of = FIGURE_FIELDS},
+     .known = offsetof(ConstantsSetting, delivered.is_measured), .of = FIGURE_FIELDS},
     {"message", FIELD_TEXT, HELD, SETTING(delivered.message)},
     {0},
 };
 // clang-format on
 
-static json_t *held_json(const Held *held)
+static json_t *held_json(const Constants *held)
 {
     json_t *settings = json_array();
-    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+    for (int i = 0; i < CONSTANTS_MAP_COUNT; i++) {
         json_array_append_new(settings, fields_json(SETTING_FIELDS, HELD, &held->settings[i]));
     }
     return json_pack("{s:f, s:f, s:f, s:o}", "step_s", held->step_s, "flight_m", held->flight,
@@ -304,7 +304,7 @@ static json_t *contact_json(const MappingReport *report, const MappingContact *c
     if (contact->held != NULL) {
         json_object_set_new(object, "best_constants", held_json(contact->held));
     }
-    return linkage_is_torsional(mapping_report_joint(contact)) ? turned_keys(object) : object;
+    return linkage_is_torsional(mapping_report_joint(contact)) ? torsional_keys(object) : object;
 }
 
 json_t *mapping_json_build(const void *of)

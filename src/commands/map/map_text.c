@@ -132,7 +132,8 @@ static double share_of(const ImpactSpread *spread, double asked)
     return spread->mean / asked;
 }
 
-static void setting_row(const MappingContact *contact, const HeldSetting *setting, Table *table)
+static void setting_row(const MappingContact *contact, const ConstantsSetting *setting,
+                        Table *table)
 {
     const ImpactFigures *predicted = &setting->predicted;
     const bool is_ended = predicted->is_ended;
@@ -169,7 +170,7 @@ static void map_text_write_table(const MappingContact *contact, const Style *sty
     snprintf(heading, sizeof heading, "Best constants at %.4g us",
              contact->held->step_s * UNITS_US);
     Table *table = section_begin(heading, 8, heads, style, text);
-    for (int i = 0; i < HELD_MAP_COUNT; i++) {
+    for (int i = 0; i < CONSTANTS_MAP_COUNT; i++) {
         setting_row(contact, &contact->held->settings[i], table);
     }
     section_end(table, text);
@@ -188,7 +189,7 @@ static void share_words(double share, const char *name, char words[SHARE_SIZE])
 }
 
 // What a setting is worth, and by how much it is off.
-static void write_worth(const MappingContact *contact, const HeldSetting *setting,
+static void write_worth(const MappingContact *contact, const ConstantsSetting *setting,
                         const char *constants, const char *values, Text *text)
 {
     const MapImpact *asked = &contact->asked;
@@ -219,7 +220,7 @@ static void write_worth(const MappingContact *contact, const HeldSetting *settin
 // What else there is to know: the way to the wall, and what is right.
 static void write_beside(const MappingContact *contact, Text *text)
 {
-    const Held *held = contact->held;
+    const Constants *held = contact->held;
     const JointUnits *units = mapping_report_units(contact);
     const double length = units_per_si(units->length);
     const double step_us = held->step_s * UNITS_US;
@@ -244,10 +245,10 @@ static void write_beside(const MappingContact *contact, Text *text)
     text_finish(&maps);
 }
 
-static void mapping_held_text(const MappingContact *contact, const Style *style, Text *text)
+static void mapping_constants_text(const MappingContact *contact, const Style *style, Text *text)
 {
-    const HeldSetting *pair = &contact->held->settings[0];
-    const HeldSetting *row = &contact->held->settings[1];
+    const ConstantsSetting *pair = &contact->held->settings[0];
+    const ConstantsSetting *row = &contact->held->settings[1];
     const JointUnits *units = mapping_report_units(contact);
     char values[HEADING_SIZE];
     map_text_write_table(contact, style, text);
@@ -265,8 +266,8 @@ static void mapping_held_text(const MappingContact *contact, const Style *style,
             2.0 * pair->stiffness, 0.5 * pair->damping);
     }
     write_beside(contact, text);
-    for (int i = 0; i < HELD_MAP_COUNT; i++) {
-        const HeldSetting *setting = &contact->held->settings[i];
+    for (int i = 0; i < CONSTANTS_MAP_COUNT; i++) {
+        const ConstantsSetting *setting = &contact->held->settings[i];
         if (!setting->delivered.is_measured) {
             text_append(text, "  not run in ODE: %s: %s\n", OPTIONS_ODE_MAPS[setting->map],
                         setting->delivered.message);
@@ -316,10 +317,11 @@ static void map_text_write_head(const MappingReport *report, const Style *style,
         "  valid       restitution%s within %.0f %% of what is asked, wherever the steps fall\n",
         mapping_report_is_poisson(report) ? "" : ", peak force and depth each",
         MAPPING_VALID_SHARE * UNITS_PERCENT);
-    text_append(text,
-                "  delivered   by ODE: a lone pin of the joint's effective mass in its hole, means "
-                "over %d phases; other joints that are hit or hold meanwhile are left out\n",
-                MAP_IMPACT_PHASES);
+    text_append(
+        text,
+        "  delivered   by ODE: a single pin of the joint's effective mass in its hole, means "
+        "over %d phases; other joints that are hit or hold meanwhile are left out\n",
+        MAP_IMPACT_PHASES);
     if (has_lines(&scenario->linkage)) {
         text_append(text,
                     "  at a line   the corner of a block, a stop, or an end of a coordinate is run "
@@ -509,7 +511,7 @@ void mapping_text_write(const void *of, const Style *style, Text *text)
         }
         mapping_settings_text_write(report, contact, style, text);
         if (contact->held != NULL) {
-            mapping_held_text(contact, style, text);
+            mapping_constants_text(contact, style, text);
         }
     }
     if (report->penalty != NULL) {
@@ -567,7 +569,7 @@ void mapping_screen_write(const void *of, const Style *style, Text *text)
     const Mapping *mapping = report->mapping;
     const MappingContact *first = &mapping->contacts[0];
     if (mapping->settings.is_held && first->held != NULL) {
-        mapping_held_text(first, style, text);
+        mapping_constants_text(first, style, text);
     } else if (mapping_report_is_poisson(report)) {
         // a row has no spring: what a step gives back is all there is to say
         write_figures(first, &mapping->rows[first->first_row], style, text);

@@ -18,8 +18,9 @@ static const double PAPER_CRANK = 0.108;
 static const double PAPER_COUPLER = 0.2794;
 static const double PAPER_FOLLOWER = 0.2705;
 static const double PAPER_CLEARANCE = 14.5e-6;
-static const double SAME = 1e-6; // relative: above rounding, below any tolerance of a length
-enum { PAPER_JOINT = 1 };        // crank-coupler
+static const double LENGTH_ROUNDING =
+    1e-6;                 // relative: above rounding, below any tolerance of a length
+enum { PAPER_JOINT = 1 }; // crank-coupler
 
 static bool is_inside(size_t sector)
 {
@@ -44,7 +45,7 @@ static SpikeBandSums spike_bands_sums(const SignalSpikes *spikes)
 
 static bool run_spikes_is_near(double value, double wanted)
 {
-    return fabs(value - wanted) <= SAME * wanted;
+    return fabs(value - wanted) <= LENGTH_ROUNDING * wanted;
 }
 
 // Whether the only play is that of Table IV in the joint between crank and coupler.

@@ -212,17 +212,17 @@ static bool tell(void *target, Err *err)
     if (words->count == 0) {
         return err_set(err, ERR_USAGE, "no study given: jointplay study status STUDY.yaml");
     }
-    bool is_told = true;
-    for (size_t i = 0; i < words->count && is_told; i++) {
+    bool is_reported = true;
+    for (size_t i = 0; i < words->count && is_reported; i++) {
         Parts parts = {0};
         const char *word = words->words[i];
-        is_told =
+        is_reported =
             (study_path_is_study(word) ? add_study(&parts, word, err)
                                        : cmd_study_add_part(&parts, word, WANTED_UNKNOWN, err)) &&
             print_parts(&parts, words->is_wide, err);
-        is_told = finish_parts(&parts, err) && is_told;
+        is_reported = finish_parts(&parts, err) && is_reported;
     }
-    return is_told;
+    return is_reported;
 }
 
 static bool study_status_run(int argc, char **argv, Err *err)

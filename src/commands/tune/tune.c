@@ -172,7 +172,7 @@ static const double ORDER_STAGGERED = 6.0;
 static const double TIE = 1.1;
 
 // errors this close are the same
-static const double SAME = 1.01;
+static const double EQUAL_ERROR_RATIO = 1.01;
 
 // a decade finer must take a third off the error, by its median, once a run takes as long as this,
 // s
@@ -452,7 +452,7 @@ static int choose_held(const Tune *tune, const Scenario *scenario, bool is_plain
                 (is_plain && !tune_is_plain_row(tune, scenario, trial->scheme))) {
                 continue;
             }
-            if (pass == 1 && trial->error <= SAME * least &&
+            if (pass == 1 && trial->error <= EQUAL_ERROR_RATIO * least &&
                 (chosen == TUNE_NONE || trial->scheme < tune->trials[chosen].scheme)) {
                 chosen = i;
             }

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "base/text.h"
-#include "measure/held.h"
+#include "measure/constants.h"
 #include "measure/ladder.h"
 #include "measure/truth.h"
 #include "write/table.h"

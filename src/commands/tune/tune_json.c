@@ -113,7 +113,7 @@ static json_t *of_contact(const TuneReport *report, json_t *object)
 {
     const TuneContact *contact = &report->tune->contact;
     const Joint *joint = &report->scenario->linkage.joints[contact->joint];
-    return contact->is_limit && linkage_is_torsional(joint) ? turned_keys(object) : object;
+    return contact->is_limit && linkage_is_torsional(joint) ? torsional_keys(object) : object;
 }
 
 static json_t *linear_object(const TuneReport *report, const TuneLinear *linear)

@@ -245,11 +245,11 @@ Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear
 {
     Scenario changed = *scenario;
     if (linear->is_row) {
-        const HeldSetting setting = {.map = ODE_MAP_CORRECTED,
-                                     .row = linear->row,
-                                     .stiffness = linear->stiffness,
-                                     .damping = linear->damping};
-        held_apply(&setting, &changed);
+        const ConstantsSetting setting = {.map = ODE_MAP_CORRECTED,
+                                          .row = linear->row,
+                                          .stiffness = linear->stiffness,
+                                          .damping = linear->damping};
+        constants_apply(&setting, &changed);
     } else {
         scenario_set_stiffness(&changed, linear->stiffness, 1.0);
         changed.contact.damping = DAMPING_VISCOUS;

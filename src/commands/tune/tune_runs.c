@@ -93,9 +93,9 @@ bool tune_runs_make(const TuneSearch *search, const TuneRuns *runs, Err *err)
 // What can be had at a step that cannot be changed.
 //
 // Every scheme is run once at the step. Constants, one kp and kd or one ERP and CFM for all depths,
-// are those that are best for a lone impact (held.h): for the median mass and closing speed of the
-// reference's contacts, as `map` has them, and for the hardest impact. What they are worth in the
-// whole mechanism is not derived but run.
+// are those that are best for a single impact (measure/constants.h): for the median mass and
+// closing speed of the reference's contacts, as `map` has them, and for the hardest impact. What
+// they are worth in the whole mechanism is not derived but run.
 
 static void tune_runs_apply_scheme(void *owner, size_t number, Scenario *scenario)
 {
@@ -123,10 +123,10 @@ static void watch_run(double share, double wall_s, void *context)
     search->wait("measuring the contacts", INFINITY, search->context);
 }
 
-static void tune_runs_add_settings(Tune *tune, TuneLinearSource source, const Held *held)
+static void tune_runs_add_settings(Tune *tune, TuneLinearSource source, const Constants *held)
 {
-    for (size_t i = 0; i < HELD_MAP_COUNT; i++) {
-        const HeldSetting *setting = &held->settings[i];
+    for (size_t i = 0; i < CONSTANTS_MAP_COUNT; i++) {
+        const ConstantsSetting *setting = &held->settings[i];
         if (setting->map == ODE_MAP_MIDPOINT) {
             continue; // its row follows the closing speed: no constants
         }
@@ -148,13 +148,13 @@ static void add_impact(const TuneSearch *search, const MappingJoint *joint, doub
 {
     Err ignored = {ERR_NONE, ""}; // a law need not have such an impact
     MappingContact *contact = malloc(sizeof *contact);
-    Held *held = malloc(sizeof *held);
+    Constants *held = malloc(sizeof *held);
     assert(contact != NULL && held != NULL);
     const double closing = fmax(speed, search->scenario->contact.impact_speed_floor);
     if (mass > 0.0 && closing > 0.0 &&
         mapping_contact_make(search->scenario, joint, mass, closing, contact, &ignored)) {
         search->wait("finding constants for the step", INFINITY, search->context);
-        held_find(contact, search->tune->held_s, held);
+        constants_find(contact, search->tune->held_s, held);
         tune_runs_add_settings(search->tune, source, held);
     }
     free(held);

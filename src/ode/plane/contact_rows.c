@@ -10,12 +10,12 @@
 #include "ode/plane/contact_rows.h"
 
 #include "base/zeroed.h"
+#include "contact/contact_peaks.h"
 #include "contact/law.h"
 #include "contact/law_row.h"
 #include "contact/onset.h"
 #include "contact/overlap.h"
 #include "contact/penalty.h"
-#include "contact/tops.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 #include "model/response.h"
@@ -44,18 +44,18 @@ struct ContactRow {
     double excess;      // m, by how much that is more than the exact penetration
     Vec2 normal;        // of the row: unit, direction of the force on body b
     Vec2 point;         // m, in the world, where the force acts
-    Vec2 arms[2];    // m, from the joint's anchors on bodies a and b to where its force is said to
-                     // act (ode/plane/world.h)
-    Vec2 lever;      // m, from there to the point
-    double damping;  // N s/m, of the row; not of CONTACT_POISSON
-    Tops tops;       // of the contact under way, where positions stand at mid-step
-    double pressing; // N, in the step: at a turn N m
-    double closing;  // m/s, before the step, along the normal
-    double faster;   // m/s, by how much that is more than the rate of the exact penetration
-    double sliding;  // m/s, along the wall before the step, where there is friction
-    double elastic;  // J, stored in the contact after the step
-    double dissipated;          // J, lost along the normal in the step
-    double friction;            // J, lost in sliding in the step
+    Vec2 arms[2];   // m, from the joint's anchors on bodies a and b to where its force is said to
+                    // act (ode/plane/world.h)
+    Vec2 lever;     // m, from there to the point
+    double damping; // N s/m, of the row; not of CONTACT_POISSON
+    ContactPeaks peaks; // of the contact under way, where positions stand at mid-step
+    double pressing;    // N, in the step: at a turn N m
+    double closing;     // m/s, before the step, along the normal
+    double faster;      // m/s, by how much that is more than the rate of the exact penetration
+    double sliding;     // m/s, along the wall before the step, where there is friction
+    double elastic;     // J, stored in the contact after the step
+    double dissipated;  // J, lost along the normal in the step
+    double friction;    // J, lost in sliding in the step
     dSurfaceParameters surface; // of CONTACT_POISSON, without friction
     dContact contact;           // as ODE is given it
     dJointFeedback feedback;
@@ -214,7 +214,8 @@ static void begin(ContactRow *row, bool is_staggered, const TouchPose *pose, dou
     row->state = contact_state_begun(
         is_staggered ? onset_speed(&row->onset, row->closing, pose->gap, row->inside, step_s)
                      : row->closing);
-    tops_begin(&row->tops, row->law.viscous * row->state.impact_speed, 0.5 * step_s - onset_s);
+    contact_peaks_begin(&row->peaks, row->law.viscous * row->state.impact_speed,
+                        0.5 * step_s - onset_s);
 }
 
 // Looks for the contact of a pair, and notes how it is, or that there is none; of a staggered world
@@ -637,8 +638,9 @@ static void read_row(ContactRows *rows, size_t number, Vec2 force, double step_s
         state->force = row->pressing;
     }
     if (pair->is_end) {
-        // whose largest values alone are asked for: contact_rows_tops
-        tops_note_step(&row->tops, row->pressing, fmax(row->inside, 0.0), row->share, step_s);
+        // whose largest values alone are asked for: contact_rows_peaks
+        contact_peaks_note_step(&row->peaks, row->pressing, fmax(row->inside, 0.0), row->share,
+                                step_s);
     }
 }
 
@@ -690,17 +692,17 @@ ContactEnergy contact_rows_energy(const ContactRows *rows)
     return sum;
 }
 
-void contact_rows_tops(const ContactRows *rows, JointTop *tops)
+void contact_rows_peaks(const ContactRows *rows, JointPeak *peaks)
 {
     for (size_t i = 0; i < rows->scenario->linkage.joint_count; i++) {
-        tops[i] = (JointTop){.force = 0.0};
+        peaks[i] = (JointPeak){.force = 0.0};
     }
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const ContactRow *row = &rows->rows[i];
-        JointTop *top = &tops[rows->world->pairs[i].joint];
+        JointPeak *top = &peaks[rows->world->pairs[i].joint];
         if (rows->world->pairs[i].is_end && row->state.is_touching) {
-            top->force = fmax(top->force, row->tops.force);
-            top->depth = fmax(top->depth, row->tops.depth);
+            top->force = fmax(top->force, row->peaks.force);
+            top->depth = fmax(top->depth, row->peaks.depth);
         }
     }
 }

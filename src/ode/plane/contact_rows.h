@@ -66,4 +66,4 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states);
 
 // Once the rows are cleared: the largest force and depth at the ends of coordinates, 0 elsewhere;
 // where positions stand at mid-step, since the last step but one.
-void contact_rows_tops(const ContactRows *rows, JointTop *tops);
+void contact_rows_peaks(const ContactRows *rows, JointPeak *peaks);

@@ -2,7 +2,7 @@
 // steps of ode/plane/impulse_step.c.
 #include "ode/impulse.h"
 #include "base/zeroed.h"
-#include "model/several.h"
+#include "model/independent.h"
 #include "ode/plane/impulse_step.h"
 #include "ode/stepping.h"
 
@@ -129,11 +129,11 @@ static bool open_plane_parts(const Scenario *scenario, void **state, Err *err)
 const Solver STEPPING_IMPULSE_PARTS = {
     .name = "impulse",
     .open = open_plane_parts,
-    .step = several_step,
-    .record = several_record,
-    .observe = several_observe,
-    .observe_part = several_observe_part,
-    .contacts = several_contacts,
-    .model = several_model,
-    .close = several_close,
+    .step = independent_step,
+    .record = independent_record,
+    .observe = independent_observe,
+    .observe_part = independent_observe_part,
+    .contacts = independent_contacts,
+    .model = independent_model,
+    .close = independent_close,
 };

@@ -680,7 +680,7 @@ static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
 }
 
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
-static const double NEAR = 0.02;
+static const double NEAR_WALL_SHARE = 0.02;
 
 // a last step that is shorter than this share of the others tells no accelerations: rounding and
 // the corrections would stand in them
@@ -739,8 +739,8 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
             width_s * (kernel->speed[row] + 0.5 * width_s * kernel->free[row]),
             width_s * (kernel->speed[row + 1] + 0.5 * width_s * kernel->free[row + 1]),
         };
-        const double near =
-            NEAR * linkage_radial_clearance(&step->scenario->linkage.joints[joint->joint]);
+        const double near = NEAR_WALL_SHARE *
+                            linkage_radial_clearance(&step->scenario->linkage.joints[joint->joint]);
         if (joint->state.is_touching || gap_at(joint, now) < near ||
             gap_at(joint, vec2_add(now, moved)) < near) {
             return true;

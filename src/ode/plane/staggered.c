@@ -38,7 +38,7 @@ typedef struct Stride {
     double *omega;
     double *alpha; // mean
     JointState *joints;
-    JointTop *tops;
+    JointPeak *peaks;
     double *impulse;
     double *approach;
     double drive_work; // J
@@ -68,7 +68,7 @@ static void stride_init(const Linkage *linkage, Stride *stride)
     stride->omega = zeroed(linkage->body_count, sizeof *stride->omega);
     stride->alpha = zeroed(linkage->body_count, sizeof *stride->alpha);
     stride->joints = zeroed(linkage->joint_count, sizeof *stride->joints);
-    stride->tops = zeroed(linkage->joint_count, sizeof *stride->tops);
+    stride->peaks = zeroed(linkage->joint_count, sizeof *stride->peaks);
     stride->impulse = zeroed(linkage->joint_count, sizeof *stride->impulse);
     stride->approach = zeroed(linkage->joint_count, sizeof *stride->approach);
 }
@@ -80,7 +80,7 @@ static void stride_finish(Stride *stride)
     free(stride->omega);
     free(stride->alpha);
     free(stride->joints);
-    free(stride->tops);
+    free(stride->peaks);
     free(stride->impulse);
     free(stride->approach);
 }
@@ -250,7 +250,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
     }
     world_joint_forces(world, stride->joints);
     contact_rows_clear(&staggered->contacts, step_s, stride->joints);
-    contact_rows_tops(&staggered->contacts, stride->tops);
+    contact_rows_peaks(&staggered->contacts, stride->peaks);
     read_speeds(staggered, stride);
     book(staggered, &middle, stride);
     staggered->index++;
@@ -306,7 +306,7 @@ static StepRecord staggered_record(const void *state)
         .omega = now->omega,
         .alpha = now->alpha,
         .joints = now->joints,
-        .tops = now->tops,
+        .peaks = now->peaks,
         .impulse = now->impulse,
         .approach = now->approach,
         .drive_work = now->drive_work,

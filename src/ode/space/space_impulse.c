@@ -1,7 +1,7 @@
 // Steps a linkage in space in ODE with contacts integrated within the step: ode/impulse.c with the
 // steps of ode/space/space_impulse_step.c.
 #include "base/zeroed.h"
-#include "model/several.h"
+#include "model/independent.h"
 #include "ode/impulse.h"
 #include "ode/space/space_impulse_step.h"
 #include "ode/stepping.h"
@@ -167,11 +167,11 @@ static bool open_space_parts(const Scenario *scenario, void **state, Err *err)
 const Solver SPACE_IMPULSE_PARTS = {
     .name = "impulse",
     .open = open_space_parts,
-    .step = several_step,
-    .record = several_record,
-    .observe = several_observe,
-    .observe_part = several_observe_part,
-    .contacts = several_contacts,
-    .model = several_model,
-    .close = several_close,
+    .step = independent_step,
+    .record = independent_record,
+    .observe = independent_observe,
+    .observe_part = independent_observe_part,
+    .contacts = independent_contacts,
+    .model = independent_model,
+    .close = independent_close,
 };

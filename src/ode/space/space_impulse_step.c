@@ -187,7 +187,7 @@ bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, E
 }
 
 // as in ode/plane/impulse_step.c
-static const double NEAR = 0.02;
+static const double NEAR_WALL_SHARE = 0.02;
 static const double SHORT = 0.1;
 
 static size_t body_count(const SpaceImpulseStep *step)
@@ -235,7 +235,7 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
         const SpaceRow opening = stop_space_row(stop, linkage, step->before);
         const double moved = width_s * space_row_speed(&opening, step->before);
         const double play = coordinate_play(&linkage->joints[stop->joint]);
-        const double limit = isfinite(play) ? NEAR * play : 0.0;
+        const double limit = isfinite(play) ? NEAR_WALL_SHARE * play : 0.0;
         if (step->kernel.contacts[i].state.is_touching || gap < limit || gap + moved < limit) {
             return true;
         }
@@ -243,7 +243,7 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
     for (size_t i = 0; i < step->pin_count; i++) {
         const PinSpacePose pose = pin_space_pose(&step->places[i], step->before);
         // the speed alone: what it may gain meanwhile is less than the margin
-        const double limit = NEAR * step->places[i].clearance;
+        const double limit = NEAR_WALL_SHARE * step->places[i].clearance;
         const double moved = width_s * pose.approach_speed;
         if (step->kernel.contacts[i].state.is_touching || pose.gap < limit ||
             pose.gap - moved < limit) {

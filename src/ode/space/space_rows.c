@@ -81,7 +81,7 @@ typedef struct SpaceStride {
     SpaceJoints joints;
     double *impulse; // by joint
     double *approach;
-    JointTop *tops;
+    JointPeak *peaks;
     double drive_work; // J
     ContactEnergy energy;
 } SpaceStride;
@@ -96,7 +96,7 @@ static void space_stride_create(const Linkage *linkage, SpaceStride *stride)
     stride->alpha = zeroed(linkage->body_count, sizeof *stride->alpha);
     stride->joints = space_joints_create(linkage);
     stride->impulse = zeroed(linkage->joint_count, sizeof *stride->impulse);
-    stride->tops = zeroed(linkage->joint_count, sizeof *stride->tops);
+    stride->peaks = zeroed(linkage->joint_count, sizeof *stride->peaks);
     stride->approach = zeroed(linkage->joint_count, sizeof *stride->approach);
 }
 
@@ -109,7 +109,7 @@ static void space_stride_free(SpaceStride *stride)
     space_joints_free(&stride->joints);
     free(stride->impulse);
     free(stride->approach);
-    free(stride->tops);
+    free(stride->peaks);
 }
 
 // Fills in forces, energies, impulses and the drive's part of a step that has been taken, and
@@ -135,7 +135,7 @@ static void space_stride_book(SpaceStride *stride, const SpaceMotion *driven, do
         }
     }
     space_stops_clear(stops, step_s, &stride->joints);
-    space_stops_tops(stops, stride->tops);
+    space_stops_peaks(stops, stride->peaks);
     stride->drive_work = 0.0;
     if (body >= 0) {
         Vec3 force;
@@ -433,7 +433,7 @@ static StepRecord space_rows_record(const void *state)
         .space_joints = now->joints.space,
         .impulse = now->impulse,
         .approach = now->approach,
-        .tops = rows->is_staggered ? now->tops : NULL,
+        .peaks = rows->is_staggered ? now->peaks : NULL,
         .drive_work = now->drive_work,
         .dissipated = now->energy.dissipated,
         .friction = now->energy.friction,

@@ -25,7 +25,7 @@ struct SpaceStop {
     dJointFeedback feedback;
     Vec3 axis; // of the row, of ODE's first body
     Onset onset;
-    Tops tops;
+    ContactPeaks peaks;
     ContactState state; // as in ode/plane/contact_rows.h
     bool falls_back;    // the map is not stable at this step: the row is the textbook's
     double gap;         // rad, where the bodies are
@@ -131,8 +131,8 @@ static void find_contact(SpaceStops *stops, SpaceStop *stop, double step_s)
             contact_state_begun(stops->is_staggered ? onset_speed(&stop->onset, stop->closing,
                                                                   stop->gap, -stop->gap, step_s)
                                                     : stop->closing);
-        tops_begin(&stop->tops, stop->law.viscous * stop->state.impact_speed,
-                   0.5 * step_s - overlap.onset);
+        contact_peaks_begin(&stop->peaks, stop->law.viscous * stop->state.impact_speed,
+                            0.5 * step_s - overlap.onset);
     }
     onset_note(&stop->onset, stop->state.is_touching, stop->gap);
 }
@@ -263,7 +263,8 @@ void space_stops_clear(SpaceStops *stops, double step_s, SpaceJoints *joints)
         joint->force += stop->pressing;
         joint->moment_on_b +=
             coordinate_sense(&linkage->joints[stop->joint]) * stop->sign * stop->pressing;
-        tops_note_step(&stop->tops, stop->pressing, fmax(-stop->gap, 0.0), stop->share, step_s);
+        contact_peaks_note_step(&stop->peaks, stop->pressing, fmax(-stop->gap, 0.0), stop->share,
+                                step_s);
         book_energy(stops, stops->motions, stop, step_s);
     }
 }
@@ -278,17 +279,17 @@ ContactEnergy space_stops_energy(const SpaceStops *stops)
     return sum;
 }
 
-void space_stops_tops(const SpaceStops *stops, JointTop *tops)
+void space_stops_peaks(const SpaceStops *stops, JointPeak *peaks)
 {
     for (size_t i = 0; i < stops->count; i++) {
         const SpaceStop *stop = &stops->stops[i];
-        JointTop *top = &tops[stop->joint];
+        JointPeak *top = &peaks[stop->joint];
         if (i == 0 || stops->stops[i - 1].joint != stop->joint) {
-            *top = (JointTop){.force = 0.0};
+            *top = (JointPeak){.force = 0.0};
         }
         if (stop->state.is_touching) {
-            top->force = fmax(top->force, stop->tops.force);
-            top->depth = fmax(top->depth, stop->tops.depth);
+            top->force = fmax(top->force, stop->peaks.force);
+            top->depth = fmax(top->depth, stop->peaks.depth);
         }
     }
 }

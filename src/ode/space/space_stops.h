@@ -2,9 +2,9 @@
 // for ends in the plane.
 #pragma once
 
+#include "contact/contact_peaks.h"
 #include "contact/map.h"
 #include "contact/onset.h"
-#include "contact/tops.h"
 #include "model/space_coordinate.h"
 #include "model/space_response.h"
 #include "ode/plane/world.h"
@@ -53,7 +53,7 @@ void space_stops_clear(SpaceStops *stops, double step_s, SpaceJoints *joints);
 ContactEnergy space_stops_energy(const SpaceStops *stops);
 
 // The largest force and depth of each joint that the steps up to the last one show, by joint.
-void space_stops_tops(const SpaceStops *stops, JointTop *tops);
+void space_stops_peaks(const SpaceStops *stops, JointPeak *peaks);
 
 // Writes what the ends carry after the last step, by joint and its places.
 void space_stops_states(const SpaceStops *stops, ContactState (*states)[JOINT_PLACES]);

@@ -7,7 +7,7 @@
 //     t_k' = (w_b x u_b) x s_k + u_b x (w_a x s_k)
 #include "reference/space/space_articulated.h"
 
-#include "base/leaders.h"
+#include "base/union_find.h"
 #include "base/zeroed.h"
 
 #include <math.h>
@@ -33,14 +33,14 @@ static int space_loop_groups_find_meeting(const SpaceTree *tree, int joint)
 static void join_nodes(const SpaceTree *tree, size_t count, const int *joints, const int *meetings,
                        size_t *roots, size_t *loop_nodes)
 {
-    leaders_start(roots, tree->node_count);
+    union_find_start(roots, tree->node_count);
     for (size_t i = 0; i < count; i++) {
         loop_nodes[i] = tree->node_count;
         for (int side = 0; side < 2; side++) {
             for (int at = space_loop_groups_end(tree, joints[i], side); at != meetings[i];
                  at = tree->nodes[at].parent_node) {
                 if (loop_nodes[i] < tree->node_count) {
-                    leaders_join(roots, loop_nodes[i], (size_t)at);
+                    union_find_join(roots, loop_nodes[i], (size_t)at);
                 }
                 loop_nodes[i] = (size_t)at;
             }
@@ -90,7 +90,7 @@ static void space_loop_groups_init(const SpaceTree *tree, size_t count, const in
     // a loop that nothing moves is in no group: loop_nodes[i] becomes the group, from 1 on
     for (size_t i = 0; i < count; i++) {
         if (loop_nodes[i] < tree->node_count) {
-            size_t *group = &group_of[leaders_find(roots, loop_nodes[i])];
+            size_t *group = &group_of[union_find_root(roots, loop_nodes[i])];
             *group = *group > 0 ? *group : ++groups->count;
             loop_nodes[i] = *group;
             groups->first_loop[*group]++;

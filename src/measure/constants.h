@@ -13,14 +13,14 @@
 
 #include "measure/mapping_contact.h"
 
-enum { HELD_MAP_COUNT = 3 };
+enum { CONSTANTS_MAP_COUNT = 3 };
 
 // The maps by which constants are rows. The textbook's are Gazebo's kp and kd, ERP at most 1; the
 // corrected's are any ERP and CFM; the midpoint's row follows the closing speed, with staggered
 // stepping. (The exact map makes no row that these do not.)
-extern const OdeMap HELD_MAPS[HELD_MAP_COUNT];
+extern const OdeMap CONSTANTS_MAPS[CONSTANTS_MAP_COUNT];
 
-typedef struct HeldSetting {
+typedef struct ConstantsSetting {
     OdeMap map;
     ErpCfm row;              // of the midpoint at the law's deepest point, without a closing speed
     double stiffness;        // N/m, the spring that the map makes the row of
@@ -30,28 +30,28 @@ typedef struct HeldSetting {
     ImpactFigures predicted;
     VerdictKind verdict; // from the prediction
     ImpactDelivered delivered;
-} HeldSetting;
+} ConstantsSetting;
 
-typedef struct Held {
+typedef struct Constants {
     double step_s;
-    double flight;                        // m, in a step at the closing speed
-    double play;                          // m, from wall to wall
-    HeldSetting settings[HELD_MAP_COUNT]; // in the order of HELD_MAPS
-} Held;
+    double flight;                                  // m, in a step at the closing speed
+    double play;                                    // m, from wall to wall
+    ConstantsSetting settings[CONSTANTS_MAP_COUNT]; // in the order of CONSTANTS_MAPS
+} Constants;
 
 // Searches the best constants of a contact of CONTACT_IMPACT at a step, s, and runs them in ODE.
-void held_find(const MappingContact *contact, double step_s, Held *held);
+void constants_find(const MappingContact *contact, double step_s, Constants *held);
 
 // What constants come to at a step: the prediction, and from it all but `delivered`.
-HeldSetting held_setting(const MappingContact *contact, double step_s, OdeMap map, double stiffness,
-                         double damping);
+ConstantsSetting constants_setting(const MappingContact *contact, double step_s, OdeMap map,
+                                   double stiffness, double damping);
 
 // What the engine delivers with constants at a step, in a hole that leaves the pin room.
-ImpactDelivered held_deliver(const MappingContact *contact, double step_s, OdeMap map,
-                             double stiffness, double damping);
+ImpactDelivered constants_deliver(const MappingContact *contact, double step_s, OdeMap map,
+                                  double stiffness, double damping);
 
 // Whether one setting is better than another, as above.
-bool held_is_better(const HeldSetting *one, const HeldSetting *other);
+bool constants_is_better(const ConstantsSetting *one, const ConstantsSetting *other);
 
 // The contact of every joint of a scenario made of the constants; friction, step and stepping stay.
-void held_apply(const HeldSetting *setting, Scenario *scenario);
+void constants_apply(const ConstantsSetting *setting, Scenario *scenario);

@@ -1,29 +1,30 @@
-// A world's answer to pushes in the places at which its joints with play touch, in one step.
+// A world's response to pushes in the places at which its joints with play touch, in one step.
 #pragma once
 
 #include "world/closing.h"
 #include "world/play.h"
 
 // A place, with the first of its rows among those of all places.
-typedef struct AnswerPlace {
+typedef struct ResponsePlace {
     JpJoint *joint;
     Place *place;
     size_t first_row;
     bool is_active; // whether its contacts are integrated
-    bool is_known;  // whether the answers to pushes in its rows have been found
-} AnswerPlace;
+    bool is_known;  // whether the responses to pushes in its rows have been found
+} ResponsePlace;
 
-// What a step needs to know of a world's answer, and what it is to put right afterwards. Arrays are
-// by row where nothing else is said.
-typedef struct Answer {
+// What a step needs to know of a world's response, and what it is to put right afterwards. Arrays
+// are by row where nothing else is said.
+typedef struct WorldResponse {
     JpWorld *world;
-    double step;      // s
-    bool is_linear;   // whether no bound can be passed (world/closing.h)
-    bool is_recalled; // whether the answers to pushes are those of steps before (world/recall.h)
+    double step;    // s
+    bool is_linear; // whether no bound can be passed (world/closing.h)
+    bool is_cached; // whether the responses to pushes are those of steps before
+                    // (world/response_cache.h)
     size_t place_count;
     size_t side_count; // of the active places
     size_t row_count;
-    AnswerPlace *places; // all, in the world's order
+    ResponsePlace *places; // all, in the world's order
     const Direction **rows;
     double *frozen;  // rates with the velocities of the step's start
     double *base;    // after the base
@@ -41,32 +42,33 @@ typedef struct Answer {
     void *memory;    // owned, of all of the above
     KernelSums sums; // owned: of the kernel, at a time within the step
     Closing closing; // owned, of a linear world
-} Answer;
+} WorldResponse;
 
 // Lists the places and rows of a step, with their rates as they are; false where there is no
 // memory.
-bool answer_make(JpWorld *world, double step, Answer *answer);
-void answer_free(Answer *answer);
+bool world_response_make(JpWorld *world, double step, WorldResponse *response);
+void world_response_free(WorldResponse *response);
 
 // The rates of all rows, and the speeds of all bodies, as they are.
-void answer_read_rates(const Answer *answer, double *rates);
-void answer_read_bodies(const JpWorld *world, double *speeds);
+void world_response_read_rates(const WorldResponse *response, double *rates);
+void world_response_read_bodies(const JpWorld *world, double *speeds);
 
 // Steps the world under the mean forces of the impulses of the base; writes the rates of all rows
 // after that.
-JpStatus answer_step(const Answer *answer, double step, double *rates, JpError *error);
+JpStatus world_response_step(const WorldResponse *response, double step, double *rates,
+                             JpError *error);
 
-// Gives the bodies the velocities that the answer has for the impulses of the contacts, as a step
+// Gives the bodies the velocities that the response has for the impulses of the contacts, as a step
 // would: nothing pushes them any more.
-void answer_take(const Answer *answer);
+void world_response_take(const WorldResponse *response);
 
-// Finds the answers to pushes in the rows of all active places beside the base, but for those that
-// are known.
-JpStatus answer_find_columns(Answer *answer, double step, JpError *error);
+// Finds the responses to pushes in the rows of all active places beside the base, but for those
+// that are known.
+JpStatus world_response_find_columns(WorldResponse *response, double step, JpError *error);
 
-// Whether the answers that are not known yet, and contacts in all active places, can be found
+// Whether the responses that are not known yet, and contacts in all active places, can be found
 // within the limit of work.
-bool answer_is_within_work(const Answer *answer);
+bool world_response_is_within_work(const WorldResponse *response);
 
 // What impulses in all rows do to the rate of one.
-double answer_to(const Answer *answer, const double *impulses, size_t row);
+double world_response_to(const WorldResponse *response, const double *impulses, size_t row);

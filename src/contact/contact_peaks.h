@@ -3,7 +3,7 @@
 
 #include <stdbool.h>
 
-typedef struct Tops {
+typedef struct ContactPeaks {
     double force; // N, the largest since the last step but one
     double depth; // m
     // to work with
@@ -11,13 +11,14 @@ typedef struct Tops {
     double depths[2];
     bool has_series; // whether there is a step behind the onset
     double since;    // s, between those two; at first from the onset
-} Tops;
+} ContactPeaks;
 
 // A contact begins with a force; its first step is so far behind that, s.
-void tops_begin(Tops *tops, double force, double since);
+void contact_peaks_begin(ContactPeaks *peaks, double force, double since);
 
 // Notes force and depth of a step that is ahead of the last one, s; of the first it is 0.
-void tops_note(Tops *tops, double force, double depth, double ahead);
+void contact_peaks_note(ContactPeaks *peaks, double force, double depth, double ahead);
 
 // Notes those of a step of a length, s, in a share of which the contact overlaps.
-void tops_note_step(Tops *tops, double force, double depth, double share, double step_s);
+void contact_peaks_note_step(ContactPeaks *peaks, double force, double depth, double share,
+                             double step_s);

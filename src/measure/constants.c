@@ -7,7 +7,7 @@
 //
 // Constants are rows of the velocity-level model without bounce: F = ((ERP / h) d + d') / (CFM + h
 // / m). That is how they are predicted and how they are run.
-#include "measure/held.h"
+#include "measure/constants.h"
 #include "model/coordinate.h"
 
 #include <assert.h>
@@ -16,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const OdeMap HELD_MAPS[HELD_MAP_COUNT] = {ODE_MAP_TEXTBOOK, ODE_MAP_CORRECTED, ODE_MAP_MIDPOINT};
+const OdeMap CONSTANTS_MAPS[CONSTANTS_MAP_COUNT] = {ODE_MAP_TEXTBOOK, ODE_MAP_CORRECTED,
+                                                    ODE_MAP_MIDPOINT};
 
 enum {
     GRID = 100,  // points a side of the first grid
@@ -51,7 +52,7 @@ static const double ROOM = 20.0;
 static const double PIN_PLAYS = 10.0;
 
 static MapImpactCase impact_of(const MappingContact *contact, double step_s,
-                               const HeldSetting *setting)
+                               const ConstantsSetting *setting)
 {
     MapImpactCase impact = contact->impact;
     impact.step = step_s;
@@ -89,11 +90,12 @@ static double worst_depth(const MapImpact *asked, double misfit_most)
 }
 
 // Makes the row and predicts it.
-static HeldSetting held_predict(const MappingContact *contact, double step_s, OdeMap map,
-                                double stiffness, double damping, const Patience *patience)
+static ConstantsSetting constants_predict(const MappingContact *contact, double step_s, OdeMap map,
+                                          double stiffness, double damping,
+                                          const Patience *patience)
 {
     const MapImpact *asked = &contact->asked;
-    HeldSetting setting = {.map = map, .stiffness = stiffness, .damping = damping};
+    ConstantsSetting setting = {.map = map, .stiffness = stiffness, .damping = damping};
     const MapContact at = {
         .stiffness = stiffness,
         .damping = damping,
@@ -130,16 +132,17 @@ static HeldSetting held_predict(const MappingContact *contact, double step_s, Od
     return setting;
 }
 
-HeldSetting held_setting(const MappingContact *contact, double step_s, OdeMap map, double stiffness,
-                         double damping)
+ConstantsSetting constants_setting(const MappingContact *contact, double step_s, OdeMap map,
+                                   double stiffness, double damping)
 {
     const Patience endless = {.misfit_most = INFINITY};
-    HeldSetting setting = held_predict(contact, step_s, map, stiffness, damping, &endless);
+    ConstantsSetting setting =
+        constants_predict(contact, step_s, map, stiffness, damping, &endless);
     setting.verdict = verdict_judge(contact, map, step_s, &setting.predicted);
     return setting;
 }
 
-bool held_is_better(const HeldSetting *one, const HeldSetting *other)
+bool constants_is_better(const ConstantsSetting *one, const ConstantsSetting *other)
 {
     if (one->is_restitution_met != other->is_restitution_met) {
         return one->is_restitution_met;
@@ -157,24 +160,24 @@ typedef struct Search {
 typedef struct Point {
     double log_stiffness;
     double log_damping;
-    HeldSetting setting;
+    ConstantsSetting setting;
 } Point;
 
 // A setting whose misfit is larger than is of any use is given up.
-static Point held_look(const Search *search, double log_stiffness, double log_damping,
-                       double misfit_most)
+static Point constants_look(const Search *search, double log_stiffness, double log_damping,
+                            double misfit_most)
 {
     const Patience patience = {search->step_most, misfit_most};
     return (Point){log_stiffness, log_damping,
-                   held_predict(search->contact, search->step_s, search->map, exp(log_stiffness),
-                                exp(log_damping), &patience)};
+                   constants_predict(search->contact, search->step_s, search->map,
+                                     exp(log_stiffness), exp(log_damping), &patience)};
 }
 
 // Keeps a point among the best, the best first.
-static void held_keep(Point best[STARTS], size_t *count, const Point *point)
+static void constants_keep(Point best[STARTS], size_t *count, const Point *point)
 {
     size_t index = *count;
-    while (index > 0 && held_is_better(&point->setting, &best[index - 1].setting)) {
+    while (index > 0 && constants_is_better(&point->setting, &best[index - 1].setting)) {
         index--;
     }
     if (index == STARTS) {
@@ -192,7 +195,8 @@ static bool is_local_best(const Point *grid, int number)
     for (int i = number / GRID - 1; i <= number / GRID + 1; i++) {
         for (int k = number % GRID - 1; k <= number % GRID + 1; k++) {
             const bool is_on_it = i >= 0 && i < GRID && k >= 0 && k < GRID;
-            if (is_on_it && held_is_better(&grid[i * GRID + k].setting, &grid[number].setting)) {
+            if (is_on_it &&
+                constants_is_better(&grid[i * GRID + k].setting, &grid[number].setting)) {
                 return false;
             }
         }
@@ -209,10 +213,10 @@ static void look_closer(const Search *search, double across_k, double across_c, 
         bool is_moved = false;
         for (int i = -CLOSER; i <= CLOSER; i++) {
             for (int k = -CLOSER; k <= CLOSER; k++) {
-                const Point tried = held_look(
+                const Point tried = constants_look(
                     search, middle.log_stiffness + share * across_k * i / CLOSER,
                     middle.log_damping + share * across_c * k / CLOSER, point->setting.misfit);
-                if (held_is_better(&tried.setting, &point->setting)) {
+                if (constants_is_better(&tried.setting, &point->setting)) {
                     *point = tried;
                     is_moved = true;
                 }
@@ -240,14 +244,14 @@ static void find_constants(const Search *search, double *stiffness, double *damp
     Point *grid = malloc(GRID * GRID * sizeof *grid);
     assert(grid != NULL);
     for (int i = 0; i < GRID * GRID; i++) {
-        grid[i] = held_look(search, log(low) + across_k * (i / GRID),
-                            log(low_c) + across_c * (i % GRID), INFINITY);
+        grid[i] = constants_look(search, log(low) + across_k * (i / GRID),
+                                 log(low_c) + across_c * (i % GRID), INFINITY);
     }
     Point best[STARTS];
     size_t count = 0;
     for (int i = 0; i < GRID * GRID; i++) {
         if (is_local_best(grid, i)) {
-            held_keep(best, &count, &grid[i]);
+            constants_keep(best, &count, &grid[i]);
         }
     }
     free(grid);
@@ -260,13 +264,13 @@ static void find_constants(const Search *search, double *stiffness, double *damp
     }
     size_t chosen = 0;
     for (size_t i = 1; i < count; i++) {
-        chosen = held_is_better(&best[i].setting, &best[chosen].setting) ? i : chosen;
+        chosen = constants_is_better(&best[i].setting, &best[chosen].setting) ? i : chosen;
     }
     *stiffness = exp(best[chosen].log_stiffness);
     *damping = exp(best[chosen].log_damping);
 }
 
-void held_apply(const HeldSetting *setting, Scenario *scenario)
+void constants_apply(const ConstantsSetting *setting, Scenario *scenario)
 {
     ContactOptions *options = &scenario->contact;
     scenario_set_stiffness(scenario, setting->stiffness, 1.0);
@@ -281,8 +285,8 @@ void held_apply(const HeldSetting *setting, Scenario *scenario)
 }
 
 // A pin in a hole that leaves it room, with the constants; for scenario_free.
-static Scenario held_scenario(const MappingContact *contact, double step_s,
-                              const HeldSetting *setting)
+static Scenario constants_scenario(const MappingContact *contact, double step_s,
+                                   const ConstantsSetting *setting)
 {
     const Scenario shared = mapping_scenario(contact, setting->map, step_s);
     Scenario scenario = scenario_copy(&shared);
@@ -292,16 +296,16 @@ static Scenario held_scenario(const MappingContact *contact, double step_s,
                 setting->predicted.penetration_max.most);
     clearance->pin_radius = PIN_PLAYS * room;
     clearance->hole_radius = clearance->pin_radius + room;
-    held_apply(setting, &scenario);
+    constants_apply(setting, &scenario);
     scenario.contact.friction = 0.0;
     scenario.linkage.joints[contact->joint.joint].contact.has_friction = false;
     return scenario;
 }
 
 static ImpactDelivered deliver(const MappingContact *contact, double step_s,
-                               const HeldSetting *setting)
+                               const ConstantsSetting *setting)
 {
-    Scenario scenario = held_scenario(contact, step_s, setting);
+    Scenario scenario = constants_scenario(contact, step_s, setting);
     const ImpactDelivered delivered =
         impact_deliver(&scenario, contact->joint.joint, contact->impact.mass, contact->impact.speed,
                        setting->predicted.duration.most);
@@ -309,14 +313,14 @@ static ImpactDelivered deliver(const MappingContact *contact, double step_s,
     return delivered;
 }
 
-ImpactDelivered held_deliver(const MappingContact *contact, double step_s, OdeMap map,
-                             double stiffness, double damping)
+ImpactDelivered constants_deliver(const MappingContact *contact, double step_s, OdeMap map,
+                                  double stiffness, double damping)
 {
-    const HeldSetting setting = held_setting(contact, step_s, map, stiffness, damping);
+    const ConstantsSetting setting = constants_setting(contact, step_s, map, stiffness, damping);
     return deliver(contact, step_s, &setting);
 }
 
-static HeldSetting search_setting(const MappingContact *contact, double step_s, OdeMap map)
+static ConstantsSetting search_setting(const MappingContact *contact, double step_s, OdeMap map)
 {
     const Search search = {
         .contact = contact,
@@ -327,36 +331,37 @@ static HeldSetting search_setting(const MappingContact *contact, double step_s, 
     double stiffness;
     double damping;
     find_constants(&search, &stiffness, &damping);
-    return held_setting(contact, step_s, map, stiffness, damping);
+    return constants_setting(contact, step_s, map, stiffness, damping);
 }
 
 // With many steps in a contact the corrected map's constants are good at any step, and the
 // textbook's, which adds a damper h k, takes that off.
-static HeldSetting held_find_setting(const MappingContact *contact, double step_s, OdeMap map)
+static ConstantsSetting constants_find_setting(const MappingContact *contact, double step_s,
+                                               OdeMap map)
 {
     const double searched_s = contact->asked.duration / STEPS_ENOUGH;
     if (step_s >= searched_s) {
         return search_setting(contact, step_s, map);
     }
-    const HeldSetting fine = search_setting(contact, searched_s, ODE_MAP_CORRECTED);
+    const ConstantsSetting fine = search_setting(contact, searched_s, ODE_MAP_CORRECTED);
     const double added = map == ODE_MAP_TEXTBOOK ? step_s * fine.stiffness : 0.0;
     return fine.damping > added
-               ? held_setting(contact, step_s, map, fine.stiffness, fine.damping - added)
+               ? constants_setting(contact, step_s, map, fine.stiffness, fine.damping - added)
                : search_setting(contact, step_s, map);
 }
 
-void held_find(const MappingContact *contact, double step_s, Held *held)
+void constants_find(const MappingContact *contact, double step_s, Constants *held)
 {
     const Joint *joint = &contact->scenario.linkage.joints[contact->joint.joint];
-    *held = (Held){
+    *held = (Constants){
         .step_s = step_s,
         .flight = contact->impact.speed * step_s,
         .play = 2.0 * (joint->limits.kind != LIMIT_NONE ? coordinate_play(joint)
                                                         : linkage_radial_clearance(joint)),
     };
-    for (int i = 0; i < HELD_MAP_COUNT; i++) {
-        HeldSetting *setting = &held->settings[i];
-        *setting = held_find_setting(contact, step_s, HELD_MAPS[i]);
+    for (int i = 0; i < CONSTANTS_MAP_COUNT; i++) {
+        ConstantsSetting *setting = &held->settings[i];
+        *setting = constants_find_setting(contact, step_s, CONSTANTS_MAPS[i]);
         setting->delivered = deliver(contact, step_s, setting);
     }
 }

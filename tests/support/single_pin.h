@@ -11,14 +11,14 @@ static const double LONE_PIN_GAP = 1e-5;   // m, to the wall at the start: 20 us
 static const double LONE_PIN_PHASE = 0.05; // rad, the program's default
 
 // F = K d^1.5 (1 + chi d'/v0).
-static inline ForceLaw lone_pin_hertz(double chi)
+static inline ForceLaw single_pin_hertz(double chi)
 {
     ForceLaw law = force_law_power(ONE_IMPACT_HERTZ, 1.5);
     law.hysteresis = chi;
     return law;
 }
 
-static inline Kernel lone_pin(ForceLaw law, double phase)
+static inline Kernel single_pin(ForceLaw law, double phase)
 {
     Kernel kernel = kernel_start(phase);
     const KernelContact joint = {
@@ -35,16 +35,17 @@ static inline Kernel lone_pin(ForceLaw law, double phase)
 }
 
 // The undamped impact's closed forms: depth, m, and duration, s, 2.943275 d / v.
-static inline double lone_pin_depth(void)
+static inline double single_pin_depth(void)
 {
     return pow(5.0 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED * ONE_IMPACT_SPEED /
                    (4.0 * ONE_IMPACT_HERTZ),
                0.4);
 }
 
-static inline double lone_pin_duration(void)
+static inline double single_pin_duration(void)
 {
-    return 2.0 * sqrt(acos(-1.0)) * tgamma(1.4) / tgamma(0.9) * lone_pin_depth() / ONE_IMPACT_SPEED;
+    return 2.0 * sqrt(acos(-1.0)) * tgamma(1.4) / tgamma(0.9) * single_pin_depth() /
+           ONE_IMPACT_SPEED;
 }
 
 enum { LONE_PIN_ROWS = 9 };
@@ -77,7 +78,7 @@ static inline KernelPose pin_pose_at(const Kernel *kernel, size_t joint, size_t 
 }
 
 // The sums at the end of what has run, and a row's speed there.
-static inline PinSums lone_pin_end(const Kernel *kernel)
+static inline PinSums single_pin_end(const Kernel *kernel)
 {
     PinSums sums;
     const size_t last = kernel->node_count - 1;
@@ -85,7 +86,7 @@ static inline PinSums lone_pin_end(const Kernel *kernel)
     return sums;
 }
 
-static inline double lone_pin_speed_after(const Kernel *kernel)
+static inline double single_pin_speed_after(const Kernel *kernel)
 {
-    return ONE_IMPACT_SPEED + lone_pin_end(kernel).impulse[0] / ONE_IMPACT_MASS;
+    return ONE_IMPACT_SPEED + single_pin_end(kernel).impulse[0] / ONE_IMPACT_MASS;
 }

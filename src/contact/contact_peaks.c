@@ -3,7 +3,7 @@
 // They are taken to be largest on the parabola through three steps, of which the first may be the
 // onset. What a step has that overlaps in a part of it alone is no value at its middle, and no
 // point of a parabola.
-#include "contact/tops.h"
+#include "contact/contact_peaks.h"
 
 #include <math.h>
 
@@ -30,41 +30,42 @@ static double top(const double values[3], double before, double after)
                : largest;
 }
 
-void tops_begin(Tops *tops, double force, double since)
+void contact_peaks_begin(ContactPeaks *peaks, double force, double since)
 {
-    tops->has_series = false;
-    tops->since = since;
-    tops->forces[1] = force;
-    tops->depths[1] = 0.0;
+    peaks->has_series = false;
+    peaks->since = since;
+    peaks->forces[1] = force;
+    peaks->depths[1] = 0.0;
 }
 
-void tops_note(Tops *tops, double force, double depth, double ahead)
+void contact_peaks_note(ContactPeaks *peaks, double force, double depth, double ahead)
 {
-    tops->force = force;
-    tops->depth = depth;
-    if (tops->has_series) {
-        const double forces[] = {tops->forces[0], tops->forces[1], force};
-        const double depths[] = {tops->depths[0], tops->depths[1], depth};
-        tops->force = fmax(force, top(forces, tops->since, ahead));
-        tops->depth = fmax(depth, top(depths, tops->since, ahead));
-        tops->since = ahead;
+    peaks->force = force;
+    peaks->depth = depth;
+    if (peaks->has_series) {
+        const double forces[] = {peaks->forces[0], peaks->forces[1], force};
+        const double depths[] = {peaks->depths[0], peaks->depths[1], depth};
+        peaks->force = fmax(force, top(forces, peaks->since, ahead));
+        peaks->depth = fmax(depth, top(depths, peaks->since, ahead));
+        peaks->since = ahead;
     } else {
-        tops->has_series = true;
-        tops->since += ahead;
+        peaks->has_series = true;
+        peaks->since += ahead;
     }
-    tops->forces[0] = tops->forces[1];
-    tops->forces[1] = force;
-    tops->depths[0] = tops->depths[1];
-    tops->depths[1] = depth;
+    peaks->forces[0] = peaks->forces[1];
+    peaks->forces[1] = force;
+    peaks->depths[0] = peaks->depths[1];
+    peaks->depths[1] = depth;
 }
 
-void tops_note_step(Tops *tops, double force, double depth, double share, double step_s)
+void contact_peaks_note_step(ContactPeaks *peaks, double force, double depth, double share,
+                             double step_s)
 {
     if (share < 1.0) {
-        tops->force = force;
-        tops->depth = depth;
-        tops->since += step_s;
+        peaks->force = force;
+        peaks->depth = depth;
+        peaks->since += step_s;
     } else {
-        tops_note(tops, force, depth, tops->has_series ? step_s : 0.0);
+        contact_peaks_note(peaks, force, depth, peaks->has_series ? step_s : 0.0);
     }
 }

@@ -1,0 +1,181 @@
+// What are the responses to pushes, known from the steps before?
+//
+// They are functions of where the bodies are, as long as no bound is passed. Those of three steps
+// t0 > t1 > t2 make a parabola in time through each number, off by
+//     (t - t0) (t - t1) (t - t2) / 6   times its third derivative,
+// with w the speed of turning about 10 (w h)^3. They are found anew every fourth step; that the
+// world responded so is seen from the step under the contacts' forces (world/impulse.c).
+#include "world/response_cache.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    SETS = 3,
+    STEPS_BETWEEN = 4, // from one to the next that is found
+    STEPS_OVER = 12,   // that the three may lie apart
+    SHORTEST_PAUSE = 16,
+    LONGEST_PAUSE = 1024,
+    BODY_NUMBERS = 6,
+};
+
+struct ResponseCache {
+    size_t row_count;
+    size_t body_count;
+    size_t place_count;
+    size_t count; // sets that are kept, the newest first
+    double step;  // s
+    size_t found_at[SETS];
+    double *sets[SETS]; // the columns, then the bodies
+    dBodyID *bodies;
+    bool *is_active; // by place
+    void *memory;    // owned, of all of the above
+};
+
+static size_t set_size(const ResponseCache *cache)
+{
+    return cache->row_count * (cache->row_count + BODY_NUMBERS * cache->body_count);
+}
+
+void response_cache_free(ResponseCache *cache)
+{
+    if (cache != NULL) {
+        free(cache->memory);
+        free(cache);
+    }
+}
+
+// Whether a step is of the places, rows and bodies that are kept.
+static bool is_alike(const ResponseCache *cache, const WorldResponse *response)
+{
+    const Bodies *bodies = &response->world->bodies;
+    if (cache->row_count != response->row_count || cache->body_count != bodies->moving ||
+        cache->place_count != response->place_count || cache->step != response->step) {
+        return false;
+    }
+    for (size_t i = 0; i < bodies->moving; i++) {
+        if (cache->bodies[i] != bodies->records[i].id) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < response->place_count; i++) {
+        if (cache->is_active[i] != response->places[i].is_active) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Whether to find the responses costs no more than the step that makes sure of them.
+static bool is_found_as_soon(const WorldResponse *response)
+{
+    size_t rows = 0;
+    for (size_t i = 0; i < response->place_count; i++) {
+        rows += response->places[i].is_active ? response->places[i].place->row_count : 0;
+    }
+    return response->is_linear && rows < 2;
+}
+
+void response_cache_fill(WorldResponse *response)
+{
+    const ResponseCache *cache = response->world->cache;
+    const size_t now = response->world->stats.steps;
+    if (cache == NULL || is_found_as_soon(response) || cache->count < SETS ||
+        now < response->world->pause.until || now - cache->found_at[0] >= STEPS_BETWEEN ||
+        now - cache->found_at[SETS - 1] > STEPS_OVER || !is_alike(cache, response)) {
+        return;
+    }
+    double shares[SETS];
+    for (int i = 0; i < SETS; i++) {
+        shares[i] = 1.0;
+        for (int k = 0; k < SETS; k++) {
+            if (k != i) {
+                shares[i] *= ((double)now - (double)cache->found_at[k]) /
+                             ((double)cache->found_at[i] - (double)cache->found_at[k]);
+            }
+        }
+    }
+    const size_t columns = cache->row_count * cache->row_count;
+    for (size_t i = 0; i < set_size(cache); i++) {
+        double *number = i < columns ? &response->columns[i] : &response->bodies[i - columns];
+        *number = shares[0] * cache->sets[0][i] + shares[1] * cache->sets[1][i] +
+                  shares[2] * cache->sets[2][i];
+    }
+    for (size_t i = 0; i < response->place_count; i++) {
+        response->places[i].is_known = response->places[i].is_active;
+    }
+    response->is_cached = true;
+}
+
+void response_cache_note(JpWorld *world, bool is_promised)
+{
+    CachePause *pause = &world->pause;
+    if (is_promised) {
+        pause->steps = 0;
+        return;
+    }
+    pause->steps = pause->steps == 0              ? SHORTEST_PAUSE
+                   : pause->steps < LONGEST_PAUSE ? 2 * pause->steps
+                                                  : LONGEST_PAUSE;
+    pause->until = world->stats.steps + pause->steps;
+}
+
+// A cache of no sets, for steps like this one; NULL where there is no memory.
+static ResponseCache *start(const WorldResponse *response)
+{
+    ResponseCache *cache = calloc(1, sizeof *cache);
+    if (cache == NULL) {
+        return NULL;
+    }
+    cache->row_count = response->row_count;
+    cache->body_count = response->world->bodies.moving;
+    cache->place_count = response->place_count;
+    cache->step = response->step;
+    const size_t numbers = SETS * set_size(cache) * sizeof(double);
+    cache->memory = calloc(1, numbers + cache->body_count * sizeof *cache->bodies +
+                                  cache->place_count * sizeof *cache->is_active + 1);
+    if (cache->memory == NULL) {
+        free(cache);
+        return NULL;
+    }
+    for (int i = 0; i < SETS; i++) {
+        cache->sets[i] = (double *)cache->memory + (size_t)i * set_size(cache);
+    }
+    cache->bodies = (dBodyID *)(cache->sets[0] + SETS * set_size(cache));
+    cache->is_active = (bool *)(cache->bodies + cache->body_count);
+    for (size_t i = 0; i < cache->body_count; i++) {
+        cache->bodies[i] = response->world->bodies.records[i].id;
+    }
+    for (size_t i = 0; i < cache->place_count; i++) {
+        cache->is_active[i] = response->places[i].is_active;
+    }
+    return cache;
+}
+
+bool response_cache_keep(const WorldResponse *response)
+{
+    JpWorld *world = response->world;
+    if (world->cache == NULL || !is_alike(world->cache, response)) {
+        response_cache_free(world->cache);
+        world->cache = start(response);
+    }
+    ResponseCache *cache = world->cache;
+    if (cache == NULL) {
+        return false;
+    }
+    const size_t now = world->stats.steps;
+    const bool is_again = cache->count > 0 && cache->found_at[0] == now; // in another round
+    if (!is_again) {
+        double *oldest = cache->sets[SETS - 1];
+        memmove(&cache->sets[1], &cache->sets[0], (SETS - 1) * sizeof *cache->sets);
+        memmove(&cache->found_at[1], &cache->found_at[0], (SETS - 1) * sizeof *cache->found_at);
+        cache->sets[0] = oldest;
+        cache->found_at[0] = now;
+        cache->count += cache->count < SETS ? 1 : 0;
+    }
+    const size_t columns = cache->row_count * cache->row_count;
+    memcpy(cache->sets[0], response->columns, columns * sizeof(double));
+    memcpy(cache->sets[0] + columns, response->bodies,
+           (set_size(cache) - columns) * sizeof(double));
+    return true;
+}
