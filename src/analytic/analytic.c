@@ -1,4 +1,4 @@
-// How does a four-bar or slider-crank with ideal joints move, sample by sample? (A solver.)
+// Moves a four-bar or slider-crank with ideal joints in closed form, sample by sample: a solver.
 //
 // Its steps are the sample intervals, a degree of the crank at most. Play is ignored, so that with
 // play the difference of another solver to this one is the effect of the play plus that solver's

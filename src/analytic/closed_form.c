@@ -1,4 +1,4 @@
-// Which closed form has a case?
+// Chooses the closed form that a case has.
 #include "analytic/closed_form.h"
 
 #include "analytic/fourbar_motion.h"

@@ -1,4 +1,4 @@
-// Where is a curve over the crank's angle lowest and highest?
+// Finds where a curve over the crank's angle is lowest and highest.
 #include "analytic/curve.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-// When is a body fastest if the drive's speed changes?
+// Finds when a body is fastest if the drive's speed changes.
 //
 // Between two kinks of the speed the motion is smooth. It is searched by the angle that the crank
 // would turn at its largest speed, of which the grid (analytic/curve.c) has half a degree.

@@ -1,4 +1,4 @@
-// Where do coupler and follower stand at a crank angle, and how do they move? (Closed form.)
+// Finds where coupler and follower stand at a crank angle and how they move, in closed form.
 //
 // r2 = a (cos t, sin t) crank, r3 from crank pin A to coupler pin P, r4 from follower pivot to P:
 //     D = (g, 0) - r2,  d = |D|

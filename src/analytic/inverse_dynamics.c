@@ -1,4 +1,4 @@
-// Which torque and which joint forces make a linkage move as it does?
+// Finds the torque and the joint forces that make a linkage move as it does.
 //
 //     J^T lambda = M qddot - Q,      J the constraint Jacobian with the driver's row
 // lambda: of a pin the force on body b, of a prismatic joint the force on body b across the line

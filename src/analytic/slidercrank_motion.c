@@ -1,4 +1,4 @@
-// Where do rod and slider stand at a crank angle, and how do they move? (Closed form.)
+// Finds where rod and slider stand at a crank angle and how they move, in closed form.
 //
 // Along the slider's line t and its normal n, with a crank, b rod, e offset, w the crank's speed
 // and p its angle from the line; the rod from crank pin to slider is (c, s):

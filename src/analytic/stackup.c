@@ -1,4 +1,4 @@
-// What is the worst that tolerances and play can do to a four-bar's motion?
+// Finds the worst that tolerances and play can do to a four-bar's motion.
 //
 // All corners are tried: two ends of each tolerated length, five placings of each play (none,
 // either link longer or shorter). The extremes of a turn are monotone in each length over

@@ -1,4 +1,4 @@
-// What does a four-bar or slider-crank do in one turn, and which forces does that take?
+// Sums up what a four-bar or slider-crank does in one turn, with the forces that it takes.
 //
 // The follower's two limits stand where crank a and coupler b lie in one line, |P| = b +- a:
 //     cos(angle of P) = ((b +- a)^2 + g^2 - c^2) / (2 g (b +- a))

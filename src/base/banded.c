@@ -1,4 +1,4 @@
-// How are linear equations solved whose unknowns only meet their neighbours?
+// Solves linear equations whose unknowns only meet their neighbours.
 //
 // By Gaussian elimination with row pivoting. A row that is exchanged has entries up to twice as far
 // behind the diagonal, for which there is room; factors stay where they were worked out, and the

@@ -1,4 +1,4 @@
-// Which files does this command use, and for what?
+// Keeps which files a command uses, and for what.
 //
 // Two paths lead to one file where they are one path without links and dots, or where both are
 // there and have one number on their disk. The number of a file that is gone is given to the next

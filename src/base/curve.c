@@ -1,4 +1,4 @@
-// What does a function do between a few of its values?
+// Puts a curve through a few values of a function.
 //
 // The nodes are the extremes of Chebyshev's polynomial, at which interpolation of a function that
 // is smooth loses a constant factor with each one more; the barycentric formula keeps rounding.

@@ -1,4 +1,4 @@
-// How are the few linear equations of a linkage solved, and how many of them are independent?
+// Solves the few linear equations of a linkage, and says how many of them are independent.
 #include "base/dense.h"
 
 #include <math.h>

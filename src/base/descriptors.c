@@ -1,4 +1,4 @@
-// Whose are the descriptors 0, 1 and 2 where the caller closed them?
+// Takes the descriptors 0, 1 and 2 where the caller closed them.
 //
 // The system gives the lowest free number to whatever is opened next: with standard error closed, a
 // store would become it, and take all messages.

@@ -1,4 +1,4 @@
-// How is an error carried to the one place that prints it?
+// Carries an error to the one place that prints it.
 #include "base/err.h"
 
 #include "base/printable.h"

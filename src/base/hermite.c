@@ -1,4 +1,4 @@
-// Which polynomial has given values and slopes?
+// Finds the polynomial of given values and slopes.
 //
 // Newton's form with every node taken twice, z = (x0, x0, x1, x1, ...):
 //     p(x) = c0 + (x - z0) (c1 + (x - z1) (c2 + ...)),   c_k = f[z0 .. zk]

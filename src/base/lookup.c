@@ -1,3 +1,4 @@
+// Finds an entry by its name in a table that grows.
 #include "base/lookup.h"
 
 #include "base/hash.h"

@@ -1,4 +1,4 @@
-// Where does memory come from, and what happens where there is none?
+// Takes memory, and says so where there is none.
 //
 // The guard is the thread's own, so that worlds in several threads do not meet.
 #include "base/memory.h"

@@ -1,4 +1,4 @@
-// What may be shown as it is?
+// Makes text that may be shown as it is.
 //
 // Escaped are the categories Cc, Cf (but for the signs of Arabic, Syriac and Kaithi that have a
 // picture), Zl and Zp of Unicode 15, and what is no character.

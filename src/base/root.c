@@ -1,4 +1,4 @@
-// Where does a function of one variable cross zero, and where is it smallest?
+// Finds where a function of one variable crosses zero, and where it is smallest.
 //
 // Brent's two methods: interpolation wherever it gets on faster than halving or golden sections
 // would, those otherwise. Both do the operations of the two brent methods of GSL 2.7.1 in their

@@ -1,4 +1,4 @@
-// How does a word come through a shell unharmed?
+// Quotes words for a shell.
 //
 // Single quotes keep all but themselves; a quote is written in double quotes between two such
 // words. What cannot be shown is written as "$(printf '\033')", which every POSIX shell has; only a

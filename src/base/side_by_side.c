@@ -1,4 +1,4 @@
-// How are pieces of work done on several processors at the same time?
+// Does pieces of work on several processors at the same time.
 //
 // Threads ask for the next one, one after the other. No result may depend on who took which.
 #define _GNU_SOURCE // sched_getaffinity

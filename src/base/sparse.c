@@ -1,4 +1,4 @@
-// How is a symmetric positive definite matrix factored whose blocks are mostly zero?
+// Factors a symmetric positive definite matrix whose blocks are mostly zero.
 //
 // Cholesky's elimination, column by column, on the blocks that are not zero. Which blocks those are
 // and which of them a column changes is found once (base/sparse_order.c); each factorisation then

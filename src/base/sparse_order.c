@@ -1,4 +1,4 @@
-// In which order are the nodes of a sparse matrix eliminated?
+// Orders the nodes of a sparse matrix for their elimination.
 //
 // Eliminating a node links all of its neighbours with each other. The next one is always the one
 // with the fewest neighbours (Tinney and Walker's second scheme, minimum degree): chains and trees

@@ -1,4 +1,4 @@
-// How many unknowns of a sparse system are independent?
+// Counts the unknowns of a sparse system that are independent.
 //
 // A = Q R by Givens rotations, equation by equation: each is rotated into the rows of R that begin
 // where it does, until nothing is left of it. R' has the pattern of Cholesky's factor of A' A, but

@@ -1,4 +1,4 @@
-// How are equations solved whose matrix has been factored (base/sparse.c)?
+// Solves equations whose matrix has been factored (base/sparse.c).
 //
 // With L the factor, forward L y = b column by column, and back L' x = y from the last one on.
 #include "base/sparse.h"

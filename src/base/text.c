@@ -1,4 +1,4 @@
-// How is text put together, and which word may have been meant?
+// Puts text together, and finds the word that may have been meant.
 #include "base/text.h"
 
 #include "base/printable.h"

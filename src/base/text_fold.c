@@ -1,4 +1,4 @@
-// Where do the lines of a text break on a page of given width?
+// Breaks the lines of a text on a page of given width.
 #include "base/text.h"
 
 #include <stdbool.h>

@@ -1,4 +1,4 @@
-// Which scenario do the entries of a case make?
+// Makes a scenario of the entries of a case.
 //
 // presence -> values in SI -> checks that need several values -> linkage at its start.
 #include "casefile/assemble.h"

@@ -1,4 +1,4 @@
-// How does a case file become a scenario?
+// Makes a scenario of a case file.
 //
 // text -> tree of nodes -> known keys (overrides in their places) -> scenario.
 #include "casefile/casefile.h"

@@ -1,4 +1,4 @@
-// Do the values of a case fit together?
+// Checks that the values of a case fit together.
 #include "casefile/check.h"
 
 #include "casefile/build.h"

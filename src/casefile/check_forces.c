@@ -1,4 +1,4 @@
-// Do springs, dampers and a torque go with the rest of a case?
+// Checks that springs, dampers and a torque go with the rest of a case.
 #include "casefile/check_forces.h"
 
 static bool check_space(const Entries *entries, const Linkage *linkage, Err *err)

@@ -1,4 +1,4 @@
-// Do the values of a joint with play fit together?
+// Checks that the values of a joint with play fit together.
 #include "casefile/check_joints.h"
 
 #include "casefile/limits.h"

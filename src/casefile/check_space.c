@@ -1,4 +1,4 @@
-// Do a case's values make bodies and pins in space?
+// Checks that a case's values make bodies and pins in space.
 #include "casefile/check_space.h"
 
 #include "model/space.h"

@@ -1,4 +1,4 @@
-// Is this a mechanism, does it close where it starts, and can the crank turn through the run?
+// Checks that a mechanism closes where it starts, and that its crank can turn through the run.
 //
 // In a four-bar with a crank, b coupler, c follower, g ground, coupler and follower meet at the
 // crank angle theta when the diagonal d(theta) from crank pin to follower pivot satisfies

@@ -1,4 +1,4 @@
-// What does the YAML say, and where? The one file that knows libyaml.
+// Reads YAML into a tree of nodes with their places; the one file that knows libyaml.
 //
 // The tree is built from the parser's events and not by libyaml's own loader, because events still
 // show anchors, aliases and tags, which are refused here with their place.

@@ -1,4 +1,4 @@
-// Which keys does the case give, and is each one known, single and without a rival?
+// Finds the keys that a case gives, and checks that each is known, single and without a rival.
 #include "casefile/entries.h"
 
 #include "casefile/keys.h"

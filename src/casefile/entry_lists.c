@@ -1,4 +1,4 @@
-// Where do the entries of a case stand, and how is one found?
+// Keeps the entries of a case so that each is found by its key.
 //
 // Entries stand in one list, in the order in which the case gives them. For each row of the schema
 // a list by member says at which place the member's entry is.

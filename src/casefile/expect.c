@@ -1,4 +1,4 @@
-// Which numbers does a case set limits for?
+// Reads the numbers that a case sets limits for.
 //
 //     path = [backend .] bodies . NAME . number | [backend .] joints . NAME . number
 //          | [backend .] error . number | [backend .] energy . number | [backend .] cost . number

@@ -1,4 +1,4 @@
-// What does a limit mean?
+// Reads what a limit means.
 //
 //     limit = below X | above X | between X and Y | within P % of X | within D of X | equals N
 //

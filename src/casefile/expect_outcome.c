@@ -1,4 +1,4 @@
-// How is a run of a case expected to end?
+// Reads how a run of a case is expected to end.
 //
 //     path    = [backend | scheme .] outcome
 //     scheme  = word { / word }, of those in the names of ODE's schemes: direct/plain/textbook

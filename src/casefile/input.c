@@ -1,4 +1,4 @@
-// Can the file be read, and is it text?
+// Reads a file, and checks that it is text.
 #define _GNU_SOURCE // memfd_create
 #include "casefile/input.h"
 

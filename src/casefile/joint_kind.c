@@ -1,4 +1,4 @@
-// Which kind of joint do the keys of a case make, and do they go together?
+// Finds the kind of joint that the keys of a case make, and checks that they go together.
 #include "casefile/joint_kind.h"
 
 #include "casefile/limits.h"

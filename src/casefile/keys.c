@@ -1,4 +1,4 @@
-// Is each key of a mapping known, and there once?
+// Checks that each key of a mapping is known, and there once.
 #include "casefile/keys.h"
 
 #include "base/text.h"

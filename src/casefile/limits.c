@@ -1,4 +1,4 @@
-// What limits the coordinate of a joint, and which gears mesh?
+// Reads what limits the coordinate of a joint, and which gears mesh.
 //
 // A pivot's coordinate is an angle, that of a slider and of gears a length; a backlash of gears may
 // be given as the angle of the second gear with the first one held, and becomes a length once the

@@ -1,4 +1,4 @@
-// Do the limits of a joint's coordinate go with the rest of the case?
+// Checks that the limits of a joint's coordinate go with the rest of the case.
 #include "casefile/limits.h"
 
 #include "base/zeroed.h"

@@ -1,4 +1,4 @@
-// How does a torque or a speed over time stand in a case?
+// Reads a torque or a speed over time.
 #include "casefile/over_time.h"
 
 #include "casefile/quantity.h"

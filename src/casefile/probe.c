@@ -1,4 +1,4 @@
-// What would a case make of a key or a value that another file has for it?
+// Holds a key or a value of another file against a case.
 //
 // The key is taken as an override of the case, and the value is stored into a scratch
 // scenario: so the words of a mistake are those of a mistake in the case itself.

@@ -1,4 +1,4 @@
-// What number does a piece of text stand for?
+// Reads a number with its unit.
 //
 //     number     = [+-] digits [. digits] [e [+-] digits]
 //     quantity   = number unit

@@ -1,4 +1,4 @@
-// Does a case file that is refused expect to be?
+// Checks whether a case file that is refused expects to be.
 #include "casefile/casefile.h"
 #include "casefile/expect_outcome.h"
 #include "casefile/input.h"

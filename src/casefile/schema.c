@@ -1,4 +1,4 @@
-// Which row does a key belong to, and where in the scenario does its value go?
+// Finds the row of a key, and the field of the scenario that its value goes to.
 #include "casefile/schema.h"
 
 #include <assert.h>

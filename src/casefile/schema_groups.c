@@ -1,4 +1,4 @@
-// What is each group of keys for?
+// Says what each group of keys is for.
 #include "casefile/schema.h"
 
 // clang-format off

@@ -1,4 +1,4 @@
-// Which keys of a case matter to a scenario?
+// Says which keys of a case matter to a scenario.
 #include "casefile/schema_needs.h"
 
 #include "casefile/build.h"

@@ -1,5 +1,5 @@
-// What may a case file say? Every key, with its unit, range and meaning. Defaults stand in
-// model/options.c and model/scenario.c; here only what a number cannot say about them.
+// Has every key of a case file, with its unit, range and meaning. Defaults stand in model/options.c
+// and model/scenario.c; here only what a number cannot say about them.
 #include "casefile/schema_needs.h"
 #include "contact/facets.h"
 

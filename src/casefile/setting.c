@@ -1,4 +1,4 @@
-// Which settings does a scenario hold, as a case file would name them?
+// Walks over the settings of a scenario, as a case file would name them.
 #include "casefile/casefile.h"
 #include "casefile/schema.h"
 #include "casefile/slider.h"

@@ -1,4 +1,4 @@
-// How do the lengths of a slider-crank become a linkage that moves at time zero?
+// Makes a linkage that moves at time zero of the lengths of a slider-crank.
 //
 // Frames: origin at mid-link, which is the centre of mass; x along the link from its first joint to
 // its second. Crank: ground pivot to crank pin. Rod: crank pin to slider. The slider's frame is at

@@ -1,4 +1,4 @@
-// Where in the text does a message point, and how is that shown?
+// Finds the place in a text that a message points at, and shows it.
 //
 //     cases/x.yaml:7:46: the pin (10.02 mm) must be smaller than the hole (10.015 mm)
 //         crank-coupler: {hole: 10.015 mm, pin: 10.02 mm, width: 13 mm}

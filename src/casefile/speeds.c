@@ -1,4 +1,4 @@
-// With which speeds do the bodies of a linkage in the plane start?
+// Gives the bodies of a linkage in the plane the speeds that they start with.
 #include "casefile/speeds.h"
 
 #include "base/zeroed.h"

@@ -1,4 +1,4 @@
-// What does a value mean, and is it in its range?
+// Stores the values of a case, each if it is in its range.
 #include "casefile/store.h"
 
 #include "casefile/expect.h"

@@ -1,4 +1,4 @@
-// What does a value of a case say, and is it in the range of its key?
+// Reads one value of a case, and checks that it is in the range of its key.
 #include "casefile/target.h"
 
 #include "base/printable.h"

@@ -1,4 +1,4 @@
-// Which units does a case file know, and what is each in SI?
+// Has the units that a case file knows, with their sizes in SI.
 #include "casefile/units.h"
 
 #include <math.h>

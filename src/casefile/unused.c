@@ -1,4 +1,4 @@
-// Does a case give a key that nothing in it makes use of because another was forgotten?
+// Finds keys of a case that nothing in it makes use of because another was forgotten.
 #include "casefile/unused.h"
 
 #include "base/zeroed.h"

@@ -1,4 +1,4 @@
-// What was asked for on the command line?
+// Reads the words of a command line by a table of options.
 //
 // argp only parses here: it neither prints nor exits, so that main alone does.
 #include "cli/arguments.h"

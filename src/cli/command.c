@@ -1,4 +1,4 @@
-// Which command is meant, and which are there?
+// Finds a command by its name, and lists them.
 #include "cli/command.h"
 
 #include "base/text.h"

@@ -1,4 +1,4 @@
-// What do the options mean that several commands share?
+// Carries out the options that several commands share.
 #include "cli/common_options.h"
 
 #include "casefile/casefile.h"

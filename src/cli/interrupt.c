@@ -1,4 +1,4 @@
-// Was the program asked to stop?
+// Notes that the program was asked to stop.
 #include "cli/interrupt.h"
 
 #include <signal.h>

@@ -1,4 +1,4 @@
-// How long will this take?
+// Says how long work will take.
 //
 // A step of ODE costs the same all the way but for contacts, which are most frequent at the start:
 // a first part of the run, timed, gives the whole within a factor of two.

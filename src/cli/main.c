@@ -1,6 +1,4 @@
-// What was asked for, and how did it end?
-//
-// The only place that prints errors and ends the program.
+// Runs the command that was asked for: the only place that prints errors and ends the program.
 #include "base/descriptors.h"
 #include "cli/arguments.h"
 #include "cli/output.h"

@@ -1,4 +1,4 @@
-// Which option was meant by one that does not exist?
+// Finds the option that was meant by one that does not exist.
 //
 // A key of the case is often given as if it were an option: by its last part, or whole. An exact
 // key goes before an option that is only like it, and that before a key that is.

@@ -1,4 +1,4 @@
-// What do the values of a command line's options mean?
+// Reads the values of a command line's options.
 #include "cli/option_values.h"
 
 #include "casefile/quantity.h"

@@ -1,4 +1,4 @@
-// How is output laid out, and was all of it written?
+// Lays out output, and makes sure that all of it was written.
 #include "cli/output.h"
 
 #include "base/printable.h"

@@ -1,4 +1,4 @@
-// How far has a long run come?
+// Shows how far a long run has come.
 #include "cli/progress.h"
 
 #include "cli/long_work.h"

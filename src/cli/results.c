@@ -1,4 +1,4 @@
-// How does a command print and write its results?
+// Prints and writes the results of a command.
 //
 // Every file is claimed before the work, so that one that cannot be written fails at once.
 #include "cli/results.h"

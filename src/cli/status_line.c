@@ -1,4 +1,4 @@
-// When and how is a line of progress shown?
+// Shows a line of progress when one is due.
 #include "cli/status_line.h"
 
 #include "base/clock.h"

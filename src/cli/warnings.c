@@ -1,4 +1,4 @@
-// What in a case is unlikely to be meant, and which of its keys change nothing?
+// Warns of what in a case is unlikely to be meant, and of keys that change nothing.
 //
 // A joint at the end of a uniform bar is sqrt(3) = 1.73 radii of gyration, sqrt(inertia / mass),
 // from its centre of mass. One that is a hundred times as far has a position or an inertia in

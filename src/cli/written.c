@@ -1,4 +1,4 @@
-// How are files written, and reported?
+// Writes files and reports them.
 #include "cli/written.h"
 
 #include "base/text.h"

@@ -1,4 +1,4 @@
-// How large are force and depth of a contact between the steps that know them?
+// Finds the largest force and depth of a contact between the steps that know them.
 //
 // They are taken to be largest on the parabola through three steps, of which the first may be the
 // onset. What a step has that overlaps in a part of it alone is no value at its middle, and no

@@ -1,4 +1,4 @@
-// Into how many flat sides must a round hole be divided, and what is then wrong?
+// Says how many flat sides stand for a round hole, and what is then wrong.
 //
 // Hole of radius R, pin of radius r, play c = R - r, eccentricity e, N sides. A side at distance a
 // from the centre, its normal n at an angle t to e, overlaps the pin by

@@ -1,4 +1,5 @@
-// What do impacts on ODE's contact row give, wherever the steps fall, and is the step short enough?
+// Finds what impacts give on ODE's contact row, wherever the steps fall, and the step that will
+// do.
 //
 // A step is searched from two steps a contact down to ten thousand, in ratios of 2^(1/4): the
 // longest from which on every step tried over a factor of two is valid, and from there by bisection

@@ -1,4 +1,4 @@
-// Which force law do a pin, its hole, their material and the case's options make?
+// Makes the force law of a pin, its hole, their material and the case's options.
 #include "contact/law.h"
 
 #include "contact/damping.h"

@@ -1,4 +1,4 @@
-// Which force law does a joint of a case have?
+// Makes the force law of a joint of a case.
 #include "contact/law.h"
 
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint)

@@ -1,4 +1,4 @@
-// How stiff is a pin in its hole if both are taken as cylinders?
+// Has the stiffness of a pin in its hole, both taken as cylinders.
 //
 // Each of the four laws has the form d = A F (B - ln F), F in N:
 //   Johnson     d = F / (pi L E*) [ln(4 pi L E* dR / F) - 1]

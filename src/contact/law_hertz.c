@@ -1,4 +1,4 @@
-// How stiff is a pin in its hole if both are taken as spheres?
+// Has the stiffness of a pin in its hole, both taken as spheres.
 //
 // F = K d^1.5,  K = 4 / (3 pi (s1 + s2)) sqrt(R1 R2 / (R1 - R2)),  s = (1 - nu^2) / (pi E)
 // which is K = 4/3 E* sqrt(R) with E* = 1 / (pi (s1 + s2)) = E / (2 (1 - nu^2)).

@@ -1,4 +1,4 @@
-// How stiff is a pin in its hole by the numbers of the paper's Tables II and III?
+// Has the stiffness of a pin in its hole by the numbers of the paper's Tables II and III.
 //
 // Table II    F = k d, k = 2 a E*, a = 0.1 mm sqrt(F_ref / N): linear, at a reference force
 // Table III   d = 3/4 (F / (E* sqrt(R)))^(2/3), R = 5 mm, hence F = E* sqrt(R) (4 d / 3)^1.5

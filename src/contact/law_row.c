@@ -1,4 +1,4 @@
-// Which ERP and CFM are a contact's in a step?
+// Makes ERP and CFM of a contact in a step.
 //
 // k = F(d) / d, c = D(d, v0) - c_v (1 - share): in a step in which the contact begins or ends its
 // constant damper c_v acts for a part (contact/overlap.h). A map is stable below its limit of

@@ -1,4 +1,4 @@
-// What does one impact give on ODE's contact row, and what on the law that the row stands for?
+// Steps one impact on ODE's contact row, and on the law that the row stands for.
 //
 // ODE's row, F >= 0      F = ((ERP / h) d + d') / (CFM + h / m)
 // then                   d'_new = d' - h F / m, d_new = d + h d'_new

@@ -1,4 +1,4 @@
-// How fast did bodies come to touch that overlap for the first time?
+// Finds how fast bodies came to touch that overlap for the first time.
 //
 // With gaps g0, g1 of the two steps before and g now, v = (g0 - g) / h is the mean speed of the
 // last step and stands in its middle, a = v - (g1 - g0) / h its change in a step; the crossing is d

@@ -1,4 +1,4 @@
-// Which force does a contact have on the mean of a step in which it begins or ends?
+// Finds the mean force of a contact in the step in which it begins or ends.
 //
 // Where positions stand at mid-step the force there is not the mean of such a step: at a way v t
 // into the wall the mean of a step of h in which the contact overlaps for T is W(v T) / (v h), W

@@ -1,4 +1,4 @@
-// What penalty parameter does the paper's method give at a driver's speed?
+// Estimates the penalty parameter by the paper's method at a driver's speed.
 //
 // E* = E / (2 (1 - nu^2))                      effective modulus, Pa
 // F = kappa max|alpha| (rpm / 1000)^2          tangential force on the pin, N (Table I)

@@ -1,4 +1,4 @@
-// Which places does a pin in space press on, with which law, and where is it there?
+// Finds the places that a pin in space presses on, their laws, and where it is there.
 #include "contact/pin_space.h"
 
 #include "base/zeroed.h"

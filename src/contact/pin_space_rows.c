@@ -1,4 +1,4 @@
-// How does a pin in space move in the rows of its place?
+// Moves a pin in space in the rows of its place.
 //
 // With the pin's axis a, its middle M, the end's centre O, B = M - O and P = M - (B . a) a:
 //     e = P - O = B - (B . a) a,      e' . n = (v_b(P) - v_a(O)) . n  for n across a

@@ -1,4 +1,4 @@
-// How does the gap at a stop of a hinge in space open?
+// Finds how the gap at a stop of a hinge in space opens.
 //
 // With u the axis, fixed in body a, with the sign of the angle and of the stop:
 //     gap' = u . (omega_b - omega_a)

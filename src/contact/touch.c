@@ -1,4 +1,4 @@
-// Where do the bodies of a joint touch, and how deep?
+// Finds where the bodies of a joint touch, and how deep.
 #include "contact/touch.h"
 
 #include "base/zeroed.h"

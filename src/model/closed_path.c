@@ -1,4 +1,4 @@
-// Which positions can a linkage with ideal joints take, one after the other?
+// Moves a linkage with ideal joints along the positions that it can take.
 //
 //     Phi(q) = 0 for every joint, q = (x / L, y / L, phi) per body, L the size of the linkage;
 //     rows that are lengths are divided by L, those that are angles are not

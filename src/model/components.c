@@ -1,4 +1,4 @@
-// Which mechanisms of a linkage share nothing but the ground?
+// Divides a linkage into mechanisms that share nothing but the ground.
 //
 // Those whose bodies no joint and no spring connects, not by way of the driven body either.
 #include "model/components.h"

@@ -1,4 +1,4 @@
-// Where does the coordinate of a joint stand that flanks or stops limit?
+// Finds where the coordinate of a joint stands that flanks or stops limit.
 //
 //     revolute     q = phi_b - phi_a                          (the other sign where b is the
 //     ground) prismatic    q = t . d gears        q = -(r_a (phi_a - phi_c) + r_b (phi_b - phi_c))

@@ -1,4 +1,5 @@
-// How far are two motions of one linkage apart, in numbers that mean the same for all rates?
+// Measures how far two motions of one linkage are apart, in numbers that mean the same for all
+// rates.
 //
 //     d = max over rates |r - r_ref| / max(max over t |r_ref|, f)
 //     f = 1e-6 V of a velocity, 1e-6 V / reach of an angular rate

@@ -1,4 +1,4 @@
-// At which angle, and how fast, does the driven body turn?
+// Finds the angle and the speed of the driven body.
 //
 //     omega = w_i + alpha_i (t - t_i),  angle = start + the integral of omega from time zero
 #include "model/drive.h"

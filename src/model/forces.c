@@ -1,4 +1,4 @@
-// Which forces do springs, dampers and the torque of a drive put on the bodies?
+// Finds the forces that springs, dampers and the torque of a drive put on the bodies.
 //
 // Between points p_a and p_b, d = p_b - p_a, n = d / |d|:
 //     tension  T = k (|d| - l) + c d|d|/dt,   force T n on body a, -T n on body b

@@ -1,4 +1,4 @@
-// Which way can a four-bar turn, and where is it stuck?
+// Finds which way a four-bar can turn, and where it is stuck.
 //
 // Grashof: with s the shortest and l the longest of the four lengths, p and q the others, some link
 // turns fully if and only if s + l < p + q; which one depends on which link is the shortest.

@@ -1,4 +1,4 @@
-// Which bodies follow from which?
+// Finds which bodies follow from which.
 //
 // n bodies with j joints on one another and on bodies that are determined have 3n unknowns and 2j
 // equations: the smallest sets with 3n = 2j are groups (2 bodies with 3 joints: a dyad, 4 with 6).

@@ -1,4 +1,4 @@
-// How long does the motion stay near its neighbours?
+// Measures how long the motion stays near its neighbours.
 //
 // f runs start beside the motion, along directions w_1 ... w_f that are orthonormal in
 //     |w|^2 = sum over the measure's rates (w_rate / scale)^2

@@ -1,4 +1,4 @@
-// How do mechanisms that share nothing but the ground move side by side?
+// Steps mechanisms side by side that share nothing but the ground.
 //
 // Each by itself, in steps of its own: an event of one ends no step of another, and nothing is
 // evaluated for all of them together. One after the other is stepped to the time that is asked for

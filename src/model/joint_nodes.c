@@ -1,4 +1,4 @@
-// Which joints share a body?
+// Finds the joints that share a body.
 #include "model/joint_nodes.h"
 
 #include "base/zeroed.h"

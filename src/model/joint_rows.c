@@ -1,4 +1,4 @@
-// How are two bodies held in a joint?
+// Makes the rows by which two bodies are held in a joint.
 //
 // d from anchor a to anchor b, t the line's direction on body a, n = perp t; rows, their rates, and
 // the rates' own rates without accelerations:

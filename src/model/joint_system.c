@@ -1,4 +1,4 @@
-// Which change of a linkage's positions or speeds do its joints and its drive ask for?
+// Finds the change of a linkage's positions or speeds that its joints and its drive ask for.
 //
 //     min du' M du  with  J du = r    gives    du = M^-1 J' (J M^-1 J')^-1 r
 // Columns are taken over the root of their mass and rows to length one, so that the products have

@@ -1,4 +1,4 @@
-// Where are the bodies of a linkage with ideal joints, and how fast do they move?
+// Finds where the bodies of a linkage with ideal joints are, and how fast they move.
 //
 // For a joint between bodies a and b with anchors s_a, s_b (body frames), R(phi) the rotation:
 //     Phi = r_b + R(phi_b) s_b - r_a - R(phi_a) s_a = 0          two rows a joint

@@ -1,4 +1,4 @@
-// Which bodies are joined where?
+// Has the bodies of a linkage and the joints between them.
 #include "model/linkage.h"
 
 #include <stdio.h>

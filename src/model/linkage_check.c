@@ -1,4 +1,4 @@
-// Is what a linkage is made of a linkage at all?
+// Checks that what a linkage is made of is a linkage.
 #include "model/coordinate.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-// Who owns the arrays of a linkage?
+// Makes, copies and frees the arrays of a linkage.
 //
 // One block for each kind of member, as long as the linkage was made for. Members are plain data:
 // a copy of a linkage is a copy of its blocks.

@@ -1,4 +1,4 @@
-// How far can the drive turn a linkage before its loops can no longer be closed?
+// Finds how far the drive can turn a linkage before its loops can no longer be closed.
 //
 // The positions that the ideal joints allow make a path. Along it the crank turns on, until it has
 // to turn back: there the rate of its angle by arc length passes zero, the loops can be closed at

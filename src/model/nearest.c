@@ -1,4 +1,5 @@
-// Which positions and speeds of a linkage's bodies are nearest to given ones and keep its joints?
+// Finds the positions and speeds of a linkage's bodies that are nearest to given ones and keep its
+// joints.
 //
 // With J the rows of the joints and the drive, M the masses and inertias, r what is missing,
 //     min du' M du  with  J du = r    gives    du = M^-1 J' (J M^-1 J')^-1 r,

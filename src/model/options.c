@@ -1,4 +1,4 @@
-// What does the program do when nothing is said? Every default, and why it is that number.
+// Has every default of the program, and why it is that number.
 #include "model/options.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-// Which start lies beside a start, and at what distance?
+// Makes a start that lies beside another, at a distance.
 //
 // Each body draws a change of its velocity and its omega, each of the size of the body's own
 // largest; the nearest change w that ideal joints and driver allow (in the norm w' M w of kinetic

@@ -1,4 +1,4 @@
-// How far did each signal go, stretch by stretch?
+// Keeps how far each signal went, stretch by stretch.
 #include "model/ranges.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-// By how much does a push in a joint with play move the bodies?
+// Finds by how much a push in a joint with play moves the bodies.
 //
 // Rows: relative velocity in each joint, u = J v. With M the masses and inertias
 //     D = J M^-1 J',  D = [ D_ii D_ic ; D_ci D_cc ]      i ideal joints, c joints with play

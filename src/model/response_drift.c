@@ -1,4 +1,4 @@
-// How does what a push in a joint with play does change as the bodies move?
+// Finds how what a push in a joint with play does changes as the bodies move.
 //
 // All rows J, those of the ideal joints and of play; an impulse of 1 in each row of play brings the
 // impulses Y in all rows (model/response.c) and the speeds A = M^-1 J' Y. With J. the rate of the

@@ -1,4 +1,4 @@
-// What do impulses in a few joints with play do to the few bodies that they move?
+// Finds what impulses in a few joints with play do to the few bodies that they move.
 //
 // As model/response.h has it for all joints. Ideal joints of different groups share no body that
 // can give way: their columns of the factor have nothing in common.

@@ -1,4 +1,4 @@
-// What is the response of a linkage worked out from?
+// Prepares what the response of a linkage is worked out from.
 #include "model/response.h"
 
 #include "base/zeroed.h"

@@ -1,4 +1,4 @@
-// Which blocks of a linkage's D = J M^-1 J' are not zero?
+// Finds which blocks of a linkage's D = J M^-1 J' are not zero.
 #include "model/response_matrix.h"
 
 #include "base/zeroed.h"

@@ -1,4 +1,4 @@
-// Which speeds are large and which are rounding, in a scenario that may start at rest?
+// Finds which speeds are large and which are rounding, in a scenario that may start at rest.
 //
 //     V = max(|v| + |w| reach at the start, |w_drive| span, min(sqrt(2 g reach), g T), sqrt(2 E /
 //     m)) A = max(V max |w|, g),   of a body  turning = V / reach,  speeding = A / reach

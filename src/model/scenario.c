@@ -1,4 +1,4 @@
-// What is to be run, for how long, and how often is it looked at?
+// Has what is to be run, for how long, and how often it is looked at.
 #include "model/scenario.h"
 
 #include "base/zeroed.h"

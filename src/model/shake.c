@@ -1,4 +1,4 @@
-// How does a scenario look whose every number has been rounded once more?
+// Rounds every number of a scenario once more.
 //
 // Each number x becomes x - ulp, x or x + ulp with equal chance. Where a length stands twice in a
 // scenario, as that of a link does in the four-bar and in its anchors, the two are moved apart: by

@@ -1,4 +1,4 @@
-// How far can the crank of a slider-crank turn?
+// Finds how far the crank of a slider-crank can turn.
 //
 // a crank, b rod, e offset, p the crank's angle from the line: the loop closes while
 //     |e - a sin p| <= b

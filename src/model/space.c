@@ -1,4 +1,4 @@
-// How does what the plane says of a linkage stand in space?
+// Puts into space what the plane says of a linkage.
 #include "model/space.h"
 
 #include "base/zeroed.h"

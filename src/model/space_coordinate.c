@@ -1,4 +1,4 @@
-// How far has a hinge in space turned about its axis?
+// Finds how far a hinge in space has turned about its axis.
 //
 // With u the axis on body a and s_a, s_b a direction at right angles to it that both bodies carry
 // and that is one at time zero:

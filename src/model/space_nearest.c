@@ -1,4 +1,4 @@
-// Which speeds in space are nearest to given ones?
+// Finds the speeds in space that are nearest to given ones.
 //
 // With J the independent rows of the joints, M the masses and inertias of the bodies that can move
 // and r = J v the rates at which the joints open: v' = v - M^-1 J' D^-1 r, D = J M^-1 J'.

@@ -1,4 +1,4 @@
-// By how much does a push in a joint with play move the bodies in space?
+// Finds by how much a push in a joint with play moves the bodies in space.
 //
 // The equations are those of model/response.c; rows are combinations of velocities and angular
 // velocities in the world's frame (model/space_rows.h), and M holds masses and the inertias as they

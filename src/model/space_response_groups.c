@@ -1,4 +1,4 @@
-// What do impulses in a few joints with play in space do to the few bodies that they move?
+// Finds what impulses in a few joints with play in space do to the few bodies that they move.
 #include "model/space_response_groups.h"
 
 #include <string.h>

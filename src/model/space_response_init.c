@@ -1,5 +1,4 @@
-// What is the response of a linkage in space worked out from? (model/space_response.c: what it is
-// used for.)
+// Prepares what the response of a linkage in space is worked out from (model/space_response.c).
 //
 // The rows of ideal joints may be chosen anew: D is then made anew.
 #include "model/space_response.h"

@@ -1,5 +1,5 @@
-// How do the rows of a linkage in space move as its bodies do? (model/space_response.c: what acts
-// in them.)
+// Moves the rows of a linkage in space as its bodies move (model/space_response.c: what acts in
+// them).
 //
 // Accelerations of a row r = n . (v_b(B) - v_a(A)) along a direction of the world
 //     r' = n . (a_b + alpha_b x B + omega_b x (omega_b x B) - likewise of a)

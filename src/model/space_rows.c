@@ -1,4 +1,4 @@
-// Which rows hold a joint in space, and which of them are independent?
+// Makes the rows that hold a joint in space, and chooses those that are independent.
 #include "model/space_rows.h"
 
 #include "base/sparse_rank.h"

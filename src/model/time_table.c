@@ -1,4 +1,4 @@
-// What is a quantity that is given by points over time?
+// Evaluates a quantity that is given by points over time.
 //
 //     f(t) = f_i + (f_i+1 - f_i) (t - t_i) / (t_i+1 - t_i)     t_i <= t < t_i+1
 //     f(t + T) = f(t)                                          with a period T

@@ -1,4 +1,4 @@
-// Where is what a run found kept?
+// Keeps what a run found.
 #include "model/trajectory.h"
 
 #include "base/zeroed.h"

@@ -1,4 +1,4 @@
-// How large are accelerations, forces and the drive's torque without any play?
+// Finds how large accelerations, forces and the drive's torque are without any play.
 //
 // The linkage is closed at angles of the crank a degree apart, and the forces follow from the
 // equations of motion (analytic/inverse_dynamics.c). Between two of the angles a curve with a swing

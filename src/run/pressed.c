@@ -1,4 +1,4 @@
-// Where does each pin lie if the joints' forces are those of ideal joints?
+// Puts each pin where the reaction of an ideal joint would hold it.
 //
 // With R the reaction on body b of the ideal joint at time zero, the wall presses the pin along R,
 // so it lies on the far side: eccentricity e = -c R / |R|, c the radial clearance. A block lies on

@@ -1,4 +1,4 @@
-// Backlash and stops on the coordinate of a hinge or slider: how are they made, driven and read?
+// Makes, drives and reads backlash and stops on the coordinate of a hinge or slider.
 #include "world/contact.h"
 #include "world/play.h"
 #include "world/pressing_row.h"

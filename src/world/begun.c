@@ -1,4 +1,4 @@
-// How did a contact begin that is under way when its joint is made?
+// Says how a contact began that is under way when its joint is made.
 #include "world/play.h"
 
 #include <math.h>

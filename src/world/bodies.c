@@ -1,4 +1,4 @@
-// Which bodies does a step move, and where were they?
+// Lists the bodies that a step moves, and where they were.
 //
 // ODE has no list of a world's bodies. A step moves all of them, so that one that is to be undone
 // has to know them: those that hang together with ours by joints are found along these; the others

@@ -1,4 +1,4 @@
-// Which speeds belong to the end of a step?
+// Finds the speeds that belong to the end of a step.
 //
 // Those that ODE finds at mid-step, J v' = -(e/h) Phi, leave joints that are open by Phi = h^2 c /
 // 2e (world/opening.c) opening by the rate of that, h^2 c' / 2e: much, while a contact turns speeds

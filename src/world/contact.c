@@ -1,4 +1,4 @@
-// Which force law does a caller's contact stand for?
+// Makes the force law that a caller's contact stands for.
 #include "world/contact.h"
 
 #include "contact/damping.h"

@@ -1,4 +1,4 @@
-// Where is a hinge or slider, how fast, and how is it pushed?
+// Reads where a hinge or slider is and how fast, and pushes it.
 //
 // An angle is that of the turn of the first body seen from the second, about the axis: 2 atan2 of
 // its quaternion's part along the axis and its real part. ODE's own getter takes the length of the

@@ -1,4 +1,4 @@
-// How do two bodies move in a direction, and how are they pushed in it?
+// Reads how two bodies move in a direction, and pushes them in it.
 //
 // The rate is a . (v1 + omega1 x r1 - v2 - omega2 x r2), or a . (omega1 - omega2) of a turn, r the
 // arms as they were when the direction was made.

@@ -1,4 +1,4 @@
-// What happens where ODE finds its own numbers wrong?
+// Turns what ODE finds wrong in its own numbers into a status.
 //
 // ODE's handlers are the process's, worlds may be stepped in several threads, and which step is to
 // be left is a matter of the thread. Handlers change under a lock, when worlds come and go.

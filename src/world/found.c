@@ -1,4 +1,4 @@
-// What does a step change, and how is all of it undone?
+// Keeps what a step changes, and undoes all of it.
 //
 // Bodies, the joints with play, the settings of ODE that single steps within it set aside, and what
 // is remembered from step to step, which is forgotten. What ODE alone keeps, such as the time after

@@ -1,4 +1,4 @@
-// Which bodies does a caller's space hold, and what do they make contacts of?
+// Finds the bodies of a caller's space, and makes the contacts of its geoms.
 #include "world/geoms.h"
 
 #include <string.h>

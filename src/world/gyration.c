@@ -1,4 +1,4 @@
-// Which torque keeps the angular momentum of a turning body through a step?
+// Finds the torque that keeps the angular momentum of a turning body through a step.
 //
 // With I at mid-step, o and n the angular velocities at start and end, the angular momenta in the
 // world's frame are

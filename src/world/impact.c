@@ -1,4 +1,5 @@
-// What does an impact give, by the contact's own law and on ODE's rows, and which step is right?
+// Finds what an impact gives, by the contact's own law and on ODE's rows, and the step that will
+// do.
 #include "contact/impact_figures.h"
 #include "world/contact.h"
 #include "world/mapping.h"

@@ -1,4 +1,4 @@
-// How does a world step whose contacts are shorter than the step?
+// Steps a world whose contacts are shorter than the step.
 //
 // A world that is not at a bound responses linearly to pushes in the places at which its joints
 // with play touch. Rows J of these are frozen at mid-step: of a hinge or slider its coordinate, of

@@ -1,4 +1,4 @@
-// What do the contacts of joints with play do within a step of the world?
+// Integrates the contacts of joints with play within a step of the world.
 //
 // An active place is one joint of a kernel (kernel/kernel.h), or two: each side of a line
 // meets a line of its own, whose gap is s (q - limit), s the side's sign, so that what acts in it

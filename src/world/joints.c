@@ -1,4 +1,4 @@
-// Where are the places of all joints with play in a step?
+// Finds where the places of all joints with play are in a step.
 #include "world/joints.h"
 
 #include "world/pin.h"

@@ -1,4 +1,4 @@
-// Which bodies does a world of ODE have?
+// Lists the bodies of a world of ODE.
 //
 // ODE tells their number (world/bodies.h) and no more; it chains them, the newest first, by a
 // pointer in each to the next. Where that stands in a body is found out, by three bodies made for

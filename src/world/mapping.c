@@ -1,4 +1,4 @@
-// Which ERP and CFM are a contact at an instant, and which spring and damper are an ERP and a CFM?
+// Makes ERP and CFM of a contact at an instant, and spring and damper of an ERP and a CFM.
 #include "world/mapping.h"
 
 #include "contact/law_row.h"

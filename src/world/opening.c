@@ -1,4 +1,4 @@
-// How far are ODE's joints open in a staggered step, and what does that move?
+// Finds how far ODE's joints are open in a staggered step, and what that moves.
 //
 // Rows J v' = -(e / h) Phi, e the ERP, hold joints that are open by Phi at mid-step. With c the
 // centripetal acceleration of a joint's arms, speeds that belong to the step's end, J' v' = 0 with

@@ -1,4 +1,4 @@
-// Where is a pin in its hole, and in which directions can it touch?
+// Finds where a pin is in its hole, and in which directions it can touch.
 //
 // As contact/pin_space.h has it: with O the centre of the hole, or of one of its ends, a the pin's
 // axis, M its middle and B = M - O,

@@ -1,4 +1,4 @@
-// When does a place touch where nothing presses?
+// Finds when a place touches where nothing presses.
 //
 // A line is at gap + v t + a t^2 / 2 from a side, in closed form. A pin's axis is at most |e| + |v|
 // t + |a| t^2 / 2 off the hole's centre: it may be called near where it is not, which costs trials.

@@ -1,4 +1,4 @@
-// How do joints with play come and go, and how is one of their sides read?
+// Makes joints with play, takes them away, and reads their sides.
 #include "world/play.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-// How does ODE get a row that presses and never pulls?
+// Makes a row of ODE that presses and never pulls.
 //
 // An angle: an angular motor of one axis at its low stop. Its angle is set to -1, so that the row's
 // speed is dParamStopERP / h.

@@ -1,4 +1,4 @@
-// What does a caller of the library learn who called it wrongly?
+// Tells a caller of the library what was wrong with a call.
 #include "world/refusal.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-// What are the responses to pushes, known from the steps before?
+// Gives responses to pushes that are known from the steps before.
 //
 // They are functions of where the bodies are, as long as no bound is passed. Those of three steps
 // t0 > t1 > t2 make a parabola in time through each number, off by

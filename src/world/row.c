@@ -1,4 +1,4 @@
-// What is the row of a side, for an angle and for a way?
+// Makes the row of a side, for an angle and for a way.
 //
 // An angle has a row of its own (world/pressing_row.c).
 // A way: a contact at a depth of 0 whose dContactMotionN is the row's speed. A world may limit that

@@ -1,4 +1,4 @@
-// Does a side touch, since which speed, and what did it do?
+// Keeps whether a side touches, since which speed, and what it did.
 //
 // In a step in which a contact begins or ends its row gets the mean force of the part that overlaps
 // (contact/overlap.c).

@@ -1,4 +1,4 @@
-// How is a world stepped in which coordinates have play?
+// Steps a world in which coordinates have play.
 //
 // Plain, from t = n h: sides that overlap get a row of map midpoint, and ODE steps; that is right
 // as far as the velocities are those half a step before the positions. Staggered: bodies move by

@@ -1,4 +1,4 @@
-// Who does the work of a step?
+// Chooses who does the work of a step.
 //
 // Not several threads: ODE's self-threaded implementation does all in the thread that waits for it.
 #include "world/threads.h"

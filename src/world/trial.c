@@ -1,4 +1,4 @@
-// How does a world response to a push?
+// Finds how a world responds to a push.
 #include "world/trial.h"
 
 #include "world/work.h"

@@ -1,4 +1,4 @@
-// Which library is this?
+// Says which library this is.
 #include "version.h"
 
 #include <jointplay/jointplay.h>

@@ -1,4 +1,4 @@
-// What does a caller's world hold besides ODE's?
+// Has what a caller's world holds besides ODE's.
 #include "world/fault.h"
 #include "world/listing.h"
 #include "world/response_cache.h"

@@ -1,4 +1,4 @@
-// How does a world respond to pushes in the places of its joints with play?
+// Finds how a world responds to pushes in the places of its joints with play.
 //
 // By steps that are taken back: with a push in a row, beside one without. Rows are frozen where the
 // bodies are kept, so that what a step changes of their rates is what it changes of speeds.

@@ -68,6 +68,13 @@ long_files() {
     find "$1" -name '*.[ch]' -exec awk 'END { if (NR > 1000) print FILENAME ": " NR " lines" }' {} \;
 }
 
+# Sources whose first line is no sentence that says what the file does: none, or a question.
+unopened_sources() {
+    find "$1" -name '*.c' | while read -r file; do
+        head -n 1 "$file" | grep -qE '^// [A-Z][^?]*$' || echo "$file"
+    done
+}
+
 unguarded_headers() {
     find "$1" -name '*.h' | xargs grep -L '^#pragma once'
 }
@@ -112,12 +119,18 @@ caught() {
     if [ -n "$1" ]; then echo ''; else echo 'nothing was found'; fi
 }
 
-echo 1..14
+mkdir -p "$control/opening"
+printf '// Where does it stand?\n' >"$control/opening/a.c"
+printf '#include <stdio.h>\n' >"$control/opening/b.c"
+printf '// Finds where it stands.\n' >"$control/opening/c.c"
+
+echo 1..16
 report "a file includes only its own folder and those above it" "$(broken_layers "$root/src")"
 report "each library is included in its own place alone" "$(broken_walls "$root/src")"
 report "no two files need each other" "$(cycles "$root/src")"
 report "the library prints nothing and ends nothing" "$(loud_library "$root/src")"
 report "no file has more than 1000 lines" "$(long_files "$root/src")"
+report "every source opens with what it does" "$(unopened_sources "$root/src")"
 report "every header guards itself" "$(unguarded_headers "$root/src")"
 report "a file that includes a lower layer is caught" "$(caught "$(broken_layers "$control")")"
 found=$(broken_layers "$control/rooms")
@@ -133,4 +146,7 @@ report "libccd is caught in any file but one" \
 report "two files that need each other are caught" "$(caught "$(cycles "$control/circle")")"
 found=$(loud_library "$control/loud" | grep -o '[fg]\.c' | sort | tr -d '\n')
 report "a library that prints is caught" "$([ "$found" = f.cg.c ] || echo "found: $found")"
+found=$(unopened_sources "$control/opening" | sed 's|.*/||' | sort | tr -d '\n')
+report "a source that opens with a question, or with nothing, is caught" \
+    "$([ "$found" = a.cb.c ] || echo "found: $found")"
 report "files without a circle are not caught" "$(cycles "$control/rooms")"
