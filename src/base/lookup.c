@@ -1,4 +1,4 @@
-// Finds an entry by its name in a table that grows.
+// Finds numbers by the hash of what they stand for.
 #include "base/lookup.h"
 
 #include "base/hash.h"

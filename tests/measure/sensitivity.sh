@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Is a change that matters seen? Makes one small fault after another in a copy of the sources, builds
-# it, and expects `jointplay check --quick` to end with status 1. Prints, for each, which number was
-# furthest off and by how many of its bands. Ends with status 1 where a fault was not seen.
+# it, and expects `jointplay check --quick` to end with status 1, or 4 where a run does not end any
+# more. Prints, for each, which number was furthest off and by how many of its bands. Ends with status
+# 1 where a fault was not seen.
 #
 # tests/measure/sensitivity.sh [FOLDER]    builds in FOLDER, which is kept, or in a temporary one
 set -u
@@ -59,17 +60,17 @@ print("     %d numbers of %d cases; worst: %s, %s" % (len(rows), cases, name, fa
 EOF
 }
 
-# One check; its status must be the one that is expected.
+# One check; its status must be one of those that are expected.
 expect() {
     local wanted=$1 what=$2
     shift 2
     "$program" check --quick --quiet --json "$@" >"$work/out.json" 2>"$work/errors"
     local status=$?
     number=$((number + 1))
-    if [ "$status" = "$wanted" ]; then
+    if [[ " $wanted " == *" $status "* ]]; then
         echo "ok $number - $what"
     else
-        echo "not ok $number - $what: status $status, not $wanted: $(head -n 1 "$work/errors")"
+        echo "not ok $number - $what: status $status, not of $wanted: $(head -n 1 "$work/errors")"
         missed=$((missed + 1))
     fi
     show
@@ -86,7 +87,7 @@ fault() {
         return
     fi
     build
-    expect 1 "$what"
+    expect "1 4" "$what"
     cp "$work/kept" "$file"
 }
 
@@ -100,8 +101,8 @@ fault "restitution off by 0.01" src/contact/damping.c \
     's/const double e = restitution;/const double e = restitution - 0.01;/'
 fault "step 10 % larger" src/ode/plane/plain.c \
     's/plain->step_s = scenario->run\.step;/plain->step_s = 1.1 * scenario->run.step;/'
-fault "another map" src/ode/plane/contact_rows.c \
-    's/map_get(ODE_MAP_TEXTBOOK) : rows->map;/map_get(ODE_MAP_TEXTBOOK) : map_get(ODE_MAP_CORRECTED);/'
+fault "another map" src/contact/law_row.c \
+    's/map_get(ODE_MAP_TEXTBOOK) : map)/map_get(ODE_MAP_TEXTBOOK) : map_get(ODE_MAP_CORRECTED))/'
 fault "clearance off by 1 %" src/model/linkage.c \
     's/return joint->clearance.hole_radius - joint->clearance.pin_radius;/return 1.01 * (joint->clearance.hole_radius - joint->clearance.pin_radius);/'
 fault "gravity off by 1 in 1000" src/ode/plane/world.c \
@@ -111,13 +112,13 @@ fault "gravity left out" src/ode/plane/world.c \
 fault "contact normal turned by 0.1 degree" src/ode/plane/collider.c \
     's/\.normal = {-pose\.normal\.x, -pose\.normal\.y, 0\.0},/.normal = {-pose.normal.x + 1.7453e-3 * pose.normal.y, -pose.normal.y - 1.7453e-3 * pose.normal.x, 0.0},/'
 fault "ERP of the joints times .999" src/ode/plane/world.c \
-    's/dJointSetBallParam(ball, dParamERP, joint_erp(options));/dJointSetBallParam(ball, dParamERP, 0.999 * joint_erp(options));/'
+    's/dJointSetBallParam(ball, dParamERP, world_hold_erp(options));/dJointSetBallParam(ball, dParamERP, 0.999 * world_hold_erp(options));/'
 fault "ERP of the contacts times .999" src/ode/plane/contact_rows.c \
-    's/surface\.soft_erp = soft\.erp;/surface.soft_erp = 0.999 * soft.erp;/'
+    's/\.soft_erp = soft\.erp,/.soft_erp = 0.999 * soft.erp,/'
 fault "damping factor of Hunt and Crossley in place of Lankarani and Nikravesh" src/model/options.h \
     's/0\.75 \* (1\.0 - e) \* (1\.0 + e))/1.5 * (1.0 - e))/'
 fault "one contact in 1000 left out" src/ode/plane/contact_rows.c \
-    's/^        make_row(rows, i, &geom, step_s);/        static long made;\n        if (++made % 1000 == 0) {\n            row->feedback = (dJointFeedback){0};\n            continue;\n        }\n        make_row(rows, i, \&geom, step_s);/'
+    's/^            make_row(rows, i, step_s);/            static long made;\n            if (++made % 1000 == 0) {\n                rows->rows[i].feedback = (dJointFeedback){0};\n                continue;\n            }\n            make_row(rows, i, step_s);/'
 fault "mass of the bodies off by 1 in 100 000" src/ode/plane/world.c \
     's/body->mass/(1.00001 * body->mass)/'
 fault "tolerance of the reference a hundred times coarser" src/model/options.c \
