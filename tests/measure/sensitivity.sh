@@ -109,8 +109,9 @@ fault "gravity off by 1 in 1000" src/ode/plane/world.c \
     's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, -1.001 * scenario->gravity, 0.0);/'
 fault "gravity left out" src/ode/plane/world.c \
     's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, 0.0, 0.0);/'
-fault "contact normal turned by 0.1 degree" src/ode/plane/collider.c \
-    's/\.normal = {-pose\.normal\.x, -pose\.normal\.y, 0\.0},/.normal = {-pose.normal.x + 1.7453e-3 * pose.normal.y, -pose.normal.y - 1.7453e-3 * pose.normal.x, 0.0},/'
+fault "contact normal turned by 0.1 degree" src/ode/plane/contact_rows.c \
+    's/geom\.normal\[0\] = -row->normal\.x;/geom.normal[0] = -row->normal.x + 1.7453e-3 * row->normal.y;/
+     s/geom\.normal\[1\] = -row->normal\.y;/geom.normal[1] = -row->normal.y - 1.7453e-3 * row->normal.x;/'
 fault "ERP of the joints times .999" src/ode/plane/world.c \
     's/dJointSetBallParam(ball, dParamERP, world_hold_erp(options));/dJointSetBallParam(ball, dParamERP, 0.999 * world_hold_erp(options));/'
 fault "ERP of the contacts times .999" src/ode/plane/contact_rows.c \
