@@ -21,7 +21,7 @@ LINES, COLUMNS = 24, 80
 # what SI is multiplied by, to be what is printed
 SCALES = [10.0**k for k in range(-9, 10, 3)] + [100.0, 0.01, 180 / math.pi, 30 / math.pi]
 TIMES = re.compile(
-    r"^  Time:|processor|wall time|CPU| ms\.$|meets it|misses it|in [0-9.]+ ms|reference.tolerance="
+    r"^  Time:|processor|wall time|CPU| ms\.?$|meets it|misses it|in [0-9.]+ ms|reference.tolerance="
 )
 NUMBER = re.compile(r"(?<![\w./-])(\d+\.?\d*(?:e[+-]?\d+)?)(?=[ ,;:.)%]|$)")
 
