@@ -15,7 +15,7 @@ COMMANDS = {
     "run": [],
     "map": [],
     "compare": ["--steps", "20us,40us", "--schemes", "direct/staggered"],
-    "tune": ["--error", "1e-2", "--schemes", "direct/staggered/impulse"],
+    "tune": ["--error", "1e-2", "--schemes", "direct/staggered/impulse", "--cost", "steps"],
 }
 LINES, COLUMNS = 24, 80
 # what SI is multiplied by, to be what is printed
