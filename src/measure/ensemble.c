@@ -60,14 +60,38 @@ static Trajectory *run_member(const Scenario *scenario, const Solver *solver, Ru
     return trajectory;
 }
 
+// One who watches all members as if they were one run.
+typedef struct MembersWatch {
+    RunWatch watch;
+    unsigned done;   // members
+    double before_s; // wall time of those
+    double wall_s;   // of the one under way
+} MembersWatch;
+
+static void tell_of_member(double share, double wall_s, void *context)
+{
+    MembersWatch *members = context;
+    members->wall_s = wall_s;
+    members->watch.progress(((double)members->done + share) / ENSEMBLE_MEMBERS,
+                            members->before_s + wall_s, members->watch.context);
+}
+
 void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
                   Ensemble *ensemble)
 {
+    MembersWatch members = {.watch = watch};
+    const RunWatch of_member = {
+        .progress = watch.progress != NULL ? tell_of_member : NULL,
+        .context = &members,
+    };
     Draws draws;
     PerturbUnit *units = zeroed(scenario->linkage.body_count, sizeof *units);
     memset(ensemble, 0, sizeof *ensemble);
     for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
-        Trajectory *trajectory = run_member(scenario, solver, watch, member, units);
+        Trajectory *trajectory = run_member(scenario, solver, of_member, member, units);
+        members.done++;
+        members.before_s += members.wall_s;
+        members.wall_s = 0.0;
         if (trajectory->is_complete) {
             take_member(trajectory, ensemble->members++, &draws);
         } else if (ensemble->failed++ == 0) {

@@ -42,6 +42,6 @@ static inline size_t ensemble_joint_count(const Linkage *linkage)
 }
 
 // Runs the scenario from ENSEMBLE_MEMBERS starts that differ by ENSEMBLE_PERTURBATION, the first
-// one unperturbed.
+// one unperturbed. The watch is told of all of them as of one run.
 void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
                   Ensemble *ensemble);
