@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 static const double WARN_AFTER = 5.0; // s: by then the pace of a run is known
+static const double PACE_AFTER = 3.0; // s: by then it may be shown
 // s: the longest wait without a message where no progress is shown
 static const double WARN_QUIET = 15.0;
 static const double WARN_ANYWAY = 30.0; // s: likewise, of runs each of which is over soon
@@ -79,11 +80,15 @@ static void show(double share, double wall_s, void *context)
         warn_of_all(progress, share);
     }
     if (!line->is_quiet && status_line_is_due(line, all_time(progress), INFINITY)) {
-        char words[LINKAGE_NAME_SIZE + sizeof progress->doing + 64];
-        snprintf(words, sizeof words,
-                 line->is_terminal ? "%s%s: %.0f %%, %.1f s" : "%s%s: %.0f %%, %.0f s",
-                 progress->backend, progress->doing, 100.0 * share, wall_s);
-        status_line_show(line, words);
+        Text words;
+        text_init(&words);
+        text_append(&words, line->is_terminal ? "%s%s: %.0f %%, %.1f s" : "%s%s: %.0f %%, %.0f s",
+                    progress->backend, progress->doing, 100.0 * share, wall_s);
+        if (part_time(progress) > PACE_AFTER) {
+            status_line_append_left(&words, part_left(progress, share));
+        }
+        status_line_show(line, words.data);
+        text_finish(&words);
     }
 }
 

@@ -107,7 +107,8 @@ static void a_log_gets_a_line_every_ten_seconds(void **state)
     }
     progress_end(&progress);
     stop_listening(&listener);
-    assert_string_equal(listener.output, "ode: 40 %, 10 s\node: 80 %, 20 s\n");
+    assert_string_equal(listener.output,
+                        "ode: 40 %, 10 s, some 15 s left\node: 80 %, 20 s, some 5 s left\n");
 }
 
 // Runs of nine seconds one after another, in one phase or in several, are not silent for 36.
