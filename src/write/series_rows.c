@@ -1,112 +1,37 @@
-// Writes the rows of a series.
+// Writes the rows of a series: one table of columns gives the head and the cells.
 #include "write/series_rows.h"
 #include "model/coordinate.h"
-#include "model/distance.h"
 #include "model/joint_rows.h"
+#include "run/drive_torque.h"
 #include "write/csv.h"
 #include "write/units.h"
 
+#include <assert.h>
+#include <fnmatch.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-enum { RATE_COLUMNS_MOST = 3, RATE_COLUMN_SIZE = LINKAGE_NAME_SIZE + 32 };
+enum { COLUMN_NAME_SIZE = LINKAGE_NAME_SIZE + 48, COMPONENTS_MOST = 3 };
 
-// The columns that hold rates.
-
-static const char *const AXES[] = {"x", "y", "z"};
-
-// Of an angular velocity in space the part about z is the one that the plane has, without a letter.
-static void name_of_turning(const char *body, int component, bool is_spatial,
-                            char name[RATE_COLUMN_SIZE])
-{
-    if (is_spatial && component < 2) {
-        snprintf(name, RATE_COLUMN_SIZE, "%s_omega_%s_rad_s", body, AXES[component]);
-    } else {
-        snprintf(name, RATE_COLUMN_SIZE, "%s_omega_rad_s", body);
-    }
-}
-
-// Writes the names of a rate's columns, in the order of its components: x, y, z of a vector.
-// Returns how many there are.
-static int rate_columns(const Linkage *linkage, const DistanceRate *rate,
-                        char names[RATE_COLUMNS_MOST][RATE_COLUMN_SIZE])
-{
-    const bool is_of_body = rate->kind == DISTANCE_TURNING || rate->kind == DISTANCE_MOVING;
-    const char *of =
-        is_of_body ? linkage->bodies[rate->number].name : linkage->joints[rate->number].name;
-    const int count = distance_components(linkage, rate);
-    for (int i = 0; i < count; i++) {
-        if (rate->kind == DISTANCE_TURNING) {
-            name_of_turning(of, i, linkage->is_spatial, names[i]);
-        } else if (rate->kind == DISTANCE_TILT && count == 1) {
-            snprintf(names[i], RATE_COLUMN_SIZE, "%s_tilt_rate_rad_s", of);
-        } else if (rate->kind == DISTANCE_TILT) {
-            snprintf(names[i], RATE_COLUMN_SIZE, "%s_tilt_rate_%s_rad_s", of, AXES[i]);
-        } else if (count == 1) {
-            snprintf(names[i], RATE_COLUMN_SIZE, "%s_rate_%s", of,
-                     rate->reach > 0.0 ? "rad_s" : "m_s");
-        } else {
-            snprintf(names[i], RATE_COLUMN_SIZE, "%s_v%s_m_s", of, AXES[i]);
-        }
-    }
-    return count;
-}
-
-static void write_range_heads(const Linkage *linkage, FILE *stream)
-{
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const char *name = linkage->bodies[i].name;
-        fprintf(stream, ",%s_omega_min_rad_s,%s_omega_max_rad_s", name, name);
-        fprintf(stream, ",%s_alpha_min_rad_s2,%s_alpha_max_rad_s2", name, name);
-    }
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const char *name = linkage->joints[i].name;
-        const JointUnits *units = joint_units(&linkage->joints[i]);
-        const char *length = units->length_key;
-        const char *force = units->force_key;
-        fprintf(stream, ",%s_gap_min_%s,%s_gap_max_%s", name, length, name, length);
-        fprintf(stream, ",%s_force_min_%s,%s_force_max_%s", name, force, name, force);
-    }
-}
-
-// Each number behind the comma that ends the cell before it.
-static void write_cells(const double *numbers, size_t count, FILE *stream)
-{
-    for (size_t i = 0; i < count; i++) {
-        fputc(',', stream);
-        csv_write_number(stream, numbers[i]);
-    }
-}
-
-static void write_range(Range range, FILE *stream)
-{
-    write_cells((const double[]){range.least, range.most}, 2, stream);
-}
-
-// From this sample to the next.
-static void write_ranges(const Trajectory *trajectory, size_t sample, FILE *stream)
-{
-    for (size_t i = 0; i < trajectory->body_count; i++) {
-        write_range(trajectory_body_range(trajectory, sample, i, RANGES_OMEGA), stream);
-        write_range(trajectory_body_range(trajectory, sample, i, RANGES_ALPHA), stream);
-    }
-    for (size_t i = 0; i < trajectory->joint_count; i++) {
-        write_range(trajectory_joint_range(trajectory, sample, i, RANGES_GAP), stream);
-        write_range(trajectory_joint_range(trajectory, sample, i, RANGES_FORCE), stream);
-    }
-}
-
-// What is written of joints: a row gives the column's name, its unit, which joints have it, and its
-// value.
-
-// One joint at one sample.
+// One number at one sample: of the run, or of a body, a joint, a point or a rate.
 typedef struct SeriesPlace {
+    const SeriesColumns *columns;
     const Linkage *linkage;
     const Trajectory *trajectory;
     size_t sample;
-    size_t joint;
-    const JointState *state;
-    const SpaceJointState *space; // NULL in the plane
+    size_t number; // of the body, joint, point or rate
+    int component; // of a rate
 } SeriesPlace;
+
+typedef double SeriesFind(const SeriesPlace *place);
+
+struct SeriesColumn {
+    char name[COLUMN_NAME_SIZE];
+    SeriesFind *find;
+    size_t number;
+    int component;
+};
 
 typedef enum SeriesUnit {
     SERIES_AS_NAMED, // it stands in the name
@@ -114,260 +39,549 @@ typedef enum SeriesUnit {
     SERIES_LENGTH,   // m, or rad
 } SeriesUnit;
 
-typedef struct SeriesColumn {
+// What is written of each body, joint or point.
+typedef struct SeriesRow {
     const char *name;
     SeriesUnit unit;
-    bool (*has)(const Joint *joint); // NULL: every joint
-    double (*find)(const SeriesPlace *place);
-} SeriesColumn;
+    bool (*has)(const Scenario *scenario, size_t joint); // NULL: all of them
+    SeriesFind *find;
+} SeriesRow;
 
-static bool series_slides(const Joint *joint)
+// Which joints have a column.
+
+static const Joint *joint_of(const Scenario *scenario, size_t joint)
 {
-    return joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE;
+    return &scenario->linkage.joints[joint];
 }
 
-static bool series_is_guide(const Joint *joint)
+static bool slides(const Scenario *scenario, size_t joint)
 {
-    return joint->kind == JOINT_GUIDE;
+    const JointKind kind = joint_of(scenario, joint)->kind;
+    return kind == JOINT_PRISMATIC || kind == JOINT_GUIDE;
 }
 
-static bool series_is_pin(const Joint *joint)
+static bool is_guide(const Scenario *scenario, size_t joint)
 {
-    return joint->kind == JOINT_CLEARANCE;
+    return joint_of(scenario, joint)->kind == JOINT_GUIDE;
 }
 
-static bool series_has_limits(const Joint *joint)
+static bool is_pin(const Scenario *scenario, size_t joint)
 {
-    return joint->limits.kind != LIMIT_NONE;
+    return joint_of(scenario, joint)->kind == JOINT_CLEARANCE;
 }
 
-static double series_slide_acceleration(const SeriesPlace *place)
+static bool has_limits(const Scenario *scenario, size_t joint)
 {
-    const Joint *joint = &place->linkage->joints[place->joint];
-    const Motion *motions = trajectory_motion(place->trajectory, place->sample, 0);
+    return joint_of(scenario, joint)->limits.kind != LIMIT_NONE;
+}
+
+// Whether a moment comes with the force at the anchor of body b that is not a slider's: of limits,
+// of teeth, of friction at the wall of a hole or stop.
+static bool turns(const Scenario *scenario, size_t joint)
+{
+    const Joint *of = joint_of(scenario, joint);
+    const double friction =
+        of->contact.has_friction ? of->contact.friction : scenario->contact.friction;
+    const bool is_circle = of->kind == JOINT_CLEARANCE || of->kind == JOINT_STOP;
+    return linkage_is_torsional(of) || of->kind == JOINT_GEAR || (is_circle && friction > 0.0);
+}
+
+// Numbers of the run, of bodies and of points.
+
+static const Motion *motions_at(const SeriesPlace *place)
+{
+    return trajectory_motion(place->trajectory, place->sample, 0);
+}
+
+static double crank_deg(const SeriesPlace *place)
+{
+    return place->trajectory->crank_angles[place->sample] * UNITS_DEG;
+}
+
+static double point_x(const SeriesPlace *place)
+{
+    const TracedPoint *point = &place->columns->scenario->points[place->number];
+    return linkage_point(motions_at(place), point->body, point->local).x;
+}
+
+static double point_y(const SeriesPlace *place)
+{
+    const TracedPoint *point = &place->columns->scenario->points[place->number];
+    return linkage_point(motions_at(place), point->body, point->local).y;
+}
+
+// Numbers of joints.
+
+static double slide_acceleration(const SeriesPlace *place)
+{
+    const Joint *joint = &place->linkage->joints[place->number];
+    const Motion *motions = motions_at(place);
     const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
-    const Vec2 along = joint_rows_along(place->linkage, motions, (int)place->joint);
+    const Vec2 along = joint_rows_along(place->linkage, motions, (int)place->number);
     return vec2_dot(along, motions[body].acceleration);
 }
 
-// Of a block the vector sum of the forces whose sizes its force adds up.
-static double series_resultant(const SeriesPlace *place)
+static const JointState *joint_at(const SeriesPlace *place)
 {
-    return vec2_length(place->state->force_on_b);
+    return trajectory_state(place->trajectory, place->sample, place->number);
+}
+
+// Of a block the vector sum of the forces whose sizes its force adds up.
+static double resultant(const SeriesPlace *place)
+{
+    return vec2_length(joint_at(place)->force_on_b);
 }
 
 // The coordinate of a joint that has limits, whichever of its kind.
-static double series_coordinate(const SeriesPlace *place)
+static double coordinate(const SeriesPlace *place)
 {
     return place->linkage->is_spatial
-               ? place->state->tilt
-               : coordinate_position(place->linkage,
-                                     trajectory_motion(place->trajectory, place->sample, 0),
-                                     (int)place->joint);
+               ? joint_at(place)->tilt
+               : coordinate_position(place->linkage, motions_at(place), (int)place->number);
+}
+
+// A vector in the frame of the joint's body a, which has the hole.
+static Vec2 in_hole(const SeriesPlace *place, Vec2 vector)
+{
+    const int body = place->linkage->joints[place->number].body_a;
+    const double angle = body == LINKAGE_GROUND ? 0.0 : motions_at(place)[body].angle;
+    return vec2_rotate(-angle, vector);
+}
+
+static double hole_force_x(const SeriesPlace *place)
+{
+    return in_hole(place, joint_at(place)->force_on_b).x;
+}
+
+static double hole_force_y(const SeriesPlace *place)
+{
+    return in_hole(place, joint_at(place)->force_on_b).y;
+}
+
+// Where on the wall of its hole the pin is pressed, from the x axis of body a; none apart from it.
+static double wall_deg(const SeriesPlace *place)
+{
+    const Vec2 at = in_hole(place, joint_at(place)->eccentricity);
+    return joint_at(place)->is_touching ? atan2(at.y, at.x) * UNITS_DEG : NAN;
+}
+
+static double torque_of_drive(const SeriesPlace *place)
+{
+    return drive_torque_at(place->columns->scenario, place->trajectory, place->sample);
+}
+
+static double rate(const SeriesPlace *place)
+{
+    const DistanceMeasure *rates = &place->columns->rates;
+    const Vec3 value = distance_value(rates->linkage, &rates->rates[place->number],
+                                      distance_motion_at(place->trajectory, place->sample));
+    return place->component == 0 ? value.x : place->component == 1 ? value.y : value.z;
 }
 
 // clang-format off
-#define FINDER(name, member) \
-    static double series_##name(const SeriesPlace *place) \
+#define FINDER(name, value) \
+    static double name(const SeriesPlace *place) \
     { \
-        return place->member; \
+        return value; \
     }
-FINDER(eccentricity_x, state->eccentricity.x)
-FINDER(eccentricity_y, state->eccentricity.y)
-FINDER(gap, state->gap)
-FINDER(force, state->force)
-FINDER(tilt, state->tilt)
-FINDER(moment, state->moment_on_b)
-FINDER(pin_tilt, space->tilt)
-FINDER(pin_axial, space->axial)
-FINDER(pin_axial_force, space->axial_force)
-FINDER(gap_back, space->end_gaps[0])
-FINDER(gap_front, space->end_gaps[1])
-FINDER(force_back, space->end_forces[0])
-FINDER(force_front, space->end_forces[1])
+#define BODY(member) motions_at(place)[place->number].member
+#define SPACE_BODY(member) \
+    trajectory_space_motion(place->trajectory, place->sample, place->number)->member
+#define SPACE_JOINT(member) \
+    trajectory_space_state(place->trajectory, place->sample, place->number)->member
+#define BODY_RANGE(which) \
+    trajectory_body_range(place->trajectory, place->sample, place->number, which)
+#define JOINT_RANGE(which) \
+    trajectory_joint_range(place->trajectory, place->sample, place->number, which)
 
-static const SeriesColumn OF_JOINTS[] = {
-    {"ex_m", SERIES_AS_NAMED, NULL, series_eccentricity_x},
-    {"ey_m", SERIES_AS_NAMED, NULL, series_eccentricity_y},
-    {"gap", SERIES_LENGTH, NULL, series_gap},
-    {"force", SERIES_FORCE, NULL, series_force},
+FINDER(time_s, place->trajectory->times[place->sample])
+FINDER(body_x, BODY(position.x))
+FINDER(body_y, BODY(position.y))
+FINDER(body_angle, BODY(angle))
+FINDER(body_omega, BODY(omega))
+FINDER(body_alpha, BODY(alpha))
+FINDER(body_ax, BODY(acceleration.x))
+FINDER(body_ay, BODY(acceleration.y))
+FINDER(body_z, SPACE_BODY(position.z))
+FINDER(body_omega_x, SPACE_BODY(omega.x))
+FINDER(body_omega_y, SPACE_BODY(omega.y))
+FINDER(body_az, SPACE_BODY(acceleration.z))
+FINDER(body_alpha_x, SPACE_BODY(alpha.x))
+FINDER(body_alpha_y, SPACE_BODY(alpha.y))
+FINDER(eccentricity_x, joint_at(place)->eccentricity.x)
+FINDER(eccentricity_y, joint_at(place)->eccentricity.y)
+FINDER(hole_eccentricity_x, in_hole(place, joint_at(place)->eccentricity).x)
+FINDER(hole_eccentricity_y, in_hole(place, joint_at(place)->eccentricity).y)
+FINDER(gap, joint_at(place)->gap)
+FINDER(force, joint_at(place)->force)
+FINDER(force_x, joint_at(place)->force_on_b.x)
+FINDER(force_y, joint_at(place)->force_on_b.y)
+FINDER(tilt, joint_at(place)->tilt)
+FINDER(moment, joint_moment(place->linkage, motions_at(place), place->number, joint_at(place)))
+FINDER(pin_tilt, SPACE_JOINT(tilt))
+FINDER(pin_axial, SPACE_JOINT(axial))
+FINDER(pin_axial_force, SPACE_JOINT(axial_force))
+FINDER(gap_back, SPACE_JOINT(end_gaps[0]))
+FINDER(gap_front, SPACE_JOINT(end_gaps[1]))
+FINDER(force_back, SPACE_JOINT(end_forces[0]))
+FINDER(force_front, SPACE_JOINT(end_forces[1]))
+FINDER(force_z, SPACE_JOINT(force_on_b.z))
+FINDER(omega_min, BODY_RANGE(RANGES_OMEGA).least)
+FINDER(omega_max, BODY_RANGE(RANGES_OMEGA).most)
+FINDER(alpha_min, BODY_RANGE(RANGES_ALPHA).least)
+FINDER(alpha_max, BODY_RANGE(RANGES_ALPHA).most)
+FINDER(gap_min, JOINT_RANGE(RANGES_GAP).least)
+FINDER(gap_max, JOINT_RANGE(RANGES_GAP).most)
+FINDER(force_min, JOINT_RANGE(RANGES_FORCE).least)
+FINDER(force_max, JOINT_RANGE(RANGES_FORCE).most)
+
+// The columns, in the order in which they are written: all rows of a table for one body or joint
+// after another.
+
+static const SeriesRow OF_BODIES[] = {
+    {"angle_rad", SERIES_AS_NAMED, NULL, body_angle},
+    {"omega_rad_s", SERIES_AS_NAMED, NULL, body_omega},
+    {"alpha_rad_s2", SERIES_AS_NAMED, NULL, body_alpha},
+    {0},
+};
+static const SeriesRow OF_JOINTS[] = {
+    {"ex_m", SERIES_AS_NAMED, NULL, eccentricity_x},
+    {"ey_m", SERIES_AS_NAMED, NULL, eccentricity_y},
+    {"gap", SERIES_LENGTH, NULL, gap},
+    {"force", SERIES_FORCE, NULL, force},
+    {0},
+};
+static const SeriesRow OF_POINTS[] = {
+    {"x_m", SERIES_AS_NAMED, NULL, point_x},
+    {"y_m", SERIES_AS_NAMED, NULL, point_y},
     {0},
 };
 // what a slider has more than a pin
-static const SeriesColumn OF_SLIDERS[] = {
-    {"tilt_rad", SERIES_AS_NAMED, series_slides, series_tilt},
-    {"moment_N_m", SERIES_AS_NAMED, series_slides, series_moment},
-    {"slide_acceleration_m_s2", SERIES_AS_NAMED, series_slides, series_slide_acceleration},
-    {"resultant_N", SERIES_AS_NAMED, series_is_guide, series_resultant},
+static const SeriesRow OF_SLIDERS[] = {
+    {"tilt_rad", SERIES_AS_NAMED, slides, tilt},
+    {"moment_N_m", SERIES_AS_NAMED, slides, moment},
+    {"slide_acceleration_m_s2", SERIES_AS_NAMED, slides, slide_acceleration},
+    {"resultant_N", SERIES_AS_NAMED, is_guide, resultant},
     {0},
 };
-static const SeriesColumn OF_LIMITS[] = {
-    {"coordinate", SERIES_LENGTH, series_has_limits, series_coordinate},
+static const SeriesRow OF_LIMITS[] = {
+    {"coordinate", SERIES_LENGTH, has_limits, coordinate},
     {0},
 };
-static const SeriesColumn OF_PINS_IN_SPACE[] = {
-    {"tilt_rad", SERIES_AS_NAMED, series_is_pin, series_pin_tilt},
-    {"axial_m", SERIES_AS_NAMED, series_is_pin, series_pin_axial},
-    {"axial_force_N", SERIES_AS_NAMED, series_is_pin, series_pin_axial_force},
-    {"gap_back_m", SERIES_AS_NAMED, series_is_pin, series_gap_back},
-    {"gap_front_m", SERIES_AS_NAMED, series_is_pin, series_gap_front},
-    {"force_back_N", SERIES_AS_NAMED, series_is_pin, series_force_back},
-    {"force_front_N", SERIES_AS_NAMED, series_is_pin, series_force_front},
+static const SeriesRow OF_BODIES_IN_SPACE[] = {
+    {"z_m", SERIES_AS_NAMED, NULL, body_z},
+    {"omega_x_rad_s", SERIES_AS_NAMED, NULL, body_omega_x},
+    {"omega_y_rad_s", SERIES_AS_NAMED, NULL, body_omega_y},
+    {0},
+};
+static const SeriesRow OF_PINS_IN_SPACE[] = {
+    {"tilt_rad", SERIES_AS_NAMED, is_pin, pin_tilt},
+    {"axial_m", SERIES_AS_NAMED, is_pin, pin_axial},
+    {"axial_force_N", SERIES_AS_NAMED, is_pin, pin_axial_force},
+    {"gap_back_m", SERIES_AS_NAMED, is_pin, gap_back},
+    {"gap_front_m", SERIES_AS_NAMED, is_pin, gap_front},
+    {"force_back_N", SERIES_AS_NAMED, is_pin, force_back},
+    {"force_front_N", SERIES_AS_NAMED, is_pin, force_front},
+    {0},
+};
+// what Newton's law of a body asks for beside its mass: where its centre is and how that moves
+static const SeriesRow OF_CENTRES[] = {
+    {"x_m", SERIES_AS_NAMED, NULL, body_x},
+    {"y_m", SERIES_AS_NAMED, NULL, body_y},
+    {"ax_m_s2", SERIES_AS_NAMED, NULL, body_ax},
+    {"ay_m_s2", SERIES_AS_NAMED, NULL, body_ay},
+    {0},
+};
+static const SeriesRow OF_CENTRES_IN_SPACE[] = {
+    {"az_m_s2", SERIES_AS_NAMED, NULL, body_az},
+    {"alpha_x_rad_s2", SERIES_AS_NAMED, NULL, body_alpha_x},
+    {"alpha_y_rad_s2", SERIES_AS_NAMED, NULL, body_alpha_y},
+    {0},
+};
+// and the forces on it
+static const SeriesRow OF_FORCES[] = {
+    {"force_x_N", SERIES_AS_NAMED, NULL, force_x},
+    {"force_y_N", SERIES_AS_NAMED, NULL, force_y},
+    {0},
+};
+static const SeriesRow OF_FORCES_IN_PLANE[] = {
+    {"moment_N_m", SERIES_AS_NAMED, turns, moment},
+    {"hole_ex_m", SERIES_AS_NAMED, is_pin, hole_eccentricity_x},
+    {"hole_ey_m", SERIES_AS_NAMED, is_pin, hole_eccentricity_y},
+    {"hole_force_x_N", SERIES_AS_NAMED, is_pin, hole_force_x},
+    {"hole_force_y_N", SERIES_AS_NAMED, is_pin, hole_force_y},
+    {"wall_deg", SERIES_AS_NAMED, is_pin, wall_deg},
+    {0},
+};
+static const SeriesRow OF_FORCES_IN_SPACE[] = {
+    {"force_z_N", SERIES_AS_NAMED, NULL, force_z},
+    {0},
+};
+static const SeriesRow OF_BODIES_BETWEEN[] = {
+    {"omega_min_rad_s", SERIES_AS_NAMED, NULL, omega_min},
+    {"omega_max_rad_s", SERIES_AS_NAMED, NULL, omega_max},
+    {"alpha_min_rad_s2", SERIES_AS_NAMED, NULL, alpha_min},
+    {"alpha_max_rad_s2", SERIES_AS_NAMED, NULL, alpha_max},
+    {0},
+};
+static const SeriesRow OF_JOINTS_BETWEEN[] = {
+    {"gap_min", SERIES_LENGTH, NULL, gap_min},
+    {"gap_max", SERIES_LENGTH, NULL, gap_max},
+    {"force_min", SERIES_FORCE, NULL, force_min},
+    {"force_max", SERIES_FORCE, NULL, force_max},
     {0},
 };
 // clang-format on
 
-static bool series_column_is_of(const SeriesColumn *column, const Joint *joint)
+// A name that is looked for among columns.
+typedef struct SoughtColumn {
+    const SeriesColumn *columns;
+    const char *name;
+} SoughtColumn;
+
+static bool is_sought(size_t number, const void *sought)
 {
-    return column->has == NULL || column->has(joint);
+    const SoughtColumn *of = sought;
+    return strcmp(of->columns[number].name, of->name) == 0;
 }
 
-static void write_joint_heads(const SeriesColumn *columns, const Linkage *linkage, FILE *stream)
+static bool has_column(const SeriesColumns *columns, const char *name)
 {
+    const SoughtColumn sought = {columns->columns, name};
+    return lookup_find(&columns->names, lookup_hash(name), is_sought, &sought) != LOOKUP_NONE;
+}
+
+// Adds a column. A body and a point, say, may share their name: the later column then ends in _2.
+static void add_column(SeriesColumns *columns, SeriesColumn column)
+{
+    char name[COLUMN_NAME_SIZE];
+    memcpy(name, column.name, sizeof name);
+    for (int i = 2; has_column(columns, column.name); i++) {
+        snprintf(column.name, sizeof column.name, "%.*s_%d", COLUMN_NAME_SIZE - 16, name, i);
+    }
+    if (columns->count == columns->room) {
+        columns->room = columns->room > 0 ? 2 * columns->room : 128;
+        columns->columns = realloc(columns->columns, columns->room * sizeof *columns->columns);
+        assert(columns->columns != NULL);
+    }
+    lookup_add(&columns->names, lookup_hash(column.name), columns->count);
+    columns->columns[columns->count++] = column;
+}
+
+// Adds the columns that a table has of one body, joint or point.
+static void add_rows(SeriesColumns *columns, const SeriesRow *rows, const char *of, size_t number,
+                     const JointUnits *units)
+{
+    for (const SeriesRow *row = rows; row->name != NULL; row++) {
+        if (row->has != NULL && !row->has(columns->scenario, number)) {
+            continue;
+        }
+        SeriesColumn column = {.find = row->find, .number = number};
+        const char *unit = row->unit == SERIES_AS_NAMED ? ""
+                           : row->unit == SERIES_FORCE  ? units->force_key
+                                                        : units->length_key;
+        snprintf(column.name, sizeof column.name, "%s_%s%s%s", of, row->name,
+                 row->unit == SERIES_AS_NAMED ? "" : "_", unit);
+        add_column(columns, column);
+    }
+}
+
+static void add_bodies(SeriesColumns *columns, const SeriesRow *rows)
+{
+    const Linkage *linkage = &columns->scenario->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        add_rows(columns, rows, linkage->bodies[i].name, i, NULL);
+    }
+}
+
+static void add_joints(SeriesColumns *columns, const SeriesRow *rows)
+{
+    const Linkage *linkage = &columns->scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        const JointUnits *units = joint_units(joint);
-        for (const SeriesColumn *column = columns; column->name != NULL; column++) {
-            if (series_column_is_of(column, joint)) {
-                fprintf(stream, ",%s_%s%s%s", joint->name, column->name,
-                        column->unit == SERIES_AS_NAMED ? "" : "_",
-                        column->unit == SERIES_AS_NAMED ? ""
-                        : column->unit == SERIES_FORCE  ? units->force_key
-                                                        : units->length_key);
-            }
-        }
+        add_rows(columns, rows, joint->name, i, joint_units(joint));
     }
 }
 
-static void write_joint_cells(const SeriesColumn *columns, const Linkage *linkage,
-                              const Trajectory *trajectory, size_t sample, FILE *stream)
+// Names a component of a rate: x, y, z of a vector.
+static void name_rate(const Linkage *linkage, const DistanceRate *of, SeriesColumn *column)
 {
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const SeriesPlace place = {
-            .linkage = linkage,
-            .trajectory = trajectory,
-            .sample = sample,
-            .joint = i,
-            .state = trajectory_state(trajectory, sample, i),
-            .space = linkage->is_spatial ? trajectory_space_state(trajectory, sample, i) : NULL,
-        };
-        for (const SeriesColumn *column = columns; column->name != NULL; column++) {
-            if (series_column_is_of(column, &linkage->joints[i])) {
-                const double value = column->find(&place);
-                write_cells(&value, 1, stream);
-            }
-        }
+    static const char *const AXES[] = {"x", "y", "z"};
+    const bool is_of_body = of->kind == DISTANCE_MOVING;
+    const char *name =
+        is_of_body ? linkage->bodies[of->number].name : linkage->joints[of->number].name;
+    const char *axis = AXES[column->component];
+    const bool is_scalar = distance_components(linkage, of) == 1;
+    if (of->kind == DISTANCE_TILT && is_scalar) {
+        snprintf(column->name, sizeof column->name, "%s_tilt_rate_rad_s", name);
+    } else if (of->kind == DISTANCE_TILT) {
+        snprintf(column->name, sizeof column->name, "%s_tilt_rate_%s_rad_s", name, axis);
+    } else if (is_scalar) {
+        snprintf(column->name, sizeof column->name, "%s_rate_%s", name,
+                 of->reach > 0.0 ? "rad_s" : "m_s");
+    } else {
+        snprintf(column->name, sizeof column->name, "%s_v%s_m_s", name, axis);
     }
-}
-
-// What a linkage in space has more than one in the plane.
-static void write_space_heads(const Linkage *linkage, FILE *stream)
-{
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const char *name = linkage->bodies[i].name;
-        fprintf(stream, ",%s_z_m,%s_omega_x_rad_s,%s_omega_y_rad_s", name, name, name);
-    }
-    write_joint_heads(OF_PINS_IN_SPACE, linkage, stream);
-}
-
-static void write_space(const Linkage *linkage, const Trajectory *trajectory, size_t sample,
-                        FILE *stream)
-{
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const SpaceMotion *motion = trajectory_space_motion(trajectory, sample, i);
-        write_cells((const double[]){motion->position.z, motion->omega.x, motion->omega.y}, 3,
-                    stream);
-    }
-    write_joint_cells(OF_PINS_IN_SPACE, linkage, trajectory, sample, stream);
 }
 
 // The rates by which motions are compared, but for what is written of every body anyway.
-static void write_rate_heads(const DistanceMeasure *rates, FILE *stream)
+static void add_rates(SeriesColumns *columns)
 {
-    char names[RATE_COLUMNS_MOST][RATE_COLUMN_SIZE];
+    const DistanceMeasure *rates = &columns->rates;
     for (size_t i = 0; i < rates->count; i++) {
-        const int count = rate_columns(rates->linkage, &rates->rates[i], names);
+        const int count = distance_components(rates->linkage, &rates->rates[i]);
         for (int k = 0; rates->rates[i].kind != DISTANCE_TURNING && k < count; k++) {
-            fprintf(stream, ",%s", names[k]);
+            SeriesColumn column = {.find = rate, .number = i, .component = k};
+            name_rate(rates->linkage, &rates->rates[i], &column);
+            add_column(columns, column);
         }
     }
 }
 
-static void series_rows_write_rates(const DistanceMeasure *rates, const Trajectory *trajectory,
-                                    size_t sample, FILE *stream)
+SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges)
 {
-    const DistanceMotion motion = distance_motion_at(trajectory, sample);
-    for (size_t i = 0; i < rates->count; i++) {
-        const DistanceRate *rate = &rates->rates[i];
-        const Vec3 value = distance_value(rates->linkage, rate, motion);
-        if (rate->kind != DISTANCE_TURNING) {
-            write_cells((const double[]){value.x, value.y, value.z},
-                        (size_t)distance_components(rates->linkage, rate), stream);
+    SeriesColumns columns = {
+        .scenario = scenario,
+        .rates = distance_rates(&scenario->linkage),
+    };
+    const bool is_spatial = scenario->linkage.is_spatial;
+    add_column(&columns, (SeriesColumn){.name = "time_s", .find = time_s});
+    add_column(&columns, (SeriesColumn){.name = "crank_deg", .find = crank_deg});
+    add_bodies(&columns, OF_BODIES);
+    add_joints(&columns, OF_JOINTS);
+    for (size_t i = 0; i < scenario->point_count; i++) {
+        add_rows(&columns, OF_POINTS, scenario->points[i].name, i, NULL);
+    }
+    add_joints(&columns, OF_SLIDERS);
+    add_joints(&columns, OF_LIMITS);
+    if (is_spatial) {
+        add_bodies(&columns, OF_BODIES_IN_SPACE);
+        add_joints(&columns, OF_PINS_IN_SPACE);
+    }
+    add_rates(&columns);
+    add_bodies(&columns, OF_CENTRES);
+    if (is_spatial) {
+        add_bodies(&columns, OF_CENTRES_IN_SPACE);
+    }
+    add_joints(&columns, OF_FORCES);
+    add_joints(&columns, is_spatial ? OF_FORCES_IN_SPACE : OF_FORCES_IN_PLANE);
+    if (drive_torque_exists(&scenario->linkage)) {
+        add_column(&columns, (SeriesColumn){.name = "drive_torque_N_m", .find = torque_of_drive});
+    }
+    if (has_ranges) {
+        add_bodies(&columns, OF_BODIES_BETWEEN);
+        add_joints(&columns, OF_JOINTS_BETWEEN);
+    }
+    return columns;
+}
+
+void series_columns_finish(SeriesColumns *columns)
+{
+    distance_finish(&columns->rates);
+    lookup_finish(&columns->names);
+    free(columns->columns);
+    *columns = (SeriesColumns){0};
+}
+
+// Takes the next of the patterns, without the blanks around it; false where there is none.
+static bool next_pattern(const char **patterns, char pattern[COLUMN_NAME_SIZE])
+{
+    const char *from = *patterns;
+    if (from == NULL) {
+        return false;
+    }
+    const char *comma = strchr(from, ',');
+    from += strspn(from, " ");
+    size_t size = comma != NULL ? (size_t)(comma - from) : strlen(from);
+    while (size > 0 && from[size - 1] == ' ') {
+        size--;
+    }
+    snprintf(pattern, COLUMN_NAME_SIZE, "%.*s", (int)size, from);
+    *patterns = comma != NULL ? comma + 1 : NULL;
+    return true;
+}
+
+static bool is_chosen(const SeriesColumn *column, const char *patterns)
+{
+    char pattern[COLUMN_NAME_SIZE];
+    while (next_pattern(&patterns, pattern)) {
+        if (fnmatch(pattern, column->name, 0) == 0) {
+            return true;
         }
     }
+    return false;
 }
 
-static void series_rows_write_head(const Scenario *scenario, const Trajectory *trajectory,
-                                   const DistanceMeasure *rates, FILE *stream)
+void series_columns_choose(SeriesColumns *columns, const char *patterns)
 {
-    const Linkage *linkage = &scenario->linkage;
-    fputs("time_s,crank_deg", stream);
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const char *name = linkage->bodies[i].name;
-        fprintf(stream, ",%s_angle_rad,%s_omega_rad_s,%s_alpha_rad_s2", name, name, name);
+    size_t kept = 0;
+    for (size_t i = 0; i < columns->count; i++) {
+        if (is_chosen(&columns->columns[i], patterns)) {
+            columns->columns[kept++] = columns->columns[i];
+        }
     }
-    write_joint_heads(OF_JOINTS, linkage, stream);
-    for (size_t i = 0; i < scenario->point_count; i++) {
-        const char *name = scenario->points[i].name;
-        fprintf(stream, ",%s_x_m,%s_y_m", name, name);
+    columns->count = kept;
+}
+
+// Says that no column is called so, and which might be meant.
+static bool fail_unknown(const SeriesColumns *columns, const char *pattern, Err *err)
+{
+    const char **names = malloc(columns->count * sizeof *names);
+    assert(names != NULL);
+    for (size_t i = 0; i < columns->count; i++) {
+        names[i] = columns->columns[i].name;
     }
-    write_joint_heads(OF_SLIDERS, linkage, stream);
-    write_joint_heads(OF_LIMITS, linkage, stream);
-    if (linkage->is_spatial) {
-        write_space_heads(linkage, stream);
+    const char *nearest = text_nearest(pattern, names, columns->count);
+    err_set(err, ERR_USAGE,
+            "--columns: no column is called '%s'; %s%s%s* stands for any letters, and the file "
+            "without --columns begins with all names",
+            pattern, nearest != NULL ? "did you mean '" : "", nearest != NULL ? nearest : "",
+            nearest != NULL ? "'? " : "");
+    free(names);
+    return false;
+}
+
+bool series_columns_check(const SeriesColumns *columns, const char *patterns, Err *err)
+{
+    char pattern[COLUMN_NAME_SIZE];
+    while (next_pattern(&patterns, pattern)) {
+        size_t found = 0;
+        for (size_t i = 0; i < columns->count; i++) {
+            found += fnmatch(pattern, columns->columns[i].name, 0) == 0;
+        }
+        if (found == 0) {
+            return fail_unknown(columns, pattern, err);
+        }
     }
-    write_rate_heads(rates, stream);
-    if (trajectory->ranges.count > 0) {
-        write_range_heads(linkage, stream);
+    return true;
+}
+
+static void write_head(const SeriesColumns *columns, FILE *stream)
+{
+    for (size_t i = 0; i < columns->count; i++) {
+        fprintf(stream, "%s%s", i > 0 ? "," : "", columns->columns[i].name);
     }
     fputc('\n', stream);
 }
 
-static void series_rows_write_row(const Scenario *scenario, const Trajectory *trajectory,
-                                  const DistanceMeasure *rates, size_t sample, FILE *stream)
+void series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory, FILE *stream)
 {
-    const double crank_deg = trajectory->crank_angles[sample] * UNITS_DEG;
-    csv_write_number(stream, trajectory->times[sample]);
-    write_cells(&crank_deg, 1, stream);
-    for (size_t i = 0; i < trajectory->body_count; i++) {
-        const Motion *motion = trajectory_motion(trajectory, sample, i);
-        write_cells((const double[]){motion->angle, motion->omega, motion->alpha}, 3, stream);
+    write_head(columns, stream);
+    SeriesPlace place = {
+        .columns = columns,
+        .linkage = &columns->scenario->linkage,
+        .trajectory = trajectory,
+    };
+    for (place.sample = 0; place.sample < trajectory->sample_count; place.sample++) {
+        for (size_t i = 0; i < columns->count; i++) {
+            const SeriesColumn *column = &columns->columns[i];
+            place.number = column->number;
+            place.component = column->component;
+            if (i > 0) {
+                fputc(',', stream);
+            }
+            csv_write_number(stream, column->find(&place));
+        }
+        fputc('\n', stream);
     }
-    write_joint_cells(OF_JOINTS, &scenario->linkage, trajectory, sample, stream);
-    const Motion *motions = trajectory_motion(trajectory, sample, 0);
-    for (size_t i = 0; i < scenario->point_count; i++) {
-        const TracedPoint *point = &scenario->points[i];
-        const Vec2 position = linkage_point(motions, point->body, point->local);
-        write_cells((const double[]){position.x, position.y}, 2, stream);
-    }
-    write_joint_cells(OF_SLIDERS, &scenario->linkage, trajectory, sample, stream);
-    write_joint_cells(OF_LIMITS, &scenario->linkage, trajectory, sample, stream);
-    if (scenario->linkage.is_spatial) {
-        write_space(&scenario->linkage, trajectory, sample, stream);
-    }
-    series_rows_write_rates(rates, trajectory, sample, stream);
-    if (trajectory->ranges.count > 0) {
-        write_ranges(trajectory, sample, stream);
-    }
-    fputc('\n', stream);
-}
-
-void series_rows_write(const Scenario *scenario, const Trajectory *trajectory, FILE *stream)
-{
-    DistanceMeasure rates = distance_rates(&scenario->linkage);
-    series_rows_write_head(scenario, trajectory, &rates, stream);
-    for (size_t i = 0; i < trajectory->sample_count; i++) {
-        series_rows_write_row(scenario, trajectory, &rates, i, stream);
-    }
-    distance_finish(&rates);
 }

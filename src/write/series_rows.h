@@ -1,9 +1,36 @@
-// The rows of a series, on any open stream.
+// The columns and rows of a series.
 #pragma once
 
+#include "base/lookup.h"
+#include "model/distance.h"
 #include "model/trajectory.h"
 
 #include <stdio.h>
 
+typedef struct SeriesColumn SeriesColumn;
+
+// The columns of a scenario's series, in their order.
+typedef struct SeriesColumns {
+    const Scenario *scenario; // which must live as long
+    DistanceMeasure rates;    // owned
+    size_t count;
+    size_t room;
+    SeriesColumn *columns; // owned
+    Lookup names;          // owned; of all columns, those that were not chosen too
+} SeriesColumns;
+
+// All columns, with those of the smallest and largest values between samples where they are kept;
+// for series_columns_finish.
+SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges);
+void series_columns_finish(SeriesColumns *columns);
+
+// Keeps the columns whose names match one of the patterns, which commas separate: a name in which
+// * stands for any letters, and ? for one.
+void series_columns_choose(SeriesColumns *columns, const char *patterns);
+
+// Fails with ERR_USAGE where a pattern matches no column, and says which name might be
+// meant.
+bool series_columns_check(const SeriesColumns *columns, const char *patterns, Err *err);
+
 // Writes the head and one row a sample; the trajectory is complete.
-void series_rows_write(const Scenario *scenario, const Trajectory *trajectory, FILE *stream);
+void series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory, FILE *stream);

@@ -92,6 +92,11 @@ static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state
     program_fails_usage(program, "run --step", "option '--step' needs a value");
     program_fails_usage(program, "run --json=1 a.yaml", "takes no value");
     program_fails_usage(program, "run a.yaml b.yaml --series s.csv", "--series takes one case");
+    program_fails_usage(program, "run a.yaml --columns time_s",
+                        "--columns chooses from the series: give --series FILE.csv or --out DIR");
+    program_fails_usage(
+        program, "run $cases/paper/impact-k66.yaml --series s.csv --columns 'coupler_omga_*'",
+        "--columns: no column is called 'coupler_omga_*'");
     program_fails_usage(program, "run a.yaml b.yaml --plot s.svg", "--plot takes one case");
     program_fails_usage(program, "run a.yaml --series x --plot ./x", "both write ./x");
     program_fails_usage(program, "run a.yaml --backend ''", "--backend names no backend");

@@ -1,5 +1,6 @@
 // Does a series hold what the trajectory holds, in the columns that others rely on?
 #include "commands/run/case_run.h"
+#include "write/series_rows.h"
 
 #include "report_fixture.h"
 #include "scratch.h"
@@ -14,7 +15,7 @@ static void a_series_has_the_columns_that_others_rely_on(void **state)
     char content[8192];
     Err err = {0};
     scratch_path("series.csv", path, sizeof path);
-    assert_true(series_csv_write(&fixture->scenario, fixture->runs[1], path, &err));
+    assert_true(series_csv_write(&fixture->scenario, fixture->runs[1], NULL, path, &err));
     read_whole(path, content, sizeof content);
     unlink(path);
     char *line = strtok(content, "\n");
@@ -28,14 +29,23 @@ static void a_series_has_the_columns_that_others_rely_on(void **state)
               "coupler-follower_force_N,follower-ground_ex_m,follower-ground_ey_m,"
               "follower-ground_gap_m,follower-ground_force_N,tip_x_m,tip_y_m,"
               "crank_vx_m_s,crank_vy_m_s,coupler_vx_m_s,coupler_vy_m_s,follower_vx_m_s,"
-              "follower_vy_m_s,crank-coupler_vx_m_s,crank-coupler_vy_m_s");
+              "follower_vy_m_s,crank-coupler_vx_m_s,crank-coupler_vy_m_s,"
+              "crank_x_m,crank_y_m,crank_ax_m_s2,crank_ay_m_s2,"
+              "coupler_x_m,coupler_y_m,coupler_ax_m_s2,coupler_ay_m_s2,"
+              "follower_x_m,follower_y_m,follower_ax_m_s2,follower_ay_m_s2,"
+              "ground-crank_force_x_N,ground-crank_force_y_N,"
+              "crank-coupler_force_x_N,crank-coupler_force_y_N,"
+              "coupler-follower_force_x_N,coupler-follower_force_y_N,"
+              "follower-ground_force_x_N,follower-ground_force_y_N,"
+              "crank-coupler_hole_ex_m,crank-coupler_hole_ey_m,crank-coupler_hole_force_x_N,"
+              "crank-coupler_hole_force_y_N,crank-coupler_wall_deg,drive_torque_N_m");
     size_t rows = 0;
     while ((line = strtok(NULL, "\n")) != NULL) {
-        double values[37];
+        double values[63];
         char *rest = line;
-        for (int i = 0; i < 37; i++) {
-            values[i] = strtod(rest, &rest);
-            assert_true(*rest == (i < 36 ? ',' : '\0'));
+        for (int i = 0; i < 63; i++) {
+            values[i] = strtod(rest, &rest); // 0 of an empty cell
+            assert_true(*rest == (i < 62 ? ',' : '\0'));
             rest++;
         }
         // 17 digits bring back every bit
@@ -96,7 +106,7 @@ static void ranges_stand_behind_the_samples(void **state)
     static char content[32768];
     Err err = {0};
     scratch_path("ranges.csv", path, sizeof path);
-    assert_true(series_csv_write(&fixture->scenario, run, path, &err));
+    assert_true(series_csv_write(&fixture->scenario, run, NULL, path, &err));
     read_whole(path, content, sizeof content);
     unlink(path);
     char *rows[SAMPLES + 1];
@@ -132,7 +142,7 @@ static void a_number_that_does_not_exist_is_an_empty_cell(void **state)
     static char content[8192];
     Err err = {0};
     scratch_path("none.csv", path, sizeof path);
-    assert_true(series_csv_write(&fixture->scenario, run, path, &err));
+    assert_true(series_csv_write(&fixture->scenario, run, NULL, path, &err));
     read_whole(path, content, sizeof content);
     unlink(path);
     const char *head = strtok(content, "\n");
@@ -142,6 +152,50 @@ static void a_number_that_does_not_exist_is_an_empty_cell(void **state)
     assert_int_equal(*cell_at(row, column_of(head, "coupler_alpha_rad_s2")), ',');
     assert_int_equal(*cell_at(row, column_of(head, "crank-coupler_force_N")), ',');
     assert_true(cell(none_above, column_of(head, "coupler_alpha_rad_s2")) == 1.0 / 3.0);
+}
+
+static void columns_are_chosen_by_name(void **state)
+{
+    Fixture *fixture = *state;
+    static char content[32768];
+    char path[256];
+    Err err = {0};
+    scratch_path("chosen.csv", path, sizeof path);
+    assert_true(series_csv_write(&fixture->scenario, fixture->runs[1],
+                                 "coupler_a?pha*, time_s,*_force_N", path, &err));
+    read_whole(path, content, sizeof content);
+    unlink(path);
+    // in the order of the series
+    assert_string_equal(strtok(content, "\n"),
+                        "time_s,coupler_alpha_rad_s2,ground-crank_force_N,crank-coupler_force_N,"
+                        "coupler-follower_force_N,follower-ground_force_N");
+    const char *row = strtok(NULL, "\n");
+    assert_true(cell(row, 0) == fixture->runs[1]->times[0]);
+    assert_true(cell(row, 1) == 1.0 / 3.0);
+
+    SeriesColumns columns = series_columns_create(&fixture->scenario, false);
+    assert_true(series_columns_check(&columns, "time_s,crank*", &err));
+    assert_false(series_columns_check(&columns, "time_s,coupler_omega", &err));
+    assert_int_equal(err.kind, ERR_USAGE);
+    assert_string_equal(err.text,
+                        "--columns: no column is called 'coupler_omega'; did you mean "
+                        "'coupler_omega_rad_s'? * stands for any letters, and the file without "
+                        "--columns begins with all names");
+    assert_false(series_columns_check(&columns, "time_s,", &err));
+    assert_false(series_columns_check(&columns, "", &err));
+    series_columns_finish(&columns);
+}
+
+static void columns_of_one_name_are_told_apart(void **state)
+{
+    Fixture *fixture = *state;
+    Scenario scenario = fixture->scenario;
+    strcpy(scenario.points[0].name, "coupler"); // as a body is
+    SeriesColumns columns = series_columns_create(&scenario, false);
+    Err err = {0};
+    assert_true(series_columns_check(&columns, "coupler_x_m,coupler_x_m_2,coupler_y_m_2", &err));
+    assert_false(series_columns_check(&columns, "coupler_x_m_3", &err));
+    series_columns_finish(&columns);
 }
 
 static void a_series_of_several_runs_has_a_file_each(void **state)
@@ -165,6 +219,10 @@ int main(void)
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_number_that_does_not_exist_is_an_empty_cell,
                                         fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(columns_are_chosen_by_name, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(columns_of_one_name_are_told_apart, fixture_set_up,
+                                        fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_series_of_several_runs_has_a_file_each, fixture_set_up,
                                         fixture_tear_down),
     };

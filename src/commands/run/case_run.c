@@ -186,15 +186,28 @@ void case_run_finish(CaseRun *run)
 
 // The series that a run leaves behind, and the names of their files.
 
-bool series_csv_write(const Scenario *scenario, const Trajectory *trajectory, const char *path,
-                      Err *err)
+bool run_files_check_columns(const CaseRun *run, Err *err)
+{
+    SeriesColumns columns = series_columns_create(&run->scenario, run->scenario.run.keeps_ranges);
+    const bool has_them = run->columns == NULL || series_columns_check(&columns, run->columns, err);
+    series_columns_finish(&columns);
+    return has_them;
+}
+
+bool series_csv_write(const Scenario *scenario, const Trajectory *trajectory, const char *patterns,
+                      const char *path, Err *err)
 {
     assert(trajectory->is_complete);
     WholeFile file;
     if (!file_begin(&file, FILE_TABLE, path, err)) {
         return false;
     }
-    series_rows_write(scenario, trajectory, file.stream);
+    SeriesColumns columns = series_columns_create(scenario, trajectory->ranges.count > 0);
+    if (patterns != NULL) {
+        series_columns_choose(&columns, patterns);
+    }
+    series_columns_write(&columns, trajectory, file.stream);
+    series_columns_finish(&columns);
     return file_end(&file, err);
 }
 
@@ -214,7 +227,8 @@ void series_csv_path(const char *path, const char *backend, size_t run_count, ch
 static bool write_series(const CaseRun *run, const Trajectory *trajectory, const char *path,
                          bool is_quiet, Err *err)
 {
-    return series_csv_write(&run->scenario, trajectory, path, err) && written_say(path, is_quiet);
+    return series_csv_write(&run->scenario, trajectory, run->columns, path, err) &&
+           written_say(path, is_quiet);
 }
 
 // The file that a run's series goes to.

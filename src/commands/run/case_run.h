@@ -8,6 +8,7 @@
 typedef struct CaseRun {
     Scenario scenario;
     bool is_uncertified; // whether the reference runs alone
+    const char *columns; // of the series, as --columns takes them; NULL: all
     Trajectory *runs[BACKEND_COUNT];
     TrajectoryError errors[BACKEND_COUNT];
     AnalyticSummary summary;
@@ -30,6 +31,9 @@ void case_run_finish(CaseRun *run);
 
 // The series of `jointplay run`: a file for each backend.
 
+// Whether the series has the columns that are chosen, before the case is run. Fails with ERR_USAGE.
+bool run_files_check_columns(const CaseRun *run, Err *err);
+
 // Claims the files of the series, before the case is run. Leaves nothing behind. Fails as
 // file_claim does.
 bool run_files_claim(const CaseRun *run, const char *series, Err *err);
@@ -42,16 +46,11 @@ bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *
 bool run_files_claim_folder(const CaseRun *run, const CommonOptions *options, Err *err);
 bool run_files_folder(const CaseRun *run, const CommonOptions *options, Err *err);
 
-// Writes the series to a file, whole or not at all. Columns: time_s, crank_deg, then of each body
-// <body>_angle_rad, <body>_omega_rad_s, <body>_alpha_rad_s2, of each joint <joint>_ex_m,
-// <joint>_ey_m, <joint>_gap_m, <joint>_force_N, of each traced point <point>_x_m, <point>_y_m. Of
-// a run that kept ranges then the least and the largest value from this sample to the next: of each
-// body
-// <body>_omega_min_rad_s, <body>_omega_max_rad_s, <body>_alpha_min_rad_s2, <body>_alpha_max_rad_s2,
-// of each joint <joint>_gap_min_m, <joint>_gap_max_m, <joint>_force_min_N, <joint>_force_max_N.
-// Numbers have 17 significant digits. The trajectory must be complete.
-bool series_csv_write(const Scenario *scenario, const Trajectory *trajectory, const char *path,
-                      Err *err);
+// Writes the series to a file, whole or not at all: the columns of write/series_rows.h, or those of
+// them that the patterns choose. Numbers have 17 significant digits. The trajectory must be
+// complete.
+bool series_csv_write(const Scenario *scenario, const Trajectory *trajectory, const char *patterns,
+                      const char *path, Err *err);
 
 // The name of one run's file: FILE.csv stays as it is where it is the only run, and becomes
 // FILE-<backend>.csv where there are several. Cut if it is too long for the buffer.

@@ -25,6 +25,7 @@ typedef struct RunCommand {
     Text backends; // names, separated by commas
     bool is_uncertified;
     const char *series;
+    const char *columns;
     const char *plot;
 } RunCommand;
 
@@ -75,6 +76,8 @@ static const OptionRow OPTIONS[] = {
     COMMON_WIDE(2),
     {"series", "FILE.csv", "Write every sample; with several backends to FILE-<backend>.csv each",
      2, OPTION_TEXT, AT(series)},
+    {"columns", "NAME[,NAME]", "Write these columns of the series alone, such as 'time_s,rod_*'", 2,
+     OPTION_TEXT, AT(columns)},
     {"plot", "FILE.svg", "Draw motion, forces and the pin in its hole", 2, OPTION_PICTURE,
      AT(plot)},
     COMMON_OUT(2, "Write <case>.json, .txt, .svg and <case>-<backend>.csv there"),
@@ -105,10 +108,12 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
             return false;
         }
         runs[i].is_uncertified = command->is_uncertified;
+        runs[i].columns = command->columns;
         // of samples in a file and of pictures
         runs[i].scenario.run.keeps_ranges =
             command->series != NULL || command->plot != NULL || command->common.folder != NULL;
-        if (command->is_uncertified && !check_uncertified(&runs[i].scenario, err)) {
+        if ((command->is_uncertified && !check_uncertified(&runs[i].scenario, err)) ||
+            !run_files_check_columns(&runs[i], err)) {
             return false;
         }
     }
@@ -227,6 +232,11 @@ static bool check_command(void *target, Err *err)
     if (command->case_count > 1 && (command->series != NULL || command->plot != NULL)) {
         return err_set(err, ERR_USAGE, "--%s takes one case; --out DIR takes several",
                        command->series != NULL ? "series" : "plot");
+    }
+    if (command->columns != NULL && command->series == NULL && command->common.folder == NULL) {
+        return err_set(
+            err, ERR_USAGE,
+            "--columns chooses from the series: give --series FILE.csv or --out DIR too");
     }
     if (command->backends.length > 0) {
         text_append(&command->backends, "]");

@@ -8,6 +8,7 @@
 #include "base/zeroed.h"
 #include "contact/damping.h"
 #include "contact/law.h"
+#include "run/drive_torque.h"
 #include "run/ideal.h"
 #include "write/assumed.h"
 #include "write/json_value.h"
@@ -118,41 +119,6 @@ static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSiz
     };
 }
 
-// The torque of the drive at one sample.
-static double drive_torque(const Scenario *scenario, const Trajectory *run, size_t sample)
-{
-    const Linkage *linkage = &scenario->linkage;
-    const int driven = linkage_driven_body(linkage);
-    const Motion *motions = trajectory_motion(run, sample, 0);
-    const Motion *body = &motions[driven];
-    const double mass = linkage->bodies[driven].mass;
-    const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_a;
-    const Vec2 arm = vec2_sub(body->position, pivot);
-    double torque = linkage->bodies[driven].inertia * body->alpha +
-                    mass * vec2_cross(arm, body->acceleration) + mass * scenario->gravity * arm.x;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if ((int)i == linkage->driver.joint ||
-            (joint->body_a != driven && joint->body_b != driven)) {
-            continue;
-        }
-        const JointState *state = trajectory_state(run, sample, i);
-        const double sign = joint->body_b == driven ? 1.0 : -1.0;
-        const Vec2 point = linkage_point(motions, joint->body_b, joint->anchor_b);
-        torque -=
-            sign * (vec2_cross(vec2_sub(point, pivot), state->force_on_b) + state->moment_on_b);
-    }
-    return torque;
-}
-
-// Whether that holds: a crank on the ground, in the plane, that nothing but joints acts on.
-static bool has_drive_torque(const Linkage *linkage)
-{
-    return linkage->driver.is_present && !linkage->is_spatial && linkage->spring_count == 0 &&
-           linkage->torsion_count == 0 &&
-           linkage->joints[linkage->driver.joint].body_a == LINKAGE_GROUND;
-}
-
 static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run,
                              const IdealSizes *ideal)
 {
@@ -165,7 +131,7 @@ static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run,
                        .contact = NAN,
                        .deepest = NAN};
     for (size_t k = 0; k < run->sample_count; k++) {
-        const double size = fabs(drive_torque(scenario, run, k));
+        const double size = fabs(drive_torque_at(scenario, run, k));
         if (run->times[k] >= run->report_from_s && size > row.largest) {
             row.largest = size;
             row.crank_rad = run->crank_angles[k];
@@ -207,7 +173,7 @@ static Overview overview_make(const RunReport *report)
     }
     qsort(overview.joints, overview.joint_count, sizeof *overview.joints, by_size);
     qsort(overview.bodies, overview.body_count, sizeof *overview.bodies, by_size);
-    overview.has_drive = has_drive_torque(linkage);
+    overview.has_drive = drive_torque_exists(linkage);
     if (overview.has_drive) {
         overview.drive = drive_row(scenario, overview.run, &ideal);
     }

@@ -248,12 +248,16 @@ static void fill_limited(const Dynamics *dynamics, const DynamicsState *at, int 
     to->is_touching = false;
 }
 
-// Adds what presses at one end.
-static void plane_add_end(const ContactForce *end, bool is_touching, JointState *to)
+// Adds what presses at one end, with its moment about the anchor of body b.
+static void plane_add_end(const Touch *place, const ContactForce *end, bool is_touching,
+                          JointState *to)
 {
+    Vec2 from_a = {0.0, 0.0};
+    Vec2 from_b = {0.0, 0.0};
+    touch_points(place, &end->pose, &from_a, &from_b);
     to->gap = fmin(to->gap, end->pose.gap);
     to->force_on_b = vec2_add(to->force_on_b, end->force);
-    to->moment_on_b += end->couple;
+    to->moment_on_b += end->couple + vec2_cross(from_b, end->force);
     to->force += sqrt(vec2_dot(end->force, end->force)) + fabs(end->couple);
     to->is_touching = to->is_touching || is_touching;
 }
@@ -305,7 +309,8 @@ static void plane_joints(const System *system, const SystemState *state, JointSt
             continue;
         }
         if (linkage->joints[system->contacts[i].joint].limits.kind != LIMIT_NONE) {
-            plane_add_end(force, system->contacts[i].mode != CONTACT_APART, joint);
+            plane_add_end(&dynamics->sites[i].touch, force,
+                          system->contacts[i].mode != CONTACT_APART, joint);
             continue;
         }
         *joint = (JointState){

@@ -1,0 +1,70 @@
+// Finds the torque of the drive by Euler's law of the driven body about its centre of mass,
+//
+//     I alpha = T + M + sum of (r x F + m)
+//
+// with M of springs and dampers, and of each joint its force F at the arm r and its moment m.
+#include "run/drive_torque.h"
+#include "contact/touch.h"
+#include "model/forces.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+double joint_moment(const Linkage *linkage, const Motion *motions, size_t joint,
+                    const JointState *state)
+{
+    const JointKind kind = linkage->joints[joint].kind;
+    if (kind != JOINT_CLEARANCE && kind != JOINT_STOP) {
+        return state->moment_on_b;
+    }
+    Touch touches[TOUCH_CORNERS];
+    touch_places(&linkage->joints[joint], (int)joint, touches);
+    const TouchPose pose = touch_pose(linkage, &touches[0], motions);
+    Vec2 from_a;
+    Vec2 from_b;
+    touch_points(&touches[0], &pose, &from_a, &from_b);
+    return vec2_cross(from_b, state->force_on_b);
+}
+
+bool drive_torque_exists(const Linkage *linkage)
+{
+    return linkage->driver.is_present && !linkage->is_spatial &&
+           linkage->joints[linkage->driver.joint].kind == JOINT_REVOLUTE;
+}
+
+// The moment of springs and dampers on a body, N m.
+static double moment_of_loads(const Linkage *linkage, const Motion *motions, double time_s,
+                              int body)
+{
+    if (!forces_any(linkage)) {
+        return 0.0;
+    }
+    BodyLoad *loads = calloc(linkage->body_count, sizeof *loads);
+    assert(loads != NULL);
+    forces_loads(linkage, motions, time_s, loads);
+    const double moment = loads[body].moment;
+    free(loads);
+    return moment;
+}
+
+double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t sample)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int driven = linkage_driven_body(linkage);
+    const Motion *motions = trajectory_motion(run, sample, 0);
+    double torque = linkage->bodies[driven].inertia * motions[driven].alpha -
+                    moment_of_loads(linkage, motions, run->times[sample], driven);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint->body_a != driven && joint->body_b != driven) {
+            continue;
+        }
+        const JointState *state = trajectory_state(run, sample, i);
+        const double sign = joint->body_b == driven ? 1.0 : -1.0;
+        const Vec2 arm = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
+                                  motions[driven].position);
+        torque -=
+            sign * (vec2_cross(arm, state->force_on_b) + joint_moment(linkage, motions, i, state));
+    }
+    return torque;
+}
