@@ -200,7 +200,8 @@ typedef struct RunOptions {
     bool is_report_from_in_turns;
     size_t backend_count;
     BackendKind backends[BACKEND_COUNT];
-    bool keeps_ranges; // no key: whether somebody reads what signals did between the samples
+    bool keeps_ranges;   // no key: whether somebody reads what signals did between the samples
+    bool keeps_contacts; // no key: whether somebody reads all contacts, and not the strongest alone
     bool is_lean; // no key: extremes and contacts are all that is read; energies, the forces of
                   // ideal joints and the hash are left out where that saves anything
 } RunOptions;

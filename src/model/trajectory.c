@@ -139,6 +139,7 @@ void trajectory_destroy(Trajectory *trajectory)
     linkage_free(&trajectory->linkage);
     free(trajectory->bodies);
     free(trajectory->joints);
+    free(trajectory->contacts);
     free(trajectory->alpha_spikes);
     free(trajectory->force_spikes);
     free(trajectory->times);

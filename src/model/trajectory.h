@@ -71,7 +71,15 @@ typedef struct Spike {
     double impulse;         // N s
     double penetration_max; // m
     double approach_speed;  // m/s, closing speed at the onset
+    double peak_s;          // when the force was largest
+    Vec2 eccentricity;      // m, pin centre minus hole centre in the step with the largest force
 } Spike;
+
+// One contact in the list of all.
+typedef struct JointSpike {
+    size_t joint;
+    Spike spike;
+} JointSpike;
 
 typedef struct JointExtremes {
     size_t impacts;                     // contacts begun
@@ -133,6 +141,9 @@ typedef struct Trajectory {
     Ranges ranges;         // between the samples, from every step; empty where not asked for
     BodyExtremes *bodies;  // by body; owned, like the three below
     JointExtremes *joints; // by joint
+    size_t contact_count;  // all reported ones, in the order of their ends, where they are kept
+    size_t contact_room;
+    JointSpike *contacts; // owned; NULL unless run.keeps_contacts
     SignalSpikes *alpha_spikes;
     SignalSpikes *force_spikes;
     double duration_s;    // simulated

@@ -10,6 +10,8 @@
 #include "base/sorted.h"
 #include "base/zeroed.h"
 
+#include <assert.h>
+
 // The range of every value in each stretch of a run.
 //
 // A value of an instant belongs to the stretch in which its step ends, a mean over a step to every
@@ -234,10 +236,24 @@ static bool recorder_is_stronger(const void *a, const void *b)
     return ((const Spike *)a)->force_max > ((const Spike *)b)->force_max;
 }
 
+static void keep_contact(Trajectory *trajectory, size_t joint, const Spike *spike)
+{
+    if (trajectory->contact_count == trajectory->contact_room) {
+        trajectory->contact_room = trajectory->contact_room > 0 ? 2 * trajectory->contact_room : 64;
+        trajectory->contacts =
+            realloc(trajectory->contacts, trajectory->contact_room * sizeof *trajectory->contacts);
+        assert(trajectory->contacts != NULL);
+    }
+    trajectory->contacts[trajectory->contact_count++] = (JointSpike){joint, *spike};
+}
+
 // One that began before the reported time is not a contact of it.
 static void end_contact(Recorder *recorder, size_t number)
 {
     if (recorder->open[number].onset_s >= recorder->trajectory->report_from_s) {
+        if (recorder->scenario->run.keeps_contacts) {
+            keep_contact(recorder->trajectory, number, &recorder->open[number]);
+        }
         JointExtremes *joint = &recorder->trajectory->joints[number];
         sorted_insert(joint->spikes, &joint->spike_count, TRAJECTORY_SPIKE_MAX,
                       &recorder->open[number], sizeof(Spike), recorder_is_stronger);
@@ -291,7 +307,11 @@ static void recorder_add_contact(Recorder *recorder, const StepRecord *step, siz
         spike->duration_s += duration;
         spike->impulse += step->impulse[index];
         const JointPeak top = top_of(step, index);
-        spike->force_max = fmax(spike->force_max, top.force);
+        if (top.force > spike->force_max) {
+            spike->force_max = top.force;
+            spike->peak_s = top.force_s;
+            spike->eccentricity = state->eccentricity;
+        }
         spike->penetration_max = fmax(spike->penetration_max, top.depth);
         joint->contact_time += is_reported ? duration : 0.0;
         joint->impulse += is_reported ? step->impulse[index] : 0.0;

@@ -156,7 +156,7 @@ static int file_parts_make(const char *target, const char *part)
 // one stays, for the files that have it.
 
 enum {
-    MARK_MAX = 4,        // beginnings of one kind
+    MARK_MAX = 5,        // beginnings of one kind
     HEAD_SIZE = 1 << 16, // bytes that are looked at: the first line of a study's table is long
     SHOWN_SIZE = 33,     // of the beginning of a file that is no kind of ours
 };
@@ -175,6 +175,7 @@ typedef struct Kind {
 static const Kind KINDS[FILE_KIND_COUNT] = {
     [FILE_TABLE] = {"a table of jointplay (CSV)",
                     {{"time_s,", NULL},
+                     {"joint,onset_s,", NULL},
                      {"scheme,step_s,", NULL},
                      {"joint,law,map,step_s,", NULL},
                      {"run,", ",outcome,reason,"}}},

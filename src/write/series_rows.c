@@ -514,8 +514,8 @@ static bool is_chosen(const SeriesColumn *column, const char *patterns)
 
 void series_columns_choose(SeriesColumns *columns, const char *patterns)
 {
-    size_t kept = 0;
-    for (size_t i = 0; i < columns->count; i++) {
+    size_t kept = 1; // the time
+    for (size_t i = kept; i < columns->count; i++) {
         if (is_chosen(&columns->columns[i], patterns)) {
             columns->columns[kept++] = columns->columns[i];
         }

@@ -24,8 +24,8 @@ typedef struct SeriesColumns {
 SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges);
 void series_columns_finish(SeriesColumns *columns);
 
-// Keeps the columns whose names match one of the patterns, which commas separate: a name in which
-// * stands for any letters, and ? for one.
+// Keeps the time and the columns whose names match one of the patterns, which commas separate: a
+// name in which * stands for any letters, and ? for one.
 void series_columns_choose(SeriesColumns *columns, const char *patterns);
 
 // Fails with ERR_USAGE where a pattern matches no column, and says which name might be

@@ -92,6 +92,8 @@ static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state
     program_fails_usage(program, "run --step", "option '--step' needs a value");
     program_fails_usage(program, "run --json=1 a.yaml", "takes no value");
     program_fails_usage(program, "run a.yaml b.yaml --series s.csv", "--series takes one case");
+    program_fails_usage(program, "run a.yaml b.yaml --contacts c.csv", "--contacts takes one case");
+    program_fails_usage(program, "run a.yaml --series ./x --contacts x", "both write");
     program_fails_usage(program, "run a.yaml --columns time_s",
                         "--columns chooses from the series: give --series FILE.csv or --out DIR");
     program_fails_usage(

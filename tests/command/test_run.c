@@ -170,6 +170,57 @@ static void a_series_holds_a_row_a_sample(void **state)
     assert_int_equal(access(path, F_OK), 0);
 }
 
+// The number in a cell of a table's row, both counted from 0, which may be empty.
+static double table_number(const char *table, size_t row, size_t column)
+{
+    for (; row > 0; row--) {
+        table = strchr(table, '\n') + 1;
+    }
+    for (; column > 0; column--) {
+        table = strchr(table, ',') + 1;
+    }
+    return strtod(table, NULL);
+}
+
+static void every_contact_has_a_row(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    static char content[PROGRAM_OUTPUT_SIZE];
+    // a pin falls through its clearance of .1 mm onto the lowest point of the hole, and goes on
+    // bouncing: more contacts than the twelve that JSON lists
+    program_run(program, "run $cases/literature/pin-in-hole-drop.yaml --contacts c.csv --json "
+                         "--backend reference --uncertified --set 'run.duration=85 ms'");
+    assert_int_equal(program->status, 0);
+    json_t *root = program_json(program);
+    json_t *hole = json_object_get(
+        json_object_get(json_array_get(json_object_get(root, "runs"), 0), "joints"), "hole");
+    const double impacts = json_number_value(json_object_get(hole, "impacts"));
+    const double force_max = json_number_value(json_object_get(hole, "force_max_N"));
+    program_path(program, "c.csv", path);
+    program_read(path, content);
+    static const char HEAD[] = "joint,onset_s,duration_s,peak_s,force_max_N,impulse_N_s,"
+                               "approach_speed_m_s,penetration_max_m,wall_deg\nhole,";
+    assert_int_equal(strncmp(content, HEAD, sizeof HEAD - 1), 0);
+    size_t rows = 0;
+    for (const char *c = content; *c != '\0'; c++) {
+        rows += *c == '\n' ? 1 : 0;
+    }
+    rows--;
+    assert_true(rows > 12);
+    assert_true((double)rows == impacts);
+    const double clearance = 1e-4;
+    const double gravity = 9.80665;
+    assert_near(table_number(content, 1, 1), sqrt(2.0 * clearance / gravity), 1e-9);
+    assert_near(table_number(content, 1, 6), sqrt(2.0 * clearance * gravity), 1e-9);
+    assert_near(table_number(content, 1, 8), -90.0, 1e-6);
+    assert_true(table_number(content, 1, 4) == force_max);
+    for (size_t row = 2; row <= rows; row++) {
+        assert_true(table_number(content, row, 1) > table_number(content, row - 1, 1));
+    }
+    json_decref(root);
+}
+
 static void a_folder_gets_all_there_is_to_know(void **state)
 {
     Program *program = *state;
@@ -319,7 +370,8 @@ static void nothing_half_written_stays_behind(void **state)
     Program *program = *state;
     char path[PROGRAM_PATH_SIZE];
     // what cannot be written is told before anything runs
-    static const char *const TARGETS[] = {"--plot nowhere/p.svg", "--series nowhere/s.csv",
+    static const char *const TARGETS[] = {"--plot nowhere/p.svg", "--contacts nowhere/c.csv",
+                                          "--series nowhere/s.csv",
                                           "--series s.csv --plot nowhere/p.svg"};
     for (int i = 0; i < 3; i++) {
         char words[256];
@@ -473,6 +525,7 @@ int main(void)
         COMMAND_TEST(settings_of_the_command_line_replace_those_of_the_case),
         COMMAND_TEST(a_direction_among_the_settings_is_a_list_and_a_tolerated_length_is_not),
         COMMAND_TEST(a_series_holds_a_row_a_sample),
+        COMMAND_TEST(every_contact_has_a_row),
         COMMAND_TEST(a_folder_gets_all_there_is_to_know),
         COMMAND_TEST(two_cases_of_one_name_do_not_share_a_folder),
         COMMAND_TEST(a_failed_solver_ends_with_status_4_after_the_others_are_told),

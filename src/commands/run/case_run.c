@@ -9,6 +9,7 @@
 #include "run/registry.h"
 #include "run/settle.h"
 #include "run/tracer.h"
+#include "write/contact_rows.h"
 #include "write/file.h"
 #include "write/series_rows.h"
 
@@ -241,28 +242,55 @@ static void find_series(const CaseRun *run, const char *path, size_t number, cha
                     FILE_PATH_SIZE);
 }
 
-bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err)
+static bool write_contacts(const CaseRun *run, const Trajectory *trajectory, const char *path,
+                           bool is_quiet, Err *err)
+{
+    (void)run;
+    WholeFile file;
+    if (!file_begin(&file, FILE_TABLE, path, err)) {
+        return false;
+    }
+    contact_rows_write(trajectory, file.stream);
+    return file_end(&file, err) && written_say(path, is_quiet);
+}
+
+typedef bool RunFileWrite(const CaseRun *run, const Trajectory *trajectory, const char *path,
+                          bool is_quiet, Err *err);
+
+// Writes one file of every run that is complete.
+static bool write_each(const CaseRun *run, const char *path, RunFileWrite *write, bool is_quiet,
+                       Err *err)
 {
     for (size_t i = 0; i < run->report.run_count; i++) {
         const Trajectory *trajectory = run->runs[i];
         char target[FILE_PATH_SIZE];
         find_series(run, path, i, target);
-        if (trajectory->is_complete && !write_series(run, trajectory, target, is_quiet, err)) {
+        if (trajectory->is_complete && !write(run, trajectory, target, is_quiet, err)) {
             return false;
         }
     }
     return true;
 }
 
-bool run_files_claim(const CaseRun *run, const char *series, Err *err)
+bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err)
+{
+    return write_each(run, path, write_series, is_quiet, err);
+}
+
+bool run_files_contacts(const CaseRun *run, const char *path, bool is_quiet, Err *err)
+{
+    return write_each(run, path, write_contacts, is_quiet, err);
+}
+
+bool run_files_claim(const CaseRun *run, const char *option, const char *path, Err *err)
 {
     // a stream takes all of them
-    const size_t count = file_is_stream(series) ? 1 : run->scenario.run.backend_count;
-    bool is_claimed = file_check_input("--series", series, err);
+    const size_t count = file_is_stream(path) ? 1 : run->scenario.run.backend_count;
+    bool is_claimed = file_check_input(option, path, err);
     for (size_t i = 0; i < count && is_claimed; i++) {
         char target[FILE_PATH_SIZE];
-        find_series(run, series, i, target);
-        is_claimed = file_claim("--series", FILE_TABLE, target, err);
+        find_series(run, path, i, target);
+        is_claimed = file_claim(option, FILE_TABLE, target, err);
     }
     return is_claimed;
 }

@@ -34,13 +34,16 @@ void case_run_finish(CaseRun *run);
 // Whether the series has the columns that are chosen, before the case is run. Fails with ERR_USAGE.
 bool run_files_check_columns(const CaseRun *run, Err *err);
 
-// Claims the files of the series, before the case is run. Leaves nothing behind. Fails as
-// file_claim does.
-bool run_files_claim(const CaseRun *run, const char *series, Err *err);
+// Claims the files of the series, or those of the contacts, for the option that asks for them,
+// before the case is run. Leaves nothing behind. Fails as file_claim does.
+bool run_files_claim(const CaseRun *run, const char *option, const char *path, Err *err);
 
 // Writes the series of every run that is complete: to the path itself where the case has one
 // backend, and to FILE-<backend>.csv for each where it has several. ERR_FILE.
 bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err);
+
+// The same of a row for each contact: write/contact_rows.h. The runs have kept them.
+bool run_files_contacts(const CaseRun *run, const char *path, bool is_quiet, Err *err);
 
 // Likewise, <case>-<backend>.csv in the folder of --out, which is there.
 bool run_files_claim_folder(const CaseRun *run, const CommonOptions *options, Err *err);

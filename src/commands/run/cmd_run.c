@@ -26,6 +26,7 @@ typedef struct RunCommand {
     bool is_uncertified;
     const char *series;
     const char *columns;
+    const char *contacts;
     const char *plot;
 } RunCommand;
 
@@ -76,8 +77,12 @@ static const OptionRow OPTIONS[] = {
     COMMON_WIDE(2),
     {"series", "FILE.csv", "Write every sample; with several backends to FILE-<backend>.csv each",
      2, OPTION_TEXT, AT(series)},
-    {"columns", "NAME[,NAME]", "Write these columns of the series alone, such as 'time_s,rod_*'", 2,
+    {"columns", "NAME[,NAME]",
+     "Write the time and these columns of the series alone, such as 'crank_deg,rod_*'", 2,
      OPTION_TEXT, AT(columns)},
+    {"contacts", "FILE.csv",
+     "Write every contact; with several backends to FILE-<backend>.csv each", 2, OPTION_TEXT,
+     AT(contacts)},
     {"plot", "FILE.svg", "Draw motion, forces and the pin in its hole", 2, OPTION_PICTURE,
      AT(plot)},
     COMMON_OUT(2, "Write <case>.json, .txt, .svg and <case>-<backend>.csv there"),
@@ -112,6 +117,7 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
         // of samples in a file and of pictures
         runs[i].scenario.run.keeps_ranges =
             command->series != NULL || command->plot != NULL || command->common.folder != NULL;
+        runs[i].scenario.run.keeps_contacts = command->contacts != NULL;
         if ((command->is_uncertified && !check_uncertified(&runs[i].scenario, err)) ||
             !run_files_check_columns(&runs[i], err)) {
             return false;
@@ -158,6 +164,8 @@ static bool report_case(const RunCommand *command, const CaseRun *run, json_t *o
     }
     return (command->series == NULL ||
             run_files_series(run, command->series, common->is_quiet, err)) &&
+           (command->contacts == NULL ||
+            run_files_contacts(run, command->contacts, common->is_quiet, err)) &&
            (common->folder == NULL || run_files_folder(run, common, err)) &&
            results_write(&RESULTS, common, scenario_path(&run->scenario), &run->report, err);
 }
@@ -192,7 +200,10 @@ static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *
 static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err)
 {
     const CommonOptions *common = &command->common;
-    bool is_claimed = command->series == NULL || run_files_claim(&runs[0], command->series, err);
+    bool is_claimed =
+        (command->series == NULL || run_files_claim(&runs[0], "--series", command->series, err)) &&
+        (command->contacts == NULL ||
+         run_files_claim(&runs[0], "--contacts", command->contacts, err));
     for (size_t i = 0; i < command->case_count && is_claimed; i++) {
         is_claimed = results_claim(&RESULTS, common, scenario_path(&runs[i].scenario), err) &&
                      (common->folder == NULL || run_files_claim_folder(&runs[i], common, err));
@@ -229,9 +240,12 @@ static bool check_command(void *target, Err *err)
     if (command->case_count == 0) {
         return err_set(err, ERR_USAGE, "no case given: jointplay run CASE.yaml");
     }
-    if (command->case_count > 1 && (command->series != NULL || command->plot != NULL)) {
-        return err_set(err, ERR_USAGE, "--%s takes one case; --out DIR takes several",
-                       command->series != NULL ? "series" : "plot");
+    const char *single = command->series != NULL     ? "series"
+                         : command->contacts != NULL ? "contacts"
+                         : command->plot != NULL     ? "plot"
+                                                     : NULL;
+    if (command->case_count > 1 && single != NULL) {
+        return err_set(err, ERR_USAGE, "--%s takes one case; --out DIR takes several", single);
     }
     if (command->columns != NULL && command->series == NULL && command->common.folder == NULL) {
         return err_set(
