@@ -59,8 +59,8 @@ tune='--schemes direct/plain --error 0.3'
 # without an option is marked by @. Nothing for a command that is not known here.
 words_of() {
     case $1/$2 in
-    run--series/k.json) echo "run k.json --backend ode" ;;
-    run--series/*) echo "run k.yaml --backend ode" ;;
+    run--series/k.json | run--contacts/k.json) echo "run k.json --backend ode" ;;
+    run--series/* | run--contacts/*) echo "run k.yaml --backend ode" ;;
     run--*/k.json) echo "run k.json" ;;
     run--*) echo "run k.yaml" ;;
     compare--store/*) echo "compare k.yaml $compare" ;;
