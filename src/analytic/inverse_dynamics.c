@@ -3,10 +3,12 @@
 //     J^T lambda = M qddot - Q,      J the constraint Jacobian with the driver's row
 // lambda: of a pin the force on body b, of a prismatic joint the force on body b across the line
 // and the couple (model/joint_rows.h), then the torque on the driven body; M the masses and
-// inertias, Q gravity. Source: Haug 1989, chapter 6 (Lagrange multipliers as reactions).
+// inertias, Q gravity, springs and dampers. Source: Haug 1989, chapter 6 (Lagrange multipliers as
+// reactions).
 #include "analytic/inverse_dynamics.h"
 
 #include "base/dense.h"
+#include "model/forces.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
 
@@ -49,11 +51,14 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
             transposed[j * n + i] = jacobian.entries[i * n + j];
         }
     }
+    BodyLoad loads[KINEMATICS_BODY_MAX] = {0};
+    forces_add_springs(linkage, motions, loads);
+    forces_add_dampers(linkage, motions, loads);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Body *body = &linkage->bodies[i];
-        right[3 * i] = body->mass * motions[i].acceleration.x;
-        right[3 * i + 1] = body->mass * (motions[i].acceleration.y + gravity);
-        right[3 * i + 2] = body->inertia * motions[i].alpha;
+        right[3 * i] = body->mass * motions[i].acceleration.x - loads[i].force.x;
+        right[3 * i + 1] = body->mass * (motions[i].acceleration.y + gravity) - loads[i].force.y;
+        right[3 * i + 2] = body->inertia * motions[i].alpha - loads[i].moment;
     }
     if (!dense_solve(n, transposed, right)) {
         return err_set(err, ERR_SOLVER,

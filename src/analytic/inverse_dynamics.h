@@ -11,12 +11,13 @@ typedef struct Reactions {
 } Reactions;
 
 // Solves the Newton-Euler equations of every body for the reactions. The motions hold position,
-// velocity and acceleration; every joint counts as ideal; gravity acts along -y, m/s^2.
+// velocity and acceleration; every joint counts as ideal; gravity acts along -y, m/s^2, beside
+// the linkage's springs and dampers.
 // Fails with ERR_SOLVER where the reactions are not determined, or the mechanism is not small
 // (model/kinematics.h).
 bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
                             Reactions *reactions, Err *err);
 
 // Rate of change of the kinetic and potential energy of all bodies, W. In a linkage with ideal
-// joints it equals drive torque times crank speed.
+// joints and without springs and dampers it equals drive torque times crank speed.
 double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity);

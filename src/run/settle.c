@@ -205,6 +205,19 @@ static double change_over(const Settling *settling, size_t last, size_t period)
                              &settling->revolutions[last - period], settling->fastest);
 }
 
+// The shortest period that the revolutions of one of p have to the digits of one motion: a mode
+// that changes its sign every revolution while it dies out is small after two revolutions before it
+// is after one.
+static size_t shortest_period(const Settling *settling, size_t last, size_t p)
+{
+    size_t shortest = 1;
+    while (shortest < p &&
+           !(p % shortest == 0 && change_over(settling, last, shortest) <= MOTION_TOLERANCE)) {
+        shortest++;
+    }
+    return shortest;
+}
+
 // Looks for the shortest period after which nothing more than the tolerance is to come.
 static bool settling_repeats(Settling *settling, double tolerance)
 {
@@ -217,7 +230,7 @@ static bool settling_repeats(Settling *settling, double tolerance)
             ratio < RATIO_MOST ? change * fmax(ratio, 0.5) / (1.0 - ratio) : INFINITY;
         const bool is_rounding = change < CHANGE_LEAST && before < CHANGE_LEAST;
         if (is_rounding || fmax(change, left) <= tolerance) {
-            settling->period = p;
+            settling->period = shortest_period(settling, last, p);
             settling->change = change;
             settling->left = is_rounding ? change : left;
             return true;

@@ -7,6 +7,7 @@
 #include "complete_run.h"
 #include "load_case.h"
 #include "ode_error.h"
+#include "sprung_slider.h"
 
 #include "model/perturb.h"
 #include "run/settle.h"
@@ -88,6 +89,19 @@ static void different_motions_are_told_apart(void **state)
     }
     assert_true(many.settled.motion_count > 1);
     assert_int_equal(starts, many.settled.starts);
+}
+
+// A mode that changes its sign every revolution while it dies out does not make two revolutions a
+// period, nor the start that shows it a motion of its own.
+static void a_mode_that_dies_out_is_no_motion_of_its_own(void **state)
+{
+    (void)state;
+    Scenario scenario = sprung_slider(NULL, 0);
+    settle_scenario(&scenario, (RunWatch){.progress = NULL});
+    kept_settled(&scenario);
+    assert_int_equal(scenario.settled.motion_count, 1);
+    assert_int_equal(scenario.settled.motions[0].period, 1);
+    assert_int_equal(scenario.settled.motions[0].starts, scenario.run.settle_starts);
 }
 
 // The pin lies where the reaction of the ideal joint, by the closed form, presses it to.
@@ -262,6 +276,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_start_comes_to_one_motion),
         cmocka_unit_test(different_motions_are_told_apart),
+        cmocka_unit_test(a_mode_that_dies_out_is_no_motion_of_its_own),
         cmocka_unit_test(a_pressed_pin_lies_where_the_reaction_holds_it),
         cmocka_unit_test(the_damping_is_halved_and_doubled),
         cmocka_unit_test(it_is_what_a_long_run_comes_to),

@@ -1,7 +1,10 @@
 // Do springs, dampers and torques move a linkage as closed forms and published solutions say, in
 // the reference and in every way of stepping ODE?
-#include "kept.h"
 #include "ode_error.h"
+#include "sprung_slider.h"
+
+#include "run/drive_torque.h"
+#include "run/ideal.h"
 
 // A body of inertia 0.25 + 0.5^2 = 0.5 kg m^2 about its pivot.
 static Scenario arm(void)
@@ -317,6 +320,36 @@ static void a_force_between_lever_and_block_keeps_their_angular_momentum(void **
     trajectory_destroy(truth);
 }
 
+// What forces with play are compared with, "x ideal": those of the reference with ideal joints, at
+// the same angles. The control leaves the spring out.
+static void ideal_joints_carry_springs_and_dampers(void **state)
+{
+    (void)state;
+    Scenario scenario = sprung_slider(NULL, 0);
+    scenario.linkage.joints[SPRUNG_SLIDER_PLAY].kind = JOINT_REVOLUTE;
+    Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
+    double torque = 0.0;
+    double forces[4] = {0.0};
+    for (size_t k = 0; k < run->sample_count; k++) {
+        torque = fmax(torque, fabs(drive_torque_at(&scenario, run, k)));
+        for (size_t i = 0; i < run->joint_count; i++) {
+            forces[i] = fmax(forces[i], trajectory_state(run, k, i)->force);
+        }
+    }
+    IdealSizes sizes = ideal_sizes(&scenario);
+    assert_true(sizes.is_known);
+    assert_near(sizes.torque_max, torque, 1e-9 * torque);
+    for (size_t i = 0; i < run->joint_count; i++) {
+        assert_near(sizes.force_max[i], forces[i], 1e-9 * forces[i]);
+    }
+    ideal_sizes_free(&sizes);
+    scenario.linkage.spring_count = 0;
+    sizes = ideal_sizes(&scenario);
+    assert_true(fabs(sizes.torque_max - torque) > 0.1 * torque);
+    ideal_sizes_free(&sizes);
+    trajectory_destroy(run);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -326,6 +359,7 @@ int main(void)
         cmocka_unit_test(a_torque_over_time_turns_as_its_integral),
         cmocka_unit_test(a_torque_with_impacts_inside_the_step_does_what_its_angle_says),
         cmocka_unit_test(a_force_over_time_pushes_a_slider_as_its_integral),
+        cmocka_unit_test(ideal_joints_carry_springs_and_dampers),
         cmocka_unit_test(a_force_between_lever_and_block_keeps_their_angular_momentum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

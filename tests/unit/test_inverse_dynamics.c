@@ -95,6 +95,36 @@ static void a_crank_alone_obeys_the_textbook(void **state)
     assert_near(reactions.drive_torque, 0.0, 1e-12);
 }
 
+// Along x a spring pulls at the middle of the crank with 1000 N/m (300 mm - 100 mm) and a damper
+// with 10 N s/m times the speed at which it is drawn out.
+static void a_spring_and_a_damper_pull_at_the_crank(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    scenario.linkage.body_count = 1;
+    scenario.linkage.joint_count = 1;
+    scenario.linkage.spring_count = 1;
+    scenario.linkage.springs[0] = (Spring){.body_a = LINKAGE_GROUND,
+                                           .body_b = 0,
+                                           .anchor_a = {0.3, 0.054},
+                                           .stiffness = 1000.0,
+                                           .length = 0.1,
+                                           .damping = 10.0};
+    const double omega = 50.0;
+    const Motion motion = {.position = {0.0, 0.054},
+                           .angle = 0.5 * M_PI,
+                           .velocity = {-0.054 * omega, 0.0},
+                           .omega = omega,
+                           .acceleration = {0.0, -0.054 * omega * omega}};
+    Reactions reactions;
+    Err err = {ERR_NONE, ""};
+    assert_true(inverse_dynamics_solve(&scenario.linkage, &motion, 10.0, &reactions, &err));
+    const double pull = 1000.0 * 0.2 + 10.0 * 0.054 * omega;
+    assert_near(reactions.force_on_b[0].x, -pull, 1e-9);
+    assert_near(reactions.force_on_b[0].y, 0.12 * (10.0 - 0.054 * omega * omega), 1e-9);
+    assert_near(reactions.drive_torque, 0.054 * pull, 1e-9);
+}
+
 static void reactions_that_are_not_determined_are_refused(void **state)
 {
     (void)state;
@@ -148,6 +178,7 @@ int main(void)
         cmocka_unit_test(without_gravity_forces_go_with_the_square_of_the_speed),
         cmocka_unit_test(drive_power_is_the_change_of_energy),
         cmocka_unit_test(a_crank_alone_obeys_the_textbook),
+        cmocka_unit_test(a_spring_and_a_damper_pull_at_the_crank),
         cmocka_unit_test(reactions_that_are_not_determined_are_refused),
         cmocka_unit_test(the_follower_stands_still_at_its_limits),
         cmocka_unit_test(a_summary_needs_a_fourbar_whose_crank_turns),
