@@ -1,8 +1,10 @@
-// Finds the torque of the drive by Euler's law of the driven body about its centre of mass,
+// Finds the torque of the drive by Euler's law of the driven body about the pivot that is driven,
+// whose force it does not need,
 //
-//     I alpha = T + M + sum of (r x F + m)
+//     I alpha + s x m (a + g) = T + M + sum of (r x F + c)
 //
-// with M of springs and dampers, and of each joint its force F at the arm r and its moment m.
+// with s from the pivot to the centre of mass, g upward, M the moment of springs and dampers, and
+// of each other joint its force F at the arm r and its moment c.
 #include "run/drive_torque.h"
 #include "contact/touch.h"
 #include "model/forces.h"
@@ -32,9 +34,9 @@ bool drive_torque_exists(const Linkage *linkage)
            linkage->joints[linkage->driver.joint].kind == JOINT_REVOLUTE;
 }
 
-// The moment of springs and dampers on a body, N m.
+// The moment of springs and dampers on a body about a point, N m.
 static double moment_of_loads(const Linkage *linkage, const Motion *motions, double time_s,
-                              int body)
+                              int body, Vec2 point)
 {
     if (!forces_any(linkage)) {
         return 0.0;
@@ -42,7 +44,8 @@ static double moment_of_loads(const Linkage *linkage, const Motion *motions, dou
     BodyLoad *loads = calloc(linkage->body_count, sizeof *loads);
     assert(loads != NULL);
     forces_loads(linkage, motions, time_s, loads);
-    const double moment = loads[body].moment;
+    const Vec2 arm = vec2_sub(motions[body].position, point);
+    const double moment = loads[body].moment + vec2_cross(arm, loads[body].force);
     free(loads);
     return moment;
 }
@@ -52,17 +55,23 @@ double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t s
     const Linkage *linkage = &scenario->linkage;
     const int driven = linkage_driven_body(linkage);
     const Motion *motions = trajectory_motion(run, sample, 0);
-    double torque = linkage->bodies[driven].inertia * motions[driven].alpha -
-                    moment_of_loads(linkage, motions, run->times[sample], driven);
+    const Motion *body = &motions[driven];
+    const double mass = linkage->bodies[driven].mass;
+    const Joint *pivot = &linkage->joints[linkage->driver.joint];
+    const Vec2 point = linkage_point(motions, pivot->body_b, pivot->anchor_b);
+    const Vec2 pull = vec2_add(body->acceleration, (Vec2){0.0, scenario->gravity});
+    double torque = linkage->bodies[driven].inertia * body->alpha +
+                    mass * vec2_cross(vec2_sub(body->position, point), pull) -
+                    moment_of_loads(linkage, motions, run->times[sample], driven, point);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->body_a != driven && joint->body_b != driven) {
+        if ((int)i == linkage->driver.joint ||
+            (joint->body_a != driven && joint->body_b != driven)) {
             continue;
         }
         const JointState *state = trajectory_state(run, sample, i);
         const double sign = joint->body_b == driven ? 1.0 : -1.0;
-        const Vec2 arm = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b),
-                                  motions[driven].position);
+        const Vec2 arm = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b), point);
         torque -=
             sign * (vec2_cross(arm, state->force_on_b) + joint_moment(linkage, motions, i, state));
     }

@@ -19,6 +19,7 @@
 #include "base/side_by_side.h"
 #include "base/sorted.h"
 #include "base/zeroed.h"
+#include "contact/law.h"
 #include "model/nearest.h"
 #include "model/perturb.h"
 #include "run/pressed.h"
@@ -723,11 +724,24 @@ bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch
     return is_followed;
 }
 
+// Whether the damping of contacts does anything.
+static bool has_damping(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (linkage_has_play(joint) &&
+            law_options(&scenario->contact, joint).damping != DAMPING_NONE) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void settle_damping(Scenario *scenario, RunWatch watch)
 {
     static const double SCALES[] = {0.5, 2.0};
     SettledStart *settled = &scenario->settled;
-    if (settled->motion_count == 0) {
+    if (settled->motion_count == 0 || !has_damping(scenario)) {
         return;
     }
     Start *starts = zeroed(2, sizeof *starts);
