@@ -404,15 +404,20 @@ static void compare_screen_orders(const Ladder *ladder, Text *text)
 {
     Text words;
     text_init(&words);
-    text_append(&words, "  Order of the error in the step: ");
     size_t count = 0;
     for (size_t i = 0; i < ladder->scheme_count; i++) {
         if (scheme_has_step(&ladder->schemes[i]) && ladder->orders[i].is_known) {
-            text_append(&words, "%s%s %.2g", count++ > 0 ? ", " : "", ladder->schemes[i].name,
-                        ladder->orders[i].order);
+            text_append(&words, "%s%s %.2g",
+                        count++ > 0 ? ", " : "  Order of the error in the step: ",
+                        ladder->schemes[i].name, ladder->orders[i].order);
         }
     }
-    text_append(&words, "%s", count > 0 ? "; the others none." : "none of any scheme.");
+    if (count > 0) {
+        text_append(&words, "; the others none.");
+    } else {
+        text_append(&words, "  No scheme's error has an order: none falls alike over three steps "
+                            "in a row.");
+    }
     screen_line(&words, text);
     size_t failed = 0;
     for (size_t i = 0; i < ladder->point_count; i++) {
