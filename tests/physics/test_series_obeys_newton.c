@@ -15,6 +15,7 @@
 #include "scratch.h"
 
 #include "../measure/random_case.h"
+#include "base/lookup.h"
 #include "commands/run/case_run.h"
 #include "model/forces.h"
 
@@ -26,6 +27,7 @@ typedef struct Series {
     double *cells; // owned, by row and column
     size_t columns;
     size_t rows;
+    Lookup by_name; // owned
 } Series;
 
 static Series read_series(const char *path)
@@ -41,11 +43,16 @@ static Series read_series(const char *path)
     char *rest = series.text;
     for (char *name; (name = strsep(&rest, ",")) != NULL; series.columns++) {
         series.names[series.columns] = name;
+        lookup_add(&series.by_name, lookup_hash(name), series.columns);
     }
     char *line = NULL;
     size_t line_room = 0;
+    size_t rows_room = 0;
     while (getline(&line, &line_room, stream) > 0) {
-        series.cells = realloc(series.cells, (series.rows + 1) * series.columns * sizeof(double));
+        if (series.rows == rows_room) {
+            rows_room = 2 * rows_room + 64;
+            series.cells = realloc(series.cells, rows_room * series.columns * sizeof(double));
+        }
         char *cells = line;
         for (size_t i = 0; i < series.columns; i++) {
             const char *cell = strsep(&cells, ",\n");
@@ -65,6 +72,19 @@ static void free_series(Series *series)
     free(series->text);
     free(series->names);
     free(series->cells);
+    lookup_finish(&series->by_name);
+}
+
+// A name that is looked for in a series.
+typedef struct SoughtName {
+    const Series *series;
+    const char *name;
+} SoughtName;
+
+static bool is_sought(size_t number, const void *sought)
+{
+    const SoughtName *of = sought;
+    return strcmp(of->series->names[number], of->name) == 0;
 }
 
 // The cell of a column "of_number"; without such a column zero.
@@ -72,12 +92,9 @@ static double cell(const Series *series, size_t row, const char *of, const char 
 {
     char name[2 * LINKAGE_NAME_SIZE];
     snprintf(name, sizeof name, "%s%s%s", of, *of != '\0' ? "_" : "", number);
-    for (size_t i = 0; i < series->columns; i++) {
-        if (strcmp(series->names[i], name) == 0) {
-            return series->cells[row * series->columns + i];
-        }
-    }
-    return 0.0;
+    const SoughtName sought = {series, name};
+    const int column = lookup_find(&series->by_name, lookup_hash(name), is_sought, &sought);
+    return column == LOOKUP_NONE ? 0.0 : series->cells[row * series->columns + (size_t)column];
 }
 
 static Motion motion_of(const Series *series, size_t row, const char *body)
@@ -147,7 +164,8 @@ static Balance balance_of(const Scenario *scenario, const Series *series, Fault 
     Motion *motions = calloc(linkage->body_count, sizeof *motions);
     BodyLoad *loads = calloc(linkage->body_count, sizeof *loads);
     Balance balance = {0};
-    for (size_t row = 0; row < series->rows; row++) {
+    // of a long series some hundred rows
+    for (size_t row = 0; row < series->rows; row += 1 + series->rows / 500) {
         for (size_t i = 0; i < linkage->body_count; i++) {
             motions[i] = motion_of(series, row, linkage->bodies[i].name);
         }
