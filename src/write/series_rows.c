@@ -1,5 +1,6 @@
 // Writes the rows of a series: one table of columns gives the head and the cells.
 #include "write/series_rows.h"
+#include "contact/law.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
 #include "run/drive_torque.h"
@@ -80,8 +81,7 @@ static bool has_limits(const Scenario *scenario, size_t joint)
 static bool turns(const Scenario *scenario, size_t joint)
 {
     const Joint *of = joint_of(scenario, joint);
-    const double friction =
-        of->contact.has_friction ? of->contact.friction : scenario->contact.friction;
+    const double friction = law_options(&scenario->contact, of).friction;
     const bool is_circle = of->kind == JOINT_CLEARANCE || of->kind == JOINT_STOP;
     return linkage_is_torsional(of) || of->kind == JOINT_GEAR || (is_circle && friction > 0.0);
 }

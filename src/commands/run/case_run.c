@@ -9,7 +9,7 @@
 #include "run/registry.h"
 #include "run/settle.h"
 #include "run/tracer.h"
-#include "write/contact_rows.h"
+#include "write/contact_table.h"
 #include "write/file.h"
 #include "write/series_rows.h"
 
@@ -189,8 +189,11 @@ void case_run_finish(CaseRun *run)
 
 bool run_files_check_columns(const CaseRun *run, Err *err)
 {
+    if (run->columns == NULL) {
+        return true;
+    }
     SeriesColumns columns = series_columns_create(&run->scenario, run->scenario.run.keeps_ranges);
-    const bool has_them = run->columns == NULL || series_columns_check(&columns, run->columns, err);
+    const bool has_them = series_columns_check(&columns, run->columns, err);
     series_columns_finish(&columns);
     return has_them;
 }
@@ -250,7 +253,7 @@ static bool write_contacts(const CaseRun *run, const Trajectory *trajectory, con
     if (!file_begin(&file, FILE_TABLE, path, err)) {
         return false;
     }
-    contact_rows_write(trajectory, file.stream);
+    contact_table_write(trajectory, file.stream);
     return file_end(&file, err) && written_say(path, is_quiet);
 }
 

@@ -42,7 +42,7 @@ bool run_files_claim(const CaseRun *run, const char *option, const char *path, E
 // backend, and to FILE-<backend>.csv for each where it has several. ERR_FILE.
 bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err);
 
-// The same of a row for each contact: write/contact_rows.h. The runs have kept them.
+// The same of a row for each contact: write/contact_table.h. The runs have kept them.
 bool run_files_contacts(const CaseRun *run, const char *path, bool is_quiet, Err *err);
 
 // Likewise, <case>-<backend>.csv in the folder of --out, which is there.

@@ -7,4 +7,4 @@
 
 // Writes the head and the contacts in the order of their onsets; the trajectory is complete and has
 // kept them.
-void contact_rows_write(const Trajectory *trajectory, FILE *stream);
+void contact_table_write(const Trajectory *trajectory, FILE *stream);
