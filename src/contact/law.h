@@ -65,8 +65,9 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint);
 // Whether the stiffness of any joint with play is that of the law that the options name.
 bool law_is_asked(const Scenario *scenario);
 
-// Whether any joint with play has friction.
+// Whether any joint with play has friction; whether any is damped.
 bool law_has_friction(const Scenario *scenario);
+bool law_has_damping(const Scenario *scenario);
 
 // The law of a joint with play of a scenario. Fails as law_make does, with the joint's name in
 // front, and where a joint that is no pin in its hole has no stiffness that is given.

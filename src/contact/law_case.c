@@ -59,3 +59,15 @@ bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, E
     }
     return true;
 }
+
+bool law_has_damping(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (linkage_has_play(joint) &&
+            law_options(&scenario->contact, joint).damping != DAMPING_NONE) {
+            return true;
+        }
+    }
+    return false;
+}

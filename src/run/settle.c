@@ -724,24 +724,11 @@ bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch
     return is_followed;
 }
 
-// Whether the damping of contacts does anything.
-static bool has_damping(const Scenario *scenario)
-{
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[i];
-        if (linkage_has_play(joint) &&
-            law_options(&scenario->contact, joint).damping != DAMPING_NONE) {
-            return true;
-        }
-    }
-    return false;
-}
-
 void settle_damping(Scenario *scenario, RunWatch watch)
 {
     static const double SCALES[] = {0.5, 2.0};
     SettledStart *settled = &scenario->settled;
-    if (settled->motion_count == 0 || !has_damping(scenario)) {
+    if (settled->motion_count == 0 || !law_has_damping(scenario)) {
         return;
     }
     Start *starts = zeroed(2, sizeof *starts);
