@@ -21,6 +21,12 @@ void independent_close(void *state);
 // of the first.
 SolverModel independent_model(const void *state);
 
+// Those that every solver of several has, for its const Solver.
+#define INDEPENDENT_FUNCTIONS                                                                      \
+    .step = independent_step, .record = independent_record, .observe = independent_observe,        \
+    .observe_part = independent_observe_part, .contacts = independent_contacts,                    \
+    .close = independent_close
+
 // What they are made of, how many there are, and the solver's state of one of them.
 const Scenario *independent_scenario(const void *state);
 size_t independent_count(const void *state);

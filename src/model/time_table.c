@@ -45,6 +45,13 @@ static bool is_there(const TimeTable *table, long point)
     return table->period_s > 0.0 || (point >= 0 && point < (long)table->count);
 }
 
+// From a point to the next one, by their places in the table: the first follows the last.
+static double width_of(const TimeTable *table, size_t from, size_t to)
+{
+    const double width_s = table->times[to] - table->times[from];
+    return to > from ? width_s : width_s + table->period_s;
+}
+
 // The first point after a time, and after time zero.
 static long point_after(const TimeTable *table, double time_s)
 {
@@ -72,9 +79,7 @@ TimePiece time_table_piece(const TimeTable *table, double time_s)
     TimePiece piece = {.time_s = time_of(table, first), .value = table->values[from]};
     if (first < after && is_there(table, after)) {
         const size_t to = place_of(table, after);
-        const double width_s = table->times[to] - table->times[from];
-        piece.slope =
-            (table->values[to] - piece.value) / (to > from ? width_s : width_s + table->period_s);
+        piece.slope = (table->values[to] - piece.value) / width_of(table, from, to);
     }
     return piece;
 }
@@ -91,9 +96,7 @@ double time_table_at(const TimeTable *table, double time_s)
     }
     const size_t from = place_of(table, after - 1);
     const size_t to = place_of(table, after);
-    const double width_s = table->times[to] - table->times[from];
-    const double share =
-        (time_s - piece.time_s) / (to > from ? width_s : width_s + table->period_s);
+    const double share = (time_s - piece.time_s) / width_of(table, from, to);
     return piece.value + share * (table->values[to] - piece.value);
 }
 

@@ -396,15 +396,10 @@ static SolverModel model_of_all(const void *state)
 static const Solver MECHANISMS_SOLVER = {
     .name = "reference",
     .open = open_each,
-    .step = independent_step,
     .stride = independent_stride,
-    .record = independent_record,
-    .observe = independent_observe,
-    .observe_part = independent_observe_part,
     .glance = independent_glance,
-    .contacts = independent_contacts,
     .model = model_of_all,
-    .close = independent_close,
+    INDEPENDENT_FUNCTIONS,
 };
 
 typedef struct Reference {

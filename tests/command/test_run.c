@@ -145,6 +145,15 @@ static void a_direction_among_the_settings_is_a_list_and_a_tolerated_length_is_n
     json_decref(root);
 }
 
+static size_t count_lines(const char *text)
+{
+    size_t lines = 0;
+    for (; *text != '\0'; text++) {
+        lines += *text == '\n' ? 1 : 0;
+    }
+    return lines;
+}
+
 static void a_series_holds_a_row_a_sample(void **state)
 {
     Program *program = *state;
@@ -158,11 +167,7 @@ static void a_series_holds_a_row_a_sample(void **state)
     program_read(path, content);
     assert_int_equal(strncmp(content, "time_s,crank_deg,crank_angle_rad,crank_omega_rad_s,", 51),
                      0);
-    size_t lines = 0;
-    for (const char *c = content; *c != '\0'; c++) {
-        lines += *c == '\n' ? 1 : 0;
-    }
-    assert_int_equal(lines, 52);
+    assert_int_equal(count_lines(content), 52);
     program_run(program, "run $cases/paper/ideal-nominal.yaml --series t.csv --set run.samples=50");
     program_path(program, "t-ode.csv", path);
     assert_int_equal(access(path, F_OK), 0);
@@ -202,11 +207,7 @@ static void every_contact_has_a_row(void **state)
     static const char HEAD[] = "joint,onset_s,duration_s,peak_s,force_max_N,impulse_N_s,"
                                "approach_speed_m_s,penetration_max_m,wall_deg\nhole,";
     assert_int_equal(strncmp(content, HEAD, sizeof HEAD - 1), 0);
-    size_t rows = 0;
-    for (const char *c = content; *c != '\0'; c++) {
-        rows += *c == '\n' ? 1 : 0;
-    }
-    rows--;
+    const size_t rows = count_lines(content) - 1;
     assert_true(rows > 12);
     assert_true((double)rows == impacts);
     const double clearance = 1e-4;

@@ -52,15 +52,23 @@ static const char *const UP[LINKS] = {"drive.speed=900 rpm", "drive.speed=940 rp
 static const char *const DOWN[LINKS] = {"drive.speed=1100 rpm", "drive.speed=1060 rpm",
                                         "drive.speed=1020 rpm", "drive.speed=1000 rpm"};
 
+// The forces at one value, come to from below and from above.
+static void force_both_ways(const char *law, double *up, double *down)
+{
+    bool is_up;
+    bool is_down;
+    *up = force_along(law, UP, &is_up);
+    *down = force_along(law, DOWN, &is_down);
+    assert_true(is_up && is_down);
+}
+
 static void one_motion_is_come_to_from_both_sides(void **state)
 {
     (void)state;
     static const char LAW[] = "contact.resting-speed=50 mm/s";
-    bool is_up;
-    bool is_down;
-    const double up = force_along(LAW, UP, &is_up);
-    const double down = force_along(LAW, DOWN, &is_down);
-    assert_true(is_up && is_down);
+    double up;
+    double down;
+    force_both_ways(LAW, &up, &down);
     assert_close(up, down, 1e-6);
     assert_close(up, force_alone(LAW, "drive.speed=1000 rpm"), 1e-6);
     // at another speed the force is another
@@ -71,11 +79,9 @@ static void a_law_with_a_memory_keeps_to_where_it_came_from(void **state)
 {
     (void)state;
     static const char LAW[] = "contact.resting-speed=none";
-    bool is_up;
-    bool is_down;
-    const double up = force_along(LAW, UP, &is_up);
-    const double down = force_along(LAW, DOWN, &is_down);
-    assert_true(is_up && is_down);
+    double up;
+    double down;
+    force_both_ways(LAW, &up, &down);
     print_message("# %.1f N from below, %.1f N from above\n", up, down);
     assert_true(fabs(up / down - 1.0) > 1e-3);
 }

@@ -23,20 +23,11 @@ typedef struct Chain {
     Scenario last;                   // owned
 } Chain;
 
-static size_t variable_number(const Spec *spec, const char *key)
-{
-    size_t i = 0;
-    while (i < spec->variable_count && strcmp(spec->variables[i].key, key) != 0) {
-        i++;
-    }
-    return i;
-}
-
 static bool is_backward(const Spec *spec, const Cell *values)
 {
-    const size_t i = variable_number(spec, SPEC_DIRECTION_KEY);
-    return i < spec->variable_count ? strcmp(values[i].word, "backward") == 0
-                                    : spec->direction == FOLLOW_BACKWARD;
+    const Variable *direction = spec_variable(spec, SPEC_DIRECTION_KEY);
+    return direction != NULL ? strcmp(values[direction - spec->variables].word, "backward") == 0
+                             : spec->direction == FOLLOW_BACKWARD;
 }
 
 // The value at a place of the chain, from 0.
@@ -92,12 +83,12 @@ static void go_along(const Spec *spec, const Variable *variable, Cell *value, co
 void follow_settle(const Spec *spec, uint64_t run, Scenario *scenario)
 {
     static Chain chain;
-    const size_t number = variable_number(spec, spec->follow);
-    if (number == spec->variable_count || !scenario_lacks_start(scenario)) {
+    const Variable *variable = spec_variable(spec, spec->follow);
+    if (variable == NULL || !scenario_lacks_start(scenario)) {
         settle_scenario(scenario, NOBODY);
         return;
     }
-    const Variable *variable = &spec->variables[number];
+    const size_t number = (size_t)(variable - spec->variables);
     Cell values[RECORD_SETTING_MAX];
     design_values(spec, run, values);
     const bool backward = is_backward(spec, values);

@@ -19,7 +19,7 @@
 static bool spec_read_each(Reading *reading, const Node *map,
                            bool (*read)(Reading *reading, const Node *value));
 static uint64_t spec_print(const Spec *spec);
-static const Variable *spec_variable(const Spec *spec, const char *key);
+const Variable *spec_variable(const Spec *spec, const char *key);
 static bool spec_sets(const Spec *spec, const char *key);
 
 // Single values of a study file.
@@ -522,7 +522,7 @@ static uint64_t spec_print(const Spec *spec)
     return hash_number(print, spec->has_truth ? 1.0 : 0.0);
 }
 
-static const Variable *spec_variable(const Spec *spec, const char *key)
+const Variable *spec_variable(const Spec *spec, const char *key)
 {
     for (size_t i = 0; i < spec->variable_count; i++) {
         if (strcmp(spec->variables[i].key, key) == 0) {

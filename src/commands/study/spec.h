@@ -97,6 +97,9 @@ void spec_finish(Spec *spec);
 Spec *spec_open(const char *path, Err *err);
 void spec_close(Spec *spec);
 
+// The variable of a key, or NULL.
+const Variable *spec_variable(const Spec *spec, const char *key);
+
 // What the parts of reading a study file share.
 
 typedef struct Reading {

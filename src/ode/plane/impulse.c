@@ -129,11 +129,6 @@ static bool open_plane_parts(const Scenario *scenario, void **state, Err *err)
 const Solver STEPPING_IMPULSE_PARTS = {
     .name = "impulse",
     .open = open_plane_parts,
-    .step = independent_step,
-    .record = independent_record,
-    .observe = independent_observe,
-    .observe_part = independent_observe_part,
-    .contacts = independent_contacts,
     .model = independent_model,
-    .close = independent_close,
+    INDEPENDENT_FUNCTIONS,
 };

@@ -167,11 +167,6 @@ static bool open_space_parts(const Scenario *scenario, void **state, Err *err)
 const Solver SPACE_IMPULSE_PARTS = {
     .name = "impulse",
     .open = open_space_parts,
-    .step = independent_step,
-    .record = independent_record,
-    .observe = independent_observe,
-    .observe_part = independent_observe_part,
-    .contacts = independent_contacts,
     .model = independent_model,
-    .close = independent_close,
+    INDEPENDENT_FUNCTIONS,
 };
