@@ -528,6 +528,40 @@ void kernel_islands_destroy(KernelIslands *islands)
     free(islands);
 }
 
+// One that begins with a contact, if it is kept: it is made anew of the same contacts.
+static void carry_island(KernelIslands *islands, size_t first, Carry *carry)
+{
+    KernelIsland *island = islands->kept[first];
+    size_t count = island != NULL ? island->kernel.contact_count : 0;
+    CARRY(carry, count);
+    if (carry->is_back) {
+        free_island(island);
+        islands->kept[first] = NULL;
+    }
+    if (count == 0) {
+        return;
+    }
+    size_t *members = carry->is_back ? zeroed(count, sizeof *members) : island->members;
+    CARRY_ARRAY(carry, members, count);
+    if (carry->is_back) {
+        island = islands->kept[first] = make_island(islands, members, count);
+    }
+    kernel_carry(&island->kernel, carry);
+}
+
+void kernel_islands_carry(KernelIslands *islands, Carry *carry)
+{
+    const size_t count = islands->all->contact_count;
+    kernel_carry(islands->all, carry);
+    CARRY_ARRAY(carry, islands->longest_s, count);
+    CARRY_ARRAY(carry, islands->waits, count);
+    CARRY_ARRAY(carry, islands->patience, count);
+    CARRY(carry, islands->duration_before_s);
+    for (size_t i = 0; i < count; i++) {
+        carry_island(islands, i, carry);
+    }
+}
+
 // Whether a contact that does not touch may do so in a step of a length while others push it, m/s.
 static bool may_touch(const Kernel *all, const KernelContact *contact, double duration, double push)
 {

@@ -12,6 +12,7 @@
 // step (kernel/motion.c).
 #pragma once
 
+#include "base/carry.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 #include "kernel/pin_hole.h"
@@ -133,6 +134,9 @@ void kernel_add(Kernel *kernel, const KernelContact *contact, size_t rows);
 // Makes room for what a step is given, once all contacts are there: mobilities, all zero, between
 // rows that are no further apart than `reach`.
 void kernel_make_room(Kernel *kernel, size_t reach);
+
+// Carries all that lives on from step to step.
+void kernel_carry(Kernel *kernel, Carry *carry);
 
 // Makes room for positions, speeds and free accelerations alone, of one that is not run.
 void kernel_make_rows(Kernel *kernel);
@@ -298,6 +302,9 @@ typedef struct KernelIslands {
 // Prepares the islands of all contacts. Both are kept as pointers.
 KernelIslands *kernel_islands_create(Kernel *all, const KernelCoupling *coupling);
 void kernel_islands_destroy(KernelIslands *islands);
+
+// Carries all that lives on from step to step, of all contacts too.
+void kernel_islands_carry(KernelIslands *islands, Carry *carry);
 
 // Integrates a step of a length, s, from the positions, speeds and free accelerations of all rows.
 // Returns false where that takes too many local steps.

@@ -161,6 +161,17 @@ void kernel_make_room(Kernel *kernel, size_t reach)
     make_work(kernel);
 }
 
+void kernel_carry(Kernel *kernel, Carry *carry)
+{
+    CARRY_ARRAY(carry, kernel->contacts, kernel->contact_count);
+    CARRY_ARRAY(carry, kernel->free, kernel->row_count);
+    CARRY(carry, kernel->longest_s);
+    CARRY(carry, kernel->duration_before_s);
+    CARRY(carry, kernel->stiff_width_s);
+    CARRY(carry, kernel->evaluations);
+    CARRY(carry, kernel->work_done);
+}
+
 void kernel_finish(Kernel *kernel)
 {
     free(kernel->contacts);
@@ -462,6 +473,7 @@ static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
     kernel->contacts[number].state = contact_state_begun(pose->approach_speed);
     expect_contact(kernel, number, pose->normal);
 }
+
 
 // Contacts that were set touching before a first step.
 static void resume_contacts(Kernel *kernel, const KernelPoint *point)

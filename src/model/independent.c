@@ -206,6 +206,25 @@ void independent_contacts(const void *state, ContactState (*states)[JOINT_PLACES
     free(own);
 }
 
+bool independent_carry(void *state, Carry *carry)
+{
+    Independent *independent = state;
+    for (size_t i = 0; i < independent->count; i++) {
+        Component *component = &independent->components[i];
+        if (!independent->solver->carry(component->state, carry)) {
+            return false;
+        }
+        CARRY(carry, component->elastic);
+    }
+    CARRY_ARRAY(carry, independent->reached_s, independent->count);
+    CARRY_ARRAY(carry, independent->width_s, independent->count);
+    CARRY(carry, independent->now);
+    CARRY(carry, independent->next);
+    CARRY(carry, independent->has_begun);
+    CARRY(carry, independent->elastic);
+    return true;
+}
+
 SolverModel independent_model(const void *state)
 {
     const Independent *independent = state;

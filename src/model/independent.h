@@ -15,6 +15,7 @@ void independent_observe(const void *state, double time_s, Sample *sample);
 void independent_observe_part(const void *state, double time_s, Sample *sample);
 void independent_glance(const void *state, double time_s, Sample *sample);
 void independent_contacts(const void *state, ContactState (*states)[JOINT_PLACES]);
+bool independent_carry(void *state, Carry *carry);
 void independent_close(void *state);
 
 // Rows and evaluations are sums; steps are those of the mechanism that took most. The label is that
@@ -25,7 +26,7 @@ SolverModel independent_model(const void *state);
 #define INDEPENDENT_FUNCTIONS                                                                      \
     .step = independent_step, .record = independent_record, .observe = independent_observe,        \
     .observe_part = independent_observe_part, .contacts = independent_contacts,                    \
-    .close = independent_close
+    .carry = independent_carry, .close = independent_close
 
 // What they are made of, how many there are, and the solver's state of one of them.
 const Scenario *independent_scenario(const void *state);

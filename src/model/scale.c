@@ -100,6 +100,14 @@ void scale_free(SpeedScale *scale)
     *scale = (SpeedScale){.turning = NULL};
 }
 
+void scale_carry(const Linkage *linkage, SpeedScale *scale, Carry *carry)
+{
+    CARRY(carry, scale->moving);
+    CARRY(carry, scale->changing);
+    CARRY_ARRAY(carry, scale->turning, linkage->body_count);
+    CARRY_ARRAY(carry, scale->speeding, linkage->body_count);
+}
+
 bool scale_raise(const Linkage *linkage, double moving, SpeedScale *scale)
 {
     if (!(moving > scale->moving)) {

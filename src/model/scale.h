@@ -1,6 +1,7 @@
 // How fast will a scenario move, before it has moved? Sizes for errors and for rounding.
 #pragma once
 
+#include "base/carry.h"
 #include "model/scenario.h"
 
 typedef struct SpeedScale {
@@ -20,6 +21,9 @@ typedef struct SpeedScale {
 SpeedScale scale_speeds(const Scenario *scenario);
 
 void scale_free(SpeedScale *scale);
+
+// Carries the speeds seen so far, of a linkage.
+void scale_carry(const Linkage *linkage, SpeedScale *scale, Carry *carry);
 
 // Raises the scale to a speed of the fastest point, m/s, that was seen. Returns whether it is one
 // above the scale.

@@ -6,6 +6,7 @@
 // sample, so that every sample stands in a step and has accelerations and forces.
 #pragma once
 
+#include "base/carry.h"
 #include "model/trajectory.h"
 
 // The largest force, N, and depth, m, in a joint, and when they were reached, s; 0 where that is
@@ -90,6 +91,10 @@ typedef struct Solver {
     // What the contacts of each joint carry at the end of the last step, by joint and its places.
     // NULL of solvers without contacts.
     void (*contacts)(const void *state, ContactState (*states)[JOINT_PLACES]);
+    // Carries all that steps from the end of the last one on depend on, so that a state opened on
+    // the same scenario, into which it is put back, takes the same steps to the last bit. Returns
+    // false where the last step has not been handed on to its end: of taking after a later step.
+    bool (*carry)(void *state, Carry *carry);
     SolverModel (*model)(const void *state);
     // Optional: extremes from a time on known better than from steps (a closed form), which return
     // every turn. NULL: taken from records.

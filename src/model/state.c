@@ -10,6 +10,7 @@
 #include "base/zeroed.h"
 #include "model/coordinate.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -31,15 +32,32 @@ void run_state_free(RunState *state)
     sample_free(&state->sample);
     free(state->contacts);
     state->contacts = NULL;
+    carry_finish(&state->carry);
 }
 
-void run_state_take(const Solver *solver, const void *of, double end_s, RunState *state)
+void run_state_take(const Solver *solver, void *of, double end_s, RunState *state)
 {
     state->time_s = end_s;
     solver->observe(of, end_s, &state->sample);
     if (solver->contacts != NULL) {
         solver->contacts(of, state->contacts);
     }
+    carry_begin(&state->carry, false);
+    if (solver->carry == NULL || !solver->carry(of, &state->carry)) {
+        carry_begin(&state->carry, false);
+    }
+}
+
+bool run_state_resume(RunState *state, const Solver *solver, const Scenario *scenario, void **of,
+                      Err *err)
+{
+    if (!solver->open(scenario, of, err)) {
+        return false;
+    }
+    carry_begin(&state->carry, true);
+    solver->carry(*of, &state->carry);
+    assert(state->carry.used == state->carry.size);
+    return true;
 }
 
 // The whole turns of a body since its start.

@@ -88,3 +88,21 @@ void engine_seed(size_t seed)
 {
     dRandSetSeed((unsigned long)seed);
 }
+
+// Put in by its functions a turn is scaled to size one again, which may move its last bit. What its
+// getters point to is the body's own: it is written there, once these have told the geoms.
+void engine_carry_body(dBodyID body, Carry *carry)
+{
+    dReal *const position = (dReal *)dBodyGetPosition(body);
+    dReal *const turn = (dReal *)dBodyGetQuaternion(body);
+    dReal *const matrix = (dReal *)dBodyGetRotation(body);
+    if (carry->is_back) {
+        dBodySetPosition(body, position[0], position[1], position[2]);
+        dBodySetQuaternion(body, turn);
+    }
+    CARRY_ARRAY(carry, position, 3);
+    CARRY_ARRAY(carry, turn, 4);
+    CARRY_ARRAY(carry, matrix, 12);
+    CARRY_ARRAY(carry, (dReal *)dBodyGetLinearVel(body), 3);
+    CARRY_ARRAY(carry, (dReal *)dBodyGetAngularVel(body), 3);
+}

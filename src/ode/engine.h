@@ -1,6 +1,7 @@
 // ODE, started once in a process, its errors caught.
 #pragma once
 
+#include "base/carry.h"
 #include "base/err.h"
 
 #include <ode/ode.h>
@@ -17,3 +18,6 @@ bool engine_step(dWorldID world, double step_s, bool is_quick, Err *err);
 // Puts the quick solver's random numbers to a seed: it visits rows in a random order, and the
 // generator is one for the whole process.
 void engine_seed(size_t seed);
+
+// Carries where a body is and how it moves, to the last bit.
+void engine_carry_body(dBodyID body, Carry *carry);

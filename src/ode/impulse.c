@@ -144,13 +144,18 @@ static bool begin_step_of(Impulse *impulse, Err *err)
     return true;
 }
 
+// Whether the last step has been handed on to its end.
+static bool needs_step(const Impulse *impulse)
+{
+    return impulse->islands != NULL ? impulse_islands_need_step(impulse->islands)
+                                    : impulse_part_needs_step(&impulse->part);
+}
+
 bool impulse_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // samples are looked up inside the step
     Impulse *impulse = state;
-    const bool needs_step = impulse->islands != NULL ? impulse_islands_need_step(impulse->islands)
-                                                     : impulse_part_needs_step(&impulse->part);
-    if (needs_step && !begin_step_of(impulse, err)) {
+    if (needs_step(impulse) && !begin_step_of(impulse, err)) {
         return false;
     }
     if (impulse->islands != NULL) {
@@ -194,6 +199,19 @@ void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
         const int place = impulse->kind->place(impulse->own, i);
         states[kernel->contacts[i].joint][place] = kernel->contacts[i].state;
     }
+}
+
+bool impulse_carry(void *state, Carry *carry)
+{
+    Impulse *impulse = state;
+    if (!carry->is_back && !needs_step(impulse)) {
+        return false;
+    }
+    impulse->kind->carry(impulse->own, carry);
+    CARRY(carry, impulse->count);
+    CARRY(carry, impulse->part.most_rows);
+    CARRY_ARRAY(carry, impulse->part.approach, impulse->view.scenario->linkage.joint_count);
+    return true;
 }
 
 SolverModel impulse_model(const void *state)

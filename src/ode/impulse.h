@@ -151,6 +151,8 @@ typedef struct ImpulseKind {
     void (*observe)(const void *own, ImpulseTime at, const KernelSums *sums, Sample *sample);
     // The mean force of an ideal joint in the step, N.
     double (*mean)(const void *own, size_t joint);
+    // Carries all that the next step depends on.
+    void (*carry)(void *own, Carry *carry);
     // The number of a place in its joint.
     int (*place)(const void *own, size_t place);
 } ImpulseKind;
@@ -182,6 +184,7 @@ void impulse_close(void *state);
 bool impulse_step(void *state, double stop_s, Err *err);
 StepRecord impulse_record(const void *state);
 void impulse_observe(const void *state, double time_s, Sample *sample);
+bool impulse_carry(void *state, Carry *carry);
 void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES]);
 SolverModel impulse_model(const void *state);
 

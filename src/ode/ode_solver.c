@@ -82,6 +82,12 @@ static void ode_contacts(const void *state, ContactState (*states)[JOINT_PLACES]
     }
 }
 
+static bool ode_carry(void *state, Carry *carry)
+{
+    Ode *ode = state;
+    return ode->stepping->carry(ode->state, carry);
+}
+
 static SolverModel ode_model(const void *state)
 {
     const Ode *ode = state;
@@ -105,6 +111,7 @@ const Solver ODE_SOLVER = {
     .observe = ode_observe,
     .observe_part = ode_observe_part,
     .contacts = ode_contacts,
+    .carry = ode_carry,
     .model = ode_model,
     .close = ode_close,
 };

@@ -331,6 +331,41 @@ void dop853_accept(Dop853 *integrator)
     integrator->accepted++;
 }
 
+// A vector, wherever in the memory it stands.
+static void carry_vector(const Dop853 *integrator, double *vector, Carry *carry)
+{
+    CARRY_ARRAY(carry, vector, integrator->size);
+}
+
+void dop853_carry(Dop853 *integrator, Carry *carry)
+{
+    // which two of these there are trades places with every step
+    double *const vectors[] = {
+        integrator->fixed, integrator->grown, integrator->y,
+        integrator->carry, integrator->next,  integrator->next_carry,
+    };
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        carry_vector(integrator, vectors[i], carry);
+    }
+    for (size_t i = 0; i < DOP853_STAGES; i++) {
+        carry_vector(integrator, integrator->stages[i], carry);
+    }
+    for (size_t i = 0; i < DOP853_POLYNOMIAL; i++) {
+        carry_vector(integrator, integrator->polynomial[i], carry);
+    }
+    CARRY(carry, integrator->time);
+    CARRY(carry, integrator->shortest);
+    CARRY(carry, integrator->step);
+    CARRY(carry, integrator->tried);
+    CARRY(carry, integrator->has_end_rates);
+    CARRY(carry, integrator->is_filled);
+    CARRY(carry, integrator->was_rejected);
+    CARRY(carry, integrator->last_error);
+    CARRY(carry, integrator->accepted);
+    CARRY(carry, integrator->rejected);
+    CARRY(carry, integrator->evaluations);
+}
+
 // Dense output: the motion within a step lies on the polynomial through it (dop853_fill), of degree
 // 7 or that of another method.
 

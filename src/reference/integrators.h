@@ -8,6 +8,7 @@
 #pragma once
 
 #include "base/banded.h"
+#include "base/carry.h"
 #include "base/grouped.h"
 #include "model/linkage.h"
 
@@ -213,6 +214,9 @@ void dop853_shift(Dop853 *integrator, double by);
 // Takes the tried step: its end becomes the start of the next.
 void dop853_accept(Dop853 *integrator);
 
+// Carries all that steps from here on depend on; the method is chosen by whoever has it.
+void dop853_carry(Dop853 *integrator, Carry *carry);
+
 // For another method that takes the steps: the state at the end of the step that is tried, from how
 // it has changed in it, and the error over the error allowed from two estimates of it times a
 // factor.
@@ -304,6 +308,9 @@ typedef struct Radau {
 // NULL; the caller destroys it.
 Radau *radau_create(const Dop853 *integrator);
 void radau_destroy(Radau *radau);
+
+// Carries all that steps from here on depend on.
+void radau_carry(Radau *radau, Carry *carry);
 
 // How fast rates die away where the next step starts: the largest rate of decay, 1/s. The next step
 // takes nothing from one before.

@@ -370,6 +370,14 @@ Radau *radau_create(const Dop853 *integrator)
     return radau;
 }
 
+void radau_carry(Radau *radau, Carry *carry)
+{
+    CARRY_ARRAY(carry, radau->nudge, 2 * radau->newton.coupling->count);
+    CARRY(carry, radau->decay);
+    CARRY(carry, radau->before_s);
+    CARRY(carry, radau->filled);
+}
+
 // The linear equations of Newton's method for all stages of an implicit step, in separate blocks.
 //
 //     (1 - h a D - h^2 a S a) dz = r

@@ -242,8 +242,25 @@ static bool mechanism_stride(void *state, double stop_s, double *end_s, Err *err
     if (!is_known) {
         return fail_at(mechanism, mechanism->end_s, err);
     }
+    mechanism->point = stepper->points.count;
     mechanism->end_s = system->kind->time(system, integrator->time + integrator->tried);
     *end_s = mechanism->end_s;
+    return true;
+}
+
+static bool mechanism_carry(void *state, Carry *carry)
+{
+    Mechanism *mechanism = state;
+    Stepper *stepper = mechanism->stepper;
+    if (!carry->is_back && mechanism->point != stepper->points.count) {
+        return false;
+    }
+    stepper_carry(stepper, carry);
+    mechanism->point = stepper->points.count;
+    CARRY(carry, mechanism->end_s);
+    CARRY_ARRAY(carry, mechanism->y, stepper->integrator.size);
+    CARRY_ARRAY(carry, mechanism->approach, stepper->scenario->linkage.joint_count);
+    CARRY_ARRAY(carry, mechanism->peaks.peaks, 2 * stepper->system->contact_count);
     return true;
 }
 
@@ -366,6 +383,7 @@ static const Solver MECHANISM_SOLVER = {
     .observe = mechanism_observe,
     .glance = mechanism_glance,
     .contacts = mechanism_contacts,
+    .carry = mechanism_carry,
     .model = mechanism_model,
     .close = mechanism_close,
 };
@@ -463,6 +481,12 @@ static void reference_contacts(const void *state, ContactState (*states)[JOINT_P
     reference->solver->contacts(reference->state, states);
 }
 
+static bool reference_carry(void *state, Carry *carry)
+{
+    Reference *reference = state;
+    return reference->solver->carry(reference->state, carry);
+}
+
 static SolverModel reference_model(const void *state)
 {
     const Reference *reference = state;
@@ -488,6 +512,7 @@ const Solver REFERENCE_SOLVER = {
     .observe_part = reference_observe_part,
     .glance = reference_glance,
     .contacts = reference_contacts,
+    .carry = reference_carry,
     .model = reference_model,
     .close = reference_close,
 };

@@ -539,6 +539,50 @@ void stepper_finish(Stepper *stepper)
     }
 }
 
+static void stiffness_carry(Stiffness *stiffness, Dop853 *integrator, Carry *carry)
+{
+    bool has_radau = stiffness->radau != NULL;
+    bool is_implicit = integrator->method != NULL;
+    CARRY(carry, has_radau);
+    CARRY(carry, is_implicit);
+    CARRY(carry, stiffness->steps);
+    CARRY(carry, stiffness->beaten_s);
+    CARRY(carry, stiffness->wait);
+    CARRY(carry, stiffness->pause);
+    if (has_radau && stiffness->radau == NULL) {
+        stiffness->radau = radau_create(integrator);
+    }
+    if (has_radau) {
+        radau_carry(stiffness->radau, carry);
+    }
+    integrator->method = is_implicit ? &stiffness->radau->method : NULL;
+}
+
+void stepper_carry(Stepper *stepper, Carry *carry)
+{
+    System *system = stepper->system;
+    Dop853 *integrator = &stepper->integrator;
+    system_carry(system, carry);
+    dop853_carry(integrator, carry);
+    stiffness_carry(&stepper->stiffness, integrator, carry);
+    scale_carry(&stepper->scenario->linkage, &stepper->scale, carry);
+    CARRY(carry, stepper->points.count);
+    CARRY(carry, stepper->events.count);
+    CARRY_ARRAY(carry, stepper->events.events, stepper->events.count);
+    CARRY(carry, stepper->pace);
+    CARRY(carry, stepper->has_step);
+    CARRY(carry, stepper->is_after_onset);
+    CARRY(carry, stepper->onset_step);
+    CARRY(carry, stepper->flight_step);
+    CARRY(carry, stepper->ending);
+    if (carry->is_back && stepper->has_step) {
+        const double end_s = events_point_time(integrator, &stepper->points,
+                                               stepper->points.count - 1);
+        system->kind->evaluate(system, end_s, integrator->next,
+                               stepper->points.states[stepper->points.count - 1], NULL);
+    }
+}
+
 // Whether a contact begins to press at the end of the step.
 static bool is_onset(const Stepper *stepper)
 {

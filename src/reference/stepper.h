@@ -111,5 +111,8 @@ typedef struct Stepper {
 bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err);
 void stepper_finish(Stepper *stepper);
 
+// Carries all that steps from here on depend on; the last one's polynomial comes along.
+void stepper_carry(Stepper *stepper, Carry *carry);
+
 // Goes on by one step of some length, at whose end there may be an event. Fails with ERR_SOLVER.
 bool stepper_next(Stepper *stepper, Err *err);

@@ -96,3 +96,19 @@ void system_give_contacts(const System *system, double time_s, ContactState (*st
         }
     }
 }
+
+void system_carry(System *system, Carry *carry)
+{
+    for (size_t i = 0; i < system->contact_count; i++) {
+        Contact *contact = &system->contacts[i];
+        CARRY(carry, contact->mode);
+        CARRY(carry, contact->onset_s);
+        CARRY(carry, contact->impact_speed);
+        CARRY(carry, contact->damping_rate);
+        CARRY(carry, contact->is_released);
+        CARRY(carry, contact->is_resting);
+    }
+    CARRY(carry, system->is_astray);
+    CARRY(carry, system->torn);
+    system->kind->carry(system, carry);
+}

@@ -176,6 +176,8 @@ typedef struct SystemKind {
     // Where the bodies are at a time and how fast they move, without their accelerations: of
     // equations whose accelerations are always determined. NULL, or false, of others.
     bool (*motions)(const System *system, double since_s, const double *y, Sample *sample);
+    // Carries the base, and what else of a state is not in the integrator's vector, nor of contacts.
+    void (*carry)(System *system, Carry *carry);
     // Rows of the joints that close loops.
     size_t (*rows)(const System *system);
     void (*destroy)(System *system);
@@ -223,6 +225,9 @@ Press system_press(const System *system, Dop853 *integrator, size_t contact, dou
 void system_take_contacts(System *system);
 void system_give_contacts(const System *system, double time_s,
                           ContactState (*states)[JOINT_PLACES]);
+
+// Carries all that steps from here on depend on, beside the integrator's vector.
+void system_carry(System *system, Carry *carry);
 
 // Fails with ERR_SOLVER where a pin is deeper in its wall than a share of what its law knows.
 bool system_check_depth(const System *system, const SystemState *state, double share, Err *err);

@@ -88,6 +88,17 @@ void applied_finish(Applied *applied)
     *applied = (Applied){.linkage = NULL};
 }
 
+void applied_carry(Applied *applied, Carry *carry)
+{
+    const size_t count = applied->linkage->body_count;
+    CARRY_ARRAY(carry, applied->angles, count);
+    CARRY_ARRAY(carry, applied->motions, count);
+    CARRY_ARRAY(carry, applied->loads, count);
+    CARRY_ARRAY(carry, applied->lines, applied->linkage->spring_count);
+    CARRY(carry, applied->torque);
+    CARRY(carry, applied->turning);
+}
+
 // The bodies as the engine holds them, their angles in the turn that they were in last.
 static void read_motions(const Applied *applied, Motion *motions)
 {

@@ -2,6 +2,7 @@
 // damper is a constraint row with CFM, so that no damper, however strong, makes a step unstable.
 #pragma once
 
+#include "base/carry.h"
 #include "model/forces.h"
 
 #include <ode/ode.h>
@@ -42,6 +43,9 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
                   const Motion *motions, Applied *applied);
 
 void applied_finish(Applied *applied);
+
+// Carries what is known of the last step.
+void applied_carry(Applied *applied, Carry *carry);
 
 // Before a step: puts springs and torque on the bodies where they stand, and the dampers' rows to
 // their speeds, those of its start. A step backwards in time has a negative direction.

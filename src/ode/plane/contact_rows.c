@@ -344,6 +344,21 @@ void contact_rows_states(const ContactRows *rows, ContactState (*states)[JOINT_P
     }
 }
 
+void contact_rows_carry(ContactRows *rows, Carry *carry)
+{
+    for (size_t i = 0; i < rows->world->pair_count; i++) {
+        ContactRow *row = &rows->rows[i];
+        // of all that is in a row the geoms alone are another world's
+        const dContactGeom own = row->contact.geom;
+        CARRY(carry, *row);
+        row->contact.geom.g1 = own.g1;
+        row->contact.geom.g2 = own.g2;
+    }
+    CARRY(carry, rows->most_rows);
+    CARRY(carry, rows->row_count);
+    CARRY(carry, rows->fallback_count);
+}
+
 void contact_rows_finish(ContactRows *rows)
 {
     if (rows->group != NULL) {

@@ -46,6 +46,9 @@ void contact_rows_finish(ContactRows *rows);
 // Writes what the contacts carry after the last step, by joint and its places.
 void contact_rows_states(const ContactRows *rows, ContactState (*states)[JOINT_PLACES]);
 
+// Carries what the rows know of the steps before.
+void contact_rows_carry(ContactRows *rows, Carry *carry);
+
 // Looks for contacts where the bodies stand now and makes a row for each; fills the states (gap,
 // touching, and the eccentricity of joints with one place) and the closing speeds at which their
 // contacts began, by joint: of several places the least gap and the highest speed. Fails

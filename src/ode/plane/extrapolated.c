@@ -383,6 +383,24 @@ static void nodes_finish(Nodes *nodes)
     free(nodes->motions);
 }
 
+static void nodes_carry(Nodes *nodes, Carry *carry)
+{
+    const size_t count = nodes->scenario->linkage.body_count;
+    for (size_t k = 0; k < nodes->level_count; k++) {
+        NodesLevel *level = &nodes->levels[k];
+        world_carry(&level->world, carry);
+        CARRY(carry, level->index);
+        CARRY_ARRAY(carry, level->turned, count);
+    }
+    for (size_t k = 0; k < NODES_KEPT; k++) {
+        CARRY_ARRAY(carry, nodes->states[k], count);
+    }
+    CARRY(carry, nodes->is_started);
+    CARRY(carry, nodes->steps);
+    CARRY(carry, nodes->next);
+    CARRY(carry, nodes->kept);
+}
+
 // of an interval: a part that ends so close to a node goes up to it, or as little beyond
 static const double ROUNDING = 1e-6;
 
@@ -606,6 +624,22 @@ static bool extrapolated_step(void *state, double stop_s, Err *err)
     return make_part(own, stop_s < node_s + ROUNDING * interval_s ? stop_s : node_s, err);
 }
 
+static bool extrapolated_carry(void *state, Carry *carry)
+{
+    Extrapolated *own = state;
+    const Linkage *linkage = &own->scenario->linkage;
+    nodes_carry(&own->nodes, carry);
+    CARRY(carry, own->is_begun);
+    CARRY(carry, own->interval);
+    CARRY_ARRAY(carry, own->paths, linkage->body_count);
+    CARRY(carry, own->end.time_s);
+    CARRY(carry, own->end.crank_rad);
+    CARRY_ARRAY(carry, own->end.bodies, linkage->body_count);
+    CARRY_ARRAY(carry, own->end.joints, linkage->joint_count);
+    CARRY(carry, own->powers);
+    return true;
+}
+
 static StepRecord extrapolated_record(const void *state)
 {
     const Extrapolated *own = state;
@@ -654,6 +688,7 @@ const Solver STEPPING_EXTRAPOLATED = {
     .step = extrapolated_step,
     .record = extrapolated_record,
     .observe = extrapolated_observe,
+    .carry = extrapolated_carry,
     .model = extrapolated_model,
     .close = extrapolated_close,
 };

@@ -89,6 +89,12 @@ static double plane_mean(const void *own, size_t joint)
     return impulse->step.mean[joint].force;
 }
 
+static void plane_carry(void *own, Carry *carry)
+{
+    PlaneImpulse *impulse = own;
+    impulse_step_carry(&impulse->step, carry);
+}
+
 static int plane_place(const void *own, size_t place)
 {
     const PlaneImpulse *impulse = own;
@@ -102,6 +108,7 @@ static const ImpulseKind PLANE_KIND = {
     .look = plane_look,
     .observe = plane_observe,
     .mean = plane_mean,
+    .carry = plane_carry,
     .place = plane_place,
 };
 
@@ -117,6 +124,7 @@ const Solver STEPPING_IMPULSE = {
     .record = impulse_record,
     .observe = impulse_observe,
     .contacts = impulse_contacts,
+    .carry = impulse_carry,
     .model = impulse_model,
     .close = impulse_close,
 };

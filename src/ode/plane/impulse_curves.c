@@ -30,6 +30,15 @@ void impulse_curves_finish(ImpulseCurves *curves)
     *curves = (ImpulseCurves){.body_count = 0};
 }
 
+void impulse_curves_carry(ImpulseCurves *curves, Carry *carry)
+{
+    CARRY(carry, curves->width_s);
+    CARRY_ARRAY(carry, curves->bodies, curves->body_count * IMPULSE_HALVES);
+    CARRY_ARRAY(carry, curves->columns, curves->body_count * curves->row_count);
+    CARRY_ARRAY(carry, curves->places, curves->place_count);
+    CARRY_ARRAY(carry, curves->place_columns, curves->place_count * curves->row_count);
+}
+
 void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *before,
                              const double *mean, const double *rate, const double *rest)
 {

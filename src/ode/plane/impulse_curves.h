@@ -64,6 +64,7 @@ typedef struct ImpulseCurves {
 ImpulseCurves impulse_curves_create(size_t place_count, size_t row_count, size_t body_count,
                                     int driven);
 void impulse_curves_finish(ImpulseCurves *curves);
+void impulse_curves_carry(ImpulseCurves *curves, Carry *carry);
 
 // Sets how a body moves beside the contacts: from its motion at the start of a step of so many s,
 // its mean acceleration, how that changes, 1/s of it, and what its position at the end has beyond

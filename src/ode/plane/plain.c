@@ -164,6 +164,19 @@ static bool plain_step(void *state, double stop_s, Err *err)
     return settle(state, err) && advance(state, err);
 }
 
+static bool plain_carry(void *state, Carry *carry)
+{
+    Plain *plain = state;
+    const Linkage *linkage = &plain->scenario->linkage;
+    world_carry(&plain->world, carry);
+    contact_rows_carry(&plain->contacts, carry);
+    CARRY(carry, plain->index);
+    CARRY(carry, plain->steps);
+    CARRY_ARRAY(carry, plain->before, linkage->body_count);
+    CARRY_ARRAY(carry, plain->joints, linkage->joint_count);
+    return true;
+}
+
 static StepRecord plain_record(const void *state)
 {
     const Plain *plain = state;
@@ -252,6 +265,7 @@ const Solver STEPPING_PLAIN = {
     .record = plain_record,
     .observe = plain_observe,
     .contacts = plain_contacts,
+    .carry = plain_carry,
     .model = plain_model,
     .close = plain_close,
 };

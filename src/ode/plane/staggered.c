@@ -294,6 +294,38 @@ static bool staggered_step(void *state, double stop_s, Err *err)
     return true;
 }
 
+static void stride_carry(const Linkage *linkage, Stride *stride, Carry *carry)
+{
+    const size_t bodies = linkage->body_count;
+    const size_t joints = linkage->joint_count;
+    CARRY(carry, stride->start_s);
+    CARRY_ARRAY(carry, stride->middle, bodies);
+    CARRY_ARRAY(carry, stride->velocity, bodies);
+    CARRY_ARRAY(carry, stride->omega, bodies);
+    CARRY_ARRAY(carry, stride->alpha, bodies);
+    CARRY_ARRAY(carry, stride->joints, joints);
+    CARRY_ARRAY(carry, stride->peaks, joints);
+    CARRY_ARRAY(carry, stride->impulse, joints);
+    CARRY_ARRAY(carry, stride->approach, joints);
+    CARRY(carry, stride->drive_work);
+    CARRY(carry, stride->damped);
+    CARRY(carry, stride->energy);
+}
+
+static bool staggered_carry(void *state, Carry *carry)
+{
+    Staggered *staggered = state;
+    const Linkage *linkage = &staggered->scenario->linkage;
+    world_carry(&staggered->world, carry);
+    contact_rows_carry(&staggered->contacts, carry);
+    CARRY(carry, staggered->index);
+    CARRY(carry, staggered->steps);
+    stride_carry(linkage, staggered->before, carry);
+    stride_carry(linkage, staggered->now, carry);
+    stride_carry(linkage, staggered->ahead, carry);
+    return true;
+}
+
 static StepRecord staggered_record(const void *state)
 {
     const Staggered *staggered = state;
@@ -394,6 +426,7 @@ const Solver STEPPING_STAGGERED = {
     .record = staggered_record,
     .observe = staggered_observe,
     .contacts = staggered_contacts,
+    .carry = staggered_carry,
     .model = staggered_model,
     .close = staggered_close,
 };

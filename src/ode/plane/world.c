@@ -737,6 +737,20 @@ void world_finish(World *world)
     memset(world, 0, sizeof *world);
 }
 
+void world_carry(World *world, Carry *carry)
+{
+    const size_t count = world->linkage->body_count;
+    for (size_t i = 0; i < count; i++) {
+        engine_carry_body(world->bodies[i], carry);
+    }
+    if (world->ends != NULL) {
+        CARRY_ARRAY(carry, world->ends->motions, count);
+    }
+    if (!world->linkage->is_spatial) {
+        applied_carry(&world->applied, carry);
+    }
+}
+
 bool world_step(World *world, double step_s, bool is_quick, Err *err)
 {
     for (size_t i = 0; i < world->sliding_count; i++) {

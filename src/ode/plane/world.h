@@ -103,6 +103,9 @@ void world_start(const Scenario *scenario, World *world);
 // Destroys what was built; accepts a zeroed world.
 void world_finish(World *world);
 
+// Carries where the bodies are and how they move.
+void world_carry(World *world, Carry *carry);
+
 // Takes one step of the world, by ODE's direct or its quick solver. Fails as engine_step does.
 bool world_step(World *world, double step_s, bool is_quick, Err *err);
 

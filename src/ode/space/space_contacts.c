@@ -574,3 +574,17 @@ void space_contacts_states(const SpaceContacts *contacts, ContactState (*states)
         states[place->joint][place->place] = contacts->contacts[i].state;
     }
 }
+
+void space_contacts_carry(SpaceContacts *contacts, Carry *carry)
+{
+    for (size_t i = 0; i < contacts->count; i++) {
+        SpaceContact *contact = &contacts->contacts[i];
+        // of all that is in a contact the geoms alone are another world's
+        const dContactGeom own = contact->contact.geom;
+        CARRY(carry, *contact);
+        contact->contact.geom.g1 = own.g1;
+        contact->contact.geom.g2 = own.g2;
+    }
+    CARRY(carry, contacts->most_rows);
+    CARRY(carry, contacts->fallback_count);
+}

@@ -48,6 +48,9 @@ void space_contacts_init(SpaceContacts *contacts, World *world, SpaceResponse *r
 SpaceResponsePlace *space_contacts_response_places(const SpaceContacts *contacts, size_t room);
 void space_contacts_finish(SpaceContacts *contacts);
 
+// Carries what they know of the steps before.
+void space_contacts_carry(SpaceContacts *contacts, Carry *carry);
+
 // Looks for contacts at the motions given and makes a row for each. `seen` are the motions as the
 // step's rows will see them, with accelerations by all but the rows: friction looks ahead by them.
 // Writes the closing speeds at which the joints' contacts began. Fails with ERR_SOLVER where a pin

@@ -126,6 +126,12 @@ static double space_mean(const void *own, size_t joint)
                : impulse->joints.plane[joint].force;
 }
 
+static void space_carry(void *own, Carry *carry)
+{
+    SpaceImpulse *impulse = own;
+    space_impulse_step_carry(&impulse->step, carry);
+}
+
 static int space_place(const void *own, size_t place)
 {
     const SpaceImpulse *impulse = own;
@@ -140,6 +146,7 @@ static const ImpulseKind SPACE_KIND = {
     .look = space_look,
     .observe = space_observe,
     .mean = space_mean,
+    .carry = space_carry,
     .place = space_place,
 };
 
@@ -155,6 +162,7 @@ const Solver SPACE_IMPULSE = {
     .record = impulse_record,
     .observe = impulse_observe,
     .contacts = impulse_contacts,
+    .carry = impulse_carry,
     .model = impulse_model,
     .close = impulse_close,
 };

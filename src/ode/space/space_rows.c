@@ -417,6 +417,39 @@ static const SpaceStride *handed_on(const SpaceRows *rows)
     return rows->is_staggered ? rows->now : rows->ahead;
 }
 
+static void space_stride_carry(const Linkage *linkage, SpaceStride *stride, Carry *carry)
+{
+    const size_t bodies = linkage->body_count;
+    const size_t joints = linkage->joint_count;
+    CARRY(carry, stride->start_s);
+    CARRY_ARRAY(carry, stride->first, bodies);
+    CARRY_ARRAY(carry, stride->last, bodies);
+    CARRY_ARRAY(carry, stride->omega, bodies);
+    CARRY_ARRAY(carry, stride->alpha, bodies);
+    CARRY_ARRAY(carry, stride->joints.plane, joints);
+    CARRY_ARRAY(carry, stride->joints.space, joints);
+    CARRY_ARRAY(carry, stride->impulse, joints);
+    CARRY_ARRAY(carry, stride->approach, joints);
+    CARRY_ARRAY(carry, stride->peaks, joints);
+    CARRY(carry, stride->drive_work);
+    CARRY(carry, stride->energy);
+}
+
+static bool space_rows_carry(void *state, Carry *carry)
+{
+    SpaceRows *rows = state;
+    const Linkage *linkage = &rows->scenario->linkage;
+    world_carry(&rows->world, carry);
+    space_contacts_carry(&rows->contacts, carry);
+    space_stops_carry(&rows->stops, carry);
+    CARRY(carry, rows->index);
+    CARRY_ARRAY(carry, rows->rest, linkage->body_count);
+    space_stride_carry(linkage, rows->before, carry);
+    space_stride_carry(linkage, rows->now, carry);
+    space_stride_carry(linkage, rows->ahead, carry);
+    return true;
+}
+
 static StepRecord space_rows_record(const void *state)
 {
     const SpaceRows *rows = state;
@@ -497,6 +530,7 @@ const Solver SPACE_PLAIN = {
     .record = space_rows_record,
     .observe = space_rows_observe,
     .contacts = space_rows_contacts,
+    .carry = space_rows_carry,
     .model = space_rows_model,
     .close = space_rows_close,
 };
@@ -508,6 +542,7 @@ const Solver SPACE_STAGGERED = {
     .record = space_rows_record,
     .observe = space_rows_observe,
     .contacts = space_rows_contacts,
+    .carry = space_rows_carry,
     .model = space_rows_model,
     .close = space_rows_close,
 };

@@ -301,3 +301,16 @@ void space_stops_states(const SpaceStops *stops, ContactState (*states)[JOINT_PL
         states[stop->joint][stop->sign > 0.0 ? 0 : 1] = stop->state;
     }
 }
+
+void space_stops_carry(SpaceStops *stops, Carry *carry)
+{
+    for (size_t i = 0; i < stops->count; i++) {
+        SpaceStop *stop = &stops->stops[i];
+        // of all that is in a stop the row alone is another world's
+        const dJointID row = stop->row;
+        CARRY(carry, *stop);
+        stop->row = row;
+    }
+    CARRY_ARRAY(carry, stops->angles, stops->scenario->linkage.joint_count);
+    CARRY(carry, stops->fallback_count);
+}

@@ -42,6 +42,9 @@ void space_stops_init(SpaceStops *stops, World *world, SpaceResponse *response, 
                       bool is_staggered);
 void space_stops_finish(SpaceStops *stops);
 
+// Carries what they know of the steps before.
+void space_stops_carry(SpaceStops *stops, Carry *carry);
+
 // Looks for ends that press at the motions given and makes their rows. Writes angles and gaps into
 // the joints, and the closing speeds at which their contacts began. Fails with ERR_SOLVER where an
 // end is deeper than its law holds.

@@ -187,6 +187,16 @@ static bool plane_rebase(System *system, double since_s, double *y)
     return tree->loop_count > 0 || tree->base_drive.alpha != alpha;
 }
 
+static void plane_carry(System *system, Carry *carry)
+{
+    Dynamics *dynamics = (Dynamics *)system;
+    carry_bytes(carry, dynamics->tree.memory, dynamics->tree.memory_size);
+    CARRY(carry, dynamics->tree.base_time_s);
+    CARRY(carry, dynamics->tree.base_drive);
+    CARRY(carry, dynamics->start_energy);
+    CARRY(carry, dynamics->greatest_energy);
+}
+
 static double plane_time(const System *system, double since_s)
 {
     return tree_time(&plane_dynamics_of(system)->tree, since_s);
@@ -381,6 +391,7 @@ static const SystemKind PLANE = {
     .joints = plane_joints,
     .bodies = plane_bodies,
     .motions = plane_motions,
+    .carry = plane_carry,
     .rows = plane_rows,
     .destroy = plane_destroy,
 };

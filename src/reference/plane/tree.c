@@ -838,6 +838,7 @@ static void tree_make_room(Tree *tree)
     tree->end_count = 3 * tree->pair_count;
     Layout layout = {NULL, 0};
     tree_lay(tree, &layout);
+    tree->memory_size = layout.used;
     tree->memory = calloc(1, layout.used);
     assert(tree->memory != NULL);
     tree_lay(tree, &(Layout){tree->memory, 0});

@@ -43,7 +43,8 @@ typedef struct TreePoint {
 
 typedef struct Tree {
     const Linkage *linkage;
-    void *memory;      // owned; where all arrays are
+    void *memory;      // owned; where all arrays are, none of which holds pointers
+    size_t memory_size; // bytes
     int driven;        // number of the driven body or LINKAGE_GROUND
     size_t node_count; // free bodies, parents before children
     TreeNode *nodes;

@@ -179,6 +179,14 @@ static bool space_rebase(System *system, double since_s, double *y)
     return tree->has_floating || tree->loop_count > 0;
 }
 
+static void space_carry(System *system, Carry *carry)
+{
+    SpaceDynamics *dynamics = own_dynamics(system);
+    carry_bytes(carry, dynamics->tree.memory, dynamics->tree.memory_size);
+    CARRY(carry, dynamics->tree.base_time_s);
+    CARRY_ARRAY(carry, dynamics->contacts, system->contact_count);
+}
+
 static double space_time(const System *system, double since_s)
 {
     return (double)(space_dynamics_of(system)->tree.base_time_s + since_s);
@@ -335,6 +343,7 @@ static const SystemKind SPACE = {
     .turning = space_turning,
     .joints = space_joints,
     .bodies = space_bodies,
+    .carry = space_carry,
     .rows = space_rows,
     .destroy = space_destroy,
 };

@@ -671,6 +671,7 @@ void space_tree_build(const Linkage *linkage, SpaceTree *tree)
     *tree = (SpaceTree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
     Layout layout = {NULL, 0};
     space_tree_lay(tree, &layout);
+    tree->memory_size = layout.used;
     tree->memory = zeroed(layout.used, 1);
     space_tree_lay(tree, &(Layout){tree->memory, 0});
     space_tree_list_ends(tree);

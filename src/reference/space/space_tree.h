@@ -41,7 +41,8 @@ typedef struct LongQuat {
 typedef struct SpaceTree {
     const Linkage *linkage;
     int driven;             // number of the driven body or LINKAGE_GROUND
-    void *memory;           // owned; where the arrays are
+    void *memory;           // owned; where the arrays are, none of which holds pointers
+    size_t memory_size;     // bytes
     size_t node_count;      // free bodies, parents before children
     SpaceNode *nodes;       //
     int *node_of;           // by body; -1 for the driven one
