@@ -32,7 +32,7 @@ static inline void carry_begin(Carry *carry, bool is_back)
 static inline void carry_finish(Carry *carry)
 {
     free(carry->bytes);
-    *carry = (Carry){.is_back = false};
+    memset(carry, 0, sizeof *carry);
 }
 
 static inline void carry_bytes(Carry *carry, void *at, size_t size)
@@ -44,7 +44,7 @@ static inline void carry_bytes(Carry *carry, void *at, size_t size)
         assert(carry->used + size <= carry->size);
         memcpy(at, carry->bytes + carry->used, size);
     } else {
-        carry->bytes = room_grow(carry->bytes, &carry->room, carry->used + size, 1);
+        carry->bytes = (char *)room_grow(carry->bytes, &carry->room, carry->used + size, 1);
         memcpy(carry->bytes + carry->used, at, size);
         carry->size += size;
     }
@@ -52,5 +52,5 @@ static inline void carry_bytes(Carry *carry, void *at, size_t size)
 }
 
 // A field that is no pointer, and an array of so many elements.
-#define CARRY(carry, field) carry_bytes((carry), &(field), sizeof(field))
+#define CARRY(carry, field)              carry_bytes((carry), &(field), sizeof(field))
 #define CARRY_ARRAY(carry, array, count) carry_bytes((carry), (array), (count) * sizeof *(array))

@@ -15,7 +15,7 @@ static inline void *room_grow(void *list, size_t *room, size_t least, size_t siz
         return list;
     }
     const size_t grown = least > 2 * *room ? least : 2 * *room;
-    char *made = memory_grown(list, grown, size);
+    char *made = (char *)memory_grown(list, grown, size);
     memset(made + *room * size, 0, (grown - *room) * size);
     *room = grown;
     return made;

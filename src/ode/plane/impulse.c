@@ -89,6 +89,50 @@ static double plane_mean(const void *own, size_t joint)
     return impulse->step.mean[joint].force;
 }
 
+static void carry_few_rows(ImpulseStep *step, Carry *carry)
+{
+    const size_t count = 3 * step->scenario->linkage.body_count * kernel_rows(&step->kernel);
+    for (size_t i = 0; i < IMPULSE_COLUMNS; i++) {
+        CARRY_ARRAY(carry, step->columns[i], count);
+    }
+    CARRY(carry, step->middles_s);
+    CARRY_ARRAY(carry, step->drift.rates, count);
+    CARRY_ARRAY(carry, step->drift.drift, kernel_rows(&step->kernel) * kernel_rows(&step->kernel));
+    impulse_curves_carry(&step->curves, carry);
+}
+
+static void impulse_step_carry(ImpulseStep *step, Carry *carry)
+{
+    const size_t bodies = step->scenario->linkage.body_count;
+    world_carry(&step->world, carry);
+    if (step->islands != NULL) {
+        kernel_islands_carry(step->islands, carry);
+    } else {
+        kernel_carry(&step->kernel, carry);
+    }
+    CARRY(carry, step->tick);
+    CARRY(carry, step->is_kink);
+    CARRY(carry, step->end_s);
+    CARRY(carry, step->count);
+    CARRY(carry, step->start_s);
+    CARRY(carry, step->width_s);
+    CARRY(carry, step->arm);
+    CARRY(carry, step->steady);
+    CARRY(carry, step->is_calm);
+    CARRY_ARRAY(carry, step->middle, bodies);
+    CARRY_ARRAY(carry, step->after, bodies);
+    CARRY_ARRAY(carry, step->free, 3 * bodies);
+    CARRY_ARRAY(carry, step->free_rate, 3 * bodies);
+    CARRY_ARRAY(carry, step->total.impulse, kernel_rows(&step->kernel));
+    CARRY_ARRAY(carry, step->mean, step->scenario->linkage.joint_count);
+    if (step->has_few_rows) {
+        carry_few_rows(step, carry);
+    }
+    if (carry->is_back && step->count > 0) {
+        response_place(&step->response, step->middle);
+    }
+}
+
 static void plane_carry(void *own, Carry *carry)
 {
     PlaneImpulse *impulse = own;

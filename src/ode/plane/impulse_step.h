@@ -116,9 +116,6 @@ static inline bool impulse_step_has_curves(const ImpulseStep *step)
     return step->has_few_rows && step->count >= IMPULSE_COLUMNS;
 }
 
-// Carries all that the next step depends on.
-void impulse_step_carry(ImpulseStep *step, Carry *carry);
-
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);
 

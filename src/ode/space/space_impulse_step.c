@@ -886,24 +886,3 @@ void space_impulse_step_inside(const SpaceImpulseStep *step, const ImpulseScope 
     find_forces(step, scope, sums, motions, joints);
     find_stops(step, scope, at, sums, joints);
 }
-
-void space_impulse_step_carry(SpaceImpulseStep *step, Carry *carry)
-{
-    const Linkage *linkage = &step->scenario->linkage;
-    world_carry(&step->world, carry);
-    if (step->islands != NULL) {
-        kernel_islands_carry(step->islands, carry);
-    } else {
-        kernel_carry(&step->kernel, carry);
-    }
-    CARRY(carry, step->tick);
-    CARRY(carry, step->end_s);
-    CARRY(carry, step->count);
-    CARRY(carry, step->start_s);
-    CARRY(carry, step->width_s);
-    CARRY_ARRAY(carry, step->angles, linkage->joint_count);
-    CARRY_ARRAY(carry, step->after, linkage->body_count);
-    CARRY_ARRAY(carry, step->free, linkage->body_count);
-    CARRY_ARRAY(carry, step->free_rate, linkage->body_count);
-    CARRY_ARRAY(carry, step->gyration, linkage->body_count);
-}

@@ -79,9 +79,6 @@ static inline const StopSpace *space_impulse_step_stop(const SpaceImpulseStep *s
     return place < step->pin_count ? NULL : &step->stops[place - step->pin_count];
 }
 
-// Carries all that the next step depends on.
-void space_impulse_step_carry(SpaceImpulseStep *step, Carry *carry);
-
 // Takes the next step.
 bool space_impulse_step_take(SpaceImpulseStep *step, Err *err);
 
