@@ -1,6 +1,6 @@
 #!/bin/sh
-# Do the mechanisms of cases/mechanisms keep the limits that they expect, and does a change of them
-# leave these? Prints TAP. The longer ones: jointplay check cases/mechanisms
+# Does a mechanism of cases/mechanisms that is changed leave the limits that it expects? Prints TAP.
+# That all of them keep these as they are .ci/run asks: jointplay check --quick cases/mechanisms
 program=$1
 root=$2
 cd "$root" || exit 1
@@ -8,10 +8,8 @@ folder=cases/mechanisms
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 . tests/command/held_cases.sh
-echo "1..23"
-cases_hold slider-crank slider-crank-pin slider-crank-guide slider-crank-both woodpecker \
-    bouncing-ball newtons-cradle gear-pair planetary-gear \
-    servo-backlash stop-rebound pendulum andrews start-and-stop four-bars-2
+echo "1..12"
+cases_hold slider-crank bouncing-ball newtons-cradle pendulum
 # a floor that takes more, spheres that lose some of their speed, a longer rod, teeth that keep to one
 # flank, gears that give way by more, another gravity, a stronger torque
 cases_do_not_hold "bouncing-ball contact.restitution=0.7" \
