@@ -7,6 +7,7 @@
 #include "analytic/driven_extremes.h"
 #include "analytic/inverse_dynamics.h"
 #include "model/joint_rows.h"
+#include "model/loads.h"
 #include "model/solver.h"
 #include "model/space.h"
 
@@ -39,6 +40,8 @@ typedef struct Analytic {
     JointState joints[JOINTS];
     double torque;     // N m, of the drive at end_s
     double drive_work; // J, in the last step
+    double load_work;  // likewise, of loads
+    double damped;     // likewise, in dampers
     double impulse[JOINTS];
     double approach[JOINTS];
 } Analytic;
@@ -67,8 +70,8 @@ static bool evaluate(const Analytic *analytic, double from_s, double time_s, Sam
                        closed_form_name(analytic->scenario));
     }
     Reactions reactions;
-    if (!inverse_dynamics_solve(linkage, sample->bodies, analytic->scenario->gravity, &reactions,
-                                err)) {
+    if (!inverse_dynamics_solve(linkage, sample->bodies, analytic->scenario->gravity,
+                                (InverseTime){time_s, from_s}, &reactions, err)) {
         return false;
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -116,8 +119,8 @@ static bool analytic_open(const Scenario *scenario, void **state, Err *err)
 
 // Adds up work and impulses of a step by Simpson's rule: its error over a turn in samples of a
 // tenth of a degree is 1e-12 of the work.
-static void add_up(Analytic *analytic, const Sample *middle, double middle_torque,
-                   const Sample *end, double end_torque, double width_s)
+static void add_up(Analytic *analytic, const Motion *start, const Sample *middle,
+                   double middle_torque, const Sample *end, double end_torque, double width_s)
 {
     const Linkage *linkage = &analytic->scenario->linkage;
     const Driver *driver = &linkage->driver;
@@ -132,6 +135,17 @@ static void add_up(Analytic *analytic, const Sample *middle, double middle_torqu
              end->bodies[0].omega * end_torque) /
             6.0;
     }
+    const double start_s = analytic->end_s;
+    analytic->load_work = width_s *
+                          (loads_power(linkage, start, start_s, start_s) +
+                           4.0 * loads_power(linkage, middle->bodies, middle->time_s, start_s) +
+                           loads_power(linkage, end->bodies, end->time_s, start_s)) /
+                          6.0;
+    analytic->damped = width_s *
+                       (forces_damping_power(linkage, start) +
+                        4.0 * forces_damping_power(linkage, middle->bodies) +
+                        forces_damping_power(linkage, end->bodies)) /
+                       6.0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         analytic->impulse[i] =
             width_s *
@@ -140,18 +154,17 @@ static void add_up(Analytic *analytic, const Sample *middle, double middle_torqu
     }
 }
 
-// The forces after a kink of the drive's speed: they jump there.
-static bool start_piece(Analytic *analytic, Err *err)
+// The forces after a kink of the drive's speed, or a step of a load: they jump there.
+static bool start_piece(Analytic *analytic, Sample *start, Err *err)
 {
-    Instant at;
-    Sample start = sample_of(&at);
-    if (drive_is_steady(&analytic->scenario->linkage.driver)) {
+    const Linkage *linkage = &analytic->scenario->linkage;
+    if (drive_is_steady(&linkage->driver) && !forces_any(linkage)) {
         return true;
     }
-    if (!evaluate(analytic, analytic->end_s, analytic->end_s, &start, &analytic->torque, err)) {
+    if (!evaluate(analytic, analytic->end_s, analytic->end_s, start, &analytic->torque, err)) {
         return false;
     }
-    memcpy(analytic->joints, start.joints, sizeof analytic->joints);
+    memcpy(analytic->joints, start->joints, sizeof analytic->joints);
     return true;
 }
 
@@ -162,20 +175,24 @@ static bool analytic_step(void *state, double stop_s, Err *err)
     const Driver *driver = &analytic->scenario->linkage.driver;
     const double degree_s = 2.0 * M_PI / fabs(driver->speed) / 360.0;
     const double start_s = analytic->end_s;
-    stop_s = fmin(fmin(stop_s, start_s + degree_s), drive_next_kink(driver, start_s));
+    const double bend_s = fmin(drive_next_kink(driver, start_s),
+                               loads_next_bend(&analytic->scenario->linkage, start_s));
+    stop_s = fmin(fmin(stop_s, start_s + degree_s), bend_s);
+    Instant first;
     Instant halfway;
     Instant behind;
+    Sample begin = sample_of(&first);
     Sample middle = sample_of(&halfway);
     Sample end = sample_of(&behind);
     double middle_torque;
     double end_torque;
     const double width_s = stop_s - start_s;
-    if (!start_piece(analytic, err) ||
+    if (!start_piece(analytic, &begin, err) ||
         !evaluate(analytic, start_s, start_s + 0.5 * width_s, &middle, &middle_torque, err) ||
         !evaluate(analytic, start_s, stop_s, &end, &end_torque, err)) {
         return false;
     }
-    add_up(analytic, &middle, middle_torque, &end, end_torque, width_s);
+    add_up(analytic, begin.bodies, &middle, middle_torque, &end, end_torque, width_s);
     for (size_t i = 0; i < CLOSED_FORM_BODIES; i++) {
         analytic->bodies[i] = end.bodies[i];
         analytic->omega[i] = end.bodies[i].omega;
@@ -201,6 +218,8 @@ static StepRecord analytic_record(const void *state)
         .joints = analytic->joints,
         .impulse = analytic->impulse,
         .drive_work = analytic->drive_work,
+        .load_work = analytic->load_work,
+        .dissipated = analytic->damped,
         .approach = analytic->approach,
     };
 }

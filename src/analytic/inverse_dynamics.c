@@ -3,14 +3,15 @@
 //     J^T lambda = M qddot - Q,      J the constraint Jacobian with the driver's row
 // lambda: of a pin the force on body b, of a prismatic joint the force on body b across the line
 // and the couple (model/joint_rows.h), then the torque on the driven body; M the masses and
-// inertias, Q gravity, springs and dampers. Source: Haug 1989, chapter 6 (Lagrange multipliers as
-// reactions).
+// inertias, Q gravity, springs, dampers and loads. Source: Haug 1989, chapter 6 (Lagrange
+// multipliers as reactions).
 #include "analytic/inverse_dynamics.h"
 
 #include "base/dense.h"
 #include "model/forces.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
+#include "model/loads.h"
 
 // Takes the multipliers of a joint's rows for what acts on its body b.
 static void set_reaction(const Linkage *linkage, const Motion *motions, int joint,
@@ -26,7 +27,7 @@ static void set_reaction(const Linkage *linkage, const Motion *motions, int join
 }
 
 bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
-                            Reactions *reactions, Err *err)
+                            InverseTime time, Reactions *reactions, Err *err)
 {
     if (!kinematics_is_small(linkage)) {
         return err_set(err, ERR_SOLVER,
@@ -54,6 +55,7 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
     BodyLoad loads[KINEMATICS_BODY_MAX] = {0};
     forces_add_springs(linkage, motions, loads);
     forces_add_dampers(linkage, motions, loads);
+    loads_add(linkage, motions, time.time_s, time.from_s, loads);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Body *body = &linkage->bodies[i];
         right[3 * i] = body->mass * motions[i].acceleration.x - loads[i].force.x;
@@ -77,15 +79,19 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
     return true;
 }
 
-double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity)
+double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity,
+                              InverseTime time)
 {
-    double power = 0.0;
+    BodyLoad loads[KINEMATICS_BODY_MAX] = {0};
+    double power = -loads_power(linkage, motions, time.time_s, time.from_s);
+    forces_add_springs(linkage, motions, loads);
+    forces_add_dampers(linkage, motions, loads);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Body *body = &linkage->bodies[i];
         const Motion *motion = &motions[i];
         power += body->mass * vec2_dot(motion->velocity, motion->acceleration) +
                  body->inertia * motion->omega * motion->alpha +
-                 body->mass * gravity * motion->velocity.y;
+                 body->mass * gravity * motion->velocity.y - forces_load_power(&loads[i], motion);
     }
     return power;
 }

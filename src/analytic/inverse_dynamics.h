@@ -10,14 +10,22 @@ typedef struct Reactions {
     double drive_torque;                      // N m, on the driven body
 } Reactions;
 
+// The instant of the motions, for loads: and that from which on a load's piece holds, which is no
+// later (model/loads.h).
+typedef struct InverseTime {
+    double time_s;
+    double from_s;
+} InverseTime;
+
 // Solves the Newton-Euler equations of every body for the reactions. The motions hold position,
 // velocity and acceleration; every joint counts as ideal; gravity acts along -y, m/s^2, beside
-// the linkage's springs and dampers.
+// the linkage's springs, dampers and loads.
 // Fails with ERR_SOLVER where the reactions are not determined, or the mechanism is not small
 // (model/kinematics.h).
 bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
-                            Reactions *reactions, Err *err);
+                            InverseTime time, Reactions *reactions, Err *err);
 
-// Rate of change of the kinetic and potential energy of all bodies, W. In a linkage with ideal
-// joints and without springs and dampers it equals drive torque times crank speed.
-double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity);
+// Rate of change of the kinetic and potential energy of all bodies less the power of springs,
+// dampers and loads, W. In a linkage with ideal joints it equals drive torque times crank speed.
+double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity,
+                              InverseTime time);

@@ -53,6 +53,13 @@ typedef struct Curve {
     Err *err;
 } Curve;
 
+// When the drive stands at an angle, beginning at time zero with its first.
+static InverseTime time_of(const Linkage *linkage, double crank)
+{
+    const double time_s = (crank - linkage->driver.start) / linkage->driver.speed;
+    return (InverseTime){time_s, time_s};
+}
+
 // Motion and reactions at a crank angle; false with the reason where the loop does not close.
 static bool evaluate(const Curve *curve, double crank, Motion motions[CLOSED_FORM_BODIES],
                      Reactions *reactions)
@@ -62,8 +69,8 @@ static bool evaluate(const Curve *curve, double crank, Motion motions[CLOSED_FOR
         return err_set(curve->err, ERR_SOLVER, "the %s does not close at a crank angle of %.6g deg",
                        closed_form_name(curve->scenario), crank * 180.0 / M_PI);
     }
-    return inverse_dynamics_solve(linkage, motions, curve->scenario->gravity, reactions,
-                                  curve->err);
+    return inverse_dynamics_solve(linkage, motions, curve->scenario->gravity,
+                                  time_of(linkage, crank), reactions, curve->err);
 }
 
 static double curve_value(double crank, void *context)
@@ -152,11 +159,13 @@ static double power_residual(const Scenario *scenario, Err *err)
     for (int i = 0; i < SUMMARY_STEPS; i++) {
         Motion motions[CLOSED_FORM_BODIES];
         Reactions reactions;
-        if (!evaluate(&curve, 2.0 * M_PI * i / SUMMARY_STEPS, motions, &reactions)) {
+        const double crank = 2.0 * M_PI * i / SUMMARY_STEPS;
+        if (!evaluate(&curve, crank, motions, &reactions)) {
             return NAN;
         }
         const double drive = reactions.drive_torque * scenario->linkage.driver.speed;
-        const double power = inverse_dynamics_power(&scenario->linkage, motions, scenario->gravity);
+        const double power = inverse_dynamics_power(&scenario->linkage, motions, scenario->gravity,
+                                                    time_of(&scenario->linkage, crank));
         power_max = fmax(power_max, fabs(drive));
         residual_max = fmax(residual_max, fabs(drive - power));
     }

@@ -8,6 +8,7 @@
 #include "casefile/closure.h"
 #include "casefile/joint_kind.h"
 #include "casefile/limits.h"
+#include "casefile/loads.h"
 #include "casefile/over_time.h"
 #include "casefile/slider.h"
 #include "casefile/store.h"
@@ -37,6 +38,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         .joints = names[SCHEMA_JOINT].count,
         .springs = names[SCHEMA_SPRING].count,
         .torsions = names[SCHEMA_TORSION_SPRING].count,
+        .loads = names[SCHEMA_LOAD_FAMILY].count,
     });
     linkage->body_count = names[SCHEMA_BODY].count;
     linkage->joint_count = names[SCHEMA_JOINT].count;
@@ -65,7 +67,9 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         text_copy(linkage->torsions[i].name, LINKAGE_NAME_SIZE,
                   names[SCHEMA_TORSION_SPRING].names[i]);
     }
-    const bool has_torque = entries_blame(entries, "drive.torque drive.force", 0) != NULL;
+    loads_prepare(entries, linkage);
+    const bool has_torque =
+        entries_blame(entries, "drive.torque drive.force drive.stall-torque", 0) != NULL;
     linkage->driver.is_present =
         entries->form != SCHEMA_LONG || (entries_group(entries, "drive", 0) != NULL && !has_torque);
     if (entries->form == SCHEMA_LONG) {
@@ -121,13 +125,46 @@ static void store_run_start(const Entries *entries, Scenario *scenario)
     const bool is_steady = drive_is_steady(driver);
     run->centred_because =
         !driver->is_present ? "nothing drives it at a given speed"
-        : period_s == 0.0   ? "the speed of its drive changes without a drive.period"
+        : entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL
+            ? "its drive is soft, and turns it at no given speed"
+        : !loads_repeat(&scenario->linkage) ? "a load over time does not repeat with its drive"
+        : period_s == 0.0 ? "the speed of its drive changes without a drive.period"
         : scenario->contact.model == CONTACT_POISSON ? "contacts of model poisson have no state"
         : is_given                                   ? "the case gives where a joint starts"
         : is_steady && run->revolutions < 1.0        ? "it runs for less than a revolution"
         : !is_steady && run->duration < period_s     ? "it runs for less than a period of its drive"
                                                      : NULL;
     run->start = run->centred_because != NULL ? START_CENTRED : START_SETTLED;
+}
+
+// The line of a motor's torque over speed, and its rotor on the body that it turns.
+static void complete_motor(const Entries *entries, Linkage *linkage)
+{
+    Torque *torque = &linkage->torque;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        linkage->bodies[i].inertia = linkage->bodies[i].own_inertia;
+    }
+    if (entries_find(entries, "drive.stall-torque", 0) != NULL && linkage->joint_count > 0) {
+        int turned;
+        int against;
+        torque->table.count = 1;
+        torque->slope = torque->no_load != 0.0 ? torque->table.values[0] / torque->no_load : 0.0;
+        linkage_turning(linkage, torque->joint, &turned, &against);
+        linkage->bodies[turned].inertia += torque->inertia;
+    }
+}
+
+// Lets a drive of which a stiffness or a damping is given follow its speed with these: no body is
+// driven then, and the run has a duration.
+static void soften_drive(const Entries *entries, Scenario *scenario)
+{
+    Linkage *linkage = &scenario->linkage;
+    if (entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL) {
+        scenario->run.duration = scenario_duration(scenario);
+        linkage->torque.followed = linkage->driver;
+        linkage->torque.table = (TimeTable){.count = 1};
+        linkage->driver.is_present = false;
+    }
 }
 
 // Stores every value in the order of the schema, so that the same mistake is reported first
@@ -146,8 +183,10 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         }
     }
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
+    complete_motor(entries, &scenario->linkage);
     if (!limits_join_gears(entries, &scenario->linkage, err) ||
-        !over_time_repeat(entries, &scenario->linkage.driver, err)) {
+        !over_time_repeat(entries, &scenario->linkage.driver, err) ||
+        !loads_complete(entries, &scenario->linkage, err)) {
         return false;
     }
     store_partners(entries, scenario);
@@ -171,9 +210,11 @@ static bool build_form(const Entries *entries, Scenario *scenario, Err *err)
 {
     switch (entries->form) {
     case SCHEMA_FOUR_BAR:
-        return closure_check(entries, scenario, err) && build_fourbar(scenario, err);
+        return closure_check(entries, scenario, err) && build_fourbar(scenario, err) &&
+               build_forces(entries, scenario);
     case SCHEMA_SLIDER_CRANK:
-        return slider_check(entries, scenario, err) && slider_build(scenario, err);
+        return slider_check(entries, scenario, err) && slider_build(scenario, err) &&
+               build_forces(entries, scenario);
     case SCHEMA_LONG:
     case SCHEMA_ALL: // these two are sets of forms
     case SCHEMA_SHORT:
@@ -210,6 +251,7 @@ bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
         scenario_free(&built);
         return false;
     }
+    soften_drive(entries, &built);
     const Source *source = entries_group(entries, "", 0)->source;
     scenario_set_path(&built, source->name);
     unused_remember(entries, &built);

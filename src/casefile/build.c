@@ -166,7 +166,24 @@ static double angle_of(const Motion *motions, int body)
     return body == LINKAGE_GROUND ? 0.0 : motions[body].angle;
 }
 
-static void set_anchors(Linkage *linkage, const Motion *motions)
+// The ends of springs, and where forces act on bodies; a force whose place the case does not give
+// acts at the centre of mass.
+static void set_force_anchors(const Entries *entries, Linkage *linkage, const Motion *motions)
+{
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        Spring *spring = &linkage->springs[i];
+        spring->anchor_a = to_body(motions, spring->body_a, spring->anchor_a);
+        spring->anchor_b = to_body(motions, spring->body_b, spring->anchor_b);
+    }
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        Load *load = &linkage->loads[i];
+        const Entry *at = entries_find(entries, "loads.*.at", i);
+        const bool is_placed = at != NULL && at->node->kind == NODE_LIST;
+        load->anchor = is_placed ? to_body(motions, load->body, load->anchor) : (Vec2){0.0, 0.0};
+    }
+}
+
+static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *motions)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
@@ -180,11 +197,7 @@ static void set_anchors(Linkage *linkage, const Motion *motions)
         joint->direction -= angle_of(motions, joint->body_a);
         joint->held_angle = angle_of(motions, joint->body_b) - angle_of(motions, joint->body_a);
     }
-    for (size_t i = 0; i < linkage->spring_count; i++) {
-        Spring *spring = &linkage->springs[i];
-        spring->anchor_a = to_body(motions, spring->body_a, spring->anchor_a);
-        spring->anchor_b = to_body(motions, spring->body_b, spring->anchor_b);
-    }
+    set_force_anchors(entries, linkage, motions);
     Driver *driver = &linkage->driver;
     if (driver->is_present) {
         Joint *joint = &linkage->joints[driver->joint];
@@ -263,7 +276,7 @@ static void relax_springs(const Entries *entries, Linkage *linkage)
 static bool start_linkage(const Entries *entries, Linkage *linkage, Motion *motions, Err *err)
 {
     linkage_start(linkage, motions);
-    set_anchors(linkage, motions);
+    set_anchors(entries, linkage, motions);
     if (!check_redundancy(entries, linkage, motions, err)) {
         return false;
     }
@@ -279,6 +292,17 @@ static bool start_linkage(const Entries *entries, Linkage *linkage, Motion *moti
     for (size_t i = 0; i < linkage->body_count; i++) {
         linkage->bodies[i].start = motions[i];
     }
+    return true;
+}
+
+bool build_forces(const Entries *entries, Scenario *scenario)
+{
+    Linkage *linkage = &scenario->linkage;
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    linkage_start(linkage, motions);
+    set_force_anchors(entries, linkage, motions);
+    free(motions);
+    relax_springs(entries, linkage);
     return true;
 }
 
@@ -316,7 +340,7 @@ bool build_spatial(const Entries *entries, Scenario *scenario, Err *err)
     }
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
-    set_anchors(linkage, motions);
+    set_anchors(entries, linkage, motions);
     free(motions);
     SpaceMotion *space = zeroed(linkage->body_count, sizeof *space);
     space_start(linkage, space);

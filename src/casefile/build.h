@@ -25,6 +25,9 @@ bool build_start(Linkage *linkage, Motion *motions, Err *err);
 // where it stands.
 bool build_spatial(const Entries *entries, Scenario *scenario, Err *err);
 
+// Places springs and loads of a short form, whose bodies are at their start. True always.
+bool build_forces(const Entries *entries, Scenario *scenario);
+
 // Turns the positions of the joints, which stand in anchor_a, into anchors of their bodies, puts
 // pins where they start, and finds or checks the speeds at time zero. Fails with ERR_CASE or
 // ERR_USAGE and a line of the case where joints are redundant or speeds do not agree, and with

@@ -158,7 +158,7 @@ static const char *no_revolutions(const Entries *entries)
 {
     return entries_find(entries, "drive.force", 0) != NULL
                ? "with a force the drive makes no given number of revolutions"
-           : entries_find(entries, "drive.torque", 0) != NULL
+           : entries_blame(entries, "drive.torque drive.stall-torque", 0) != NULL
                ? "with a torque the drive makes no given number of revolutions"
            : entries_find(entries, "drive.speed", 0) != NULL
                ? "a run with a drive of changing speed is not counted in revolutions"

@@ -1,12 +1,16 @@
 // Checks that springs, dampers and a torque go with the rest of a case.
 #include "casefile/check_forces.h"
 
+#define MOTOR "drive.no-load-speed drive.rotor-inertia"
+#define SOFT  "drive.stiffness drive.damping"
+
 static bool check_space(const Entries *entries, const Linkage *linkage, Err *err)
 {
     static const char FORMAT[] = "%s not available in space\nallowed: space: planar, or none";
     const EntryGroup *springs = entries_group(entries, "springs", 0);
     const EntryGroup *torsions = entries_group(entries, "torsion-springs", 0);
-    const Entry *torque = entries_blame(entries, "drive.torque drive.force", 0);
+    const Entry *torque =
+        entries_blame(entries, "drive.torque drive.force drive.stall-torque " SOFT, 0);
     if (!linkage->is_spatial) {
         return true;
     }
@@ -15,6 +19,9 @@ static bool check_space(const Entries *entries, const Linkage *linkage, Err *err
     }
     if (linkage->torsion_count > 0) {
         return entries_refuse_group(torsions, err, FORMAT, "torsion springs are");
+    }
+    if (linkage->load_count > 0) {
+        return entries_refuse_group(entries_group(entries, "loads", 0), err, FORMAT, "loads are");
     }
     return torque == NULL ||
            entries_refuse(torque, err, FORMAT,
@@ -52,9 +59,41 @@ static bool check_turns(const Entries *entries, const Linkage *linkage, Err *err
     return true;
 }
 
+// A motor has a line of torque over speed that falls, and a soft drive a speed to follow.
+static bool check_motor(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    const Torque *torque = &linkage->torque;
+    const Entry *stall = entries_find(entries, "drive.stall-torque", 0);
+    const Entry *motor = entries_blame(entries, MOTOR, 0);
+    const Entry *soft = entries_blame(entries, SOFT, 0);
+    if (stall == NULL && motor != NULL) {
+        return entries_refuse(motor, err,
+                              "only a motor has this\nallowed: with drive.stall-torque");
+    }
+    if (soft != NULL && entries_find(entries, "drive.speed", 0) == NULL) {
+        return entries_refuse(soft, err,
+                              "only a speed is followed softly\nallowed: with drive.speed");
+    }
+    if (stall == NULL) {
+        return true;
+    }
+    if (!(torque->table.values[0] * torque->no_load > 0.0)) {
+        return entries_refuse(motor != NULL ? motor : stall, err,
+                              "the torque of a motor falls with its speed\nallowed: a "
+                              "drive.no-load-speed of the sign of drive.stall-torque, neither 0");
+    }
+    const Joint *joint = &linkage->joints[torque->joint];
+    return torque->inertia == 0.0 || joint->body_a == LINKAGE_GROUND ||
+           joint->body_b == LINKAGE_GROUND ||
+           entries_refuse(entries_find(entries, "drive.rotor-inertia", 0), err,
+                          "the rotor turns with one body only where the other is the "
+                          "ground\nallowed: a pivot with the ground, or no rotor-inertia");
+}
+
 bool check_forces(const Entries *entries, const Scenario *scenario, Err *err)
 {
     return check_space(entries, &scenario->linkage, err) &&
            check_lines(entries, &scenario->linkage, err) &&
-           check_turns(entries, &scenario->linkage, err);
+           check_turns(entries, &scenario->linkage, err) &&
+           check_motor(entries, &scenario->linkage, err);
 }

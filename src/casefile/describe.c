@@ -108,8 +108,9 @@ static void describe_default(size_t row_number, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
     if (row->is_required && row->default_words == NULL) {
-        text_append(text, row->rivalry == SCHEMA_SIZES      ? "required without radial-clearance"
-                          : row->rivalry == SCHEMA_DRIVING  ? "required without torque or force"
+        text_append(text, row->rivalry == SCHEMA_SIZES ? "required without radial-clearance"
+                          : row->rivalry == SCHEMA_DRIVING
+                              ? "required without torque, force or stall-torque"
                           : row->rivalry == SCHEMA_STOPPING ? "required of a stop, or discs"
                                                             : "required");
         append_kinds(row, text);

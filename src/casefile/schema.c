@@ -117,6 +117,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
         [SCHEMA_SPEED] = {"an angular speed, or a list of [time, speed]",
                           "a speed such as 1000 rpm, or points [[0 s, 0 rpm], [10 ms, 1000 rpm]]"},
+        [SCHEMA_LOAD_PERIOD] = {"none, or a time, an angle or a length",
+                                "none, or a time, an angle or a length such as 720 deg"},
         [SCHEMA_EXPECT] = {"a mapping of paths to limits", "a mapping of paths to limits"},
     };
     switch (row->type) {
@@ -131,6 +133,15 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         break;
     case SCHEMA_TORQUE:
         describe_torque(row, with_example, text);
+        break;
+    case SCHEMA_LOAD:
+        text_append(text,
+                    with_example
+                        ? "%s such as %s, points [[0 deg, 0 %s], [90 deg, 1 %s]], or a file "
+                          "such as load.csv"
+                        : "%s, a list of points, or a CSV file",
+                    units_dimension_name(row->dimension), units_example(row->dimension),
+                    units_si(row->dimension), units_si(row->dimension));
         break;
     case SCHEMA_SPAN:
         text_append(text, with_example ? "a time such as 60 ms, or 1 revolution" : "a time in ");
@@ -222,7 +233,8 @@ size_t schema_member_count(const Scenario *scenario, SchemaFamily family)
                                                 linkage->joint_count,
                                                 scenario->point_count,
                                                 linkage->spring_count,
-                                                linkage->torsion_count};
+                                                linkage->torsion_count,
+                                                linkage->load_count};
     return counts[family];
 }
 
@@ -233,6 +245,7 @@ const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t 
     static const TracedPoint NO_POINT;
     static const Spring NO_SPRING;
     static const TorsionSpring NO_TORSION;
+    static const Load NO_LOAD;
     const Linkage *linkage = &scenario->linkage;
     const bool is_there = index < schema_member_count(scenario, family);
     switch (family) {
@@ -246,6 +259,8 @@ const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t 
         return is_there ? &linkage->springs[index] : &NO_SPRING;
     case SCHEMA_TORSION_SPRING:
         return is_there ? &linkage->torsions[index] : &NO_TORSION;
+    case SCHEMA_LOAD_FAMILY:
+        return is_there ? &linkage->loads[index] : &NO_LOAD;
     default:
         return scenario;
     }

@@ -39,6 +39,8 @@ typedef enum SchemaType {
     SCHEMA_JOINT_NAME,       // name of a joint -> int
     SCHEMA_TORQUE,           // torque, or list of [time, torque] -> TimeTable
     SCHEMA_SPEED,            // speed, or list of [time, speed] -> Driver
+    SCHEMA_LOAD,             // force or torque, a list of points, or a CSV file -> Load
+    SCHEMA_LOAD_PERIOD,      // time, angle or length -> the period of a Load
     SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 
@@ -51,6 +53,7 @@ typedef enum SchemaFamily {
     SCHEMA_POINT,
     SCHEMA_SPRING,
     SCHEMA_TORSION_SPRING,
+    SCHEMA_LOAD_FAMILY,
     SCHEMA_FAMILY_COUNT,
 } SchemaFamily;
 

@@ -23,12 +23,15 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                "rod; with at-a and at-b a stop, where two bodies touch that are not joined; with gears and teeth a "
                "pair of gears. An ideal pivot or prismatic joint with backlash, or with low and high, has flanks "
                "or stops at the ends of its own coordinate. All but pivots and pins are for the plane."},
-    {"springs", "With bodies: springs with dampers along the line between two points, "
-                "with names of letters, digits, - and _. In the plane only."},
-    {"torsion-springs", "With bodies: springs with dampers that turn the two bodies of a joint "
-                        "against each other. In the plane only."},
+    {"springs", "Springs with dampers along the line between two points, with names of letters, "
+                "digits, - and _. In the plane only."},
+    {"torsion-springs", "Springs with dampers that turn the two bodies of a joint against each "
+                        "other. In the plane only."},
+    {"loads", "Forces and torques from outside, by name: on a body, or along the coordinate of a "
+              "joint, such as a gas force on a piston; constant, or over time, the crank's angle or "
+              "the joint's position. In the plane only."},
     {"drive", "How the crank turns; optional with bodies. At a constant speed, or with bodies by a "
-              "torque or a force: they then start with their own speeds, at rest by default, and the run has "
+              "torque, a force or a motor, or softly after a speed: they then start with their own speeds, at rest by default, and the run has "
               "a duration."},
     {"material", "Material of pins and holes; steel by default."},
     {"contact", "The contact between pin and hole."},

@@ -2,6 +2,7 @@
 #include "casefile/schema_needs.h"
 
 #include "casefile/build.h"
+#include "casefile/loads.h"
 #include "contact/law.h"
 
 #include <math.h>
@@ -126,7 +127,8 @@ static unsigned drive_bits(const Scenario *scenario)
     const bool is_force = pushed->kind == JOINT_PRISMATIC;
     const bool is_torque = linkage->torque.table.count > 0;
     const bool is_steady = drive_is_steady(&linkage->driver);
-    return bit(DRIVE, linkage->driver.is_present) | bit(TORQUE, is_torque && !is_force) |
+    const bool is_soft = linkage->torque.followed.is_present;
+    return bit(DRIVE, linkage->driver.is_present || is_soft) | bit(TORQUE, is_torque && !is_force) |
            bit(FORCE, is_torque && is_force) |
            bit(DRIVEN, linkage->driver.is_present || is_torque) | bit(TURNING, is_steady) |
            bit(TIMED, !is_steady) | bit(REPEATING, linkage_period(linkage) > 0.0);
@@ -169,6 +171,28 @@ static unsigned joint_bits(const Scenario *scenario, const Joint *joint)
     return bit(OWN_STIFFNESS, is_own);
 }
 
+// Whether a key of a drive by a torque says how it is: a torque over time, a motor, or a soft
+// drive.
+static bool drives_apply(const SchemaRow *row, const Linkage *linkage)
+{
+    const Torque *torque = &linkage->torque;
+    const bool is_soft = torque->followed.is_present;
+    const bool is_motor = torque->no_load != 0.0;
+    switch (row->offset) {
+    case offsetof(Scenario, linkage.torque.table):
+        return !is_soft && !is_motor;
+    case offsetof(Scenario, linkage.torque.table.values[0]):
+    case offsetof(Scenario, linkage.torque.no_load):
+    case offsetof(Scenario, linkage.torque.inertia):
+        return is_motor;
+    case offsetof(Scenario, linkage.torque.stiffness):
+    case offsetof(Scenario, linkage.torque.slope):
+        return is_soft;
+    default:
+        return true;
+    }
+}
+
 bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met)
 {
     if (!schema_is_of_form(row, form_of(scenario))) {
@@ -187,6 +211,14 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
             !schema_is_of_kind(row, joint->kind)) {
             return false;
         }
+    }
+    if (strncmp(row->path, "drive.", strlen("drive.")) == 0 &&
+        !drives_apply(row, &scenario->linkage)) {
+        return false;
+    }
+    if (row->family == SCHEMA_LOAD_FAMILY && is_member &&
+        !loads_apply(row, &scenario->linkage, &scenario->linkage.loads[index])) {
+        return false;
     }
     return (row->needs & ~met) == 0;
 }

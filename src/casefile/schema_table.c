@@ -32,8 +32,11 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_POINT] = {"points", "point", SCENARIO_POINT_MAX},
     [SCHEMA_SPRING] = {"springs", "spring", SIZE_MAX},
     [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", SIZE_MAX},
+    [SCHEMA_LOAD_FAMILY] = {"loads", "load", SIZE_MAX},
 };
 
+static const char *const LOAD_FRAMES[] = {"world", "body", NULL};
+static const char *const LOAD_OVERS[] = {"time", "crank-angle", "position", NULL};
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
 static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 
@@ -47,7 +50,7 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     .dimension = DIMENSION_MASS, AT_BODY(body, mass), \
     .low = 1e-9, .high = 1e6, .is_required = true
 #define INERTIA(body) \
-    .dimension = DIMENSION_INERTIA, AT_BODY(body, inertia), \
+    .dimension = DIMENSION_INERTIA, AT_BODY(body, own_inertia), \
     .low = 1e-18, .high = 1e9, .is_required = true
 #define MOMENT(axis, member, own) \
     .dimension = DIMENSION_INERTIA, AT_BODY(member, space.inertia_##axis), \
@@ -101,11 +104,14 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define TOUCHING \
     (SCHEMA_OF(JOINT_CLEARANCE) | SCHEMA_OF(JOINT_GUIDE) | SCHEMA_OF(JOINT_STOP) | LIMITED | GEAR)
 #define SPRING(field) \
-    .family = SCHEMA_SPRING, .form = SCHEMA_LONG, \
+    .family = SCHEMA_SPRING, \
     .holder = SCHEMA_SPRING, .offset = offsetof(Spring, field), .needs = MEMBER
 #define TORSION(field) \
-    .family = SCHEMA_TORSION_SPRING, .form = SCHEMA_LONG, \
+    .family = SCHEMA_TORSION_SPRING, \
     .holder = SCHEMA_TORSION_SPRING, .offset = offsetof(TorsionSpring, field), .needs = MEMBER
+#define LOAD(field) \
+    .family = SCHEMA_LOAD_FAMILY, .holder = SCHEMA_LOAD_FAMILY, \
+    .offset = offsetof(Load, field), .needs = MEMBER
 #define POINT(field) \
     .family = SCHEMA_POINT, .holder = SCHEMA_POINT, .offset = offsetof(TracedPoint, field), .needs = MEMBER
 #define DAMPING_DOC(name, word, words, factor) "; " word ": " words
@@ -214,6 +220,39 @@ const SchemaRow SCHEMA_ROWS[] = {
      .dimension = DIMENSION_TORSION_DAMPING, .low = 0.0, .high = 1e12,
      .doc = "torque over angular velocity"},
 
+    {.path = "loads.*.joint", .type = SCHEMA_JOINT_NAME, LOAD(joint),
+     .doc = "the joint along whose coordinate it acts: a force along a slider's line on its second "
+            "body, a torque at a pivot on its second body (the first, where the second is the "
+            "ground), and the other way on the other; instead of body"},
+    {.path = "loads.*.body", .type = SCHEMA_BODY_NAME, LOAD(body),
+     .doc = "the body that it acts on; instead of joint"},
+    {.path = "loads.*.at", .type = SCHEMA_ANCHOR, LOAD(anchor), .dimension = DIMENSION_LENGTH,
+     .low = -1e3, .high = 1e3, .default_words = "centred",
+     .doc = "where a force acts on a body: position [x, y] in the world at time zero; centred: at "
+            "the centre of mass"},
+    {.path = "loads.*.direction", LOAD(direction), .dimension = DIMENSION_ANGLE,
+     .low = -FULL_TURN, .high = FULL_TURN,
+     .doc = "of a force on a body, counter-clockwise from the x axis of its frame"},
+    {.path = "loads.*.frame", .type = SCHEMA_CHOICE, LOAD(frame), .words = LOAD_FRAMES,
+     .doc = "world: the direction stays; body: it turns with the body, whose own x axis it counts "
+            "from"},
+    {.path = "loads.*.over", .type = SCHEMA_CHOICE, LOAD(over), .words = LOAD_OVERS,
+     .doc = "what points are over: time, the crank's angle (of a mechanism that a torque drives "
+            "that of the drive's joint), or the position of the joint along which it acts"},
+    {.path = "loads.*.interpolation", .type = SCHEMA_CHOICE, LOAD(table.shape),
+     .words = LOAD_SHAPES,
+     .doc = "between points: linear; smooth: a cubic that keeps to their range; steps: the value of "
+            "the point before"},
+    {.path = "loads.*.period", .type = SCHEMA_LOAD_PERIOD, LOAD(table.period), .low = 0.0,
+     .high = 1e6, .default_words = "a turn over crank-angle, else none",
+     .doc = "after which points repeat; such as 720 deg for a four-stroke engine"},
+    {.path = "loads.*.force", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_FORCE,
+     .low = -1e9, .high = 1e9,
+     .doc = "constant, or points of what it is over, at most 400, constant beyond the ends; a CSV "
+            "file beside the case has heads with units, as `crank angle [deg], force [kN]`"},
+    {.path = "loads.*.torque", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_TORQUE,
+     .low = -1e9, .high = 1e9, .doc = "likewise; counter-clockwise positive"},
+
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
      AT(linkage.driver.joint), .is_required = true, .needs = DRIVEN,
      .doc = "the ideal joint with the ground about which the drive turns a body; of a torque any "
@@ -239,6 +278,27 @@ const SchemaRow SCHEMA_ROWS[] = {
      .rivalry = SCHEMA_DRIVING, .side = 2, .default_words = "none", .needs = FORCE,
      .doc = "instead of speed, at an ideal prismatic joint: a force along its line on the second "
             "body, and the other way on the first, constant or over time as a torque"},
+    {.path = "drive.stall-torque", .form = SCHEMA_LONG, .dimension = DIMENSION_TORQUE,
+     AT(linkage.torque.table.values[0]), .low = -1e9, .high = 1e9,
+     .rivalry = SCHEMA_DRIVING, .side = 3, .default_words = "none", .needs = TORQUE,
+     .doc = "instead of speed: a motor whose torque falls in a straight line from this at rest to 0 "
+            "at no-load-speed, and below 0 beyond it; counter-clockwise positive"},
+    {.path = "drive.no-load-speed", .form = SCHEMA_LONG, .dimension = DIMENSION_ANGULAR_SPEED,
+     AT(linkage.torque.no_load), .low = -1e6, .high = 1e6, .default_words = "none",
+     .needs = TORQUE,
+     .doc = "of a motor: the speed at which it gives no torque, of the sign of stall-torque"},
+    {.path = "drive.rotor-inertia", .form = SCHEMA_LONG, .dimension = DIMENSION_INERTIA,
+     AT(linkage.torque.inertia), .low = 0.0, .high = 1e9, .needs = TORQUE,
+     .doc = "of a motor at a pivot with the ground: inertia of its rotor, as it counts at the shaft"},
+    {.path = "drive.stiffness", .form = SCHEMA_LONG, .dimension = DIMENSION_TORSION_SPRING,
+     AT(linkage.torque.stiffness), .low = 0.0, .high = 1e12, .default_words = "none",
+     .needs = TORQUE,
+     .doc = "of a soft drive, beside speed: torque over the angle by which the body is behind the "
+            "angle that the speed prescribes, as of a belt or a controller"},
+    {.path = "drive.damping", .form = SCHEMA_LONG, .dimension = DIMENSION_TORSION_DAMPING,
+     AT(linkage.torque.slope), .low = 0.0, .high = 1e12, .default_words = "none",
+     .needs = TORQUE,
+     .doc = "likewise, torque over the difference of the speeds"},
     {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is the "

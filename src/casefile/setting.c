@@ -1,5 +1,7 @@
 // Walks over the settings of a scenario, as a case file would name them.
 #include "casefile/casefile.h"
+
+#include "casefile/loads.h"
 #include "casefile/schema.h"
 #include "casefile/slider.h"
 
@@ -163,6 +165,10 @@ static Vec2 anchor_place(const SchemaRow *row, const Scenario *scenario, size_t 
         return start_point(&scenario->linkage, is_first ? spring->body_a : spring->body_b,
                            is_first ? spring->anchor_a : spring->anchor_b);
     }
+    if (row->family == SCHEMA_LOAD_FAMILY) {
+        const Load *load = &scenario->linkage.loads[index];
+        return start_point(&scenario->linkage, load->body, load->anchor);
+    }
     const Joint *joint = &scenario->linkage.joints[index];
     return start_point(&scenario->linkage, is_first ? joint->body_a : joint->body_b,
                        is_first ? joint->anchor_a : joint->anchor_b);
@@ -207,6 +213,31 @@ static void set_over_time(CasefileSetting *setting, const SchemaRow *row, const 
         setting->numbers[2 * i + 1] = table->values[i];
     }
     snprintf(setting->unit, sizeof setting->unit, "s, %s", units_si(row->dimension));
+}
+
+// Likewise of a load, over what its points are over.
+static void set_load(CasefileSetting *setting, const SchemaRow *row, const Linkage *linkage,
+                     const Load *load)
+{
+    const LoadTable *table = &load->table;
+    if (table->count <= 1) {
+        set_number(setting, table->values[0]);
+        return;
+    }
+    setting->kind = CASEFILE_POINTS;
+    setting->number_count = 2 * table->count;
+    for (size_t i = 0; i < table->count; i++) {
+        setting->numbers[2 * i] = table->at[i];
+        setting->numbers[2 * i + 1] = table->values[i];
+    }
+    snprintf(setting->unit, sizeof setting->unit, "%s, %s",
+             units_si(loads_dimension(linkage, load)), units_si(row->dimension));
+}
+
+static void set_load_period(CasefileSetting *setting, const Linkage *linkage, const Load *load)
+{
+    set_number(setting, load->table.period);
+    text_copy(setting->unit, sizeof setting->unit, units_si(loads_dimension(linkage, load)));
 }
 
 static void set_speed(CasefileSetting *setting, const SchemaRow *row, const Driver *driver)
@@ -328,6 +359,12 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     case SCHEMA_SPEED:
         set_speed(setting, row, field);
         break;
+    case SCHEMA_LOAD:
+        set_load(setting, row, linkage, schema_member(scenario, SCHEMA_LOAD_FAMILY, index));
+        break;
+    case SCHEMA_LOAD_PERIOD:
+        set_load_period(setting, linkage, schema_member(scenario, SCHEMA_LOAD_FAMILY, index));
+        break;
     case SCHEMA_ALONG:
         set_number(setting, point_along(scenario, index));
         break;
@@ -351,6 +388,8 @@ const char *schema_member_name(const Scenario *scenario, SchemaFamily family, si
         return ((const Spring *)named)->name;
     case SCHEMA_TORSION_SPRING:
         return ((const TorsionSpring *)named)->name;
+    case SCHEMA_LOAD_FAMILY:
+        return ((const Load *)named)->name;
     default:
         return "*";
     }

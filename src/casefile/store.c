@@ -3,6 +3,7 @@
 
 #include "casefile/expect.h"
 #include "casefile/limits.h"
+#include "casefile/loads.h"
 #include "casefile/over_time.h"
 #include "casefile/target.h"
 
@@ -358,6 +359,12 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return over_time_store(entry, target.field, err);
     case SCHEMA_SPEED:
         return store_speed(&target);
+    case SCHEMA_LOAD:
+        return loads_store_value(&target, &scenario->linkage,
+                                 &scenario->linkage.loads[entry->index]);
+    case SCHEMA_LOAD_PERIOD:
+        return loads_store_period(&target, &scenario->linkage,
+                                  &scenario->linkage.loads[entry->index]);
     case SCHEMA_EXPECT:
         return expect_store(entries, entry, scenario, err);
     default:

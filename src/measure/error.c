@@ -157,6 +157,7 @@ double error_energy(const Trajectory *run)
 {
     const Energy *energy = &run->energy;
     double largest = fmax(fabs(energy->drive_work), fabs(energy->change));
+    largest = fmax(largest, fabs(energy->load_work));
     largest = fmax(largest, fabs(energy->dissipated) + fabs(energy->friction));
     for (size_t i = 0; i < run->sample_count; i++) {
         const double kinetic =

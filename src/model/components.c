@@ -39,6 +39,16 @@ static size_t member_of_pair(const size_t *member_of, int a, int b)
     return member_of[a != LINKAGE_GROUND ? a : b];
 }
 
+static size_t member_of_load(const Linkage *linkage, const size_t *member_of, size_t number)
+{
+    const Load *load = &linkage->loads[number];
+    if (load->kind != LOAD_ALONG) {
+        return member_of[load->body];
+    }
+    const Joint *joint = &linkage->joints[load->joint];
+    return member_of_pair(member_of, joint->body_a, joint->body_b);
+}
+
 static int renumber(const int *own, int body)
 {
     return body == LINKAGE_GROUND ? LINKAGE_GROUND : own[body];
@@ -104,6 +114,16 @@ static void share_out(const Linkage *whole, const size_t *member_of, Component *
         torsion.joint = own_joint[torsion.joint];
         linkage->torsions[linkage->torsion_count++] = torsion;
     }
+    for (size_t i = 0; i < whole->load_count; i++) {
+        Load load = whole->loads[i];
+        Linkage *linkage = &components[member_of_load(whole, member_of, i)].scenario->linkage;
+        if (load.kind == LOAD_ALONG) {
+            load.joint = own_joint[load.joint];
+        } else {
+            load.body = own_body[load.body];
+        }
+        linkage->loads[linkage->load_count++] = load;
+    }
     for (size_t i = 0; i < count; i++) {
         renumber_gears(own_body, own_joint, &components[i].scenario->linkage);
     }
@@ -129,6 +149,9 @@ static LinkageRoom *count_rooms(const Linkage *whole, const size_t *member_of, s
     for (size_t i = 0; i < whole->torsion_count; i++) {
         const Joint *joint = &whole->joints[whole->torsions[i].joint];
         rooms[member_of_pair(member_of, joint->body_a, joint->body_b)].torsions++;
+    }
+    for (size_t i = 0; i < whole->load_count; i++) {
+        rooms[member_of_load(whole, member_of, i)].loads++;
     }
     return rooms;
 }

@@ -4,22 +4,25 @@
 //     tension  T = k (|d| - l) + c d|d|/dt,   force T n on body a, -T n on body b
 // At a joint, angle phi of its turned body against the other:
 //     moment  M = -k (phi - phi_0) - c dphi/dt  on the turned body, -M on the other
-// Torque of the drive: M(t) on the turned body of its joint, -M(t) on the other. At a prismatic
-// joint it is a force F(t) along the line on body b at its anchor, -F(t) on body a at that point.
+// Torque of the drive: M on the turned body of its joint, -M on the other. At a prismatic joint it
+// is a force F along the line on body b at its anchor, -F on body a at that point. Of a motor or a
+// soft drive (Torque) what the rate takes, slope times it, counts as a damper's, for the solvers,
+// and as the drive's, for the energy.
 //     energy  sum k (|d| - l)^2 / 2 + sum k (phi - phi_0)^2 / 2
 #include "model/forces.h"
 
 #include "model/joint_rows.h"
+#include "model/loads.h"
 
 bool forces_any(const Linkage *linkage)
 {
     return linkage->spring_count > 0 || linkage->torsion_count > 0 ||
-           linkage->torque.table.count > 0;
+           linkage->torque.table.count > 0 || linkage->load_count > 0;
 }
 
 bool forces_damp(const Linkage *linkage)
 {
-    bool is_damped = false;
+    bool is_damped = linkage->torque.slope > 0.0;
     for (size_t i = 0; i < linkage->spring_count; i++) {
         is_damped = is_damped || linkage->springs[i].damping > 0.0;
     }
@@ -57,7 +60,7 @@ JointTurn forces_turn(const Linkage *linkage, int joint, const Motion *motions)
     return turn;
 }
 
-static void add_force(int body, Vec2 point, Vec2 force, const Motion *motions, BodyLoad *loads)
+void forces_add_at(int body, Vec2 point, Vec2 force, const Motion *motions, BodyLoad *loads)
 {
     if (body == LINKAGE_GROUND) {
         return;
@@ -71,8 +74,8 @@ void forces_add_tension(const Spring *spring, const SpringLine *line, const Moti
                         double tension, BodyLoad *loads)
 {
     const Vec2 force = vec2_scale(tension, line->direction);
-    add_force(spring->body_a, line->ends[0], force, motions, loads);
-    add_force(spring->body_b, line->ends[1], vec2_scale(-1.0, force), motions, loads);
+    forces_add_at(spring->body_a, line->ends[0], force, motions, loads);
+    forces_add_at(spring->body_b, line->ends[1], vec2_scale(-1.0, force), motions, loads);
 }
 
 void forces_add_moment(const Linkage *linkage, int joint, double moment, BodyLoad *loads)
@@ -114,27 +117,30 @@ void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad 
         const JointTurn turn = forces_turn(linkage, spring->joint, motions);
         forces_add_moment(linkage, spring->joint, -spring->damping * turn.rate, loads);
     }
+    if (linkage->torque.slope > 0.0) {
+        const double rate = forces_drive_rate(linkage, motions);
+        forces_add_moment(linkage, linkage->torque.joint, -linkage->torque.slope * rate, loads);
+    }
 }
 
-// The line of the prismatic joint that a force drives.
-typedef struct DriveLine {
+// The line of a prismatic joint or of guides.
+typedef struct JointLine {
     int body_a;
     int body_b;
     Vec2 along;  // unit, of body b
-    Vec2 point;  // anchor of body b, at which the force acts, m
+    Vec2 point;  // anchor of body b, at which a force acts, m
     double way;  // m, of that point from the anchor of body a
     double rate; // m/s, of that point against the point of body a under it
-} DriveLine;
+} JointLine;
 
-static DriveLine drive_line(const Linkage *linkage, const Motion *motions)
+static JointLine joint_line(const Linkage *linkage, int number, const Motion *motions)
 {
-    const int number = linkage->torque.joint;
     const Joint *joint = &linkage->joints[number];
     const JointGap gap = linkage_joint_gap(linkage, motions, number);
     const double omega = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
     const Vec2 along = joint_rows_along(linkage, motions, number);
     const Vec2 carried = vec2_scale(omega, vec2_perp(gap.position));
-    return (DriveLine){
+    return (JointLine){
         .body_a = joint->body_a,
         .body_b = joint->body_b,
         .along = along,
@@ -144,18 +150,37 @@ static DriveLine drive_line(const Linkage *linkage, const Motion *motions)
     };
 }
 
-static bool is_force(const Linkage *linkage)
+bool forces_is_along_line(const Linkage *linkage, int joint)
 {
-    return linkage->joints[linkage->torque.joint].kind == JOINT_PRISMATIC;
+    const JointKind kind = linkage->joints[joint].kind;
+    return kind == JOINT_PRISMATIC || kind == JOINT_GUIDE;
+}
+
+JointTurn forces_coordinate(const Linkage *linkage, int joint, const Motion *motions)
+{
+    if (!forces_is_along_line(linkage, joint)) {
+        return forces_turn(linkage, joint, motions);
+    }
+    const JointLine line = joint_line(linkage, joint, motions);
+    return (JointTurn){line.way, line.rate};
+}
+
+void forces_add_along(const Linkage *linkage, int joint, double value, const Motion *motions,
+                      BodyLoad *loads)
+{
+    if (!forces_is_along_line(linkage, joint)) {
+        forces_add_moment(linkage, joint, value, loads);
+        return;
+    }
+    const JointLine line = joint_line(linkage, joint, motions);
+    const Vec2 force = vec2_scale(value, line.along);
+    forces_add_at(line.body_a, line.point, vec2_scale(-1.0, force), motions, loads);
+    forces_add_at(line.body_b, line.point, force, motions, loads);
 }
 
 JointTurn forces_drive_turn(const Linkage *linkage, const Motion *motions)
 {
-    if (!is_force(linkage)) {
-        return forces_turn(linkage, linkage->torque.joint, motions);
-    }
-    const DriveLine line = drive_line(linkage, motions);
-    return (JointTurn){line.way, line.rate};
+    return forces_coordinate(linkage, linkage->torque.joint, motions);
 }
 
 double forces_drive_rate(const Linkage *linkage, const Motion *motions)
@@ -163,30 +188,38 @@ double forces_drive_rate(const Linkage *linkage, const Motion *motions)
     return forces_drive_turn(linkage, motions).rate;
 }
 
+double forces_followed(const Linkage *linkage, const Motion *motions, double time_s)
+{
+    const Torque *torque = &linkage->torque;
+    if (!torque->followed.is_present) {
+        return 0.0;
+    }
+    const DriveState to = drive_at(&torque->followed, time_s);
+    const double angle = forces_drive_turn(linkage, motions).angle;
+    return torque->stiffness * (to.angle - angle) + torque->slope * to.omega;
+}
+
 void forces_add_torque(const Linkage *linkage, const Motion *motions, double torque,
                        BodyLoad *loads)
 {
-    if (linkage->torque.table.count == 0) {
-        return;
+    if (linkage->torque.table.count > 0) {
+        forces_add_along(linkage, linkage->torque.joint, torque, motions, loads);
     }
-    if (is_force(linkage)) {
-        const DriveLine line = drive_line(linkage, motions);
-        const Vec2 force = vec2_scale(torque, line.along);
-        add_force(line.body_a, line.point, vec2_scale(-1.0, force), motions, loads);
-        add_force(line.body_b, line.point, force, motions, loads);
-        return;
-    }
-    forces_add_moment(linkage, linkage->torque.joint, torque, loads);
 }
 
-void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads)
+void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
+                  BodyLoad *loads)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {
         loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
     }
     forces_add_springs(linkage, motions, loads);
     forces_add_dampers(linkage, motions, loads);
-    forces_add_torque(linkage, motions, time_table_at(&linkage->torque.table, time_s), loads);
+    forces_add_torque(linkage, motions,
+                      time_table_at(&linkage->torque.table, time_s) +
+                          forces_followed(linkage, motions, time_s),
+                      loads);
+    loads_add(linkage, motions, time_s, from_s, loads);
 }
 
 double forces_energy(const Linkage *linkage, const Motion *motions)
@@ -219,12 +252,19 @@ double forces_damping_power(const Linkage *linkage, const Motion *motions)
     return power;
 }
 
-double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s)
+double forces_drive_torque(const Linkage *linkage, const Motion *motions, double time_s)
 {
     const Torque *torque = &linkage->torque;
-    return torque->table.count == 0
-               ? 0.0
-               : time_table_at(&torque->table, time_s) * forces_drive_rate(linkage, motions);
+    const double rate = torque->slope > 0.0 ? forces_drive_rate(linkage, motions) : 0.0;
+    return time_table_at(&torque->table, time_s) + forces_followed(linkage, motions, time_s) -
+           torque->slope * rate;
+}
+
+double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s)
+{
+    return linkage->torque.table.count == 0 ? 0.0
+                                            : forces_drive_torque(linkage, motions, time_s) *
+                                                  forces_drive_rate(linkage, motions);
 }
 
 double forces_load_power(const BodyLoad *load, const Motion *motion)

@@ -32,8 +32,12 @@ typedef struct JointTurn {
 
 JointTurn forces_turn(const Linkage *linkage, int joint, const Motion *motions);
 
-// How far a torque over time has moved what it pushes, and how fast it does: its joint's angle,
-// rad, or the way along its line, m.
+// Whether a joint's coordinate is the way along a line; else it is an angle. Where it stands, rad
+// or m, and its rate.
+bool forces_is_along_line(const Linkage *linkage, int joint);
+JointTurn forces_coordinate(const Linkage *linkage, int joint, const Motion *motions);
+
+// The same of the joint of the drive's torque.
 JointTurn forces_drive_turn(const Linkage *linkage, const Motion *motions);
 double forces_drive_rate(const Linkage *linkage, const Motion *motions);
 
@@ -44,6 +48,18 @@ void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad 
 void forces_add_torque(const Linkage *linkage, const Motion *motions, double torque,
                        BodyLoad *loads);
 
+// Adds a force, N, at a point of a body, in the world; of the ground nothing.
+void forces_add_at(int body, Vec2 point, Vec2 force, const Motion *motions, BodyLoad *loads);
+
+// Adds a force, N, or torque, N m, along a joint's coordinate.
+void forces_add_along(const Linkage *linkage, int joint, double value, const Motion *motions,
+                      BodyLoad *loads);
+
+// What a soft drive adds to its table at a time, N m, but for what the rate takes; and all that the
+// drive's torque is then.
+double forces_followed(const Linkage *linkage, const Motion *motions, double time_s);
+double forces_drive_torque(const Linkage *linkage, const Motion *motions, double time_s);
+
 // Add the load of one damper that pulls along a spring's line with a tension, N.
 void forces_add_tension(const Spring *spring, const SpringLine *line, const Motion *motions,
                         double tension, BodyLoad *loads);
@@ -51,11 +67,13 @@ void forces_add_tension(const Spring *spring, const SpringLine *line, const Moti
 // Add a moment, N m, that a joint's turned body gets and the other one gives.
 void forces_add_moment(const Linkage *linkage, int joint, double moment, BodyLoad *loads);
 
-// Writes the loads of everything at a time.
-void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads);
+// Writes the loads of everything at a time; of loads over time and a crank's angle what holds from
+// a time on that is no later (model/loads.h).
+void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
+                  BodyLoad *loads);
 
-// Energy stored in the springs, J; power that the dampers take and that the drive's torque gives at
-// a time, W; power of a load on a body, W.
+// Energy stored in the springs, J; power that the dampers take, not those of a motor or a soft
+// drive, and that the drive's torque gives at a time, W; power of a load on a body, W.
 double forces_energy(const Linkage *linkage, const Motion *motions);
 double forces_damping_power(const Linkage *linkage, const Motion *motions);
 double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s);

@@ -10,6 +10,7 @@
 #include "base/vec3.h"
 #include "kernel/contact_state.h"
 #include "model/drive.h"
+#include "model/load_table.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,8 +56,10 @@ typedef struct BodySpace {
 typedef struct Body {
     char name[LINKAGE_NAME_SIZE];
     double mass;    // kg
-    double inertia; // kg m^2, about the centre of mass, about the axis normal to the plane
-    Motion start;   // at time zero, with every joint ideal unless the case says otherwise
+    double inertia; // kg m^2, about the centre of mass, about the axis normal to the plane; with
+                    // the rotor of a motor that turns it
+    double own_inertia; // kg m^2, likewise, as the case gives it: without that
+    Motion start;       // at time zero, with every joint ideal unless the case says otherwise
     BodySpace space;
 } Body;
 
@@ -214,11 +217,39 @@ typedef struct TorsionSpring {
 
 // Pushes the turned body of a joint, and the other one the other way (linkage_turning), by a torque
 // over time. At a prismatic joint it is a force on body b along the joint's line, at the anchor of
-// body b, and the other way on body a.
+// body b, and the other way on body a. With the joint's angle phi and its rate,
+//     M(t) + stiffness (phi_d(t) - phi) + slope (omega_d(t) - omega)
+// so that it also is a motor with a straight line of torque over speed (no phi_d), or a soft drive
+// that follows an angle phi_d(t) through a belt or a controller.
 typedef struct Torque {
-    int joint;       // number of the joint, which is ideal
-    TimeTable table; // N m, counter-clockwise positive, or N; without points there is no torque
+    int joint;        // number of the joint, which is ideal
+    TimeTable table;  // N m, counter-clockwise positive, or N; without points there is no torque
+    double slope;     // N m s/rad
+    double stiffness; // N m/rad
+    Driver followed;  // phi_d and omega_d; where it is not present both are 0
+    double no_load;   // rad/s, of a motor: where its torque is 0; 0: it is none
+    double inertia;   // kg m^2, of its rotor, which turns with the turned body
 } Torque;
+
+// What a load acts on, what its value is over, and what its direction turns with.
+typedef enum LoadKind { LOAD_FORCE, LOAD_TORQUE, LOAD_ALONG } LoadKind;
+typedef enum LoadOver { LOAD_OVER_TIME, LOAD_OVER_CRANK, LOAD_OVER_POSITION } LoadOver;
+typedef enum LoadFrame { LOAD_IN_WORLD, LOAD_IN_BODY } LoadFrame;
+
+// A load (model/loads.h).
+typedef struct Load {
+    char name[LINKAGE_NAME_SIZE];
+    LoadKind kind;
+    int body;         // of a force or torque on one
+    Vec2 anchor;      // m, in its frame, where a force acts
+    double direction; // rad, of a force, in the frame that it turns with
+    LoadFrame frame;
+    int joint; // of LOAD_ALONG: along whose coordinate it acts
+    LoadOver over;
+    double shift; // s or rad, by which time or the crank's angle counts more: a run that is
+                  // continued has begun earlier
+    LoadTable table;
+} Load;
 
 // Its arrays are as long as the linkage needs. An assignment shares them: it is for another driver
 // or other options of the same bodies. What is to have other bodies or joints needs linkage_copy.
@@ -232,6 +263,8 @@ typedef struct Linkage {
     Spring *springs;
     size_t torsion_count;
     TorsionSpring *torsions;
+    size_t load_count;
+    Load *loads;
     Driver driver;
     Torque torque; // instead of a driver
 } Linkage;
@@ -242,6 +275,7 @@ typedef struct LinkageRoom {
     size_t joints;
     size_t springs;
     size_t torsions;
+    size_t loads;
 } LinkageRoom;
 
 // A linkage without bodies and joints, with room for so many, all zero. For linkage_free.

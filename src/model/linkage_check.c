@@ -217,6 +217,22 @@ static bool check_springs(const Linkage *linkage, Err *err)
     return true;
 }
 
+static bool check_loads(const Linkage *linkage, Err *err)
+{
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        const bool is_along = load->kind == LOAD_ALONG;
+        const int number = is_along ? load->joint : load->body;
+        const size_t count = is_along ? linkage->joint_count : linkage->body_count;
+        if (number < 0 || number >= (int)count || load->table.count == 0 ||
+            !load_table_is_ordered(&load->table)) {
+            return err_set(err, ERR_CASE, "load '%s' needs a body or joint, and points in order",
+                           load->name);
+        }
+    }
+    return true;
+}
+
 static bool check_torque(const Linkage *linkage, Err *err)
 {
     const Torque *torque = &linkage->torque;
@@ -267,5 +283,6 @@ bool linkage_check(const Linkage *linkage, Err *err)
             return false;
         }
     }
-    return check_springs(linkage, err) && check_driver(linkage, err) && check_torque(linkage, err);
+    return check_springs(linkage, err) && check_driver(linkage, err) &&
+           check_torque(linkage, err) && check_loads(linkage, err);
 }

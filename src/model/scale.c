@@ -10,7 +10,7 @@
 
 #include "base/zeroed.h"
 
-#include "model/forces.h"
+#include "model/loads.h"
 
 // How far the driven body reaches from its pivot, m.
 static double driven_span(const Linkage *linkage)
@@ -41,6 +41,11 @@ static double pushed_speed(const Linkage *linkage, double reach)
     const Torque *torque = &linkage->torque;
     if (torque->table.count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC) {
         largest *= reach;
+    }
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        const bool is_force = load_is_force(linkage, load);
+        largest += load_table_largest(&load->table) * (is_force ? reach : 1.0);
     }
     return sqrt(2.0 * (energy + largest) / mass);
 }

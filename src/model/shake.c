@@ -129,6 +129,13 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
     for (size_t i = 0; i < linkage->torque.table.count; i++) {
         shake(&linkage->torque.table.values[i], seed);
     }
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        LoadTable *table = &linkage->loads[i].table;
+        for (size_t k = 0; k < table->count; k++) {
+            shake(&table->values[k], seed);
+        }
+        load_table_settle(table);
+    }
     for (size_t i = 0; i < linkage->driver.speeds.count; i++) {
         shake(&linkage->driver.speeds.values[i], seed);
     }

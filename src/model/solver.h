@@ -49,6 +49,7 @@ typedef struct StepRecord {
     const double *impulse;               // N s, of each joint in the step
     const double *approach;              // m/s, closing speed at which each joint's contact began
     double drive_work;                   // J, done by the drive in the step
+    double load_work;                    // J, done by loads in the step
     double dissipated;                   // J, in the contacts' damping in the step
     double friction;                     // J, in the contacts' friction in the step
     double elastic;                      // J, stored in the contacts at end_s

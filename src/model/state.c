@@ -132,14 +132,29 @@ static void start_in_play(const JointState *state, Joint *joint)
     }
 }
 
+// What time and the crank's angle, which begin anew, count more for the loads.
+static void shift_loads(Linkage *linkage, double time_s, double turns_rad)
+{
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        Load *load = &linkage->loads[i];
+        load->shift += load->over == LOAD_OVER_TIME    ? time_s
+                       : load->over == LOAD_OVER_CRANK ? turns_rad
+                                                       : 0.0;
+    }
+}
+
 void run_state_start(const RunState *state, Scenario *scenario)
 {
     Linkage *linkage = &scenario->linkage;
+    double turns_rad = 0.0;
     if (linkage->driver.is_present) {
         const double turned = drive_angle(&linkage->driver, state->time_s) - linkage->driver.start;
-        const double of_a_turn = remainder(turned, 2.0 * M_PI);
-        linkage->driver.start += fabs(of_a_turn) > TURN_ROUNDING * fabs(turned) ? of_a_turn : 0.0;
+        double of_a_turn = remainder(turned, 2.0 * M_PI);
+        of_a_turn = fabs(of_a_turn) > TURN_ROUNDING * fabs(turned) ? of_a_turn : 0.0;
+        linkage->driver.start += of_a_turn;
+        turns_rad = 2.0 * M_PI * round((turned - of_a_turn) / (2.0 * M_PI));
     }
+    shift_loads(linkage, state->time_s, turns_rad);
     if (linkage->is_spatial) {
         for (size_t i = 0; i < linkage->body_count; i++) {
             space_set_place(&state->sample.space_bodies[i], &linkage->bodies[i]);

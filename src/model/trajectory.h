@@ -114,10 +114,11 @@ void sample_copy(const Linkage *linkage, const Sample *from, Sample *to);
 // Where the energy of a run went, J.
 typedef struct Energy {
     double drive_work; // done by the drive
+    double load_work;  // done by loads
     double dissipated; // in the contacts' damping
     double friction;   // in the contacts' friction
     double change;     // of kinetic, potential and elastic energy from start to end
-    double residual;   // drive work less all of the others: zero but for the solver's error
+    double residual;   // works less all of the others: zero but for the solver's error
 } Energy;
 
 typedef struct Trajectory {

@@ -126,6 +126,7 @@ static void take_part(Impulse *impulse)
     part->record.space_joints = view->space_joints;
     impulse_part_add_contacts(part, view->kernel, mark, view->depths, view->counts);
     part->record.drive_work = part->is_last ? span->drive_work : 0.0;
+    part->record.load_work = part->is_last ? span->load_work : 0.0;
     part->record.dissipated += part->is_last ? span->damped : 0.0;
 }
 

@@ -117,6 +117,7 @@ typedef struct ImpulseSpan {
     double end_s;
     double width_s;
     double drive_work; // J
+    double load_work;  // J
     double damped;     // J, in dampers
 } ImpulseSpan;
 

@@ -346,6 +346,7 @@ static void take_end(ImpulseIslands *islands, ImpulsePart *part)
         part->record.friction -= islands->losses[i][1];
     }
     part->record.drive_work = span->drive_work;
+    part->record.load_work = span->load_work;
     // of ideal joints in the whole step
     for (size_t i = 0; i < whole->joint_count; i++) {
         part->impulse[i] = islands->kind->mean(islands->own, i) * span->width_s;

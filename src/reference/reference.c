@@ -267,7 +267,8 @@ static bool mechanism_carry(void *state, Carry *carry)
 static StepRecord mechanism_record(const void *state)
 {
     const Mechanism *mechanism = state;
-    const size_t sums = system_sum_index(mechanism->stepper->system, 0);
+    const System *system = mechanism->stepper->system;
+    const size_t sums = system_sum_index(system, 0);
     const bool is_spatial = mechanism->stepper->scenario->linkage.is_spatial;
     const double *now = mechanism->y + sums;
     const double *then = mechanism->before + sums;
@@ -284,6 +285,8 @@ static StepRecord mechanism_record(const void *state)
         .impulse = mechanism->impulse,
         .approach = mechanism->approach,
         .drive_work = now[SYSTEM_DRIVE_WORK] - then[SYSTEM_DRIVE_WORK],
+        .load_work =
+            system->has_loads ? now[system_load_sum(system)] - then[system_load_sum(system)] : 0.0,
         .dissipated = now[SYSTEM_DISSIPATED] - then[SYSTEM_DISSIPATED],
         .friction = now[SYSTEM_FRICTION] - then[SYSTEM_FRICTION],
         .elastic = mechanism->elastic,

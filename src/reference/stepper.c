@@ -7,6 +7,7 @@
 #include "reference/stepper.h"
 
 #include "model/forces.h"
+#include "model/loads.h"
 #include "reference/system.h"
 
 #include <assert.h>
@@ -417,6 +418,9 @@ static void set_tolerances(Stepper *stepper)
     for (size_t i = 0; i < system->contact_count; i++) {
         sums[SYSTEM_IMPULSES + i] = mass * moving * system->contacts[i].arm;
     }
+    if (system->has_loads) {
+        sums[system_load_sum(system)] = sums[SYSTEM_DRIVE_WORK];
+    }
 }
 
 // Allows the errors that no step can avoid: rounding of a pin's position in its hole, times the
@@ -455,6 +459,9 @@ static void allow_rounding(Stepper *stepper)
     sums[SYSTEM_DRIVE_WORK] = force * stepper->scale.moving;
     sums[SYSTEM_DISSIPATED] = force * stepper->scale.moving;
     sums[SYSTEM_FRICTION] = force * stepper->scale.moving;
+    if (system->has_loads) {
+        sums[system_load_sum(system)] = force * stepper->scale.moving;
+    }
 }
 
 // Raises the scale where a body has become faster than any before.
@@ -576,8 +583,8 @@ void stepper_carry(Stepper *stepper, Carry *carry)
     CARRY(carry, stepper->flight_step);
     CARRY(carry, stepper->ending);
     if (carry->is_back && stepper->has_step) {
-        const double end_s = events_point_time(integrator, &stepper->points,
-                                               stepper->points.count - 1);
+        const double end_s =
+            events_point_time(integrator, &stepper->points, stepper->points.count - 1);
         system->kind->evaluate(system, end_s, integrator->next,
                                stepper->points.states[stepper->points.count - 1], NULL);
     }
@@ -655,8 +662,13 @@ static double smooth_limit(const Stepper *stepper)
     const Linkage *linkage = &stepper->scenario->linkage;
     const double time_s = system->kind->time(system, 0.0);
     const double least_s = STEP_SHORTEST_SHARE * time_s; // a bend nearer than this has been reached
-    const double bend_s = fmin(time_table_next_bend(&linkage->torque.table, time_s + least_s),
-                               drive_next_kink(&linkage->driver, time_s + least_s));
+    const double after_s = time_s + least_s;
+    double bend_s = fmin(time_table_next_bend(&linkage->torque.table, after_s),
+                         drive_next_kink(&linkage->driver, after_s));
+    bend_s = fmin(bend_s, loads_next_bend(linkage, after_s));
+    bend_s = linkage->torque.followed.is_present
+                 ? fmin(bend_s, drive_next_kink(&linkage->torque.followed, after_s))
+                 : bend_s;
     return fmin(stepper->duration_s, bend_s) - time_s;
 }
 

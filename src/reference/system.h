@@ -116,7 +116,8 @@ typedef enum SystemSum {
     SYSTEM_DRIVE_WORK, // J
     SYSTEM_DISSIPATED, // J
     SYSTEM_FRICTION,   // J
-    SYSTEM_IMPULSES,   // N s, of each contact from here on
+    SYSTEM_IMPULSES,   // N s, of each contact from here on; behind them the work of loads, J,
+                       // where there are any
 } SystemSum;
 
 // What a coordinate is, for the sizes of errors.
@@ -176,7 +177,8 @@ typedef struct SystemKind {
     // Where the bodies are at a time and how fast they move, without their accelerations: of
     // equations whose accelerations are always determined. NULL, or false, of others.
     bool (*motions)(const System *system, double since_s, const double *y, Sample *sample);
-    // Carries the base, and what else of a state is not in the integrator's vector, nor of contacts.
+    // Carries the base, and what else of a state is not in the integrator's vector, nor of
+    // contacts.
     void (*carry)(System *system, Carry *carry);
     // Rows of the joints that close loops.
     size_t (*rows)(const System *system);
@@ -189,6 +191,7 @@ struct System {
     size_t coordinate_count;
     SystemCoordinate *coordinates;
     Coupling *coupling; // owned by the equations
+    bool has_loads;     // whether their work is added up
     bool is_astray;     // whether the loops' energy has jumped, as it does at a change point
     int torn; // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
@@ -207,7 +210,14 @@ static inline size_t system_sum_index(const System *system, size_t sum)
 
 static inline size_t system_size(const System *system)
 {
-    return system_sum_index(system, SYSTEM_IMPULSES) + system->contact_count;
+    return system_sum_index(system, SYSTEM_IMPULSES) + system->contact_count +
+           (system->has_loads ? 1 : 0);
+}
+
+// Where the work of loads is, counted from the first sum.
+static inline size_t system_load_sum(const System *system)
+{
+    return SYSTEM_IMPULSES + system->contact_count;
 }
 
 // Room for a state of these equations; the caller frees it.

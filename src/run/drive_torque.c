@@ -30,8 +30,11 @@ double joint_moment(const Linkage *linkage, const Motion *motions, size_t joint,
 
 bool drive_torque_exists(const Linkage *linkage)
 {
-    return linkage->driver.is_present && !linkage->is_spatial &&
-           linkage->joints[linkage->driver.joint].kind == JOINT_REVOLUTE;
+    const bool is_pushed =
+        linkage->torque.table.count > 0 && !forces_is_along_line(linkage, linkage->torque.joint);
+    return !linkage->is_spatial &&
+           (is_pushed || (linkage->driver.is_present &&
+                          linkage->joints[linkage->driver.joint].kind == JOINT_REVOLUTE));
 }
 
 // The moment of springs and dampers on a body about a point, N m.
@@ -43,7 +46,7 @@ static double moment_of_loads(const Linkage *linkage, const Motion *motions, dou
     }
     BodyLoad *loads = calloc(linkage->body_count, sizeof *loads);
     assert(loads != NULL);
-    forces_loads(linkage, motions, time_s, loads);
+    forces_loads(linkage, motions, time_s, time_s, loads);
     const Vec2 arm = vec2_sub(motions[body].position, point);
     const double moment = loads[body].moment + vec2_cross(arm, loads[body].force);
     free(loads);
@@ -55,6 +58,9 @@ double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t s
     const Linkage *linkage = &scenario->linkage;
     const int driven = linkage_driven_body(linkage);
     const Motion *motions = trajectory_motion(run, sample, 0);
+    if (!linkage->driver.is_present) {
+        return forces_drive_torque(linkage, motions, run->times[sample]);
+    }
     const Motion *body = &motions[driven];
     const double mass = linkage->bodies[driven].mass;
     const Joint *pivot = &linkage->joints[linkage->driver.joint];

@@ -77,6 +77,15 @@ static void take_pose(const Linkage *linkage, const Motion *motions, const React
     sizes->torque_max = fmax(sizes->torque_max, fabs(reactions->drive_torque));
 }
 
+static InverseTime pose_time(const Scenario *scenario, const DriveState *drive, int number,
+                             int count)
+{
+    const Driver *driver = &scenario->linkage.driver;
+    const double time_s = drive_is_steady(driver) ? (drive->angle - driver->start) / driver->speed
+                                                  : scenario_duration(scenario) * number / count;
+    return (InverseTime){time_s, time_s};
+}
+
 IdealSizes ideal_sizes(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -98,7 +107,8 @@ IdealSizes ideal_sizes(const Scenario *scenario)
         const DriveState drive = pose(scenario, k, count);
         sizes.is_known =
             move_to(scenario, &drive, motions) &&
-            inverse_dynamics_solve(linkage, motions, scenario->gravity, &reactions, &unused);
+            inverse_dynamics_solve(linkage, motions, scenario->gravity,
+                                   pose_time(scenario, &drive, k, count), &reactions, &unused);
         if (sizes.is_known) {
             take_pose(linkage, motions, &reactions, least, most, &sizes);
         }

@@ -41,7 +41,8 @@ bool pressed_start(Scenario *scenario, Err *err)
     linkage_start(linkage, motions);
     Reactions *reactions = zeroed(1, sizeof *reactions);
     Linkage pressed = linkage_copy(linkage);
-    bool is_good = inverse_dynamics_solve(linkage, motions, scenario->gravity, reactions, err);
+    bool is_good = inverse_dynamics_solve(linkage, motions, scenario->gravity,
+                                          (InverseTime){0.0, 0.0}, reactions, err);
     if (is_good) {
         for (size_t i = 0; i < linkage->joint_count; i++) {
             press_joint(&linkage->joints[i], motions, reactions->force_on_b[i], &pressed.joints[i]);

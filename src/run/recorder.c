@@ -397,6 +397,7 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
     }
     recorder_ranges_add(&recorder->ranges, step);
     trajectory->energy.drive_work += step->drive_work;
+    trajectory->energy.load_work += step->load_work;
     trajectory->energy.dissipated += step->dissipated;
     trajectory->energy.friction += step->friction;
 }

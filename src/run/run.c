@@ -431,7 +431,8 @@ static void close_energy(const Loop *loop, Trajectory *trajectory)
     turning_unwrap(&loop->turning, NULL, &last);
     Energy *energy = &trajectory->energy;
     energy->change = mechanical_energy(loop->scenario, &last) - loop->start_energy + loop->elastic;
-    energy->residual = energy->drive_work - energy->change - energy->dissipated - energy->friction;
+    energy->residual = energy->drive_work + energy->load_work - energy->change -
+                       energy->dissipated - energy->friction;
 }
 
 static void fill_model(const Loop *loop, Trajectory *trajectory)

@@ -3,6 +3,7 @@
 #include "contact/law.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
+#include "model/loads.h"
 #include "run/drive_torque.h"
 #include "write/csv.h"
 #include "write/units.h"
@@ -168,6 +169,13 @@ static double wall_deg(const SeriesPlace *place)
 static double torque_of_drive(const SeriesPlace *place)
 {
     return drive_torque_at(place->columns->scenario, place->trajectory, place->sample);
+}
+
+static double load_of(const SeriesPlace *place)
+{
+    const double time_s = place->trajectory->times[place->sample];
+    return load_value(place->linkage, &place->linkage->loads[place->number], motions_at(place),
+                      time_s, time_s);
 }
 
 static double rate(const SeriesPlace *place)
@@ -467,6 +475,13 @@ SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges)
     add_joints(&columns, is_spatial ? OF_FORCES_IN_SPACE : OF_FORCES_IN_PLANE);
     if (drive_torque_exists(&scenario->linkage)) {
         add_column(&columns, (SeriesColumn){.name = "drive_torque_N_m", .find = torque_of_drive});
+    }
+    for (size_t i = 0; i < scenario->linkage.load_count; i++) {
+        const Load *load = &scenario->linkage.loads[i];
+        SeriesColumn column = {.find = load_of, .number = i};
+        snprintf(column.name, sizeof column.name, "%s.%s", load->name,
+                 load_is_force(&scenario->linkage, load) ? "load_N" : "load_N_m");
+        add_column(&columns, column);
     }
     if (has_ranges) {
         add_bodies(&columns, OF_BODIES_BETWEEN);

@@ -274,6 +274,7 @@ static void every_solver_goes_on_to_the_last_bit(void **state)
         "cases/mechanisms/gear-pair.yaml",
         "cases/mechanisms/newtons-cradle.yaml",
         "cases/mechanisms/woodpecker.yaml",
+        "cases/mechanisms/compressor.yaml",
         "cases/mechanisms/run-up.yaml",
         "cases/mechanisms/servo-backlash.yaml",
         "cases/hard/gears-thousands-of-turns.yaml",
@@ -286,9 +287,9 @@ static void every_solver_goes_on_to_the_last_bit(void **state)
             go_on_from(CASES[i], &SCHEMES[k]);
         }
     }
-    static const char *const IDEAL[] = {"cases/paper/ideal-stackup.yaml",
-                                        "cases/mechanisms/andrews.yaml",
-                                        "cases/space/bennett.yaml"};
+    static const char *const IDEAL[] = {
+        "cases/paper/ideal-stackup.yaml", "cases/mechanisms/andrews.yaml",
+        "cases/mechanisms/motor-flywheel.yaml", "cases/space/bennett.yaml"};
     for (size_t i = 0; i < sizeof IDEAL / sizeof *IDEAL; i++) {
         for (size_t k = 0; k < sizeof SCHEMES / sizeof *SCHEMES; k++) {
             const bool is_in_space = strstr(IDEAL[i], "space") != NULL;

@@ -21,7 +21,7 @@ static inline Linkage kept_linkage(void)
     assert(kept != NULL);
     *kept = (Kept){
         .linkage = linkage_create(
-            (LinkageRoom){.bodies = 64, .joints = 96, .springs = 32, .torsions = 32}),
+            (LinkageRoom){.bodies = 64, .joints = 96, .springs = 32, .torsions = 32, .loads = 8}),
         .before = last,
     };
     last = kept;
@@ -49,6 +49,7 @@ static inline Linkage kept_linkage_copy(const Linkage *linkage)
     copy.springs = memcpy(own.springs, linkage->springs, copy.spring_count * sizeof *own.springs);
     copy.torsions =
         memcpy(own.torsions, linkage->torsions, copy.torsion_count * sizeof *own.torsions);
+    copy.loads = memcpy(own.loads, linkage->loads, copy.load_count * sizeof *own.loads);
     return copy;
 }
 
@@ -77,6 +78,7 @@ static inline void kept_settled(const Scenario *scenario)
     kept_hold(scenario->linkage.joints);
     kept_hold(scenario->linkage.springs);
     kept_hold(scenario->linkage.torsions);
+    kept_hold(scenario->linkage.loads);
     kept_hold(scenario->settled.first);
     kept_hold(scenario->settled.motions);
     kept_hold(scenario->settled.halved.joints);

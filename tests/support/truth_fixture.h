@@ -34,7 +34,11 @@ static inline int truth_fixture_set_up(void **state)
     strcpy(fixture->runs[0]->backend, "reference");
     add_contacts(fixture->runs[0]);
     fixture->runs[0]->evaluations = 54321;
-    fixture->runs[1]->energy = (Energy){2.0, 0.5, 0.125, 1.25, 0.0625};
+    fixture->runs[1]->energy = (Energy){.drive_work = 2.0,
+                                        .dissipated = 0.5,
+                                        .friction = 0.125,
+                                        .change = 1.25,
+                                        .residual = 0.0625};
     fixture->errors[1].against = "reference";
     fixture->errors[1].max_in_horizon = 3e-9;
     own->truth = (Truth){

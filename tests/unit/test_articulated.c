@@ -429,7 +429,8 @@ enum { IN_A_ROW = 64 };
 // where a four-bar or the first bar has one.
 static Linkage in_a_row(bool is_crossed)
 {
-    Linkage linkage = linkage_create((LinkageRoom){2 * IN_A_ROW + 1, 3 * IN_A_ROW + 1, 0, 0});
+    Linkage linkage = linkage_create((LinkageRoom){
+        .bodies = 2 * IN_A_ROW + 1, .joints = 3 * IN_A_ROW + 1, .springs = 0, .torsions = 0});
     for (int i = 0; i < IN_A_ROW; i++) {
         const int pairs[3][2] = {
             {is_crossed && i > 0 ? 2 * i - 1 : LINKAGE_GROUND, 2 * i},

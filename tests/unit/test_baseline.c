@@ -648,7 +648,8 @@ static void the_order_of_a_scheme_is_measured(void **state)
 static Scenario many_pendulums(size_t count)
 {
     Scenario scenario = scenario_default();
-    scenario.linkage = linkage_create((LinkageRoom){count, count, 0, 0});
+    scenario.linkage = linkage_create(
+        (LinkageRoom){.bodies = count, .joints = count, .springs = 0, .torsions = 0});
     Linkage *linkage = &scenario.linkage;
     for (size_t i = 0; i < count; i++) {
         Body *body = &linkage->bodies[linkage->body_count++];

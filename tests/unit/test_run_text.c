@@ -105,7 +105,7 @@ static void springs_torques_and_friction_are_named(void **state)
     linkage->torsions = torsions;
     linkage->torsion_count = 1;
     linkage->driver.is_present = false;
-    linkage->torque = (Torque){0, {.count = 2, .times = {0.0, 1.0}, .values = {0.5, -0.3}}};
+    linkage->torque = (Torque){.table = {.count = 2, .times = {0.0, 1.0}, .values = {0.5, -0.3}}};
     text_init(&text);
     run_text_write(&fixture->report, &STYLE_PLAIN, &text);
     expect_words(text.data, WORDS);

@@ -168,7 +168,7 @@ static double reaction_error(const Scenario *scenario, double gravity_of_book)
         Err err = {ERR_NONE, ""};
         assert_true(closed_form_bodies(scenario, degree * DEGREE, motions));
         assert_true(inverse_dynamics_solve(&scenario->linkage, motions, scenario->gravity,
-                                           &reactions, &err));
+                                           (InverseTime){0.0, 0.0}, &reactions, &err));
         const Textbook book = solve_by_hand(&lighter, motions);
         const double scale = vec2_length(book.on_rod);
         worst = worst_of(worst, reactions.force_on_b[1], book.on_rod, scale);
@@ -201,8 +201,10 @@ static void a_guide_away_from_the_pin_takes_a_couple(void **state)
     Reactions shifted;
     Err err = {ERR_NONE, ""};
     assert_true(closed_form_bodies(&scenario, 1.0, motions));
-    assert_true(inverse_dynamics_solve(&scenario.linkage, motions, 9.8, &plain, &err));
-    assert_true(inverse_dynamics_solve(&ahead.linkage, motions, 9.8, &shifted, &err));
+    assert_true(inverse_dynamics_solve(&scenario.linkage, motions, 9.8, (InverseTime){0.0, 0.0},
+                                       &plain, &err));
+    assert_true(inverse_dynamics_solve(&ahead.linkage, motions, 9.8, (InverseTime){0.0, 0.0},
+                                       &shifted, &err));
     const double force = plain.force_on_b[3].y;
     assert_true(fabs(force) > 100.0);
     assert_near(shifted.force_on_b[3].y, force, 1e-9 * fabs(force));

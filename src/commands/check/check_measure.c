@@ -339,6 +339,9 @@ static void add_energy(CheckAdd *work, const Trajectory *run)
     const Energy *energy = &run->energy;
     const double scale = fmax(fabs(energy->drive_work), work->energy);
     add_real(work, run, "energy", "drive_work_J", energy->drive_work, scale);
+    if (work->scenario->linkage.load_count > 0) {
+        add_real(work, run, "energy", "load_work_J", energy->load_work, scale);
+    }
     add_real(work, run, "energy", "dissipated_J", energy->dissipated, scale);
     add_real(work, run, "energy", "change_J", energy->change, scale);
     add_real(work, run, "energy", "residual_J", energy->residual, scale);

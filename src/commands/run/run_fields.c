@@ -210,6 +210,7 @@ const Field RUN_SPIKE_FIELDS[] = {
 const Field RUN_ENERGY_FIELDS[] = {
     {NULL, FIELD_LABEL, FIELD_TABLE, .title = "backend"},
     {"drive_work_J", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "drive work", "J", ENERGY(drive_work)},
+    {"load_work_J", FIELD_NUMBER, RUN_LOADED, "load work", "J", ENERGY(load_work)},
     {NULL, FIELD_NUMBER, FIELD_TABLE, "change", "J", ENERGY(change)},
     {"dissipated_J", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "dissipated", "J", ENERGY(dissipated)},
     {"friction_J", FIELD_NUMBER, FIELD_JSON | FIELD_TABLE, "friction", "J", ENERGY(friction)},
@@ -440,6 +441,7 @@ Energy run_floor_energy(const Energy *energy, const RunFloor *floor)
 {
     return (Energy){
         .drive_work = run_floor_cut(energy->drive_work, floor->energy),
+        .load_work = run_floor_cut(energy->load_work, floor->energy),
         .dissipated = run_floor_cut(energy->dissipated, floor->energy),
         .friction = run_floor_cut(energy->friction, floor->energy),
         .change = run_floor_cut(energy->change, floor->energy),

@@ -114,7 +114,14 @@ enum {
     RUN_PUSHED = FIELD_OWN << 6,   // of contacts: forces and lengths,
     RUN_TURNED = FIELD_OWN << 7,   // or torques and angles
     RUN_SPATIAL = FIELD_OWN << 8,  // of joints in space
+    RUN_LOADED = FIELD_OWN << 9,   // of mechanisms with loads
 };
+
+// Where fields of loads have their places, of a linkage that has any.
+static inline unsigned run_loaded(const Linkage *linkage)
+{
+    return linkage->load_count > 0 ? RUN_LOADED : 0U;
+}
 
 // What a joint did in a run. Without play that is felt there are no contacts to count: null, not 0.
 typedef struct RunJoint {

@@ -666,17 +666,18 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text)
 {
     Table *table = NULL;
     RunFloor *floors = run_floor_list(report);
+    const unsigned places = FIELD_TABLE | run_loaded(&report->scenario->linkage);
     for (size_t i = 0; i < report->run_count; i++) {
         const Energy *energy = &report->runs[i]->energy;
         if (!report->runs[i]->is_complete) {
             continue;
         }
         if (table == NULL) {
-            table = fields_table("Energy", RUN_ENERGY_FIELDS, FIELD_TABLE, style, text);
+            table = fields_table("Energy", RUN_ENERGY_FIELDS, places, style, text);
         }
         table_cell(table, "%s", report->runs[i]->backend);
         const Energy shown = run_floor_energy(energy, &floors[i]);
-        fields_table_row(RUN_ENERGY_FIELDS, FIELD_TABLE, &shown, table);
+        fields_table_row(RUN_ENERGY_FIELDS, places, &shown, table);
         const double scale = error_energy(report->runs[i]);
         section_number_or_dash(table, scale > 0.0, fabs(shown.residual / scale));
     }

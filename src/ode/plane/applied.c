@@ -11,6 +11,7 @@
 #include "ode/plane/applied.h"
 
 #include "base/zeroed.h"
+#include "model/loads.h"
 
 // m: below it ODE takes any direction for the line
 static const double LINE_LEAST = 1e-6;
@@ -61,6 +62,8 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
     applied->motions = zeroed(linkage->body_count, sizeof *applied->motions);
     applied->seen = zeroed(linkage->body_count, sizeof *applied->seen);
     applied->loads = zeroed(linkage->body_count, sizeof *applied->loads);
+    applied->pushed = zeroed(linkage->load_count, sizeof *applied->pushed);
+    applied->rates = zeroed(linkage->load_count, sizeof *applied->rates);
     for (size_t i = 0; i < linkage->body_count; i++) {
         applied->angles[i] = motions[i].angle;
     }
@@ -74,6 +77,9 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
             make_turn(applied, world, linkage->torsions[i].joint, &applied->torsions[i]);
         }
     }
+    if (linkage->torque.slope > 0.0) {
+        make_turn(applied, world, linkage->torque.joint, &applied->motor);
+    }
 }
 
 void applied_finish(Applied *applied)
@@ -85,6 +91,8 @@ void applied_finish(Applied *applied)
     free(applied->motions);
     free(applied->seen);
     free(applied->loads);
+    free(applied->pushed);
+    free(applied->rates);
     *applied = (Applied){.linkage = NULL};
 }
 
@@ -95,6 +103,8 @@ void applied_carry(Applied *applied, Carry *carry)
     CARRY_ARRAY(carry, applied->motions, count);
     CARRY_ARRAY(carry, applied->loads, count);
     CARRY_ARRAY(carry, applied->lines, applied->linkage->spring_count);
+    CARRY_ARRAY(carry, applied->pushed, applied->linkage->load_count);
+    CARRY_ARRAY(carry, applied->rates, applied->linkage->load_count);
     CARRY(carry, applied->torque);
     CARRY(carry, applied->turning);
 }
@@ -132,6 +142,16 @@ static void set_line(const AppliedRow *row, const SpringLine *line, double softn
     dJointSetDBallDistance(row->row, line->distance + wanted / gain);
 }
 
+// The row of an angle's damper, by its coefficient.
+static void set_turn(const Applied *applied, dJointID row, int joint, double softness, bool is_mean)
+{
+    if (row != NULL) {
+        const double rate = forces_turn(applied->linkage, joint, applied->motions).rate;
+        dJointSetAMotorParam(row, dParamCFM, softness);
+        dJointSetAMotorParam(row, dParamVel, is_mean ? -rate : 0.0);
+    }
+}
+
 static void set_rows(Applied *applied, double step_s, AppliedRule rule, int direction)
 {
     const Linkage *linkage = applied->linkage;
@@ -146,12 +166,22 @@ static void set_rows(Applied *applied, double step_s, AppliedRule rule, int dire
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
-        const dJointID row = applied->torsions[i].row;
-        if (row != NULL) {
-            const double rate = forces_turn(linkage, spring->joint, applied->motions).rate;
-            dJointSetAMotorParam(row, dParamCFM, 1.0 / (share * spring->damping));
-            dJointSetAMotorParam(row, dParamVel, is_mean ? -rate : 0.0);
-        }
+        set_turn(applied, applied->torsions[i].row, spring->joint, 1.0 / (share * spring->damping),
+                 is_mean);
+    }
+    set_turn(applied, applied->motor.row, linkage->torque.joint,
+             1.0 / (share * linkage->torque.slope), is_mean);
+}
+
+// Adds the loads, of which each has its mean over the step.
+static void push_loads(Applied *applied, const Motion *motions, double from_s, double to_s)
+{
+    const Linkage *linkage = applied->linkage;
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        applied->pushed[i] = load_mean(linkage, load, motions, from_s, to_s);
+        applied->rates[i] = load_rate(linkage, load, motions);
+        load_add(linkage, load, applied->pushed[i], motions, applied->loads);
     }
 }
 
@@ -171,10 +201,16 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
     for (size_t i = 0; i < linkage->spring_count; i++) {
         applied->lines[i] = forces_line(&linkage->springs[i], motions);
     }
-    applied->torque = time_table_mean(&torque->table, fmin(start_s, end_s), fmax(start_s, end_s));
+    const double from_s = fmin(start_s, end_s);
+    const double to_s = fmax(start_s, end_s);
+    // positions are those of the middle of the step, or of its start
+    const double motions_s = rule == APPLIED_AT_MEAN ? 0.5 * (start_s + end_s) : start_s;
+    applied->torque = time_table_mean(&torque->table, from_s, to_s) +
+                      forces_followed(linkage, motions, motions_s);
     applied->turning = torque->table.count > 0 ? forces_drive_rate(linkage, motions) : 0.0;
     forces_add_springs(linkage, motions, applied->loads);
     forces_add_torque(linkage, motions, applied->torque, applied->loads);
+    push_loads(applied, motions, from_s, to_s);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const BodyLoad *load = &applied->loads[i];
         dBodyAddForce(applied->bodies[i], load->force.x, load->force.y, 0.0);
@@ -196,6 +232,18 @@ void applied_push(Applied *applied, double start_s, double step_s, AppliedRule r
     applied_push_at(applied, applied->seen, start_s, step_s, rule, direction);
 }
 
+// Adds what a row of an angle did in the step. Returns the work it took, J, by its coefficient.
+static double take_turn(Applied *applied, const AppliedRow *row, int joint, double damping,
+                        double step_s)
+{
+    if (row->row == NULL) {
+        return 0.0;
+    }
+    const double moment = row->feedback.t1[2];
+    forces_add_moment(applied->linkage, joint, moment, applied->loads);
+    return step_s * moment * moment / damping;
+}
+
 // Adds what the dampers' rows did in the step. Returns the work they took, J.
 static double take_dampers(Applied *applied, double step_s)
 {
@@ -215,11 +263,7 @@ static double take_dampers(Applied *applied, double step_s)
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
-        if (applied->torsions[i].row != NULL) {
-            const double moment = applied->torsions[i].feedback.t1[2];
-            forces_add_moment(linkage, spring->joint, moment, applied->loads);
-            work += step_s * moment * moment / spring->damping;
-        }
+        work += take_turn(applied, &applied->torsions[i], spring->joint, spring->damping, step_s);
     }
     return work;
 }
@@ -227,7 +271,7 @@ static double take_dampers(Applied *applied, double step_s)
 AppliedWork applied_book(Applied *applied, double step_s)
 {
     const Linkage *linkage = applied->linkage;
-    AppliedWork work = {0.0, 0.0};
+    AppliedWork work = {0.0, 0.0, 0.0, 0.0};
     if (!applied->is_any) {
         return work;
     }
@@ -236,11 +280,22 @@ AppliedWork applied_book(Applied *applied, double step_s)
     }
     forces_add_springs(linkage, applied->motions, applied->loads);
     forces_add_torque(linkage, applied->motions, applied->torque, applied->loads);
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        load_add(linkage, &linkage->loads[i], applied->pushed[i], applied->motions, applied->loads);
+    }
     work.damping = take_dampers(applied, step_s);
-    if (linkage->torque.table.count > 0) {
+    work.slope =
+        -take_turn(applied, &applied->motor, linkage->torque.joint, linkage->torque.slope, step_s);
+    if (linkage->torque.table.count > 0 || linkage->load_count > 0) {
         read_motions(applied, applied->seen);
+    }
+    if (linkage->torque.table.count > 0) {
         const double turning = forces_drive_rate(linkage, applied->seen);
         work.torque = step_s * applied->torque * 0.5 * (applied->turning + turning);
+    }
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const double rate = load_rate(linkage, &linkage->loads[i], applied->seen);
+        work.loads += step_s * applied->pushed[i] * 0.5 * (applied->rates[i] + rate);
     }
     return work;
 }

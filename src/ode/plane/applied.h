@@ -27,7 +27,10 @@ typedef struct Applied {
     BodyLoad *loads;       // of springs and torque, and of the dampers: before the step
                            // as the speeds of its start have them, behind it as they
                            // were
-    double torque;         // N m, mean over the step
+    AppliedRow motor;      // of the drive's torque, where its rate takes some
+    double *pushed;        // N or N m, by load: mean over the step
+    double *rates;         // m/s or rad/s, by load, at its start
+    double torque;         // N m, mean over the step, but for what the rate takes
     double turning;        // rad/s, rate of the drive's joint at its start
 } Applied;
 
@@ -55,9 +58,12 @@ void applied_push(Applied *applied, double start_s, double step_s, AppliedRule r
 void applied_push_at(Applied *applied, const Motion *motions, double start_s, double step_s,
                      AppliedRule rule, int direction);
 
-// What the drive's torque gave and the dampers took in a step, J.
+// What the drive's torque and the loads gave and the dampers took in a step, J. Of a torque whose
+// rate takes some, that is apart.
 typedef struct AppliedWork {
     double torque;
+    double slope;
+    double loads;
     double damping;
 } AppliedWork;
 

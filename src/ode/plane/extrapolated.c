@@ -14,6 +14,7 @@
 #include "base/zeroed.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
+#include "model/loads.h"
 #include "model/response.h"
 #include "model/scenario.h"
 #include "model/trajectory.h"
@@ -404,10 +405,11 @@ static void nodes_carry(Nodes *nodes, Carry *carry)
 // of an interval: a part that ends so close to a node goes up to it, or as little beyond
 static const double ROUNDING = 1e-6;
 
-// W, of the drive, and what the dampers take.
+// W, of the drive and the loads, and what the dampers take.
 typedef struct Powers {
     double drive;
     double damping;
+    double loads;
 } Powers;
 
 typedef struct Extrapolated {
@@ -424,6 +426,7 @@ typedef struct Extrapolated {
     Sample end;          // of it
     Powers powers;       // there
     double drive_work;   // J, in the last part
+    double load_work;    // J, likewise
     double damped;       // J, in dampers, likewise
     double *omega;
     double *alpha;
@@ -552,13 +555,14 @@ static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Pow
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     fill_motions(own, time_s, sample->bodies);
-    forces_loads(linkage, sample->bodies, time_s, loads);
+    forces_loads(linkage, sample->bodies, time_s, time_s, loads);
     if (!ideal_forces_solve(own->scenario, sample->bodies, loads, own->response, own->rows,
                             sample->joints)) {
         return false;
     }
     powers->drive = forces_torque_power(linkage, sample->bodies, time_s);
     powers->damping = forces_damping_power(linkage, sample->bodies);
+    powers->loads = loads_power(linkage, sample->bodies, time_s, time_s);
     if (own->driven >= 0) {
         stepping_offsets(linkage, sample->bodies, own->driven, own->offsets);
         powers->drive = stepping_drive(own->scenario, &sample->bodies[own->driven],
@@ -582,7 +586,7 @@ static bool make_part(Extrapolated *own, double end_s, Err *err)
     const Powers from = own->powers;
     const double sixth_s = (end_s - start.time_s) / 6.0;
     Sample middle = own->middle;
-    Powers mid = {0.0, 0.0};
+    Powers mid = {0.0, 0.0, 0.0};
     if (!work_out(own, 0.5 * (start.time_s + end_s), &middle, &mid) ||
         !work_out(own, end_s, &own->end, &own->powers)) {
         err_set(err, ERR_SOLVER,
@@ -594,6 +598,7 @@ static bool make_part(Extrapolated *own, double end_s, Err *err)
     observe_joints(own, &own->end);
     own->start_s = start.time_s;
     own->drive_work = sixth_s * (from.drive + 4.0 * mid.drive + own->powers.drive);
+    own->load_work = sixth_s * (from.loads + 4.0 * mid.loads + own->powers.loads);
     own->damped = sixth_s * (from.damping + 4.0 * mid.damping + own->powers.damping);
     for (size_t i = 0; i < own->scenario->linkage.body_count; i++) {
         own->omega[i] = own->end.bodies[i].omega;
@@ -653,6 +658,7 @@ static StepRecord extrapolated_record(const void *state)
         .impulse = own->impulse,
         .approach = own->approach,
         .drive_work = own->drive_work,
+        .load_work = own->load_work,
         .dissipated = own->damped,
     };
 }

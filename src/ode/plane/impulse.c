@@ -58,8 +58,8 @@ static bool plane_take(void *own, ImpulseSpan *span, Err *err)
     if (!impulse_step_take(&impulse->step, err)) {
         return false;
     }
-    *span =
-        (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, step->damped};
+    *span = (ImpulseSpan){step->start_s,    step->end_s,     step->width_s,
+                          step->drive_work, step->load_work, step->damped};
     return true;
 }
 

@@ -20,6 +20,7 @@
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "model/joint_rows.h"
+#include "model/loads.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -646,6 +647,18 @@ static double work_of_torque(const ImpulseStep *step)
                                          forces_drive_turn(linkage, step->before).angle);
 }
 
+// Likewise of the loads.
+static double work_of_loads(const ImpulseStep *step)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    double work = 0.0;
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        work += step->world.applied.pushed[i] *
+                load_way(linkage, &linkage->loads[i], step->before, step->middle, step->after);
+    }
+    return work;
+}
+
 // Finds the mean forces of the joints with play and the works of the drive and of dampers in the
 // step that has just been taken, from the bodies at mid-step.
 static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
@@ -676,7 +689,8 @@ static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
     const BodyLoad load = applied_on(&step->world.applied, step->driven);
     const double power = stepping_drive(step->scenario, driven, &load, offsets, step->work->joints);
     step->damped = applied.damping;
-    step->drive_work = work + step->width_s * power + work_of_torque(step);
+    step->load_work = work_of_loads(step);
+    step->drive_work = work + step->width_s * power + work_of_torque(step) + applied.slope;
 }
 
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there

@@ -51,6 +51,7 @@ typedef struct ImpulseStep {
     bool is_calm;      // whether the contacts did not change the accelerations much in the last
     double *rest;      // of the end's positions, beyond the formula for inside
     double drive_work; // J, in the whole step
+    double load_work;  // J, of loads, likewise
     double damped;     // J, in dampers, likewise
     KernelSums total;  // of the contacts, in the whole step
     bool has_few_rows; // what each of them does, and how that changes, is worked out in each step

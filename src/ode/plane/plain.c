@@ -97,7 +97,8 @@ static bool advance(Plain *plain, Err *err)
     read_velocities(plain);
     if (!is_lean) {
         plain->applied = applied_book(&plain->world.applied, plain->step_s);
-        plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque;
+        plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque +
+                            plain->applied.slope;
     }
     for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
         plain->impulse[i] = plain->joints[i].force * plain->step_s;
@@ -192,6 +193,7 @@ static StepRecord plain_record(const void *state)
         .impulse = plain->impulse,
         .approach = plain->approach,
         .drive_work = plain->drive_work,
+        .load_work = plain->applied.loads,
         .dissipated = energy.dissipated + plain->applied.damping,
         .friction = energy.friction,
         .elastic = energy.elastic,

@@ -42,6 +42,7 @@ typedef struct Stride {
     double *impulse;
     double *approach;
     double drive_work; // J
+    double load_work;  // J
     double damped;     // J, in dampers
     ContactEnergy energy;
 } Stride;
@@ -217,7 +218,8 @@ static void book(Staggered *staggered, const Motion *middle, Stride *stride)
     const BodyLoad load = applied_on(&staggered->world.applied, staggered->driven);
     const double power =
         stepping_drive(staggered->scenario, middle, &load, staggered->offsets, stride->joints);
-    stride->drive_work = staggered->step_s * power + applied.torque;
+    stride->drive_work = staggered->step_s * power + applied.torque + applied.slope;
+    stride->load_work = applied.loads;
     stride->damped = applied.damping;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         stride->impulse[i] = stride->joints[i].force * staggered->step_s;
@@ -308,6 +310,7 @@ static void stride_carry(const Linkage *linkage, Stride *stride, Carry *carry)
     CARRY_ARRAY(carry, stride->impulse, joints);
     CARRY_ARRAY(carry, stride->approach, joints);
     CARRY(carry, stride->drive_work);
+    CARRY(carry, stride->load_work);
     CARRY(carry, stride->damped);
     CARRY(carry, stride->energy);
 }
@@ -342,6 +345,7 @@ static StepRecord staggered_record(const void *state)
         .impulse = now->impulse,
         .approach = now->approach,
         .drive_work = now->drive_work,
+        .load_work = now->load_work,
         .dissipated = now->energy.dissipated + now->damped,
         .friction = now->energy.friction,
         .elastic = now->energy.elastic,

@@ -71,7 +71,7 @@ static bool space_take(void *own, ImpulseSpan *span, Err *err)
     if (!space_impulse_step_take(&impulse->step, err)) {
         return false;
     }
-    *span = (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, 0.0};
+    *span = (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, 0.0, 0.0};
     return true;
 }
 

@@ -5,6 +5,7 @@
 // gamma: the joints that close loops. Solved body by body: reference/plane/articulated.h. The
 // contacts' forces: see below; those of springs, dampers and torques: model/forces.c.
 #include "reference/plane/dynamics.h"
+#include "model/loads.h"
 
 #include "base/zeroed.h"
 #include "kernel/pin_hole.h"
@@ -408,6 +409,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     const Linkage *linkage = &scenario->linkage;
     Tree *tree = &dynamics->tree;
     dynamics->has_forces = forces_any(linkage);
+    dynamics->system.has_loads = linkage->load_count > 0;
     tree_build(linkage, tree);
     dynamics_make_room(dynamics);
     linkage_reaches(linkage, dynamics->reach);
@@ -504,12 +506,13 @@ static void dynamics_start_loads(const Dynamics *dynamics, Loads *loads)
     loads->driven_force = (Vec2){0.0, 0.0};
 }
 
-// Adds springs, dampers and a torque; fills in their powers.
+// Adds springs, dampers, a torque and loads; fills in their powers.
 static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState *state,
                         Loads *loads)
 {
     state->drive_power = 0.0;
     state->damping_power = 0.0;
+    state->load_power = 0.0;
     if (!dynamics->has_forces) {
         return;
     }
@@ -518,7 +521,8 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     const Motion *motions = state->tree.motions;
     const double time_s = tree_time(tree, since_s);
     BodyLoad *added = dynamics->room.added;
-    forces_loads(linkage, motions, time_s, added);
+    const double from_s = tree_from(tree);
+    forces_loads(linkage, motions, time_s, from_s, added);
     for (int i = 0; i < (int)linkage->body_count; i++) {
         if (i == tree->driven) {
             loads->driven_power += forces_load_power(&added[i], &motions[i]);
@@ -531,6 +535,7 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     }
     state->drive_power = forces_torque_power(linkage, motions, time_s);
     state->damping_power = forces_damping_power(linkage, motions);
+    state->load_power = loads_power(linkage, motions, time_s, from_s);
 }
 
 // Solves for the coordinates' second rates (and the loops' multipliers behind them), into the room;
@@ -587,6 +592,9 @@ static void dynamics_fill_sums(const Dynamics *dynamics, const DynamicsState *st
         sums[SYSTEM_DISSIPATED] += state->contacts[i].press.damping_power;
         sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
         sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force)) + fabs(state->contacts[i].couple);
+    }
+    if (dynamics->system.has_loads) {
+        sums[system_load_sum(&dynamics->system)] = state->load_power;
     }
 }
 

@@ -33,6 +33,7 @@ typedef struct DynamicsState {
     Vec2 *reactions;        // N, on body b, of ideal joints
     double *couples;        // N m, on body b, of prismatic joints, about its anchor
     double drive_power;     // W, of drive or torque
+    double load_power;      // W, of loads
     double damping_power;   // W, that the dampers take
 } DynamicsState;
 

@@ -39,6 +39,7 @@ static double energy_balance(const Dynamics *dynamics, const double *y, double *
             energy += force_law_energy(&system->contacts[i].law, force.press.depth);
         }
     }
+    energy -= system->has_loads ? sums[system_load_sum(system)] : 0.0;
     return energy - sums[SYSTEM_DRIVE_WORK] + sums[SYSTEM_DISSIPATED] + sums[SYSTEM_FRICTION];
 }
 

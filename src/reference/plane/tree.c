@@ -472,6 +472,11 @@ void tree_coordinate_sizes(const Tree *tree, const TreeState *state, int joint, 
 // of the time at a base: the stepper takes a kink that is no further for reached, too
 static const double REACHED = 16.0 * DBL_EPSILON;
 
+double tree_from(const Tree *tree)
+{
+    return (double)tree->base_time_s * (1.0 + REACHED);
+}
+
 static TreePoint add(TreePoint a, TreePoint b)
 {
     return (TreePoint){a.x + b.x, a.y + b.y};
@@ -604,9 +609,8 @@ static void tree_base_settle(Tree *tree)
 static void put_drive(Tree *tree)
 {
     const Driver *driver = &tree->linkage->driver;
-    const double time_s = (double)tree->base_time_s;
     tree->base_angle[tree->driven] = drive_angle_exact(driver, tree->base_time_s);
-    tree->base_drive = drive_at(driver, time_s * (1.0 + REACHED));
+    tree->base_drive = drive_at(driver, tree_from(tree));
 }
 
 void tree_start(Tree *tree, const Motion *motions, double *u)

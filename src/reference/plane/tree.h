@@ -43,10 +43,10 @@ typedef struct TreePoint {
 
 typedef struct Tree {
     const Linkage *linkage;
-    void *memory;      // owned; where all arrays are, none of which holds pointers
+    void *memory;       // owned; where all arrays are, none of which holds pointers
     size_t memory_size; // bytes
-    int driven;        // number of the driven body or LINKAGE_GROUND
-    size_t node_count; // free bodies, parents before children
+    int driven;         // number of the driven body or LINKAGE_GROUND
+    size_t node_count;  // free bodies, parents before children
     TreeNode *nodes;
     int *angle_column;     // by body; -1 for the driven one and what slides on it
     int *node_of;          // by body; -1 for the driven one
@@ -289,6 +289,10 @@ void tree_start(Tree *tree, const Motion *motions, double *u);
 
 // Moves the base on to a time and coordinates since the present one, and zeroes the coordinates.
 void tree_rebase(Tree *tree, double since_s, double *q);
+
+// The time from which on the pieces of what is given over time hold in the present step, s: that of
+// the base, but a bend nearer to it than rounding has been reached.
+double tree_from(const Tree *tree);
 
 // The time, s, that lies so long after the base.
 double tree_time(const Tree *tree, double since_s);

@@ -1,0 +1,173 @@
+// Finds what loads do to the bodies.
+//
+// A force F n acts at the point p of a body, with n fixed in the world or in the body; a torque on
+// the body alone. Along the coordinate of a joint it acts on body b at its anchor, along the line
+// of body a, and the other way on body a at that point; at a pivot it is a torque on the turned
+// body, and the other way on the other (linkage_turning).
+//     power F n . v(p),  M omega,  F times the rate of the coordinate
+#include "model/loads.h"
+
+#include <float.h>
+#include <math.h>
+
+bool load_is_force(const Linkage *linkage, const Load *load)
+{
+    return load->kind == LOAD_FORCE ||
+           (load->kind == LOAD_ALONG && forces_is_along_line(linkage, load->joint));
+}
+
+bool load_is_timed(const Linkage *linkage, const Load *load)
+{
+    return load->table.count <= 1 || load->over == LOAD_OVER_TIME ||
+           (load->over == LOAD_OVER_CRANK && drive_is_steady(&linkage->driver));
+}
+
+// The argument of a load that is timed is linear in time: at time zero, and how fast it grows.
+typedef struct Clock {
+    double start;
+    double rate;
+} Clock;
+
+static Clock clock_of(const Linkage *linkage, const Load *load)
+{
+    const Driver *driver = &linkage->driver;
+    return load->over == LOAD_OVER_TIME ? (Clock){load->shift, 1.0}
+                                        : (Clock){driver->start + load->shift, driver->speed};
+}
+
+// 1: a point that is nearer than this has been reached
+static const double REACHED = 16.0 * DBL_EPSILON;
+
+// The argument from a time on, beyond a point that rounding alone keeps from being reached.
+static double argument_from(const Clock *clock, double from_s)
+{
+    const double at = clock->start + clock->rate * from_s;
+    return at + copysign(REACHED * (fabs(at) + fabs(clock->start)), clock->rate);
+}
+
+// The argument of one that is not.
+static double argument_of(const Linkage *linkage, const Load *load, const Motion *motions,
+                          double time_s)
+{
+    if (load->over == LOAD_OVER_CRANK) {
+        return load->shift + (linkage->driver.is_present
+                                  ? drive_angle(&linkage->driver, time_s)
+                                  : forces_turn(linkage, linkage->torque.joint, motions).angle);
+    }
+    return forces_coordinate(linkage, load->joint, motions).angle;
+}
+
+double load_value(const Linkage *linkage, const Load *load, const Motion *motions, double time_s,
+                  double from_s)
+{
+    if (!load_is_timed(linkage, load)) {
+        const double at = argument_of(linkage, load, motions, time_s);
+        const LoadPiece piece = load_table_piece(&load->table, at, 1.0);
+        return load_piece_at(&piece, at);
+    }
+    const Clock clock = clock_of(linkage, load);
+    const LoadPiece piece =
+        load_table_piece(&load->table, argument_from(&clock, from_s), clock.rate);
+    return load_piece_at(&piece, clock.start + clock.rate * time_s);
+}
+
+double load_mean(const Linkage *linkage, const Load *load, const Motion *motions, double from_s,
+                 double to_s)
+{
+    if (load->table.count <= 1 || !load_is_timed(linkage, load)) {
+        return load_value(linkage, load, motions, 0.5 * (from_s + to_s), from_s);
+    }
+    const Clock clock = clock_of(linkage, load);
+    return load_table_mean(&load->table, clock.start + clock.rate * from_s,
+                           clock.start + clock.rate * to_s);
+}
+
+// The direction of a force on a body, in the world.
+static Vec2 direction_of(const Load *load, const Motion *motions)
+{
+    const double turned = load->frame == LOAD_IN_BODY ? motions[load->body].angle : 0.0;
+    return (Vec2){cos(load->direction + turned), sin(load->direction + turned)};
+}
+
+void load_add(const Linkage *linkage, const Load *load, double value, const Motion *motions,
+              BodyLoad *loads)
+{
+    switch (load->kind) {
+    case LOAD_FORCE:
+        forces_add_at(load->body, linkage_point(motions, load->body, load->anchor),
+                      vec2_scale(value, direction_of(load, motions)), motions, loads);
+        break;
+    case LOAD_TORQUE:
+        loads[load->body].moment += value;
+        break;
+    case LOAD_ALONG:
+        forces_add_along(linkage, load->joint, value, motions, loads);
+        break;
+    }
+}
+
+double load_rate(const Linkage *linkage, const Load *load, const Motion *motions)
+{
+    switch (load->kind) {
+    case LOAD_FORCE:
+        return vec2_dot(direction_of(load, motions),
+                        linkage_point_velocity(motions, load->body, load->anchor));
+    case LOAD_TORQUE:
+        return motions[load->body].omega;
+    case LOAD_ALONG:
+        break;
+    }
+    return forces_coordinate(linkage, load->joint, motions).rate;
+}
+
+double load_way(const Linkage *linkage, const Load *load, const Motion *from, const Motion *middle,
+                const Motion *to)
+{
+    switch (load->kind) {
+    case LOAD_FORCE:
+        return vec2_dot(direction_of(load, middle),
+                        vec2_sub(linkage_point(to, load->body, load->anchor),
+                                 linkage_point(from, load->body, load->anchor)));
+    case LOAD_TORQUE:
+        return to[load->body].angle - from[load->body].angle;
+    case LOAD_ALONG:
+        break;
+    }
+    return forces_coordinate(linkage, load->joint, to).angle -
+           forces_coordinate(linkage, load->joint, from).angle;
+}
+
+void loads_add(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
+               BodyLoad *loads)
+{
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        load_add(linkage, load, load_value(linkage, load, motions, time_s, from_s), motions, loads);
+    }
+}
+
+double loads_power(const Linkage *linkage, const Motion *motions, double time_s, double from_s)
+{
+    double power = 0.0;
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        power +=
+            load_value(linkage, load, motions, time_s, from_s) * load_rate(linkage, load, motions);
+    }
+    return power;
+}
+
+double loads_next_bend(const Linkage *linkage, double time_s)
+{
+    double next_s = INFINITY;
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        if (load->table.count > 1 && load_is_timed(linkage, load)) {
+            const Clock clock = clock_of(linkage, load);
+            const double next =
+                load_table_next(&load->table, argument_from(&clock, time_s), clock.rate);
+            next_s = fmin(next_s, (next - clock.start) / clock.rate);
+        }
+    }
+    return next_s;
+}
