@@ -77,6 +77,11 @@ static bool check_motor(const Entries *entries, const Linkage *linkage, Err *err
     if (stall == NULL) {
         return true;
     }
+    if (entries_find(entries, "drive.no-load-speed", 0) == NULL) {
+        return entries_refuse(stall, err,
+                              "the speed at which the motor gives no torque is missing\nallowed: "
+                              "with drive.no-load-speed");
+    }
     if (!(torque->table.values[0] * torque->no_load > 0.0)) {
         return entries_refuse(motor != NULL ? motor : stall, err,
                               "the torque of a motor falls with its speed\nallowed: a "

@@ -240,8 +240,10 @@ static bool read_file(const Target *target, const Linkage *linkage, Load *load)
     char *text = NULL;
     size_t size = 0;
     find_beside(target->entry->source, target->entry->node->text, csv.path);
-    if (!input_read("load", csv.path, &text, &size, target->err)) {
-        return false;
+    Err own = {ERR_NONE, ""};
+    if (!input_read("load", csv.path, &text, &size, &own)) {
+        return source_error(target->entry->source, target->entry->node->span,
+                            "a CSV file beside the case, or points", target->err, "%s", own.text);
     }
     bool is_good = true;
     for (char *next = text; is_good && next != NULL && *next != '\0';) {

@@ -12,7 +12,6 @@
 #include "model/forces.h"
 
 #include "model/joint_rows.h"
-#include "model/loads.h"
 
 bool forces_any(const Linkage *linkage)
 {
@@ -207,8 +206,7 @@ void forces_add_torque(const Linkage *linkage, const Motion *motions, double tor
     }
 }
 
-void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
-                  BodyLoad *loads)
+void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {
         loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
@@ -219,7 +217,6 @@ void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, 
                       time_table_at(&linkage->torque.table, time_s) +
                           forces_followed(linkage, motions, time_s),
                       loads);
-    loads_add(linkage, motions, time_s, from_s, loads);
 }
 
 double forces_energy(const Linkage *linkage, const Motion *motions)

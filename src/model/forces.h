@@ -67,10 +67,8 @@ void forces_add_tension(const Spring *spring, const SpringLine *line, const Moti
 // Add a moment, N m, that a joint's turned body gets and the other one gives.
 void forces_add_moment(const Linkage *linkage, int joint, double moment, BodyLoad *loads);
 
-// Writes the loads of everything at a time; of loads over time and a crank's angle what holds from
-// a time on that is no later (model/loads.h).
-void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
-                  BodyLoad *loads);
+// Writes the loads of everything of the kind at a time; loads from outside are in model/loads.h.
+void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads);
 
 // Energy stored in the springs, J; power that the dampers take, not those of a motor or a soft
 // drive, and that the drive's torque gives at a time, W; power of a load on a body, W.

@@ -120,8 +120,10 @@ double load_rate(const Linkage *linkage, const Load *load, const Motion *motions
     return forces_coordinate(linkage, load->joint, motions).rate;
 }
 
-double load_way(const Linkage *linkage, const Load *load, const Motion *from, const Motion *middle,
-                const Motion *to)
+// How far what it pushes has gone along it from one motion of the bodies to another, m or rad, with
+// the motion in the middle.
+static double load_way(const Linkage *linkage, const Load *load, const Motion *from,
+                       const Motion *middle, const Motion *to)
 {
     switch (load->kind) {
     case LOAD_FORCE:
@@ -155,6 +157,23 @@ double loads_power(const Linkage *linkage, const Motion *motions, double time_s,
             load_value(linkage, load, motions, time_s, from_s) * load_rate(linkage, load, motions);
     }
     return power;
+}
+
+void loads_of_all(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
+                  BodyLoad *loads)
+{
+    forces_loads(linkage, motions, time_s, loads);
+    loads_add(linkage, motions, time_s, from_s, loads);
+}
+
+double loads_work(const Linkage *linkage, const double *values, const Motion *from,
+                  const Motion *middle, const Motion *to)
+{
+    double work = 0.0;
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        work += values[i] * load_way(linkage, &linkage->loads[i], from, middle, to);
+    }
+    return work;
 }
 
 double loads_next_bend(const Linkage *linkage, double time_s)

@@ -28,15 +28,18 @@ void load_add(const Linkage *linkage, const Load *load, double value, const Moti
 // How fast what it pushes goes along it, m/s or rad/s: its power is the value times this.
 double load_rate(const Linkage *linkage, const Load *load, const Motion *motions);
 
-// How far what it pushes has gone along it from one motion of the bodies to another, m or rad, with
-// the motion in the middle.
-double load_way(const Linkage *linkage, const Load *load, const Motion *from, const Motion *middle,
-                const Motion *to);
-
 // Adds all loads at a time, and their power then, W; see load_value.
 void loads_add(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
                BodyLoad *loads);
 double loads_power(const Linkage *linkage, const Motion *motions, double time_s, double from_s);
+
+// Writes the loads of all that acts at a time: springs, dampers, a torque and these.
+void loads_of_all(const Linkage *linkage, const Motion *motions, double time_s, double from_s,
+                  BodyLoad *loads);
+
+// What loads of so much each, by load, do from one motion of the bodies to another, J.
+double loads_work(const Linkage *linkage, const double *values, const Motion *from,
+                  const Motion *middle, const Motion *to);
 
 // The first time after one at which a load bends or jumps, s, as far as that is known from the time
 // alone; INFINITY where none does.

@@ -111,6 +111,21 @@ static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
     shake_limits(joint, seed);
 }
 
+static void shake_torque(Torque *torque, uint64_t *seed)
+{
+    shake(&torque->table.values[0], seed); // of a motor the torque at rest
+    for (size_t i = 1; i < torque->table.count; i++) {
+        shake(&torque->table.values[i], seed);
+    }
+    shake(&torque->no_load, seed);
+    shake(&torque->inertia, seed);
+    shake(&torque->stiffness, seed);
+    shake(&torque->slope, seed);
+    if (torque->no_load != 0.0) {
+        torque->slope = torque->table.values[0] / torque->no_load;
+    }
+}
+
 static void shake_forces(Linkage *linkage, uint64_t *seed)
 {
     for (size_t i = 0; i < linkage->spring_count; i++) {
@@ -126,9 +141,7 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
         shake(&linkage->torsions[i].angle, seed);
         shake(&linkage->torsions[i].damping, seed);
     }
-    for (size_t i = 0; i < linkage->torque.table.count; i++) {
-        shake(&linkage->torque.table.values[i], seed);
-    }
+    shake_torque(&linkage->torque, seed);
     for (size_t i = 0; i < linkage->load_count; i++) {
         LoadTable *table = &linkage->loads[i].table;
         for (size_t k = 0; k < table->count; k++) {

@@ -7,7 +7,7 @@
 // of each other joint its force F at the arm r and its moment c.
 #include "run/drive_torque.h"
 #include "contact/touch.h"
-#include "model/forces.h"
+#include "model/loads.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -46,7 +46,7 @@ static double moment_of_loads(const Linkage *linkage, const Motion *motions, dou
     }
     BodyLoad *loads = calloc(linkage->body_count, sizeof *loads);
     assert(loads != NULL);
-    forces_loads(linkage, motions, time_s, time_s, loads);
+    loads_of_all(linkage, motions, time_s, time_s, loads);
     const Vec2 arm = vec2_sub(motions[body].position, point);
     const double moment = loads[body].moment + vec2_cross(arm, loads[body].force);
     free(loads);

@@ -247,6 +247,8 @@ static void what_the_library_cannot_do_is_refused(void **state)
                    "contact.resting-speed=none --error 3e-2 --set ode.facets=64 "
                    "--schemes direct/plain/textbook/staves",
                    "libjointplay has round holes and no polygons");
+    expect_refused(*state, "$cases/mechanisms/compressor.yaml --error 1e-2",
+                   "programs have no loads, motors or soft drives");
     expect_refused(*state, "$cases/space/offset-coupler.yaml --error 1e-2",
                    "programs are written for cases in the plane alone");
 }

@@ -17,7 +17,7 @@
 #include "../measure/random_case.h"
 #include "base/lookup.h"
 #include "commands/run/case_run.h"
-#include "model/forces.h"
+#include "model/loads.h"
 
 #include <math.h>
 
@@ -170,7 +170,7 @@ static Balance balance_of(const Scenario *scenario, const Series *series, Fault 
             motions[i] = motion_of(series, row, linkage->bodies[i].name);
         }
         const double time_s = cell(series, row, "", "time_s");
-        forces_loads(linkage, motions, time_s, time_s, loads);
+        loads_of_all(linkage, motions, time_s, time_s, loads);
         add_joints(scenario, series, row, fault, motions, loads, &balance);
         for (size_t i = 0; i < linkage->body_count; i++) {
             const Body *body = &linkage->bodies[i];

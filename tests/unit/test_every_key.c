@@ -44,6 +44,12 @@ static const char *const UNWRITTEN[] = {
     "contact.restitution-speed",
     // of a speed over time, which this case has not (test_tune_world.c)
     "drive.period",
+    // refused where it has them
+    "drive.stall-torque",
+    "drive.no-load-speed",
+    "drive.rotor-inertia",
+    "drive.stiffness",
+    "drive.damping",
     // of the contact model and the rows of the program's own world, which the library has not
     "contact.model",
     "contact.penalty",

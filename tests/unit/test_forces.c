@@ -144,7 +144,7 @@ static void bodies_that_nothing_else_holds_keep_their_momentum(void **state)
     // what is between the two bodies alone
     linkage.springs[0] = linkage.springs[1];
     linkage.torsions[0] = linkage.torsions[1];
-    forces_loads(&linkage, motions, 0.0, 0.0, loads);
+    forces_loads(&linkage, motions, 0.0, loads);
     const Vec2 sum = vec2_add(loads[0].force, loads[1].force);
     const double moment = loads[0].moment + loads[1].moment +
                           vec2_cross(motions[0].position, loads[0].force) +

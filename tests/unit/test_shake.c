@@ -49,6 +49,7 @@ static bool is_alike(const Scenario *one, const Scenario *other)
     shared.linkage.joints = one->linkage.joints;
     shared.linkage.springs = one->linkage.springs;
     shared.linkage.torsions = one->linkage.torsions;
+    shared.linkage.loads = one->linkage.loads;
     return memcmp(one, &shared, sizeof shared) == 0 &&
            memcmp(one->linkage.bodies, linkage->bodies,
                   linkage->body_count * sizeof *linkage->bodies) == 0 &&

@@ -184,6 +184,10 @@ static TuneOptions tune_options_default(void)
 // What a program against libjointplay lacks for a scheme of ODE, or NULL.
 static const char *tune_options_program_lacks(const Scenario *scenario, const Scheme *scheme)
 {
+    const Torque *torque = &scenario->linkage.torque;
+    if (scenario->linkage.load_count > 0 || torque->slope > 0.0 || torque->stiffness > 0.0) {
+        return "programs have no loads, motors or soft drives";
+    }
     Scenario setting = *scenario;
     scheme_apply(scheme, scenario->run.step, &setting);
     if (!scheme_has_step(scheme)) {

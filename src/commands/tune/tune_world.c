@@ -696,11 +696,6 @@ const char *tune_world_lacks(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     const char *lacks = lacks_setting(scenario);
-    if (lacks == NULL && linkage->load_count > 0) {
-        lacks = "the program has no loads";
-    } else if (lacks == NULL && (linkage->torque.slope > 0.0 || linkage->torque.stiffness > 0.0)) {
-        lacks = "the program has no motors and no soft drives";
-    }
     for (size_t i = 0; i < linkage->joint_count && lacks == NULL; i++) {
         lacks = lacks_joint(scenario, &linkage->joints[i]);
     }

@@ -555,7 +555,7 @@ static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Pow
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     fill_motions(own, time_s, sample->bodies);
-    forces_loads(linkage, sample->bodies, time_s, time_s, loads);
+    loads_of_all(linkage, sample->bodies, time_s, time_s, loads);
     if (!ideal_forces_solve(own->scenario, sample->bodies, loads, own->response, own->rows,
                             sample->joints)) {
         return false;

@@ -647,18 +647,6 @@ static double work_of_torque(const ImpulseStep *step)
                                          forces_drive_turn(linkage, step->before).angle);
 }
 
-// Likewise of the loads.
-static double work_of_loads(const ImpulseStep *step)
-{
-    const Linkage *linkage = &step->scenario->linkage;
-    double work = 0.0;
-    for (size_t i = 0; i < linkage->load_count; i++) {
-        work += step->world.applied.pushed[i] *
-                load_way(linkage, &linkage->loads[i], step->before, step->middle, step->after);
-    }
-    return work;
-}
-
 // Finds the mean forces of the joints with play and the works of the drive and of dampers in the
 // step that has just been taken, from the bodies at mid-step.
 static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
@@ -689,7 +677,8 @@ static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
     const BodyLoad load = applied_on(&step->world.applied, step->driven);
     const double power = stepping_drive(step->scenario, driven, &load, offsets, step->work->joints);
     step->damped = applied.damping;
-    step->load_work = work_of_loads(step);
+    step->load_work =
+        loads_work(linkage, step->world.applied.pushed, step->before, middle, step->after);
     step->drive_work = work + step->width_s * power + work_of_torque(step) + applied.slope;
 }
 

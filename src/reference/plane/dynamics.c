@@ -522,7 +522,7 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     const double time_s = tree_time(tree, since_s);
     BodyLoad *added = dynamics->room.added;
     const double from_s = tree_from(tree);
-    forces_loads(linkage, motions, time_s, from_s, added);
+    loads_of_all(linkage, motions, time_s, from_s, added);
     for (int i = 0; i < (int)linkage->body_count; i++) {
         if (i == tree->driven) {
             loads->driven_power += forces_load_power(&added[i], &motions[i]);
