@@ -479,7 +479,7 @@ SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges)
     for (size_t i = 0; i < scenario->linkage.load_count; i++) {
         const Load *load = &scenario->linkage.loads[i];
         SeriesColumn column = {.find = load_of, .number = i};
-        snprintf(column.name, sizeof column.name, "%s.%s", load->name,
+        snprintf(column.name, sizeof column.name, "%s_%s", load->name,
                  load_is_force(&scenario->linkage, load) ? "load_N" : "load_N_m");
         add_column(&columns, column);
     }

@@ -1,7 +1,9 @@
 // Draws what the joints did: forces, the pin in its hole, stops, guides and tilt.
+#include "base/zeroed.h"
 #include "commands/run/plot_lines.h"
 #include "commands/run/run_report.h"
 #include "model/coordinate.h"
+#include "model/forces.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -189,7 +191,48 @@ static void widen_force_range(const RunReport *report, const Trajectory *run, si
     }
 }
 
-// The range of the forces that are drawn, in whole decades.
+// Forces above this multiple of the median of a joint's would press all others to the bottom.
+static const double FORCE_SPIKY = 30.0;
+
+static int by_size(const void *a, const void *b)
+{
+    const double first = *(const double *)a;
+    const double second = *(const double *)b;
+    return (first > second) - (first < second);
+}
+
+// The median of a joint's force over the stretches of a run, N.
+static double median_force(const RunReport *report, const Trajectory *run, size_t joint)
+{
+    const size_t count = plot_look_stretch_count(run, FORCE);
+    double *forces = zeroed(count, sizeof *forces);
+    for (size_t i = 0; i < count; i++) {
+        forces[i] = plot_look_stretch(report, run, FORCE, i, joint).range.most;
+    }
+    qsort(forces, count, sizeof *forces, by_size);
+    const double median = count > 0 ? forces[count / 2] : 0.0;
+    free(forces);
+    return median;
+}
+
+// Whether all joints that are drawn show on one linear axis up to a force.
+static bool is_linear(const PlotView *view, double most)
+{
+    const RunReport *report = view->report;
+    for (size_t run = 0; run < report->run_count; run++) {
+        const Trajectory *of = report->runs[run];
+        for (size_t joint = 0; joint < of->joint_count; joint++) {
+            const bool is_drawn = of->is_complete && view->joints.is_shown[joint];
+            if (is_drawn && knows_force(report, of, joint) &&
+                most > FORCE_SPIKY * median_force(report, of, joint)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// The range of the forces that are drawn: from 0 where that shows them all, else in whole decades.
 static void choose_force_range(const PlotView *view, Axis *axis)
 {
     const RunReport *report = view->report;
@@ -202,6 +245,12 @@ static void choose_force_range(const PlotView *view, Axis *axis)
                 widen_force_range(report, trajectory, joint, &forces);
             }
         }
+    }
+    if (forces.most > 0.0 && is_linear(view, forces.most)) {
+        *axis = (Axis){.title = axis->title, .low = 0.0, .high = 1.02 * forces.most};
+        axis_round(&axis->low, &axis->high);
+        axis->low = 0.0;
+        return;
     }
     axis->high = forces.most > 0.0 ? pow(10.0, ceil(log10(forces.most))) : 1.0;
     axis->low = fmax(pow(10.0, floor(log10(fmin(forces.least, 0.1 * axis->high)))),
@@ -389,13 +438,22 @@ static double omega_error(const RunReport *report, const Trajectory *run, size_t
                 trajectory_motion(truth, sample, body)->omega);
 }
 
+// Whether a run's difference is drawn: that of one without the play is the play's.
+static bool shows_error(const RunReport *report, size_t run)
+{
+    const bool has_play = scenario_has_clearance(report->scenario);
+    return report->errors[run].is_known &&
+           !(has_play &&
+             strcmp(report->runs[run]->backend, OPTIONS_BACKENDS[BACKEND_ANALYTIC]) == 0);
+}
+
 // The largest difference as a range of four decades, none of them below rounding.
 static void choose_error_range(const RunReport *report, const Trajectory *truth, Axis *axis)
 {
     double high = 0.0;
     double scale = 0.0;
     for (size_t run = 0; run < report->run_count; run++) {
-        for (size_t body = 0; report->errors[run].is_known && body < truth->body_count; body++) {
+        for (size_t body = 0; shows_error(report, run) && body < truth->body_count; body++) {
             scale = fmax(scale, trajectory_omega_scale(truth, body));
             for (size_t i = 0; i < truth->sample_count; i++) {
                 high = fmax(high, omega_error(report, report->runs[run], i, body));
@@ -424,7 +482,7 @@ void plot_joints_errors(const PlotView *view, PlotPanel panel)
     }
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
-        for (size_t body = 0; report->errors[run].is_known && body < truth->body_count; body++) {
+        for (size_t body = 0; shows_error(report, run) && body < truth->body_count; body++) {
             if (plot_look_shows(view, false, body)) {
                 plot_look_draw(view, &panel, run, ERROR, body);
             }
@@ -824,6 +882,44 @@ void plot_slides_tilts(const PlotView *view, PlotPanel panel)
         .limit = plot_slides_tilt_limit,
     };
     plot_slides_draw(&TILT, view, panel);
+}
+
+// Where a slider is along its line, mm, and how fast it goes, m/s.
+static double plot_slides_position_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                      size_t joint)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    return forces_coordinate(linkage, (int)joint, trajectory_motion(run, sample, 0)).angle *
+           UNITS_MM;
+}
+
+static double plot_slides_speed_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                   size_t joint)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    return forces_coordinate(linkage, (int)joint, trajectory_motion(run, sample, 0)).rate;
+}
+
+void plot_slides_positions(const PlotView *view, PlotPanel panel)
+{
+    static const SlidePanel POSITION = {
+        .title = "Position of the slider on its line",
+        .axis = "position, mm",
+        .quantity = {"position, mm", true, -1, plot_slides_position_of},
+        .shows = shows_acceleration,
+    };
+    plot_slides_draw(&POSITION, view, panel);
+}
+
+void plot_slides_speeds(const PlotView *view, PlotPanel panel)
+{
+    static const SlidePanel SPEED = {
+        .title = "Velocity of the slider along its line",
+        .axis = "velocity, m/s",
+        .quantity = {"velocity", true, -1, plot_slides_speed_of},
+        .shows = shows_acceleration,
+    };
+    plot_slides_draw(&SPEED, view, panel);
 }
 
 void plot_slides_accelerations(const PlotView *view, PlotPanel panel)

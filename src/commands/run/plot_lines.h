@@ -126,6 +126,8 @@ void plot_pins_ends(const PlotView *view, PlotPanel panel);
 // and where its corners touch; of any slider its acceleration along its line; of stops how far the
 // bodies are from them.
 void plot_slides_paths(const PlotView *view, PlotPanel panel);
+void plot_slides_positions(const PlotView *view, PlotPanel panel);
+void plot_slides_speeds(const PlotView *view, PlotPanel panel);
 void plot_slides_accelerations(const PlotView *view, PlotPanel panel);
 void plot_slides_offsets(const PlotView *view, PlotPanel panel);
 void plot_slides_tilts(const PlotView *view, PlotPanel panel);
@@ -146,3 +148,11 @@ bool plot_limits_has_loop(const Linkage *linkage);
 
 // Where no joint has play: how far omega is from the run that is taken as the truth.
 void plot_joints_errors(const PlotView *view, PlotPanel panel);
+
+// What the drive of a pivot has to give, or gives; and whether a linkage has that.
+void plot_loads_torque(const PlotView *view, PlotPanel panel);
+bool plot_loads_has_torque(const Linkage *linkage);
+
+// The force on each pin as seen from its hole, a path about the middle: where on the wall it bears,
+// and how hard.
+void plot_loads_pins(const PlotView *view, PlotPanel panel);

@@ -426,7 +426,7 @@ static double plot_run_draw_legend(const PlotView *view, Text *svg)
 // What is drawn from the second panel of the second row on.
 typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
-enum { PANEL_MAX = 17 };
+enum { PANEL_MAX = 22 };
 
 static bool plot_run_has_joint(const RunReport *report, JointKind kind)
 {
@@ -459,8 +459,17 @@ static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
         panels[count++] = plot_slides_offsets;
         panels[count++] = plot_slides_tilts;
     }
+    const bool is_planar = !report->scenario->linkage.is_spatial;
+    if (is_planar && plot_run_has_joint(report, JOINT_CLEARANCE)) {
+        panels[count++] = plot_loads_pins;
+    }
     if (plot_run_has_joint(report, JOINT_GUIDE) || plot_run_has_joint(report, JOINT_PRISMATIC)) {
+        panels[count++] = plot_slides_positions;
+        panels[count++] = plot_slides_speeds;
         panels[count++] = plot_slides_accelerations;
+    }
+    if (plot_loads_has_torque(&report->scenario->linkage)) {
+        panels[count++] = plot_loads_torque;
     }
     if (plot_run_has_joint(report, JOINT_STOP)) {
         panels[count++] = plot_slides_stops;
@@ -488,6 +497,10 @@ static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
     }
     if (view->joints.left_out > 0) {
         panels[count++] = plot_overview_joints;
+    }
+    // with play, the difference takes the quarter that would stay empty
+    if (scenario_has_clearance(report->scenario) && count % 2 == 0 && report->run_count > 1) {
+        panels[count++] = plot_joints_errors;
     }
     return count;
 }
