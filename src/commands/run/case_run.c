@@ -298,42 +298,75 @@ bool run_files_claim(const CaseRun *run, const char *option, const char *path, E
     return is_claimed;
 }
 
-// The file of a backend's series in the folder.
-static bool case_run_find_member(const CaseRun *run, const CommonOptions *options, size_t number,
-                                 char *path, Err *err)
+// What each run has in the folder: its series, and with play its contacts.
+typedef struct FolderFile {
+    const char *ending; // behind the names of case and backend
+    RunFileWrite *write;
+    bool is_of_contacts;
+} FolderFile;
+
+static const FolderFile FOLDER_FILES[] = {
+    {".csv", write_series, false},
+    {"-contacts.csv", write_contacts, true},
+};
+enum { FOLDER_FILE_COUNT = sizeof FOLDER_FILES / sizeof *FOLDER_FILES };
+
+// Whether a backend has a file; the closed form has no contacts.
+static bool has_file(const CaseRun *run, const FolderFile *file, size_t number)
+{
+    return !file->is_of_contacts || (scenario_has_clearance(&run->scenario) &&
+                                     run->scenario.run.backends[number] != BACKEND_ANALYTIC);
+}
+
+static bool case_run_find_member(const CaseRun *run, const CommonOptions *options,
+                                 const FolderFile *file, size_t number, char *path, Err *err)
 {
     char name[SCENARIO_PATH_SIZE];
-    char ending[LINKAGE_NAME_SIZE + 8];
+    char ending[LINKAGE_NAME_SIZE + 16];
     const RunOptions *backends = &run->scenario.run;
     file_stem(scenario_path(&run->scenario), name, sizeof name);
-    snprintf(ending, sizeof ending, "-%s.csv", OPTIONS_BACKENDS[backends->backends[number]]);
+    snprintf(ending, sizeof ending, "-%s%s", OPTIONS_BACKENDS[backends->backends[number]],
+             file->ending);
     return results_path(options, name, ending, path, err);
 }
 
 bool run_files_claim_folder(const CaseRun *run, const CommonOptions *options, Err *err)
 {
     char path[FILE_PATH_SIZE];
-    for (size_t i = 0; i < run->scenario.run.backend_count; i++) {
-        if (!case_run_find_member(run, options, i, path, err) ||
-            !file_claim("--out", FILE_TABLE, path, err)) {
+    for (size_t i = 0; i < FOLDER_FILE_COUNT * run->scenario.run.backend_count; i++) {
+        const FolderFile *file = &FOLDER_FILES[i % FOLDER_FILE_COUNT];
+        const size_t number = i / FOLDER_FILE_COUNT;
+        if (has_file(run, file, number) &&
+            (!case_run_find_member(run, options, file, number, path, err) ||
+             !file_claim("--out", FILE_TABLE, path, err))) {
             return false;
         }
     }
     return true;
 }
 
-bool run_files_folder(const CaseRun *run, const CommonOptions *options, Err *err)
+static bool write_member(const CaseRun *run, const CommonOptions *options, const FolderFile *file,
+                         size_t number, Err *err)
 {
     char path[FILE_PATH_SIZE];
-    for (size_t i = 0; i < run->report.run_count; i++) {
-        const Trajectory *trajectory = run->runs[i];
-        if (!case_run_find_member(run, options, i, path, err)) {
-            return false;
-        }
-        if (!trajectory->is_complete) {
-            // a series of an earlier run must not stand for one that failed
-            file_remove(FILE_TABLE, path);
-        } else if (!write_series(run, trajectory, path, options->is_quiet, err)) {
+    const Trajectory *trajectory = run->runs[number];
+    if (!case_run_find_member(run, options, file, number, path, err)) {
+        return false;
+    }
+    if (!trajectory->is_complete) {
+        // a file of an earlier run must not stand for one that failed
+        file_remove(FILE_TABLE, path);
+        return true;
+    }
+    return file->write(run, trajectory, path, options->is_quiet, err);
+}
+
+bool run_files_folder(const CaseRun *run, const CommonOptions *options, Err *err)
+{
+    for (size_t i = 0; i < FOLDER_FILE_COUNT * run->report.run_count; i++) {
+        const FolderFile *file = &FOLDER_FILES[i % FOLDER_FILE_COUNT];
+        const size_t number = i / FOLDER_FILE_COUNT;
+        if (has_file(run, file, number) && !write_member(run, options, file, number, err)) {
             return false;
         }
     }

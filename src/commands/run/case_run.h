@@ -45,7 +45,8 @@ bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *
 // The same of a row for each contact: write/contact_table.h. The runs have kept them.
 bool run_files_contacts(const CaseRun *run, const char *path, bool is_quiet, Err *err);
 
-// Likewise, <case>-<backend>.csv in the folder of --out, which is there.
+// Likewise, <case>-<backend>.csv in the folder of --out, which is there; with play the contacts in
+// <case>-<backend>-contacts.csv as well.
 bool run_files_claim_folder(const CaseRun *run, const CommonOptions *options, Err *err);
 bool run_files_folder(const CaseRun *run, const CommonOptions *options, Err *err);
 

@@ -85,7 +85,7 @@ static const OptionRow OPTIONS[] = {
      AT(contacts)},
     {"plot", "FILE.svg", "Draw motion, forces and the pin in its hole", 2, OPTION_PICTURE,
      AT(plot)},
-    COMMON_OUT(2, "Write <case>.json, .txt, .svg and <case>-<backend>.csv there"),
+    COMMON_OUT(2, "Write <case>.json, .txt, .svg, <case>-<backend>.csv and -contacts.csv there"),
     COMMON_QUIET(2),
 };
 
@@ -117,7 +117,8 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
         // of samples in a file and of pictures
         runs[i].scenario.run.keeps_ranges =
             command->series != NULL || command->plot != NULL || command->common.folder != NULL;
-        runs[i].scenario.run.keeps_contacts = command->contacts != NULL;
+        runs[i].scenario.run.keeps_contacts =
+            command->contacts != NULL || command->common.folder != NULL;
         if ((command->is_uncertified && !check_uncertified(&runs[i].scenario, err)) ||
             !run_files_check_columns(&runs[i], err)) {
             return false;
