@@ -6,6 +6,7 @@
 #include "contact/law.h"
 #include "contact/penalty.h"
 #include "model/kinematics.h"
+#include "model/loads.h"
 #include "model/space_rows.h"
 #include "write/alike.h"
 #include "write/settled.h"
@@ -58,10 +59,28 @@ static void run_text_write_springs(const Linkage *linkage, size_t width, Text *t
     alike_end(alike, "  springs     ", ": ", width, text);
 }
 
+// A motor, or a drive that follows its speed softly; false where the torque is neither.
+static bool write_motor(const Linkage *linkage, Text *text)
+{
+    const Torque *torque = &linkage->torque;
+    const char *name = linkage->joints[torque->joint].name;
+    if (torque->no_load != 0.0) {
+        text_append(text, "  drive       motor at %s, %.6g N m at rest, none at %.6g rpm\n", name,
+                    torque->table.values[0], torque->no_load * UNITS_RPM);
+    } else if (torque->followed.is_present) {
+        text_append(text,
+                    "  drive       follows %.6g rpm at %s by %.4g N m/rad and %.4g N m s/rad\n",
+                    torque->followed.speed * UNITS_RPM, name, torque->stiffness, torque->slope);
+    } else {
+        return false;
+    }
+    return true;
+}
+
 static void run_text_write_torque(const Linkage *linkage, Text *text)
 {
     const TimeTable *table = &linkage->torque.table;
-    if (table->count == 0) {
+    if (table->count == 0 || write_motor(linkage, text)) {
         return;
     }
     const Joint *joint = &linkage->joints[linkage->torque.joint];
@@ -82,13 +101,46 @@ static void run_text_write_torque(const Linkage *linkage, Text *text)
     text_append(text, " at %s\n", joint->name);
 }
 
-// What pushes the mechanism beside its joints: springs, dampers, a torque or force that drives it.
-// Nothing where there is none.
+static void write_loads(const Linkage *linkage, size_t width, Text *text)
+{
+    static const char *const OVERS[] = {"time", "the crank's angle", "its position"};
+    Alike *alike = alike_start();
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        const LoadTable *table = &load->table;
+        const char *unit = load_is_force(linkage, load) ? "N" : "N m";
+        double low = table->values[0];
+        double high = low;
+        for (size_t k = 1; k < table->count; k++) {
+            low = fmin(low, table->values[k]);
+            high = fmax(high, table->values[k]);
+        }
+        Text said;
+        text_init(&said);
+        text_append(&said, "%.6g", low);
+        if (table->count > 1) {
+            text_append(&said, " to %.6g %s by %zu points over %s", high, unit, table->count,
+                        OVERS[load->over]);
+        } else {
+            text_append(&said, " %s", unit);
+        }
+        text_append(&said, load->kind == LOAD_ALONG ? " along %s" : " on %s",
+                    load->kind == LOAD_ALONG ? linkage->joints[load->joint].name
+                                             : linkage->bodies[load->body].name);
+        alike_add(alike, load->name, said.data);
+        text_finish(&said);
+    }
+    alike_end(alike, "  loads       ", ": ", width, text);
+}
+
+// What pushes the mechanism beside its joints: springs, dampers, loads, a torque or force that
+// drives it. Nothing where there is none.
 static void run_loads_write(const RunReport *report, size_t width, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
     run_text_write_springs(linkage, width, text);
     run_text_write_torque(linkage, text);
+    write_loads(linkage, width, text);
 }
 
 // The closed form of the mechanism, before any solver has taken a step.
