@@ -52,10 +52,10 @@ typedef struct CasefileSetting {
     char key[CASEFILE_KEY_SIZE]; // as in a case file: joints.crank-coupler.hole
     CasefileKind kind;
     size_t number_count;                // 0 of words
-    double numbers[2 * LOAD_TABLE_MAX]; // SI
     char unit[CASEFILE_UNIT_SIZE];      // SI, empty for plain numbers
     char text[CASEFILE_TEXT_SIZE];      // of a word, words or text
     bool applies;                       // the scenario makes use of it
+    double numbers[2 * LOAD_TABLE_MAX]; // SI; only so many are set, and the first three
 } CasefileSetting;
 
 // Goes through the settings in the schema's order: those of every body, joint and spring of the

@@ -413,7 +413,8 @@ bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
     }
     const SchemaRow *row = &SCHEMA_ROWS[walk->row];
     const size_t member = walk->member++;
-    *setting = (CasefileSetting){0};
+    // of the numbers there are thousands of bytes, in most settings for one or none
+    memset(setting, 0, offsetof(CasefileSetting, numbers) + 3 * sizeof *setting->numbers);
     schema_path(row, schema_member_name(scenario, row->family, member), setting->key);
     text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
     set_value(setting, row, scenario, member);
