@@ -228,13 +228,13 @@ static inline void subtract_product(double *target, const double *a, size_t rows
     }
 }
 
-// Takes a column out of those behind it.
-static void take_column_out(Sparse *sparse, size_t p)
+// Takes a column out of those behind it, up to before one of its blocks.
+static void take_column_out(Sparse *sparse, size_t p, size_t behind)
 {
     const size_t n = sparse_rows_at(sparse, p);
     const size_t *target = sparse->targets + sparse->first_target[p];
     const size_t end = sparse->first_block[p + 1];
-    for (size_t j = sparse->first_block[p] + 1; j < end; j++) {
+    for (size_t j = sparse->first_block[p] + 1; j < behind; j++) {
         const double *b = sparse->values + sparse->block_value[j];
         const size_t columns = (sparse->block_value[j + 1] - sparse->block_value[j]) / n;
         for (size_t i = j; i < end; i++) {
@@ -251,35 +251,69 @@ static void take_column_out(Sparse *sparse, size_t p)
     }
 }
 
-static void keep_diagonals(Sparse *sparse)
+static void keep_diagonal(Sparse *sparse, size_t node)
 {
-    for (size_t node = 0; node < sparse->count; node++) {
-        const size_t first = sparse->first_row[node];
-        const size_t n = sparse->first_row[node + 1] - first;
-        const size_t block = sparse->first_block[sparse->order[node]];
-        const double *own = sparse->values + sparse->block_value[block];
-        for (size_t k = 0; k < n; k++) {
-            sparse->diagonals[first + k] = own[k * n + k];
-        }
+    const size_t first = sparse->first_row[node];
+    const size_t n = sparse->first_row[node + 1] - first;
+    const size_t block = sparse->first_block[sparse->order[node]];
+    const double *own = sparse->values + sparse->block_value[block];
+    for (size_t k = 0; k < n; k++) {
+        sparse->diagonals[first + k] = own[k * n + k];
     }
+}
+
+// The factor's blocks of a column.
+static bool factor_column(Sparse *sparse, size_t p, double share)
+{
+    const size_t n = sparse_rows_at(sparse, p);
+    const size_t first = sparse->first_block[p];
+    double *own = sparse->values + sparse->block_value[first];
+    double *diagonal = sparse->diagonals + sparse->first_row[sparse->node_at[p]];
+    if (!factor_own(own, n, diagonal, share)) {
+        return false;
+    }
+    for (size_t b = first + 1; b < sparse->first_block[p + 1]; b++) {
+        const size_t rows = (sparse->block_value[b + 1] - sparse->block_value[b]) / n;
+        divide_block(sparse->values + sparse->block_value[b], rows, own, diagonal, n);
+    }
+    return true;
 }
 
 bool sparse_factor(Sparse *sparse, double share)
 {
-    keep_diagonals(sparse);
+    for (size_t node = 0; node < sparse->count; node++) {
+        keep_diagonal(sparse, node);
+    }
     for (size_t p = 0; p < sparse->eliminated; p++) {
-        const size_t n = sparse_rows_at(sparse, p);
-        const size_t first = sparse->first_block[p];
-        double *own = sparse->values + sparse->block_value[first];
-        double *diagonal = sparse->diagonals + sparse->first_row[sparse->node_at[p]];
-        if (!factor_own(own, n, diagonal, share)) {
+        if (!factor_column(sparse, p, share)) {
             return false;
         }
-        for (size_t b = first + 1; b < sparse->first_block[p + 1]; b++) {
-            const size_t rows = (sparse->block_value[b + 1] - sparse->block_value[b]) / n;
-            divide_block(sparse->values + sparse->block_value[b], rows, own, diagonal, n);
+        take_column_out(sparse, p, sparse->first_block[p + 1]);
+    }
+    return true;
+}
+
+void sparse_clear_some(Sparse *sparse, size_t count, const size_t *nodes)
+{
+    for (size_t i = 0; i < count; i++) {
+        const size_t p = sparse->order[nodes[i]];
+        const size_t first = sparse->block_value[sparse->first_block[p]];
+        const size_t behind = sparse->block_value[sparse->first_block[p + 1]];
+        memset(sparse->values + first, 0, (behind - first) * sizeof *sparse->values);
+    }
+}
+
+bool sparse_factor_some(Sparse *sparse, double share, size_t count, const size_t *nodes)
+{
+    for (size_t i = 0; i < count; i++) {
+        keep_diagonal(sparse, nodes[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const size_t p = sparse->order[nodes[i]];
+        if (!factor_column(sparse, p, share)) {
+            return false;
         }
-        take_column_out(sparse, p);
+        take_column_out(sparse, p, sparse->first_kept[p]);
     }
     return true;
 }

@@ -61,6 +61,12 @@ void sparse_clear(Sparse *sparse);
 // once the rows before it are taken out: the matrix is then not positive definite but for rounding.
 bool sparse_factor(Sparse *sparse, double share);
 
+// The same for some eliminated nodes, in the order of their elimination: with each, all eliminated
+// ones that it has a block with. Their columns are first set to zero by sparse_clear_some; what is
+// left in the kept rows and columns is not for use.
+void sparse_clear_some(Sparse *sparse, size_t count, const size_t *nodes);
+bool sparse_factor_some(Sparse *sparse, double share, size_t count, const size_t *nodes);
+
 // Takes the eliminated rows out of a right side: L^-1 b in their place, and what is left in the
 // kept rows.
 void sparse_forward(const Sparse *sparse, double *rows);

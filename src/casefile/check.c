@@ -1,6 +1,7 @@
 // Checks that the values of a case fit together.
 #include "casefile/check.h"
 
+#include "base/zeroed.h"
 #include "casefile/build.h"
 #include "casefile/check_forces.h"
 #include "casefile/check_joints.h"
@@ -13,6 +14,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // A run of 1e9 steps takes some twenty minutes at 1.3 us a step; more is a slip of the pen.
@@ -55,13 +57,14 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     return false;
 }
 
-// Whether a required key of a member is required in this case.
-static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index)
+// Whether a required key of a member is required in this case; the kinds are those of all joints.
+static bool is_wanted(const Entries *entries, const JointKind *kinds, const SchemaRow *row,
+                      size_t index)
 {
     if (!schema_is_of_form(row, entries->form)) {
         return false;
     }
-    if (row->family == SCHEMA_JOINT && !schema_is_of_kind(row, joint_kind_find(entries, index))) {
+    if (row->family == SCHEMA_JOINT && !schema_is_of_kind(row, kinds[index])) {
         return false;
     }
     if (row->excused_by != NULL && entries_find(entries, row->excused_by, index) != NULL) {
@@ -71,17 +74,14 @@ static bool is_wanted(const Entries *entries, const SchemaRow *row, size_t index
     return !is_drive || entries->form != SCHEMA_LONG || entries_group(entries, "drive", 0) != NULL;
 }
 
-bool check_required(const Entries *entries, Err *err)
+static bool check_members(const Entries *entries, const JointKind *kinds, Err *err)
 {
-    if (!joint_kind_check(entries, err)) {
-        return false;
-    }
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
         const size_t members = row->is_required ? entries_family_size(entries, row) : 0;
         for (size_t index = 0; index < members; index++) {
             // most keys that are required are given
-            if (entries_at(entries, row, index) == NULL && is_wanted(entries, row, index) &&
+            if (entries_at(entries, row, index) == NULL && is_wanted(entries, kinds, row, index) &&
                 entries_find(entries, row->path, index) == NULL &&
                 !entries_have_rival(entries, row, index)) {
                 return refuse_missing(entries, row, index, err);
@@ -89,6 +89,22 @@ bool check_required(const Entries *entries, Err *err)
         }
     }
     return true;
+}
+
+bool check_required(const Entries *entries, Err *err)
+{
+    if (!joint_kind_check(entries, err)) {
+        return false;
+    }
+    // the kind of a joint is found from its keys: once, and not for each row of the schema
+    const size_t joints = entries->names[SCHEMA_JOINT].count;
+    JointKind *kinds = zeroed(joints + 1, sizeof *kinds);
+    for (size_t i = 0; i < joints; i++) {
+        kinds[i] = joint_kind_find(entries, i);
+    }
+    const bool is_complete = check_members(entries, kinds, err);
+    free(kinds);
+    return is_complete;
 }
 
 static bool check_contact(const Entries *entries, const Scenario *scenario, Err *err)

@@ -190,6 +190,22 @@ size_t source_line(const Source *source, size_t character)
     return find_location(source, character + source->shift).line;
 }
 
+size_t source_line_next(SourceCount *count, const Source *source, size_t character)
+{
+    const size_t wanted = character + source->shift;
+    if (count->source != source || wanted < count->character) {
+        *count = (SourceCount){.source = source};
+    }
+    while (count->character < wanted && count->byte < source->size) {
+        count->breaks += is_break(source, count->byte) ? 1 : 0;
+        count->character++;
+        do {
+            count->byte++;
+        } while (count->byte < source->size && !starts_character(source->text[count->byte]));
+    }
+    return count->breaks + 1;
+}
+
 bool source_is_one_line(const char *text, size_t size)
 {
     return source_text_length(text, size) == size && strpbrk(text, "\t\n\r") == NULL;

@@ -44,3 +44,15 @@ size_t source_count(const char *text, size_t size);
 
 // The line, counted from 1, that a character stands on.
 size_t source_line(const Source *source, size_t character);
+
+// How far lines have been counted: zeroed at first.
+typedef struct SourceCount {
+    const Source *source;
+    size_t character;
+    size_t byte;
+    size_t breaks; // before it
+} SourceCount;
+
+// The same for one character after the other: goes on from the last one where that stands before
+// it in the same text.
+size_t source_line_next(SourceCount *count, const Source *source, size_t character);

@@ -34,6 +34,8 @@ void unused_remember(const Entries *entries, Scenario *scenario)
 {
     scenario->key_count = entries->count;
     scenario->keys = zeroed(entries->count + 1, sizeof *scenario->keys);
+    // most keys stand in the order of their lines: the text is not counted from its start for each
+    SourceCount lines = {.source = NULL};
     for (size_t i = 0; i < entries->count; i++) {
         const Entry *entry = &entries->entries[i];
         scenario->keys[i] = (ScenarioKey){
@@ -41,7 +43,7 @@ void unused_remember(const Entries *entries, Scenario *scenario)
             .member = entry->index,
             .line = entry->source->is_override
                         ? 0
-                        : source_line(entry->source, keys_span(entry->node).start),
+                        : source_line_next(&lines, entry->source, keys_span(entry->node).start),
         };
     }
 }

@@ -201,6 +201,10 @@ static inline const double *kernel_node_forces(const Kernel *kernel, size_t node
 // The sums at a time between two neighbouring nodes, of which `node` is the first.
 void kernel_at(const Kernel *kernel, size_t node, double time_s, KernelSums *sums);
 
+// The same of the rows of one contact alone: impulses, their moments and forces, by row of it.
+void kernel_contact_at(const Kernel *kernel, size_t contact, size_t node, double time_s,
+                       double *impulse, double *moment, double *force);
+
 // The pose of one contact there, from the sums at the same time.
 KernelPose kernel_pose(const Kernel *kernel, size_t contact, size_t node, double time_s,
                        const KernelSums *sums);

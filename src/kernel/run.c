@@ -324,18 +324,41 @@ static KernelNodeRow node_row(const double *values, size_t rows, size_t row)
                            .force = values[3 * rows + row]};
 }
 
+// Where a time lies between a node and the next.
+typedef struct Between {
+    const double *first; // values at the node
+    const double *last;  // at the next
+    double width_s;
+    double share; // of it, up to the time
+    bool is_short;
+} Between;
+
+static Between find_between(const Kernel *kernel, size_t node, double time_s)
+{
+    const size_t next = node + 1 < kernel->node_count ? node + 1 : node;
+    const double width_s = kernel->times[next] - kernel->times[node];
+    return (Between){
+        .first = kernel_node_values(kernel, node),
+        .last = kernel_node_values(kernel, next),
+        .width_s = width_s,
+        .share = width_s > 0.0 ? (time_s - kernel->times[node]) / width_s : 0.0,
+        .is_short = width_s < KERNEL_LINEAR_WIDTH * kernel->times[kernel->node_count - 1],
+    };
+}
+
+static inline KernelNodeRow row_between(const Between *of, size_t rows, size_t row)
+{
+    return kernel_quintic(node_row(of->first, rows, row), node_row(of->last, rows, row),
+                          of->width_s, of->share, of->is_short);
+}
+
 void kernel_at(const Kernel *kernel, size_t node, double time_s, KernelSums *sums)
 {
     const size_t rows = kernel_rows(kernel);
     const size_t next = node + 1 < kernel->node_count ? node + 1 : node;
-    const double *first = kernel_node_values(kernel, node);
-    const double *last = kernel_node_values(kernel, next);
-    const double width = kernel->times[next] - kernel->times[node];
-    const double s = width > 0.0 ? (time_s - kernel->times[node]) / width : 0.0;
-    const bool is_short = width < KERNEL_LINEAR_WIDTH * kernel->times[kernel->node_count - 1];
+    const Between between = find_between(kernel, node, time_s);
     for (size_t i = 0; i < rows; i++) {
-        const KernelNodeRow at =
-            kernel_quintic(node_row(first, rows, i), node_row(last, rows, i), width, s, is_short);
+        const KernelNodeRow at = row_between(&between, rows, i);
         sums->impulse[i] = at.impulse;
         sums->moment[i] = at.moment;
         sums->moment[rows + i] = at.second;
@@ -343,8 +366,23 @@ void kernel_at(const Kernel *kernel, size_t node, double time_s, KernelSums *sum
     }
     const double *before = kernel->losses + 2 * node;
     const double *after = kernel->losses + 2 * next;
+    const double s = between.share;
     sums->dissipated = before[0] + s * (after[0] - before[0]);
     sums->friction = before[1] + s * (after[1] - before[1]);
+}
+
+void kernel_contact_at(const Kernel *kernel, size_t contact, size_t node, double time_s,
+                       double *impulse, double *moment, double *force)
+{
+    const size_t rows = kernel_rows(kernel);
+    const KernelContact *of = &kernel->contacts[contact];
+    const Between between = find_between(kernel, node, time_s);
+    for (size_t i = 0; i < of->row_count; i++) {
+        const KernelNodeRow at = row_between(&between, rows, of->first_row + i);
+        impulse[i] = at.impulse;
+        moment[i] = at.moment;
+        force[i] = at.force;
+    }
 }
 
 KernelPose kernel_pose(const Kernel *kernel, size_t contact, size_t node, double time_s,
@@ -473,7 +511,6 @@ static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
     kernel->contacts[number].state = contact_state_begun(pose->approach_speed);
     expect_contact(kernel, number, pose->normal);
 }
-
 
 // Contacts that were set touching before a first step.
 static void resume_contacts(Kernel *kernel, const KernelPoint *point)

@@ -211,27 +211,46 @@ void components_free(Component *components, size_t count, const Solver *solver)
     free(components);
 }
 
+// Writes one body or joint, by its place in the component.
+static void show_body(const Component *component, size_t k, Sample *sample)
+{
+    const int body = component->bodies[k];
+    sample->bodies[body] = component->sample.bodies[k];
+    if (component->scenario->linkage.is_spatial) {
+        sample->space_bodies[body] = component->sample.space_bodies[k];
+    }
+}
+
+static void show_joint(const Component *component, size_t k, Sample *sample)
+{
+    const int joint = component->joints[k];
+    sample->joints[joint] = component->sample.joints[k];
+    if (component->scenario->linkage.is_spatial) {
+        sample->space_joints[joint] = component->sample.space_joints[k];
+    }
+}
+
 void component_show_bodies(const Component *component, Sample *sample)
 {
-    const bool is_spatial = component->scenario->linkage.is_spatial;
     for (size_t k = 0; k < component->part.body_count; k++) {
-        const int body = component->bodies[k];
-        sample->bodies[body] = component->sample.bodies[k];
-        if (is_spatial) {
-            sample->space_bodies[body] = component->sample.space_bodies[k];
-        }
+        show_body(component, k, sample);
     }
 }
 
 void component_show(const Component *component, Sample *sample)
 {
-    const bool is_spatial = component->scenario->linkage.is_spatial;
     component_show_bodies(component, sample);
     for (size_t k = 0; k < component->part.joint_count; k++) {
-        const int joint = component->joints[k];
-        sample->joints[joint] = component->sample.joints[k];
-        if (is_spatial) {
-            sample->space_joints[joint] = component->sample.space_joints[k];
-        }
+        show_joint(component, k, sample);
+    }
+}
+
+void component_show_some(const Component *component, const SolverSome *some, Sample *sample)
+{
+    for (size_t n = 0; n < some->body_count; n++) {
+        show_body(component, some->bodies[n], sample);
+    }
+    for (size_t n = 0; n < some->joint_count; n++) {
+        show_joint(component, some->joints[n], sample);
     }
 }

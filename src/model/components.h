@@ -24,3 +24,4 @@ void components_free(Component *components, size_t count, const Solver *solver);
 // Writes a component's own sample, or its bodies alone, into that of the whole linkage.
 void component_show(const Component *component, Sample *sample);
 void component_show_bodies(const Component *component, Sample *sample);
+void component_show_some(const Component *component, const SolverSome *some, Sample *sample);

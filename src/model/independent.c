@@ -181,6 +181,16 @@ void independent_observe_part(const void *state, double time_s, Sample *sample)
                                   sample);
 }
 
+void independent_observe_some(const void *state, double time_s, const SolverSome *some,
+                              Sample *sample)
+{
+    const Independent *independent = state;
+    Component *component = &independent->components[independent->now];
+    independent->solver->observe_some(component->state, time_s, some, &component->sample);
+    component_show_some(component, some, sample);
+    sample->time_s = time_s;
+}
+
 void independent_glance(const void *state, double time_s, Sample *sample)
 {
     const Independent *independent = state;

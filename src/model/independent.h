@@ -13,6 +13,8 @@ bool independent_stride(void *state, double stop_s, double *end_s, Err *err);
 StepRecord independent_record(const void *state);
 void independent_observe(const void *state, double time_s, Sample *sample);
 void independent_observe_part(const void *state, double time_s, Sample *sample);
+void independent_observe_some(const void *state, double time_s, const SolverSome *some,
+                              Sample *sample);
 void independent_glance(const void *state, double time_s, Sample *sample);
 void independent_contacts(const void *state, ContactState (*states)[JOINT_PLACES]);
 bool independent_carry(void *state, Carry *carry);
@@ -25,8 +27,8 @@ SolverModel independent_model(const void *state);
 // Those that every solver of several has, for its const Solver.
 #define INDEPENDENT_FUNCTIONS                                                                      \
     .step = independent_step, .record = independent_record, .observe = independent_observe,        \
-    .observe_part = independent_observe_part, .contacts = independent_contacts,                    \
-    .carry = independent_carry, .close = independent_close
+    .observe_part = independent_observe_part, .observe_some = independent_observe_some,            \
+    .contacts = independent_contacts, .carry = independent_carry, .close = independent_close
 
 // What they are made of, how many there are, and the solver's state of one of them.
 const Scenario *independent_scenario(const void *state);

@@ -88,21 +88,38 @@ static void couple_all(const Linkage *linkage, const ResponseRow *a, const Respo
     }
 }
 
+static void fill_block(const Response *response, const ResponseBlock *block)
+{
+    const ResponseRow *a = &response->rows[block->rows];
+    const ResponseRow *b = &response->rows[block->columns];
+    if (block->row_count == 2 && block->column_count == 2) {
+        couple_pairs(response->linkage, a, b, block->values);
+    } else {
+        couple_all(response->linkage, a, b, block);
+    }
+}
+
 bool response_place(Response *response, const Motion *motions)
 {
     response_rows_place(response, motions);
     sparse_clear(&response->matrix);
     for (size_t n = 0; n < response->block_count; n++) {
-        const ResponseBlock *block = &response->blocks[n];
-        const ResponseRow *a = &response->rows[block->rows];
-        const ResponseRow *b = &response->rows[block->columns];
-        if (block->row_count == 2 && block->column_count == 2) {
-            couple_pairs(response->linkage, a, b, block->values);
-        } else {
-            couple_all(response->linkage, a, b, block);
-        }
+        fill_block(response, &response->blocks[n]);
     }
     return sparse_factor(&response->matrix, INDEPENDENT);
+}
+
+bool response_place_some(Response *response, const Motion *motions, size_t node_count,
+                         const size_t *nodes, size_t block_count, const size_t *blocks)
+{
+    for (size_t i = 0; i < node_count; i++) {
+        response_rows_place_ideal(response, 2 * nodes[i], motions);
+    }
+    sparse_clear_some(&response->matrix, node_count, nodes);
+    for (size_t n = 0; n < block_count; n++) {
+        fill_block(response, &response->blocks[blocks[n]]);
+    }
+    return sparse_factor_some(&response->matrix, INDEPENDENT, node_count, nodes);
 }
 
 const double *response_block(const Response *response, size_t place, size_t other)

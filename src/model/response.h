@@ -28,6 +28,12 @@ size_t response_play_rows(const Response *response);
 // redundant there.
 bool response_place(Response *response, const Motion *motions);
 
+// The same of some ideal joints alone, as nodes of the matrix in the order of their elimination, of
+// which no other ideal joint shares a body, with the blocks of their columns. The rows of the
+// places in these have been placed before.
+bool response_place_some(Response *response, const Motion *motions, size_t node_count,
+                         const size_t *nodes, size_t block_count, const size_t *blocks);
+
 // Writes the mobility W of the joints with play, 1/kg (1/(kg m), 1/(kg m^2) of turns), row by row:
 // their rows' velocities change by W times the impulses that act there.
 void response_mobility(const Response *response, double *mobility);

@@ -112,6 +112,31 @@ void response_groups_make(const ResponseNodes *nodes, ResponseGroups *groups)
     free(group_at);
 }
 
+// Lists the blocks of the response in the columns of each group's nodes.
+static void list_group_blocks(const Response *response, ResponseGroups *groups)
+{
+    const size_t ideal = response->ideal_rows / 2;
+    size_t *group_of_node = zeroed(ideal, sizeof *group_of_node);
+    for (size_t n = 0; n < ideal; n++) {
+        group_of_node[n] = groups->count;
+    }
+    for (size_t group = 0; group < groups->count; group++) {
+        for (size_t n = groups->first_node[group]; n < groups->first_node[group + 1]; n++) {
+            group_of_node[groups->nodes[n]] = group;
+        }
+    }
+    size_t *group_of = zeroed(response->block_count, sizeof *group_of);
+    for (size_t n = 0; n < response->block_count; n++) {
+        const size_t column = response->blocks[n].columns;
+        group_of[n] = column < response->ideal_rows ? group_of_node[column / 2] : groups->count;
+    }
+    groups->first_block = zeroed(groups->count + 1, sizeof *groups->first_block);
+    groups->blocks = zeroed(response->block_count, sizeof *groups->blocks);
+    sort_into(response->block_count, group_of, groups->count, groups->first_block, groups->blocks);
+    free(group_of);
+    free(group_of_node);
+}
+
 void response_groups_init(const Response *response, ResponseGroups *groups)
 {
     const size_t ideal = response->ideal_rows / 2;
@@ -123,6 +148,7 @@ void response_groups_init(const Response *response, ResponseGroups *groups)
     response_groups_make(
         &(ResponseNodes){response->linkage, &response->matrix, ideal, count, joints}, groups);
     free(joints);
+    list_group_blocks(response, groups);
 }
 
 void response_groups_finish(ResponseGroups *groups)
@@ -135,6 +161,8 @@ void response_groups_finish(ResponseGroups *groups)
     free(groups->first_node);
     free(groups->nodes);
     free(groups->joints);
+    free(groups->first_block);
+    free(groups->blocks);
     *groups = (ResponseGroups){.count = 0};
 }
 
@@ -157,6 +185,26 @@ static void set_impulses(const Response *response, const ResponseGroups *groups,
         memcpy(all + response->ideal_rows + row, impulses + row,
                response_place_rows(&response->places[place]) * sizeof *all);
     }
+}
+
+bool response_groups_place(Response *response, const ResponseGroups *groups,
+                           const ResponsePart *part, const Motion *motions)
+{
+    for (size_t i = 0; i < part->place_count; i++) {
+        response_rows_place_play(response, part->places[i], motions);
+    }
+    for (size_t i = 0; i < part->group_count; i++) {
+        const size_t group = part->groups[i];
+        const size_t first_node = groups->first_node[group];
+        const size_t first_block = groups->first_block[group];
+        if (!response_place_some(response, motions, groups->first_node[group + 1] - first_node,
+                                 groups->nodes + first_node,
+                                 groups->first_block[group + 1] - first_block,
+                                 groups->blocks + first_block)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 const double *response_groups_apply(const Response *response, const ResponseGroups *groups,

@@ -14,7 +14,10 @@ typedef struct ResponseGroups {
     size_t *first_node; // likewise: the ideal joints as nodes of the response's matrix, in the
                         // order of their elimination
     size_t *nodes;
-    int *joints; // of these nodes
+    int *joints;         // of these nodes
+    size_t *first_block; // likewise: the blocks of the response in the columns of these nodes; NULL
+                         // of a response in space
+    size_t *blocks;
 } ResponseGroups;
 
 // Ideal joints as nodes of a response's matrix, and behind them places: the joint of each.
@@ -39,6 +42,13 @@ typedef struct ResponsePart {
     size_t place_count;
     size_t *places;
 } ResponsePart;
+
+// Takes the response of the groups of a part at the positions of the motions, as response_place
+// does for all; of the part's places, the bodies of those on lines or limits have motions, too.
+// Returns false where ideal joints are redundant there. Only response_groups_apply with such a part
+// may be asked afterwards.
+bool response_groups_place(Response *response, const ResponseGroups *groups,
+                           const ResponsePart *part, const Motion *motions);
 
 // Writes by how much impulses in the places of a part, by row of play, change the velocities of its
 // groups' bodies: x, y, angle, three a body. Returns the impulses in all rows, of which those of

@@ -111,36 +111,43 @@ static void place_turn(Response *response, size_t row, int end)
     turn->body[1] = LINKAGE_GROUND;
 }
 
-void response_rows_place(Response *response, const Motion *motions)
+void response_rows_place_ideal(Response *response, size_t row, const Motion *motions)
+{
+    const Joint *joint = &response->linkage->joints[response->joint_of[row]];
+    if (joint->kind == JOINT_PRISMATIC) {
+        place_prismatic(response, row, response->joint_of[row], motions);
+        return;
+    }
+    place_point(response, row, (JointEnd[]){linkage_end(joint, 0), linkage_end(joint, 1)}, motions);
+}
+
+void response_rows_place_play(Response *response, size_t number, const Motion *motions)
 {
     const Joint *joints = response->linkage->joints;
-    size_t row = 0;
-    for (; row < response->ideal_rows; row += 2) {
-        const Joint *joint = &joints[response->joint_of[row]];
-        if (joint->kind == JOINT_PRISMATIC) {
-            place_prismatic(response, row, response->joint_of[row], motions);
-            continue;
-        }
-        place_point(response, row, (JointEnd[]){linkage_end(joint, 0), linkage_end(joint, 1)},
-                    motions);
+    const ResponsePlace *place = &response->places[number];
+    const size_t row = response->ideal_rows + response->first_row[number];
+    const JointEnd ends[2] = {{joints[place->joint].body_a, place->anchor_a},
+                              {joints[place->joint].body_b, place->anchor_b}};
+    if (place->sign != 0.0) {
+        place_coordinate(response, row, place, motions);
+    } else if (place->is_line) {
+        place_line(response, row, place, ends, motions);
+    } else {
+        place_point(response, row, ends, motions);
+    }
+    if (place->has_turns) {
+        place_turn(response, row + 2, 0);
+        place_turn(response, row + 3, 1);
+    }
+}
+
+void response_rows_place(Response *response, const Motion *motions)
+{
+    for (size_t row = 0; row < response->ideal_rows; row += 2) {
+        response_rows_place_ideal(response, row, motions);
     }
     for (size_t i = 0; i < response->place_count; i++) {
-        const ResponsePlace *place = &response->places[i];
-        const JointEnd ends[2] = {{joints[place->joint].body_a, place->anchor_a},
-                                  {joints[place->joint].body_b, place->anchor_b}};
-        if (place->sign != 0.0) {
-            place_coordinate(response, row, place, motions);
-        } else if (place->is_line) {
-            place_line(response, row, place, ends, motions);
-        } else {
-            place_point(response, row, ends, motions);
-        }
-        row += 2;
-        if (place->has_turns) {
-            place_turn(response, row, 0);
-            place_turn(response, row + 1, 1);
-            row += 2;
-        }
+        response_rows_place_play(response, i, motions);
     }
 }
 

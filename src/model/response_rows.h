@@ -116,6 +116,10 @@ static inline Vec2 response_arm(const Response *response, const Motion *motions,
 // Writes the rows where the bodies are.
 void response_rows_place(Response *response, const Motion *motions);
 
+// The same of one ideal joint, whose first row is given, and of one place.
+void response_rows_place_ideal(Response *response, size_t row, const Motion *motions);
+void response_rows_place_play(Response *response, size_t number, const Motion *motions);
+
 // Writes the accelerations of all rows under gravity and loads (NULL: none) while nothing acts in
 // any of them, those of the ideal joints included.
 void response_rows_loose(const Response *response, const Motion *motions, double gravity,

@@ -28,6 +28,14 @@ typedef struct SolverPart {
     const int *joints;
 } SolverPart;
 
+// Some of the bodies and joints of a record, by their places in its arrays.
+typedef struct SolverSome {
+    size_t body_count;
+    size_t joint_count;
+    const size_t *bodies;
+    const size_t *joints;
+} SolverSome;
+
 // What happened in one step. The arrays hold as many entries as the linkage, or the part that the
 // record is of, has bodies or joints, and stay valid until the next call.
 typedef struct StepRecord {
@@ -35,6 +43,8 @@ typedef struct StepRecord {
     bool is_partial;        // others are still to be stepped as far as this part: of the state now
                             // only this one may be observed
     double reached_s;       // of the last of several parts: up to where all have been stepped
+    const SolverSome *changed; // whose values are those at end_s: all others' are still those of
+                               // the last record that had them here; NULL: all
     double start_s;
     double end_s;
     double joint_s;           // the instant that the joints' states belong to
@@ -86,6 +96,10 @@ typedef struct Solver {
     void (*observe)(const void *state, double time_s, Sample *sample);
     // Of a solver that hands on parts: the same for the bodies and joints of the last record alone.
     void (*observe_part)(const void *state, double time_s, Sample *sample);
+    // Of a solver whose records tell what has changed: the same for some bodies and joints of the
+    // last record, in time that grows with their number alone. The rest of the sample is not for
+    // use.
+    void (*observe_some)(const void *state, double time_s, const SolverSome *some, Sample *sample);
     // Optional: the bodies' positions and velocities alone, which may take less; the rest of the
     // sample stays as it is. NULL: observe has them.
     void (*glance)(const void *state, double time_s, Sample *sample);

@@ -192,6 +192,17 @@ void impulse_observe(const void *state, double time_s, Sample *sample)
     impulse->kind->observe(impulse->own, at, &sums, sample);
 }
 
+void impulse_observe_some(const void *state, double time_s, const SolverSome *some, Sample *sample)
+{
+    const Impulse *impulse = state;
+    const double since_s = fmin(fmax(time_s - impulse->span.start_s, 0.0), impulse->span.width_s);
+    sample->time_s = time_s;
+    if (impulse->islands == NULL ||
+        !impulse_islands_observe(impulse->islands, since_s, some, sample)) {
+        impulse_observe(state, time_s, sample);
+    }
+}
+
 void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
 {
     const Impulse *impulse = state;

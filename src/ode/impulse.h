@@ -21,9 +21,11 @@ typedef struct ImpulseScope {
     size_t *bodies; // owned, as are all arrays
     size_t joint_count;
     size_t *joints;
-    size_t place_count; // of those below, the first, that are looked at
-    ResponsePart part;  // the places; of an island also others of the groups of bodies that they
-                        // move, and these groups
+    size_t place_count;  // of those below, the first, that are looked at
+    ResponsePart part;   // the places; of an island also others of the groups of bodies that they
+                         // move, and these groups
+    ResponsePart placed; // where single bodies are asked for: the groups of which accelerations are
+                         // wanted, with the first of the places above; not owned
 } ImpulseScope;
 
 // A time within a step.
@@ -150,6 +152,10 @@ typedef struct ImpulseKind {
                  double *omega, double *alpha);
     // Fills in bodies and joints of a sample, likewise.
     void (*observe)(const void *own, ImpulseTime at, const KernelSums *sums, Sample *sample);
+    // The same of the bodies of a scope, with accelerations of the placed ones, and of its joints
+    // where these are wanted. NULL: nobody can ask for some.
+    void (*observe_some)(const void *own, const ImpulseScope *scope, ImpulseTime at,
+                         const KernelSums *sums, bool wants_joints, Sample *sample);
     // The mean force of an ideal joint in the step, N.
     double (*mean)(const void *own, size_t joint);
     // Carries all that the next step depends on.
@@ -175,6 +181,11 @@ bool impulse_islands_need_step(const ImpulseIslands *islands);
 // What the last part was of.
 const ImpulseScope *impulse_islands_scope(const ImpulseIslands *islands);
 
+// Fills in one body or joint of a sample at a time within the step. Returns false where that takes
+// a look at all: of several, and of the joint of the drive.
+bool impulse_islands_observe(ImpulseIslands *islands, double since_s, const SolverSome *some,
+                             Sample *sample);
+
 // Goes on to the next part, and fills in the record. What others than the island's bodies and
 // joints do stays as it was at the last part that had them.
 void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part);
@@ -185,6 +196,7 @@ void impulse_close(void *state);
 bool impulse_step(void *state, double stop_s, Err *err);
 StepRecord impulse_record(const void *state);
 void impulse_observe(const void *state, double time_s, Sample *sample);
+void impulse_observe_some(const void *state, double time_s, const SolverSome *some, Sample *sample);
 bool impulse_carry(void *state, Carry *carry);
 void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES]);
 SolverModel impulse_model(const void *state);

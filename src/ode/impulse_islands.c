@@ -17,6 +17,15 @@ typedef struct IslandMark {
     size_t island;
 } IslandMark;
 
+// A scope, and whether a body, joint, group or place is in it.
+typedef struct ScopeRoom {
+    ImpulseScope scope;
+    bool *has_body; // owned, as all arrays
+    bool *has_joint;
+    bool *has_group;
+    bool *has_place;
+} ScopeRoom;
+
 struct ImpulseIslands {
     const ImpulseView *view;
     const ImpulseKind *kind;
@@ -35,12 +44,52 @@ struct ImpulseIslands {
     double elastic_total; // J
     bool *is_touching;    // by place
     size_t touching;
-    ImpulseScope scope; // of the island that is looked at
-    bool *has_body;     // whether it is in the scope
-    bool *has_joint;
-    bool *has_group;
-    bool *has_place;
+    ScopeRoom scope;    // of the island that is looked at
+    SolverSome changed; // of the record
+    size_t *changed_joints;
+    ScopeRoom some;       // of bodies and joints that are asked for
+    KernelSums some_sums; // of their places
+    size_t *first_place;  // of a joint, and behind the last
 };
+
+static ScopeRoom scope_room_create(const ImpulseView *view)
+{
+    const Linkage *linkage = &view->scenario->linkage;
+    const size_t places = view->kernel->contact_count;
+    ScopeRoom room = {.scope.body_count = 0};
+    room.scope.bodies = zeroed(linkage->body_count, sizeof *room.scope.bodies);
+    room.scope.joints = zeroed(linkage->joint_count, sizeof *room.scope.joints);
+    room.scope.part.groups = zeroed(view->groups->count, sizeof *room.scope.part.groups);
+    room.scope.part.places = zeroed(places, sizeof *room.scope.part.places);
+    room.has_body = zeroed(linkage->body_count, sizeof *room.has_body);
+    room.has_joint = zeroed(linkage->joint_count, sizeof *room.has_joint);
+    room.has_group = zeroed(view->groups->count, sizeof *room.has_group);
+    room.has_place = zeroed(places, sizeof *room.has_place);
+    return room;
+}
+
+static void scope_room_finish(ScopeRoom *room)
+{
+    impulse_scope_finish(&room->scope);
+    free(room->has_body);
+    free(room->has_joint);
+    free(room->has_group);
+    free(room->has_place);
+}
+
+// The first place of each joint.
+static size_t *list_first_places(const ImpulseView *view)
+{
+    const size_t joints = view->scenario->linkage.joint_count;
+    size_t *firsts = zeroed(joints + 1, sizeof *firsts);
+    for (size_t i = 0; i < view->kernel->contact_count; i++) {
+        firsts[view->kernel->contacts[i].joint + 1]++;
+    }
+    for (size_t i = 0; i < joints; i++) {
+        firsts[i + 1] += firsts[i];
+    }
+    return firsts;
+}
 
 ImpulseIslands *impulse_islands_create(const ImpulseView *view, const ImpulseKind *kind, void *own)
 {
@@ -57,14 +106,11 @@ ImpulseIslands *impulse_islands_create(const ImpulseView *view, const ImpulseKin
     islands->losses = zeroed(places, sizeof *islands->losses);
     islands->elastic = zeroed(places, sizeof *islands->elastic);
     islands->is_touching = zeroed(places, sizeof *islands->is_touching);
-    islands->scope.bodies = zeroed(linkage->body_count, sizeof *islands->scope.bodies);
-    islands->scope.joints = zeroed(linkage->joint_count, sizeof *islands->scope.joints);
-    islands->scope.part.groups = zeroed(view->groups->count, sizeof *islands->scope.part.groups);
-    islands->scope.part.places = zeroed(places, sizeof *islands->scope.part.places);
-    islands->has_body = zeroed(linkage->body_count, sizeof *islands->has_body);
-    islands->has_joint = zeroed(linkage->joint_count, sizeof *islands->has_joint);
-    islands->has_group = zeroed(view->groups->count, sizeof *islands->has_group);
-    islands->has_place = zeroed(places, sizeof *islands->has_place);
+    islands->scope = scope_room_create(view);
+    islands->changed_joints = zeroed(linkage->joint_count + 1, sizeof *islands->changed_joints);
+    islands->some = scope_room_create(view);
+    islands->some_sums = kernel_sums(rows);
+    islands->first_place = list_first_places(view);
     return islands;
 }
 
@@ -80,11 +126,11 @@ void impulse_islands_destroy(ImpulseIslands *islands)
     free(islands->losses);
     free(islands->elastic);
     free(islands->is_touching);
-    impulse_scope_finish(&islands->scope);
-    free(islands->has_body);
-    free(islands->has_joint);
-    free(islands->has_group);
-    free(islands->has_place);
+    scope_room_finish(&islands->scope);
+    free(islands->changed_joints);
+    scope_room_finish(&islands->some);
+    kernel_sums_free(&islands->some_sums);
+    free(islands->first_place);
     free(islands);
 }
 
@@ -144,118 +190,152 @@ bool impulse_islands_need_step(const ImpulseIslands *islands)
 
 const ImpulseScope *impulse_islands_scope(const ImpulseIslands *islands)
 {
-    return islands->is_ended ? islands->view->whole : &islands->scope;
+    return islands->is_ended ? islands->view->whole : &islands->scope.scope;
 }
 
-static void add_group(ImpulseIslands *islands, size_t group)
+static void add_joint(ScopeRoom *room, size_t joint)
 {
-    const ResponseGroups *groups = islands->view->groups;
-    ImpulseScope *scope = &islands->scope;
-    islands->has_group[group] = true;
+    if (!room->has_joint[joint]) {
+        room->has_joint[joint] = true;
+        room->scope.joints[room->scope.joint_count++] = joint;
+    }
+}
+
+static void add_body(ScopeRoom *room, size_t body)
+{
+    if (!room->has_body[body]) {
+        room->has_body[body] = true;
+        room->scope.bodies[room->scope.body_count++] = body;
+    }
+}
+
+static void add_group(const ResponseGroups *groups, size_t group, ScopeRoom *room)
+{
+    ImpulseScope *scope = &room->scope;
+    room->has_group[group] = true;
     scope->part.groups[scope->part.group_count++] = group;
     for (size_t n = groups->first_node[group]; n < groups->first_node[group + 1]; n++) {
-        const size_t joint = (size_t)groups->joints[n];
-        if (!islands->has_joint[joint]) {
-            islands->has_joint[joint] = true;
-            scope->joints[scope->joint_count++] = joint;
-        }
+        add_joint(room, (size_t)groups->joints[n]);
     }
     for (size_t n = groups->first_body[group]; n < groups->first_body[group + 1]; n++) {
-        if (!islands->has_body[groups->bodies[n]]) {
-            islands->has_body[groups->bodies[n]] = true;
-            scope->bodies[scope->body_count++] = groups->bodies[n];
-        }
+        add_body(room, groups->bodies[n]);
     }
 }
 
-// Adds a place with its joint, its bodies, and all that its impulses move.
-static void add_place(ImpulseIslands *islands, size_t place)
+// Adds the bodies of a joint, and all that moves with them.
+static void add_bodies_of(const ImpulseIslands *islands, const Joint *joint, ScopeRoom *room)
 {
     const ResponseGroups *groups = islands->view->groups;
-    const size_t number = (size_t)islands->view->islands->all->contacts[place].joint;
-    const Joint *joint = &islands->view->scenario->linkage.joints[number];
     const int driven = linkage_driven_body(&islands->view->scenario->linkage);
     const int bodies[2] = {joint->body_a, joint->body_b};
-    ImpulseScope *scope = &islands->scope;
-    scope->part.places[scope->part.place_count++] = place;
-    islands->has_place[place] = true;
-    if (!islands->has_joint[number]) {
-        islands->has_joint[number] = true;
-        scope->joints[scope->joint_count++] = number;
-    }
     for (int i = 0; i < 2; i++) {
         if (bodies[i] == LINKAGE_GROUND) {
             continue;
         }
         const size_t body = (size_t)bodies[i];
         const size_t group = groups->group_of[body];
-        if (group < groups->count && !islands->has_group[group]) {
-            add_group(islands, group);
+        if (group < groups->count && !room->has_group[group]) {
+            add_group(groups, group, room);
         }
-        if (!islands->has_body[body]) {
-            islands->has_body[body] = true;
-            scope->bodies[scope->body_count++] = body;
-        }
-        scope->has_drive = scope->has_drive || bodies[i] == driven;
+        add_body(room, body);
+        room->scope.has_drive = room->scope.has_drive || bodies[i] == driven;
     }
 }
 
-// Adds the places of other blocks that move the bodies of a block.
-static void add_neighbours(ImpulseIslands *islands)
+// Adds a place alone.
+static void add_place_alone(ScopeRoom *room, size_t place)
+{
+    if (!room->has_place[place]) {
+        room->has_place[place] = true;
+        room->scope.part.places[room->scope.part.place_count++] = place;
+    }
+}
+
+// Adds a place with its joint, its bodies, and all that its impulses move.
+static void add_place(const ImpulseIslands *islands, size_t place, ScopeRoom *room)
+{
+    const size_t number = (size_t)islands->view->islands->all->contacts[place].joint;
+    add_place_alone(room, place);
+    add_joint(room, number);
+    add_bodies_of(islands, &islands->view->scenario->linkage.joints[number], room);
+}
+
+// Adds the places that press on the groups of the scope from a number on.
+static void add_neighbours(const ImpulseIslands *islands, size_t first, ScopeRoom *room)
 {
     const ResponseGroups *groups = islands->view->groups;
-    ResponsePart *part = &islands->scope.part;
-    for (size_t i = 0; i < part->group_count; i++) {
+    const ResponsePart *part = &room->scope.part;
+    for (size_t i = first; i < part->group_count; i++) {
         const size_t group = part->groups[i];
         for (size_t n = groups->first_place[group]; n < groups->first_place[group + 1]; n++) {
-            const size_t place = groups->places[n];
-            if (islands->view->islands->is_active[place] && !islands->has_place[place]) {
-                islands->has_place[place] = true;
-                part->places[part->place_count++] = place;
+            if (islands->view->islands->is_active[groups->places[n]]) {
+                add_place_alone(room, groups->places[n]);
             }
         }
     }
 }
 
+static void clear_scope(ScopeRoom *room)
+{
+    ImpulseScope *scope = &room->scope;
+    for (size_t i = 0; i < scope->body_count; i++) {
+        room->has_body[scope->bodies[i]] = false;
+    }
+    for (size_t i = 0; i < scope->joint_count; i++) {
+        room->has_joint[scope->joints[i]] = false;
+    }
+    for (size_t i = 0; i < scope->part.group_count; i++) {
+        room->has_group[scope->part.groups[i]] = false;
+    }
+    for (size_t i = 0; i < scope->part.place_count; i++) {
+        room->has_place[scope->part.places[i]] = false;
+    }
+    scope->has_drive = false;
+    scope->body_count = scope->joint_count = scope->place_count = 0;
+    scope->part.group_count = scope->part.place_count = 0;
+    scope->placed = (ResponsePart){.group_count = 0};
+}
+
 // Makes the scope that of an island.
 static void set_scope(ImpulseIslands *islands, const KernelIsland *island)
 {
-    ImpulseScope *scope = &islands->scope;
-    for (size_t i = 0; i < scope->body_count; i++) {
-        islands->has_body[scope->bodies[i]] = false;
-    }
-    for (size_t i = 0; i < scope->joint_count; i++) {
-        islands->has_joint[scope->joints[i]] = false;
-    }
-    for (size_t i = 0; i < scope->part.group_count; i++) {
-        islands->has_group[scope->part.groups[i]] = false;
-    }
-    for (size_t i = 0; i < scope->part.place_count; i++) {
-        islands->has_place[scope->part.places[i]] = false;
-    }
-    scope->has_drive = false;
-    scope->body_count = scope->joint_count = 0;
-    scope->part.group_count = scope->part.place_count = 0;
+    ScopeRoom *room = &islands->scope;
+    clear_scope(room);
     for (size_t i = 0; i < island->kernel.contact_count; i++) {
-        add_place(islands, island->members[i]);
+        add_place(islands, island->members[i], room);
     }
-    scope->place_count = scope->part.place_count;
+    room->scope.place_count = room->scope.part.place_count;
+    // the places of other blocks that move the bodies of a block
     if (islands->view->islands->is_divided[island->members[0]]) {
-        add_neighbours(islands);
+        add_neighbours(islands, 0, room);
     }
 }
 
 // Writes the sums of an island's rows among those of all.
-static void scatter(ImpulseIslands *islands, const KernelIsland *island)
+static void scatter(const Kernel *all, const KernelIsland *island, KernelSums *sums)
 {
-    const Kernel *all = islands->view->islands->all;
     for (size_t i = 0; i < island->kernel.contact_count; i++) {
         const KernelContact *joint = &island->kernel.contacts[i];
         const size_t row = all->contacts[island->members[i]].first_row;
         const size_t size = joint->row_count * sizeof(double);
-        memcpy(islands->sums.impulse + row, island->sums.impulse + joint->first_row, size);
-        memcpy(islands->sums.moment + row, island->sums.moment + joint->first_row, size);
-        memcpy(islands->sums.force + row, island->sums.force + joint->first_row, size);
+        memcpy(sums->impulse + row, island->sums.impulse + joint->first_row, size);
+        memcpy(sums->moment + row, island->sums.moment + joint->first_row, size);
+        memcpy(sums->force + row, island->sums.force + joint->first_row, size);
+    }
+}
+
+// Looks at the islands of a scope's places from a number on, but for one, and writes their sums.
+static void look_at_places(const KernelIslands *all, const ImpulseScope *scope, size_t first,
+                           size_t looked, double since_s, KernelSums *sums)
+{
+    for (size_t i = first; i < scope->part.place_count; i++) {
+        const size_t number = all->island_of[scope->part.places[i]];
+        if (all->is_active[scope->part.places[i]] && number != looked) {
+            KernelIsland *island = all->islands[number];
+            kernel_island_look(island, kernel_node(&island->kernel, since_s), since_s);
+            scatter(all->all, island, sums);
+            looked = number;
+        }
     }
 }
 
@@ -263,19 +343,10 @@ static void scatter(ImpulseIslands *islands, const KernelIsland *island)
 static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
 {
     const KernelIslands *all = islands->view->islands;
-    const ImpulseScope *scope = &islands->scope;
+    const ImpulseScope *scope = &islands->scope.scope;
     kernel_island_look(all->islands[mark->island], mark->node, mark->time_s);
-    scatter(islands, all->islands[mark->island]);
-    size_t looked = mark->island;
-    for (size_t i = scope->place_count; i < scope->part.place_count; i++) {
-        const size_t number = all->island_of[scope->part.places[i]];
-        if (number != looked) {
-            KernelIsland *other = all->islands[number];
-            kernel_island_look(other, kernel_node(&other->kernel, mark->time_s), mark->time_s);
-            scatter(islands, other);
-            looked = number;
-        }
-    }
+    scatter(all->all, all->islands[mark->island], &islands->sums);
+    look_at_places(all, scope, scope->place_count, mark->island, mark->time_s, &islands->sums);
 }
 
 // Adds the contacts of a scope's places to the record.
@@ -320,13 +391,13 @@ static void take_island(ImpulseIslands *islands, ImpulsePart *part, const Island
     look_at_scope(islands, mark);
     part->end_s = islands->span.start_s + mark->time_s;
     const ImpulseTime at = {mark->time_s, mark->node, true};
-    islands->kind->look(islands->own, &islands->scope, at, &islands->sums, part->omega,
+    islands->kind->look(islands->own, &islands->scope.scope, at, &islands->sums, part->omega,
                         part->alpha);
     part->record.dissipated = island->sums.dissipated - losses[0];
     part->record.friction = island->sums.friction - losses[1];
     losses[0] = island->sums.dissipated;
     losses[1] = island->sums.friction;
-    add_contacts(islands, part, &islands->scope, mark->time_s);
+    add_contacts(islands, part, &islands->scope.scope, mark->time_s);
 }
 
 // The part up to the end of the step.
@@ -358,10 +429,30 @@ static void take_end(ImpulseIslands *islands, ImpulsePart *part)
     islands->is_ended = true;
 }
 
+// Lists what the last part was of. The drive answers what presses on its body.
+static void note_changed(ImpulseIslands *islands)
+{
+    const Linkage *linkage = &islands->view->scenario->linkage;
+    const ImpulseScope *scope = impulse_islands_scope(islands);
+    islands->changed = (SolverSome){
+        .body_count = scope->body_count,
+        .joint_count = scope->joint_count,
+        .bodies = scope->bodies,
+        .joints = scope->joints,
+    };
+    const size_t driver = (size_t)linkage->driver.joint;
+    if (scope->has_drive && !scope->is_whole && !islands->scope.has_joint[driver]) {
+        memcpy(islands->changed_joints, scope->joints, scope->joint_count * sizeof *scope->joints);
+        islands->changed_joints[islands->changed.joint_count++] = driver;
+        islands->changed.joints = islands->changed_joints;
+    }
+}
+
 void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part)
 {
     // what was pushed in the part before is in its record
-    const ImpulseScope *recorded = islands->next == 0 ? islands->view->whole : &islands->scope;
+    const ImpulseScope *recorded =
+        islands->next == 0 ? islands->view->whole : &islands->scope.scope;
     for (size_t n = 0; n < recorded->joint_count; n++) {
         part->impulse[recorded->joints[n]] = 0.0;
     }
@@ -380,6 +471,129 @@ void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part)
     } else {
         take_island(islands, part, &islands->order[islands->next++]);
     }
+    if (islands->kind->observe_some != NULL) {
+        note_changed(islands);
+        part->record.changed = &islands->changed;
+    }
     part->record.start_s = part->start_s;
     part->record.end_s = part->record.joint_s = part->end_s;
+}
+
+// A pin has its rows along x and y, wherever its bodies are.
+static bool impulse_islands_is_pin(const Joint *joint)
+{
+    return joint->kind == JOINT_CLEARANCE && joint->limits.kind == LIMIT_NONE;
+}
+
+// Adds what an acceleration of a body comes from: the places that press on its group, and where
+// one of them is no pin, the bodies at its other end, on which the direction of its rows depends.
+static void ask_for_body(const ImpulseIslands *islands, size_t body, ScopeRoom *room)
+{
+    const ResponseGroups *groups = islands->view->groups;
+    const Linkage *linkage = &islands->view->scenario->linkage;
+    const size_t group = groups->group_of[body];
+    add_body(room, body);
+    if (group == groups->count) {
+        room->scope.has_drive = true;
+        return;
+    }
+    const size_t first = room->scope.part.group_count;
+    if (!room->has_group[group]) {
+        add_group(groups, group, room);
+    }
+    add_neighbours(islands, first, room);
+    room->scope.placed = room->scope.part;
+    for (size_t i = 0; i < room->scope.placed.place_count; i++) {
+        const size_t place = room->scope.part.places[i];
+        const Joint *joint = &linkage->joints[islands->view->kernel->contacts[place].joint];
+        if (!impulse_islands_is_pin(joint)) {
+            add_bodies_of(islands, joint, room);
+        }
+    }
+    add_neighbours(islands, first, room);
+}
+
+// Adds what the state of a joint comes from: its places, its bodies and what presses on them. A pin
+// that is integrated says it all.
+static void ask_for_joint(const ImpulseIslands *islands, size_t joint, ScopeRoom *room)
+{
+    const Joint *of = &islands->view->scenario->linkage.joints[joint];
+    const size_t first = islands->first_place[joint];
+    const size_t behind = islands->first_place[joint + 1];
+    for (size_t i = first; i < behind; i++) {
+        add_place_alone(room, i);
+    }
+    room->scope.place_count = behind - first;
+    add_joint(room, joint);
+    if (behind - first == 1 && impulse_islands_is_pin(of) &&
+        islands->view->islands->is_active[first]) {
+        return;
+    }
+    add_bodies_of(islands, of, room);
+    add_neighbours(islands, 0, room);
+}
+
+// Of places that fly nothing is in the sums.
+static void clear_flying(const KernelIslands *all, const ImpulseScope *scope, KernelSums *sums)
+{
+    for (size_t i = 0; i < scope->part.place_count; i++) {
+        const size_t place = scope->part.places[i];
+        const KernelContact *contact = &all->all->contacts[place];
+        const size_t size = contact->row_count * sizeof(double);
+        if (!all->is_active[place]) {
+            memset(sums->impulse + contact->first_row, 0, size);
+            memset(sums->moment + contact->first_row, 0, size);
+            memset(sums->force + contact->first_row, 0, size);
+        }
+    }
+}
+
+// Writes the sums of the rows of a scope's places, and of no others of their islands.
+static void look_at_rows(const KernelIslands *all, const ImpulseScope *scope, double since_s,
+                         KernelSums *sums)
+{
+    size_t looked = all->count;
+    size_t node = 0;
+    for (size_t i = 0; i < scope->part.place_count; i++) {
+        const size_t place = scope->part.places[i];
+        const size_t number = all->island_of[place];
+        const size_t row = all->all->contacts[place].first_row;
+        if (!all->is_active[place]) {
+            continue;
+        }
+        const Kernel *kernel = &all->islands[number]->kernel;
+        node = number != looked ? kernel_node(kernel, since_s) : node;
+        looked = number;
+        kernel_contact_at(kernel, all->number_in[place], node, since_s, sums->impulse + row,
+                          sums->moment + row, sums->force + row);
+    }
+}
+
+bool impulse_islands_observe(ImpulseIslands *islands, double since_s, const SolverSome *some,
+                             Sample *sample)
+{
+    const Driver *driver = &islands->view->scenario->linkage.driver;
+    ScopeRoom *room = &islands->some;
+    const bool is_body = some->body_count == 1;
+    if (some->body_count + some->joint_count != 1 ||
+        (!is_body && driver->is_present && some->joints[0] == (size_t)driver->joint)) {
+        return false;
+    }
+    clear_scope(room);
+    if (is_body) {
+        ask_for_body(islands, some->bodies[0], room);
+    } else {
+        ask_for_joint(islands, some->joints[0], room);
+    }
+    const KernelIslands *all = islands->view->islands;
+    clear_flying(all, &room->scope, &islands->some_sums);
+    if (is_body) {
+        look_at_rows(all, &room->scope, since_s, &islands->some_sums);
+    } else {
+        look_at_places(all, &room->scope, 0, all->count, since_s, &islands->some_sums);
+    }
+    const ImpulseTime at = {since_s, 0, true};
+    islands->kind->observe_some(islands->own, &room->scope, at, &islands->some_sums, !is_body,
+                                sample);
+    return true;
 }

@@ -74,6 +74,13 @@ static void ode_observe_part(const void *state, double time_s, Sample *sample)
     ode->stepping->observe_part(ode->state, time_s, sample);
 }
 
+static void ode_observe_some(const void *state, double time_s, const SolverSome *some,
+                             Sample *sample)
+{
+    const Ode *ode = state;
+    ode->stepping->observe_some(ode->state, time_s, some, sample);
+}
+
 static void ode_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
 {
     const Ode *ode = state;
@@ -110,6 +117,7 @@ const Solver ODE_SOLVER = {
     .record = ode_record,
     .observe = ode_observe,
     .observe_part = ode_observe_part,
+    .observe_some = ode_observe_some,
     .contacts = ode_contacts,
     .carry = ode_carry,
     .model = ode_model,

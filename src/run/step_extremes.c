@@ -111,7 +111,13 @@ Look look_inside(Looker *looker, double time_s)
     const Solver *solver = looker->solver;
     const Look look = new_look(looker, time_s);
     const Sample *sample = &looker->sample;
-    (part != NULL ? solver->observe_part : solver->observe)(looker->state, time_s, &looker->sample);
+    if (looker->some != NULL) {
+        solver->observe_some(looker->state, time_s, looker->some, &looker->sample);
+    } else if (part != NULL) {
+        solver->observe_part(looker->state, time_s, &looker->sample);
+    } else {
+        solver->observe(looker->state, time_s, &looker->sample);
+    }
     recorder_see(looker->recorder, part, sample);
     const size_t body_count = solver_body_count(part, linkage);
     const size_t joint_count = solver_joint_count(part, linkage);
@@ -198,6 +204,22 @@ static bool next_aim(Looker *looker, size_t *number, Aim *aim)
     return true;
 }
 
+// How far an acceleration may rise above both of its values at two looks: a parabola through them
+// has its top no further above than by 3/2 of what its mean, which the speeds tell, lies above the
+// middle of the chord. Of bodies that are looked at one by one: others see each other's looks.
+static double rise_between(const Aim *aim, const Look *first, const Look *last)
+{
+    const double width_s = last->time_s - first->time_s;
+    if (aim->looker->some == NULL || aim->signal >= aim->looker->scenario->linkage.body_count ||
+        !(width_s > 0.0)) {
+        return 0.0;
+    }
+    const double mean =
+        aim->sign * (last->omega[aim->signal] - first->omega[aim->signal]) / width_s;
+    const double above = mean - 0.5 * (aim_value(aim, first) + aim_value(aim, last));
+    return fmax(1.5 * above, 0.0);
+}
+
 // How many signals come near the run's extremes; at most so many are counted.
 static size_t count_near(Looker *looker, const Look *before, int parts, const Look *looks,
                          size_t enough)
@@ -207,13 +229,18 @@ static size_t count_near(Looker *looker, const Look *before, int parts, const Lo
     for (size_t number = 0; count < enough && next_aim(looker, &number, &aim);) {
         double most = aim_value(&aim, before);
         double least = most;
+        double top = most; // what it may reach in between
         for (int k = 0; k < parts; k++) {
-            most = fmax(most, aim_value(&aim, &looks[k]));
-            least = fmin(least, aim_value(&aim, &looks[k]));
+            const Look *first = k > 0 ? &looks[k - 1] : before;
+            const double value = aim_value(&aim, &looks[k]);
+            const double rise = rise_between(&aim, first, &looks[k]);
+            top = fmax(top, fmax(value, aim_value(&aim, first)) + rise);
+            most = fmax(most, value);
+            least = fmin(least, value);
         }
         // what stays as it is has no maximum
-        count += step_extremes_is_near(&aim, most, STEP_EXTREMES_RISE_MAX) &&
-                         most - least > ALIKE * fabs(most)
+        count += step_extremes_is_near(&aim, top, STEP_EXTREMES_RISE_MAX) &&
+                         top - least > ALIKE * fabs(most)
                      ? 1
                      : 0;
     }
@@ -379,7 +406,10 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
     }
     Look points[POINTS_MAX];
     size_t count = 0;
-    points[count++] = *before;
+    // a record may have an acceleration by where the bodies are at mid-step: beside those of looks
+    // that hides a maximum next to the end
+    const bool has_own_ends = looker->some != NULL && looker->some->body_count > 0;
+    points[count++] = has_own_ends ? look_inside(looker, before->time_s) : *before;
     points[count++] = look_inside(looker, before->time_s + NEXT_TO_END * width_s);
     if (parts == 1) {
         points[count++] = look_inside(looker, before->time_s + 0.5 * width_s);
@@ -388,7 +418,7 @@ int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[
         points[count++] = looks[k];
     }
     points[count++] = look_inside(looker, end_s - NEXT_TO_END * width_s);
-    points[count++] = looks[parts - 1];
+    points[count++] = has_own_ends ? look_inside(looker, end_s) : looks[parts - 1];
     int look_count = parts;
     Aim aim;
     sought = 0;

@@ -34,6 +34,7 @@ typedef struct Looker {
     const void *state; // of the solver
     Recorder *recorder;
     const SolverPart *part; // of the last record: looks hold its bodies and joints; NULL: all
+    const SolverSome *some; // of the record, where the part is what the solver is asked for of it
     Sample sample;          // owned, as the room
     size_t look_count;      // looks that are in the room
     size_t block_count;     // of them there is room for

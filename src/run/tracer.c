@@ -105,7 +105,9 @@ typedef struct Tracer {
     Trace *force;    // by joint
     double *impulse; // N s, so far
     Look last;       // at the end of the last step, of each part its own
-    bool *has_begun; // by part; owned
+    bool *has_begun; // by part; owned, like the next two
+    double *body_s;  // by body, when it was in a record last, of solvers that tell what has changed
+    double *joint_s; // by joint
     Causes causes;
 } Tracer;
 
@@ -128,6 +130,8 @@ static void *tracer_begin(const Scenario *scenario, const Solver *solver, const 
     tracer->force = zeroed(scenario->linkage.joint_count, sizeof *tracer->force);
     tracer->impulse = zeroed(scenario->linkage.joint_count, sizeof *tracer->impulse);
     tracer->has_begun = zeroed(scenario->linkage.body_count, sizeof *tracer->has_begun);
+    tracer->body_s = zeroed(scenario->linkage.body_count, sizeof *tracer->body_s);
+    tracer->joint_s = zeroed(scenario->linkage.joint_count, sizeof *tracer->joint_s);
     tracer->causes = causes_find(&scenario->linkage);
     tracer->scale = spike_scale(scenario);
     const double fine = tracer->scale.is_known ? FINENESS * scenario->run.spike_threshold : 0.0;
@@ -259,17 +263,9 @@ static void look_at_start(Tracer *tracer, const StepRecord *step)
     looker_keep(&tracer->looker, &tracer->last, &look);
 }
 
-static void add_instants(Tracer *tracer, const StepRecord *step)
+// The signals of a record in the time since `last` was set.
+static void add_signals(Tracer *tracer, const StepRecord *step)
 {
-    bool *has_begun = &tracer->has_begun[step->part != NULL ? step->part->number : 0];
-    tracer->looker.part = step->part;
-    if (!*has_begun) {
-        look_at_start(tracer, step);
-        *has_begun = true;
-    }
-    if (step->part != NULL) {
-        tracer->last.time_s = step->start_s; // the last step was another part's
-    }
     const int parts = count_parts(tracer, step);
     const double part_s = (step->end_s - step->start_s) / parts;
     Look looks[LOOK_MAX];
@@ -289,6 +285,67 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
         add_forces(tracer, solver_joint(step->part, k), step->impulse[k], count, looks);
     }
     looker_keep(&tracer->looker, &tracer->last, &looks[count - 1]);
+}
+
+// One body or joint that has changed in a record, from when it was in one last.
+static void add_one(Tracer *tracer, const StepRecord *step, const SolverSome *one)
+{
+    const bool is_body = one->body_count > 0;
+    const size_t k = is_body ? one->bodies[0] : one->joints[0];
+    const size_t i = is_body ? solver_body(step->part, k) : solver_joint(step->part, k);
+    const int number = (int)i;
+    const SolverPart part = {0, one->body_count, one->joint_count, &number, &number};
+    double *last_s = is_body ? &tracer->body_s[i] : &tracer->joint_s[i];
+    if (is_body && !is_traced(tracer, i)) {
+        return; // it moves as it is told
+    }
+    const StepRecord own = {
+        .part = &part,
+        .start_s = *last_s,
+        .end_s = step->end_s,
+        .is_smooth = step->is_smooth,
+        .omega = step->omega + k,
+        .alpha = step->alpha + k,
+        .joints = step->joints + k,
+        .impulse = step->impulse + k,
+    };
+    tracer->looker.part = &part;
+    tracer->looker.some = one;
+    tracer->last.time_s = *last_s;
+    add_signals(tracer, &own);
+    *last_s = step->end_s;
+    tracer->looker.some = NULL;
+}
+
+// Each body and joint that has changed by itself: a look at one costs no more than what acts on it.
+static void add_changed(Tracer *tracer, const StepRecord *step)
+{
+    const SolverSome *changed = step->changed;
+    for (size_t n = 0; n < changed->body_count; n++) {
+        add_one(tracer, step, &(SolverSome){.body_count = 1, .bodies = &changed->bodies[n]});
+    }
+    for (size_t n = 0; n < changed->joint_count; n++) {
+        add_one(tracer, step, &(SolverSome){.joint_count = 1, .joints = &changed->joints[n]});
+    }
+    tracer->looker.part = NULL;
+}
+
+static void add_instants(Tracer *tracer, const StepRecord *step)
+{
+    bool *has_begun = &tracer->has_begun[step->part != NULL ? step->part->number : 0];
+    tracer->looker.part = step->part;
+    if (!*has_begun) {
+        look_at_start(tracer, step);
+        *has_begun = true;
+    }
+    if (step->changed != NULL) {
+        add_changed(tracer, step);
+        return;
+    }
+    if (step->part != NULL) {
+        tracer->last.time_s = step->start_s; // the last step was another part's
+    }
+    add_signals(tracer, step);
 }
 
 static void tracer_look(void *own, const StepRecord *step)
@@ -434,6 +491,8 @@ static void tracer_end(void *own, Trajectory *trajectory)
     free(tracer->force);
     free(tracer->impulse);
     free(tracer->has_begun);
+    free(tracer->body_s);
+    free(tracer->joint_s);
     causes_finish(&tracer->causes);
     looker_finish(&tracer->looker);
     free(tracer);

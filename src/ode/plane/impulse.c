@@ -83,6 +83,14 @@ static void plane_observe(const void *own, ImpulseTime at, const KernelSums *sum
                         sample->joints, impulse->depths);
 }
 
+static void plane_observe_some(const void *own, const ImpulseScope *scope, ImpulseTime at,
+                               const KernelSums *sums, bool wants_joints, Sample *sample)
+{
+    const PlaneImpulse *impulse = own;
+    impulse_step_inside_some(&impulse->step, scope, at, sums, sample->bodies,
+                             wants_joints ? sample->joints : NULL, impulse->depths);
+}
+
 static double plane_mean(const void *own, size_t joint)
 {
     const PlaneImpulse *impulse = own;
@@ -151,6 +159,7 @@ static const ImpulseKind PLANE_KIND = {
     .take = plane_take,
     .look = plane_look,
     .observe = plane_observe,
+    .observe_some = plane_observe_some,
     .mean = plane_mean,
     .carry = plane_carry,
     .place = plane_place,
@@ -167,6 +176,7 @@ const Solver STEPPING_IMPULSE = {
     .step = impulse_step,
     .record = impulse_record,
     .observe = impulse_observe,
+    .observe_some = impulse_observe_some,
     .contacts = impulse_contacts,
     .carry = impulse_carry,
     .model = impulse_model,

@@ -103,7 +103,19 @@ static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scop
     response_apply(is_placed ? &step->work->there : &step->response, sums->force, rates);
 }
 
-// Fills in the accelerations: those beside the contacts', linear in time, and the contacts'.
+// Adds to the contacts' accelerations those beside them, linear in time.
+static void add_free(const ImpulseStep *step, size_t body, double off_middle_s, const double *rates,
+                     Motion *motion)
+{
+    const double *free = step->free + 3 * body;
+    const double *free_rate = step->free_rate + 3 * body;
+    const double *pressed = rates + 3 * body;
+    motion->acceleration = (Vec2){pressed[0] + (free[0] + off_middle_s * free_rate[0]),
+                                  pressed[1] + (free[1] + off_middle_s * free_rate[1])};
+    motion->alpha = pressed[2] + (free[2] + off_middle_s * free_rate[2]);
+}
+
+// Fills in the accelerations.
 static void find_accelerations(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
                                bool is_peak, const KernelSums *sums, Motion *motions)
 {
@@ -113,12 +125,27 @@ static void find_accelerations(const ImpulseStep *step, const ImpulseScope *scop
     for (size_t n = 0; n < scope->body_count; n++) {
         const size_t i = scope->bodies[n];
         if (impulse_step_is_free(step, i)) {
-            double all[3];
-            for (size_t k = 3 * i; k < 3 * i + 3; k++) {
-                all[k - 3 * i] = rates[k] + (step->free[k] + off_middle_s * step->free_rate[k]);
-            }
-            motions[i].acceleration = (Vec2){all[0], all[1]};
-            motions[i].alpha = all[2];
+            add_free(step, i, off_middle_s, rates, &motions[i]);
+        }
+    }
+}
+
+// Those of the placed groups, by the response where the bodies are.
+static void find_some_accelerations(const ImpulseStep *step, const ImpulseScope *scope,
+                                    double since_s, const KernelSums *sums, Motion *motions)
+{
+    const ResponseGroups *groups = &step->groups;
+    double *rates = step->work->changes[0];
+    const double off_middle_s = since_s - 0.5 * step->width_s;
+    const bool is_placed =
+        response_groups_place(&step->work->there, groups, &scope->placed, motions);
+    response_groups_apply(is_placed ? &step->work->there : &step->response, groups, &scope->placed,
+                          sums->force, rates);
+    for (size_t n = 0; n < scope->placed.group_count; n++) {
+        const size_t group = scope->placed.groups[n];
+        for (size_t b = groups->first_body[group]; b < groups->first_body[group + 1]; b++) {
+            const size_t i = groups->bodies[b];
+            add_free(step, i, off_middle_s, rates, &motions[i]);
         }
     }
 }
@@ -313,7 +340,7 @@ static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope, const
     }
 }
 
-// The states of the joints at a time within the step.
+// The states of the joints at a time within the step, but for that of the drive.
 static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                         const KernelSums *sums, const Motion *motions, JointState *joints,
                         double *depths)
@@ -334,10 +361,13 @@ static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, Impu
         }
         stepping_observe_coordinate(linkage, (int)i, motions, &joints[i]);
     }
-    if (scope->has_drive) {
-        const BodyLoad load = applied_on(&step->world.applied, step->driven);
-        stepping_drive_force(step->scenario, &motions[step->driven], &load, joints);
-    }
+}
+
+// That of the drive, which answers all the others on its body.
+static void find_drive(const ImpulseStep *step, const Motion *motions, JointState *joints)
+{
+    const BodyLoad load = applied_on(&step->world.applied, step->driven);
+    stepping_drive_force(step->scenario, &motions[step->driven], &load, joints);
 }
 
 void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
@@ -351,4 +381,20 @@ void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, Imp
         find_accelerations(step, scope, at.since_s, at.is_peak, sums, motions);
     }
     find_joints(step, scope, at, sums, motions, joints, depths);
+    if (scope->has_drive) {
+        find_drive(step, motions, joints);
+    }
+}
+
+void impulse_step_inside_some(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
+                              const KernelSums *sums, Motion *motions, JointState *joints,
+                              double *depths)
+{
+    find_motions(step, scope, at.since_s, sums, motions);
+    if (scope->placed.group_count > 0) {
+        find_some_accelerations(step, scope, at.since_s, sums, motions);
+    }
+    if (joints != NULL) {
+        find_joints(step, scope, at, sums, motions, joints, depths);
+    }
 }

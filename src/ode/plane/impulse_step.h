@@ -125,3 +125,9 @@ bool impulse_step_take(ImpulseStep *step, Err *err);
 void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
                          const KernelSums *sums, Motion *motions, JointState *joints,
                          double *depths);
+
+// The same of a scope in which single bodies or joints are asked for: accelerations of those that
+// are placed, as all are at a peak, and joints where they are not NULL.
+void impulse_step_inside_some(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
+                              const KernelSums *sums, Motion *motions, JointState *joints,
+                              double *depths);

@@ -182,6 +182,7 @@ const Solver SPACE_IMPULSE = {
     .step = impulse_step,
     .record = impulse_record,
     .observe = impulse_observe,
+    .observe_some = impulse_observe_some,
     .contacts = impulse_contacts,
     .carry = impulse_carry,
     .model = impulse_model,
