@@ -4,6 +4,8 @@
 const GROUND = -1;
 const FIT_SAMPLES = 400; // that the picture is fitted to
 const PIN_SHARE = 0.016; // of the mechanism's size: radius of a drawn pin
+const PIN_MOST = 9; // pixels
+const MARGIN = 50; // pixels: what stands below a pivot, and guides
 
 const rotate = ([x, y], angle) => {
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
@@ -169,7 +171,7 @@ class Mechanism {
         const plays = this.data.joints.map((joint) => joint.clearance_m).filter((play) => play > 0);
         this.play = plays.length > 0 ? Math.max(...plays) : 0;
         // so that the largest play is seen beside its pin
-        this.usualMagnification = this.play > 0 ? Math.max(1, (0.03 * this.extent) / this.play) : 1;
+        this.usualMagnification = this.play > 0 ? Math.max(1, (0.02 * this.extent) / this.play) : 1;
     }
 
     // Where a slider is along its line, m.
@@ -215,14 +217,14 @@ class Mechanism {
     layOut() {
         const width = this.canvas.clientWidth;
         const { box } = this;
-        const margin = 44;
+        const margin = MARGIN;
         const [wide, high] = [box.right - box.left, box.high - box.low];
         const height = Math.round(Math.max(220, Math.min(460, 2 * margin + (high / (wide || high || 1)) * (width - 2 * margin))));
         this.canvas.style.height = height + "px";
         this.scale = Math.min((width - 2 * margin) / (wide || 1e-9), (height - 2 * margin) / (high || 1e-9));
         this.offsetX = width / 2 - ((box.left + box.right) / 2) * this.scale;
         this.offsetY = height / 2 + ((box.low + box.high) / 2) * this.scale;
-        this.pin = Math.max(5, PIN_SHARE * this.extent * this.scale);
+        this.pin = Math.max(5, Math.min(PIN_MOST, PIN_SHARE * this.extent * this.scale));
         this.context = prepareCanvas(this.canvas, width, height);
     }
 
@@ -241,7 +243,9 @@ class Mechanism {
             return;
         }
         if (this.page.hasTrails) {
-            shown.forEach((one) => this.drawTrail(one));
+            // the closed form's path is seen only where no other run's is
+            shown.filter((one) => one === main || one.poses.run.backend !== "analytic")
+                .forEach((one) => this.drawTrail(one));
         }
         this.drawRails(main.poses);
         this.drawBodies(main.poses, true);
@@ -328,7 +332,7 @@ class Mechanism {
             if (joint.kind === "prismatic" || joint.kind === "guide") {
                 const angle = poses.angle(joint.body_a) + joint.direction_rad;
                 const from = poses.point(joint.body_a, joint.anchor_a_m);
-                const reach = 0.06 * this.extent;
+                const reach = 0.03 * this.extent;
                 const sides = joint.kind === "guide"
                     ? this.pin / this.scale + joint.clearance_m * this.page.magnification : 0;
                 for (const side of sides > 0 ? [-sides, sides] : [0]) {
@@ -341,8 +345,12 @@ class Mechanism {
                     this.line(ends, false);
                     context.stroke();
                 }
-            } else if (joint.body_a === GROUND && joint.kind !== "stop" && joint.kind !== "gear") {
-                this.drawGround(this.toScreen(joint.anchor_a_m));
+            } else if (joint.kind !== "stop" && joint.kind !== "gear") {
+                const grounded = joint.body_a === GROUND ? joint.anchor_a_m
+                    : joint.body_b === GROUND ? joint.anchor_b_m : null;
+                if (grounded !== null) {
+                    this.drawGround(this.toScreen(grounded));
+                }
             }
         });
     }

@@ -6,7 +6,7 @@
 // The differences d_i of the codes q_i, modulo 65536, begin with q_0. A code means
 //     value_i = low + slope i + step q_i
 // but for PACK_NONE, which is no number. A value is off by half a step at most, that is by 1/131068
-// of the signal's range.
+// of the signal's range, and by 1e-13 of its size where it is constant but for rounding.
 #pragma once
 
 #include "base/text.h"

@@ -87,8 +87,7 @@ static void append_overview(const RunReport *report, Text *html)
         text_append(html, "<div class=\"wide\"><table class=\"numbers\">\n<caption>Largest force "
                           "of each joint with play, largest angular acceleration of each body");
         text_append(html, ", by ");
-        xml_append(overview.run->label[0] != '\0' ? overview.run->label : overview.run->backend,
-                   html);
+        xml_append(overview.run->backend, html);
         text_append(html,
                     "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>"
                     "<th scope=\"col\">largest</th><th scope=\"col\">at</th>"
@@ -248,14 +247,14 @@ static void append_class(const char *name, size_t length, Text *html)
 // escaped there, so that none looks like a class.
 static void append_svg(const char *svg, Text *html)
 {
-    static const char OPENING[] = "<svg ";
+    // in HTML SVG needs no name of its own kind
+    static const char OPENING[] = "<svg xmlns=\"http://www.w3.org/2000/svg\" ";
     static const char STYLE[] = "<style>";
     static const char STYLE_END[] = "</style>";
     static const char CLASS[] = "class=\"";
     text_append(html,
-                "%srole=\"img\" aria-label=\"Motion of the bodies and forces in the joints\" "
-                "font-family=\"Arial, sans-serif\" font-size=\"12\" ",
-                OPENING);
+                "<svg role=\"img\" aria-label=\"Motion of the bodies and forces in the joints\" "
+                "font-family=\"Arial, sans-serif\" font-size=\"12\" ");
     const char *at = svg + strlen(OPENING);
     while (*at != '\0') {
         const size_t plain = strcspn(at, "<c");

@@ -240,18 +240,23 @@ class Page {
             this.setTime(this.view.from + share * (this.view.to - this.view.from));
         });
         this.clock = element("output", { className: "clock" });
+        return element("div", { className: "controls playing" }, this.playButton, this.slider,
+            this.clock, this.outButton);
+    }
+
+    // How it is played, and in which unit time is shown.
+    makeTimeControls() {
         const paces = [["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2"], ["1", "1"], ["2", "2"], ["4", "4"]];
-        const row = element("div", { className: "controls" }, this.playButton, this.slider, this.clock, this.outButton,
-            this.choice("Speed", paces, "1", (pace) => {
-                this.pace = Number(pace);
-            }));
+        const parts = [this.choice("Speed", paces, "1", (pace) => {
+            this.pace = Number(pace);
+        })];
         if (this.data.crank !== null) {
-            row.append(this.choice("Axis", [["deg", "degrees"], ["ms", "ms"]], this.unit, (unit) => {
+            parts.push(this.choice("Axis", [["deg", "degrees"], ["ms", "ms"]], this.unit, (unit) => {
                 this.unit = unit;
                 this.redraw();
             }));
         }
-        return row;
+        return parts;
     }
 
     makeMechanismControls() {
@@ -264,7 +269,7 @@ class Page {
             box.append(element("span", { className: "swatch " + run.backend }));
             row.append(box);
         }
-        row.append(this.check("paths", true, (isOn) => {
+        row.append(...this.makeTimeControls(), this.check("paths", true, (isOn) => {
             this.hasTrails = isOn;
             this.mechanism.draw();
         }));
@@ -323,6 +328,13 @@ class Page {
                 ({ time: peak.time_s, value: peak.value * factor, backend: run.backend })));
     }
 
+    // The runs whose difference from the reference is the solver's own: with play the closed form,
+    // which has none, would show the play.
+    comparable() {
+        const hasPlay = this.data.joints.some((joint) => joint.has_play);
+        return this.data.runs.filter((run) => !hasPlay || run.backend !== "analytic");
+    }
+
     bodyPlots(body) {
         const name = this.data.bodies[body].name;
         const between = { least: "alpha_min_rad_s2", most: "alpha_max_rad_s2" };
@@ -332,7 +344,7 @@ class Page {
             new TimePlot(this, `${name}: angular acceleration, rad/s^2`,
                 this.lines("body", body, "alpha_rad_s2", 1, between), { isSpiky: true }),
             new TimePlot(this, `${name}: angular velocity less that of the reference, rad/s`,
-                this.lines("body", body, "omega_difference_rad_s", 1), { isSpiky: true }),
+                this.lines("body", body, "omega_difference_rad_s", 1, {}, this.comparable()), { isSpiky: true }),
         ];
         return plots.flatMap((plot) => this.addPlot(plot));
     }
@@ -375,12 +387,14 @@ class Page {
             line.y = line.y.map((value) => Math.max(0, value));
         }
         figures.push(...this.addPlot(new TimePlot(this, `${joint.name}: penetration, ${depth}`, deep, { hasZero: true })));
+        const rows = [element("div", { className: "plots" }, ...figures)];
         const felt = this.data.runs.map((run) => new JointSignals(this.data, run, number)).filter((one) => one.isThere);
         if (joint.kind === "clearance" && felt.length > 0) {
-            felt.forEach((signals) => figures.push(...this.addPlot(new OrbitPlot(this, signals))));
-            figures.push(...this.addPlot(new LoadPlot(this, felt)));
+            const round = felt.flatMap((signals) => this.addPlot(new OrbitPlot(this, signals)));
+            round.push(...this.addPlot(new LoadPlot(this, felt)));
+            rows.push(element("div", { className: "plots" }, ...round));
         }
-        return figures;
+        return rows;
     }
 
     // The spikes of a joint, the strongest first; a click on one zooms to it.
@@ -416,7 +430,7 @@ class Page {
         if (joints.length === 0) {
             return [];
         }
-        const grid = element("div", { className: "plots" });
+        const grid = element("div", {});
         const tables = element("div", {});
         const show = (number) => {
             this.plots = this.plots.filter((plot) => !grid.contains(plot.figure));
@@ -470,8 +484,8 @@ class Page {
         const spatial = this.data.is_spatial ? " The mechanism is seen along the z axis." : "";
         live.append(
             element("section", { className: "moving" }, element("h2", {}, "The mechanism"),
-                this.mechanism.canvas, this.makeMechanismControls()),
-            this.makeControls(),
+                this.mechanism.canvas),
+            this.makeControls(), this.makeMechanismControls(),
             element("p", { className: "note" }, hint + spatial),
             ...this.makeJoints(), this.makeBodies(), ...this.makeDrive(), this.makeSaving());
         this.observer = new IntersectionObserver((entries) => {

@@ -4,7 +4,7 @@
 
 const PLOT_HEIGHT = 220;
 const PLOT_LEFT = 58;
-const PLOT_RIGHT = 10;
+const PLOT_RIGHT = 16;
 const PLOT_TOP = 8;
 const PLOT_BOTTOM = 30;
 
@@ -280,13 +280,18 @@ class TimePlot {
         context.stroke();
     }
 
+    // The size of the part with the lines, pixels.
+    measure() {
+        this.width = this.canvas.clientWidth - PLOT_LEFT - PLOT_RIGHT;
+        this.height = PLOT_HEIGHT - PLOT_TOP - PLOT_BOTTOM;
+    }
+
     draw() {
         const width = this.canvas.clientWidth;
         if (width === 0) {
             return;
         }
-        this.width = width - PLOT_LEFT - PLOT_RIGHT;
-        this.height = PLOT_HEIGHT - PLOT_TOP - PLOT_BOTTOM;
+        this.measure();
         const context = prepareCanvas(this.canvas, width, PLOT_HEIGHT);
         this.fit();
         this.drawShades(context);
@@ -347,6 +352,7 @@ class TimePlot {
                 return;
             }
             canvas.setPointerCapture(event.pointerId);
+            this.measure();
             start = { x: event.clientX, time: timeOf(event), isTouch: event.pointerType === "touch" };
             this.page.stop();
         });

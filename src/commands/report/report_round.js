@@ -81,12 +81,10 @@ class RoundPlot {
         this.middle = this.size / 2;
     }
 
-    // Rings with words at round values up to the reach.
-    drawRings(context, scale, most, words) {
+    // Rings at round values up to the reach.
+    drawRings(context, scale, most) {
+        context.lineWidth = 1;
         context.strokeStyle = colourOf("grid");
-        context.fillStyle = colourOf("soft");
-        context.textAlign = "left";
-        context.textBaseline = "bottom";
         context.beginPath();
         context.moveTo(this.middle, 0);
         context.lineTo(this.middle, this.size);
@@ -98,7 +96,23 @@ class RoundPlot {
                 context.beginPath();
                 context.arc(this.middle, this.middle, tick * scale, 0, 2 * Math.PI);
                 context.stroke();
-                context.fillText(words(tick), this.middle + 3 + 0.7071 * tick * scale, this.middle - 0.7071 * tick * scale);
+            }
+        }
+    }
+
+    // What the rings mean, over all that is drawn, with a rim so that it can be read there.
+    nameRings(context, scale, most, unit) {
+        context.fillStyle = colourOf("ink");
+        context.strokeStyle = colourOf("paper");
+        context.lineWidth = 3;
+        context.textAlign = "left";
+        context.textBaseline = "bottom";
+        for (const tick of findTicks(0, most, 3).ticks) {
+            if (tick > 0) {
+                const words = `${formatNumber(tick)} ${unit}`;
+                const [x, y] = [this.middle + 4, this.middle - tick * scale - 2];
+                context.strokeText(words, x, y);
+                context.fillText(words, x, y);
             }
         }
     }
@@ -146,13 +160,14 @@ class OrbitPlot extends RoundPlot {
         this.drawBar();
         const { signals, context } = this;
         this.scale = (0.44 * this.size) / this.reach;
-        this.drawRings(context, this.scale * 1e-6, this.reach * 1e6, (tick) => formatNumber(tick) + " um");
+        this.drawRings(context, this.scale * 1e-6, this.reach * 1e6);
         context.strokeStyle = colourOf("frame");
         context.lineWidth = 1.5;
         context.beginPath();
         context.arc(this.middle, this.middle, signals.joint.clearance_m * this.scale, 0, 2 * Math.PI);
         context.stroke();
         this.drawPath(context);
+        this.nameRings(context, this.scale * 1e-6, this.reach * 1e6, "um");
         this.showTime();
     }
 
@@ -217,7 +232,7 @@ class LoadPlot extends RoundPlot {
         this.begin();
         const { context } = this;
         this.scale = (0.44 * this.size) / (this.most || 1);
-        this.drawRings(context, this.scale, this.most, (tick) => formatNumber(tick) + " N");
+        this.drawRings(context, this.scale, this.most);
         for (const signals of this.shownSignals()) {
             const last = signals.sampleAt(this.page.view.to);
             context.beginPath();
@@ -230,6 +245,7 @@ class LoadPlot extends RoundPlot {
             context.lineJoin = "round";
             context.stroke();
         }
+        this.nameRings(context, this.scale, this.most, "N");
         this.showTime();
     }
 
