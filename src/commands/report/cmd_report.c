@@ -134,6 +134,6 @@ static bool run_report(int argc, char **argv, Err *err)
 
 const Command cmd_report = {
     .name = "report",
-    .summary = "runs a case and writes one HTML file: the mechanism moving, plots, tables",
+    .summary = "runs a case and writes one HTML file: motion, plots, tables",
     .run = run_report,
 };
