@@ -33,6 +33,7 @@ static json_t *bodies_json(const Linkage *linkage)
         json_object_set_new(object, "name", json_value_text(body->name));
         json_object_set_new(object, "is_driven",
                             json_boolean((int)i == linkage_driven_body(linkage)));
+        json_value_set(object, "gyration_m", sqrt(body->inertia / body->mass));
         json_array_append_new(bodies, object);
     }
     return bodies;
@@ -137,43 +138,72 @@ static json_t *points_json(const Scenario *scenario)
 // How a column is thinned, and whether an angle turns on and on.
 typedef enum Thinning { THIN_SAMPLE, THIN_LEAST, THIN_MOST, THIN_TURNING } Thinning;
 
+// Of which bodies or joints a column is carried.
+typedef enum CarriedOf { CARRIED_ALL, CARRIED_UNTURNED, CARRIED_OF_PLAY } CarriedOf;
+
 // A column that a report carries.
 typedef struct Carried {
     SeriesOf of;
     const char *what; // as in the table of write/series_rows.c
     Thinning thinning;
-    bool is_of_play; // of joints that feel their play alone
+    CarriedOf which; // bodies that do not turn, or joints that feel their play, alone
 } Carried;
 
 static const Carried CARRIED[] = {
-    {SERIES_OF_BODY, "x_m", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "y_m", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "angle_rad", THIN_TURNING, false},
-    {SERIES_OF_BODY, "omega_rad_s", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "alpha_rad_s2", THIN_SAMPLE, false},
-    {SERIES_OF_BODY, "alpha_min_rad_s2", THIN_LEAST, false},
-    {SERIES_OF_BODY, "alpha_max_rad_s2", THIN_MOST, false},
-    {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "gap", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "gap_min", THIN_LEAST, true},
-    {SERIES_OF_JOINT, "force", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "force_max", THIN_MOST, true},
-    {SERIES_OF_JOINT, "force_x_N", THIN_SAMPLE, true},
-    {SERIES_OF_JOINT, "force_y_N", THIN_SAMPLE, true},
-    {SERIES_OF_RUN, "drive_torque_N_m", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "x_m", THIN_SAMPLE, CARRIED_ALL},
+    {SERIES_OF_BODY, "y_m", THIN_SAMPLE, CARRIED_ALL},
+    {SERIES_OF_BODY, "angle_rad", THIN_TURNING, CARRIED_ALL},
+    {SERIES_OF_BODY, "omega_rad_s", THIN_SAMPLE, CARRIED_ALL},
+    {SERIES_OF_BODY, "alpha_rad_s2", THIN_SAMPLE, CARRIED_ALL},
+    {SERIES_OF_BODY, "alpha_min_rad_s2", THIN_LEAST, CARRIED_ALL},
+    {SERIES_OF_BODY, "alpha_max_rad_s2", THIN_MOST, CARRIED_ALL},
+    {SERIES_OF_BODY, "ax_m_s2", THIN_SAMPLE, CARRIED_UNTURNED},
+    {SERIES_OF_BODY, "ay_m_s2", THIN_SAMPLE, CARRIED_UNTURNED},
+    {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "gap", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "gap_min", THIN_LEAST, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "force", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "force_max", THIN_MOST, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "force_x_N", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_JOINT, "force_y_N", THIN_SAMPLE, CARRIED_OF_PLAY},
+    {SERIES_OF_RUN, "drive_torque_N_m", THIN_SAMPLE, CARRIED_ALL},
 };
 enum { CARRIED_COUNT = sizeof CARRIED / sizeof *CARRIED };
+
+// 1: speeds by turning below this share of a body's speed are rounding
+static const double TURNING = 1e-9;
+
+// Whether a body turns, and does not only move.
+static bool is_turning(const Trajectory *run, size_t body)
+{
+    double speed = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        speed = fmax(speed, vec2_length(trajectory_motion(run, i, body)->velocity));
+    }
+    return trajectory_omega_scale(run, body) * run->reach[body] > TURNING * speed;
+}
+
+static bool is_carried(CarriedOf which, const Trajectory *run, size_t number)
+{
+    switch (which) {
+    case CARRIED_ALL:
+        return true;
+    case CARRIED_UNTURNED:
+        return !is_turning(run, number);
+    case CARRIED_OF_PLAY:
+        return trajectory_feels_play(run, &run->linkage.joints[number]);
+    }
+    return false;
+}
 
 static const Carried *find_carried(SeriesName name, const Trajectory *run)
 {
     for (size_t i = 0; i < CARRIED_COUNT; i++) {
         const Carried *carried = &CARRIED[i];
         if (carried->of == name.of && strcmp(carried->what, name.what) == 0) {
-            const bool is_felt = !carried->is_of_play ||
-                                 trajectory_feels_play(run, &run->linkage.joints[name.number]);
-            return is_felt ? carried : NULL;
+            return is_carried(carried->which, run, name.number) ? carried : NULL;
         }
     }
     return NULL;
@@ -437,6 +467,7 @@ void report_data_write(const RunReport *report, const char *command, Text *text)
     json_object_set_new(data, "case", json_value_text(scenario_path(scenario)));
     json_object_set_new(data, "command", json_value_text(command));
     json_object_set_new(data, "is_spatial", json_boolean(linkage->is_spatial));
+    json_object_set_new(data, "has_plane", json_boolean(space_has_plane(linkage)));
     json_object_set_new(data, "crank", crank_json(&linkage->driver));
     json_value_set(data, "duration_s", scenario_duration(scenario));
     json_value_set(data, "report_from_s", scenario_report_from(scenario));

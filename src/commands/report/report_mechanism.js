@@ -117,6 +117,12 @@ class Mechanism {
             if (outline.length < 2) {
                 add(i, [0, 0]);
             }
+            // what turns about its centre is shown by a hand
+            const isGear = this.data.joints.some(
+                (joint) => joint.kind === "gear" && (joint.body_a === i || joint.body_b === i));
+            if (outline.length < 2 && !isGear) {
+                add(i, [this.data.bodies[i].gyration_m, 0]);
+            }
         });
         // traced points, or the centres of the bodies that are not driven
         this.traced = this.data.points.length > 0
@@ -133,7 +139,7 @@ class Mechanism {
         }
         for (const joint of this.data.joints) {
             const [x, y] = poses.point(joint.body_a, joint.anchor_a_m);
-            const reach = Math.max(Math.abs(joint.radius_a_m || 0), 0);
+            const reach = Math.abs(joint.radius_a_m || joint.pin_radius_m || 0);
             yield [x - reach, y - reach];
             yield [x + reach, y + reach];
             if (joint.kind === "stop" || joint.kind === "gear") {

@@ -337,6 +337,9 @@ class Page {
 
     bodyPlots(body) {
         const name = this.data.bodies[body].name;
+        if (this.data.runs.some((run) => findSignal(run, "body", body, "ax_m_s2") !== null)) {
+            return this.slidingPlots(body);
+        }
         const between = { least: "alpha_min_rad_s2", most: "alpha_max_rad_s2" };
         const plots = [
             new TimePlot(this, `${name}: angle, deg`, this.lines("body", body, "angle_rad", DEG)),
@@ -346,6 +349,21 @@ class Page {
             new TimePlot(this, `${name}: angular velocity less that of the reference, rad/s`,
                 this.lines("body", body, "omega_difference_rad_s", 1, {}, this.comparable()), { isSpiky: true }),
         ];
+        return plots.flatMap((plot) => this.addPlot(plot));
+    }
+
+    // Of a body that does not turn: where its centre is.
+    slidingPlots(body) {
+        const name = this.data.bodies[body].name;
+        const sizes = this.data.runs.flatMap((run) => ["ax_m_s2", "ay_m_s2"].map((what) =>
+            (findSignal(run, "body", body, what) || []).reduce((most, value) => Math.max(most, Math.abs(value)), 0)));
+        const [near, slow] = [1e-3 * this.mechanism.extent, 1e-6 * Math.max(...sizes)];
+        const plots = ["x", "y"].flatMap((axis) => [
+            new TimePlot(this, `${name}: ${axis} of the centre, mm`,
+                this.lines("body", body, `${axis}_m`, 1e3), { least: near }),
+            new TimePlot(this, `${name}: acceleration along ${axis}, m/s^2`,
+                this.lines("body", body, `a${axis}_m_s2`, 1), { isSpiky: true, least: slow }),
+        ]);
         return plots.flatMap((plot) => this.addPlot(plot));
     }
 
@@ -389,7 +407,7 @@ class Page {
         figures.push(...this.addPlot(new TimePlot(this, `${joint.name}: penetration, ${depth}`, deep, { hasZero: true })));
         const rows = [element("div", { className: "plots" }, ...figures)];
         const felt = this.data.runs.map((run) => new JointSignals(this.data, run, number)).filter((one) => one.isThere);
-        if (joint.kind === "clearance" && felt.length > 0) {
+        if (joint.kind === "clearance" && felt.length > 0 && this.data.has_plane) {
             const round = felt.flatMap((signals) => this.addPlot(new OrbitPlot(this, signals)));
             round.push(...this.addPlot(new LoadPlot(this, felt)));
             rows.push(element("div", { className: "plots" }, ...round));
@@ -400,15 +418,19 @@ class Page {
     // The spikes of a joint, the strongest first; a click on one zooms to it.
     spikeTable(run, number) {
         const joint = this.data.joints[number];
+        // a contact that is a spike of the force, too, stands here once
+        const contacts = run.spikes.filter((spike) => spike.joint === number && spike.kind === "contact");
+        const isBoth = (spike) => contacts.some((contact) => Math.abs(contact.peak_s - spike.peak_s) < 1e-9);
         const spikes = run.spikes
-            .filter((spike) => spike.joint === number)
+            .filter((spike) => spike.joint === number && (spike.kind === "contact" || !isBoth(spike)))
             .sort((a, b) => b.force - a.force)
             .slice(0, SPIKES_SHOWN);
         const unit = joint.is_torsional ? "N m" : "N";
         const rows = spikes.map((spike) => element("tr", {},
             element("td", {}, this.button("Zoom", () => this.zoomTo(spike))),
             element("td", {}, spike.kind === "spike" ? "spike of the force" : "contact"),
-            element("td", {}, this.data.crank === null ? "" : `${(((this.degrees(spike.peak_s) % 360) + 360) % 360).toFixed(1)}`),
+            ...(this.data.crank === null ? []
+                : [element("td", {}, (((this.degrees(spike.peak_s) % 360) + 360) % 360).toFixed(1))]),
             element("td", {}, (1000 * spike.peak_s).toPrecision(6)),
             element("td", {}, formatNumber(spike.force)),
             element("td", {}, formatNumber(1e6 * (spike.end_s - spike.onset_s))),
@@ -416,7 +438,7 @@ class Page {
         if (rows.length === 0) {
             return [];
         }
-        const heads = ["", "what", "crank, deg", "peak at, ms", `largest, ${unit}`, "lasts, us", `impulse, ${unit} s`];
+        const heads = ["", "what", ...(this.data.crank === null ? [] : ["crank, deg"]), "peak at, ms", `largest, ${unit}`, "lasts, us", `impulse, ${unit} s`];
         const table = element("table", { className: "numbers" },
             element("caption", {}, `Strongest spikes and contacts of ${joint.name}, ${run.backend}`),
             element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)))),
@@ -462,9 +484,11 @@ class Page {
         const words = "The values on this page, rounded to 1/131068 of each signal's range, with the exact " +
             "results and peaks. " + this.data.runs.filter((run) => run.stride > 1).map((run) =>
             `Of the samples of ${run.backend} every ${run.stride}th is here; peaks between them are kept.`).join(" ");
-        return this.section("Save the data", element("p", {}, words), element("div", { className: "controls" },
+        const section = this.section("Save the data", element("p", {}, words), element("div", { className: "controls" },
             this.button("Save as JSON", () => saveFile(stem + ".json", "application/json", dataAsJson(this.data))),
             this.button("Save as CSV", () => saveFile(stem + ".csv", "text/csv", dataAsCsv(this.data)))));
+        section.className = "screen";
+        return section;
     }
 
     // Draws plots that come into view, and marks those that are.

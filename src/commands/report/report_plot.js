@@ -47,7 +47,8 @@ function prepareCanvas(canvas, width, height) {
 }
 
 class TimePlot {
-    // `lines` as of makeLine; `title` has the unit. `isSpiky` offers a logarithmic axis.
+    // `lines` as of makeLine; `title` has the unit. Of the options `isSpiky` offers a logarithmic
+    // axis, `hasZero` keeps zero in sight, `least` is the shortest axis, `marks` stand above spikes.
     constructor(page, title, lines, options) {
         this.page = page;
         this.title = title;
@@ -144,6 +145,11 @@ class TimePlot {
         }
         if (this.options.hasZero) {
             low = Math.min(low, 0);
+        }
+        // a range that is nothing but rounding is not spread over the axis
+        const spread = (this.options.least || 0) - (high - low);
+        if (spread > 0) {
+            [low, high] = [low - spread / 2, high + spread / 2];
         }
         const size = Math.max(Math.abs(low), Math.abs(high));
         if (high - low <= 1e-9 * size || high === low) {

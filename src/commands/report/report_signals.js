@@ -109,14 +109,21 @@ function findTicks(low, high, wanted) {
     return { ticks, decimals: Math.max(0, Math.min(12, -Math.floor(Math.log10(step) + 1e-9))) };
 }
 
-// A tick's words: with a prefix where numbers are long.
+// A tick's words: with a prefix where numbers are long, with an exponent where they are small, and
+// as many digits as tell ticks apart.
 function formatTick(value, decimals) {
     const size = Math.abs(value);
+    if (size === 0) {
+        return "0";
+    }
+    if (decimals > 4) {
+        return value.toExponential(Math.max(0, decimals + Math.floor(Math.log10(size) + 1e-9)));
+    }
     if (size >= 1e6) {
         return formatNumber(value / 1e6) + "M";
     }
     if (size >= 1e4) {
         return formatNumber(value / 1e3) + "k";
     }
-    return size !== 0 && size < 1e-4 ? value.toExponential(0) : value.toFixed(decimals);
+    return size < 1e-4 ? value.toExponential(0) : value.toFixed(decimals);
 }
