@@ -13,7 +13,7 @@ enum {
     FORMAT = 1,
     // Values of all signals together, so that a page stays below 1 MB and its plots are drawn
     // within a second; and samples of a run, of which some 2,000 columns of pixels see each.
-    VALUES_MOST = 500000,
+    VALUES_MOST = 450000,
     SAMPLES_MOST = 24000,
 };
 
@@ -138,72 +138,43 @@ static json_t *points_json(const Scenario *scenario)
 // How a column is thinned, and whether an angle turns on and on.
 typedef enum Thinning { THIN_SAMPLE, THIN_LEAST, THIN_MOST, THIN_TURNING } Thinning;
 
-// Of which bodies or joints a column is carried.
-typedef enum CarriedOf { CARRIED_ALL, CARRIED_UNTURNED, CARRIED_OF_PLAY } CarriedOf;
-
 // A column that a report carries.
 typedef struct Carried {
     SeriesOf of;
     const char *what; // as in the table of write/series_rows.c
     Thinning thinning;
-    CarriedOf which; // bodies that do not turn, or joints that feel their play, alone
+    bool is_of_play; // of joints that feel their play alone
 } Carried;
 
 static const Carried CARRIED[] = {
-    {SERIES_OF_BODY, "x_m", THIN_SAMPLE, CARRIED_ALL},
-    {SERIES_OF_BODY, "y_m", THIN_SAMPLE, CARRIED_ALL},
-    {SERIES_OF_BODY, "angle_rad", THIN_TURNING, CARRIED_ALL},
-    {SERIES_OF_BODY, "omega_rad_s", THIN_SAMPLE, CARRIED_ALL},
-    {SERIES_OF_BODY, "alpha_rad_s2", THIN_SAMPLE, CARRIED_ALL},
-    {SERIES_OF_BODY, "alpha_min_rad_s2", THIN_LEAST, CARRIED_ALL},
-    {SERIES_OF_BODY, "alpha_max_rad_s2", THIN_MOST, CARRIED_ALL},
-    {SERIES_OF_BODY, "ax_m_s2", THIN_SAMPLE, CARRIED_UNTURNED},
-    {SERIES_OF_BODY, "ay_m_s2", THIN_SAMPLE, CARRIED_UNTURNED},
-    {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "gap", THIN_SAMPLE, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "gap_min", THIN_LEAST, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "force", THIN_SAMPLE, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "force_max", THIN_MOST, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "force_x_N", THIN_SAMPLE, CARRIED_OF_PLAY},
-    {SERIES_OF_JOINT, "force_y_N", THIN_SAMPLE, CARRIED_OF_PLAY},
-    {SERIES_OF_RUN, "drive_torque_N_m", THIN_SAMPLE, CARRIED_ALL},
+    {SERIES_OF_BODY, "x_m", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "y_m", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "angle_rad", THIN_TURNING, false},
+    {SERIES_OF_BODY, "omega_rad_s", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "alpha_rad_s2", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "alpha_min_rad_s2", THIN_LEAST, false},
+    {SERIES_OF_BODY, "alpha_max_rad_s2", THIN_MOST, false},
+    {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "gap", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "gap_min", THIN_LEAST, true},
+    {SERIES_OF_JOINT, "force", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "force_max", THIN_MOST, true},
+    {SERIES_OF_JOINT, "force_x_N", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "force_y_N", THIN_SAMPLE, true},
+    {SERIES_OF_RUN, "drive_torque_N_m", THIN_SAMPLE, false},
 };
 enum { CARRIED_COUNT = sizeof CARRIED / sizeof *CARRIED };
-
-// 1: speeds by turning below this share of a body's speed are rounding
-static const double TURNING = 1e-9;
-
-// Whether a body turns, and does not only move.
-static bool is_turning(const Trajectory *run, size_t body)
-{
-    double speed = 0.0;
-    for (size_t i = 0; i < run->sample_count; i++) {
-        speed = fmax(speed, vec2_length(trajectory_motion(run, i, body)->velocity));
-    }
-    return trajectory_omega_scale(run, body) * run->reach[body] > TURNING * speed;
-}
-
-static bool is_carried(CarriedOf which, const Trajectory *run, size_t number)
-{
-    switch (which) {
-    case CARRIED_ALL:
-        return true;
-    case CARRIED_UNTURNED:
-        return !is_turning(run, number);
-    case CARRIED_OF_PLAY:
-        return trajectory_feels_play(run, &run->linkage.joints[number]);
-    }
-    return false;
-}
 
 static const Carried *find_carried(SeriesName name, const Trajectory *run)
 {
     for (size_t i = 0; i < CARRIED_COUNT; i++) {
         const Carried *carried = &CARRIED[i];
         if (carried->of == name.of && strcmp(carried->what, name.what) == 0) {
-            return is_carried(carried->which, run, name.number) ? carried : NULL;
+            const bool is_felt = !carried->is_of_play ||
+                                 trajectory_feels_play(run, &run->linkage.joints[name.number]);
+            return is_felt ? carried : NULL;
         }
     }
     return NULL;
@@ -269,6 +240,42 @@ static void add_difference(const Kept *kept, const Trajectory *truth, size_t col
     json_array_append_new(signals, signal_json(name, "omega_difference_rad_s", &signal));
 }
 
+// 1: speeds by turning below this share of a body's speed are rounding
+static const double TURNING = 1e-9;
+
+// Whether a body turns, and does not only move.
+static bool is_turning(const Trajectory *run, size_t body)
+{
+    double speed = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        speed = fmax(speed, vec2_length(trajectory_motion(run, i, body)->velocity));
+    }
+    return trajectory_omega_scale(run, body) * run->reach[body] > TURNING * speed;
+}
+
+// Adds the size of the acceleration of a body's centre, at the samples and the largest up to the
+// next one.
+static void add_acceleration(const Kept *kept, size_t body, Pack *pack, json_t *signals)
+{
+    static const char *const NAMES[] = {"acceleration_m_s2", "acceleration_max_m_s2"};
+    for (int which = 0; which < 2; which++) {
+        for (size_t i = 0; i < kept->count; i++) {
+            const size_t first = i * kept->stride;
+            const bool is_last = i + 1 == kept->count;
+            const size_t behind = is_last ? kept->run->sample_count : first + kept->stride;
+            double value = vec2_length(trajectory_motion(kept->run, first, body)->acceleration);
+            for (size_t k = first; which == 1 && k < behind; k++) {
+                value = fmax(value,
+                             trajectory_body_range(kept->run, k, body, RANGES_ACCELERATION).most);
+            }
+            kept->values[i] = value;
+        }
+        const PackedSignal signal = pack_add(pack, kept->values, kept->count, false);
+        const SeriesName name = {"", SERIES_OF_BODY, body, NAMES[which]};
+        json_array_append_new(signals, signal_json(name, name.what, &signal));
+    }
+}
+
 static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pack)
 {
     json_t *signals = json_array();
@@ -288,6 +295,11 @@ static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pac
         json_array_append_new(signals, signal_json(name, name.what, &signal));
         if (has_difference && strcmp(name.what, "omega_rad_s") == 0) {
             add_difference(kept, truth, i, pack, signals);
+        }
+    }
+    for (size_t i = 0; i < kept->run->body_count; i++) {
+        if (!is_turning(kept->run, i)) {
+            add_acceleration(kept, i, pack, signals);
         }
     }
     return signals;

@@ -337,7 +337,7 @@ class Page {
 
     bodyPlots(body) {
         const name = this.data.bodies[body].name;
-        if (this.data.runs.some((run) => findSignal(run, "body", body, "ax_m_s2") !== null)) {
+        if (this.data.runs.some((run) => findSignal(run, "body", body, "acceleration_m_s2") !== null)) {
             return this.slidingPlots(body);
         }
         const between = { least: "alpha_min_rad_s2", most: "alpha_max_rad_s2" };
@@ -355,15 +355,12 @@ class Page {
     // Of a body that does not turn: where its centre is.
     slidingPlots(body) {
         const name = this.data.bodies[body].name;
-        const sizes = this.data.runs.flatMap((run) => ["ax_m_s2", "ay_m_s2"].map((what) =>
-            (findSignal(run, "body", body, what) || []).reduce((most, value) => Math.max(most, Math.abs(value)), 0)));
-        const [near, slow] = [1e-3 * this.mechanism.extent, 1e-6 * Math.max(...sizes)];
-        const plots = ["x", "y"].flatMap((axis) => [
-            new TimePlot(this, `${name}: ${axis} of the centre, mm`,
-                this.lines("body", body, `${axis}_m`, 1e3), { least: near }),
-            new TimePlot(this, `${name}: acceleration along ${axis}, m/s^2`,
-                this.lines("body", body, `a${axis}_m_s2`, 1), { isSpiky: true, least: slow }),
-        ]);
+        const near = 1e-3 * this.mechanism.extent; // a millionth of it, in mm
+        const plots = ["x", "y"].map((axis) => new TimePlot(this, `${name}: ${axis} of the centre, mm`,
+            this.lines("body", body, `${axis}_m`, 1e3), { least: near }));
+        plots.push(new TimePlot(this, `${name}: size of the centre's acceleration, m/s^2`,
+            this.lines("body", body, "acceleration_m_s2", 1, { most: "acceleration_max_m_s2" }),
+            { isSpiky: true, hasZero: true }));
         return plots.flatMap((plot) => this.addPlot(plot));
     }
 
