@@ -1,7 +1,9 @@
-# Does the page of 'jointplay report' keep its word? Its policy and the hashes in it, nothing that asks
-# another place, texts of a user's shown as text, and data that decode to what 'jointplay run' writes.
+# Does the page of 'jointplay report' keep its word? Its policy and the hashes in it, nothing that
+# asks another place, texts of a user's shown as text, and data that decode to what 'jointplay run'
+# writes.
 # Usage: report.py PROGRAM CASE. Prints TAP.
-import base64, csv, hashlib, html.parser, itertools, json, math, os, re, struct, subprocess, sys, tempfile, zlib
+import base64, csv, hashlib, html.parser, itertools, json, math, os, re, struct
+import subprocess, sys, tempfile, zlib
 
 program, case = sys.argv[1:3]
 HOSTILE = "</script></title><img src=x onerror=\"document.title='x'\">&lt;b&gt; \u9023 'q'"
@@ -42,13 +44,15 @@ def run(*words):
 
 def make(path, *words):
     # few samples where a claim does not need more; the last value of a key counts
-    status, _, errors = run("report", case, "--quiet", "--out", path, "--set", "run.samples=400", *words)
+    words = ["--set", "run.samples=400", *words]
+    status, _, errors = run("report", case, "--quiet", "--out", path, *words)
     assert status == 0, errors
     return open(path, encoding="utf-8").read()
 
 
 def policy(page):
-    found = [value for tag, name, value in page.attributes if name == "content" and "default-src" in value]
+    contents = [value for _, name, value in page.attributes if name == "content"]
+    found = [value for value in contents if "default-src" in value]
     assert len(found) == 1, found
     return found[0]
 
@@ -102,7 +106,8 @@ def nothing_in_it_asks_another_place(work):
     text = make(work + "/b.html")
     assert not re.search(r"https?:|//[a-z0-9.-]+\.[a-z]{2,}/", text, re.IGNORECASE)
     page = Page(text)
-    asking = [one for one in page.attributes if one[1] in ("src", "href", "action", "data", "style")]
+    words = ("src", "href", "action", "data", "style")
+    asking = [one for one in page.attributes if one[1] in words]
     assert asking == [], asking
     assert [one for one in page.attributes if one[1].startswith("on")] == []
     # the control: a page that asks is found
@@ -139,8 +144,10 @@ def the_answer_is_that_of_run(work):
 def the_command_makes_the_page_again(work):
     text = make(work + "/f.html", "--set", "title=a b", "--backend", "reference")
     command = unpack(Page(text))["command"]
-    words = subprocess.run(["sh", "-c", "for word in " + command + '; do printf "%s\\n" "$word"; done'],
-                           capture_output=True, text=True).stdout.splitlines()
+    # as a shell takes it apart
+    script = "for word in " + command + '; do printf "%s\\n" "$word"; done'
+    done = subprocess.run(["sh", "-c", script], capture_output=True, text=True)
+    words = done.stdout.splitlines()
     assert words[0] == "jointplay", words
     status, _, errors = run(*words[1:], "--quiet")
     assert status == 0, errors
@@ -182,8 +189,8 @@ def check_peaks(data, result):
     for one in data["runs"]:
         whole = next(other for other in result["runs"] if other["backend"] == one["backend"])
         peaks = one["peaks"]
-        largest = lambda of, number, what: max(
-            abs(p["value"]) for p in peaks if (p["of"], p["number"], p["what"]) == (of, number, what))
+        largest = lambda *key: max(
+            abs(one["value"]) for one in peaks if (one["of"], one["number"], one["what"]) == key)
         for number, body in enumerate(data["bodies"]):
             known = whole["bodies"].get(body["name"])
             if known is not None:
@@ -233,8 +240,8 @@ def a_file_of_another_kind_is_not_replaced(work):
 
 
 def without_a_name_the_page_is_in_the_folder(work):
-    status = subprocess.run([program, "report", os.path.abspath(case), "--quiet", "--backend", "analytic"],
-                            cwd=work).returncode
+    words = ["report", os.path.abspath(case), "--quiet", "--backend", "analytic"]
+    status = subprocess.run([program, *words], cwd=work).returncode
     stem = os.path.splitext(os.path.basename(case))[0]
     assert status == 0 and os.path.exists(f"{work}/{stem}.html")
 

@@ -42,7 +42,8 @@ async function readData() {
 function dataAsJson(data) {
     const isPacking = new Set(["offset", "low", "slope", "step"]);
     return JSON.stringify(data, (key, value) =>
-        isPacking.has(key) ? undefined : value instanceof Float64Array ? Array.from(value) : value);
+        isPacking.has(key) ? undefined : value instanceof Float64Array ? Array.from(value) : value,
+    );
 }
 
 function csvCell(text) {
@@ -65,7 +66,8 @@ function dataAsCsv(data) {
         const count = run.signals.length > 0 ? run.signals[0].count : 0;
         for (let i = 0; i < count; i++) {
             const cells = columns.map((signal) =>
-                signal && Number.isFinite(signal.values[i]) ? String(signal.values[i]) : "");
+                signal && Number.isFinite(signal.values[i]) ? String(signal.values[i]) : "",
+            );
             lines.push([run.backend, String(run.from_s + i * run.interval_s), ...cells].join(","));
         }
     }

@@ -1,5 +1,5 @@
-// Draws the mechanism where it is at a time: links, guides, springs, gears, pins in their holes with
-// the play magnified, the paths of points, and the forces in the joints.
+// Draws the mechanism where it is at a time: links, guides, springs, gears, pins in their holes
+// with the play magnified, the paths of points, and the forces in the joints.
 
 const GROUND = -1;
 const FIT_SAMPLES = 400; // that the picture is fitted to
@@ -67,7 +67,8 @@ class Poses {
         }
         // of a block the part across its guides
         return joint.kind === "guide"
-            ? rotate([0, y], this.angle(joint.body_a) + joint.direction_rad) : [0, 0];
+            ? rotate([0, y], this.angle(joint.body_a) + joint.direction_rad)
+            : [0, 0];
     }
 }
 
@@ -77,8 +78,11 @@ class Mechanism {
         this.data = page.data;
         this.canvas = element("canvas", { tabIndex: 0, className: "mechanism" });
         this.canvas.setAttribute("role", "img");
-        this.canvas.setAttribute("aria-label", "The mechanism moving. Space plays and pauses, the " +
-            "arrow keys step, Home and End go to both ends.");
+        this.canvas.setAttribute(
+            "aria-label",
+            "The mechanism moving. Space plays and pauses, the " +
+                "arrow keys step, Home and End go to both ends.",
+        );
         this.canvas.addEventListener("keydown", (event) => page.onKey(event));
         this.poses = page.data.runs.map((run) => new Poses(page.data, run));
         this.findPoints();
@@ -91,8 +95,11 @@ class Mechanism {
     findPoints() {
         this.outlines = this.data.bodies.map(() => []);
         const add = (body, point) => {
-            const isNew = body !== GROUND && !this.outlines[body].some(
-                (other) => Math.hypot(other[0] - point[0], other[1] - point[1]) < 1e-9);
+            const isNew =
+                body !== GROUND &&
+                !this.outlines[body].some(
+                    (other) => Math.hypot(other[0] - point[0], other[1] - point[1]) < 1e-9,
+                );
             if (isNew) {
                 this.outlines[body].push(point);
             }
@@ -119,15 +126,17 @@ class Mechanism {
             }
             // what turns about its centre is shown by a hand
             const isGear = this.data.joints.some(
-                (joint) => joint.kind === "gear" && (joint.body_a === i || joint.body_b === i));
+                (joint) => joint.kind === "gear" && (joint.body_a === i || joint.body_b === i),
+            );
             if (outline.length < 2 && !isGear) {
                 add(i, [this.data.bodies[i].gyration_m, 0]);
             }
         });
         // traced points, or the centres of the bodies that are not driven
-        this.traced = this.data.points.length > 0
-            ? this.data.points.map((point) => [point.body, point.at_m])
-            : this.data.bodies.flatMap((body, i) => (body.is_driven ? [] : [[i, [0, 0]]]));
+        this.traced =
+            this.data.points.length > 0
+                ? this.data.points.map((point) => [point.body, point.at_m])
+                : this.data.bodies.flatMap((body, i) => (body.is_driven ? [] : [[i, [0, 0]]]));
     }
 
     // All points of the mechanism at the time that is set.
@@ -225,9 +234,17 @@ class Mechanism {
         const { box } = this;
         const margin = MARGIN;
         const [wide, high] = [box.right - box.left, box.high - box.low];
-        const height = Math.round(Math.max(220, Math.min(460, 2 * margin + (high / (wide || high || 1)) * (width - 2 * margin))));
+        const height = Math.round(
+            Math.max(
+                220,
+                Math.min(460, 2 * margin + (high / (wide || high || 1)) * (width - 2 * margin)),
+            ),
+        );
         this.canvas.style.height = height + "px";
-        this.scale = Math.min((width - 2 * margin) / (wide || 1e-9), (height - 2 * margin) / (high || 1e-9));
+        this.scale = Math.min(
+            (width - 2 * margin) / (wide || 1e-9),
+            (height - 2 * margin) / (high || 1e-9),
+        );
         this.offsetX = width / 2 - ((box.left + box.right) / 2) * this.scale;
         this.offsetY = height / 2 + ((box.low + box.high) / 2) * this.scale;
         this.pin = Math.max(5, Math.min(PIN_MOST, PIN_SHARE * this.extent * this.scale));
@@ -250,7 +267,8 @@ class Mechanism {
         }
         if (this.page.hasTrails) {
             // the closed form's path is seen only where no other run's is
-            shown.filter((one) => one === main || one.poses.run.backend !== "analytic")
+            shown
+                .filter((one) => one === main || one.poses.run.backend !== "analytic")
                 .forEach((one) => this.drawTrail(one));
         }
         this.drawRails(main.poses);
@@ -258,7 +276,8 @@ class Mechanism {
         shown.filter((one) => one !== main).forEach(({ poses }) => this.drawBodies(poses, false));
         this.drawSprings(main.poses);
         this.drawJoints(main.poses, true);
-        shown.filter((one) => one !== main && one.poses.run.backend !== "analytic")
+        shown
+            .filter((one) => one !== main && one.poses.run.backend !== "analytic")
             .forEach(({ poses }) => this.drawJoints(poses, false));
         if (this.page.arrows !== "off") {
             shown.forEach(({ poses }) => this.drawArrows(poses));
@@ -293,7 +312,9 @@ class Mechanism {
     drawn(poses, body, local) {
         const point = poses.point(body, local);
         this.data.joints.forEach((joint, i) => {
-            const isIt = joint.has_play && joint.body_b === body &&
+            const isIt =
+                joint.has_play &&
+                joint.body_b === body &&
                 Math.hypot(joint.anchor_b_m[0] - local[0], joint.anchor_b_m[1] - local[1]) < 1e-9;
             if (isIt) {
                 const [x, y] = poses.play(i);
@@ -312,7 +333,9 @@ class Mechanism {
             context.lineJoin = "round";
             context.lineCap = "round";
             if (isMain) {
-                context.strokeStyle = colourOf(this.data.bodies[i].is_driven ? "driven" : "link" + (i % 4));
+                context.strokeStyle = colourOf(
+                    this.data.bodies[i].is_driven ? "driven" : "link" + (i % 4),
+                );
                 context.lineWidth = 1.1 * this.pin;
                 context.globalAlpha = 0.55;
                 context.stroke();
@@ -339,8 +362,10 @@ class Mechanism {
                 const angle = poses.angle(joint.body_a) + joint.direction_rad;
                 const from = poses.point(joint.body_a, joint.anchor_a_m);
                 const reach = 0.03 * this.extent;
-                const sides = joint.kind === "guide"
-                    ? this.pin / this.scale + joint.clearance_m * this.page.magnification : 0;
+                const sides =
+                    joint.kind === "guide"
+                        ? this.pin / this.scale + joint.clearance_m * this.page.magnification
+                        : 0;
                 for (const side of sides > 0 ? [-sides, sides] : [0]) {
                     const ends = [this.ways[i][0] - reach, this.ways[i][1] + reach].map((way) => {
                         const [x, y] = rotate([way, side], angle);
@@ -352,8 +377,12 @@ class Mechanism {
                     context.stroke();
                 }
             } else if (joint.kind !== "stop" && joint.kind !== "gear") {
-                const grounded = joint.body_a === GROUND ? joint.anchor_a_m
-                    : joint.body_b === GROUND ? joint.anchor_b_m : null;
+                const grounded =
+                    joint.body_a === GROUND
+                        ? joint.anchor_a_m
+                        : joint.body_b === GROUND
+                          ? joint.anchor_b_m
+                          : null;
                 if (grounded !== null) {
                     this.drawGround(this.toScreen(grounded));
                 }
@@ -394,8 +423,10 @@ class Mechanism {
             context.moveTo(...from);
             for (let i = 1; i < 14; i++) {
                 const side = i < 2 || i > 12 ? 0 : (i % 2 === 0 ? 1 : -1) * 0.8 * this.pin;
-                context.lineTo(from[0] + ((to[0] - from[0]) * i) / 14 + across[0] * side,
-                    from[1] + ((to[1] - from[1]) * i) / 14 + across[1] * side);
+                context.lineTo(
+                    from[0] + ((to[0] - from[0]) * i) / 14 + across[0] * side,
+                    from[1] + ((to[1] - from[1]) * i) / 14 + across[1] * side,
+                );
             }
             context.lineTo(...to);
             context.stroke();
@@ -412,8 +443,22 @@ class Mechanism {
             } else if (joint.kind === "stop") {
                 this.drawStop(poses, joint, isMain, colour);
             } else if (joint.kind === "gear") {
-                this.drawGear(poses, joint.body_a, joint.anchor_a_m, joint.radius_a_m, joint.teeth_a, colour);
-                this.drawGear(poses, joint.body_b, joint.anchor_b_m, joint.radius_b_m, joint.teeth_b, colour);
+                this.drawGear(
+                    poses,
+                    joint.body_a,
+                    joint.anchor_a_m,
+                    joint.radius_a_m,
+                    joint.teeth_a,
+                    colour,
+                );
+                this.drawGear(
+                    poses,
+                    joint.body_b,
+                    joint.anchor_b_m,
+                    joint.radius_b_m,
+                    joint.teeth_b,
+                    colour,
+                );
             } else if (isMain) {
                 this.drawPivot(this.toScreen(poses.point(joint.body_a, joint.anchor_a_m)));
             }
@@ -465,8 +510,11 @@ class Mechanism {
     drawBlock(poses, joint, number, isMain, colour) {
         const { context, pin } = this;
         const at = this.toScreen(this.drawn(poses, joint.body_b, [...joint.anchor_b_m]));
-        const tilt = poses.value(poses.joints[number].tilt) * (joint.kind === "guide" ? this.page.magnification : 0);
-        const angle = poses.angle(joint.body_a) + joint.direction_rad + Math.max(-0.5, Math.min(0.5, tilt));
+        const tilt =
+            poses.value(poses.joints[number].tilt) *
+            (joint.kind === "guide" ? this.page.magnification : 0);
+        const angle =
+            poses.angle(joint.body_a) + joint.direction_rad + Math.max(-0.5, Math.min(0.5, tilt));
         context.save();
         context.translate(...at);
         context.rotate(-angle);
@@ -493,11 +541,19 @@ class Mechanism {
         } else if (isMain) {
             const angle = poses.angle(joint.body_a) + joint.direction_rad + Math.PI / 2;
             const [x, y] = rotate([0.1 * this.extent, 0], angle);
-            this.line([[from[0] - x, from[1] - y], [from[0] + x, from[1] + y]], false);
+            this.line(
+                [
+                    [from[0] - x, from[1] - y],
+                    [from[0] + x, from[1] + y],
+                ],
+                false,
+            );
             context.stroke();
         }
-        this.circle(this.toScreen(poses.point(joint.body_b, joint.anchor_b_m)),
-            Math.max(2, joint.radius_b_m * this.scale));
+        this.circle(
+            this.toScreen(poses.point(joint.body_b, joint.anchor_b_m)),
+            Math.max(2, joint.radius_b_m * this.scale),
+        );
         context.stroke();
     }
 
@@ -514,7 +570,10 @@ class Mechanism {
         for (let i = 0; i < count; i++) {
             const angle = -poses.angle(body) + (2 * Math.PI * i) / count;
             const inner = i === 0 ? 0.2 : 0.92;
-            context.moveTo(at[0] + inner * size * Math.cos(angle), at[1] + inner * size * Math.sin(angle));
+            context.moveTo(
+                at[0] + inner * size * Math.cos(angle),
+                at[1] + inner * size * Math.sin(angle),
+            );
             context.lineTo(at[0] + size * Math.cos(angle), at[1] + size * Math.sin(angle));
         }
         context.stroke();
@@ -529,13 +588,22 @@ class Mechanism {
             }
             const force = [poses.value(joint.fx), poses.value(joint.fy)];
             const size = Math.hypot(...force);
-            const share = this.page.arrows === "linear" ? size / this.forceMost
-                : size > 0 ? Math.max(0, 1 + Math.log10(size / this.forceMost) / 3) : 0;
+            const share =
+                this.page.arrows === "linear"
+                    ? size / this.forceMost
+                    : size > 0
+                      ? Math.max(0, 1 + Math.log10(size / this.forceMost) / 3)
+                      : 0;
             const length = 0.26 * this.extent * this.scale * share;
             if (length > 2) {
                 const [x, y] = this.toScreen(this.drawn(poses, of.body_b, [...of.anchor_b_m]));
-                this.arrow(x, y, (force[0] / size) * length, (-force[1] / size) * length,
-                    colourOf(poses.run.backend));
+                this.arrow(
+                    x,
+                    y,
+                    (force[0] / size) * length,
+                    (-force[1] / size) * length,
+                    colourOf(poses.run.backend),
+                );
             }
         });
     }
@@ -549,12 +617,18 @@ class Mechanism {
         context.lineWidth = 2.5;
         context.beginPath();
         context.moveTo(x, y);
-        context.lineTo(x + dx - 0.7 * head * Math.cos(angle), y + dy - 0.7 * head * Math.sin(angle));
+        context.lineTo(
+            x + dx - 0.7 * head * Math.cos(angle),
+            y + dy - 0.7 * head * Math.sin(angle),
+        );
         context.stroke();
         context.beginPath();
         context.moveTo(x + dx, y + dy);
         for (const side of [-0.4, 0.4]) {
-            context.lineTo(x + dx - head * Math.cos(angle + side), y + dy - head * Math.sin(angle + side));
+            context.lineTo(
+                x + dx - head * Math.cos(angle + side),
+                y + dy - head * Math.sin(angle + side),
+            );
         }
         context.closePath();
         context.fill();
@@ -571,7 +645,10 @@ function hull(points) {
     const half = (list) => {
         const kept = [];
         for (const point of list) {
-            while (kept.length > 1 && turn(kept[kept.length - 2], kept[kept.length - 1], point) <= 0) {
+            while (
+                kept.length > 1 &&
+                turn(kept[kept.length - 2], kept[kept.length - 1], point) <= 0
+            ) {
                 kept.pop();
             }
             kept.push(point);

@@ -47,7 +47,10 @@ class Page {
         const ends = [this.degrees(from), this.degrees(to)].sort((a, b) => a - b);
         const { ticks, decimals } = this.degreeTicks(ends[0], ends[1], wanted);
         const { start_rad: start, speed_rad_s: speed } = this.data.crank;
-        return ticks.map((tick) => ({ time: (tick / DEG - start) / speed, words: tick.toFixed(decimals) }));
+        return ticks.map((tick) => ({
+            time: (tick / DEG - start) / speed,
+            words: tick.toFixed(decimals),
+        }));
     }
 
     // Over a turn and more at parts of a turn.
@@ -107,7 +110,10 @@ class Page {
     // Puts a spike into the middle, with some of what is around it.
     zoomTo(spike) {
         this.stop();
-        const width = Math.max(6 * (spike.end_s - spike.onset_s), 1e-4 * (this.whole.to - this.whole.from));
+        const width = Math.max(
+            6 * (spike.end_s - spike.onset_s),
+            1e-4 * (this.whole.to - this.whole.from),
+        );
         this.time = spike.peak_s;
         this.zoom(spike.peak_s - width / 2, spike.peak_s + width / 2);
         this.setTime(spike.peak_s);
@@ -232,7 +238,13 @@ class Page {
         this.playButton = this.button("Play", () => this.toggle());
         this.outButton = this.button("Whole run", () => this.zoomOut());
         this.outButton.disabled = true;
-        this.slider = element("input", { type: "range", min: "0", max: "1000", value: "0", className: "time" });
+        this.slider = element("input", {
+            type: "range",
+            min: "0",
+            max: "1000",
+            value: "0",
+            className: "time",
+        });
         this.slider.setAttribute("aria-label", "Time");
         this.slider.addEventListener("input", () => {
             this.stop();
@@ -240,21 +252,46 @@ class Page {
             this.setTime(this.view.from + share * (this.view.to - this.view.from));
         });
         this.clock = element("output", { className: "clock" });
-        return element("div", { className: "controls playing" }, this.playButton, this.slider,
-            this.clock, this.outButton);
+        return element(
+            "div",
+            { className: "controls playing" },
+            this.playButton,
+            this.slider,
+            this.clock,
+            this.outButton,
+        );
     }
 
     // How it is played, and in which unit time is shown.
     makeTimeControls() {
-        const paces = [["0.1", "1/10"], ["0.25", "1/4"], ["0.5", "1/2"], ["1", "1"], ["2", "2"], ["4", "4"]];
-        const parts = [this.choice("Speed", paces, "1", (pace) => {
-            this.pace = Number(pace);
-        })];
+        const paces = [
+            ["0.1", "1/10"],
+            ["0.25", "1/4"],
+            ["0.5", "1/2"],
+            ["1", "1"],
+            ["2", "2"],
+            ["4", "4"],
+        ];
+        const parts = [
+            this.choice("Speed", paces, "1", (pace) => {
+                this.pace = Number(pace);
+            }),
+        ];
         if (this.data.crank !== null) {
-            parts.push(this.choice("Axis", [["deg", "degrees"], ["ms", "ms"]], this.unit, (unit) => {
-                this.unit = unit;
-                this.redraw();
-            }));
+            parts.push(
+                this.choice(
+                    "Axis",
+                    [
+                        ["deg", "degrees"],
+                        ["ms", "ms"],
+                    ],
+                    this.unit,
+                    (unit) => {
+                        this.unit = unit;
+                        this.redraw();
+                    },
+                ),
+            );
         }
         return parts;
     }
@@ -269,16 +306,25 @@ class Page {
             box.append(element("span", { className: "swatch " + run.backend }));
             row.append(box);
         }
-        row.append(...this.makeTimeControls(), this.check("paths", true, (isOn) => {
-            this.hasTrails = isOn;
-            this.mechanism.draw();
-        }));
-        if (this.mechanism.forceMost > 0) {
-            const choices = [["linear", "linear"], ["log", "logarithmic"], ["off", "off"]];
-            row.append(this.choice("Forces", choices, this.arrows, (arrows) => {
-                this.arrows = arrows;
+        row.append(
+            ...this.makeTimeControls(),
+            this.check("paths", true, (isOn) => {
+                this.hasTrails = isOn;
                 this.mechanism.draw();
-            }));
+            }),
+        );
+        if (this.mechanism.forceMost > 0) {
+            const choices = [
+                ["linear", "linear"],
+                ["log", "logarithmic"],
+                ["off", "off"],
+            ];
+            row.append(
+                this.choice("Forces", choices, this.arrows, (arrows) => {
+                    this.arrows = arrows;
+                    this.mechanism.draw();
+                }),
+            );
         }
         if (this.mechanism.play > 0) {
             row.append(this.makeMagnifier());
@@ -289,7 +335,12 @@ class Page {
     // From as it is to three times what is usual, on a logarithmic scale.
     makeMagnifier() {
         const most = Math.log10(3 * this.magnification);
-        const slider = element("input", { type: "range", min: "0", max: "1000", className: "short" });
+        const slider = element("input", {
+            type: "range",
+            min: "0",
+            max: "1000",
+            className: "short",
+        });
         slider.value = String(Math.round((1000 * Math.log10(this.magnification)) / most));
         const words = element("output", {});
         const show = () => {
@@ -319,13 +370,21 @@ class Page {
     }
 
     lines(of, number, what, factor, limits, runs) {
-        return (runs || this.data.runs).map((run) => makeLine(run, of, number, what, factor, limits || {}));
+        return (runs || this.data.runs).map((run) =>
+            makeLine(run, of, number, what, factor, limits || {}),
+        );
     }
 
     marks(of, number, what, factor) {
-        return this.data.runs.filter((run) => run.is_truth).flatMap((run) =>
-            findPeaks(run, of, number, what).map((peak) =>
-                ({ time: peak.time_s, value: peak.value * factor, backend: run.backend })));
+        return this.data.runs
+            .filter((run) => run.is_truth)
+            .flatMap((run) =>
+                findPeaks(run, of, number, what).map((peak) => ({
+                    time: peak.time_s,
+                    value: peak.value * factor,
+                    backend: run.backend,
+                })),
+            );
     }
 
     // The runs whose difference from the reference is the solver's own: with play the closed form,
@@ -337,17 +396,33 @@ class Page {
 
     bodyPlots(body) {
         const name = this.data.bodies[body].name;
-        if (this.data.runs.some((run) => findSignal(run, "body", body, "acceleration_m_s2") !== null)) {
+        if (
+            this.data.runs.some(
+                (run) => findSignal(run, "body", body, "acceleration_m_s2") !== null,
+            )
+        ) {
             return this.slidingPlots(body);
         }
         const between = { least: "alpha_min_rad_s2", most: "alpha_max_rad_s2" };
         const plots = [
             new TimePlot(this, `${name}: angle, deg`, this.lines("body", body, "angle_rad", DEG)),
-            new TimePlot(this, `${name}: angular velocity, rad/s`, this.lines("body", body, "omega_rad_s", 1)),
-            new TimePlot(this, `${name}: angular acceleration, rad/s^2`,
-                this.lines("body", body, "alpha_rad_s2", 1, between), { isSpiky: true }),
-            new TimePlot(this, `${name}: angular velocity less that of the reference, rad/s`,
-                this.lines("body", body, "omega_difference_rad_s", 1, {}, this.comparable()), { isSpiky: true }),
+            new TimePlot(
+                this,
+                `${name}: angular velocity, rad/s`,
+                this.lines("body", body, "omega_rad_s", 1),
+            ),
+            new TimePlot(
+                this,
+                `${name}: angular acceleration, rad/s^2`,
+                this.lines("body", body, "alpha_rad_s2", 1, between),
+                { isSpiky: true },
+            ),
+            new TimePlot(
+                this,
+                `${name}: angular velocity less that of the reference, rad/s`,
+                this.lines("body", body, "omega_difference_rad_s", 1, {}, this.comparable()),
+                { isSpiky: true },
+            ),
         ];
         return plots.flatMap((plot) => this.addPlot(plot));
     }
@@ -356,17 +431,31 @@ class Page {
     slidingPlots(body) {
         const name = this.data.bodies[body].name;
         const near = 1e-3 * this.mechanism.extent; // a millionth of it, in mm
-        const plots = ["x", "y"].map((axis) => new TimePlot(this, `${name}: ${axis} of the centre, mm`,
-            this.lines("body", body, `${axis}_m`, 1e3), { least: near }));
-        plots.push(new TimePlot(this, `${name}: size of the centre's acceleration, m/s^2`,
-            this.lines("body", body, "acceleration_m_s2", 1, { most: "acceleration_max_m_s2" }),
-            { isSpiky: true, hasZero: true }));
+        const plots = ["x", "y"].map(
+            (axis) =>
+                new TimePlot(
+                    this,
+                    `${name}: ${axis} of the centre, mm`,
+                    this.lines("body", body, `${axis}_m`, 1e3),
+                    { least: near },
+                ),
+        );
+        plots.push(
+            new TimePlot(
+                this,
+                `${name}: size of the centre's acceleration, m/s^2`,
+                this.lines("body", body, "acceleration_m_s2", 1, { most: "acceleration_max_m_s2" }),
+                { isSpiky: true, hasZero: true },
+            ),
+        );
         return plots.flatMap((plot) => this.addPlot(plot));
     }
 
     // All moving bodies; of many the one that is chosen.
     makeBodies() {
-        const moving = this.data.bodies.map((body, i) => i).filter((i) => !this.data.bodies[i].is_driven);
+        const moving = this.data.bodies
+            .map((body, i) => i)
+            .filter((i) => !this.data.bodies[i].is_driven);
         const grid = element("div", { className: "plots" });
         const section = this.section("Motion");
         if (moving.length <= PLOT_BODIES) {
@@ -378,8 +467,13 @@ class Page {
                 this.watch();
             };
             const names = moving.map((i) => [String(i), this.data.bodies[i].name]);
-            section.append(element("div", { className: "controls" },
-                this.choice("Body", names, names[0][0], (body) => show(Number(body)))));
+            section.append(
+                element(
+                    "div",
+                    { className: "controls" },
+                    this.choice("Body", names, names[0][0], (body) => show(Number(body))),
+                ),
+            );
             grid.append(...this.bodyPlots(moving[0]));
         }
         section.append(grid);
@@ -387,23 +481,43 @@ class Page {
     }
 
     jointsWithPlay() {
-        return this.data.joints.map((joint, i) => i).filter((i) =>
-            this.data.joints[i].has_play && this.data.runs.some((run) => findSignal(run, "joint", i, "force") !== null));
+        return this.data.joints
+            .map((joint, i) => i)
+            .filter(
+                (i) =>
+                    this.data.joints[i].has_play &&
+                    this.data.runs.some((run) => findSignal(run, "joint", i, "force") !== null),
+            );
     }
 
     jointPlots(number) {
         const joint = this.data.joints[number];
-        const [force, depth, factor] = joint.is_torsional ? ["torque, N m", "mrad", 1e3] : ["force, N", "um", 1e6];
-        const figures = this.addPlot(new TimePlot(this, `${joint.name}: ${force}`,
-            this.lines("joint", number, "force", 1, { most: "force_max" }),
-            { isSpiky: true, hasZero: true, marks: this.marks("joint", number, "force", 1) }));
-        const deep = this.lines("joint", number, "gap", -factor, { least: "gap_min" }).filter((line) => line !== null);
+        const [force, depth, factor] = joint.is_torsional
+            ? ["torque, N m", "mrad", 1e3]
+            : ["force, N", "um", 1e6];
+        const figures = this.addPlot(
+            new TimePlot(
+                this,
+                `${joint.name}: ${force}`,
+                this.lines("joint", number, "force", 1, { most: "force_max" }),
+                { isSpiky: true, hasZero: true, marks: this.marks("joint", number, "force", 1) },
+            ),
+        );
+        const deep = this.lines("joint", number, "gap", -factor, { least: "gap_min" }).filter(
+            (line) => line !== null,
+        );
         for (const line of deep) {
             line.y = line.y.map((value) => Math.max(0, value));
         }
-        figures.push(...this.addPlot(new TimePlot(this, `${joint.name}: penetration, ${depth}`, deep, { hasZero: true })));
+        figures.push(
+            ...this.addPlot(
+                new TimePlot(this, `${joint.name}: penetration, ${depth}`, deep, { hasZero: true }),
+            ),
+        );
         const rows = [element("div", { className: "plots" }, ...figures)];
-        const felt = this.data.runs.map((run) => new JointSignals(this.data, run, number)).filter((one) => one.isThere);
+        const felt = this.data.runs
+            .map((run) => new JointSignals(this.data, run, number))
+            .filter((one) => one.isThere);
         if (joint.kind === "clearance" && felt.length > 0 && this.data.has_plane) {
             const round = felt.flatMap((signals) => this.addPlot(new OrbitPlot(this, signals)));
             round.push(...this.addPlot(new LoadPlot(this, felt)));
@@ -416,32 +530,78 @@ class Page {
     spikeTable(run, number) {
         const joint = this.data.joints[number];
         // a contact that is a spike of the force, too, stands here once
-        const contacts = run.spikes.filter((spike) => spike.joint === number && spike.kind === "contact");
-        const isBoth = (spike) => contacts.some((contact) => Math.abs(contact.peak_s - spike.peak_s) < 1e-9);
+        const contacts = run.spikes.filter(
+            (spike) => spike.joint === number && spike.kind === "contact",
+        );
+        const isBoth = (spike) =>
+            contacts.some((contact) => Math.abs(contact.peak_s - spike.peak_s) < 1e-9);
         const spikes = run.spikes
-            .filter((spike) => spike.joint === number && (spike.kind === "contact" || !isBoth(spike)))
+            .filter(
+                (spike) => spike.joint === number && (spike.kind === "contact" || !isBoth(spike)),
+            )
             .sort((a, b) => b.force - a.force)
             .slice(0, SPIKES_SHOWN);
         const unit = joint.is_torsional ? "N m" : "N";
-        const rows = spikes.map((spike) => element("tr", {},
-            element("td", {}, this.button("Zoom", () => this.zoomTo(spike))),
-            element("td", {}, spike.kind === "spike" ? "spike of the force" : "contact"),
-            ...(this.data.crank === null ? []
-                : [element("td", {}, (((this.degrees(spike.peak_s) % 360) + 360) % 360).toFixed(1))]),
-            element("td", {}, (1000 * spike.peak_s).toPrecision(6)),
-            element("td", {}, formatNumber(spike.force)),
-            element("td", {}, formatNumber(1e6 * (spike.end_s - spike.onset_s))),
-            element("td", {}, formatNumber(spike.impulse))));
+        const rows = spikes.map((spike) =>
+            element(
+                "tr",
+                {},
+                element(
+                    "td",
+                    {},
+                    this.button("Zoom", () => this.zoomTo(spike)),
+                ),
+                element("td", {}, spike.kind === "spike" ? "spike of the force" : "contact"),
+                ...(this.data.crank === null
+                    ? []
+                    : [
+                          element(
+                              "td",
+                              {},
+                              (((this.degrees(spike.peak_s) % 360) + 360) % 360).toFixed(1),
+                          ),
+                      ]),
+                element("td", {}, (1000 * spike.peak_s).toPrecision(6)),
+                element("td", {}, formatNumber(spike.force)),
+                element("td", {}, formatNumber(1e6 * (spike.end_s - spike.onset_s))),
+                element("td", {}, formatNumber(spike.impulse)),
+            ),
+        );
         if (rows.length === 0) {
             return [];
         }
-        const heads = ["", "what", ...(this.data.crank === null ? [] : ["crank, deg"]), "peak at, ms", `largest, ${unit}`, "lasts, us", `impulse, ${unit} s`];
-        const table = element("table", { className: "numbers" },
-            element("caption", {}, `Strongest spikes and contacts of ${joint.name}, ${run.backend}`),
-            element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)))),
-            element("tbody", {}, ...rows));
-        return [element("details", { open: run.is_truth }, element("summary", {}, `Spikes of ${joint.name}, ${run.backend}: ${rows.length}`),
-            element("div", { className: "wide" }, table))];
+        const heads = [
+            "",
+            "what",
+            ...(this.data.crank === null ? [] : ["crank, deg"]),
+            "peak at, ms",
+            `largest, ${unit}`,
+            "lasts, us",
+            `impulse, ${unit} s`,
+        ];
+        const table = element(
+            "table",
+            { className: "numbers" },
+            element(
+                "caption",
+                {},
+                `Strongest spikes and contacts of ${joint.name}, ${run.backend}`,
+            ),
+            element(
+                "thead",
+                {},
+                element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head))),
+            ),
+            element("tbody", {}, ...rows),
+        );
+        return [
+            element(
+                "details",
+                { open: run.is_truth },
+                element("summary", {}, `Spikes of ${joint.name}, ${run.backend}: ${rows.length}`),
+                element("div", { className: "wide" }, table),
+            ),
+        ];
     }
 
     makeJoints() {
@@ -454,16 +614,23 @@ class Page {
         const show = (number) => {
             this.plots = this.plots.filter((plot) => !grid.contains(plot.figure));
             grid.replaceChildren(...this.jointPlots(number));
-            tables.replaceChildren(...this.data.runs.flatMap((run) => this.spikeTable(run, number)));
+            tables.replaceChildren(
+                ...this.data.runs.flatMap((run) => this.spikeTable(run, number)),
+            );
         };
         const section = this.section("Joints with play");
         if (joints.length > 1) {
             const names = joints.map((i) => [String(i), this.data.joints[i].name]);
-            section.append(element("div", { className: "controls" },
-                this.choice("Joint", names, names[0][0], (number) => {
-                    show(Number(number));
-                    this.watch();
-                })));
+            section.append(
+                element(
+                    "div",
+                    { className: "controls" },
+                    this.choice("Joint", names, names[0][0], (number) => {
+                        show(Number(number));
+                        this.watch();
+                    }),
+                ),
+            );
         }
         show(joints[0]);
         section.append(grid, tables);
@@ -471,19 +638,47 @@ class Page {
     }
 
     makeDrive() {
-        const figures = this.addPlot(new TimePlot(this, "Torque of the drive, N m",
-            this.lines("run", 0, "drive_torque_N_m", 1), { isSpiky: true }));
-        return figures.length > 0 ? [this.section("Drive", element("div", { className: "plots" }, ...figures))] : [];
+        const figures = this.addPlot(
+            new TimePlot(
+                this,
+                "Torque of the drive, N m",
+                this.lines("run", 0, "drive_torque_N_m", 1),
+                { isSpiky: true },
+            ),
+        );
+        return figures.length > 0
+            ? [this.section("Drive", element("div", { className: "plots" }, ...figures))]
+            : [];
     }
 
     makeSaving() {
-        const stem = (this.data.case.split("/").pop() || "report").replace(/\.[^.]*$/, "") || "report";
-        const words = "The values on this page, rounded to 1/131068 of each signal's range, with the exact " +
-            "results and peaks. " + this.data.runs.filter((run) => run.stride > 1).map((run) =>
-            `Of the samples of ${run.backend} every ${run.stride}th is here; peaks between them are kept.`).join(" ");
-        const section = this.section("Save the data", element("p", {}, words), element("div", { className: "controls" },
-            this.button("Save as JSON", () => saveFile(stem + ".json", "application/json", dataAsJson(this.data))),
-            this.button("Save as CSV", () => saveFile(stem + ".csv", "text/csv", dataAsCsv(this.data)))));
+        const stem =
+            (this.data.case.split("/").pop() || "report").replace(/\.[^.]*$/, "") || "report";
+        const words =
+            "The values on this page, rounded to 1/131068 of each signal's range, with the exact " +
+            "results and peaks. " +
+            this.data.runs
+                .filter((run) => run.stride > 1)
+                .map(
+                    (run) =>
+                        `Of the samples of ${run.backend} every ${run.stride}th is here; ` +
+                        "peaks between them are kept.",
+                )
+                .join(" ");
+        const section = this.section(
+            "Save the data",
+            element("p", {}, words),
+            element(
+                "div",
+                { className: "controls" },
+                this.button("Save as JSON", () =>
+                    saveFile(stem + ".json", "application/json", dataAsJson(this.data)),
+                ),
+                this.button("Save as CSV", () =>
+                    saveFile(stem + ".csv", "text/csv", dataAsCsv(this.data)),
+                ),
+            ),
+        );
         section.className = "screen";
         return section;
     }
@@ -500,23 +695,38 @@ class Page {
     build(live) {
         this.mechanism = new Mechanism(this);
         this.magnification = this.mechanism.usualMagnification;
-        const hint = "Click a plot to go to a time, drag over it to zoom, double-click for the whole run. " +
+        const hint =
+            "Click a plot to go to a time, drag over it to zoom, double-click for the whole run. " +
             "Keys: space plays, arrows step, + and - zoom.";
         const spatial = this.data.is_spatial ? " The mechanism is seen along the z axis." : "";
         live.append(
-            element("section", { className: "moving" }, element("h2", {}, "The mechanism"),
-                this.mechanism.canvas),
-            this.makeControls(), this.makeMechanismControls(),
+            element(
+                "section",
+                { className: "moving" },
+                element("h2", {}, "The mechanism"),
+                this.mechanism.canvas,
+            ),
+            this.makeControls(),
+            this.makeMechanismControls(),
             element("p", { className: "note" }, hint + spatial),
-            ...this.makeJoints(), this.makeBodies(), ...this.makeDrive(), this.makeSaving());
-        this.observer = new IntersectionObserver((entries) => {
-            for (const entry of entries) {
-                this.plots.filter((plot) => plot.figure === entry.target).forEach((plot) => {
-                    plot.isSeen = entry.isIntersecting;
-                });
-            }
-            this.drawSeen();
-        }, { rootMargin: "200px" });
+            ...this.makeJoints(),
+            this.makeBodies(),
+            ...this.makeDrive(),
+            this.makeSaving(),
+        );
+        this.observer = new IntersectionObserver(
+            (entries) => {
+                for (const entry of entries) {
+                    this.plots
+                        .filter((plot) => plot.figure === entry.target)
+                        .forEach((plot) => {
+                            plot.isSeen = entry.isIntersecting;
+                        });
+                }
+                this.drawSeen();
+            },
+            { rootMargin: "200px" },
+        );
         this.watch();
     }
 
@@ -548,7 +758,13 @@ async function showPage() {
     } catch (error) {
         // an old browser: what is there without script stays
         live.hidden = false;
-        live.append(element("p", {}, "This browser cannot unpack the data of the page (DecompressionStream)."));
+        live.append(
+            element(
+                "p",
+                {},
+                "This browser cannot unpack the data of the page (DecompressionStream).",
+            ),
+        );
         return;
     }
     if (data.runs.length === 0) {

@@ -35,7 +35,10 @@ function colourOf(name) {
 // Makes a canvas as sharp as the screen; returns its context, in CSS pixels.
 function prepareCanvas(canvas, width, height) {
     const ratio = window.devicePixelRatio || 1;
-    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    if (
+        canvas.width !== Math.round(width * ratio) ||
+        canvas.height !== Math.round(height * ratio)
+    ) {
         canvas.width = Math.round(width * ratio);
         canvas.height = Math.round(height * ratio);
     }
@@ -48,7 +51,8 @@ function prepareCanvas(canvas, width, height) {
 
 class TimePlot {
     // `lines` as of makeLine; `title` has the unit. Of the options `isSpiky` offers a logarithmic
-    // axis, `hasZero` keeps zero in sight, `least` is the shortest axis, `marks` stand above spikes.
+    // axis, `hasZero` keeps zero in sight, `least` is the shortest axis, `marks` are those of
+    // spikes.
     constructor(page, title, lines, options) {
         this.page = page;
         this.title = title;
@@ -89,7 +93,7 @@ class TimePlot {
                 low = value < low ? value : low;
                 high = value > high ? value : high;
             }
-            return `${line.name || line.backend} from ${formatNumber(low)} to ${formatNumber(high)}`;
+            return `${line.backend} from ${formatNumber(low)} to ${formatNumber(high)}`;
         });
         return `${this.title}: ${parts.join("; ")}`;
     }
@@ -97,9 +101,15 @@ class TimePlot {
     fillLegend() {
         this.readings = this.lines.map((line) => {
             const reading = element("span", { className: "reading" });
-            this.legend.append(element("span", { className: "key" },
-                element("span", { className: "swatch " + line.backend }),
-                (line.name || line.backend) + " ", reading));
+            this.legend.append(
+                element(
+                    "span",
+                    { className: "key" },
+                    element("span", { className: "swatch " + line.backend }),
+                    line.backend + " ",
+                    reading,
+                ),
+            );
             return reading;
         });
     }
@@ -173,7 +183,11 @@ class TimePlot {
         const ticks = [0];
         for (let power = -9; power <= 15; power++) {
             for (const tick of [10 ** power, -(10 ** power)]) {
-                if (10 ** power > 2 * this.threshold && this.scale(tick) <= this.top && this.scale(tick) >= this.bottom) {
+                if (
+                    10 ** power > 2 * this.threshold &&
+                    this.scale(tick) <= this.top &&
+                    this.scale(tick) >= this.bottom
+                ) {
                     ticks.push(tick);
                 }
             }
@@ -323,7 +337,11 @@ class TimePlot {
         context.fillStyle = colourOf("ink");
         for (const mark of this.options.marks || []) {
             const x = this.toX(mark.time);
-            if (this.page.shown.has(mark.backend) && x >= PLOT_LEFT && x <= PLOT_LEFT + this.width) {
+            if (
+                this.page.shown.has(mark.backend) &&
+                x >= PLOT_LEFT &&
+                x <= PLOT_LEFT + this.width
+            ) {
                 const y = Math.max(PLOT_TOP + 9, this.toY(mark.value) - 3);
                 context.beginPath();
                 context.moveTo(x, y);
@@ -345,7 +363,9 @@ class TimePlot {
             const next = Math.min(line.x.length - 1, at + 1);
             const width = line.x[next] - line.x[at];
             const share = width > 0 ? Math.min(1, (this.page.time - line.x[at]) / width) : 0;
-            this.readings[i].textContent = formatNumber(line.y[at] + share * (line.y[next] - line.y[at]));
+            this.readings[i].textContent = formatNumber(
+                line.y[at] + share * (line.y[next] - line.y[at]),
+            );
         });
     }
 
@@ -359,7 +379,11 @@ class TimePlot {
             }
             canvas.setPointerCapture(event.pointerId);
             this.measure();
-            start = { x: event.clientX, time: timeOf(event), isTouch: event.pointerType === "touch" };
+            start = {
+                x: event.clientX,
+                time: timeOf(event),
+                isTouch: event.pointerType === "touch",
+            };
             this.page.stop();
         });
         canvas.addEventListener("pointermove", (event) => {

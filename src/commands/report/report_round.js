@@ -3,17 +3,23 @@
 // has the hole, over the part of the run that the other plots show.
 
 const ROUND_BINS = 24; // of the colours of a path
-const ROUND_SIZE_MOST = 340; // pixels
 
 // From weak to strong, readable by the colour-blind: a part of the palette viridis, whose dark end
 // is cut for dark pages and whose light end for light ones.
 function heatColour(share) {
-    const stops = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+    const stops = [
+        [68, 1, 84],
+        [59, 82, 139],
+        [33, 145, 140],
+        [94, 201, 98],
+        [253, 231, 37],
+    ];
     const isDark = colourOf("scheme") === "dark";
     const at = (isDark ? 0.25 + 0.75 * share : 0.88 * share) * (stops.length - 1);
     const first = Math.min(stops.length - 2, Math.floor(at));
     const mixed = stops[first].map((value, i) =>
-        Math.round(value + (at - first) * (stops[first + 1][i] - value)));
+        Math.round(value + (at - first) * (stops[first + 1][i] - value)),
+    );
     return `rgb(${mixed.join(",")})`;
 }
 
@@ -67,16 +73,17 @@ class RoundPlot {
         this.overlay.setAttribute("aria-hidden", "true");
         const frame = element("div", { className: "frame" }, this.canvas, this.overlay);
         this.note = element("div", { className: "legend" }, words);
-        this.figure = element("figure", { className: "square" },
-            element("figcaption", {}, title), frame, this.note);
+        this.figure = element(
+            "figure",
+            { className: "square" },
+            element("figcaption", {}, title),
+            frame,
+            this.note,
+        );
     }
 
     begin() {
-        this.size = Math.min(ROUND_SIZE_MOST, this.canvas.parentElement.clientWidth);
-        for (const canvas of [this.canvas, this.overlay]) {
-            canvas.style.width = this.size + "px";
-            canvas.style.height = this.size + "px";
-        }
+        this.size = this.canvas.clientWidth;
         this.context = prepareCanvas(this.canvas, this.size, this.size);
         this.middle = this.size / 2;
     }
@@ -122,9 +129,12 @@ class RoundPlot {
 class OrbitPlot extends RoundPlot {
     constructor(page, signals) {
         const { joint, run } = signals;
-        super(page, `Pin in its hole: ${joint.name}, ${run.backend}`,
+        super(
+            page,
+            `Pin in its hole: ${joint.name}, ${run.backend}`,
             "The circle is how far the pin's centre can go before it touches. Colour: force.",
-            run.backend);
+            run.backend,
+        );
         this.signals = signals;
         this.reach = joint.clearance_m;
         this.most = 0;
@@ -139,8 +149,13 @@ class OrbitPlot extends RoundPlot {
     makeScale() {
         this.bar = element("canvas", { className: "bar" });
         this.bar.setAttribute("aria-hidden", "true");
-        return element("span", { className: "key" }, "0 ", this.bar,
-            ` ${formatNumber(this.most)} ${this.signals.joint.is_torsional ? "N m" : "N"}`);
+        return element(
+            "span",
+            { className: "key" },
+            "0 ",
+            this.bar,
+            ` ${formatNumber(this.most)} ${this.signals.joint.is_torsional ? "N m" : "N"}`,
+        );
     }
 
     drawBar() {
@@ -164,7 +179,13 @@ class OrbitPlot extends RoundPlot {
         context.strokeStyle = colourOf("frame");
         context.lineWidth = 1.5;
         context.beginPath();
-        context.arc(this.middle, this.middle, signals.joint.clearance_m * this.scale, 0, 2 * Math.PI);
+        context.arc(
+            this.middle,
+            this.middle,
+            signals.joint.clearance_m * this.scale,
+            0,
+            2 * Math.PI,
+        );
         context.stroke();
         this.drawPath(context);
         this.nameRings(context, this.scale * 1e-6, this.reach * 1e6, "um");
@@ -210,8 +231,12 @@ class OrbitPlot extends RoundPlot {
 class LoadPlot extends RoundPlot {
     constructor(page, all) {
         const { joint } = all[0];
-        super(page, `Load of the pin: ${joint.name}`,
-            "Force of the pin on the hole, by direction in the axes of the hole's body.", null);
+        super(
+            page,
+            `Load of the pin: ${joint.name}`,
+            "Force of the pin on the hole, by direction in the axes of the hole's body.",
+            null,
+        );
         this.all = all;
         this.most = 0;
         for (const signals of all) {
@@ -219,8 +244,14 @@ class LoadPlot extends RoundPlot {
                 const size = Math.hypot(signals.fx[i], signals.fy[i]);
                 this.most = size > this.most ? size : this.most;
             }
-            this.note.append(element("span", { className: "key" },
-                element("span", { className: "swatch " + signals.run.backend }), signals.run.backend));
+            this.note.append(
+                element(
+                    "span",
+                    { className: "key" },
+                    element("span", { className: "swatch " + signals.run.backend }),
+                    signals.run.backend,
+                ),
+            );
         }
     }
 

@@ -4,7 +4,8 @@ const DEG = 180 / Math.PI;
 
 function findSignal(run, of, number, what) {
     const signal = run.signals.find(
-        (other) => other.of === of && other.number === number && other.what === what);
+        (other) => other.of === of && other.number === number && other.what === what,
+    );
     return signal ? signal.values : null;
 }
 
@@ -92,7 +93,9 @@ function formatNumber(value) {
     if (size !== 0 && (size >= 1e7 || size < 1e-3)) {
         return value.toExponential(2).replace("e+", "e");
     }
-    return String(Number(value.toPrecision(size >= 1000 ? Math.max(4, Math.ceil(Math.log10(size))) : 4)));
+    return String(
+        Number(value.toPrecision(size >= 1000 ? Math.max(4, Math.ceil(Math.log10(size))) : 4)),
+    );
 }
 
 // Ticks at 1, 2 or 5 times a power of ten, some `wanted` of them, and how many decimals tell them
