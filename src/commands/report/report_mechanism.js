@@ -94,6 +94,13 @@ class Mechanism {
     // The points that a body's outline goes through, in its own frame.
     findPoints() {
         this.outlines = this.data.bodies.map(() => []);
+        // the joints with play at which a body has the pin or the block
+        this.played = this.data.bodies.map(() => []);
+        this.data.joints.forEach((joint, i) => {
+            if (joint.has_play && joint.body_b !== GROUND) {
+                this.played[joint.body_b].push(i);
+            }
+        });
         const add = (body, point) => {
             const isNew =
                 body !== GROUND &&
@@ -311,17 +318,14 @@ class Mechanism {
     // A point of a body as it is drawn: at a joint with play moved by the magnified play.
     drawn(poses, body, local) {
         const point = poses.point(body, local);
-        this.data.joints.forEach((joint, i) => {
-            const isIt =
-                joint.has_play &&
-                joint.body_b === body &&
-                Math.hypot(joint.anchor_b_m[0] - local[0], joint.anchor_b_m[1] - local[1]) < 1e-9;
-            if (isIt) {
+        for (const i of body === GROUND ? [] : this.played[body]) {
+            const anchor = this.data.joints[i].anchor_b_m;
+            if (Math.hypot(anchor[0] - local[0], anchor[1] - local[1]) < 1e-9) {
                 const [x, y] = poses.play(i);
                 point[0] += x * (this.page.magnification - 1);
                 point[1] += y * (this.page.magnification - 1);
             }
-        });
+        }
         return point;
     }
 

@@ -571,7 +571,7 @@ class Page {
             return [];
         }
         const heads = [
-            "",
+            "go to",
             "what",
             ...(this.data.crank === null ? [] : ["crank, deg"]),
             "peak at, ms",

@@ -2,11 +2,22 @@
 
 const DEG = 180 / Math.PI;
 
+// The signals of each run by what they are; large mechanisms have thousands.
+const INDEXES = new WeakMap();
+
+function signalKey(of, number, what) {
+    return `${of} ${number} ${what}`;
+}
+
 function findSignal(run, of, number, what) {
-    const signal = run.signals.find(
-        (other) => other.of === of && other.number === number && other.what === what,
-    );
-    return signal ? signal.values : null;
+    if (!INDEXES.has(run)) {
+        const entries = run.signals.map((signal) => [
+            signalKey(signal.of, signal.number, signal.what),
+            signal.values,
+        ]);
+        INDEXES.set(run, new Map(entries));
+    }
+    return INDEXES.get(run).get(signalKey(of, number, what)) || null;
 }
 
 // A value between samples, or NaN.
