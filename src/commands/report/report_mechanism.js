@@ -3,8 +3,11 @@
 
 const GROUND = -1;
 const FIT_SAMPLES = 400; // that the picture is fitted to
+const TRAIL_POINTS = 12000; // of all paths, which every frame draws
 const PIN_SHARE = 0.016; // of the mechanism's size: radius of a drawn pin
-const PIN_MOST = 9; // pixels
+const PIN_LEAST = 3; // pixels
+const PIN_MOST = 9;
+const LINKS_SEEN = 4; // link lengths that are a mechanism's size, at most
 const MARGIN = 50; // pixels: what stands below a pivot, and guides
 
 const rotate = ([x, y], angle) => {
@@ -190,10 +193,16 @@ class Mechanism {
         this.box = box;
         this.ways = ways;
         this.extent = Math.hypot(box.right - box.left, box.high - box.low) || 0.1;
+        // pins, play and arrows are drawn by the size of a link, where there are many
+        const links = this.outlines.map(([a, b]) =>
+            a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0,
+        );
+        const middle = links.sort((a, b) => a - b)[links.length >> 1] || 0;
+        this.part = middle > 0 ? Math.min(this.extent, LINKS_SEEN * middle) : this.extent;
         const plays = this.data.joints.map((joint) => joint.clearance_m).filter((play) => play > 0);
         this.play = plays.length > 0 ? Math.max(...plays) : 0;
         // so that the largest play is seen beside its pin
-        this.usualMagnification = this.play > 0 ? Math.max(1, (0.02 * this.extent) / this.play) : 1;
+        this.usualMagnification = this.play > 0 ? Math.max(1, (0.02 * this.part) / this.play) : 1;
     }
 
     // Where a slider is along its line, m.
@@ -219,7 +228,8 @@ class Mechanism {
     }
 
     tracePoints(poses) {
-        const count = Math.min(poses.count, 3000);
+        const most = Math.max(150, Math.min(3000, Math.round(TRAIL_POINTS / this.traced.length)));
+        const count = Math.min(poses.count, most);
         const stride = (poses.count - 1) / Math.max(1, count - 1);
         const trail = this.traced.map(() => []);
         const times = [];
@@ -254,7 +264,7 @@ class Mechanism {
         );
         this.offsetX = width / 2 - ((box.left + box.right) / 2) * this.scale;
         this.offsetY = height / 2 + ((box.low + box.high) / 2) * this.scale;
-        this.pin = Math.max(5, Math.min(PIN_MOST, PIN_SHARE * this.extent * this.scale));
+        this.pin = Math.max(PIN_LEAST, Math.min(PIN_MOST, PIN_SHARE * this.part * this.scale));
         this.context = prepareCanvas(this.canvas, width, height);
     }
 
@@ -598,7 +608,7 @@ class Mechanism {
                     : size > 0
                       ? Math.max(0, 1 + Math.log10(size / this.forceMost) / 3)
                       : 0;
-            const length = 0.26 * this.extent * this.scale * share;
+            const length = 0.26 * this.part * this.scale * share;
             if (length > 2) {
                 const [x, y] = this.toScreen(this.drawn(poses, of.body_b, [...of.anchor_b_m]));
                 this.arrow(

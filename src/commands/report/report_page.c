@@ -78,33 +78,59 @@ static void answer_row(const OverviewRow *row, bool has_crank, Text *html)
     text_append(html, "</tr>\n");
 }
 
-// The table of the first screen, with all of its rows.
+enum { JOINTS_MOST = 10, BODIES_MOST = 6 }; // rows of a large mechanism
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static void overview_head(const Overview *overview, bool has_crank, Text *html)
+{
+    text_append(html,
+                "<div class=\"wide\"><table class=\"numbers\">\n<caption>%sargest angular "
+                "acceleration of each body, by ",
+                overview->joint_count > 0 ? "Largest force of each joint with play, l" : "L");
+    xml_append(overview->run->backend, html);
+    text_append(html,
+                "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>"
+                "<th scope=\"col\">largest</th><th scope=\"col\">at</th>"
+                "<th scope=\"col\">x ideal</th><th scope=\"col\">impacts%s</th>"
+                "<th scope=\"col\">contact</th><th scope=\"col\">deepest</th></tr></thead>\n"
+                "<tbody>\n",
+                has_crank ? " a turn" : "");
+}
+
+// The table of the first screen, with more of its rows.
 static void append_overview(const RunReport *report, Text *html)
 {
     Overview overview = run_overview_make(report);
     const bool has_crank = drive_is_steady(&report->scenario->linkage.driver);
-    if (overview.joint_count + overview.body_count > 0) {
-        text_append(html, "<div class=\"wide\"><table class=\"numbers\">\n<caption>Largest force "
-                          "of each joint with play, largest angular acceleration of each body");
-        text_append(html, ", by ");
-        xml_append(overview.run->backend, html);
-        text_append(html,
-                    "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>"
-                    "<th scope=\"col\">largest</th><th scope=\"col\">at</th>"
-                    "<th scope=\"col\">x ideal</th><th scope=\"col\">impacts%s</th>"
-                    "<th scope=\"col\">contact</th><th scope=\"col\">deepest</th></tr></thead>\n"
-                    "<tbody>\n",
-                    has_crank ? " a turn" : "");
-        for (size_t i = 0; i < overview.joint_count; i++) {
+    const size_t joints = least(overview.joint_count, JOINTS_MOST);
+    const size_t bodies = least(overview.body_count, BODIES_MOST);
+    if (joints + bodies > 0) {
+        overview_head(&overview, has_crank, html);
+        for (size_t i = 0; i < joints; i++) {
             answer_row(&overview.joints[i], has_crank, html);
         }
-        for (size_t i = 0; i < overview.body_count; i++) {
+        for (size_t i = 0; i < bodies; i++) {
             answer_row(&overview.bodies[i], has_crank, html);
         }
         if (overview.has_drive) {
             answer_row(&overview.drive, has_crank, html);
         }
         text_append(html, "</tbody></table></div>\n");
+    }
+    const size_t more = overview.joint_count - joints + overview.body_count - bodies;
+    if (more > 0) {
+        text_append(html, "<p>%zu more joints and bodies are in the tables at the end.</p>\n",
+                    more);
+    }
+    if (joints > 0) {
+        text_append(html,
+                    "<p class=\"note\"><i>x ideal</i>: over the same mechanism with ideal joints. "
+                    "<i>contact</i>: the share of the time. <i>deepest</i>: how far the pin is "
+                    "pressed into its hole.</p>\n");
     }
     run_overview_free(&overview);
 }
@@ -130,10 +156,7 @@ static void append_answer(const RunReport *report, Text *html)
     }
     text_append(html, "</ul>\n");
     text_finish(&sentences);
-    text_append(html,
-                "<p class=\"note\"><i>x ideal</i>: over the same mechanism with ideal joints. "
-                "<i>contact</i>: the share of the time. <i>deepest</i>: how far the pin is "
-                "pressed into its hole.</p>\n</section>\n");
+    text_append(html, "</section>\n");
 }
 
 // How it was made.
