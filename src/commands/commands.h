@@ -10,4 +10,5 @@ extern const Command cmd_tune;
 extern const Command cmd_map;
 extern const Command cmd_study;
 extern const Command cmd_paper;
+extern const Command cmd_report;
 extern const Command cmd_help;

@@ -184,6 +184,8 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
     [FILE_RESULT] = {"a result of jointplay (JSON)", {{"{\"tool\": {\"version\":", "\"ode\":"}}},
     [FILE_REPORT] = {"a report of jointplay (text)",
                      {{"", "\n\n  case    "}, {"A lone contact", "\n\n  valid    "}}},
+    [FILE_PAGE] = {"a page of jointplay report (HTML)",
+                   {{"<!DOCTYPE html>", "content=\"jointplay report\""}}},
     [FILE_CODE] = {"C code of jointplay tune",
                    {{"// A mechanism with play in its joints in the Open Dynamics Engine,",
                      "`jointplay tune`"}}},

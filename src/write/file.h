@@ -22,6 +22,7 @@ typedef enum FileKind {
     FILE_PICTURE,  // SVG
     FILE_RESULT,   // JSON
     FILE_REPORT,   // text for people
+    FILE_PAGE,     // of report: HTML
     FILE_CODE,     // of tune: a C program
     FILE_SDF,      // of tune, for Gazebo
     FILE_MJCF,     // of tune, for MuJoCo

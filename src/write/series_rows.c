@@ -30,6 +30,8 @@ typedef double SeriesFind(const SeriesPlace *place);
 
 struct SeriesColumn {
     char name[COLUMN_NAME_SIZE];
+    SeriesOf of;
+    const char *what; // the name of its row below; of a number of the run its whole name
     SeriesFind *find;
     size_t number;
     int component;
@@ -377,14 +379,14 @@ static void add_column(SeriesColumns *columns, SeriesColumn column)
 }
 
 // Adds the columns that a table has of one body, joint or point.
-static void add_rows(SeriesColumns *columns, const SeriesRow *rows, const char *of, size_t number,
-                     const JointUnits *units)
+static void add_rows(SeriesColumns *columns, const SeriesRow *rows, SeriesOf kind, const char *of,
+                     size_t number, const JointUnits *units)
 {
     for (const SeriesRow *row = rows; row->name != NULL; row++) {
         if (row->has != NULL && !row->has(columns->scenario, number)) {
             continue;
         }
-        SeriesColumn column = {.find = row->find, .number = number};
+        SeriesColumn column = {.of = kind, .what = row->name, .find = row->find, .number = number};
         const char *unit = row->unit == SERIES_AS_NAMED ? ""
                            : row->unit == SERIES_FORCE  ? units->force_key
                                                         : units->length_key;
@@ -398,7 +400,7 @@ static void add_bodies(SeriesColumns *columns, const SeriesRow *rows)
 {
     const Linkage *linkage = &columns->scenario->linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        add_rows(columns, rows, linkage->bodies[i].name, i, NULL);
+        add_rows(columns, rows, SERIES_OF_BODY, linkage->bodies[i].name, i, NULL);
     }
 }
 
@@ -407,7 +409,7 @@ static void add_joints(SeriesColumns *columns, const SeriesRow *rows)
     const Linkage *linkage = &columns->scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        add_rows(columns, rows, joint->name, i, joint_units(joint));
+        add_rows(columns, rows, SERIES_OF_JOINT, joint->name, i, joint_units(joint));
     }
 }
 
@@ -439,7 +441,8 @@ static void add_rates(SeriesColumns *columns)
     for (size_t i = 0; i < rates->count; i++) {
         const int count = distance_components(rates->linkage, &rates->rates[i]);
         for (int k = 0; rates->rates[i].kind != DISTANCE_TURNING && k < count; k++) {
-            SeriesColumn column = {.find = rate, .number = i, .component = k};
+            SeriesColumn column = {
+                .of = SERIES_OF_RATE, .what = "", .find = rate, .number = i, .component = k};
             name_rate(rates->linkage, &rates->rates[i], &column);
             add_column(columns, column);
         }
@@ -453,12 +456,13 @@ SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges)
         .rates = distance_rates(&scenario->linkage),
     };
     const bool is_spatial = scenario->linkage.is_spatial;
-    add_column(&columns, (SeriesColumn){.name = "time_s", .find = time_s});
-    add_column(&columns, (SeriesColumn){.name = "crank_deg", .find = crank_deg});
+    add_column(&columns, (SeriesColumn){.name = "time_s", .what = "time_s", .find = time_s});
+    add_column(&columns,
+               (SeriesColumn){.name = "crank_deg", .what = "crank_deg", .find = crank_deg});
     add_bodies(&columns, OF_BODIES);
     add_joints(&columns, OF_JOINTS);
     for (size_t i = 0; i < scenario->point_count; i++) {
-        add_rows(&columns, OF_POINTS, scenario->points[i].name, i, NULL);
+        add_rows(&columns, OF_POINTS, SERIES_OF_POINT, scenario->points[i].name, i, NULL);
     }
     add_joints(&columns, OF_SLIDERS);
     add_joints(&columns, OF_LIMITS);
@@ -474,13 +478,15 @@ SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges)
     add_joints(&columns, OF_FORCES);
     add_joints(&columns, is_spatial ? OF_FORCES_IN_SPACE : OF_FORCES_IN_PLANE);
     if (drive_torque_exists(&scenario->linkage)) {
-        add_column(&columns, (SeriesColumn){.name = "drive_torque_N_m", .find = torque_of_drive});
+        add_column(&columns, (SeriesColumn){.name = "drive_torque_N_m",
+                                            .what = "drive_torque_N_m",
+                                            .find = torque_of_drive});
     }
     for (size_t i = 0; i < scenario->linkage.load_count; i++) {
         const Load *load = &scenario->linkage.loads[i];
-        SeriesColumn column = {.find = load_of, .number = i};
-        snprintf(column.name, sizeof column.name, "%s_%s", load->name,
-                 load_is_force(&scenario->linkage, load) ? "load_N" : "load_N_m");
+        const char *what = load_is_force(&scenario->linkage, load) ? "load_N" : "load_N_m";
+        SeriesColumn column = {.what = what, .find = load_of, .number = i};
+        snprintf(column.name, sizeof column.name, "%s_%s", load->name, what);
         add_column(&columns, column);
     }
     if (has_ranges) {
@@ -569,6 +575,27 @@ bool series_columns_check(const SeriesColumns *columns, const char *patterns, Er
         }
     }
     return true;
+}
+
+SeriesName series_columns_name(const SeriesColumns *columns, size_t number)
+{
+    const SeriesColumn *column = &columns->columns[number];
+    return (SeriesName){column->name, column->of, column->number, column->what};
+}
+
+double series_columns_value(const SeriesColumns *columns, const Trajectory *trajectory,
+                            size_t sample, size_t number)
+{
+    const SeriesColumn *column = &columns->columns[number];
+    const SeriesPlace place = {
+        .columns = columns,
+        .linkage = &columns->scenario->linkage,
+        .trajectory = trajectory,
+        .sample = sample,
+        .number = column->number,
+        .component = column->component,
+    };
+    return column->find(&place);
 }
 
 static void write_head(const SeriesColumns *columns, FILE *stream)

@@ -9,6 +9,24 @@
 
 typedef struct SeriesColumn SeriesColumn;
 
+// What a column is of.
+typedef enum SeriesOf {
+    SERIES_OF_RUN,
+    SERIES_OF_BODY,
+    SERIES_OF_JOINT,
+    SERIES_OF_POINT,
+    SERIES_OF_RATE,
+} SeriesOf;
+
+// What a column has, for those who pick some by more than their names.
+typedef struct SeriesName {
+    const char *name; // as in the head
+    SeriesOf of;
+    size_t number;    // of the body, joint or point
+    const char *what; // "omega_rad_s", "gap": without the body's or joint's name, and without the
+                      // unit where it depends on the joint
+} SeriesName;
+
 // The columns of a scenario's series, in their order.
 typedef struct SeriesColumns {
     const Scenario *scenario; // which must live as long
@@ -31,6 +49,11 @@ void series_columns_choose(SeriesColumns *columns, const char *patterns);
 // Fails with ERR_USAGE where a pattern matches no column, and says which name might be
 // meant.
 bool series_columns_check(const SeriesColumns *columns, const char *patterns, Err *err);
+
+// A column by its number, and its value at a sample of a complete trajectory.
+SeriesName series_columns_name(const SeriesColumns *columns, size_t number);
+double series_columns_value(const SeriesColumns *columns, const Trajectory *trajectory,
+                            size_t sample, size_t number);
 
 // Writes the head and one row a sample; the trajectory is complete.
 void series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory, FILE *stream);

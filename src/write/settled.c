@@ -177,7 +177,7 @@ static void append_motion(const Scenario *scenario, Text *text)
         append_length(scenario, motion->period, &line);
     }
     text_append(&line, "; %zu of %zu starts come to it.", motion->starts, settled->starts);
-    screen_line(&line, text);
+    screen_sentence(&line, text);
 }
 
 // The force of a joint with other damping; of a motion that does not repeat one of few revolutions.
@@ -212,10 +212,10 @@ static void append_beside(const Scenario *scenario, Text *text)
         append_damped(scenario, numbers[0], &settled->doubled, &line);
         text_append(&line, ".");
     }
-    screen_line(&line, text);
+    screen_sentence(&line, text);
 }
 
-void settled_lines(const Scenario *scenario, Text *text)
+void settled_sentences(const Scenario *scenario, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
     if (scenario->run.centred_because != NULL) {
@@ -223,7 +223,7 @@ void settled_lines(const Scenario *scenario, Text *text)
         text_init(&line);
         text_append(&line, "  Starts as written, and the first impacts count: %s.",
                     scenario->run.centred_because);
-        screen_line(&line, text);
+        screen_sentence(&line, text);
     }
     if (settled->motion_count == 0) {
         return;
@@ -237,9 +237,19 @@ void settled_lines(const Scenario *scenario, Text *text)
                     settled->motion_count > 2 ? "others, the next" : "another motion");
         append_forces(scenario, &settled->motions[1], &line);
         text_append(&line, ".");
-        screen_line(&line, text);
+        screen_sentence(&line, text);
     }
     append_beside(scenario, text);
+}
+
+void settled_lines(const Scenario *scenario, Text *text)
+{
+    Text sentences;
+    text_init(&sentences);
+    settled_sentences(scenario, &sentences);
+    text_fold(&sentences, STYLE_WIDTH);
+    text_append(text, "%s", sentences.data);
+    text_finish(&sentences);
 }
 
 static void set_force(json_t *of, const Joint *joint, const char *name, double value)

@@ -16,5 +16,8 @@ void settled_text(const Scenario *scenario, Text *text);
 // the largest.
 void settled_lines(const Scenario *scenario, Text *text);
 
+// The same, each sentence on one line that is not folded: for a page.
+void settled_sentences(const Scenario *scenario, Text *text);
+
 // The same as an object "settled", in SI units.
 void settled_json(json_t *object, const Scenario *scenario);

@@ -466,12 +466,16 @@ void section_title(const char *title, const char *path, const Style *style, Text
     }
 }
 
+void screen_sentence(Text *words, Text *text)
+{
+    text_append(text, "%s\n", words->data);
+    text_finish(words);
+}
+
 void screen_line(Text *words, Text *text)
 {
-    text_append(words, "\n");
     text_fold(words, STYLE_WIDTH);
-    text_append(text, "%s", words->data);
-    text_finish(words);
+    screen_sentence(words, text);
 }
 
 Table *table_headed(size_t columns, const SectionHead *heads)

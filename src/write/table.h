@@ -79,6 +79,9 @@ static const Style STYLE_TERMINAL = {"\x1b[1m", "\x1b[31m", "\x1b[0m", 0};
 // Appends a line of a first screen, folded to its width, and frees the words.
 void screen_line(Text *words, Text *text);
 
+// The same without folding it.
+void screen_sentence(Text *words, Text *text);
+
 // A section of the report for people: a heading and a table under it.
 
 typedef struct SectionHead {

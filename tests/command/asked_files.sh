@@ -64,6 +64,7 @@ END
 words_of() {
     case $1 in
     run) echo "run $2" ;;
+    report) echo "report $2 --step 20us" ;;
     compare) echo "compare $2 --schemes direct/plain --steps 20us" ;;
     map) echo "map $2 --steps 20us" ;;
     tune) echo "tune $2 --schemes direct/plain --error 0.4 --cost steps --time-limit 2s" ;;
@@ -120,7 +121,7 @@ printf '<a></a>\n<b></b>\n' >out/two.xml
 report "two elements at the top are seen" $?
 
 tried=0
-for command in run compare map tune check; do
+for command in run report compare map tune check; do
     outputs_of "$command" >outputs
     while read -r option kind; do
         for case in cases/*.yaml; do

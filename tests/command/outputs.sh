@@ -69,6 +69,8 @@ words_of() {
     compare--*) echo "compare k.yaml $compare" ;;
     map--*/k.json) echo "map k.json --steps 20us --maps midpoint" ;;
     map--*) echo "map k.yaml --steps 20us --maps midpoint" ;;
+    report--*/k.json) echo "report k.json --backend ode" ;;
+    report--*) echo "report k.yaml --backend ode" ;;
     tune--*/k.json) echo "tune k.json $tune" ;;
     tune--*) echo "tune k.yaml $tune" ;;
     check--baselines/*) echo "check i.yaml --bless" ;;
@@ -94,7 +96,7 @@ own_of() {
 # What a command reads is tried under two names, what it does not under one.
 inputs_of() {
     case $1 in
-    run | map | tune) echo k.yaml k.json ;;
+    run | map | tune | report) echo k.yaml k.json ;;
     compare) echo k.yaml k.json j.jsonl ;;
     check) echo i.yaml b/i.json ;;
     study | "study slurm") echo s.yaml i.yaml ;;

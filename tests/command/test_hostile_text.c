@@ -58,6 +58,9 @@ static const char *const FORBIDDEN[] = {
 static const char *const COMMANDS[] = {
     "run \"$H.yaml\" --plot p.svg --series s.csv --out o",
     "run \"$H.yaml\" --json > run.json",
+    "report \"$H.yaml\" --out r.html",
+    "report case.yaml --set \"title=$H\" --out r.html",
+    "report case.yaml --out \"$H.html\"",
     "run \"$H-none.yaml\"",
     "run case.yaml --set \"title=$H\" --plot p.svg --out o",
     "run case.yaml --set \"title=$H\" --json > run.json",

@@ -65,6 +65,7 @@ static void every_line_fits_a_terminal(void **state)
         "help study plot",
         "help study slurm",
         "paper --help",
+        "report --help",
     };
     for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++) {
         program_run(program, WORDS[i]);

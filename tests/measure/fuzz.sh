@@ -34,7 +34,7 @@ export ASAN_OPTIONS=abort_on_error=0:exitcode=99:detect_leaks=1
 export LSAN_OPTIONS=suppressions=$root/tests/support/lsan.supp:print_suppressions=0
 
 # the options as the program itself tells them
-for command in run compare map tune study check paper help \
+for command in run report compare map tune study check paper help \
     'study merge' 'study status' 'study export' 'study plot' 'study slurm'; do
     # shellcheck disable=SC2086 # the words of a command
     "$program" $command --help | grep -oE '^ +(-[a-z], )?--[a-z-]+(=[A-Za-z0-9/|.=]+)?' |

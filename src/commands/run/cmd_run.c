@@ -1,12 +1,10 @@
 // Runs a case on each of its backends and prints what came out.
-#include "casefile/casefile.h"
 #include "cli/output.h"
 #include "cli/results.h"
 #include "cli/warnings.h"
 #include "commands/commands.h"
-#include "commands/run/case_run.h"
+#include "commands/run/run_choices.h"
 #include "commands/run/run_overview.h"
-#include "measure/chosen_run.h"
 #include "write/file.h"
 
 #include <assert.h>
@@ -14,64 +12,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CASE_MAX = 256, OWNED_MAX = OPTION_SETTING_MAX }; // on one command line
+enum { CASE_MAX = 256 }; // on one command line
 
 typedef struct RunCommand {
-    CommonOptions common; // without a path
+    RunChoices choices; // without a path
     const char *cases[CASE_MAX];
     size_t case_count;
-    char *owned[OWNED_MAX]; // of the overrides, those that --step and --backend stand for
-    size_t owned_count;
-    Text backends; // names, separated by commas
-    bool is_uncertified;
     const char *series;
     const char *columns;
     const char *contacts;
     const char *plot;
 } RunCommand;
 
-static bool add_override(RunCommand *command, const char *key, const char *value, Err *err)
-{
-    CommonOptions *common = &command->common;
-    if (common->override_count == OPTION_SETTING_MAX) {
-        return err_set(err, ERR_USAGE, "more than %d settings on one command line",
-                       OPTION_SETTING_MAX);
-    }
-    Text text;
-    text_init(&text);
-    text_append(&text, "%s%s", key, value);
-    // the text's memory now belongs to the list
-    command->owned[command->owned_count++] = text.data;
-    common->overrides[common->override_count++] = text.data;
-    return true;
-}
-
-static bool read_backend(const char *names, void *target, Err *err)
-{
-    Text *backends = &((RunCommand *)target)->backends;
-    if (names[strspn(names, " \t")] == '\0') {
-        return err_set(err, ERR_USAGE, "--backend names no backend; such as --backend ode");
-    }
-    text_append(backends, "%s%s", backends->length > 0 ? ", " : "", names);
-    return true;
-}
-
-static bool read_step(const char *step, void *command, Err *err)
-{
-    return add_override(command, "run.step=", step, err);
-}
-
 #define AT(field) .offset = offsetof(RunCommand, field)
 
 static const OptionRow OPTIONS[] = {
-    {"backend", "NAME[,NAME]", "Run on these instead of the case's run.backends", 1, OPTION_READ,
-     .read = read_backend},
-    {"step", "TIME", "The step, such as '2 us': short for --set run.step=TIME", 1, OPTION_READ,
-     .read = read_step},
-    COMMON_SET(1),
-    {"uncertified", NULL,
-     "Run the reference alone, in a fifth of the time: its uncertainty and horizon are not known",
-     1, OPTION_FLAG, AT(is_uncertified)},
+    RUN_CHOICES(1),
     COMMON_JSON(2),
     COMMON_FULL(2),
     COMMON_WIDE(2),
@@ -89,43 +45,25 @@ static const OptionRow OPTIONS[] = {
     COMMON_QUIET(2),
 };
 
-// A step is chosen by its error against a reference whose own is known.
-static bool check_uncertified(const Scenario *scenario, Err *err)
-{
-    for (size_t i = 0; i < scenario->run.backend_count; i++) {
-        if (backend_run_is_chosen(scenario, scenario->run.backends[i])) {
-            return err_set(err, ERR_USAGE,
-                           "%s: the step of ode is chosen by its error against the certified "
-                           "reference; with --uncertified give --step TIME, or --backend without "
-                           "ode",
-                           scenario_path(scenario));
-        }
-    }
-    return true;
-}
-
 // Loads every case before any runs, so that a mistake in the last is reported at once.
 static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
 {
     for (size_t i = 0; i < command->case_count; i++) {
-        if (!casefile_load(command->cases[i], command->common.overrides,
-                           command->common.override_count, &runs[i].scenario, err)) {
+        if (!run_choices_load(&command->choices, command->cases[i], &runs[i], err)) {
             return false;
         }
-        runs[i].is_uncertified = command->is_uncertified;
         runs[i].columns = command->columns;
         // of samples in a file and of pictures
+        const bool has_folder = command->choices.common.folder != NULL;
         runs[i].scenario.run.keeps_ranges =
-            command->series != NULL || command->plot != NULL || command->common.folder != NULL;
-        runs[i].scenario.run.keeps_contacts =
-            command->contacts != NULL || command->common.folder != NULL;
-        if ((command->is_uncertified && !check_uncertified(&runs[i].scenario, err)) ||
-            !run_files_check_columns(&runs[i], err)) {
+            command->series != NULL || command->plot != NULL || has_folder;
+        runs[i].scenario.run.keeps_contacts = command->contacts != NULL || has_folder;
+        if (!run_files_check_columns(&runs[i], err)) {
             return false;
         }
     }
     // in one folder, every case needs a name of its own
-    for (size_t i = 0; command->common.folder != NULL && i < command->case_count; i++) {
+    for (size_t i = 0; command->choices.common.folder != NULL && i < command->case_count; i++) {
         char name[SCENARIO_PATH_SIZE];
         char other[SCENARIO_PATH_SIZE];
         file_stem(scenario_path(&runs[i].scenario), name, sizeof name);
@@ -133,7 +71,8 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
             file_stem(scenario_path(&runs[k].scenario), other, sizeof other);
             if (strcmp(name, other) == 0) {
                 return err_set(err, ERR_USAGE, "%s and %s would write the same files into %s",
-                               command->cases[k], command->cases[i], command->common.folder);
+                               command->cases[k], command->cases[i],
+                               command->choices.common.folder);
             }
         }
     }
@@ -157,7 +96,7 @@ static const Results RESULTS = {
 
 static bool report_case(const RunCommand *command, const CaseRun *run, json_t *objects, Err *err)
 {
-    const CommonOptions *common = &command->common;
+    const CommonOptions *common = &command->choices.common;
     if (objects != NULL) {
         json_array_append_new(objects, run_json_build(&run->report));
     } else {
@@ -200,7 +139,7 @@ static bool count_failures(const RunCommand *command, const CaseRun *runs, Err *
 // What cannot be written is reported before anything runs.
 static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err)
 {
-    const CommonOptions *common = &command->common;
+    const CommonOptions *common = &command->choices.common;
     bool is_claimed =
         (command->series == NULL || run_files_claim(&runs[0], "--series", command->series, err)) &&
         (command->contacts == NULL ||
@@ -218,12 +157,12 @@ static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
         return false;
     }
     for (size_t i = 0; i < command->case_count; i++) {
-        warnings_say(&runs[i].scenario, &command->common);
+        warnings_say(&runs[i].scenario, &command->choices.common);
     }
-    json_t *objects = command->common.is_json ? json_array() : NULL;
+    json_t *objects = command->choices.common.is_json ? json_array() : NULL;
     bool is_reported = true;
     Progress progress;
-    progress_begin(&progress, command->common.is_quiet);
+    progress_begin(&progress, command->choices.common.is_quiet);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
         case_run_execute(&runs[i], &progress);
         is_reported = report_case(command, &runs[i], objects, err);
@@ -248,16 +187,13 @@ static bool check_command(void *target, Err *err)
     if (command->case_count > 1 && single != NULL) {
         return err_set(err, ERR_USAGE, "--%s takes one case; --out DIR takes several", single);
     }
-    if (command->columns != NULL && command->series == NULL && command->common.folder == NULL) {
+    if (command->columns != NULL && command->series == NULL &&
+        command->choices.common.folder == NULL) {
         return err_set(
             err, ERR_USAGE,
             "--columns chooses from the series: give --series FILE.csv or --out DIR too");
     }
-    if (command->backends.length > 0) {
-        text_append(&command->backends, "]");
-        return add_override(command, "run.backends=[", command->backends.data, err);
-    }
-    return true;
+    return run_choices_end(&command->choices, err);
 }
 
 static bool run_cases(void *target, Err *err)
@@ -290,12 +226,9 @@ static bool run_run(int argc, char **argv, Err *err)
         .check = check_command,
     };
     RunCommand command = {0};
-    text_init(&command.backends);
+    run_choices_begin(&command.choices);
     const bool is_done = arguments_run(&ARGUMENTS, argc, argv, &command, run_cases, err);
-    for (size_t i = 0; i < command.owned_count; i++) {
-        free(command.owned[i]);
-    }
-    text_finish(&command.backends);
+    run_choices_finish(&command.choices);
     return is_done;
 }
 

@@ -20,32 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// One line: a joint, a body or the drive.
-typedef struct OverviewRow {
-    const char *name;
-    const char *number;   // what is the largest, in keys
-    const char *unit;     // of that
-    const char *unit_key; // in keys
-    double largest;       // its size
-    double crank_rad;     // where that was; NAN without a crank
-    double time_s;        // and when
-    double ratio;         // 1, to that with ideal joints; NAN: not known
-    double impacts;       // a revolution, or in the run; NAN of what is no joint with play
-    double contact;       // 1, share of the time
-    double deepest;       // m or rad
-    const char *depth;    // unit of that
-} OverviewRow;
-
-typedef struct Overview {
-    const Trajectory *run; // NULL: none is complete
-    size_t joint_count;
-    OverviewRow *joints; // the largest first; owned, as the next
-    size_t body_count;
-    OverviewRow *bodies;
-    bool has_drive;
-    OverviewRow drive;
-} Overview;
-
 // The run whose numbers are shown: the best that is known, with the play that the case has.
 static const Trajectory *overview_run(const RunReport *report)
 {
@@ -149,7 +123,7 @@ static int by_size(const void *a, const void *b)
     return (first->largest < second->largest) - (first->largest > second->largest);
 }
 
-static Overview overview_make(const RunReport *report)
+Overview run_overview_make(const RunReport *report)
 {
     const Scenario *scenario = report->scenario;
     const Linkage *linkage = &scenario->linkage;
@@ -181,7 +155,7 @@ static Overview overview_make(const RunReport *report)
     return overview;
 }
 
-static void overview_free(Overview *overview)
+void run_overview_free(Overview *overview)
 {
     free(overview->joints);
     free(overview->bodies);
@@ -285,7 +259,7 @@ static void append_paragraph(const char *words, Text *text)
     Text own;
     text_init(&own);
     text_append(&own, "  %s", words);
-    screen_line(&own, text);
+    screen_sentence(&own, text);
 }
 
 static void append_error(const RunReport *report, size_t number, Text *text)
@@ -359,7 +333,7 @@ static void write_time(const RunReport *report, Text *text)
         }
     }
     if (words.length > 0) {
-        text_append(text, "  %s\n", words.data);
+        append_paragraph(words.data, text);
     }
     text_finish(&words);
 }
@@ -407,17 +381,8 @@ static void write_restitution(const Scenario *scenario, Text *text)
     }
 }
 
-// All of it but the title.
-static void write_all(const RunReport *report, const Overview *overview, OverviewRows rows,
-                      bool is_alone, Text *text)
+static void write_assumed(const Scenario *scenario, Text *text)
 {
-    const Scenario *scenario = report->scenario;
-    text_append(text, "\n");
-    write_table(overview, scenario, rows, text);
-    settled_lines(scenario, text);
-    write_certainty(report, text);
-    write_restitution(scenario, text);
-    write_time(report, text);
     Text assumed;
     text_init(&assumed);
     assumed_text(scenario, &assumed);
@@ -429,6 +394,29 @@ static void write_all(const RunReport *report, const Overview *overview, Overvie
         text_finish(&words);
     }
     text_finish(&assumed);
+}
+
+void run_overview_sentences(const RunReport *report, Text *text)
+{
+    settled_sentences(report->scenario, text);
+    write_certainty(report, text);
+    write_restitution(report->scenario, text);
+    write_time(report, text);
+    write_assumed(report->scenario, text);
+}
+
+// All of it but the title.
+static void write_all(const RunReport *report, const Overview *overview, OverviewRows rows,
+                      bool is_alone, Text *text)
+{
+    text_append(text, "\n");
+    write_table(overview, report->scenario, rows, text);
+    Text sentences;
+    text_init(&sentences);
+    run_overview_sentences(report, &sentences);
+    text_fold(&sentences, STYLE_WIDTH);
+    text_append(text, "%s", sentences.data);
+    text_finish(&sentences);
     if (is_alone) {
         text_append(text, "  --full: all tables\n");
     }
@@ -447,7 +435,7 @@ enum { TITLE_LINES = 3 };
 
 void run_overview_write(const RunReport *report, bool is_alone, Text *text)
 {
-    Overview overview = overview_make(report);
+    Overview overview = run_overview_make(report);
     OverviewRows rows = {JOINTS_MOST, BODIES_MOST};
     for (;;) {
         Text own;
@@ -467,7 +455,7 @@ void run_overview_write(const RunReport *report, bool is_alone, Text *text)
             rows.joints--;
         }
     }
-    overview_free(&overview);
+    run_overview_free(&overview);
 }
 
 void run_overview_screen(const void *of, const Style *style, Text *text)
@@ -500,7 +488,7 @@ static json_t *row_json(const OverviewRow *row)
 
 void run_overview_json(json_t *object, const RunReport *report)
 {
-    Overview overview = overview_make(report);
+    Overview overview = run_overview_make(report);
     json_t *joints = json_array();
     json_t *bodies = json_array();
     for (size_t i = 0; i < overview.joint_count; i++) {
@@ -520,5 +508,5 @@ void run_overview_json(json_t *object, const RunReport *report)
     const bool is_other = find_rebound(report->scenario, &rebound);
     json_value_set(made, "restitution_delivered", is_other ? rebound.delivered : NAN);
     json_object_set_new(object, "overview", made);
-    overview_free(&overview);
+    run_overview_free(&overview);
 }

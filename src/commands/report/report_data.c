@@ -1,0 +1,501 @@
+// Gathers what a report carries for its script.
+#include "commands/report/report_data.h"
+#include "base/zeroed.h"
+#include "commands/report/report_pack.h"
+#include "write/json_value.h"
+#include "write/series_rows.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    FORMAT = 1,
+    // Values of all signals together, so that a page stays below 1 MB and its plots are drawn
+    // within a second; and samples of a run, of which some 2,000 columns of pixels see each.
+    VALUES_MOST = 450000,
+    SAMPLES_MOST = 24000,
+};
+
+// The mechanism.
+
+static json_t *vector_json(Vec2 vector)
+{
+    return json_pack("[f,f]", vector.x, vector.y);
+}
+
+static json_t *bodies_json(const Linkage *linkage)
+{
+    json_t *bodies = json_array();
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Body *body = &linkage->bodies[i];
+        json_t *object = json_object();
+        json_object_set_new(object, "name", json_value_text(body->name));
+        json_object_set_new(object, "is_driven",
+                            json_boolean((int)i == linkage_driven_body(linkage)));
+        json_value_set(object, "gyration_m", sqrt(body->inertia / body->mass));
+        json_array_append_new(bodies, object);
+    }
+    return bodies;
+}
+
+static const char *kind_word(JointKind kind)
+{
+    switch (kind) {
+    case JOINT_REVOLUTE:
+        return "revolute";
+    case JOINT_CLEARANCE:
+        return "clearance";
+    case JOINT_PRISMATIC:
+        return "prismatic";
+    case JOINT_GUIDE:
+        return "guide";
+    case JOINT_STOP:
+        return "stop";
+    case JOINT_GEAR:
+    case JOINT_KIND_COUNT:
+        break;
+    }
+    return "gear";
+}
+
+// The sizes that a kind of joint is drawn with, m.
+static void set_sizes(json_t *object, const Joint *joint)
+{
+    json_value_set(object, "clearance_m", linkage_radial_clearance(joint));
+    if (joint->kind == JOINT_CLEARANCE) {
+        json_value_set(object, "pin_radius_m", joint->clearance.pin_radius);
+    } else if (joint->kind == JOINT_GUIDE) {
+        json_value_set(object, "height_m", joint->guide.height);
+        json_value_set(object, "opening_m", joint->guide.opening);
+        json_value_set(object, "length_m", joint->guide.length);
+    } else if (joint->kind == JOINT_STOP) {
+        json_object_set_new(object, "is_disc", json_boolean(joint->stop.is_disc));
+        json_value_set(object, "radius_a_m", joint->stop.radius_a);
+        json_value_set(object, "radius_b_m", joint->stop.radius_b);
+    } else if (joint->kind == JOINT_GEAR) {
+        json_value_set(object, "radius_a_m", joint->gear.radius_a);
+        json_value_set(object, "radius_b_m", joint->gear.radius_b);
+        json_value_set(object, "teeth_a", joint->gear.teeth[0]);
+        json_value_set(object, "teeth_b", joint->gear.teeth[1]);
+    }
+}
+
+static json_t *joints_json(const Linkage *linkage)
+{
+    json_t *joints = json_array();
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        json_t *object = json_object();
+        json_object_set_new(object, "name", json_value_text(joint->name));
+        json_object_set_new(object, "kind", json_string(kind_word(joint->kind)));
+        json_object_set_new(object, "has_play", json_boolean(linkage_has_play(joint)));
+        json_object_set_new(object, "is_torsional", json_boolean(linkage_is_torsional(joint)));
+        json_object_set_new(object, "body_a", json_integer(joint->body_a));
+        json_object_set_new(object, "body_b", json_integer(joint->body_b));
+        json_object_set_new(object, "anchor_a_m", vector_json(joint->anchor_a));
+        json_object_set_new(object, "anchor_b_m", vector_json(joint->anchor_b));
+        json_value_set(object, "direction_rad", joint->direction);
+        json_value_set(object, "held_angle_rad", joint->held_angle);
+        set_sizes(object, joint);
+        json_array_append_new(joints, object);
+    }
+    return joints;
+}
+
+static json_t *springs_json(const Linkage *linkage)
+{
+    json_t *springs = json_array();
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        json_t *object = json_object();
+        json_object_set_new(object, "name", json_value_text(spring->name));
+        json_object_set_new(object, "body_a", json_integer(spring->body_a));
+        json_object_set_new(object, "body_b", json_integer(spring->body_b));
+        json_object_set_new(object, "anchor_a_m", vector_json(spring->anchor_a));
+        json_object_set_new(object, "anchor_b_m", vector_json(spring->anchor_b));
+        json_array_append_new(springs, object);
+    }
+    return springs;
+}
+
+static json_t *points_json(const Scenario *scenario)
+{
+    json_t *points = json_array();
+    for (size_t i = 0; i < scenario->point_count; i++) {
+        const TracedPoint *point = &scenario->points[i];
+        json_t *object = json_object();
+        json_object_set_new(object, "name", json_value_text(point->name));
+        json_object_set_new(object, "body", json_integer(point->body));
+        json_object_set_new(object, "at_m", vector_json(point->local));
+        json_array_append_new(points, object);
+    }
+    return points;
+}
+
+// Signals.
+
+// How a column is thinned, and whether an angle turns on and on.
+typedef enum Thinning { THIN_SAMPLE, THIN_LEAST, THIN_MOST, THIN_TURNING } Thinning;
+
+// A column that a report carries.
+typedef struct Carried {
+    SeriesOf of;
+    const char *what; // as in the table of write/series_rows.c
+    Thinning thinning;
+    bool is_of_play; // of joints that feel their play alone
+} Carried;
+
+static const Carried CARRIED[] = {
+    {SERIES_OF_BODY, "x_m", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "y_m", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "angle_rad", THIN_TURNING, false},
+    {SERIES_OF_BODY, "omega_rad_s", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "alpha_rad_s2", THIN_SAMPLE, false},
+    {SERIES_OF_BODY, "alpha_min_rad_s2", THIN_LEAST, false},
+    {SERIES_OF_BODY, "alpha_max_rad_s2", THIN_MOST, false},
+    {SERIES_OF_JOINT, "ex_m", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "ey_m", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "tilt_rad", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "gap", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "gap_min", THIN_LEAST, true},
+    {SERIES_OF_JOINT, "force", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "force_max", THIN_MOST, true},
+    {SERIES_OF_JOINT, "force_x_N", THIN_SAMPLE, true},
+    {SERIES_OF_JOINT, "force_y_N", THIN_SAMPLE, true},
+    {SERIES_OF_RUN, "drive_torque_N_m", THIN_SAMPLE, false},
+};
+enum { CARRIED_COUNT = sizeof CARRIED / sizeof *CARRIED };
+
+static const Carried *find_carried(SeriesName name, const Trajectory *run)
+{
+    for (size_t i = 0; i < CARRIED_COUNT; i++) {
+        const Carried *carried = &CARRIED[i];
+        if (carried->of == name.of && strcmp(carried->what, name.what) == 0) {
+            const bool is_felt = !carried->is_of_play ||
+                                 trajectory_feels_play(run, &run->linkage.joints[name.number]);
+            return is_felt ? carried : NULL;
+        }
+    }
+    return NULL;
+}
+
+// The samples of a run that are kept: every stride-th.
+typedef struct Kept {
+    const Trajectory *run;
+    const SeriesColumns *columns;
+    size_t stride;
+    size_t count;
+    double *values; // room for as many; owned
+} Kept;
+
+// The value of a column at a kept sample, or the least or largest up to the next one; the last
+// stretch goes to the end of the run.
+static double kept_value(const Kept *kept, size_t column, Thinning thinning, size_t number)
+{
+    const size_t first = number * kept->stride;
+    const bool is_last = number + 1 == kept->count;
+    const size_t behind = is_last ? kept->run->sample_count : first + kept->stride;
+    double value = series_columns_value(kept->columns, kept->run, first, column);
+    for (size_t i = first + 1; i < behind && thinning != THIN_SAMPLE && thinning != THIN_TURNING;
+         i++) {
+        const double next = series_columns_value(kept->columns, kept->run, i, column);
+        value = thinning == THIN_LEAST ? fmin(value, next) : fmax(value, next);
+    }
+    return value;
+}
+
+static const char *const SERIES_WORDS[] = {
+    [SERIES_OF_RUN] = "run",     [SERIES_OF_BODY] = "body", [SERIES_OF_JOINT] = "joint",
+    [SERIES_OF_POINT] = "point", [SERIES_OF_RATE] = "rate",
+};
+
+static json_t *signal_json(SeriesName name, const char *what, const PackedSignal *signal)
+{
+    json_t *object = json_object();
+    json_object_set_new(object, "name", json_value_text(name.name));
+    json_object_set_new(object, "of", json_string(SERIES_WORDS[name.of]));
+    json_object_set_new(object, "number", json_integer((json_int_t)name.number));
+    json_object_set_new(object, "what", json_string(what));
+    json_object_set_new(object, "offset", json_integer((json_int_t)signal->offset));
+    json_object_set_new(object, "count", json_integer((json_int_t)signal->count));
+    json_value_set(object, "low", signal->low);
+    json_value_set(object, "slope", signal->slope);
+    json_value_set(object, "step", signal->step);
+    return object;
+}
+
+// Adds the difference of a column to that of the truth at the same samples.
+static void add_difference(const Kept *kept, const Trajectory *truth, size_t column, Pack *pack,
+                           json_t *signals)
+{
+    for (size_t i = 0; i < kept->count; i++) {
+        const size_t sample = i * kept->stride;
+        kept->values[i] = series_columns_value(kept->columns, kept->run, sample, column) -
+                          series_columns_value(kept->columns, truth, sample, column);
+    }
+    const PackedSignal signal = pack_add(pack, kept->values, kept->count, false);
+    SeriesName name = series_columns_name(kept->columns, column);
+    name.name = "";
+    json_array_append_new(signals, signal_json(name, "omega_difference_rad_s", &signal));
+}
+
+// 1: speeds by turning below this share of a body's speed are rounding
+static const double TURNING = 1e-9;
+
+// Whether a body turns, and does not only move.
+static bool is_turning(const Trajectory *run, size_t body)
+{
+    double speed = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        speed = fmax(speed, vec2_length(trajectory_motion(run, i, body)->velocity));
+    }
+    return trajectory_omega_scale(run, body) * run->reach[body] > TURNING * speed;
+}
+
+// Adds the size of the acceleration of a body's centre, at the samples and the largest up to the
+// next one.
+static void add_acceleration(const Kept *kept, size_t body, Pack *pack, json_t *signals)
+{
+    static const char *const NAMES[] = {"acceleration_m_s2", "acceleration_max_m_s2"};
+    for (int which = 0; which < 2; which++) {
+        for (size_t i = 0; i < kept->count; i++) {
+            const size_t first = i * kept->stride;
+            const bool is_last = i + 1 == kept->count;
+            const size_t behind = is_last ? kept->run->sample_count : first + kept->stride;
+            double value = vec2_length(trajectory_motion(kept->run, first, body)->acceleration);
+            for (size_t k = first; which == 1 && k < behind; k++) {
+                value = fmax(value,
+                             trajectory_body_range(kept->run, k, body, RANGES_ACCELERATION).most);
+            }
+            kept->values[i] = value;
+        }
+        const PackedSignal signal = pack_add(pack, kept->values, kept->count, false);
+        const SeriesName name = {"", SERIES_OF_BODY, body, NAMES[which]};
+        json_array_append_new(signals, signal_json(name, name.what, &signal));
+    }
+}
+
+static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pack)
+{
+    json_t *signals = json_array();
+    const bool has_difference =
+        truth != NULL && truth != kept->run && truth->sample_count == kept->run->sample_count;
+    for (size_t i = 0; i < kept->columns->count; i++) {
+        const SeriesName name = series_columns_name(kept->columns, i);
+        const Carried *carried = find_carried(name, kept->run);
+        if (carried == NULL) {
+            continue;
+        }
+        for (size_t k = 0; k < kept->count; k++) {
+            kept->values[k] = kept_value(kept, i, carried->thinning, k);
+        }
+        const PackedSignal signal =
+            pack_add(pack, kept->values, kept->count, carried->thinning == THIN_TURNING);
+        json_array_append_new(signals, signal_json(name, name.what, &signal));
+        if (has_difference && strcmp(name.what, "omega_rad_s") == 0) {
+            add_difference(kept, truth, i, pack, signals);
+        }
+    }
+    for (size_t i = 0; i < kept->run->body_count; i++) {
+        if (!is_turning(kept->run, i)) {
+            add_acceleration(kept, i, pack, signals);
+        }
+    }
+    return signals;
+}
+
+// How many signals of all runs are carried.
+static size_t count_signals(const RunReport *report, const SeriesColumns *columns)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < report->run_count; i++) {
+        for (size_t k = 0; report->runs[i]->is_complete && k < columns->count; k++) {
+            count += find_carried(series_columns_name(columns, k), report->runs[i]) != NULL;
+        }
+    }
+    return count;
+}
+
+// Peaks, exact: what 16 bits and samples left out may round, these have.
+
+static void add_peak(json_t *peaks, SeriesOf of, size_t number, const char *what, double value,
+                     double time_s)
+{
+    if (!isfinite(value)) {
+        return;
+    }
+    json_t *peak = json_object();
+    json_object_set_new(peak, "of", json_string(SERIES_WORDS[of]));
+    json_object_set_new(peak, "number", json_integer((json_int_t)number));
+    json_object_set_new(peak, "what", json_string(what));
+    json_value_set(peak, "value", value);
+    json_value_set(peak, "time_s", time_s);
+    json_array_append_new(peaks, peak);
+}
+
+static json_t *peaks_json(const Trajectory *run)
+{
+    json_t *peaks = json_array();
+    for (size_t i = 0; i < run->body_count; i++) {
+        const BodyExtremes *body = &run->bodies[i];
+        const struct {
+            const char *what;
+            const Extreme *extreme;
+        } EXTREMES[] = {{"omega_rad_s", &body->omega_max},
+                        {"omega_rad_s", &body->omega_min},
+                        {"alpha_rad_s2", &body->alpha_max},
+                        {"alpha_rad_s2", &body->alpha_min}};
+        for (size_t k = 0; k < sizeof EXTREMES / sizeof *EXTREMES; k++) {
+            add_peak(peaks, SERIES_OF_BODY, i, EXTREMES[k].what, EXTREMES[k].extreme->value,
+                     EXTREMES[k].extreme->time_s);
+        }
+        const SignalSpikes *spikes = &run->alpha_spikes[i];
+        for (size_t k = 0; spikes->is_known && k < spikes->kept; k++) {
+            add_peak(peaks, SERIES_OF_BODY, i, "alpha_rad_s2", spikes->spikes[k].value,
+                     spikes->spikes[k].time_s);
+        }
+    }
+    for (size_t i = 0; i < run->joint_count; i++) {
+        const JointExtremes *joint = &run->joints[i];
+        if (!trajectory_feels_play(run, &run->linkage.joints[i])) {
+            continue;
+        }
+        add_peak(peaks, SERIES_OF_JOINT, i, "force", joint->force_max.value,
+                 joint->force_max.time_s);
+        if (joint->penetration_max.value > 0.0) {
+            add_peak(peaks, SERIES_OF_JOINT, i, "gap", -joint->penetration_max.value,
+                     joint->penetration_max.time_s);
+        }
+        for (size_t k = 0; k < joint->spike_count; k++) {
+            add_peak(peaks, SERIES_OF_JOINT, i, "force", joint->spikes[k].force_max,
+                     joint->spikes[k].peak_s);
+        }
+        const SignalSpikes *spikes = &run->force_spikes[i];
+        for (size_t k = 0; spikes->is_known && k < spikes->kept; k++) {
+            add_peak(peaks, SERIES_OF_JOINT, i, "force", spikes->spikes[k].value,
+                     spikes->spikes[k].time_s);
+        }
+    }
+    return peaks;
+}
+
+static json_t *spike_json(size_t joint, const char *kind, double onset_s, double peak_s,
+                          double end_s, double force, double impulse)
+{
+    json_t *object = json_object();
+    json_object_set_new(object, "joint", json_integer((json_int_t)joint));
+    json_object_set_new(object, "kind", json_string(kind));
+    json_value_set(object, "onset_s", onset_s);
+    json_value_set(object, "peak_s", peak_s);
+    json_value_set(object, "end_s", end_s);
+    json_value_set(object, "force", force);
+    json_value_set(object, "impulse", impulse);
+    return object;
+}
+
+// The spikes of each joint's force, and its strongest contacts.
+static json_t *spikes_json(const Trajectory *run)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < run->joint_count; i++) {
+        if (!trajectory_feels_play(run, &run->linkage.joints[i])) {
+            continue;
+        }
+        const SignalSpikes *spikes = &run->force_spikes[i];
+        for (size_t k = 0; spikes->is_known && k < spikes->kept; k++) {
+            const SignalSpike *spike = &spikes->spikes[k];
+            json_array_append_new(list, spike_json(i, "spike", spike->onset_s, spike->time_s,
+                                                   spike->end_s, spike->value, spike->impulse));
+        }
+        const JointExtremes *joint = &run->joints[i];
+        for (size_t k = 0; k < joint->spike_count; k++) {
+            const Spike *contact = &joint->spikes[k];
+            json_array_append_new(list, spike_json(i, "contact", contact->onset_s, contact->peak_s,
+                                                   contact->onset_s + contact->duration_s,
+                                                   contact->force_max, contact->impulse));
+        }
+    }
+    return list;
+}
+
+static json_t *run_json(const Kept *kept, const Trajectory *truth, Pack *pack)
+{
+    const Trajectory *run = kept->run;
+    const double interval_s = run->sample_count > 1 ? run->times[1] - run->times[0] : 0.0;
+    json_t *object = json_object();
+    json_object_set_new(object, "backend", json_string(run->backend));
+    json_object_set_new(object, "label", json_string(run->label));
+    json_object_set_new(object, "is_truth", json_boolean(run == truth));
+    json_value_set(object, "from_s", run->times[0]);
+    json_value_set(object, "interval_s", interval_s * (double)kept->stride);
+    json_object_set_new(object, "stride", json_integer((json_int_t)kept->stride));
+    json_object_set_new(object, "signals", signals_json(kept, truth, pack));
+    json_object_set_new(object, "peaks", peaks_json(run));
+    json_object_set_new(object, "spikes", spikes_json(run));
+    return object;
+}
+
+static json_t *runs_json(const RunReport *report, Pack *pack)
+{
+    const Trajectory *truth = run_report_has_truth(report) ? report->truth->trajectory : NULL;
+    SeriesColumns columns =
+        series_columns_create(report->scenario, report->scenario->run.keeps_ranges);
+    const size_t signal_count = count_signals(report, &columns);
+    size_t room = signal_count > 0 ? VALUES_MOST / signal_count : SAMPLES_MOST;
+    room = room > SAMPLES_MOST ? SAMPLES_MOST : room;
+    json_t *runs = json_array();
+    for (size_t i = 0; i < report->run_count; i++) {
+        const Trajectory *run = report->runs[i];
+        if (!run->is_complete || run->sample_count == 0) {
+            continue;
+        }
+        Kept kept = {.run = run, .columns = &columns};
+        kept.stride = 1 + (run->sample_count - 1) / (room + 1);
+        kept.count = 1 + (run->sample_count - 1) / kept.stride;
+        kept.values = zeroed(kept.count, sizeof *kept.values);
+        json_array_append_new(runs, run_json(&kept, truth, pack));
+        free(kept.values);
+    }
+    series_columns_finish(&columns);
+    return runs;
+}
+
+static json_t *crank_json(const Driver *driver)
+{
+    return drive_is_steady(driver)
+               ? json_pack("{s:f,s:f}", "speed_rad_s", driver->speed, "start_rad", driver->start)
+               : json_null();
+}
+
+void report_data_write(const RunReport *report, const char *command, Text *text)
+{
+    const Scenario *scenario = report->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    Pack pack = {0};
+    json_t *data = json_object();
+    json_object_set_new(data, "format", json_integer(FORMAT));
+    json_object_set_new(data, "title", json_value_text(scenario->title));
+    json_object_set_new(data, "case", json_value_text(scenario_path(scenario)));
+    json_object_set_new(data, "command", json_value_text(command));
+    json_object_set_new(data, "is_spatial", json_boolean(linkage->is_spatial));
+    json_object_set_new(data, "has_plane", json_boolean(space_has_plane(linkage)));
+    json_object_set_new(data, "crank", crank_json(&linkage->driver));
+    json_value_set(data, "duration_s", scenario_duration(scenario));
+    json_value_set(data, "report_from_s", scenario_report_from(scenario));
+    const bool is_limited = report->truth != NULL && report->truth->is_limited;
+    json_value_set(data, "horizon_s", is_limited ? report->truth->horizon_s : NAN);
+    json_object_set_new(data, "bodies", bodies_json(linkage));
+    json_object_set_new(data, "joints", joints_json(linkage));
+    json_object_set_new(data, "springs", springs_json(linkage));
+    json_object_set_new(data, "points", points_json(scenario));
+    json_object_set_new(data, "runs", runs_json(report, &pack));
+    json_object_set_new(data, "results", run_json_build(report));
+    Text json;
+    text_init(&json);
+    json_value_write(data, JSON_COMPACT | JSON_REAL_PRECISION(17), &json);
+    pack_write(&pack, json.data, text);
+    text_finish(&json);
+    json_decref(data);
+    pack_finish(&pack);
+}

@@ -1,0 +1,371 @@
+// Writes the page of a report: what is said in words and tables, and around it the one style sheet
+// and the one script.
+#include "commands/report/report_page.h"
+#include "commands/report/report_data.h"
+#include "commands/report/report_pack.h"
+#include "commands/report/report_sha256.h"
+#include "commands/run/run_overview.h"
+#include "write/assumed.h"
+#include "write/json_value.h"
+#include "write/settings_json.h"
+#include "write/units.h"
+#include "write/xml.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// The files that the script is made of, and the style sheet; see meson.build.
+// clang-format off
+#define REPORT_SCRIPT_LIST(member) \
+    member(data) member(signals) member(plot) member(round) member(mechanism) member(page)
+// clang-format on
+#define REPORT_DECLARE(name)                                                                       \
+    extern const char embedded_report_##name[], embedded_report_##name##_end[];
+REPORT_SCRIPT_LIST(REPORT_DECLARE)
+REPORT_DECLARE(style)
+
+// Elements.
+
+static void append_words(const char *tag, const char *words, Text *html)
+{
+    text_append(html, "<%s>", tag);
+    xml_append(words, html);
+    text_append(html, "</%.*s>\n", (int)strcspn(tag, " "), tag);
+}
+
+// A row of a table whose first cell heads it.
+static void append_pair(const char *head, const char *words, Text *html)
+{
+    text_append(html, "<tr>");
+    append_words("th scope=\"row\"", head, html);
+    append_words("td", words, html);
+    text_append(html, "</tr>\n");
+}
+
+// The answer.
+
+static void cell_units(double value, const char *unit, Text *html)
+{
+    Text words;
+    text_init(&words);
+    if (isfinite(value)) {
+        units_append(&words, value, unit);
+    }
+    append_words("td", words.data, html);
+    text_finish(&words);
+}
+
+static void cell_number(const char *format, double value, Text *html)
+{
+    char words[32] = "";
+    if (isfinite(value)) {
+        snprintf(words, sizeof words, format, value);
+    }
+    append_words("td", words, html);
+}
+
+static void answer_row(const OverviewRow *row, bool has_crank, Text *html)
+{
+    text_append(html, "<tr>");
+    append_words("th scope=\"row\"", row->name, html);
+    cell_units(row->largest, row->unit, html);
+    cell_number(has_crank ? "%.1f deg" : "%.4g ms",
+                has_crank ? units_wrapped_deg(row->crank_rad) : row->time_s * UNITS_MS, html);
+    cell_number("%.3g", row->ratio, html);
+    cell_number("%.3g", row->impacts, html);
+    cell_number("%.1f %%", row->contact * UNITS_PERCENT, html);
+    cell_units(row->deepest, row->depth, html);
+    text_append(html, "</tr>\n");
+}
+
+enum { JOINTS_MOST = 10, BODIES_MOST = 6 }; // rows of a large mechanism
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static void overview_head(const Overview *overview, bool has_crank, Text *html)
+{
+    text_append(html,
+                "<div class=\"wide\"><table class=\"numbers\">\n<caption>%sargest angular "
+                "acceleration of each body, by ",
+                overview->joint_count > 0 ? "Largest force of each joint with play, l" : "L");
+    xml_append(overview->run->backend, html);
+    text_append(html,
+                "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>"
+                "<th scope=\"col\">largest</th><th scope=\"col\">at</th>"
+                "<th scope=\"col\">x ideal</th><th scope=\"col\">impacts%s</th>"
+                "<th scope=\"col\">contact</th><th scope=\"col\">deepest</th></tr></thead>\n"
+                "<tbody>\n",
+                has_crank ? " a turn" : "");
+}
+
+// The table of the first screen, with more of its rows.
+static void append_overview(const RunReport *report, Text *html)
+{
+    Overview overview = run_overview_make(report);
+    const bool has_crank = drive_is_steady(&report->scenario->linkage.driver);
+    const size_t joints = least(overview.joint_count, JOINTS_MOST);
+    const size_t bodies = least(overview.body_count, BODIES_MOST);
+    if (joints + bodies > 0) {
+        overview_head(&overview, has_crank, html);
+        for (size_t i = 0; i < joints; i++) {
+            answer_row(&overview.joints[i], has_crank, html);
+        }
+        for (size_t i = 0; i < bodies; i++) {
+            answer_row(&overview.bodies[i], has_crank, html);
+        }
+        if (overview.has_drive) {
+            answer_row(&overview.drive, has_crank, html);
+        }
+        text_append(html, "</tbody></table></div>\n");
+    }
+    const size_t more = overview.joint_count - joints + overview.body_count - bodies;
+    if (more > 0) {
+        text_append(html, "<p>%zu more joints and bodies are in the tables at the end.</p>\n",
+                    more);
+    }
+    if (joints > 0) {
+        text_append(html,
+                    "<p class=\"note\"><i>x ideal</i>: over the same mechanism with ideal joints. "
+                    "<i>contact</i>: the share of the time. <i>deepest</i>: how far the pin is "
+                    "pressed into its hole.</p>\n");
+    }
+    run_overview_free(&overview);
+}
+
+static void append_answer(const RunReport *report, Text *html)
+{
+    text_append(html, "<section id=\"answer\">\n<h2>The answer</h2>\n");
+    append_overview(report, html);
+    Text sentences;
+    text_init(&sentences);
+    run_overview_sentences(report, &sentences);
+    text_append(html, "<ul>\n");
+    for (const char *at = sentences.data; *at != '\0';) {
+        // without the indentation that the lines of a screen have
+        at += strspn(at, " ");
+        const size_t length = strcspn(at, "\n");
+        Text sentence;
+        text_init(&sentence);
+        text_append_bytes(&sentence, at, length);
+        append_words("li", sentence.data, html);
+        text_finish(&sentence);
+        at += length + (at[length] == '\n' ? 1 : 0);
+    }
+    text_append(html, "</ul>\n");
+    text_finish(&sentences);
+    text_append(html, "</section>\n");
+}
+
+// How it was made.
+
+static void append_value(const json_t *value, Text *words)
+{
+    if (json_is_string(value)) {
+        text_append(words, "%s", json_string_value(value));
+    } else if (json_is_real(value)) {
+        text_append_number(words, json_real_value(value));
+    } else {
+        json_value_write(value, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(10), words);
+    }
+}
+
+static void append_settings(const json_t *all, Text *html)
+{
+    const json_t *units = json_object_get(all, "setting_units");
+    text_append(html, "<details><summary>All settings, in SI units</summary>\n"
+                      "<div class=\"wide\"><table>\n");
+    const char *key;
+    json_t *value;
+    json_object_foreach(json_object_get(all, "settings"), key, value)
+    {
+        const char *unit = json_string_value(json_object_get(units, key));
+        Text words;
+        text_init(&words);
+        append_value(value, &words);
+        text_append(&words, "%s%s", unit != NULL ? " " : "", unit != NULL ? unit : "");
+        append_pair(key, words.data, html);
+        text_finish(&words);
+    }
+    text_append(html, "</table></div></details>\n");
+}
+
+static void append_making(const ReportPage *page, Text *html)
+{
+    const Scenario *scenario = page->report->scenario;
+    json_t *all = json_object();
+    settings_json_begin(all, scenario);
+    assumed_json(all, scenario);
+    const json_t *assumed = json_object_get(all, "assumed");
+    const char *key;
+    json_t *value;
+    if (json_object_size(assumed) > 0) {
+        text_append(html, "<section id=\"assumed\">\n<h2>What was assumed</h2>\n<p>The case does "
+                          "not say these; the numbers depend on them.</p>\n<table>\n");
+        json_object_foreach(json_object_get(all, "assumed"), key, value)
+        {
+            append_pair(key, json_string_value(value), html);
+        }
+        text_append(html, "</table>\n</section>\n");
+    }
+    text_append(html, "<section id=\"made\">\n<h2>How it was made</h2>\n<p>This command makes this "
+                      "page again:</p>\n<pre>");
+    xml_append(page->command, html);
+    text_append(html, "</pre>\n<table>\n");
+    append_pair("case", scenario_path(scenario), html);
+    json_object_foreach(json_object_get(all, "tool"), key, value)
+    {
+        append_pair(strcmp(key, "version") == 0 ? "jointplay" : key, json_string_value(value),
+                    html);
+    }
+    text_append(html, "</table>\n");
+    append_settings(all, html);
+    text_append(html, "</section>\n");
+    json_decref(all);
+}
+
+static void append_tables(const RunReport *report, Text *html)
+{
+    Text tables;
+    text_init(&tables);
+    run_text_write(report, &STYLE_PLAIN, &tables);
+    text_append(html, "<section id=\"tables\">\n<h2>All tables</h2>\n<details><summary>What "
+                      "<code>jointplay run --full --wide</code> prints</summary>\n<div "
+                      "class=\"wide\"><pre>");
+    xml_append(tables.data, html);
+    text_append(html, "</pre></div></details>\n</section>\n");
+    text_finish(&tables);
+}
+
+// The picture, for readers without script.
+
+// What a class of the picture's style sheet stands for, as attributes: they need no style sheet.
+typedef struct ClassAttributes {
+    const char *name;
+    const char *attributes;
+} ClassAttributes;
+
+static const ClassAttributes CLASSES[] = {
+    {"title", "font-size=\"17\" font-weight=\"bold\""},
+    {"panel", "font-size=\"14\" font-weight=\"bold\""},
+    {"note", "fill=\"#555\""},
+    {"grid", "stroke=\"#e4e4e4\""},
+    {"zero", "stroke=\"#b0b0b0\""},
+    {"frame", "stroke=\"#444\" fill=\"none\""},
+    {"line", "fill=\"none\" stroke-linejoin=\"round\""},
+};
+
+static void append_class(const char *name, size_t length, Text *html)
+{
+    for (size_t i = 0; i < sizeof CLASSES / sizeof *CLASSES; i++) {
+        if (strlen(CLASSES[i].name) == length && strncmp(CLASSES[i].name, name, length) == 0) {
+            text_append(html, "%s", CLASSES[i].attributes);
+        }
+    }
+}
+
+// Appends SVG of the program with attributes where it has classes. A quote in a text of a user's is
+// escaped there, so that none looks like a class.
+static void append_svg(const char *svg, Text *html)
+{
+    // in HTML SVG needs no name of its own kind
+    static const char OPENING[] = "<svg xmlns=\"http://www.w3.org/2000/svg\" ";
+    static const char STYLE[] = "<style>";
+    static const char STYLE_END[] = "</style>";
+    static const char CLASS[] = "class=\"";
+    text_append(html,
+                "<svg role=\"img\" aria-label=\"Motion of the bodies and forces in the joints\" "
+                "font-family=\"Arial, sans-serif\" font-size=\"12\" ");
+    const char *at = svg + strlen(OPENING);
+    while (*at != '\0') {
+        const size_t plain = strcspn(at, "<c");
+        text_append_bytes(html, at, plain);
+        at += plain;
+        if (strncmp(at, STYLE, strlen(STYLE)) == 0) {
+            at = strstr(at, STYLE_END) + strlen(STYLE_END);
+        } else if (strncmp(at, CLASS, strlen(CLASS)) == 0) {
+            at += strlen(CLASS);
+            const size_t length = strcspn(at, "\"");
+            append_class(at, length, html);
+            at += length + 1;
+        } else if (*at != '\0') {
+            text_append_bytes(html, at++, 1);
+        }
+    }
+}
+
+static void append_picture(const RunReport *report, Text *html)
+{
+    Text svg;
+    text_init(&svg);
+    plot_run_write(report, &svg);
+    text_append(html, "<section id=\"picture\">\n<h2>Motion and forces</h2>\n<p>With script this "
+                      "page shows the mechanism moving, and plots that can be zoomed.</p>\n");
+    append_svg(svg.data, html);
+    text_append(html, "</section>\n");
+    text_finish(&svg);
+}
+
+// The page around all of it.
+
+static void append_hash(const Text *content, Text *html)
+{
+    unsigned char digest[SHA256_SIZE];
+    report_sha256(content->data, content->length, digest);
+    text_append(html, "'sha256-");
+    pack_base64(digest, sizeof digest, html);
+    text_append(html, "'");
+}
+
+static void append_head(const char *title, const Text *style, const Text *script, Text *html)
+{
+    text_append(html, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                      "<meta name=\"generator\" content=\"jointplay report\">\n"
+                      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+                      "base-uri 'none'; form-action 'none'; img-src data:; script-src ");
+    append_hash(script, html);
+    text_append(html, "; style-src ");
+    append_hash(style, html);
+    text_append(html, "\">\n<meta name=\"viewport\" content=\"width=device-width, "
+                      "initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n"
+                      "<meta name=\"referrer\" content=\"no-referrer\">\n");
+    append_words("title", title, html);
+    text_append(html, "<style>%s</style>\n</head>\n", style->data);
+}
+
+static void append_embedded(const char *from, const char *end, Text *text)
+{
+    text_append_bytes(text, from, (size_t)(end - from));
+}
+
+void report_page_write(const ReportPage *page, Text *html)
+{
+    const RunReport *report = page->report;
+    const char *title = report->scenario->title;
+    const char *shown = title[0] != '\0' ? title : scenario_path(report->scenario);
+    Text style;
+    Text script;
+    text_init(&style);
+    text_init(&script);
+    append_embedded(embedded_report_style, embedded_report_style_end, &style);
+#define REPORT_APPEND(name)                                                                        \
+    append_embedded(embedded_report_##name, embedded_report_##name##_end, &script);
+    REPORT_SCRIPT_LIST(REPORT_APPEND)
+    append_head(shown, &style, &script, html);
+    text_append(html, "<body>\n<header>\n");
+    append_words("h1", shown, html);
+    append_words("p class=\"note\"", scenario_path(report->scenario), html);
+    text_append(html, "</header>\n<main>\n");
+    append_answer(report, html);
+    text_append(html, "<div id=\"live\" hidden></div>\n");
+    append_picture(report, html);
+    append_making(page, html);
+    append_tables(report, html);
+    text_append(html, "</main>\n<template id=\"data\">\n");
+    report_data_write(report, page->command, html);
+    text_append(html, "</template>\n<script>%s</script>\n</body>\n</html>\n", script.data);
+    text_finish(&script);
+    text_finish(&style);
+}

@@ -1,0 +1,786 @@
+// The page: controls, plots and tables of spikes around one time and one range that all share.
+
+const TURN_PLAYS_S = 8; // how long the range that is shown, or one turn of it, takes to play
+const PLOT_BODIES = 3; // whose plots are all shown; of more bodies one is chosen
+const SPIKES_SHOWN = 12;
+const FRAMES_KEPT = 120; // of which the rate is known
+
+class Page {
+    constructor(data) {
+        this.data = data;
+        this.whole = { from: 0, to: data.duration_s };
+        this.view = { ...this.whole };
+        this.time = data.report_from_s || 0;
+        this.shown = new Set(data.runs.map((run) => run.backend));
+        this.unit = data.crank !== null ? "deg" : "ms";
+        this.arrows = "linear";
+        this.hasTrails = true;
+        this.isPlaying = false;
+        this.pace = 1;
+        this.frames = [];
+        this.plots = [];
+    }
+
+    // Times as people read them.
+
+    timeWords(time) {
+        const ms = `${(time * 1000).toPrecision(6)} ms`;
+        return this.data.crank === null ? ms : `crank ${this.degrees(time).toFixed(2)} deg, ${ms}`;
+    }
+
+    degrees(time) {
+        return (this.data.crank.start_rad + this.data.crank.speed_rad_s * time) * DEG;
+    }
+
+    unitWords() {
+        return this.unit === "deg" ? "crank angle, deg" : "time, ms";
+    }
+
+    // Ticks of the range that is shown. Their decimals follow from their distance, so that they
+    // differ at any zoom.
+    timeTicks(wanted) {
+        const { from, to } = this.view;
+        if (this.unit === "ms") {
+            const { ticks, decimals } = findTicks(from * 1000, to * 1000, wanted);
+            return ticks.map((tick) => ({ time: tick / 1000, words: tick.toFixed(decimals) }));
+        }
+        const ends = [this.degrees(from), this.degrees(to)].sort((a, b) => a - b);
+        const { ticks, decimals } = this.degreeTicks(ends[0], ends[1], wanted);
+        const { start_rad: start, speed_rad_s: speed } = this.data.crank;
+        return ticks.map((tick) => ({
+            time: (tick / DEG - start) / speed,
+            words: tick.toFixed(decimals),
+        }));
+    }
+
+    // Over a turn and more at parts of a turn.
+    degreeTicks(low, high, wanted) {
+        const step = [30, 45, 60, 90, 180, 360].find((one) => (high - low) / one <= wanted);
+        if (high - low < 150 || step === undefined) {
+            return findTicks(low, high, wanted);
+        }
+        const ticks = [];
+        for (let i = Math.ceil(low / step - 1e-9); i <= high / step + 1e-9; i++) {
+            ticks.push(i * step);
+        }
+        return { ticks, decimals: 0 };
+    }
+
+    // What all parts share.
+
+    setTime(time) {
+        this.time = Math.max(this.whole.from, Math.min(this.whole.to, time));
+        this.showTime();
+    }
+
+    showTime() {
+        const share = (this.time - this.view.from) / (this.view.to - this.view.from);
+        this.slider.value = String(Math.round(1000 * share));
+        const words = this.timeWords(this.time);
+        this.slider.setAttribute("aria-valuetext", words);
+        this.clock.textContent = words;
+        this.mechanism.draw();
+        for (const plot of this.plots) {
+            if (plot.isSeen) {
+                plot.showTime();
+            }
+        }
+    }
+
+    zoom(from, to) {
+        const least = 1e-9 * (this.whole.to - this.whole.from);
+        if (to - from > least) {
+            this.view = {
+                from: Math.max(this.whole.from, from),
+                to: Math.min(this.whole.to, to),
+            };
+            if (this.time < this.view.from || this.time > this.view.to) {
+                this.time = this.view.from;
+            }
+            this.outButton.disabled =
+                this.view.from === this.whole.from && this.view.to === this.whole.to;
+            this.redraw();
+        }
+    }
+
+    zoomOut() {
+        this.zoom(this.whole.from, this.whole.to);
+    }
+
+    // Puts a spike into the middle, with some of what is around it.
+    zoomTo(spike) {
+        this.stop();
+        const width = Math.max(
+            6 * (spike.end_s - spike.onset_s),
+            1e-4 * (this.whole.to - this.whole.from),
+        );
+        this.time = spike.peak_s;
+        this.zoom(spike.peak_s - width / 2, spike.peak_s + width / 2);
+        this.setTime(spike.peak_s);
+    }
+
+    redraw() {
+        for (const plot of this.plots) {
+            plot.isStale = true;
+        }
+        this.drawSeen();
+        this.showTime();
+    }
+
+    // Plots are drawn when they come into view.
+    drawSeen() {
+        for (const plot of this.plots) {
+            if (plot.isSeen && plot.isStale) {
+                plot.isStale = false;
+                plot.draw();
+            }
+        }
+    }
+
+    onKey(event) {
+        const step = (this.view.to - this.view.from) / (event.shiftKey ? 20 : 400);
+        const actions = {
+            " ": () => this.toggle(),
+            ArrowRight: () => this.setTime(this.time + step),
+            ArrowLeft: () => this.setTime(this.time - step),
+            Home: () => this.setTime(this.view.from),
+            End: () => this.setTime(this.view.to),
+            "+": () => this.zoom(this.time - 100 * step, this.time + 100 * step),
+            "-": () => this.zoomOut(),
+            Escape: () => this.zoomOut(),
+        };
+        if (actions[event.key] && !event.ctrlKey && !event.metaKey && !event.altKey) {
+            event.preventDefault();
+            if (event.key !== " ") {
+                this.stop();
+            }
+            actions[event.key]();
+        }
+    }
+
+    // Playing.
+
+    toggle() {
+        if (this.isPlaying) {
+            this.stop();
+        } else {
+            this.play();
+        }
+    }
+
+    play() {
+        this.isPlaying = true;
+        this.playButton.textContent = "Pause";
+        this.before = null;
+        if (this.time >= this.view.to) {
+            this.time = this.view.from;
+        }
+        requestAnimationFrame((now) => this.step(now));
+    }
+
+    stop() {
+        this.isPlaying = false;
+        this.playButton.textContent = "Play";
+    }
+
+    // Seconds of the run in a second of playing.
+    rate() {
+        const width = this.view.to - this.view.from;
+        const crank = this.data.crank;
+        const turn = crank === null ? width : (2 * Math.PI) / Math.abs(crank.speed_rad_s);
+        return (this.pace * Math.min(width, turn)) / TURN_PLAYS_S;
+    }
+
+    step(now) {
+        if (!this.isPlaying) {
+            return;
+        }
+        if (this.before !== null) {
+            this.frames.push(now - this.before);
+            this.frames.splice(0, this.frames.length - FRAMES_KEPT);
+            // after a while in the background go on from here
+            const passed = Math.min(now - this.before, 100) / 1000;
+            let time = this.time + passed * this.rate();
+            if (time > this.view.to || time < this.view.from) {
+                time = this.view.from;
+            }
+            this.time = time;
+            this.showTime();
+        }
+        this.before = now;
+        requestAnimationFrame((next) => this.step(next));
+    }
+
+    // Controls.
+
+    button(words, act) {
+        const made = element("button", { type: "button" }, words);
+        made.addEventListener("click", act);
+        return made;
+    }
+
+    choice(words, choices, chosen, act) {
+        const select = element("select", {});
+        for (const [value, shown] of choices) {
+            select.append(element("option", { value, selected: value === chosen }, shown));
+        }
+        select.addEventListener("change", () => act(select.value));
+        return element("label", {}, words + " ", select);
+    }
+
+    check(words, isOn, act) {
+        const box = element("input", { type: "checkbox", checked: isOn });
+        box.addEventListener("change", () => act(box.checked));
+        return element("label", { className: "switch" }, box, " ", words);
+    }
+
+    makeControls() {
+        this.playButton = this.button("Play", () => this.toggle());
+        this.outButton = this.button("Whole run", () => this.zoomOut());
+        this.outButton.disabled = true;
+        this.slider = element("input", {
+            type: "range",
+            min: "0",
+            max: "1000",
+            value: "0",
+            className: "time",
+        });
+        this.slider.setAttribute("aria-label", "Time");
+        this.slider.addEventListener("input", () => {
+            this.stop();
+            const share = Number(this.slider.value) / 1000;
+            this.setTime(this.view.from + share * (this.view.to - this.view.from));
+        });
+        this.clock = element("output", { className: "clock" });
+        return element(
+            "div",
+            { className: "controls playing" },
+            this.playButton,
+            this.slider,
+            this.clock,
+            this.outButton,
+        );
+    }
+
+    // How it is played, and in which unit time is shown.
+    makeTimeControls() {
+        const paces = [
+            ["0.1", "1/10"],
+            ["0.25", "1/4"],
+            ["0.5", "1/2"],
+            ["1", "1"],
+            ["2", "2"],
+            ["4", "4"],
+        ];
+        const parts = [
+            this.choice("Speed", paces, "1", (pace) => {
+                this.pace = Number(pace);
+            }),
+        ];
+        if (this.data.crank !== null) {
+            parts.push(
+                this.choice(
+                    "Axis",
+                    [
+                        ["deg", "degrees"],
+                        ["ms", "ms"],
+                    ],
+                    this.unit,
+                    (unit) => {
+                        this.unit = unit;
+                        this.redraw();
+                    },
+                ),
+            );
+        }
+        return parts;
+    }
+
+    makeMechanismControls() {
+        const row = element("div", { className: "controls" });
+        for (const run of this.data.runs) {
+            const box = this.check(run.backend, true, (isOn) => {
+                this.shown[isOn ? "add" : "delete"](run.backend);
+                this.redraw();
+            });
+            box.append(element("span", { className: "swatch " + run.backend }));
+            row.append(box);
+        }
+        row.append(
+            ...this.makeTimeControls(),
+            this.check("paths", true, (isOn) => {
+                this.hasTrails = isOn;
+                this.mechanism.draw();
+            }),
+        );
+        if (this.mechanism.forceMost > 0) {
+            const choices = [
+                ["linear", "linear"],
+                ["log", "logarithmic"],
+                ["off", "off"],
+            ];
+            row.append(
+                this.choice("Forces", choices, this.arrows, (arrows) => {
+                    this.arrows = arrows;
+                    this.mechanism.draw();
+                }),
+            );
+        }
+        if (this.mechanism.play > 0) {
+            row.append(this.makeMagnifier());
+        }
+        return row;
+    }
+
+    // From as it is to three times what is usual, on a logarithmic scale.
+    makeMagnifier() {
+        const most = Math.log10(3 * this.magnification);
+        const slider = element("input", {
+            type: "range",
+            min: "0",
+            max: "1000",
+            className: "short",
+        });
+        slider.value = String(Math.round((1000 * Math.log10(this.magnification)) / most));
+        const words = element("output", {});
+        const show = () => {
+            this.magnification = 10 ** ((most * Number(slider.value)) / 1000);
+            words.textContent = `${formatNumber(Number(this.magnification.toPrecision(2)))} times`;
+        };
+        slider.addEventListener("input", () => {
+            show();
+            this.mechanism.draw();
+        });
+        show();
+        return element("label", {}, "Play magnified ", slider, " ", words);
+    }
+
+    // Sections.
+
+    section(title, ...children) {
+        return element("section", {}, element("h2", {}, title), ...children);
+    }
+
+    addPlot(plot) {
+        if (plot.lines === undefined || plot.lines.length > 0) {
+            this.plots.push(plot);
+            return [plot.figure];
+        }
+        return [];
+    }
+
+    lines(of, number, what, factor, limits, runs) {
+        return (runs || this.data.runs).map((run) =>
+            makeLine(run, of, number, what, factor, limits || {}),
+        );
+    }
+
+    marks(of, number, what, factor) {
+        return this.data.runs
+            .filter((run) => run.is_truth)
+            .flatMap((run) =>
+                findPeaks(run, of, number, what).map((peak) => ({
+                    time: peak.time_s,
+                    value: peak.value * factor,
+                    backend: run.backend,
+                })),
+            );
+    }
+
+    // The runs whose difference from the reference is the solver's own: with play the closed form,
+    // which has none, would show the play.
+    comparable() {
+        const hasPlay = this.data.joints.some((joint) => joint.has_play);
+        return this.data.runs.filter((run) => !hasPlay || run.backend !== "analytic");
+    }
+
+    bodyPlots(body) {
+        const name = this.data.bodies[body].name;
+        if (
+            this.data.runs.some(
+                (run) => findSignal(run, "body", body, "acceleration_m_s2") !== null,
+            )
+        ) {
+            return this.slidingPlots(body);
+        }
+        const between = { least: "alpha_min_rad_s2", most: "alpha_max_rad_s2" };
+        const plots = [
+            new TimePlot(this, `${name}: angle, deg`, this.lines("body", body, "angle_rad", DEG)),
+            new TimePlot(
+                this,
+                `${name}: angular velocity, rad/s`,
+                this.lines("body", body, "omega_rad_s", 1),
+            ),
+            new TimePlot(
+                this,
+                `${name}: angular acceleration, rad/s^2`,
+                this.lines("body", body, "alpha_rad_s2", 1, between),
+                { isSpiky: true },
+            ),
+            new TimePlot(
+                this,
+                `${name}: angular velocity less that of the reference, rad/s`,
+                this.lines("body", body, "omega_difference_rad_s", 1, {}, this.comparable()),
+                { isSpiky: true },
+            ),
+        ];
+        return plots.flatMap((plot) => this.addPlot(plot));
+    }
+
+    // Of a body that does not turn: where its centre is.
+    slidingPlots(body) {
+        const name = this.data.bodies[body].name;
+        const near = 1e-3 * this.mechanism.extent; // a millionth of it, in mm
+        const plots = ["x", "y"].map(
+            (axis) =>
+                new TimePlot(
+                    this,
+                    `${name}: ${axis} of the centre, mm`,
+                    this.lines("body", body, `${axis}_m`, 1e3),
+                    { least: near },
+                ),
+        );
+        plots.push(
+            new TimePlot(
+                this,
+                `${name}: size of the centre's acceleration, m/s^2`,
+                this.lines("body", body, "acceleration_m_s2", 1, { most: "acceleration_max_m_s2" }),
+                { isSpiky: true, hasZero: true },
+            ),
+        );
+        return plots.flatMap((plot) => this.addPlot(plot));
+    }
+
+    // All moving bodies; of many the one that is chosen.
+    makeBodies() {
+        const moving = this.data.bodies
+            .map((body, i) => i)
+            .filter((i) => !this.data.bodies[i].is_driven);
+        const grid = element("div", { className: "plots" });
+        const section = this.section("Motion");
+        if (moving.length <= PLOT_BODIES) {
+            moving.forEach((body) => grid.append(...this.bodyPlots(body)));
+        } else {
+            const show = (body) => {
+                this.plots = this.plots.filter((plot) => !grid.contains(plot.figure));
+                grid.replaceChildren(...this.bodyPlots(body));
+                this.watch();
+            };
+            const names = moving.map((i) => [String(i), this.data.bodies[i].name]);
+            section.append(
+                element(
+                    "div",
+                    { className: "controls" },
+                    this.choice("Body", names, names[0][0], (body) => show(Number(body))),
+                ),
+            );
+            grid.append(...this.bodyPlots(moving[0]));
+        }
+        section.append(grid);
+        return section;
+    }
+
+    jointsWithPlay() {
+        return this.data.joints
+            .map((joint, i) => i)
+            .filter(
+                (i) =>
+                    this.data.joints[i].has_play &&
+                    this.data.runs.some((run) => findSignal(run, "joint", i, "force") !== null),
+            );
+    }
+
+    jointPlots(number) {
+        const joint = this.data.joints[number];
+        const [force, depth, factor] = joint.is_torsional
+            ? ["torque, N m", "mrad", 1e3]
+            : ["force, N", "um", 1e6];
+        const figures = this.addPlot(
+            new TimePlot(
+                this,
+                `${joint.name}: ${force}`,
+                this.lines("joint", number, "force", 1, { most: "force_max" }),
+                { isSpiky: true, hasZero: true, marks: this.marks("joint", number, "force", 1) },
+            ),
+        );
+        const deep = this.lines("joint", number, "gap", -factor, { least: "gap_min" }).filter(
+            (line) => line !== null,
+        );
+        for (const line of deep) {
+            line.y = line.y.map((value) => Math.max(0, value));
+        }
+        figures.push(
+            ...this.addPlot(
+                new TimePlot(this, `${joint.name}: penetration, ${depth}`, deep, { hasZero: true }),
+            ),
+        );
+        const rows = [element("div", { className: "plots" }, ...figures)];
+        const felt = this.data.runs
+            .map((run) => new JointSignals(this.data, run, number))
+            .filter((one) => one.isThere);
+        if (joint.kind === "clearance" && felt.length > 0 && this.data.has_plane) {
+            const round = felt.flatMap((signals) => this.addPlot(new OrbitPlot(this, signals)));
+            round.push(...this.addPlot(new LoadPlot(this, felt)));
+            rows.push(element("div", { className: "plots" }, ...round));
+        }
+        return rows;
+    }
+
+    // The spikes of a joint, the strongest first; a click on one zooms to it.
+    spikeTable(run, number) {
+        const joint = this.data.joints[number];
+        // a contact that is a spike of the force, too, stands here once
+        const contacts = run.spikes.filter(
+            (spike) => spike.joint === number && spike.kind === "contact",
+        );
+        const isBoth = (spike) =>
+            contacts.some((contact) => Math.abs(contact.peak_s - spike.peak_s) < 1e-9);
+        const spikes = run.spikes
+            .filter(
+                (spike) => spike.joint === number && (spike.kind === "contact" || !isBoth(spike)),
+            )
+            .sort((a, b) => b.force - a.force)
+            .slice(0, SPIKES_SHOWN);
+        const unit = joint.is_torsional ? "N m" : "N";
+        const rows = spikes.map((spike) =>
+            element(
+                "tr",
+                {},
+                element(
+                    "td",
+                    {},
+                    this.button("Zoom", () => this.zoomTo(spike)),
+                ),
+                element("td", {}, spike.kind === "spike" ? "spike of the force" : "contact"),
+                ...(this.data.crank === null
+                    ? []
+                    : [
+                          element(
+                              "td",
+                              {},
+                              (((this.degrees(spike.peak_s) % 360) + 360) % 360).toFixed(1),
+                          ),
+                      ]),
+                element("td", {}, (1000 * spike.peak_s).toPrecision(6)),
+                element("td", {}, formatNumber(spike.force)),
+                element("td", {}, formatNumber(1e6 * (spike.end_s - spike.onset_s))),
+                element("td", {}, formatNumber(spike.impulse)),
+            ),
+        );
+        if (rows.length === 0) {
+            return [];
+        }
+        const heads = [
+            "go to",
+            "what",
+            ...(this.data.crank === null ? [] : ["crank, deg"]),
+            "peak at, ms",
+            `largest, ${unit}`,
+            "lasts, us",
+            `impulse, ${unit} s`,
+        ];
+        const table = element(
+            "table",
+            { className: "numbers" },
+            element(
+                "caption",
+                {},
+                `Strongest spikes and contacts of ${joint.name}, ${run.backend}`,
+            ),
+            element(
+                "thead",
+                {},
+                element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head))),
+            ),
+            element("tbody", {}, ...rows),
+        );
+        return [
+            element(
+                "details",
+                { open: run.is_truth },
+                element("summary", {}, `Spikes of ${joint.name}, ${run.backend}: ${rows.length}`),
+                element("div", { className: "wide" }, table),
+            ),
+        ];
+    }
+
+    makeJoints() {
+        const joints = this.jointsWithPlay();
+        if (joints.length === 0) {
+            return [];
+        }
+        const grid = element("div", {});
+        const tables = element("div", {});
+        const show = (number) => {
+            this.plots = this.plots.filter((plot) => !grid.contains(plot.figure));
+            grid.replaceChildren(...this.jointPlots(number));
+            tables.replaceChildren(
+                ...this.data.runs.flatMap((run) => this.spikeTable(run, number)),
+            );
+        };
+        const section = this.section("Joints with play");
+        if (joints.length > 1) {
+            const names = joints.map((i) => [String(i), this.data.joints[i].name]);
+            section.append(
+                element(
+                    "div",
+                    { className: "controls" },
+                    this.choice("Joint", names, names[0][0], (number) => {
+                        show(Number(number));
+                        this.watch();
+                    }),
+                ),
+            );
+        }
+        show(joints[0]);
+        section.append(grid, tables);
+        return [section];
+    }
+
+    makeDrive() {
+        const figures = this.addPlot(
+            new TimePlot(
+                this,
+                "Torque of the drive, N m",
+                this.lines("run", 0, "drive_torque_N_m", 1),
+                { isSpiky: true },
+            ),
+        );
+        return figures.length > 0
+            ? [this.section("Drive", element("div", { className: "plots" }, ...figures))]
+            : [];
+    }
+
+    makeSaving() {
+        const stem =
+            (this.data.case.split("/").pop() || "report").replace(/\.[^.]*$/, "") || "report";
+        const words =
+            "The values on this page, rounded to 1/131068 of each signal's range, with the exact " +
+            "results and peaks. " +
+            this.data.runs
+                .filter((run) => run.stride > 1)
+                .map(
+                    (run) =>
+                        `Of the samples of ${run.backend} every ${run.stride}th is here; ` +
+                        "peaks between them are kept.",
+                )
+                .join(" ");
+        const section = this.section(
+            "Save the data",
+            element("p", {}, words),
+            element(
+                "div",
+                { className: "controls" },
+                this.button("Save as JSON", () =>
+                    saveFile(stem + ".json", "application/json", dataAsJson(this.data)),
+                ),
+                this.button("Save as CSV", () =>
+                    saveFile(stem + ".csv", "text/csv", dataAsCsv(this.data)),
+                ),
+            ),
+        );
+        section.className = "screen";
+        return section;
+    }
+
+    // Draws plots that come into view, and marks those that are.
+    watch() {
+        this.observer.disconnect();
+        for (const plot of this.plots) {
+            plot.isStale = true;
+            this.observer.observe(plot.figure);
+        }
+    }
+
+    build(live) {
+        this.mechanism = new Mechanism(this);
+        this.magnification = this.mechanism.usualMagnification;
+        const hint =
+            "Click a plot to go to a time, drag over it to zoom, double-click for the whole run. " +
+            "Keys: space plays, arrows step, + and - zoom.";
+        const spatial = this.data.is_spatial ? " The mechanism is seen along the z axis." : "";
+        live.append(
+            element(
+                "section",
+                { className: "moving" },
+                element("h2", {}, "The mechanism"),
+                this.mechanism.canvas,
+            ),
+            this.makeControls(),
+            this.makeMechanismControls(),
+            element("p", { className: "note" }, hint + spatial),
+            ...this.makeJoints(),
+            this.makeBodies(),
+            ...this.makeDrive(),
+            this.makeSaving(),
+        );
+        this.observer = new IntersectionObserver(
+            (entries) => {
+                for (const entry of entries) {
+                    this.plots
+                        .filter((plot) => plot.figure === entry.target)
+                        .forEach((plot) => {
+                            plot.isSeen = entry.isIntersecting;
+                        });
+                }
+                this.drawSeen();
+            },
+            { rootMargin: "200px" },
+        );
+        this.watch();
+    }
+
+    // Draws anew where colours or sizes change, and all of it for print.
+    follow() {
+        const anew = () => {
+            COLOURS.clear();
+            this.redraw();
+        };
+        for (const query of ["(prefers-color-scheme: dark)", "print"]) {
+            matchMedia(query).addEventListener("change", anew);
+        }
+        addEventListener("resize", anew);
+        addEventListener("beforeprint", () => {
+            this.stop();
+            for (const plot of this.plots) {
+                plot.isSeen = true;
+            }
+            anew();
+        });
+    }
+}
+
+async function showPage() {
+    const live = document.getElementById("live");
+    let data = null;
+    try {
+        data = await readData();
+    } catch (error) {
+        // an old browser: what is there without script stays
+        live.hidden = false;
+        live.append(
+            element(
+                "p",
+                {},
+                "This browser cannot unpack the data of the page (DecompressionStream).",
+            ),
+        );
+        return;
+    }
+    if (data.runs.length === 0) {
+        return;
+    }
+    const page = new Page(data);
+    live.hidden = false;
+    document.getElementById("picture").hidden = true;
+    page.build(live);
+    page.follow();
+    page.showTime();
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {
+        page.play();
+    }
+    // for tests, and for those who look into the page
+    window.jointplay = page;
+}
+
+showPage();

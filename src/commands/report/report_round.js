@@ -1,0 +1,295 @@
+// Plots that are no functions of time: the path of a pin's centre in its hole, coloured by the
+// force, and the load of the pin on the hole by direction. Both are in the axes of the body that
+// has the hole, over the part of the run that the other plots show.
+
+const ROUND_BINS = 24; // of the colours of a path
+
+// From weak to strong, readable by the colour-blind: a part of the palette viridis, whose dark end
+// is cut for dark pages and whose light end for light ones.
+function heatColour(share) {
+    const stops = [
+        [68, 1, 84],
+        [59, 82, 139],
+        [33, 145, 140],
+        [94, 201, 98],
+        [253, 231, 37],
+    ];
+    const isDark = colourOf("scheme") === "dark";
+    const at = (isDark ? 0.25 + 0.75 * share : 0.88 * share) * (stops.length - 1);
+    const first = Math.min(stops.length - 2, Math.floor(at));
+    const mixed = stops[first].map((value, i) =>
+        Math.round(value + (at - first) * (stops[first + 1][i] - value)),
+    );
+    return `rgb(${mixed.join(",")})`;
+}
+
+// The signals of a joint in the axes of its body a.
+class JointSignals {
+    constructor(data, run, number) {
+        const joint = data.joints[number];
+        this.run = run;
+        this.number = number;
+        this.joint = joint;
+        this.angles = joint.body_a < 0 ? null : findSignal(run, "body", joint.body_a, "angle_rad");
+        this.ex = findSignal(run, "joint", number, "ex_m");
+        this.ey = findSignal(run, "joint", number, "ey_m");
+        this.force = findSignal(run, "joint", number, "force");
+        this.fx = findSignal(run, "joint", number, "force_x_N");
+        this.fy = findSignal(run, "joint", number, "force_y_N");
+        this.isThere = this.ex !== null && this.force !== null;
+    }
+
+    turned(x, y, i) {
+        const angle = this.angles === null ? 0 : this.angles[i];
+        const [c, s] = [Math.cos(angle), Math.sin(angle)];
+        return [c * x + s * y, c * y - s * x];
+    }
+
+    offset(i) {
+        return this.turned(this.ex[i], this.ey[i], i);
+    }
+
+    // The force of the pin on the hole, which points to where on the wall it presses.
+    load(i) {
+        return this.turned(-this.fx[i], -this.fy[i], i);
+    }
+
+    // The number of the sample at a time.
+    sampleAt(time) {
+        const at = Math.round((time - this.run.from_s) / this.run.interval_s);
+        return Math.max(0, Math.min(this.ex.length - 1, at));
+    }
+}
+
+class RoundPlot {
+    constructor(page, title, words, backend) {
+        this.page = page;
+        this.backend = backend;
+        this.canvas = element("canvas", { tabIndex: 0, className: "round" });
+        this.canvas.setAttribute("role", "img");
+        this.canvas.setAttribute("aria-label", title + ". " + words);
+        this.canvas.addEventListener("keydown", (event) => page.onKey(event));
+        this.overlay = element("canvas", { className: "round overlay" });
+        this.overlay.setAttribute("aria-hidden", "true");
+        const frame = element("div", { className: "frame" }, this.canvas, this.overlay);
+        this.note = element("div", { className: "legend" }, words);
+        this.figure = element(
+            "figure",
+            { className: "square" },
+            element("figcaption", {}, title),
+            frame,
+            this.note,
+        );
+    }
+
+    begin() {
+        this.size = this.canvas.clientWidth;
+        this.context = prepareCanvas(this.canvas, this.size, this.size);
+        this.middle = this.size / 2;
+    }
+
+    // Rings at round values up to the reach.
+    drawRings(context, scale, most) {
+        context.lineWidth = 1;
+        context.strokeStyle = colourOf("grid");
+        context.beginPath();
+        context.moveTo(this.middle, 0);
+        context.lineTo(this.middle, this.size);
+        context.moveTo(0, this.middle);
+        context.lineTo(this.size, this.middle);
+        context.stroke();
+        for (const tick of findTicks(0, most, 3).ticks) {
+            if (tick > 0) {
+                context.beginPath();
+                context.arc(this.middle, this.middle, tick * scale, 0, 2 * Math.PI);
+                context.stroke();
+            }
+        }
+    }
+
+    // What the rings mean, over all that is drawn, with a rim so that it can be read there.
+    nameRings(context, scale, most, unit) {
+        context.fillStyle = colourOf("ink");
+        context.strokeStyle = colourOf("paper");
+        context.lineWidth = 3;
+        context.textAlign = "left";
+        context.textBaseline = "bottom";
+        for (const tick of findTicks(0, most, 3).ticks) {
+            if (tick > 0) {
+                const words = `${formatNumber(tick)} ${unit}`;
+                const [x, y] = [this.middle + 4, this.middle - tick * scale - 2];
+                context.strokeText(words, x, y);
+                context.fillText(words, x, y);
+            }
+        }
+    }
+}
+
+// The path of a pin's centre in its hole.
+class OrbitPlot extends RoundPlot {
+    constructor(page, signals) {
+        const { joint, run } = signals;
+        super(
+            page,
+            `Pin in its hole: ${joint.name}, ${run.backend}`,
+            "The circle is how far the pin's centre can go before it touches. Colour: force.",
+            run.backend,
+        );
+        this.signals = signals;
+        this.reach = joint.clearance_m;
+        this.most = 0;
+        for (let i = 0; i < signals.ex.length; i++) {
+            this.reach = Math.max(this.reach, Math.hypot(signals.ex[i], signals.ey[i]));
+            this.most = Math.max(this.most, signals.force[i] || 0);
+        }
+        this.note.append(this.makeScale());
+    }
+
+    // A bar with the colours and the largest force.
+    makeScale() {
+        this.bar = element("canvas", { className: "bar" });
+        this.bar.setAttribute("aria-hidden", "true");
+        return element(
+            "span",
+            { className: "key" },
+            "0 ",
+            this.bar,
+            ` ${formatNumber(this.most)} ${this.signals.joint.is_torsional ? "N m" : "N"}`,
+        );
+    }
+
+    drawBar() {
+        const context = prepareCanvas(this.bar, 120, 10);
+        for (let i = 0; i < ROUND_BINS; i++) {
+            context.fillStyle = heatColour(i / (ROUND_BINS - 1));
+            context.fillRect((120 * i) / ROUND_BINS, 0, 120 / ROUND_BINS + 1, 10);
+        }
+    }
+
+    place([x, y]) {
+        return [this.middle + x * this.scale, this.middle - y * this.scale];
+    }
+
+    draw() {
+        this.begin();
+        this.drawBar();
+        const { signals, context } = this;
+        this.scale = (0.44 * this.size) / this.reach;
+        this.drawRings(context, this.scale * 1e-6, this.reach * 1e6);
+        context.strokeStyle = colourOf("frame");
+        context.lineWidth = 1.5;
+        context.beginPath();
+        context.arc(
+            this.middle,
+            this.middle,
+            signals.joint.clearance_m * this.scale,
+            0,
+            2 * Math.PI,
+        );
+        context.stroke();
+        this.drawPath(context);
+        this.nameRings(context, this.scale * 1e-6, this.reach * 1e6, "um");
+        this.showTime();
+    }
+
+    // Pieces of one colour are one path each: a browser draws few paths fast.
+    drawPath(context) {
+        const { signals } = this;
+        const first = signals.sampleAt(this.page.view.from);
+        const last = signals.sampleAt(this.page.view.to);
+        const paths = Array.from({ length: ROUND_BINS }, () => new Path2D());
+        let before = this.place(signals.offset(first));
+        for (let i = first + 1; i <= last; i++) {
+            const after = this.place(signals.offset(i));
+            const share = this.most > 0 ? (signals.force[i] || 0) / this.most : 0;
+            const bin = Math.max(0, Math.min(ROUND_BINS - 1, Math.floor(share * ROUND_BINS)));
+            paths[bin].moveTo(before[0], before[1]);
+            paths[bin].lineTo(after[0], after[1]);
+            before = after;
+        }
+        context.lineWidth = 1.8;
+        context.lineCap = "round";
+        paths.forEach((path, i) => {
+            context.strokeStyle = heatColour(i / (ROUND_BINS - 1));
+            context.stroke(path);
+        });
+    }
+
+    showTime() {
+        const context = prepareCanvas(this.overlay, this.size, this.size);
+        const [x, y] = this.place(this.signals.offset(this.signals.sampleAt(this.page.time)));
+        context.beginPath();
+        context.arc(x, y, 5, 0, 2 * Math.PI);
+        context.fillStyle = colourOf("cursor");
+        context.fill();
+        context.strokeStyle = colourOf("paper");
+        context.stroke();
+    }
+}
+
+// The load of a pin on its hole by direction, of every run.
+class LoadPlot extends RoundPlot {
+    constructor(page, all) {
+        const { joint } = all[0];
+        super(
+            page,
+            `Load of the pin: ${joint.name}`,
+            "Force of the pin on the hole, by direction in the axes of the hole's body.",
+            null,
+        );
+        this.all = all;
+        this.most = 0;
+        for (const signals of all) {
+            for (let i = 0; i < signals.fx.length; i++) {
+                const size = Math.hypot(signals.fx[i], signals.fy[i]);
+                this.most = size > this.most ? size : this.most;
+            }
+            this.note.append(
+                element(
+                    "span",
+                    { className: "key" },
+                    element("span", { className: "swatch " + signals.run.backend }),
+                    signals.run.backend,
+                ),
+            );
+        }
+    }
+
+    shownSignals() {
+        return this.all.filter((signals) => this.page.shown.has(signals.run.backend));
+    }
+
+    draw() {
+        this.begin();
+        const { context } = this;
+        this.scale = (0.44 * this.size) / (this.most || 1);
+        this.drawRings(context, this.scale, this.most);
+        for (const signals of this.shownSignals()) {
+            const last = signals.sampleAt(this.page.view.to);
+            context.beginPath();
+            for (let i = signals.sampleAt(this.page.view.from); i <= last; i++) {
+                const [x, y] = signals.load(i);
+                context.lineTo(this.middle + x * this.scale, this.middle - y * this.scale);
+            }
+            context.strokeStyle = colourOf(signals.run.backend);
+            context.lineWidth = signals.run.is_truth ? 2 : 1.2;
+            context.lineJoin = "round";
+            context.stroke();
+        }
+        this.nameRings(context, this.scale, this.most, "N");
+        this.showTime();
+    }
+
+    showTime() {
+        const context = prepareCanvas(this.overlay, this.size, this.size);
+        for (const signals of this.shownSignals()) {
+            const [x, y] = signals.load(signals.sampleAt(this.page.time));
+            context.beginPath();
+            context.moveTo(this.middle, this.middle);
+            context.lineTo(this.middle + x * this.scale, this.middle - y * this.scale);
+            context.strokeStyle = colourOf("cursor");
+            context.lineWidth = 2;
+            context.stroke();
+        }
+    }
+}

@@ -1,0 +1,283 @@
+# Does the page of 'jointplay report' keep its word? Its policy and the hashes in it, nothing that
+# asks another place, texts of a user's shown as text, and data that decode to what 'jointplay run'
+# writes.
+# Usage: report.py PROGRAM CASE. Prints TAP.
+import base64, csv, hashlib, html.parser, itertools, json, math, os, re, struct
+import subprocess, sys, tempfile, zlib
+
+program, case = sys.argv[1:3]
+HOSTILE = "</script></title><img src=x onerror=\"document.title='x'\">&lt;b&gt; \u9023 'q'"
+NONE = 65535
+# what is no column of a series
+OWN = ["omega_difference_rad_s", "acceleration_m_s2", "acceleration_max_m_s2"]
+
+
+class Page(html.parser.HTMLParser):
+    """The parts of a page, as a browser takes it apart."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.open, self.texts, self.attributes = [], [], {}, []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        self.attributes += [(tag, name, value) for name, value in attributes]
+        self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        while self.open and self.open.pop() != tag:
+            pass
+
+    def handle_data(self, data):
+        if self.open:
+            self.texts.setdefault(self.open[-1], []).append(data)
+
+    def text(self, tag):
+        return "".join(self.texts.get(tag, []))
+
+
+def run(*words):
+    done = subprocess.run([program, *words], capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr
+
+
+def make(path, *words):
+    # few samples where a claim does not need more; the last value of a key counts
+    words = ["--set", "run.samples=400", *words]
+    status, _, errors = run("report", case, "--quiet", "--out", path, *words)
+    assert status == 0, errors
+    return open(path, encoding="utf-8").read()
+
+
+def policy(page):
+    contents = [value for _, name, value in page.attributes if name == "content"]
+    found = [value for value in contents if "default-src" in value]
+    assert len(found) == 1, found
+    return found[0]
+
+
+def unpack(page):
+    whole = zlib.decompress(base64.b64decode(re.sub(r"\s", "", page.text("template"))))
+    (length,) = struct.unpack("<I", whole[:4])
+    data = json.loads(whole[4 : 4 + length])
+    signals = whole[4 + length :]
+    for one in data["runs"]:
+        for signal in one["signals"]:
+            at, count = signal["offset"], signal["count"]
+            low, high = signals[at : at + count], signals[at + count : at + 2 * count]
+            codes = itertools.accumulate(low[i] + 256 * high[i] for i in range(count))
+            signal["values"] = [
+                math.nan if code % 65536 == NONE
+                else signal["low"] + signal["slope"] * i + signal["step"] * (code % 65536)
+                for i, code in enumerate(codes)]
+    return data
+
+
+def series(folder, *words):
+    status, _, errors = run("run", case, "--quiet", "--out", folder, *words)
+    assert status == 0, errors
+    stem = os.path.splitext(os.path.basename(case))[0]
+    result = json.load(open(f"{folder}/{stem}.json"))
+    tables = {}
+    for one in result["runs"]:
+        with open(f"{folder}/{stem}-{one['backend']}.csv") as stream:
+            rows = list(csv.reader(stream))
+        numbers = [[float(cell) if cell else math.nan for cell in row] for row in rows[1:]]
+        tables[one["backend"]] = dict(zip(rows[0], zip(*numbers)))
+    return result, tables
+
+
+# The claims.
+
+
+def the_policy_allows_one_script_and_one_style_sheet(work):
+    page = Page(make(work + "/a.html"))
+    rules = policy(page)
+    assert rules.startswith("default-src 'none'; "), rules
+    assert "unsafe" not in rules
+    for tag in ["script", "style"]:
+        assert page.tags.count(tag) == 1, tag
+        digest = base64.b64encode(hashlib.sha256(page.text(tag).encode()).digest()).decode()
+        assert f"{tag}-src 'sha256-{digest}'" in rules, (tag, rules)
+
+
+def nothing_in_it_asks_another_place(work):
+    text = make(work + "/b.html")
+    assert not re.search(r"https?:|//[a-z0-9.-]+\.[a-z]{2,}/", text, re.IGNORECASE)
+    page = Page(text)
+    words = ("src", "href", "action", "data", "style")
+    asking = [one for one in page.attributes if one[1] in words]
+    assert asking == [], asking
+    assert [one for one in page.attributes if one[1].startswith("on")] == []
+    # the control: a page that asks is found
+    assert re.search(r"https?:", "<img src='http://x'>")
+
+
+def the_picture_needs_no_style_sheet(work):
+    text = make(work + "/c.html")
+    picture = text[text.index("<svg") : text.index("</svg>")]
+    assert "<path" in picture and "<style" not in picture and "class=" not in picture
+
+
+def a_title_is_shown_as_text(work):
+    text = make(work + "/d.html", "--set", "title=" + HOSTILE)
+    page = Page(text)
+    assert "img" not in page.tags and page.tags.count("script") == 1
+    assert page.text("h1") == HOSTILE, page.text("h1")
+    assert "onerror" in page.text("title")
+    assert unpack(page)["title"] == HOSTILE
+
+
+def the_answer_is_that_of_run(work):
+    page = Page(make(work + "/e.html"))
+    result, _ = series(work + "/e", "--set", "run.samples=400")
+    answer = page.text("li") + page.text("td") + page.text("th")
+    for row in result["overview"]["joints"] + result["overview"]["bodies"]:
+        assert row["name"] in answer
+    force = result["overview"]["joints"][0]["force_max_N"]
+    assert f"{force / 1000:.3g}" in answer or f"{force:.3g}" in answer, answer
+    assert f"right to {result['truth']['uncertainty']:.2g}" in page.text("li"), page.text("li")
+    assert "Assumed:" in page.text("li")
+
+
+def the_command_makes_the_page_again(work):
+    text = make(work + "/f.html", "--set", "title=a b", "--backend", "reference")
+    command = unpack(Page(text))["command"]
+    # as a shell takes it apart
+    script = "for word in " + command + '; do printf "%s\\n" "$word"; done'
+    done = subprocess.run(["sh", "-c", script], capture_output=True, text=True)
+    words = done.stdout.splitlines()
+    assert words[0] == "jointplay", words
+    status, _, errors = run(*words[1:], "--quiet")
+    assert status == 0, errors
+    again = open(work + "/f.html", encoding="utf-8").read()
+    same = lambda page: [one["signals"] for one in unpack(Page(page))["runs"]]
+    assert same(again) == same(text)
+
+
+def check_values(data, tables, stride):
+    compared = 0
+    for one in data["runs"]:
+        table = tables[one["backend"]]
+        assert one["stride"] == stride, one["stride"]
+        for signal in one["signals"]:
+            column = table.get(signal["name"])
+            if column is None:
+                assert signal["what"] in OWN, signal["what"]
+                continue
+            # half a step, and what rounding adds to it
+            size = max((abs(value) for value in column if value == value), default=0.0)
+            allowed = 0.5 * signal["step"] + 1e-11 * size
+            count = signal["count"]
+            for i, value in enumerate(signal["values"]):
+                first = i * stride
+                behind = len(column) if i + 1 == count else first + stride
+                part = column[first:behind]
+                if signal["what"].split("_")[1:2] == ["min"]:
+                    expected = min(part)
+                elif signal["what"].split("_")[1:2] == ["max"]:
+                    expected = max(part)
+                else:
+                    expected = part[0]
+                assert abs(value - expected) <= allowed, (signal["name"], i, value, expected)
+            compared += 1
+    assert compared > 20, compared
+
+
+def check_peaks(data, result):
+    for one in data["runs"]:
+        whole = next(other for other in result["runs"] if other["backend"] == one["backend"])
+        peaks = one["peaks"]
+        largest = lambda *key: max(
+            abs(one["value"]) for one in peaks if (one["of"], one["number"], one["what"]) == key)
+        for number, body in enumerate(data["bodies"]):
+            known = whole["bodies"].get(body["name"])
+            if known is not None:
+                sizes = [abs(known["alpha_max_rad_s2"]), abs(known["alpha_min_rad_s2"])]
+                assert largest("body", number, "alpha_rad_s2") == max(sizes)
+        for number, joint in enumerate(data["joints"]):
+            if joint["has_play"] and one["backend"] != "analytic":
+                known = whole["joints"][joint["name"]]
+                assert largest("joint", number, "force") == known["force_max_N"]
+                assert largest("joint", number, "gap") == known["penetration_max_m"]
+
+
+def the_data_are_the_samples_and_the_peaks_of_run(work):
+    words = ["--set", "run.samples=900"]
+    data = unpack(Page(make(work + "/g.html", *words)))
+    result, tables = series(work + "/g", *words)
+    check_values(data, tables, 1)
+    check_peaks(data, result)
+    # the control: one value that is off by a step is found
+    signal = next(one for one in data["runs"][0]["signals"] if one["step"] > 1e-6)
+    signal["values"][7] += signal["step"]
+    try:
+        check_values(data, tables, 1)
+    except AssertionError:
+        return
+    raise AssertionError("a value that is off was not found")
+
+
+def no_peak_is_lost_where_samples_are_left_out(work):
+    words = ["--set", "run.samples=15000", "--set", "run.backends=[reference, ode]"]
+    text = make(work + "/h.html", *words)
+    data = unpack(Page(text))
+    result, tables = series(work + "/h", *words)
+    assert data["runs"][0]["stride"] > 1
+    check_values(data, tables, data["runs"][0]["stride"])
+    check_peaks(data, result)
+    assert len(text) < 1e6, len(text)
+
+
+def a_file_of_another_kind_is_not_replaced(work):
+    path = work + "/own.html"
+    open(path, "w").write("<!DOCTYPE html>\n<title>mine</title>\n")
+    status, _, errors = run("report", case, "--quiet", "--out", path)
+    assert status == 5, status
+    assert "page of jointplay report" in errors, errors
+    assert "mine" in open(path).read()
+
+
+def without_a_name_the_page_is_in_the_folder(work):
+    words = ["report", os.path.abspath(case), "--quiet", "--backend", "analytic"]
+    status = subprocess.run([program, *words], cwd=work).returncode
+    stem = os.path.splitext(os.path.basename(case))[0]
+    assert status == 0 and os.path.exists(f"{work}/{stem}.html")
+
+
+def a_run_that_fails_is_in_the_page(work):
+    path = work + "/i.html"
+    # a step in which the pin goes through its wall
+    status, _, errors = run("report", case, "--quiet", "--out", path, "--step", "2 ms", "--set",
+                            "run.start=centred", "--set", "run.backends=[analytic, ode]")
+    assert status == 4, errors
+    page = Page(open(path, encoding="utf-8").read())
+    assert "ode FAILED: " in page.text("li"), page.text("li")
+    assert [one["backend"] for one in unpack(page)["runs"]] == ["analytic"]
+
+
+CLAIMS = [
+    the_policy_allows_one_script_and_one_style_sheet,
+    nothing_in_it_asks_another_place,
+    the_picture_needs_no_style_sheet,
+    a_title_is_shown_as_text,
+    the_answer_is_that_of_run,
+    the_command_makes_the_page_again,
+    the_data_are_the_samples_and_the_peaks_of_run,
+    no_peak_is_lost_where_samples_are_left_out,
+    a_file_of_another_kind_is_not_replaced,
+    without_a_name_the_page_is_in_the_folder,
+    a_run_that_fails_is_in_the_page,
+]
+
+print(f"1..{len(CLAIMS)}")
+with tempfile.TemporaryDirectory() as folder:
+    for number, claim in enumerate(CLAIMS, 1):
+        try:
+            claim(folder)
+            print(f"ok {number} - {claim.__name__}")
+        except AssertionError as error:
+            print(f"not ok {number} - {claim.__name__}")
+            print("# " + str(error)[:800].replace("\n", "\n# "))
+        sys.stdout.flush()

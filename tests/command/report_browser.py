@@ -1,0 +1,360 @@
+# Does a page of 'jointplay report' work in a browser? Chromium opens it, is told over its debugging
+# pipe to click, drag and type, and says what it then shows.
+# Usage: report_browser.py PROGRAM CASE CHROMIUM [FOLDER-FOR-SCREENSHOTS]. Prints TAP.
+import base64, json, os, select, shutil, subprocess, sys, tempfile, time
+
+program, case, chromium = sys.argv[1:4]
+pictures = sys.argv[4] if len(sys.argv) > 4 else None
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync",
+         "--remote-debugging-pipe"]
+PATIENCE_S = 60
+HOSTILE = "</script><img src=x onerror=\"document.title='x'\">"
+
+
+class Browser:
+    """Chromium at the other end of two pipes: messages end in a zero byte."""
+
+    def __init__(self, folder):
+        to_browser, self.send_end = os.pipe()
+        self.receive_end, from_browser = os.pipe()
+
+        def take_pipes():
+            # away from 3 and 4 first, where one of them may stand already
+            first, second = os.dup(to_browser), os.dup(from_browser)
+            high = [os.dup2(first, 103), os.dup2(second, 104)]
+            os.dup2(high[0], 3)
+            os.dup2(high[1], 4)
+
+        self.process = subprocess.Popen(
+            [chromium, *FLAGS, "--user-data-dir=" + folder], preexec_fn=take_pipes, close_fds=False,
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.rest, self.number, self.session, self.events = b"", 0, None, []
+        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ["Page", "Runtime", "Log", "Network"]:
+            self.ask(domain + ".enable")
+
+    def receive(self):
+        until = time.monotonic() + PATIENCE_S
+        while b"\0" not in self.rest:
+            ready = select.select([self.receive_end], [], [], max(0, until - time.monotonic()))[0]
+            part = os.read(self.receive_end, 1 << 20) if ready else b""
+            if part == b"":
+                raise RuntimeError("the browser does not answer")
+            self.rest += part
+        message, self.rest = self.rest.split(b"\0", 1)
+        return json.loads(message)
+
+    def ask(self, method, **parameters):
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": parameters}
+        if self.session is not None:
+            message["sessionId"] = self.session
+        os.write(self.send_end, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self.receive()
+            if answer.get("id") == self.number:
+                assert "error" not in answer, answer
+                return answer["result"]
+            self.events.append(answer)
+
+    def end(self):
+        try:
+            self.session = None
+            self.ask("Browser.close")
+            self.process.wait(PATIENCE_S)
+        except (RuntimeError, OSError, subprocess.TimeoutExpired):
+            self.process.kill()
+            self.process.wait()
+
+    def value(self, expression):
+        result = self.ask("Runtime.evaluate", expression=expression, returnByValue=True)
+        assert "exceptionDetails" not in result, result
+        return result["result"].get("value")
+
+    def wait_for(self, expression):
+        until = time.monotonic() + PATIENCE_S
+        while not self.value(expression):
+            assert time.monotonic() < until, "waited in vain for " + expression
+            time.sleep(0.05)
+
+    def open(self, path, width=1200, dark=False, script=True, still=True):
+        self.events = []
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1,
+                 mobile=False)
+        self.ask("Emulation.setScriptExecutionDisabled", value=not script)
+        motion = "reduce" if still else "no-preference"
+        features = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
+                    {"name": "prefers-reduced-motion", "value": motion}]
+        self.ask("Emulation.setEmulatedMedia", media="", features=features)
+        self.ask("Page.navigate", url="file://" + path)
+        if script:
+            self.wait_for("document.readyState === 'complete' && window.jointplay !== undefined")
+        else:
+            self.wait_for("document.readyState === 'complete'")
+
+    def mouse(self, kind, x, y, count=1):
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1,
+                 clickCount=count)
+
+    def click(self, x, y):
+        self.mouse("mousePressed", x, y)
+        self.mouse("mouseReleased", x, y)
+
+    def key(self, key, code=0, text=None):
+        more = {"text": text} if text is not None else {}
+        for kind in ["keyDown", "keyUp"]:
+            self.ask("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code,
+                     **(more if kind == "keyDown" else {}))
+
+    # The middle of what a selector finds, scrolled into view.
+    def place(self, selector):
+        return self.value(f"""(() => {{
+            const found = document.querySelector({json.dumps(selector)});
+            found.scrollIntoView({{block: "center"}});
+            const box = found.getBoundingClientRect();
+            return [box.left, box.top, box.width, box.height];
+        }})()""")
+
+    def picture(self, name):
+        if pictures is not None:
+            shot = self.ask("Page.captureScreenshot", captureBeyondViewport=False)["data"]
+            with open(os.path.join(pictures, name + ".png"), "wb") as stream:
+                stream.write(base64.b64decode(shot))
+
+    def check_silence(self):
+        for event in self.events:
+            method, parameters = event.get("method"), event.get("params", {})
+            assert method not in ("Runtime.consoleAPICalled", "Runtime.exceptionThrown"), parameters
+            assert method != "Log.entryAdded", parameters
+        asked = [event["params"]["request"]["url"] for event in self.events
+                 if event.get("method") == "Network.requestWillBeSent"]
+        # the page itself, and what it makes in memory
+        assert [url[:5] for url in asked if not url.startswith("blob:")] == ["file:"], asked
+
+
+DRAWN = """(() => {
+    const blank = (canvas) => {
+        const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+        return !data.some((value) => value !== 0);
+    };
+    return [...document.querySelectorAll("canvas")].filter(blank).map((canvas) =>
+        canvas.getAttribute("aria-label") || canvas.className);
+})()"""
+SEE_ALL = "for (const plot of jointplay.plots) plot.isSeen = true; jointplay.redraw();"
+
+
+# The claims: each of a browser and a page.
+
+
+def every_plot_is_drawn_and_the_console_is_silent(browser, page):
+    browser.open(page)
+    browser.value(SEE_ALL)
+    assert browser.value("jointplay.plots.length") >= 10
+    assert browser.value(DRAWN) == []
+    browser.picture("light")
+    browser.check_silence()
+
+
+def dark_and_narrow_pages_fit(browser, page):
+    colours = []
+    for dark in [False, True]:
+        for width in [390, 1200]:
+            browser.open(page, width=width, dark=dark)
+            browser.value(SEE_ALL)
+            assert browser.value("document.documentElement.scrollWidth") <= width
+            assert browser.value(DRAWN) == []
+            browser.picture(f"{'dark' if dark else 'light'}-{width}")
+            browser.check_silence()
+        colours.append(browser.value("getComputedStyle(document.body).backgroundColor"))
+    assert colours[0] != colours[1], colours
+
+
+def without_script_answer_and_picture_are_there(browser, page):
+    browser.open(page, script=False)
+    assert browser.value("document.querySelectorAll('#answer td').length") > 5
+    shown = "document.querySelector('#picture svg').getBoundingClientRect().width"
+    assert browser.value(shown) > 300
+    assert browser.value("document.getElementById('live').getBoundingClientRect().height") == 0
+    browser.picture("no-script")
+    browser.check_silence()
+
+
+def it_plays_and_pauses(browser, page):
+    browser.open(page, still=False)
+    assert browser.value("jointplay.isPlaying")
+    before = browser.value("jointplay.time")
+    browser.wait_for("jointplay.frames.length > 60")
+    assert browser.value("jointplay.time") != before
+    frames = sorted(browser.value("jointplay.frames"))
+    print(f"# {1000 * len(frames) / sum(frames):.0f} frames a second")
+    left, top, width, height = browser.place(".playing button")
+    browser.click(left + width / 2, top + height / 2)
+    assert not browser.value("jointplay.isPlaying")
+    still = browser.value("jointplay.time")
+    time.sleep(0.2)
+    assert browser.value("jointplay.time") == still
+    browser.check_silence()
+
+
+def keys_move_the_time(browser, page):
+    browser.open(page)
+    browser.value("document.querySelector('canvas.plot').focus()")
+    browser.key("Home", 36)
+    assert browser.value("jointplay.time") == 0
+    browser.key("ArrowRight", 39)
+    one = browser.value("jointplay.time")
+    assert one > 0
+    browser.key("End", 35)
+    assert browser.value("jointplay.time === jointplay.view.to")
+    browser.key(" ", 32, " ")
+    assert browser.value("jointplay.isPlaying")
+    browser.key(" ", 32, " ")
+    assert not browser.value("jointplay.isPlaying")
+
+
+def a_click_and_the_slider_move_the_time(browser, page):
+    browser.open(page)
+    left, top, width, height = browser.place("canvas.plot")
+    browser.click(left + width / 2, top + height / 2)
+    share = browser.value("jointplay.time / jointplay.whole.to")
+    assert 0.4 < share < 0.6, share
+    browser.value("document.querySelector('input.time').focus()")
+    browser.key("ArrowLeft", 37)
+    assert browser.value("jointplay.time / jointplay.whole.to") < share
+    # the cursor of every plot that is seen stands there
+    cursors = browser.value("""(() => {
+        const left = (one) => one.getBoundingClientRect().left;
+        return jointplay.plots.filter((plot) => plot.isSeen && plot.cursor).map((plot) =>
+            Math.abs(left(plot.cursor) - left(plot.canvas) - plot.toX(jointplay.time)));
+    })()""")
+    assert cursors and max(cursors) < 2, cursors
+
+
+def a_drag_zooms_and_ticks_stay_apart(browser, page):
+    browser.open(page)
+    left, top, width, height = browser.place("canvas.plot")
+    for _ in range(3):
+        browser.mouse("mousePressed", left + 0.4 * width, top + 60)
+        browser.mouse("mouseMoved", left + 0.5 * width, top + 60)
+        browser.mouse("mouseReleased", left + 0.5 * width, top + 60)
+    share = browser.value("(jointplay.view.to - jointplay.view.from) / jointplay.whole.to")
+    assert share < 0.01, share
+    ticks = browser.value("jointplay.timeTicks(5).map((tick) => tick.words)")
+    assert len(ticks) >= 3 and len(set(ticks)) == len(ticks), ticks
+    browser.picture("zoomed")
+    browser.mouse("mousePressed", left + 0.5 * width, top + 60, 2)
+    browser.mouse("mouseReleased", left + 0.5 * width, top + 60, 2)
+    browser.wait_for("jointplay.view.to - jointplay.view.from === jointplay.whole.to")
+
+
+def a_listed_spike_is_zoomed_to(browser, page):
+    browser.open(page)
+    left, top, width, height = browser.place("td button")
+    browser.click(left + width / 2, top + height / 2)
+    assert browser.value("jointplay.view.to - jointplay.view.from < 0.1 * jointplay.whole.to")
+    found = browser.value("""(() => {
+        const run = jointplay.data.runs.find((one) => one.is_truth);
+        const most = Math.max(...run.spikes.map((spike) => spike.force));
+        const plot = jointplay.plots.find((one) => one.title.includes("force"));
+        const line = plot.lines.find((one) => one.run === run);
+        const isAtSpike = run.spikes.some((spike) => spike.peak_s === jointplay.time);
+        return [most, Math.max(...line.y), isAtSpike];
+    })()""")
+    assert found[2] and found[0] == found[1], found
+    browser.picture("spike")
+
+
+def runs_can_be_hidden_and_the_axis_changed(browser, page):
+    browser.open(page)
+    shown = browser.value("[...jointplay.shown].length")
+    browser.value("[...document.querySelectorAll('.switch input')].find((box) => "
+                  "box.parentElement.textContent.trim() === 'ode').click()")
+    assert browser.value("[...jointplay.shown].length") == shown - 1
+    browser.value("""(() => {
+        const select = [...document.querySelectorAll("select")].find((one) =>
+            one.parentElement.textContent.startsWith("Axis"));
+        select.value = "ms";
+        select.dispatchEvent(new Event("change"));
+    })()""")
+    assert browser.value("jointplay.unitWords()") == "time, ms"
+    browser.value("for (const box of document.querySelectorAll('figcaption input')) box.click()")
+    browser.value(SEE_ALL)
+    assert browser.value(DRAWN) == []
+    browser.check_silence()
+
+
+def the_data_can_be_saved(browser, page):
+    browser.open(page)
+    data = json.loads(browser.value("dataAsJson(jointplay.data)"))
+    assert len(data["runs"][0]["signals"][0]["values"]) == data["runs"][0]["signals"][0]["count"]
+    lines = browser.value("dataAsCsv(jointplay.data)").splitlines()
+    assert lines[0].startswith("backend,time_s,"), lines[0]
+    assert {line.count(",") for line in lines} == {lines[0].count(",")}
+    count = sum(run["signals"][0]["count"] for run in data["runs"])
+    assert len(lines) == count + 1, (len(lines), count)
+
+
+def canvases_have_roles_and_names(browser, page):
+    browser.open(page)
+    nameless = browser.value("""[...document.querySelectorAll("canvas")].filter((canvas) =>
+        canvas.getAttribute("aria-hidden") !== "true" &&
+        (canvas.getAttribute("role") !== "img" || !canvas.getAttribute("aria-label"))).length""")
+    assert nameless == 0
+    unlabelled = browser.value("""[...document.querySelectorAll("input, select")].filter((one) =>
+        one.labels.length === 0 && !one.getAttribute("aria-label")).length""")
+    assert unlabelled == 0
+
+
+def a_hostile_title_stays_text(browser, page):
+    hostile = os.path.join(os.path.dirname(page), "hostile.html")
+    make(hostile, "--set", "title=" + HOSTILE)
+    browser.open(hostile)
+    assert browser.value("document.querySelectorAll('img').length") == 0
+    assert browser.value("document.querySelector('h1').textContent") == HOSTILE
+    assert browser.value("document.title") == HOSTILE
+    browser.check_silence()
+
+
+CLAIMS = [
+    every_plot_is_drawn_and_the_console_is_silent,
+    dark_and_narrow_pages_fit,
+    without_script_answer_and_picture_are_there,
+    it_plays_and_pauses,
+    keys_move_the_time,
+    a_click_and_the_slider_move_the_time,
+    a_drag_zooms_and_ticks_stay_apart,
+    a_listed_spike_is_zoomed_to,
+    runs_can_be_hidden_and_the_axis_changed,
+    the_data_can_be_saved,
+    canvases_have_roles_and_names,
+    a_hostile_title_stays_text,
+]
+
+
+def make(path, *words):
+    subprocess.run([program, "report", case, "--quiet", "--out", path, *words], check=True)
+
+
+print(f"1..{len(CLAIMS)}")
+folder = tempfile.mkdtemp()
+browser = None
+try:
+    page = os.path.join(folder, "page.html")
+    make(page)
+    browser = Browser(os.path.join(folder, "user"))
+    for number, claim in enumerate(CLAIMS, 1):
+        try:
+            claim(browser, page)
+            print(f"ok {number} - {claim.__name__}")
+        except AssertionError as error:
+            print(f"not ok {number} - {claim.__name__}")
+            print("# " + str(error)[:800].replace("\n", "\n# "))
+        sys.stdout.flush()
+finally:
+    if browser is not None:
+        browser.end()
+    shutil.rmtree(folder, ignore_errors=True)
