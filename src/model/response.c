@@ -88,7 +88,7 @@ static void couple_all(const Linkage *linkage, const ResponseRow *a, const Respo
     }
 }
 
-static void fill_block(const Response *response, const ResponseBlock *block)
+static inline void fill_block(const Response *response, const ResponseBlock *block)
 {
     const ResponseRow *a = &response->rows[block->rows];
     const ResponseRow *b = &response->rows[block->columns];

@@ -210,8 +210,7 @@ static bool next_aim(Looker *looker, size_t *number, Aim *aim)
 static double rise_between(const Aim *aim, const Look *first, const Look *last)
 {
     const double width_s = last->time_s - first->time_s;
-    if (aim->looker->some == NULL || aim->signal >= aim->looker->scenario->linkage.body_count ||
-        !(width_s > 0.0)) {
+    if (aim->signal >= aim->looker->scenario->linkage.body_count || !(width_s > 0.0)) {
         return 0.0;
     }
     const double mean =
@@ -231,13 +230,17 @@ static size_t count_near(Looker *looker, const Look *before, int parts, const Lo
         double least = most;
         double top = most; // what it may reach in between
         for (int k = 0; k < parts; k++) {
-            const Look *first = k > 0 ? &looks[k - 1] : before;
             const double value = aim_value(&aim, &looks[k]);
-            const double rise = rise_between(&aim, first, &looks[k]);
-            top = fmax(top, fmax(value, aim_value(&aim, first)) + rise);
-            most = fmax(most, value);
-            least = fmin(least, value);
+            if (looker->some != NULL) {
+                const Look *first = k > 0 ? &looks[k - 1] : before;
+                const double rise = rise_between(&aim, first, &looks[k]);
+                top = fmax(top, fmax(value, aim_value(&aim, first)) + rise);
+            }
+            // once a signal and step: fmin and fmax would be calls
+            most = value > most ? value : most;
+            least = value < least ? value : least;
         }
+        top = most > top ? most : top;
         // what stays as it is has no maximum
         count += step_extremes_is_near(&aim, top, STEP_EXTREMES_RISE_MAX) &&
                          top - least > ALIKE * fabs(most)

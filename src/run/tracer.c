@@ -193,15 +193,17 @@ static int count_parts(const Tracer *tracer, const StepRecord *step)
         const size_t i = solver_body(step->part, k);
         const double mean = (step->omega[k] - tracer->last.omega[i]) / width_s;
         if (is_traced(tracer, i)) {
-            parts = fmax(parts, parts_for(tracer->last.alpha[i], step->alpha[k], mean,
-                                          tracer->alpha[i].tolerance));
+            const double own =
+                parts_for(tracer->last.alpha[i], step->alpha[k], mean, tracer->alpha[i].tolerance);
+            parts = own > parts ? own : parts; // once a signal and step: fmax would be a call
         }
     }
     for (size_t k = 0; k < joint_count; k++) {
         const size_t i = solver_joint(step->part, k);
         if (has_play(tracer, i)) {
-            parts = fmax(parts, parts_for(tracer->last.force[i], step->joints[k].force,
-                                          step->impulse[k] / width_s, tracer->force[i].tolerance));
+            const double own = parts_for(tracer->last.force[i], step->joints[k].force,
+                                         step->impulse[k] / width_s, tracer->force[i].tolerance);
+            parts = own > parts ? own : parts;
         }
     }
     return (int)ceil(fmin(parts, LOOK_PARTS_MAX));
