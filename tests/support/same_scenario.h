@@ -12,7 +12,7 @@ static inline bool same_setting(const CasefileSetting *one, const CasefileSettin
 {
     return one->kind == other->kind && one->number_count == other->number_count &&
            one->applies == other->applies && strcmp(one->text, other->text) == 0 &&
-           memcmp(one->numbers, other->numbers, sizeof one->numbers) == 0;
+           memcmp(one->numbers, other->numbers, one->number_count * sizeof *one->numbers) == 0;
 }
 
 // Motions, vectors and clearances are doubles alone: there is nothing between them.
