@@ -17,6 +17,9 @@
 // of the angle that a drive has turned by: a whole turn to rounding
 static const double TURN_ROUNDING = 1e-14;
 
+// of a load's period: a whole number of them to rounding
+static const double PERIOD_ROUNDING = 1e-12;
+
 RunState run_state_create(const Linkage *linkage)
 {
     return (RunState){
@@ -140,6 +143,12 @@ static void shift_loads(Linkage *linkage, double time_s, double turns_rad)
         load->shift += load->over == LOAD_OVER_TIME    ? time_s
                        : load->over == LOAD_OVER_CRANK ? turns_rad
                                                        : 0.0;
+        if (load->table.period > 0.0) {
+            // whole periods are none, to the last bit
+            const double of_a_period = remainder(load->shift, load->table.period);
+            const bool is_whole = fabs(of_a_period) <= PERIOD_ROUNDING * load->table.period;
+            load->shift = is_whole ? 0.0 : of_a_period;
+        }
     }
 }
 
