@@ -199,39 +199,34 @@ static void set_between(CasefileSetting *setting, const SchemaRow *row, const Sc
               body_name(linkage, is_spring ? spring->body_b : joint->body_b));
 }
 
-// What is constant is one number; over time it is pairs of s and its unit.
-static void set_over_time(CasefileSetting *setting, const SchemaRow *row, const TimeTable *table)
+// What is constant is one number; else it is pairs of what it is over and its value.
+static void set_points(CasefileSetting *setting, size_t count, const double *at,
+                       const double *values, const char *over_unit, const char *unit)
 {
-    if (table->count <= 1) {
-        set_number(setting, table->values[0]);
+    if (count <= 1) {
+        set_number(setting, values[0]);
         return;
     }
     setting->kind = CASEFILE_POINTS;
-    setting->number_count = 2 * table->count;
-    for (size_t i = 0; i < table->count; i++) {
-        setting->numbers[2 * i] = table->times[i];
-        setting->numbers[2 * i + 1] = table->values[i];
+    setting->number_count = 2 * count;
+    for (size_t i = 0; i < count; i++) {
+        setting->numbers[2 * i] = at[i];
+        setting->numbers[2 * i + 1] = values[i];
     }
-    snprintf(setting->unit, sizeof setting->unit, "s, %s", units_si(row->dimension));
+    snprintf(setting->unit, sizeof setting->unit, "%s, %s", over_unit, unit);
 }
 
-// Likewise of a load, over what its points are over.
+static void set_over_time(CasefileSetting *setting, const SchemaRow *row, const TimeTable *table)
+{
+    set_points(setting, table->count, table->times, table->values, "s", units_si(row->dimension));
+}
+
 static void set_load(CasefileSetting *setting, const SchemaRow *row, const Linkage *linkage,
                      const Load *load)
 {
     const LoadTable *table = &load->table;
-    if (table->count <= 1) {
-        set_number(setting, table->values[0]);
-        return;
-    }
-    setting->kind = CASEFILE_POINTS;
-    setting->number_count = 2 * table->count;
-    for (size_t i = 0; i < table->count; i++) {
-        setting->numbers[2 * i] = table->at[i];
-        setting->numbers[2 * i + 1] = table->values[i];
-    }
-    snprintf(setting->unit, sizeof setting->unit, "%s, %s",
-             units_si(loads_dimension(linkage, load)), units_si(row->dimension));
+    set_points(setting, table->count, table->at, table->values,
+               units_si(loads_dimension(linkage, load)), units_si(row->dimension));
 }
 
 static void set_load_period(CasefileSetting *setting, const Linkage *linkage, const Load *load)

@@ -1,4 +1,5 @@
 // Draws what the joints did: forces, the pin in its hole, stops, guides and tilt.
+#include "base/sorted.h"
 #include "base/zeroed.h"
 #include "commands/run/plot_lines.h"
 #include "commands/run/run_report.h"
@@ -194,13 +195,6 @@ static void widen_force_range(const RunReport *report, const Trajectory *run, si
 // Forces above this multiple of the median of a joint's would press all others to the bottom.
 static const double FORCE_SPIKY = 30.0;
 
-static int by_size(const void *a, const void *b)
-{
-    const double first = *(const double *)a;
-    const double second = *(const double *)b;
-    return (first > second) - (first < second);
-}
-
 // The median of a joint's force over the stretches of a run, N.
 static double median_force(const RunReport *report, const Trajectory *run, size_t joint)
 {
@@ -209,7 +203,7 @@ static double median_force(const RunReport *report, const Trajectory *run, size_
     for (size_t i = 0; i < count; i++) {
         forces[i] = plot_look_stretch(report, run, FORCE, i, joint).range.most;
     }
-    qsort(forces, count, sizeof *forces, by_size);
+    sorted_make(forces, count);
     const double median = count > 0 ? forces[count / 2] : 0.0;
     free(forces);
     return median;
