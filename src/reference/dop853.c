@@ -437,6 +437,21 @@ const double *dop853_dense_some(Dop853 *integrator, double time, const size_t *n
     return integrator->at;
 }
 
+double dop853_sketch(const Dop853 *integrator, size_t number, double share, double *slope)
+{
+    double *const *p = integrator->polynomial;
+    double value = p[DOP853_POLYNOMIAL - 1][number];
+    double by_share = 0.0;
+    for (int k = DOP853_POLYNOMIAL - 2; k >= 0; k--) {
+        const bool is_behind = k % 2 == 0;
+        const double factor = is_behind ? share : 1.0 - share;
+        by_share = factor * by_share + (is_behind ? value : -value);
+        value = p[k][number] + factor * value;
+    }
+    *slope = by_share / integrator->tried;
+    return value;
+}
+
 void dop853_dense_motion(Dop853 *integrator, double time, double *y)
 {
     find_polynomial(integrator, fill_share(integrator, time), integrator->motion_size, y);

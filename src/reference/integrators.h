@@ -207,6 +207,10 @@ void dop853_dense_motion(Dop853 *integrator, double time, double *y);
 // The polynomial at a share of the step; beyond 1 as it goes on.
 void dop853_polynomial(const Dop853 *integrator, double share, double *y);
 
+// One equation at a share of the step, on the polynomial through it, which must be there (fill),
+// and how that changes there, per second: on a rate to within the error of a step.
+double dop853_sketch(const Dop853 *integrator, size_t number, double share, double *slope);
+
 // Moves the end of the tried step by a time so short that its cube counts for nothing; two
 // evaluations. Not where another method takes the steps.
 void dop853_shift(Dop853 *integrator, double by);
