@@ -251,6 +251,10 @@ bool dop853_attempt(Dop853 *integrator, double longest)
         integrator->was_rejected = true;
         // not a number where the state is none
         step *= error > 1.0 ? fmax(SHRINK_MOST, SAFETY * pow(error, -1.0 / 8.0)) : SHRINK_MOST;
+        if (integrator->method != NULL && step < integrator->method_least) {
+            integrator->method = NULL;
+            step = fmin(step, integrator->otherwise);
+        }
         integrator->step = step;
         if (!(step > integrator->shortest) || !(step > DBL_MIN)) {
             return false;
