@@ -331,7 +331,7 @@ static void ideal_joints_carry_springs_and_dampers(void **state)
     double torque = 0.0;
     double forces[4] = {0.0};
     for (size_t k = 0; k < run->sample_count; k++) {
-        torque = fmax(torque, fabs(drive_torque_at(&scenario, run, k)));
+        torque = fmax(torque, fabs(drive_torque_at(&scenario, run, 0, k)));
         for (size_t i = 0; i < run->joint_count; i++) {
             forces[i] = fmax(forces[i], trajectory_state(run, k, i)->force);
         }

@@ -8,7 +8,7 @@ static double plot_loads_torque_of(const RunReport *report, const Trajectory *ru
                                    size_t joint)
 {
     (void)joint;
-    return drive_torque_at(report->scenario, run, sample);
+    return drive_torque_at(report->scenario, run, 0, sample);
 }
 
 bool plot_loads_has_torque(const Linkage *linkage)

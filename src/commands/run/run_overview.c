@@ -105,7 +105,7 @@ static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run,
                        .contact = NAN,
                        .deepest = NAN};
     for (size_t k = 0; k < run->sample_count; k++) {
-        const double size = fabs(drive_torque_at(scenario, run, k));
+        const double size = fabs(drive_torque_at(scenario, run, 0, k));
         if (run->times[k] >= run->report_from_s && size > row.largest) {
             row.largest = size;
             row.crank_rad = run->crank_angles[k];
@@ -141,7 +141,7 @@ Overview run_overview_make(const RunReport *report)
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
         const OverviewRow row = body_row(overview.run, i, &ideal);
-        if ((int)i != linkage_driven_body(linkage) && row.largest > 0.0) {
+        if (!linkage_is_driven(linkage, (int)i) && row.largest > 0.0) {
             overview.bodies[overview.body_count++] = row;
         }
     }

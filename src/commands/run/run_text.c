@@ -575,7 +575,7 @@ static void write_mechanism(const RunReport *report, size_t width, Text *text)
 
 static void write_speeds(const Driver *driver, Text *text)
 {
-    const TimeTable *speeds = &driver->speeds;
+    const TimeTable *speeds = &driver->table;
     const size_t last = speeds->count - 1;
     text_append(text, "  drive       from %.6g rpm to %.6g rpm by %zu points over time\n",
                 speeds->values[0] * UNITS_RPM, speeds->values[last] * UNITS_RPM, speeds->count);

@@ -82,7 +82,7 @@ static void make_arrays(ImpulseStep *step)
         kernel_make_drift(&step->kernel);
         step->drift = response_drift_create(&step->response);
         step->columns[0] = step->drift.columns;
-        step->curves = impulse_curves_create(step->place_count, rows, bodies, step->driven);
+        step->curves = impulse_curves_create(&step->scenario->linkage, step->place_count, rows);
     }
     for (size_t i = 1; step->has_few_rows && i < IMPULSE_COLUMNS; i++) {
         step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);
@@ -221,18 +221,33 @@ static bool init_kernel(ImpulseStep *step, Err *err)
     return true;
 }
 
+// Where the driven bodies stand at a time, from which they are soon worked out at others.
+static void set_arms(ImpulseStep *step, double time_s)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        step->arms[i] = stepping_arm(linkage, i, time_s);
+    }
+}
+
+void impulse_step_place_driven(const ImpulseStep *step, double time_s, Motion *motions)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        motions[linkage_drive_body(linkage, i)] =
+            stepping_driven_since(linkage, i, &step->arms[i], step->start_s, time_s);
+    }
+}
+
 bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
 {
     step->scenario = scenario;
-    step->driven = linkage_driven_body(&scenario->linkage);
     step->tick_s = scenario->run.step / (double)scenario->ode.gear;
     if (!init_kernel(step, err)) {
         return false;
     }
     make_arrays(step);
-    if (step->driven >= 0) {
-        step->arm = stepping_arm(&scenario->linkage, 0.0);
-    }
+    set_arms(step, 0.0);
     step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
     linkage_start(&scenario->linkage, step->after);
     if (!world_build(scenario, step->after, &step->world, err)) {
@@ -335,9 +350,10 @@ static void impulse_step_push(ImpulseStep *step, const Motion *middle)
     }
     Motion *motions = step->work->motions;
     memcpy(motions, middle, step->scenario->linkage.body_count * sizeof *motions);
-    if (step->driven >= 0) {
+    for (size_t i = 0; i < linkage_drive_count(&step->scenario->linkage); i++) {
         // the others have the speeds of the start already
-        motions[step->driven].velocity = step->before[step->driven].velocity;
+        const int body = linkage_drive_body(&step->scenario->linkage, i);
+        motions[body].velocity = step->before[body].velocity;
     }
     applied_push_at(&step->world.applied, motions, step->start_s, step->width_s, APPLIED_AT_MEAN,
                     1);
@@ -422,12 +438,8 @@ static void impulse_step_find_middle(ImpulseStep *step, double width_before_s, M
         middle[i].position = vec2_add(motion->position, vec2_scale(half_s, motion->velocity));
         middle[i].angle = motion->angle + half_s * motion->omega;
     }
-    if (step->driven >= 0) {
-        const Linkage *linkage = &step->scenario->linkage;
-        step->arm = stepping_arm(linkage, step->start_s + half_s);
-        middle[step->driven] =
-            stepping_driven_since(linkage, &step->arm, step->start_s, step->start_s + half_s);
-    }
+    set_arms(step, step->start_s + half_s);
+    impulse_step_place_driven(step, step->start_s + half_s, middle);
     if (step->has_few_rows && step->steady > 0) {
         move_middle(step, width_before_s, middle);
     }
@@ -492,7 +504,7 @@ static void impulse_step_keep_free(ImpulseStep *step, double *free_before)
 // directions e, which turn with body a, and touching point X,
 //     (e . v(X))' = e' . v(X) + e . (acc(X) + w perp (X' - v(X)))
 
-// The acceleration of a point of the driven body, by its arm from the centre.
+// The acceleration of a point of a driven body, by its arm from the centre.
 static Vec2 arm_acceleration(const Motion *driven, Vec2 arm)
 {
     const Vec2 steady =
@@ -528,9 +540,8 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
     mean->moment_on_b += vec2_cross(arm, push);
 }
 
-// The mean forces of the joints with play, and where those on the driven body act, seen from its
-// anchors: at the anchor of body b, of all joints with lines.
-static void find_play_means(ImpulseStep *step, const Motion *middle, Vec2 *offsets)
+// The mean forces of the joints with play.
+static void find_play_means(ImpulseStep *step, const Motion *middle)
 {
     const Linkage *linkage = &step->scenario->linkage;
     JointState *means = step->work->joints;
@@ -545,16 +556,23 @@ static void find_play_means(ImpulseStep *step, const Motion *middle, Vec2 *offse
     for (size_t i = 0; i < step->place_count; i++) {
         add_mean(step, i, middle, &means[step->places[i].joint]);
     }
-    stepping_offsets(linkage, middle, step->driven, offsets);
+}
+
+// Where they act on a driven body, seen from its anchors: at the anchor of body b, of all joints
+// with lines.
+static void find_offsets(ImpulseStep *step, const Motion *middle, int body, Vec2 *offsets)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    stepping_offsets(linkage, middle, body, offsets);
     for (size_t i = 0; i < step->place_count; i++) {
         const int joint = step->places[i].joint;
-        if (touch_is_scalar(&step->places[i]) && linkage->joints[joint].body_a == step->driven) {
+        if (touch_is_scalar(&step->places[i]) && linkage->joints[joint].body_a == body) {
             offsets[joint] = linkage_joint_gap(linkage, middle, joint).position;
         }
     }
 }
 
-// What the force of a pin or disc does on the driven body beyond its mean, J.
+// What the force of a pin or disc does on a driven body beyond its mean, J.
 static double work_at_point(const ImpulseStep *step, size_t number, const Motion *driven,
                             bool is_on_a)
 {
@@ -580,13 +598,12 @@ static double work_of_turn(const ImpulseStep *step, size_t number, const Motion 
 
 // Likewise of a line.
 static double work_at_line(const ImpulseStep *step, size_t number, const Motion *motions,
-                           bool is_on_a)
+                           const Motion *driven, bool is_on_a)
 {
     const Linkage *linkage = &step->scenario->linkage;
     const Touch *place = &step->places[number];
     const Joint *joint = &linkage->joints[place->joint];
     const size_t row = step->kernel.contacts[number].first_row;
-    const Motion *driven = &motions[step->driven];
     const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
     const TouchPose pose = touch_pose(linkage, place, motions);
     const Vec2 directions[2] = {pose.normal, vec2_perp(pose.normal)};
@@ -608,7 +625,7 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     return is_on_a ? -work : work;
 }
 
-// Likewise of an end of an angle, or of teeth: the driven body turns about the ground.
+// Likewise of an end of an angle, or of teeth: a driven body turns about the ground.
 static double work_at_end(const ImpulseStep *step, size_t number, const Motion *driven,
                           bool is_on_a)
 {
@@ -647,25 +664,23 @@ static double work_of_torque(const ImpulseStep *step)
                                          forces_drive_turn(linkage, step->before).angle);
 }
 
-// Finds the mean forces of the joints with play and the works of the drive and of dampers in the
-// step that has just been taken, from the bodies at mid-step.
-static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
+// The work of a drive in the step, J, from the bodies at mid-step and with the means of their
+// speeds.
+static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middle,
+                            const Motion *motions)
 {
     const Linkage *linkage = &step->scenario->linkage;
-    const Motion *driven = &middle[step->driven >= 0 ? step->driven : 0];
-    Vec2 *offsets = step->work->offsets;
-    Motion *motions = step->work->motions;
+    const int body = linkage_drive_body(linkage, drive);
+    const Motion *driven = &middle[body];
     double work = 0.0;
-    find_play_means(step, middle, offsets);
-    find_mean_motions(step, middle, motions);
-    for (size_t i = 0; step->driven >= 0 && i < step->place_count; i++) {
+    for (size_t i = 0; i < step->place_count; i++) {
         const Joint *joint = &linkage->joints[step->places[i].joint];
-        const bool is_on_a = joint->body_a == step->driven;
-        if (!is_on_a && joint->body_b != step->driven) {
+        const bool is_on_a = joint->body_a == body;
+        if (!is_on_a && joint->body_b != body) {
             continue;
         }
         if (step->places[i].shape == TOUCH_LINE) {
-            work -= work_at_line(step, i, motions, is_on_a);
+            work -= work_at_line(step, i, motions, &motions[body], is_on_a);
         } else if (touch_is_scalar(&step->places[i])) {
             work -= work_at_end(step, i, driven, is_on_a);
         } else {
@@ -673,13 +688,29 @@ static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
             work -= work_of_turn(step, i, driven, is_on_a);
         }
     }
+    const BodyLoad load = applied_on(&step->world.applied, body);
+    find_offsets(step, middle, body, step->work->offsets);
+    return work + step->width_s * stepping_drive(step->scenario, drive, driven, &load,
+                                                 step->work->offsets, step->work->joints);
+}
+
+// Finds the mean forces of the joints with play and the works of the drives and of dampers in the
+// step that has just been taken, from the bodies at mid-step.
+static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    Motion *motions = step->work->motions;
+    find_play_means(step, middle);
+    find_mean_motions(step, middle, motions);
     const AppliedWork applied = applied_book(&step->world.applied, step->width_s);
-    const BodyLoad load = applied_on(&step->world.applied, step->driven);
-    const double power = stepping_drive(step->scenario, driven, &load, offsets, step->work->joints);
+    double work = 0.0;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        work += work_of_drive(step, i, middle, motions);
+    }
     step->damped = applied.damping;
     step->load_work =
         loads_work(linkage, step->world.applied.pushed, step->before, middle, step->after);
-    step->drive_work = work + step->width_s * power + work_of_torque(step) + applied.slope;
+    step->drive_work = work + work_of_torque(step) + applied.slope;
 }
 
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
@@ -943,7 +974,7 @@ static void find_means(ImpulseStep *step, const Motion *middle)
 static void set_end(ImpulseStep *step, size_t ticks)
 {
     const double rounding_s = STEPPING_ROUNDING * step->tick_s;
-    const double kink_s = drive_next_kink(&step->scenario->linkage.driver, step->start_s);
+    const double kink_s = linkage_next_kink(&step->scenario->linkage, step->start_s);
     step->tick += ticks;
     step->end_s = stepping_end(step->scenario, step->start_s, (double)step->tick * step->tick_s,
                                step->tick_s);
@@ -963,20 +994,14 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     Motion *middle = step->middle;
     step->start_s = step->end_s;
     memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
-    if (step->driven >= 0) {
-        step->before[step->driven] = stepping_driven_since(&step->scenario->linkage, &step->arm,
-                                                           step->start_s, step->start_s);
-    }
+    impulse_step_place_driven(step, step->start_s, step->before);
     fill_rows(step);
     const double coarse_s = (double)options->gear * step->tick_s;
     const size_t ticks =
         options->gear > 1 && (step->count == 0 || is_near_wall(step, coarse_s)) ? 1 : options->gear;
     set_end(step, ticks);
     step->width_s = step->end_s - step->start_s;
-    if (step->driven >= 0) {
-        step->after[step->driven] =
-            stepping_driven_since(&step->scenario->linkage, &step->arm, step->start_s, step->end_s);
-    }
+    impulse_step_place_driven(step, step->end_s, step->after);
     impulse_step_look_ahead(step);
     impulse_step_find_middle(step, width_before_s, middle);
     impulse_step_push(step, middle);
