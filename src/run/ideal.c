@@ -77,7 +77,9 @@ static void take_pose(const Linkage *linkage, const Motion *motions, const React
     for (size_t i = 0; i < linkage->joint_count; i++) {
         sizes->force_max[i] = fmax(sizes->force_max[i], vec2_length(reactions->force_on_b[i]));
     }
-    sizes->torque_max = fmax(sizes->torque_max, fabs(reactions->drive_torques[0]));
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        sizes->torque_max[i] = fmax(sizes->torque_max[i], fabs(reactions->drive_torques[i]));
+    }
 }
 
 static InverseTime pose_time(const Scenario *scenario, const DriveState *drive, int number,
