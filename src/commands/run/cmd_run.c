@@ -31,14 +31,16 @@ static const OptionRow OPTIONS[] = {
     COMMON_JSON(2),
     COMMON_FULL(2),
     COMMON_WIDE(2),
-    {"series", "FILE.csv", "Write every sample; with several backends to FILE-<backend>.csv each",
+    {"series", "FILE.csv",
+     "Write every sample, as JSON Lines to FILE.jsonl and as SQLite to FILE.sqlite; with several "
+     "backends to FILE-<backend>.csv each",
      2, OPTION_TEXT, AT(series)},
     {"columns", "NAME[,NAME]",
      "Write the time and these columns of the series alone, such as 'crank_deg,rod_*'", 2,
      OPTION_TEXT, AT(columns)},
     {"contacts", "FILE.csv",
-     "Write every contact; with several backends to FILE-<backend>.csv each", 2, OPTION_TEXT,
-     AT(contacts)},
+     "Write every contact, likewise; with several backends to FILE-<backend>.csv each", 2,
+     OPTION_TEXT, AT(contacts)},
     {"plot", "FILE.svg", "Draw motion, forces and the pin in its hole", 2, OPTION_PICTURE,
      AT(plot)},
     COMMON_OUT(2, "Write <case>.json, .txt, .svg, <case>-<backend>.csv and -contacts.csv there"),
@@ -103,9 +105,9 @@ static bool report_case(const RunCommand *command, const CaseRun *run, json_t *o
         results_print(&RESULTS, common, &run->report);
     }
     return (command->series == NULL ||
-            run_files_series(run, command->series, common->is_quiet, err)) &&
+            run_files_write(run, RUN_SERIES, command->series, common->is_quiet, err)) &&
            (command->contacts == NULL ||
-            run_files_contacts(run, command->contacts, common->is_quiet, err)) &&
+            run_files_write(run, RUN_CONTACTS, command->contacts, common->is_quiet, err)) &&
            (common->folder == NULL || run_files_folder(run, common, err)) &&
            results_write(&RESULTS, common, scenario_path(&run->scenario), &run->report, err);
 }
@@ -141,9 +143,9 @@ static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err
 {
     const CommonOptions *common = &command->choices.common;
     bool is_claimed =
-        (command->series == NULL || run_files_claim(&runs[0], "--series", command->series, err)) &&
+        (command->series == NULL || run_files_claim(&runs[0], RUN_SERIES, command->series, err)) &&
         (command->contacts == NULL ||
-         run_files_claim(&runs[0], "--contacts", command->contacts, err));
+         run_files_claim(&runs[0], RUN_CONTACTS, command->contacts, err));
     for (size_t i = 0; i < command->case_count && is_claimed; i++) {
         is_claimed = results_claim(&RESULTS, common, scenario_path(&runs[i].scenario), err) &&
                      (common->folder == NULL || run_files_claim_folder(&runs[i], common, err));
