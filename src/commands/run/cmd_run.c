@@ -22,9 +22,12 @@ typedef struct RunCommand {
     const char *columns;
     const char *contacts;
     const char *plot;
+    const char *force_axis; // one of FORCE_AXES
 } RunCommand;
 
 #define AT(field) .offset = offsetof(RunCommand, field)
+
+static const char *const FORCE_AXES[] = {"linear", "log", NULL};
 
 static const OptionRow OPTIONS[] = {
     RUN_CHOICES(1),
@@ -43,6 +46,8 @@ static const OptionRow OPTIONS[] = {
      OPTION_TEXT, AT(contacts)},
     {"plot", "FILE.svg", "Draw motion, forces and the pin in its hole", 2, OPTION_PICTURE,
      AT(plot)},
+    {"force-axis", "SCALE", "Forces in the picture: linear (default) or log", 2, OPTION_CHOICE,
+     AT(force_axis), .words = FORCE_AXES},
     COMMON_OUT(2, "Write <case>.json, .txt, .svg, <case>-<backend>.csv and -contacts.csv there"),
     COMMON_QUIET(2),
 };
@@ -167,6 +172,7 @@ static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
     progress_begin(&progress, command->choices.common.is_quiet);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
         case_run_execute(&runs[i], &progress);
+        runs[i].report.has_log_forces = strcmp(command->force_axis, "log") == 0;
         is_reported = report_case(command, &runs[i], objects, err);
     }
     if (is_reported && objects != NULL) {
@@ -194,6 +200,11 @@ static bool check_command(void *target, Err *err)
         return err_set(
             err, ERR_USAGE,
             "--columns chooses from the series: give --series FILE.csv or --out DIR too");
+    }
+    if (command->force_axis != FORCE_AXES[0] && command->plot == NULL &&
+        command->choices.common.folder == NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--force-axis is of the picture: give --plot FILE.svg or --out DIR too");
     }
     return run_choices_end(&command->choices, err);
 }
@@ -227,7 +238,7 @@ static bool run_run(int argc, char **argv, Err *err)
         OPTION_ROWS(OPTIONS),
         .check = check_command,
     };
-    RunCommand command = {0};
+    RunCommand command = {.force_axis = FORCE_AXES[0]};
     run_choices_begin(&command.choices);
     const bool is_done = arguments_run(&ARGUMENTS, argc, argv, &command, run_cases, err);
     run_choices_finish(&command.choices);
