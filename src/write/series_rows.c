@@ -1,11 +1,12 @@
 // Writes the rows of a series: one table of columns gives the head and the cells.
 #include "write/series_rows.h"
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
 #include "model/loads.h"
 #include "run/drive_torque.h"
-#include "write/csv.h"
+#include "write/row_file.h"
 #include "write/units.h"
 
 #include <assert.h>
@@ -560,14 +561,20 @@ void series_columns_choose(SeriesColumns *columns, const char *patterns)
     columns->count = kept;
 }
 
-// Says that no column is called so, and which might be meant.
-static bool fail_unknown(const SeriesColumns *columns, const char *pattern, Err *err)
+// The names of all columns; the caller frees them.
+static const char **names_of(const SeriesColumns *columns)
 {
-    const char **names = malloc(columns->count * sizeof *names);
-    assert(names != NULL);
+    const char **names = zeroed(columns->count, sizeof *names);
     for (size_t i = 0; i < columns->count; i++) {
         names[i] = columns->columns[i].name;
     }
+    return names;
+}
+
+// Says that no column is called so, and which might be meant.
+static bool fail_unknown(const SeriesColumns *columns, const char *pattern, Err *err)
+{
+    const char **names = names_of(columns);
     const char *nearest = text_nearest(pattern, names, columns->count);
     err_set(err, ERR_USAGE,
             "--columns: no column is called '%s'; %s%s%s* stands for any letters, and the file "
@@ -614,17 +621,18 @@ double series_columns_value(const SeriesColumns *columns, const Trajectory *traj
     return column->find(&place);
 }
 
-static void write_head(const SeriesColumns *columns, FILE *stream)
+bool series_columns_claim(const SeriesColumns *columns, const char *user, const char *path,
+                          Err *err)
 {
-    for (size_t i = 0; i < columns->count; i++) {
-        fprintf(stream, "%s%s", i > 0 ? "," : "", columns->columns[i].name);
-    }
-    fputc('\n', stream);
+    const char **names = names_of(columns);
+    const RowHead head = {"series", names, columns->count};
+    const bool is_claimed = row_file_claim(user, path, &head, err);
+    free(names);
+    return is_claimed;
 }
 
-void series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory, FILE *stream)
+static void write_rows(const SeriesColumns *columns, const Trajectory *trajectory, RowFile *file)
 {
-    write_head(columns, stream);
     SeriesPlace place = {
         .columns = columns,
         .linkage = &columns->scenario->linkage,
@@ -635,11 +643,23 @@ void series_columns_write(const SeriesColumns *columns, const Trajectory *trajec
             const SeriesColumn *column = &columns->columns[i];
             place.number = column->number;
             place.component = column->component;
-            if (i > 0) {
-                fputc(',', stream);
-            }
-            csv_write_number(stream, column->find(&place));
+            row_file_number(file, column->find(&place));
         }
-        fputc('\n', stream);
+        row_file_end_row(file);
     }
+}
+
+bool series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory,
+                          const char *path, Err *err)
+{
+    const char **names = names_of(columns);
+    const RowHead head = {"series", names, columns->count};
+    RowFile file;
+    bool is_written = row_file_begin(&file, path, &head, err);
+    if (is_written) {
+        write_rows(columns, trajectory, &file);
+        is_written = row_file_end(&file, err);
+    }
+    free(names);
+    return is_written;
 }
