@@ -199,6 +199,7 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
     [FILE_BASELINE] = {"a baseline of jointplay check",
                        {{"{\"format\": \"jointplay baseline", NULL}}},
     [FILE_ROWS] = {"rows of a study (JSON Lines)", {{"{\"run\":", "\"outcome\":"}}},
+    [FILE_CASE] = {"a case of jointplay new (YAML)", {{"# Written by 'jointplay new", NULL}}},
     [FILE_SCRIPT] = {"a script of jointplay study slurm",
                      {{"#!/bin/bash", "Written by 'jointplay study slurm'"}}},
     [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST"}}},

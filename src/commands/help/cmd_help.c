@@ -94,21 +94,23 @@ static bool cmd_help_explain(void *target, Err *err)
     return explain_command(options, err);
 }
 
+static const Arguments HELP_ARGUMENTS = {
+    .program = "jointplay help",
+    .usage = "[case|COMMAND]\nstudy COMMAND",
+    .doc = "Shows how a command is used, or how a case or study file is written.",
+    .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
+    OPTION_ROWS(OPTIONS),
+};
+
 static bool run_help(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay help",
-        .usage = "[case|COMMAND]\nstudy COMMAND",
-        .doc = "Shows how a command is used, or how a case or study file is written.",
-        .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
-        OPTION_ROWS(OPTIONS),
-    };
     HelpOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, cmd_help_explain, err);
+    return arguments_run(&HELP_ARGUMENTS, argc, argv, &options, cmd_help_explain, err);
 }
 
 const Command cmd_help = {
     .name = "help",
     .summary = "explains a command, or with 'case' the format of a case file",
     .run = run_help,
+    .arguments = &HELP_ARGUMENTS,
 };

@@ -744,4 +744,5 @@ const Command cmd_map = {
     .name = "map",
     .summary = "which ERP, CFM and step for each joint, and what they deliver",
     .run = map_run,
+    .arguments = &MAP_ARGUMENTS,
 };
