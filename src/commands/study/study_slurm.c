@@ -1,6 +1,7 @@
 // Writes the scripts that run a study on a cluster, and says what is to be typed then.
 #include "commands/study/study_slurm.h"
 #include "base/shell.h"
+#include "base/shipped.h"
 #include "cli/arguments.h"
 #include "cli/output.h"
 #include "cli/written.h"
@@ -238,7 +239,9 @@ static bool check_shards(const SlurmOptions *options, Err *err)
 // A path that holds wherever a job begins.
 static bool find_whole(const char *path, char target[FILE_PATH_SIZE], Err *err)
 {
-    char *whole = realpath(path, NULL);
+    char found[FILE_PATH_SIZE];
+    shipped_find(path, found, sizeof found);
+    char *whole = realpath(found, NULL);
     if (whole == NULL || strlen(whole) >= FILE_PATH_SIZE) {
         free(whole);
         return err_set(err, ERR_FILE, "cannot find %s: %s", path, strerror(errno));
