@@ -447,28 +447,35 @@ PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions)
     return pin_hole_pose(hole, pin, going, joint->clearance);
 }
 
-Vec2 driver_force(const DriverJoint *joint, const ContactState *state, const PinHole *pose)
+Vec2 driver_force(const DriverJoint *joint, const DriverContact *contact, const PinHole *pose)
 {
     if (!(pose->penetration > 0.0)) {
         return (Vec2){0.0, 0.0};
     }
-    const double speed = state->is_touching ? state->damping_speed : pose->approach_speed;
+    const double began = fmax(contact->approach_before, pose->approach_speed);
+    const double speed = contact->state.is_touching ? contact->state.damping_speed : began;
     const double force =
         force_law_force(&joint->law, pose->penetration, pose->approach_speed, speed);
     return vec2_scale(force, pose->normal);
 }
 
-void driver_follow(const DriverJoint *joint, const PinHole *pose, ContactState *state,
+void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,
                    DriverTotals *totals)
 {
-    if (!(pose->penetration > 0.0)) {
+    ContactState *state = &contact->state;
+    if (pose->penetration > 0.0) {
+        if (!state->is_touching) {
+            const double before = fmax(contact->gap_before, 0.0);
+            const double share = before / (before + pose->penetration);
+            *state = contact_state_begun((1.0 - share) * contact->approach_before +
+                                         share * pose->approach_speed);
+            totals->begun++;
+        }
+        contact_state_follow(state, pose->approach_speed, joint->law.resting_speed);
+        totals->depth_max = fmax(totals->depth_max, pose->penetration);
+    } else {
         state->is_touching = false;
-        return;
     }
-    if (!state->is_touching) {
-        *state = contact_state_begun(pose->approach_speed);
-        totals->begun++;
-    }
-    contact_state_follow(state, pose->approach_speed, joint->law.resting_speed);
-    totals->depth_max = fmax(totals->depth_max, pose->penetration);
+    contact->gap_before = pose->gap;
+    contact->approach_before = pose->approach_speed;
 }

@@ -138,14 +138,22 @@ void driver_run_write(DriverRun *run);
 
 // A pin in its hole whose law acts as a force.
 
+// A contact, and what its pin did at the end of the step before.
+typedef struct DriverContact {
+    ContactState state;
+    double gap_before;
+    double approach_before;
+} DriverContact;
+
 // The pin of a joint in its hole, from the motions of all bodies.
 PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions);
 
 // The force on body b, N.
-Vec2 driver_force(const DriverJoint *joint, const ContactState *state, const PinHole *pose);
+Vec2 driver_force(const DriverJoint *joint, const DriverContact *contact, const PinHole *pose);
 
-// Follows a contact from one step to the next.
-void driver_follow(const DriverJoint *joint, const PinHole *pose, ContactState *state,
+// Follows a contact to the end of a step. It began where the gap was zero, and its impact speed is
+// that between the speeds at both ends of the step.
+void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,
                    DriverTotals *totals);
 
 // A point of a body, or of the ground, and its velocity.

@@ -4,7 +4,7 @@
 //     force      the contact's law is a force (mjcb_passive), stepped by RK4
 //     staggered  the same by Euler's method, whose velocities are read as those of half a step
 //                earlier than its positions: v(n+1/2) = v(n-1/2) + h a(x(n), v(n)), v(n) foreseen
-//                by the acceleration of the step before
+//                by the acceleration of the step before, in contact by its own
 //     kernel     the contacts integrated within the step (mujoco_kernel.c)
 #include "drivers/mujoco/mujoco_driver.h"
 
@@ -51,6 +51,21 @@ static void push(const mjModel *model, mjData *data)
     }
 }
 
+// The bodies as the contacts are to feel them: velocities that lag behind are brought up to the
+// positions by the last acceleration.
+static const DriverMotion *at_positions(MujocoRun *run, double lag_s, const DriverMotion *motions)
+{
+    const mjData *data = run->data;
+    if (lag_s == 0.0) {
+        return motions;
+    }
+    for (size_t i = 0; i < run->tree.coordinates; i++) {
+        run->rates[i] += lag_s * data->qacc[run->addresses[i]];
+    }
+    tree_motions(&run->tree, run->coordinates, run->rates, run->motions);
+    return run->motions;
+}
+
 // Stamps the state, and follows the contacts, whose forces are given or those of the law.
 static void stamp(MujocoRun *run, double position_s, double velocity_s, const Vec2 *forces)
 {
@@ -58,6 +73,7 @@ static void stamp(MujocoRun *run, double position_s, double velocity_s, const Ve
     now->position_s = position_s;
     now->velocity_s = velocity_s;
     mujoco_read(run, run->data->qpos, run->data->qvel, now->motions);
+    const DriverMotion *felt = at_positions(run, position_s - velocity_s, now->motions);
     for (size_t i = 0; i < run->of->joint_count; i++) {
         const DriverJoint *joint = &run->of->joints[i];
         DriverTotals *totals = &run->run.totals[i];
@@ -65,7 +81,7 @@ static void stamp(MujocoRun *run, double position_s, double velocity_s, const Ve
         if (joint->kind != DRIVER_PIN_IN_HOLE) {
             continue;
         }
-        const PinHole pose = driver_pose(joint, now->motions);
+        const PinHole pose = driver_pose(joint, felt);
         driver_follow(joint, &pose, &run->contacts[i], totals);
         now->forces[i] = forces != NULL ? forces[i] : driver_force(joint, &run->contacts[i], &pose);
         totals->force_max = fmax(totals->force_max, vec2_length(now->forces[i]));
@@ -88,6 +104,16 @@ static void run_force(MujocoRun *run)
     }
 }
 
+static bool is_touching(const MujocoRun *run)
+{
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        if (run->contacts[i].state.is_touching) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void run_staggered(MujocoRun *run)
 {
     const double step_s = run->of->step_s;
@@ -99,6 +125,8 @@ static void run_staggered(MujocoRun *run)
     }
     active = run;
     mjcb_passive = push;
+    // a loop's constraint damps what it is told of, and must be told what it has done itself
+    const double ahead_s = run->tree.left_count == 0 ? 0.5 * step_s : 0.0;
     driver_run_begin(&run->run);
     mj_forward(run->model, data);
     stamp(run, 0.0, 0.0, NULL);
@@ -108,9 +136,17 @@ static void run_staggered(MujocoRun *run)
     while (!driver_run_is_full(&run->run)) {
         const double now_s = step_s * (double)++run->run.steps;
         for (int i = 0; i < count; i++) {
-            data->qvel[i] = rates[i] + 0.5 * step_s * data->qacc[i];
+            data->qvel[i] = rates[i] + ahead_s * data->qacc[i];
         }
         mj_step1(run->model, data);
+        if (ahead_s > 0.0 && is_touching(run)) {
+            // once more, with the velocities that this step's own accelerations say
+            mj_fwdAcceleration(run->model, data);
+            for (int i = 0; i < count; i++) {
+                data->qvel[i] = rates[i] + ahead_s * data->qacc_smooth[i];
+            }
+            mj_fwdVelocity(run->model, data);
+        }
         mj_step2(run->model, data);
         for (int i = 0; i < count; i++) {
             // every coordinate is that of a hinge or a slide

@@ -16,7 +16,7 @@ typedef struct MujocoRun {
     double *coordinates; // of the tree
     double *rates;
     DriverMotion *motions;
-    ContactState *contacts; // by joint
+    DriverContact *contacts; // by joint
 } MujocoRun;
 
 // How the model differs between the ways.

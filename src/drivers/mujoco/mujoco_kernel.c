@@ -360,7 +360,7 @@ static void look_inside(Within *in, double start_s, double step_s, KernelSums *s
     }
     for (size_t i = 0; i < kernel->contact_count; i++) {
         DriverTotals *totals = &run->run.totals[in->joints[i]];
-        bool was_touching = run->contacts[in->joints[i]].is_touching;
+        bool was_touching = run->contacts[in->joints[i]].state.is_touching;
         for (size_t node = 0; node < kernel->node_count; node++) {
             const double *force = kernel_node_forces(kernel, node) + 2 * i;
             const bool touches = kernel_touches(kernel, node, i);
@@ -368,7 +368,7 @@ static void look_inside(Within *in, double start_s, double step_s, KernelSums *s
             totals->force_max = fmax(totals->force_max, hypot(force[0], force[1]));
             was_touching = touches;
         }
-        run->contacts[in->joints[i]].is_touching = was_touching;
+        run->contacts[in->joints[i]].state.is_touching = was_touching;
     }
 }
 

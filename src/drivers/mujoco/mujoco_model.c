@@ -214,7 +214,7 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
         run->data->qvel[run->addresses[i]] = run->rates[i];
     }
     for (size_t i = 0; i < of->joint_count; i++) {
-        run->contacts[i] = of->joints[i].contact;
+        run->contacts[i].state = of->joints[i].contact;
     }
     mujoco_read(run, run->data->qpos, run->data->qvel, run->motions);
 }
