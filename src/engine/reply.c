@@ -17,7 +17,7 @@
 static const double DRIVE_OFF_MOST = 1e-2;
 
 // of a body's reach: an ideal joint that opens by more no longer is one
-static const double OPENING_MOST = 1e-2;
+static const double OPENING_MOST = 0.05;
 
 // how many times further than its speeds at both samples say a body may have gone between them,
 // and of the mechanism's size, which is let go in any case: impacts change speeds in between
