@@ -50,9 +50,9 @@ typedef struct Within {
     double *responses[BEFORE]; // A: row by row
     double *rate;              // A'
     double *jacobian;          // row by row
-    double *drift; // S
-    double *bend; // B
-    double *free; // G, at mid-step
+    double *drift;             // S
+    double *bend;              // B
+    double *free;              // G, at mid-step
     double *free_before;
     double *nudged;
     double *sites_jacobian; // of one site: 3 by nv

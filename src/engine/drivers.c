@@ -1,4 +1,4 @@
-// Finds drivers of engines, asks them what they are, and runs cases by them.
+// Finds drivers of other engines, asks them what they are, and runs cases by them.
 #include "engine/driver.h"
 
 #include "base/text.h"
