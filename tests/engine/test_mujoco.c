@@ -3,90 +3,14 @@
 // Truths: the closed form of the ideal four-bar, and the reference's run of the paper's mechanism
 // with play, whose uncertainty is 1e-8 or less. The controls are the ways without contacts in the
 // step, which miss by far what these reach.
-#include "engine/driver.h"
+#include "engine_outcome.h"
 
-#include "close.h"
-#include "load_case.h"
-
-#include "measure/error.h"
-#include "measure/ladder.h"
-#include "run/registry.h"
-#include "run/run.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-static const RunWatch NOBODY = {NULL, NULL};
-static const double LIMIT_S = 60.0; // a run takes .1 s
-
-static EngineDriver mujoco(void)
-{
-    EngineDriver driver;
-    Err err = {0};
-    if (!engine_find("mujoco", &driver, &err)) {
-        fail_msg("%s", err.text);
-    }
-    return driver;
-}
-
-typedef struct Outcome {
-    TrajectoryError error;
-    EngineSaid said;
-    double force_ratio; // of the largest force in the first joint with play, over the reference's
-} Outcome;
-
-static size_t joint_with_play(const Scenario *scenario)
-{
-    size_t joint = 0;
-    while (joint + 1 < scenario->linkage.joint_count &&
-           !linkage_has_play(&scenario->linkage.joints[joint])) {
-        joint++;
-    }
-    return joint;
-}
-
-static Outcome hold_against(const Scenario *scenario, Trajectory *run, BackendKind truth)
-{
-    Outcome outcome = {.force_ratio = 0.0};
-    if (!run->is_complete) {
-        fail_msg("%s", run->message);
-    }
-    Trajectory *reference = run_scenario(scenario, registry_solver(truth), NOBODY);
-    const size_t joint = joint_with_play(scenario);
-    outcome.error = error_against(run, reference, INFINITY);
-    outcome.force_ratio =
-        run->joints[joint].force_max.value / reference->joints[joint].force_max.value;
-    trajectory_destroy(reference);
-    trajectory_destroy(run);
-    return outcome;
-}
-
-static Outcome outcome_of(const char *way, const Scenario *scenario, BackendKind truth)
-{
-    const EngineDriver driver = mujoco();
-    EngineSaid said;
-    Trajectory *run = engine_run(&driver, way, scenario, LIMIT_S, &said);
-    Outcome outcome = hold_against(scenario, run, truth);
-    outcome.said = said;
-    return outcome;
-}
-
-// The paper's mechanism in the motion that the figures are of: from the pin in the middle of its
-// hole, one impact and its followers, in a third of a revolution.
-static Scenario impact(double step_s)
-{
-    static const char *const OVERRIDES[] = {"run.start=centred", "run.revolutions=0.3",
-                                            "ode.stepping=staggered", "ode.map=impulse"};
-    Scenario scenario = load("cases/paper/impact-k66.yaml", OVERRIDES, 4);
-    scenario.run.step = step_s;
-    return scenario;
-}
+static const char MUJOCO[] = "mujoco";
 
 static void every_number_is_named(void **state)
 {
     (void)state;
-    const EngineDriver driver = mujoco();
+    const EngineDriver driver = engine_named(MUJOCO);
     assert_string_equal(driver.engine, "MuJoCo");
     assert_string_equal(driver.precision, "double");
     assert_true(driver.version[0] >= '2');
@@ -104,7 +28,7 @@ static void ideal_joints_are_of_first_order(void **state)
     for (int i = 0; i < 3; i++) {
         Scenario scenario = load("cases/paper/ideal-nominal.yaml", NULL, 0);
         scenario.run.step = STEPS[i];
-        const Outcome outcome = outcome_of("native", &scenario, BACKEND_ANALYTIC);
+        const Outcome outcome = outcome_of(MUJOCO, "native", &scenario, BACKEND_ANALYTIC);
         errors[i] = outcome.error.omega_max;
         openings[i] = outcome.said.opening_m;
     }
@@ -126,7 +50,7 @@ static void contacts_in_the_step_are_as_good_as_those_of_ode(void **state)
     double errors[COUNT];
     for (int i = 0; i < COUNT; i++) {
         Scenario scenario = impact(STEPS[i]);
-        const Outcome kernel = outcome_of("kernel", &scenario, BACKEND_REFERENCE);
+        const Outcome kernel = outcome_of(MUJOCO, "kernel", &scenario, BACKEND_REFERENCE);
         const Outcome ode =
             hold_against(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY),
                          BACKEND_REFERENCE);
@@ -142,7 +66,7 @@ static void contacts_in_the_step_are_as_good_as_those_of_ode(void **state)
     assert_true(order > 2.0);
     // the control: the law as a force, with MuJoCo's best integrator
     Scenario scenario = impact(10e-6);
-    const Outcome force = outcome_of("force", &scenario, BACKEND_REFERENCE);
+    const Outcome force = outcome_of(MUJOCO, "force", &scenario, BACKEND_REFERENCE);
     assert_true(force.error.omega_max > 10.0 * errors[3]);
 }
 
@@ -155,9 +79,11 @@ static void the_law_as_a_force_converges(void **state)
     static const double MOST[] = {1e-4, 2.2e-3};
     for (int i = 0; i < 2; i++) {
         Scenario scenario = impact(10e-6);
-        const double coarse = outcome_of(WAYS[i], &scenario, BACKEND_REFERENCE).error.omega_max;
+        const double coarse =
+            outcome_of(MUJOCO, WAYS[i], &scenario, BACKEND_REFERENCE).error.omega_max;
         scenario.run.step = 2e-6;
-        const double fine = outcome_of(WAYS[i], &scenario, BACKEND_REFERENCE).error.omega_max;
+        const double fine =
+            outcome_of(MUJOCO, WAYS[i], &scenario, BACKEND_REFERENCE).error.omega_max;
         assert_true(coarse <= MOST[i]);
         assert_true(log(coarse / fine) / log(5.0) > 1.6);
     }
@@ -169,7 +95,7 @@ static void a_limited_tendon_holds_the_pin(void **state)
 {
     (void)state;
     Scenario scenario = impact(10e-6);
-    const Outcome native = outcome_of("native", &scenario, BACKEND_REFERENCE);
+    const Outcome native = outcome_of(MUJOCO, "native", &scenario, BACKEND_REFERENCE);
     assert_true(native.error.omega_max < 0.05);
     assert_true(native.force_ratio > 2.0);
 }
@@ -178,7 +104,7 @@ static void a_limited_tendon_holds_the_pin(void **state)
 static void a_warning_is_a_failed_run(void **state)
 {
     (void)state;
-    const EngineDriver driver = mujoco();
+    const EngineDriver driver = engine_named(MUJOCO);
     Scenario scenario = impact(100e-6);
     Trajectory *run = engine_run(&driver, "force", &scenario, LIMIT_S, NULL);
     assert_false(run->is_complete);
@@ -191,14 +117,14 @@ static void a_slider_crank_and_two_pins_can_be_told(void **state)
     (void)state;
     Scenario slider = load("cases/mechanisms/slider-crank.yaml", NULL, 0);
     slider.run.step = 20e-6;
-    const Outcome ideal = outcome_of("native", &slider, BACKEND_ANALYTIC);
+    const Outcome ideal = outcome_of(MUJOCO, "native", &slider, BACKEND_ANALYTIC);
     assert_true(ideal.error.max < 0.05);
     Scenario pins = load("cases/hard/two-pins.yaml", NULL, 0);
     pins.run.step = 5e-6;
-    const Outcome play = outcome_of("kernel", &pins, BACKEND_REFERENCE);
+    const Outcome play = outcome_of(MUJOCO, "kernel", &pins, BACKEND_REFERENCE);
     assert_true(play.error.omega_max < 1e-3);
     // what it cannot express it says
-    const EngineDriver driver = mujoco();
+    const EngineDriver driver = engine_named(MUJOCO);
     Trajectory *run = engine_run(&driver, "kernel", &slider, LIMIT_S, NULL);
     assert_string_equal(run->message, "mujoco kernel: cannot express contacts within the step "
                                       "beside a loop of ideal joints");

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 enum { PROTOCOL = 1, REQUEST_MOST = 1 << 28 };
 
@@ -31,6 +32,19 @@ static double clock_s(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+// Where answers go: the program's standard output, which engines are kept from, for some greet.
+
+static FILE *answers;
+
+static void open_answers(void)
+{
+    const int channel = dup(STDOUT_FILENO);
+    answers = channel >= 0 ? fdopen(channel, "w") : NULL;
+    if (answers == NULL || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {
+        _Exit(1);
+    }
+}
+
 // Answers that end everything.
 
 static _Noreturn void end_with(const char *key, const char *format, va_list arguments)
@@ -40,11 +54,11 @@ static _Noreturn void end_with(const char *key, const char *format, va_list argu
     json_t *line = json_pack("{s:s%}", key, words, strlen(words));
     char *text = line != NULL ? json_dumps(line, JSON_COMPACT) : NULL;
     if (text != NULL) {
-        puts(text);
+        fprintf(answers, "%s\n", text);
     } else {
-        printf("{\"%s\": \"for a reason that is no text\"}\n", key);
+        fprintf(answers, "{\"%s\": \"for a reason that is no text\"}\n", key);
     }
-    fflush(stdout);
+    fflush(answers);
     _Exit(0);
 }
 
@@ -213,14 +227,15 @@ static void say_hello(const DriverIdentity *identity)
     json_t *line = json_pack("{s:i, s:s, s:s, s:s, s:o}", "jointplay-driver", PROTOCOL, "engine",
                              identity->engine, "version", identity->version, "precision",
                              identity->precision, "ways", ways);
-    json_dumpf(line, stdout, JSON_COMPACT);
-    putchar('\n');
-    fflush(stdout);
+    json_dumpf(line, answers, JSON_COMPACT);
+    fputc('\n', answers);
+    fflush(answers);
     json_decref(line);
 }
 
 DriverCase *driver_read(const DriverIdentity *identity, int *status)
 {
+    open_answers();
     json_t *request = json_loadf(stdin, JSON_DISABLE_EOF_CHECK, NULL);
     *status = 0;
     if (json_integer_value(json_object_get(request, "jointplay-driver")) != PROTOCOL) {
@@ -370,25 +385,26 @@ void driver_run_stamped(DriverRun *run)
 static void write_rows(const DriverRun *run, size_t sample)
 {
     const DriverCase *of = run->of;
-    printf("{\"sample\":%.17g,\"bodies\":[", of->sample_times[sample]);
+    fprintf(answers, "{\"sample\":%.17g,\"bodies\":[", of->sample_times[sample]);
     for (size_t i = 0; i < of->body_count; i++) {
         const DriverMotion *at = &run->motions[sample * of->body_count + i];
         if (!isfinite(at->position.x + at->position.y + at->angle + at->velocity.x +
                       at->velocity.y + at->omega)) {
-            puts("");
+            fputc('\n', answers);
             driver_fail("the motion of '%s' is not finite after %.6g s", of->bodies[i].name,
                         of->sample_times[sample]);
         }
-        printf("%s[%.17g,%.17g,%.17g,%.17g,%.17g,%.17g]", i > 0 ? "," : "", at->position.x,
-               at->position.y, at->angle, at->velocity.x, at->velocity.y, at->omega);
+        fprintf(answers, "%s[%.17g,%.17g,%.17g,%.17g,%.17g,%.17g]", i > 0 ? "," : "",
+                at->position.x, at->position.y, at->angle, at->velocity.x, at->velocity.y,
+                at->omega);
     }
-    printf("],\"joints\":[");
+    fprintf(answers, "],\"joints\":[");
     for (size_t i = 0; i < of->joint_count; i++) {
         const Vec2 force = run->forces[sample * of->joint_count + i];
-        printf("%s[%.9g,%.9g]", i > 0 ? "," : "", isfinite(force.x) ? force.x : 0.0,
-               isfinite(force.y) ? force.y : 0.0);
+        fprintf(answers, "%s[%.9g,%.9g]", i > 0 ? "," : "", isfinite(force.x) ? force.x : 0.0,
+                isfinite(force.y) ? force.y : 0.0);
     }
-    printf("]}\n");
+    fprintf(answers, "]}\n");
 }
 
 static void write_done(const DriverRun *run)
@@ -404,8 +420,8 @@ static void write_done(const DriverRun *run)
     if (done == NULL) {
         driver_fail("the totals of the joints are not finite");
     }
-    json_dumpf(done, stdout, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    putchar('\n');
+    json_dumpf(done, answers, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    fputc('\n', answers);
     json_decref(done);
 }
 
@@ -416,7 +432,7 @@ void driver_run_write(DriverRun *run)
         write_rows(run, i);
     }
     write_done(run);
-    fflush(stdout);
+    fflush(answers);
 }
 
 // Pins in their holes.
