@@ -664,7 +664,7 @@ static double largest_bulge(const Looker *looker, const Look *before, int parts,
     for (size_t n = 0; n < body_count; n++) {
         const size_t i = solver_body(looker->part, n);
         const double most = fmax(extreme_so_far(looker, i, 1.0), extreme_so_far(looker, i, -1.0));
-        for (int k = 0; k < parts && (int)i != linkage_driven_body(linkage); k++) {
+        for (int k = 0; k < parts && !linkage_is_driven(linkage, (int)i); k++) {
             const double above = fabs(mean_above(k > 0 ? &looks[k - 1] : before, &looks[k], i));
             largest = above > largest * most ? above / most : largest;
         }
