@@ -119,6 +119,8 @@ static void fit_window(const LoadWindow *window, PlotPanel *panel)
 enum { SPOKES = 12 };
 static const double SPOKE_LABEL = 18.0; // from the frame to the middle of an angle's label, pixels
 
+static const double CIRCLE_LABEL = 32.0; // from the frame to the middle of a force's label, pixels
+
 static Vec2 spoke_direction(int spoke)
 {
     return vec2_rotate(2.0 * acos(-1.0) * spoke / SPOKES, (Vec2){1.0, 0.0});
@@ -191,7 +193,9 @@ static void draw_circles(const PlotPanel *panel, const LoadWindow *window)
     for (double force = step; window->most > 0.0 && force < far; force += step) {
         const Vec2 at = vec2_scale(force, spoke_direction(spoke));
         plot_circle(panel, force, CIRCLE);
-        if (force < 0.9 * spoke_length(panel, spoke)) {
+        const double room = panel->left + panel->width - plot_x(panel, at.x);
+        if (force < 0.9 * spoke_length(panel, spoke) && room > CIRCLE_LABEL &&
+            plot_x(panel, at.x) - panel->left > CIRCLE_LABEL) {
             char words[32];
             snprintf(words, sizeof words, "%g N", force);
             plot_text(panel->svg, plot_x(panel, at.x), plot_y(panel, at.y) + 4.0, "middle", "halo",
