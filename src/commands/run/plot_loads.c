@@ -51,10 +51,6 @@ void plot_loads_torque(const PlotView *view, PlotPanel panel)
     for (size_t n = 0; n < count * report->run_count; n++) {
         show_torques(report, report->runs[n / count], joints[n % count], &panel.y);
     }
-    if (!(panel.y.low <= panel.y.high)) {
-        panel.y.low = 0.0;
-        panel.y.high = 0.0;
-    }
     axis_fit(&panel.y.low, &panel.y.high);
     plot_enter(&panel);
     plot_look_shade(view, &panel);
