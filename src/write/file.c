@@ -204,6 +204,7 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
                     {"{\"time_s\":", NULL},
                     {"{\"joint\":", "\"onset_s\":"}}},
     [FILE_DATABASE] = {"a table of jointplay (SQLite)", {{"SQLite format 3", "JPSR"}}},
+    [FILE_CASE] = {"a case of jointplay new (YAML)", {{"# Written by 'jointplay new", NULL}}},
     [FILE_SCRIPT] = {"a script of jointplay study slurm",
                      {{"#!/bin/bash", "Written by 'jointplay study slurm'"}}},
     [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST"}}},

@@ -31,6 +31,7 @@ typedef enum FileKind {
     FILE_BASELINE, // of check: JSON
     FILE_ROWS,     // JSON Lines
     FILE_DATABASE, // SQLite
+    FILE_CASE,     // of new: YAML
     FILE_SCRIPT,   // of a study, for Slurm
     FILE_STORE,    // of a study: SQLite, written in place
     FILE_JOURNAL,  // of a comparison: JSON Lines, written in place

@@ -80,6 +80,19 @@ static bool has_limits(const Scenario *scenario, size_t joint)
     return joint_of(scenario, joint)->limits.kind != LIMIT_NONE;
 }
 
+static bool has_play(const Scenario *scenario, size_t joint)
+{
+    return linkage_has_play(joint_of(scenario, joint));
+}
+
+// Whether a body's speed can change: that of a drive of constant speed cannot.
+static bool speeds_up(const Scenario *scenario, size_t body)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int drive = linkage_drive_of_body(linkage, (int)body);
+    return drive < 0 || linkage_drive(linkage, (size_t)drive)->table.count > 0;
+}
+
 // Whether a moment comes with the force at the anchor of body b that is not a slider's: of limits,
 // of teeth, of friction at the wall of a hole or stop.
 static bool turns(const Scenario *scenario, size_t joint)
@@ -330,15 +343,15 @@ static const SeriesRow OF_FORCES_IN_SPACE[] = {
     {0},
 };
 static const SeriesRow OF_BODIES_BETWEEN[] = {
-    {"omega_min_rad_s", SERIES_AS_NAMED, NULL, omega_min},
-    {"omega_max_rad_s", SERIES_AS_NAMED, NULL, omega_max},
-    {"alpha_min_rad_s2", SERIES_AS_NAMED, NULL, alpha_min},
-    {"alpha_max_rad_s2", SERIES_AS_NAMED, NULL, alpha_max},
+    {"omega_min_rad_s", SERIES_AS_NAMED, speeds_up, omega_min},
+    {"omega_max_rad_s", SERIES_AS_NAMED, speeds_up, omega_max},
+    {"alpha_min_rad_s2", SERIES_AS_NAMED, speeds_up, alpha_min},
+    {"alpha_max_rad_s2", SERIES_AS_NAMED, speeds_up, alpha_max},
     {0},
 };
 static const SeriesRow OF_JOINTS_BETWEEN[] = {
-    {"gap_min", SERIES_LENGTH, NULL, gap_min},
-    {"gap_max", SERIES_LENGTH, NULL, gap_max},
+    {"gap_min", SERIES_LENGTH, has_play, gap_min},
+    {"gap_max", SERIES_LENGTH, has_play, gap_max},
     {"force_min", SERIES_FORCE, NULL, force_min},
     {"force_max", SERIES_FORCE, NULL, force_max},
     {0},

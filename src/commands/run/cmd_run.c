@@ -222,25 +222,26 @@ static bool run_cases(void *target, Err *err)
     return is_done;
 }
 
+static const Arguments RUN_ARGUMENTS = {
+    .program = "jointplay run",
+    .usage = "CASE...",
+    .doc = "Runs a case on its backends and prints extremes, spikes, error and cost."
+           "\vWith --json one case is one object; several are {\"cases\": [...]}. "
+           "'jointplay help case' lists what can be set.",
+    .argument = {.type = OPTION_LIST,
+                 AT(cases),
+                 .count_offset = offsetof(RunCommand, case_count),
+                 .high = CASE_MAX,
+                 .what = "cases"},
+    OPTION_ROWS(OPTIONS),
+    .check = check_command,
+};
+
 static bool run_run(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay run",
-        .usage = "CASE...",
-        .doc = "Runs a case on its backends and prints extremes, spikes, error and cost."
-               "\vWith --json one case is one object; several are {\"cases\": [...]}. "
-               "'jointplay help case' lists what can be set.",
-        .argument = {.type = OPTION_LIST,
-                     AT(cases),
-                     .count_offset = offsetof(RunCommand, case_count),
-                     .high = CASE_MAX,
-                     .what = "cases"},
-        OPTION_ROWS(OPTIONS),
-        .check = check_command,
-    };
     RunCommand command = {.force_axis = FORCE_AXES[0]};
     run_choices_begin(&command.choices);
-    const bool is_done = arguments_run(&ARGUMENTS, argc, argv, &command, run_cases, err);
+    const bool is_done = arguments_run(&RUN_ARGUMENTS, argc, argv, &command, run_cases, err);
     run_choices_finish(&command.choices);
     return is_done;
 }
@@ -249,4 +250,5 @@ const Command cmd_run = {
     .name = "run",
     .summary = "runs a case on its backends: extremes, spikes, error, cost",
     .run = run_run,
+    .arguments = &RUN_ARGUMENTS,
 };
