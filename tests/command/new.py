@@ -58,7 +58,7 @@ def the_comments_of_a_case_are_true_where_they_are_uncommented():
 
 
 def the_control_a_mistake_and_a_coarse_step_are_seen():
-    write("mistake.yaml", read("four-bar.yaml").replace("length: 60 mm", "length: 60"))
+    write("mistake.yaml", read("four-bar.yaml").replace("length: 45 mm", "length: 45"))
     status, _, errors = call("run", "mistake.yaml")
     assert status == 3 and "mistake.yaml:10:" in errors, errors
     coarse = ["servo.yaml", "--step", "5 ms", "--set", "ode.stepping=plain", "--set", "ode.map=textbook"]
