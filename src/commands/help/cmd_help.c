@@ -23,7 +23,7 @@ static const OptionRow OPTIONS[] = {
     {"markdown", NULL, "Of the format of a file: as Markdown", 0, OPTION_FLAG,
      offsetof(HelpOptions, is_markdown), .letter = 'm'},
     {"man", NULL, "Print the manual page of the program or a command, for 'man -l -'", 0,
-     OPTION_FLAG, offsetof(HelpOptions, is_man)},
+     OPTION_FLAG, .offset = offsetof(HelpOptions, is_man)},
     {"completion", "SHELL", "Print the script that completes command lines in bash or zsh", 0,
      OPTION_CHOICE, .offset = offsetof(HelpOptions, shell), .words = SHELLS},
 };
