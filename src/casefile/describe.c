@@ -234,9 +234,7 @@ static void describe_line(size_t row_number, const char *path, Text *text)
         text_append(text, "| `%s` | ", path);
     }
     describe_value(row, text);
-    text_append(text, row->low < row->high ? ", " : "");
-    describe_range(row, text);
-    text_append(text, " | ");
+    text_append(text, row->is_required ? "; " : "; default: ");
     describe_default(row_number, text);
     text_append(text, " | ");
     describe_meaning(row, text);
@@ -279,7 +277,7 @@ static void describe_groups(bool is_page, Text *text)
         if (is_page) {
             text_append(text, is_peak ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
                         is_peak ? "Top level" : group->path, group->doc);
-            text_append(text, "| key | value | default | meaning |\n|---|---|---|---|\n");
+            text_append(text, "| key | value | meaning |\n|---|---|---|\n");
         } else {
             text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
             append_wrapped(group->doc, 2, text);
@@ -295,9 +293,8 @@ static void describe_groups(bool is_page, Text *text)
 // The units of every quantity, once.
 static void describe_units(Text *text)
 {
-    text_append(
-        text,
-        "\n## Units\n\nA quantity is given in one of these units; ranges below are in SI:\n\n");
+    text_append(text, "\n## Units\n\nA quantity is given in one of these units; `jointplay help "
+                      "case` has the range of each key, too:\n\n");
     for (int i = 0; i < DIMENSION_COUNT; i++) {
         Text units;
         text_init(&units);
