@@ -220,7 +220,7 @@ static void describe_value(const SchemaRow *row, Text *text)
     text_finish(&words);
 }
 
-// A line of the page's table; links that share a key share the line.
+// A key on the page; links that share one share the line.
 static void describe_line(size_t row_number, const char *path, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
@@ -229,19 +229,19 @@ static void describe_line(size_t row_number, const char *path, Text *text)
     }
     if (count_alike(row, row_number, SCHEMA_ROW_COUNT) > 0) {
         const int length = (int)(strchr(path, '.') - path);
-        text_append(text, "| `%.*s.<link>%s` | ", length, path, strrchr(path, '.'));
+        text_append(text, "- `%.*s.<link>%s` (", length, path, strrchr(path, '.'));
     } else {
-        text_append(text, "| `%s` | ", path);
+        text_append(text, "- `%s` (", path);
     }
     describe_value(row, text);
-    text_append(text, row->is_required ? "; " : "; default: ");
+    text_append(text, row->is_required ? "; " : "; default ");
     describe_default(row_number, text);
-    text_append(text, " | ");
+    text_append(text, "): ");
     describe_meaning(row, text);
-    text_append(text, " |\n");
+    text_append(text, "\n");
 }
 
-// A row in words for a terminal, or as a line of a table.
+// A row in words for a terminal, or on a line of the page.
 static void describe_row(size_t row_number, bool is_page, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
@@ -277,7 +277,6 @@ static void describe_groups(bool is_page, Text *text)
         if (is_page) {
             text_append(text, is_peak ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
                         is_peak ? "Top level" : group->path, group->doc);
-            text_append(text, "| key | value | meaning |\n|---|---|---|\n");
         } else {
             text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
             append_wrapped(group->doc, 2, text);
@@ -321,22 +320,22 @@ static const char *expect_path(ExpectGroup group)
 
 static void describe_expectation(const ExpectRow *row, bool is_page, Text *text)
 {
+    if (is_page) {
+        text_append(text, "- `%s%s`: %s%s\n", expect_path(row->group), row->name, row->doc,
+                    row->needs_play ? "; of a joint with play" : "");
+        return;
+    }
     Text units;
     text_init(&units);
     units_list(row->dimension, &units);
     const char *unit = units.length > 0 ? units.data : row->is_count ? "a whole number" : "plain";
-    if (is_page) {
-        text_append(text, "| `%s%s` | %s | %s%s |\n", expect_path(row->group), row->name, unit,
-                    row->doc, row->needs_play ? "; of a joint with play" : "");
-    } else {
-        text_append(text, "    %s%s\n", expect_path(row->group), row->name);
-        Text words;
-        text_init(&words);
-        text_append(&words, "%s%s; %s", row->doc, row->needs_play ? ", of a joint with play" : "",
-                    unit);
-        append_wrapped(words.data, DESCRIBE_INDENT, text);
-        text_finish(&words);
-    }
+    text_append(text, "    %s%s\n", expect_path(row->group), row->name);
+    Text words;
+    text_init(&words);
+    text_append(&words, "%s%s; %s", row->doc, row->needs_play ? ", of a joint with play" : "",
+                unit);
+    append_wrapped(words.data, DESCRIBE_INDENT, text);
+    text_finish(&words);
     text_finish(&units);
 }
 
@@ -385,7 +384,7 @@ static void describe_expect(bool is_page, Text *text)
     text_append(text,
                 is_page ? "\n## `expect`\n\n%s\n\nA limit is one of: `%s`. The ends are "
                           "included in between and within, and excluded from below and above.\n\n"
-                          "```yaml\n%s```\n\n| path | units | meaning |\n|---|---|---|\n"
+                          "```yaml\n%s```\n\n"
                         : "\nexpect\n",
                 WORDS, EXPECT_FORMS, EXPECT_EXAMPLE);
     if (!is_page) {
