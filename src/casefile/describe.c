@@ -211,10 +211,13 @@ static void describe_value(const SchemaRow *row, Text *text)
     text_append(&units, " in ");
     units_list(row->dimension, &units);
     const char *listed = strstr(words.data, units.data);
+    // without its article
+    const char *name = words.data;
+    name += strncmp(name, "a ", 2) == 0 ? 2 : strncmp(name, "an ", 3) == 0 ? 3 : 0;
     if (row->dimension != DIMENSION_NONE && listed != NULL) {
-        text_append(text, "%.*s%s", (int)(listed - words.data), words.data, listed + units.length);
+        text_append(text, "%.*s%s", (int)(listed - name), name, listed + units.length);
     } else {
-        text_append(text, "%s", words.data);
+        text_append(text, "%s", name);
     }
     text_finish(&units);
     text_finish(&words);
@@ -227,6 +230,8 @@ static void describe_line(size_t row_number, const char *path, Text *text)
     if (count_alike(row, 0, row_number) > 0) {
         return;
     }
+    Text words;
+    text_init(&words);
     if (count_alike(row, row_number, SCHEMA_ROW_COUNT) > 0) {
         const int length = (int)(strchr(path, '.') - path);
         text_append(text, "- `%.*s.<link>%s` (", length, path, strrchr(path, '.'));
@@ -234,8 +239,11 @@ static void describe_line(size_t row_number, const char *path, Text *text)
         text_append(text, "- `%s` (", path);
     }
     describe_value(row, text);
-    text_append(text, row->is_required ? "; " : "; default ");
-    describe_default(row_number, text);
+    describe_default(row_number, &words);
+    if (strcmp(words.data, "none") != 0) {
+        text_append(text, row->is_required ? "; %s" : "; default %s", words.data);
+    }
+    text_finish(&words);
     text_append(text, "): ");
     describe_meaning(row, text);
     text_append(text, "\n");

@@ -223,8 +223,13 @@ static void describe_key(const SpecKey *key, bool is_markdown, Text *text)
     text_init(&words);
     if (is_markdown) {
         spec_key_allowed(key, &words);
-        text_append(&words, key->is_required ? "; " : "; default ");
-        spec_table_describe_default(key, &words);
+        Text usual;
+        text_init(&usual);
+        spec_table_describe_default(key, &usual);
+        if (strcmp(usual.data, "none") != 0) {
+            text_append(&words, key->is_required ? "; %s" : "; default %s", usual.data);
+        }
+        text_finish(&usual);
         text_append(text, "- `%s%s%s` (%s): %s\n", group, dot, key->name, words.data, key->doc);
     } else {
         text_append(&words, "%s: ", key->doc);
