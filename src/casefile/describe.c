@@ -321,6 +321,7 @@ static const char *expect_path(ExpectGroup group)
         [EXPECT_JOINTS] = "joints.<joint>.",
         [EXPECT_ERROR] = "error.",
         [EXPECT_ENERGY] = "energy.",
+        [EXPECT_SECTION] = "section.",
         [EXPECT_COST] = "cost.",
     };
     return PATHS[group];

@@ -9,6 +9,8 @@
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "measure/chosen_run.h"
+#include "measure/section.h"
+#include "measure/spectrum.h"
 #include "measure/truth.h"
 #include "model/joint_numbers.h"
 #include "model/perturb.h"
@@ -87,6 +89,18 @@ static double expect_value_of(const Expectation *expectation, const Trajectory *
         return body->alpha_min.value;
     case EXPECTED_ALPHA_SPIKES:
         return spikes(&run->alpha_spikes[expectation->member]);
+    case EXPECTED_OMEGA_ORDER_1:
+        return spectrum_body_order(run, (size_t)expectation->member, 1);
+    case EXPECTED_OMEGA_ORDER_2:
+        return spectrum_body_order(run, (size_t)expectation->member, 2);
+    case EXPECTED_OMEGA_BETWEEN_ORDERS:
+        return spectrum_body_between(run, (size_t)expectation->member);
+    case EXPECTED_OMEGA_SECTION:
+        return section_omega(run, (size_t)expectation->member, 0);
+    case EXPECTED_SECTION_PERIOD:
+        return section_period(run);
+    case EXPECTED_SECTION_CHANGE:
+        return section_find(run).change;
     case EXPECTED_FORCE_SPIKES:
         return spikes(&run->force_spikes[expectation->member]);
 #define EXPECTED_OF_JOINT(id, ...)                                                                 \

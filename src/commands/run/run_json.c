@@ -397,6 +397,7 @@ static json_t *run_object(const RunReport *report, size_t index)
     json_object_set_new(
         object, "energy",
         fields_json(RUN_ENERGY_FIELDS, FIELD_JSON | run_loaded(linkage), &run->energy));
+    run_signals_json(object, report->scenario, run);
     json_object_set_new(object, "spike_bands", spike_json_bands(report, run));
     json_object_set_new(object, "spike_match", run_truth_json_matches(report, index));
     json_object_set_new(object, "ensemble", run_truth_json_ensemble(report, index));
