@@ -504,7 +504,7 @@ bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *tr
 static void describe_one(bool is_markdown, const char *owner, const char *name, const char *meaning,
                          Text *text)
 {
-    text_append(text, is_markdown ? "| `%s%s` | %s |\n" : "    %s%s\n        %s\n", owner, name,
+    text_append(text, is_markdown ? "- `%s%s`: %s\n" : "    %s%s\n        %s\n", owner, name,
                 meaning);
 }
 
