@@ -7,13 +7,10 @@
 // bodies, x(n+1) = x(n) + h v: so v is the mean velocity of [n, n+1]. Read as that at n + 1/2, and
 // started half a step before, the steps are a leapfrog. The driven body is kinematic, about its
 // pivot. Bullet has no joint that is limited to a circle: those of its 6-dof joints are a box.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpedantic" // compound literals, which C++ has not
-#include <cmath>                            // before what is in C
+#include <cmath> // before what is in C
 extern "C" {
 #include "drivers/common/driver.h"
 }
-#pragma GCC diagnostic pop
 
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
