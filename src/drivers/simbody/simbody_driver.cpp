@@ -1,8 +1,8 @@
 // Runs a case in Simbody, with the contact's law as a force.
 //
 //     force      RungeKuttaMerson, of order 4, at steps of the length given
-//     adaptive   the same with its own steps, for an accuracy of .01 (h / 100 us)^2, h the step
-//     given
+//     adaptive   the same with steps of its own, for an accuracy of .01 (h / 100 us)^2, where h is
+//                the step given
 //
 // Coordinates are those of the joints: the tree has no constraints, the drive is prescribed
 // (Motion::Steady), and loops of ideal joints that are left over are points held in two planes.
