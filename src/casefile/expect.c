@@ -1,7 +1,8 @@
 // Reads the numbers that a case sets limits for.
 //
 //     path = [backend .] bodies . NAME . number | [backend .] joints . NAME . number
-//          | [backend .] error . number | [backend .] energy . number | [backend .] cost . number
+//          | [backend .] error . number | [backend .] energy . number | [backend .] section .
+//          number | [backend .] cost . number
 //
 // How its runs end is read in expect_outcome.c.
 #include "casefile/expect.h"
@@ -17,8 +18,8 @@
 enum { SEGMENT_MAX = 4, CHOICE_MAX = EXPECTED_NUMBER_COUNT };
 
 const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
-    [EXPECT_BODIES] = "bodies", [EXPECT_JOINTS] = "joints", [EXPECT_ERROR] = "error",
-    [EXPECT_ENERGY] = "energy", [EXPECT_COST] = "cost",
+    [EXPECT_BODIES] = "bodies", [EXPECT_JOINTS] = "joints",   [EXPECT_ERROR] = "error",
+    [EXPECT_ENERGY] = "energy", [EXPECT_SECTION] = "section", [EXPECT_COST] = "cost",
 };
 
 // clang-format off
@@ -52,6 +53,15 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
            "smallest angular acceleration"),
     WHOLE(EXPECTED_ALPHA_SPIKES, EXPECT_BODIES, "alpha_spikes",
           "number of spikes of the angular acceleration"),
+    NUMBER(EXPECTED_OMEGA_ORDER_1, EXPECT_BODIES, "omega_order_1", DIMENSION_ANGULAR_SPEED,
+           "amplitude of the angular velocity at once the crank's speed"),
+    NUMBER(EXPECTED_OMEGA_ORDER_2, EXPECT_BODIES, "omega_order_2", DIMENSION_ANGULAR_SPEED,
+           "the same at twice its speed"),
+    NUMBER(EXPECTED_OMEGA_BETWEEN_ORDERS, EXPECT_BODIES, "omega_between_orders",
+           DIMENSION_ANGULAR_SPEED,
+           "its largest amplitude between whole multiples of the crank's speed"),
+    NUMBER(EXPECTED_OMEGA_SECTION, EXPECT_BODIES, "omega_section", DIMENSION_ANGULAR_SPEED,
+           "angular velocity at the end of the last whole revolution"),
     JOINT_NUMBERS_OF_ANY_LIST(OF_ANY_JOINT)
     WHOLE(EXPECTED_FORCE_SPIKES, EXPECT_JOINTS, "force_spikes", "number of spikes of the force"),
     JOINT_NUMBERS_OF_PLAY_LIST(OF_JOINT_WITH_PLAY)
@@ -77,6 +87,11 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
            "change of kinetic, potential and elastic energy"),
     NUMBER(EXPECTED_RESIDUAL, EXPECT_ENERGY, "residual", DIMENSION_ENERGY,
            "what the balance leaves unexplained: the solver's error"),
+    WHOLE(EXPECTED_SECTION_PERIOD, EXPECT_SECTION, "period",
+          "revolutions after which the run repeats; 0: it has not"),
+    NUMBER(EXPECTED_SECTION_CHANGE, EXPECT_SECTION, "change", DIMENSION_NONE,
+           "by how much the sections of the last period differ from those before, of the fastest "
+           "point"),
     WHOLE(EXPECTED_STEPS, EXPECT_COST, "steps", "steps of the solver"),
     WHOLE(EXPECTED_EVALUATIONS, EXPECT_COST, "evaluations",
           "evaluations of the equations of motion"),
@@ -102,10 +117,11 @@ static Span segment_span(const Path *path, size_t segment)
 
 static bool refuse_path(const Path *path, Err *err)
 {
-    return source_error(path->source, keys_span(path->node),
-                        "joints.NAME.NUMBER, bodies.NAME.NUMBER, error.NUMBER, energy.NUMBER, "
-                        "cost.NUMBER, outcome, each with a backend before it or none",
-                        err, "'%.60s' is not the path of a number", path->node->key->text);
+    return source_error(
+        path->source, keys_span(path->node),
+        "joints.NAME.NUMBER, bodies.NAME.NUMBER, error.NUMBER, energy.NUMBER, "
+        "section.NUMBER, cost.NUMBER, outcome, each with a backend before it or none",
+        err, "'%.60s' is not the path of a number", path->node->key->text);
 }
 
 static bool cut_path(Path *path, Err *err)

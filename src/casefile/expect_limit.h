@@ -10,6 +10,7 @@ typedef enum ExpectGroup {
     EXPECT_JOINTS,
     EXPECT_ERROR,
     EXPECT_ENERGY,
+    EXPECT_SECTION,
     EXPECT_COST,
     EXPECT_GROUP_COUNT,
 } ExpectGroup;

@@ -56,6 +56,9 @@ bool engine_check(const Scenario *scenario, Err *err)
     if (scenario->contact.model != CONTACT_IMPACT && scenario_has_clearance(scenario)) {
         return refuse(err, "contact.model: poisson");
     }
+    if (linkage->further_count > 0) {
+        return refuse(err, "several drives");
+    }
     if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
         return refuse(err, "a drive whose speed is over time");
     }

@@ -24,6 +24,10 @@ typedef enum ExpectedNumber {
     EXPECTED_ALPHA_MAX, // rad/s^2
     EXPECTED_ALPHA_MIN,
     EXPECTED_ALPHA_SPIKES,
+    EXPECTED_OMEGA_ORDER_1, // rad/s, amplitudes at orders
+    EXPECTED_OMEGA_ORDER_2,
+    EXPECTED_OMEGA_BETWEEN_ORDERS,
+    EXPECTED_OMEGA_SECTION, // rad/s, at the end of the last whole revolution
     // of a joint, in the order of model/joint_number_list.h
     JOINT_NUMBERS_OF_ANY_LIST(EXPECTATION_OF_JOINT) EXPECTED_FORCE_SPIKES,
     JOINT_NUMBERS_OF_PLAY_LIST(EXPECTATION_OF_JOINT)
@@ -38,7 +42,9 @@ typedef enum ExpectedNumber {
     EXPECTED_DISSIPATED,
     EXPECTED_CHANGE,
     EXPECTED_RESIDUAL,
-    EXPECTED_STEPS, // of the cost
+    EXPECTED_SECTION_PERIOD, // revolutions
+    EXPECTED_SECTION_CHANGE, // 1
+    EXPECTED_STEPS,          // of the cost
     EXPECTED_EVALUATIONS,
     EXPECTED_NUMBER_COUNT,
 } ExpectedNumber;

@@ -30,35 +30,43 @@ static void *copied(const void *array, size_t count, size_t size)
     return copy;
 }
 
-static SettledMotion settled_motion_copy(const SettledMotion *motion, size_t joint_count)
+static SettledMotion settled_motion_copy(const SettledMotion *motion, const Linkage *linkage)
 {
     SettledMotion copy = *motion;
-    copy.joints = copied(motion->joints, joint_count, sizeof *motion->joints);
+    copy.joints = copied(motion->joints, linkage->joint_count, sizeof *motion->joints);
+    copy.sections = copied(motion->sections, motion->section_count * linkage->body_count,
+                           sizeof *motion->sections);
     return copy;
 }
 
-static SettledStart settled_start_copy(const SettledStart *settled, size_t joint_count)
+static void settled_motion_free(SettledMotion *motion)
+{
+    free(motion->joints);
+    free(motion->sections);
+}
+
+static SettledStart settled_start_copy(const SettledStart *settled, const Linkage *linkage)
 {
     SettledStart copy = *settled;
-    copy.first = copied(settled->first, joint_count, sizeof *settled->first);
+    copy.first = copied(settled->first, linkage->joint_count, sizeof *settled->first);
     copy.motions = copied(settled->motions, settled->motion_count, sizeof *settled->motions);
     for (size_t i = 0; i < settled->motion_count; i++) {
-        copy.motions[i] = settled_motion_copy(&settled->motions[i], joint_count);
+        copy.motions[i] = settled_motion_copy(&settled->motions[i], linkage);
     }
-    copy.halved = settled_motion_copy(&settled->halved, joint_count);
-    copy.doubled = settled_motion_copy(&settled->doubled, joint_count);
+    copy.halved = settled_motion_copy(&settled->halved, linkage);
+    copy.doubled = settled_motion_copy(&settled->doubled, linkage);
     return copy;
 }
 
 void settled_start_free(SettledStart *settled)
 {
     for (size_t i = 0; i < settled->motion_count; i++) {
-        free(settled->motions[i].joints);
+        settled_motion_free(&settled->motions[i]);
     }
     free(settled->motions);
     free(settled->first);
-    free(settled->halved.joints);
-    free(settled->doubled.joints);
+    settled_motion_free(&settled->halved);
+    settled_motion_free(&settled->doubled);
     *settled = (SettledStart){0};
 }
 
@@ -70,7 +78,7 @@ Scenario scenario_copy(const Scenario *scenario)
     copy.expectations =
         copied(scenario->expectations, scenario->expectation_count, sizeof *scenario->expectations);
     copy.keys = copied(scenario->keys, scenario->key_count, sizeof *scenario->keys);
-    copy.settled = settled_start_copy(&scenario->settled, scenario->linkage.joint_count);
+    copy.settled = settled_start_copy(&scenario->settled, &scenario->linkage);
     copy.outcomes = copied(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
     return copy;
 }
@@ -215,7 +223,7 @@ bool scenario_has_closed_form(const Scenario *scenario)
 bool scenario_is_extrapolable(const Scenario *scenario)
 {
     return !scenario_has_clearance(scenario) && !scenario->linkage.is_spatial &&
-           scenario->linkage.driver.speeds.count == 0;
+           scenario->linkage.driver.table.count == 0;
 }
 
 bool scenario_integrates_contacts(const Scenario *scenario)

@@ -46,7 +46,18 @@ typedef struct SettledMotion {
     size_t period;        // revolutions after which it repeats; 0: it does not
     double change;        // 1, over the last of them
     SettledJoint *joints; // by joint; owned
+    size_t section_count; // revolutions whose ends are below: those of a period, of a motion that
+                          // does not repeat some of its last
+    double *sections; // rad/s, of each body at the end of each: [revolution * body_count + body];
+                      // owned
 } SettledMotion;
+
+// How fast small changes of a state grow in a settled motion.
+typedef struct SettledGrowth {
+    double factor;      // 1: in a revolution, below 1 where they die out; NAN: not known
+    bool is_at_most;    // they were gone before it could be told: it is not above the factor
+    size_t revolutions; // that it was seen over
+} SettledGrowth;
 
 // How the start of a scenario was found (run/settle.h).
 typedef struct SettledStart {
@@ -61,6 +72,8 @@ typedef struct SettledStart {
     SettledMotion *motions;      // that of most starts first, which runs start in; owned
     SettledMotion halved;        // from there with half the damping; no joints: nobody has looked
     SettledMotion doubled;       // and with twice as much
+    bool has_growth;             // somebody has looked for the growth of small changes
+    SettledGrowth growth;        // of the motion that runs start in
     char message[ERR_TEXT_SIZE]; // why there is none
 } SettledStart;
 

@@ -53,6 +53,10 @@ bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch
 // Finds how the largest forces of a settled scenario move when its damping is halved and doubled.
 void settle_damping(Scenario *scenario, RunWatch watch);
 
+// Finds by what factor a small change of the state grows in a revolution of the settled motion of a
+// scenario. Nothing of one that has none.
+void settle_growth(Scenario *scenario, RunWatch watch);
+
 // Goes on until the motion repeats to within a tolerance, relative, until what it does in a
 // revolution no longer drifts though nothing repeats, or so many revolutions are over. Fails with
 // ERR_SOLVER.

@@ -5,6 +5,7 @@
 #include "write/table.h"
 #include "write/units.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -67,6 +68,18 @@ static void append_other(const Scenario *scenario, const SettledMotion *motion, 
     text_append(text, "\n");
 }
 
+// What becomes of a small change of the state.
+static void append_growth(const Scenario *scenario, Text *text)
+{
+    const SettledGrowth *growth = &scenario->settled.growth;
+    if (!scenario->settled.has_growth || isnan(growth->factor)) {
+        return;
+    }
+    text_append(text, "              a small change of the state %s %.3g times itself each %s\n",
+                growth->is_at_most ? "is gone, or less than" : "becomes", growth->factor,
+                turn_word(scenario));
+}
+
 void settled_text(const Scenario *scenario, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
@@ -85,6 +98,7 @@ void settled_text(const Scenario *scenario, Text *text)
             append_joint(scenario, i, text);
         }
     }
+    append_growth(scenario, text);
     for (size_t i = 1; i < settled->motion_count; i++) {
         append_other(scenario, &settled->motions[i], text);
     }
@@ -261,6 +275,24 @@ static void set_force(json_t *of, const Joint *joint, const char *name, double v
     json_value_set(of, key, value);
 }
 
+// The angular velocities at the ends of the revolutions of a motion, by body.
+static json_t *sections_json(const Scenario *scenario, const SettledMotion *motion)
+{
+    const Linkage *linkage = &scenario->linkage;
+    json_t *bodies = json_object();
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        json_t *values = json_array();
+        for (size_t k = 0; k < motion->section_count; k++) {
+            json_array_append_new(values,
+                                  json_value_real(motion->sections[k * linkage->body_count + i]));
+        }
+        json_object_set_new(bodies, linkage->bodies[i].name, values);
+    }
+    json_t *object = json_object();
+    json_object_set_new(object, "bodies", bodies);
+    return object;
+}
+
 static json_t *motion_json(const Scenario *scenario, const SettledMotion *motion)
 {
     json_t *joints = json_array();
@@ -284,6 +316,9 @@ static json_t *motion_json(const Scenario *scenario, const SettledMotion *motion
     json_object_set_new(found, "period", json_integer((json_int_t)motion->period));
     json_value_set(found, "change", motion->change);
     json_object_set_new(found, "joints", joints);
+    if (motion->section_count > 0) {
+        json_object_set_new(found, "section_omega_rad_s", sections_json(scenario, motion));
+    }
     return found;
 }
 
@@ -300,6 +335,10 @@ void settled_json(json_t *object, const Scenario *scenario)
     json_t *found = motion_json(scenario, &settled->motions[0]);
     json_object_set_new(found, "revolutions", json_integer((json_int_t)settled->revolutions));
     json_object_set_new(found, "starts_tried", json_integer((json_int_t)settled->starts));
+    if (settled->has_growth) {
+        json_value_set(found, "growth_per_revolution", settled->growth.factor);
+        json_object_set_new(found, "growth_is_at_most", json_boolean(settled->growth.is_at_most));
+    }
     json_t *others = json_array();
     for (size_t i = 1; i < settled->motion_count; i++) {
         json_array_append_new(others, motion_json(scenario, &settled->motions[i]));

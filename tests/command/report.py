@@ -9,7 +9,8 @@ program, case = sys.argv[1:3]
 HOSTILE = "</script></title><img src=x onerror=\"document.title='x'\">&lt;b&gt; \u9023 'q'"
 NONE = 65535
 # what is no column of a series
-OWN = ["omega_difference_rad_s", "acceleration_m_s2", "acceleration_max_m_s2"]
+OWN = ["omega_difference_rad_s", "force_difference", "acceleration_m_s2",
+       "acceleration_max_m_s2", "vx_m_s"]
 
 
 class Page(html.parser.HTMLParser):
@@ -141,6 +142,25 @@ def the_answer_is_that_of_run(work):
     assert "Assumed:" in page.text("li")
 
 
+def energy_and_orders_need_no_script(work):
+    words = ["--set", "run.samples=400", "--set", "run.revolutions=2"]
+    page = Page(make(work + "/j.html", *words))
+    result, _ = series(work + "/j", *words)
+    cells = page.texts["td"]
+    for one in result["runs"]:
+        if one["backend"] == "analytic":
+            continue
+        orders = one["spectrum"]["bodies"]["follower"]["omega_rad_s"]
+        step = round(1 / one["spectrum"]["orders"][1])
+        assert f"{orders[step]:.4g}" in cells, (orders[step], cells)
+        share = abs(one["energy"]["residual_J"]) / max(
+            abs(one["energy"][key]) for key in ["drive_work_J", "dissipated_J", "change_J"])
+        assert f"{share:.2g}" in cells, share
+    growth = result["settled"]["growth_per_revolution"]
+    assert f"becomes {growth:.3g} times itself" in page.text("li"), page.text("li")
+    assert "reference repeats every revolution" in page.text("li"), page.text("li")
+
+
 def the_command_makes_the_page_again(work):
     text = make(work + "/f.html", "--set", "title=a b", "--backend", "reference")
     command = unpack(Page(text))["command"]
@@ -263,6 +283,7 @@ CLAIMS = [
     the_picture_needs_no_style_sheet,
     a_title_is_shown_as_text,
     the_answer_is_that_of_run,
+    energy_and_orders_need_no_script,
     the_command_makes_the_page_again,
     the_data_are_the_samples_and_the_peaks_of_run,
     no_peak_is_lost_where_samples_are_left_out,

@@ -319,6 +319,72 @@ def a_hostile_title_stays_text(browser, page):
     browser.check_silence()
 
 
+def a_spectrum_and_a_phase_plane_are_those_of_the_results(browser, page):
+    browser.open(page)
+    found = browser.value("""(() => {
+        const plot = jointplay.plots.find((one) => one.series && one.series[0].kind === "stem");
+        const run = jointplay.data.results.runs.find((one) => one.backend === "reference");
+        const name = jointplay.data.bodies.find((body) => !body.is_driven).name;
+        const stem = plot.series.find((one) => one.backend === "reference");
+        return [stem.y, run.spectrum.bodies[name].omega_rad_s.map(Math.abs)];
+    })()""")
+    assert found[0] == found[1] and max(found[0]) > 1, found
+    # another signal is another plot, and no plot is left behind
+    count = browser.value("jointplay.plots.length")
+    browser.value("""(() => {
+        const select = [...document.querySelectorAll("select")].find((one) =>
+            one.parentElement.textContent.startsWith("Spectrum"));
+        select.selectedIndex = 1;
+        select.dispatchEvent(new Event("change"));
+    })()""")
+    browser.value(SEE_ALL)
+    assert browser.value("jointplay.plots.length") == count
+    assert browser.value(DRAWN) == []
+    phase = browser.value("""(() => {
+        const plot = jointplay.plots.find((one) => one.series && one.options.at);
+        const line = plot.series.find((one) => one.kind === "line");
+        const [x, y] = plot.options.at(line, jointplay.time);
+        return [Math.min(...line.x) <= x && x <= Math.max(...line.x),
+                Math.min(...line.y) <= y && y <= Math.max(...line.y)];
+    })()""")
+    assert phase == [True, True], phase
+    browser.check_silence()
+
+
+def a_mechanism_in_space_turns(browser, page):
+    space = os.path.join(os.path.dirname(page), "space.html")
+    bennett = os.path.join(os.path.dirname(case), "../space/bennett.yaml")
+    words = ["--set", "run.samples=200", "--backend", "reference", "--uncertified"]
+    subprocess.run([program, "report", bennett, "--quiet", "--out", space, *words], check=True)
+    browser.open(space)
+    browser.value(SEE_ALL)
+    assert browser.value(DRAWN) == []
+    # joints hold in every picture: both sides of an ideal one are at one place
+    apart = browser.value("""(() => {
+        const poses = jointplay.mechanism.poses[0];
+        let most = 0;
+        for (const share of [0, 0.3, 0.7, 1]) {
+            poses.set(share * jointplay.whole.to);
+            for (const joint of jointplay.data.joints.filter((one) => !one.has_play)) {
+                const a = poses.point(joint.body_a, joint.space_a_m);
+                const b = poses.point(joint.body_b, joint.space_b_m);
+                most = Math.max(most, Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+            }
+        }
+        return most / jointplay.mechanism.extent;
+    })()""")
+    assert apart < 1e-4, apart
+    before = browser.value("jointplay.mechanism.yaw")
+    left, top, width, height = browser.place("canvas.mechanism")
+    browser.mouse("mousePressed", left + 0.4 * width, top + 60)
+    browser.mouse("mouseMoved", left + 0.6 * width, top + 90)
+    browser.mouse("mouseReleased", left + 0.6 * width, top + 90)
+    assert browser.value("jointplay.mechanism.yaw") != before
+    assert browser.value("jointplay.mechanism.pitch") > 0.45
+    browser.picture("space")
+    browser.check_silence()
+
+
 CLAIMS = [
     every_plot_is_drawn_and_the_console_is_silent,
     dark_and_narrow_pages_fit,
@@ -331,6 +397,8 @@ CLAIMS = [
     runs_can_be_hidden_and_the_axis_changed,
     the_data_can_be_saved,
     canvases_have_roles_and_names,
+    a_spectrum_and_a_phase_plane_are_those_of_the_results,
+    a_mechanism_in_space_turns,
     a_hostile_title_stays_text,
 ]
 

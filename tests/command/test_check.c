@@ -494,6 +494,38 @@ static void limits_of_its_own_judge_a_case_without_a_baseline(void **state)
     json_decref(root);
 }
 
+// The rod of a slider-crank, r / l = 1/4, turns by asin(sin(crank) / 4), whose first harmonic has
+// the amplitude 1/4 + (1/4)^3 / 8 + 3 (1/4)^5 / 64 + ..., and no second.
+static void limits_of_orders_and_sections_are_those_of_the_rod(void **state)
+{
+    Program *program = *state;
+    static const char ROD[] =
+        "slider-crank:\n  crank: {length: 50 mm, mass: 0.1 kg, inertia: 20 kg mm^2}\n"
+        "  rod: {length: 200 mm, mass: 0.1 kg, inertia: 300 kg mm^2}\n"
+        "  slider: {mass: 0.2 kg, inertia: 20 kg mm^2}\n"
+        "drive: {speed: 1000 rpm}\n"
+        "run: {revolutions: 3, samples: 720, backends: [analytic]}\n"
+        "expect:\n"
+        "  bodies.rod.omega_order_1: within 0.001 % of 26.3896 rad/s\n"
+        "  bodies.rod.omega_order_2: below 1e-9 rad/s\n"
+        "  bodies.rod.omega_between_orders: below 1e-9 rad/s\n"
+        "  bodies.rod.omega_section: within 0.001 % of -26.1799 rad/s\n"
+        "  section.period: equals 1\n"
+        "  section.change: below 1e-9\n";
+    write_file(program, "rod.yaml", ROD);
+    program_run(program, "check rod.yaml --expect-only");
+    assert_says(program->output, "6 of 6 limits kept");
+    assert_int_equal(program->status, 0);
+    // the control: one revolution cannot tell its period
+    char text[sizeof ROD];
+    snprintf(text, sizeof text, "%s", ROD);
+    strstr(text, "revolutions: 3")[13] = '1';
+    write_file(program, "rod.yaml", text);
+    program_run(program, "check rod.yaml --expect-only");
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "section.period is not measured");
+}
+
 static void limits_stand_beside_a_baseline_and_are_no_setting_of_it(void **state)
 {
     Program *program = *state;
@@ -576,6 +608,7 @@ int main(void)
         CHECK_TEST(junit_is_valid_and_has_the_numbers_of_a_failure),
         CHECK_TEST(the_class_of_a_case_has_dots_between_folders_alone),
         CHECK_TEST(limits_of_its_own_judge_a_case_without_a_baseline),
+        CHECK_TEST(limits_of_orders_and_sections_are_those_of_the_rod),
         CHECK_TEST(limits_stand_beside_a_baseline_and_are_no_setting_of_it),
         CHECK_TEST(a_comment_is_short_and_folds_the_rest),
         CHECK_TEST(a_wrong_command_line_is_answered),

@@ -53,6 +53,22 @@ static void columns_have_names_with_units(void **state)
     assert_int_equal(short_one.result_count + 14, layout.result_count);
 }
 
+// A row has room for a number of bodies; more are refused and not cut.
+static void too_many_bodies_are_refused(void **state)
+{
+    (void)state;
+    Scenario scenario = scenario_default();
+    Err err = {ERR_NONE, ""};
+    scenario.linkage = mechanism_chain(60, 0.1, 1.0);
+    assert_true(metrics_fit(&scenario, &err));
+    linkage_free(&scenario.linkage);
+    scenario.linkage = mechanism_chain(100, 0.1, 1.0);
+    assert_false(metrics_fit(&scenario, &err));
+    assert_int_equal(err.kind, ERR_CASE);
+    assert_non_null(strstr(err.text, "100 bodies"));
+    linkage_free(&scenario.linkage);
+}
+
 static void names_that_become_one_are_numbered(void **state)
 {
     (void)state;
@@ -154,6 +170,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(columns_have_names_with_units),
+        cmocka_unit_test(too_many_bodies_are_refused),
         cmocka_unit_test(names_that_become_one_are_numbered),
         cmocka_unit_test(results_are_those_of_the_trajectory),
         cmocka_unit_test(without_a_truth_there_is_no_error),

@@ -9,6 +9,8 @@
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "measure/chosen_run.h"
+#include "measure/section.h"
+#include "measure/spectrum.h"
 #include "measure/truth.h"
 #include "model/joint_numbers.h"
 #include "model/perturb.h"
@@ -87,6 +89,18 @@ static double expect_value_of(const Expectation *expectation, const Trajectory *
         return body->alpha_min.value;
     case EXPECTED_ALPHA_SPIKES:
         return spikes(&run->alpha_spikes[expectation->member]);
+    case EXPECTED_OMEGA_ORDER_1:
+        return spectrum_body_order(run, (size_t)expectation->member, 1);
+    case EXPECTED_OMEGA_ORDER_2:
+        return spectrum_body_order(run, (size_t)expectation->member, 2);
+    case EXPECTED_OMEGA_BETWEEN_ORDERS:
+        return spectrum_body_between(run, (size_t)expectation->member);
+    case EXPECTED_OMEGA_SECTION:
+        return section_omega(run, (size_t)expectation->member, 0);
+    case EXPECTED_SECTION_PERIOD:
+        return section_period(run);
+    case EXPECTED_SECTION_CHANGE:
+        return section_find(run).change;
     case EXPECTED_FORCE_SPIKES:
         return spikes(&run->force_spikes[expectation->member]);
 #define EXPECTED_OF_JOINT(id, ...)                                                                 \
@@ -238,7 +252,7 @@ static void check_measure_add_bodies(CheckAdd *work, const Trajectory *run, Back
     };
     const char *const *names = NAMES[is_by_samples(backend) ? 1 : 0];
     for (size_t i = 0; i < run->body_count; i++) {
-        if ((int)i == run->driven_body) {
+        if (linkage_is_driven(&run->linkage, (int)i)) {
             continue;
         }
         const char *name = work->scenario->linkage.bodies[i].name;
@@ -315,7 +329,7 @@ static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backen
     for (size_t i = 0; !is_by_samples(backend) && i < run->body_count; i++) {
         const char *name = linkage->bodies[i].name;
         const SignalSpikes *found = &run->alpha_spikes[i];
-        if ((int)i != run->driven_body && found->is_known) {
+        if (!linkage_is_driven(&run->linkage, (int)i) && found->is_known) {
             add_count(work, run, name, "alpha_spikes", found->count);
             add_real(work, run, name, "alpha_spikes_mean_rad_s2", mean_size(found),
                      found->threshold);

@@ -430,4 +430,5 @@ const Command cmd_compare = {
     .name = "compare",
     .summary = "speed against error: every scheme over a ladder of steps",
     .run = compare_run,
+    .arguments = &COMPARE_ARGUMENTS,
 };

@@ -111,23 +111,23 @@ static bool check_command(void *target, Err *err)
     return run_choices_end(&command->choices, err);
 }
 
+static const Arguments REPORT_ARGUMENTS = {
+    .program = "jointplay report",
+    .usage = "CASE",
+    .doc = "Runs a case on its backends and writes one HTML file that opens offline: the answer, "
+           "the mechanism moving, and plots."
+           "\vThe page needs no other file and asks nothing of any other place. Without script "
+           "it has the same answer, tables and a picture.",
+    .argument = COMMON_PATH("report takes one case"),
+    OPTION_ROWS(OPTIONS),
+    .check = check_command,
+};
+
 static bool run_report(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay report",
-        .usage = "CASE",
-        .doc =
-            "Runs a case on its backends and writes one HTML file that opens offline: the answer, "
-            "the mechanism moving, and plots."
-            "\vThe page needs no other file and asks nothing of any other place. Without script "
-            "it has the same answer, tables and a picture.",
-        .argument = COMMON_PATH("report takes one case"),
-        OPTION_ROWS(OPTIONS),
-        .check = check_command,
-    };
     ReportCommand command = {0};
     run_choices_begin(&command.choices);
-    const bool is_done = arguments_run(&ARGUMENTS, argc, argv, &command, report_case, err);
+    const bool is_done = arguments_run(&REPORT_ARGUMENTS, argc, argv, &command, report_case, err);
     run_choices_finish(&command.choices);
     return is_done;
 }
@@ -136,4 +136,5 @@ const Command cmd_report = {
     .name = "report",
     .summary = "runs a case and writes one HTML file: motion, plots, tables",
     .run = run_report,
+    .arguments = &REPORT_ARGUMENTS,
 };

@@ -31,8 +31,7 @@ static json_t *bodies_json(const Linkage *linkage)
         const Body *body = &linkage->bodies[i];
         json_t *object = json_object();
         json_object_set_new(object, "name", json_value_text(body->name));
-        json_object_set_new(object, "is_driven",
-                            json_boolean((int)i == linkage_driven_body(linkage)));
+        json_object_set_new(object, "is_driven", json_boolean(linkage_is_driven(linkage, (int)i)));
         json_value_set(object, "gyration_m", sqrt(body->inertia / body->mass));
         json_array_append_new(bodies, object);
     }
@@ -81,6 +80,22 @@ static void set_sizes(json_t *object, const Joint *joint)
     }
 }
 
+static json_t *vector3_json(Vec3 vector)
+{
+    return json_pack("[f,f,f]", vector.x, vector.y, vector.z);
+}
+
+// Where a joint is on both of its bodies in space, and how its axis stands there.
+static void set_space(json_t *object, const Linkage *linkage, size_t number)
+{
+    const SpaceEnd a = space_end(linkage, number, 0);
+    const SpaceEnd b = space_end(linkage, number, 1);
+    json_object_set_new(object, "space_a_m", vector3_json(a.anchor));
+    json_object_set_new(object, "space_b_m", vector3_json(b.anchor));
+    json_object_set_new(object, "axis_a", vector3_json(a.axis));
+    json_value_set(object, "width_m", linkage->joints[number].clearance.width);
+}
+
 static json_t *joints_json(const Linkage *linkage)
 {
     json_t *joints = json_array();
@@ -98,6 +113,9 @@ static json_t *joints_json(const Linkage *linkage)
         json_value_set(object, "direction_rad", joint->direction);
         json_value_set(object, "held_angle_rad", joint->held_angle);
         set_sizes(object, joint);
+        if (linkage->is_spatial) {
+            set_space(object, linkage, i);
+        }
         json_array_append_new(joints, object);
     }
     return joints;
@@ -226,8 +244,8 @@ static json_t *signal_json(SeriesName name, const char *what, const PackedSignal
 }
 
 // Adds the difference of a column to that of the truth at the same samples.
-static void add_difference(const Kept *kept, const Trajectory *truth, size_t column, Pack *pack,
-                           json_t *signals)
+static void add_difference(const Kept *kept, const Trajectory *truth, size_t column,
+                           const char *what, Pack *pack, json_t *signals)
 {
     for (size_t i = 0; i < kept->count; i++) {
         const size_t sample = i * kept->stride;
@@ -237,7 +255,7 @@ static void add_difference(const Kept *kept, const Trajectory *truth, size_t col
     const PackedSignal signal = pack_add(pack, kept->values, kept->count, false);
     SeriesName name = series_columns_name(kept->columns, column);
     name.name = "";
-    json_array_append_new(signals, signal_json(name, "omega_difference_rad_s", &signal));
+    json_array_append_new(signals, signal_json(name, what, &signal));
 }
 
 // 1: speeds by turning below this share of a body's speed are rounding
@@ -251,6 +269,57 @@ static bool is_turning(const Trajectory *run, size_t body)
         speed = fmax(speed, vec2_length(trajectory_motion(run, i, body)->velocity));
     }
     return trajectory_omega_scale(run, body) * run->reach[body] > TURNING * speed;
+}
+
+// Adds a signal that no column has: a value of each sample that is kept.
+typedef double KeptValue(const Trajectory *run, size_t sample, size_t number);
+
+static void add_signal(const Kept *kept, SeriesOf of, size_t number, const char *what,
+                       KeptValue *value, Pack *pack, json_t *signals)
+{
+    for (size_t i = 0; i < kept->count; i++) {
+        kept->values[i] = value(kept->run, i * kept->stride, number);
+    }
+    const PackedSignal signal = pack_add(pack, kept->values, kept->count, false);
+    const SeriesName name = {"", of, number, what};
+    json_array_append_new(signals, signal_json(name, what, &signal));
+}
+
+static double velocity_x(const Trajectory *run, size_t sample, size_t body)
+{
+    return trajectory_motion(run, sample, body)->velocity.x;
+}
+
+// How bodies stand in space, and where pins are in their holes.
+#define SPACE_VALUE(name, of, member)                                                              \
+    static double name(const Trajectory *run, size_t sample, size_t number)                        \
+    {                                                                                              \
+        return trajectory_space_##of(run, sample, number)->member;                                 \
+    }
+SPACE_VALUE(space_z, motion, position.z)
+SPACE_VALUE(turn_w, motion, turn.w)
+SPACE_VALUE(turn_x, motion, turn.x)
+SPACE_VALUE(turn_y, motion, turn.y)
+SPACE_VALUE(turn_z, motion, turn.z)
+SPACE_VALUE(offset_z, state, offset.z)
+SPACE_VALUE(force_z, state, force_on_b.z)
+
+static void add_space(const Kept *kept, Pack *pack, json_t *signals)
+{
+    const Trajectory *run = kept->run;
+    for (size_t i = 0; i < run->body_count; i++) {
+        add_signal(kept, SERIES_OF_BODY, i, "height_m", space_z, pack, signals);
+        add_signal(kept, SERIES_OF_BODY, i, "turn_w", turn_w, pack, signals);
+        add_signal(kept, SERIES_OF_BODY, i, "turn_x", turn_x, pack, signals);
+        add_signal(kept, SERIES_OF_BODY, i, "turn_y", turn_y, pack, signals);
+        add_signal(kept, SERIES_OF_BODY, i, "turn_z", turn_z, pack, signals);
+    }
+    for (size_t i = 0; i < run->joint_count; i++) {
+        if (trajectory_feels_play(run, &run->linkage.joints[i])) {
+            add_signal(kept, SERIES_OF_JOINT, i, "offset_z_m", offset_z, pack, signals);
+            add_signal(kept, SERIES_OF_JOINT, i, "load_z_N", force_z, pack, signals);
+        }
+    }
 }
 
 // Adds the size of the acceleration of a body's centre, at the samples and the largest up to the
@@ -294,13 +363,19 @@ static json_t *signals_json(const Kept *kept, const Trajectory *truth, Pack *pac
             pack_add(pack, kept->values, kept->count, carried->thinning == THIN_TURNING);
         json_array_append_new(signals, signal_json(name, name.what, &signal));
         if (has_difference && strcmp(name.what, "omega_rad_s") == 0) {
-            add_difference(kept, truth, i, pack, signals);
+            add_difference(kept, truth, i, "omega_difference_rad_s", pack, signals);
+        } else if (has_difference && strcmp(name.what, "force") == 0) {
+            add_difference(kept, truth, i, "force_difference", pack, signals);
         }
     }
     for (size_t i = 0; i < kept->run->body_count; i++) {
         if (!is_turning(kept->run, i)) {
             add_acceleration(kept, i, pack, signals);
+            add_signal(kept, SERIES_OF_BODY, i, "vx_m_s", velocity_x, pack, signals);
         }
+    }
+    if (kept->run->space_motions != NULL) {
+        add_space(kept, pack, signals);
     }
     return signals;
 }

@@ -2,6 +2,8 @@
 // and the one script.
 #include "commands/report/report_page.h"
 #include "commands/report/report_data.h"
+#include "commands/report/report_html.h"
+#include "commands/report/report_numbers.h"
 #include "commands/report/report_pack.h"
 #include "commands/report/report_sha256.h"
 #include "commands/run/run_overview.h"
@@ -17,64 +19,27 @@
 // The files that the script is made of, and the style sheet; see meson.build.
 // clang-format off
 #define REPORT_SCRIPT_LIST(member) \
-    member(data) member(signals) member(plot) member(round) member(mechanism) member(page)
+    member(data) member(signals) member(plot) member(round) member(xy) member(turns) \
+    member(mechanism) member(space) member(page)
 // clang-format on
 #define REPORT_DECLARE(name)                                                                       \
     extern const char embedded_report_##name[], embedded_report_##name##_end[];
 REPORT_SCRIPT_LIST(REPORT_DECLARE)
 REPORT_DECLARE(style)
 
-// Elements.
-
-static void append_words(const char *tag, const char *words, Text *html)
-{
-    text_append(html, "<%s>", tag);
-    xml_append(words, html);
-    text_append(html, "</%.*s>\n", (int)strcspn(tag, " "), tag);
-}
-
-// A row of a table whose first cell heads it.
-static void append_pair(const char *head, const char *words, Text *html)
-{
-    text_append(html, "<tr>");
-    append_words("th scope=\"row\"", head, html);
-    append_words("td", words, html);
-    text_append(html, "</tr>\n");
-}
-
 // The answer.
-
-static void cell_units(double value, const char *unit, Text *html)
-{
-    Text words;
-    text_init(&words);
-    if (isfinite(value)) {
-        units_append(&words, value, unit);
-    }
-    append_words("td", words.data, html);
-    text_finish(&words);
-}
-
-static void cell_number(const char *format, double value, Text *html)
-{
-    char words[32] = "";
-    if (isfinite(value)) {
-        snprintf(words, sizeof words, format, value);
-    }
-    append_words("td", words, html);
-}
 
 static void answer_row(const OverviewRow *row, bool has_crank, Text *html)
 {
     text_append(html, "<tr>");
-    append_words("th scope=\"row\"", row->name, html);
-    cell_units(row->largest, row->unit, html);
-    cell_number(has_crank ? "%.1f deg" : "%.4g ms",
-                has_crank ? units_wrapped_deg(row->crank_rad) : row->time_s * UNITS_MS, html);
-    cell_number("%.3g", row->ratio, html);
-    cell_number("%.3g", row->impacts, html);
-    cell_number("%.1f %%", row->contact * UNITS_PERCENT, html);
-    cell_units(row->deepest, row->depth, html);
+    html_words("th scope=\"row\"", row->name, html);
+    html_cell_units(row->largest, row->unit, html);
+    html_cell_number(has_crank ? "%.1f deg" : "%.4g ms",
+                     has_crank ? units_wrapped_deg(row->crank_rad) : row->time_s * UNITS_MS, html);
+    html_cell_number("%.3g", row->ratio, html);
+    html_cell_number("%.3g", row->impacts, html);
+    html_cell_number("%.1f %%", row->contact * UNITS_PERCENT, html);
+    html_cell_units(row->deepest, row->depth, html);
     text_append(html, "</tr>\n");
 }
 
@@ -116,8 +81,8 @@ static void append_overview(const RunReport *report, Text *html)
         for (size_t i = 0; i < bodies; i++) {
             answer_row(&overview.bodies[i], has_crank, html);
         }
-        if (overview.has_drive) {
-            answer_row(&overview.drive, has_crank, html);
+        for (size_t i = 0; i < overview.drive_count; i++) {
+            answer_row(&overview.drives[i], has_crank, html);
         }
         text_append(html, "</tbody></table></div>\n");
     }
@@ -142,19 +107,7 @@ static void append_answer(const RunReport *report, Text *html)
     Text sentences;
     text_init(&sentences);
     run_overview_sentences(report, &sentences);
-    text_append(html, "<ul>\n");
-    for (const char *at = sentences.data; *at != '\0';) {
-        // without the indentation that the lines of a screen have
-        at += strspn(at, " ");
-        const size_t length = strcspn(at, "\n");
-        Text sentence;
-        text_init(&sentence);
-        text_append_bytes(&sentence, at, length);
-        append_words("li", sentence.data, html);
-        text_finish(&sentence);
-        at += length + (at[length] == '\n' ? 1 : 0);
-    }
-    text_append(html, "</ul>\n");
+    html_list(sentences.data, html);
     text_finish(&sentences);
     text_append(html, "</section>\n");
 }
@@ -186,7 +139,7 @@ static void append_settings(const json_t *all, Text *html)
         text_init(&words);
         append_value(value, &words);
         text_append(&words, "%s%s", unit != NULL ? " " : "", unit != NULL ? unit : "");
-        append_pair(key, words.data, html);
+        html_pair(key, words.data, html);
         text_finish(&words);
     }
     text_append(html, "</table></div></details>\n");
@@ -206,7 +159,7 @@ static void append_making(const ReportPage *page, Text *html)
                           "not say these; the numbers depend on them.</p>\n<table>\n");
         json_object_foreach(json_object_get(all, "assumed"), key, value)
         {
-            append_pair(key, json_string_value(value), html);
+            html_pair(key, json_string_value(value), html);
         }
         text_append(html, "</table>\n</section>\n");
     }
@@ -214,11 +167,10 @@ static void append_making(const ReportPage *page, Text *html)
                       "page again:</p>\n<pre>");
     xml_append(page->command, html);
     text_append(html, "</pre>\n<table>\n");
-    append_pair("case", scenario_path(scenario), html);
+    html_pair("case", scenario_path(scenario), html);
     json_object_foreach(json_object_get(all, "tool"), key, value)
     {
-        append_pair(strcmp(key, "version") == 0 ? "jointplay" : key, json_string_value(value),
-                    html);
+        html_pair(strcmp(key, "version") == 0 ? "jointplay" : key, json_string_value(value), html);
     }
     text_append(html, "</table>\n");
     append_settings(all, html);
@@ -331,7 +283,7 @@ static void append_head(const char *title, const Text *style, const Text *script
     text_append(html, "\">\n<meta name=\"viewport\" content=\"width=device-width, "
                       "initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n"
                       "<meta name=\"referrer\" content=\"no-referrer\">\n");
-    append_words("title", title, html);
+    html_words("title", title, html);
     text_append(html, "<style>%s</style>\n</head>\n", style->data);
 }
 
@@ -355,12 +307,13 @@ void report_page_write(const ReportPage *page, Text *html)
     REPORT_SCRIPT_LIST(REPORT_APPEND)
     append_head(shown, &style, &script, html);
     text_append(html, "<body>\n<header>\n");
-    append_words("h1", shown, html);
-    append_words("p class=\"note\"", scenario_path(report->scenario), html);
+    html_words("h1", shown, html);
+    html_words("p class=\"note\"", scenario_path(report->scenario), html);
     text_append(html, "</header>\n<main>\n");
     append_answer(report, html);
     text_append(html, "<div id=\"live\" hidden></div>\n");
     append_picture(report, html);
+    report_numbers_write(report, html);
     append_making(page, html);
     append_tables(report, html);
     text_append(html, "</main>\n<template id=\"data\">\n");

@@ -329,6 +329,9 @@ class Page {
         if (this.mechanism.play > 0) {
             row.append(this.makeMagnifier());
         }
+        if (this.data.is_spatial) {
+            row.append(...this.mechanism.makeTurning());
+        }
         return row;
     }
 
@@ -451,6 +454,78 @@ class Page {
         return plots.flatMap((plot) => this.addPlot(plot));
     }
 
+    // Velocities and accelerations of all bodies on one set of axes, as papers show them; each body
+    // has its own dashes.
+    togetherPlots(bodies) {
+        const moving = bodies.filter((body) => this.isTurning(body));
+        if (moving.length < 2) {
+            return [];
+        }
+        const bands = this.paperBands();
+        const dashes = [[], [7, 4], [2, 3]];
+        const of = (what, limits) =>
+            moving.flatMap((body, i) =>
+                this.lines("body", body, what, 1, limits)
+                    .filter((line) => line !== null)
+                    .map((line) => ({
+                        ...line,
+                        dash: dashes[i],
+                        name: `${this.data.bodies[body].name}, ${line.backend}`,
+                    })),
+            );
+        const words = moving.map((i) => this.data.bodies[i].name).join(", ");
+        const plots = [
+            new TimePlot(this, `${words}: angular velocity, rad/s`, of("omega_rad_s", {}), { bands }),
+            new TimePlot(
+                this,
+                `${words}: angular acceleration, rad/s^2`,
+                of("alpha_rad_s2", { least: "alpha_min_rad_s2", most: "alpha_max_rad_s2" }),
+                { isSpiky: true, bands },
+            ),
+        ];
+        return [
+            element("div", { className: "plots" }, ...plots.flatMap((plot) => this.addPlot(plot))),
+            ...this.paperWords(bands),
+        ];
+    }
+
+    isTurning(body) {
+        return !this.data.runs.some(
+            (run) => findSignal(run, "body", body, "acceleration_m_s2") !== null,
+        );
+    }
+
+    // Of the paper's own mechanism the bands of the crank angle in which it saw its spikes, deg.
+    paperBands() {
+        const run = this.data.results.runs.find((one) => one.spike_bands);
+        return run ? run.spike_bands.bands_deg : [];
+    }
+
+    // What the paper says of the same axes, beside what is found here.
+    paperWords(bands) {
+        if (bands.length === 0) {
+            return [];
+        }
+        const counts = this.data.results.runs.flatMap((run) =>
+            Object.entries((run.spike_bands || { bodies: {} }).bodies).map(
+                ([name, of]) =>
+                    `${run.backend}, ${name}: ${of.inside} inside, ${of.outside} outside`,
+            ),
+        );
+        return [
+            element(
+                "p",
+                {},
+                "These are the axes of the paper's Figures 5 to 8: angular velocity (5 without " +
+                    "play, 6 with its restitution model, 7 with its impact model) and angular " +
+                    "acceleration (8) of coupler and follower. It says that play makes the " +
+                    "velocities larger at first, and that small spikes stand between 120 and 130 " +
+                    "and between 290 and 300 deg of the crank, which are shaded. Spikes of the " +
+                    `acceleration that are found here: ${counts.join("; ")}.`,
+            ),
+        ];
+    }
+
     // All moving bodies; of many the one that is chosen.
     makeBodies() {
         const moving = this.data.bodies
@@ -458,6 +533,9 @@ class Page {
             .filter((i) => !this.data.bodies[i].is_driven);
         const grid = element("div", { className: "plots" });
         const section = this.section("Motion");
+        if (moving.length > 1 && moving.length <= PLOT_BODIES) {
+            section.append(...this.togetherPlots(moving));
+        }
         if (moving.length <= PLOT_BODIES) {
             moving.forEach((body) => grid.append(...this.bodyPlots(body)));
         } else {
@@ -512,6 +590,17 @@ class Page {
         figures.push(
             ...this.addPlot(
                 new TimePlot(this, `${joint.name}: penetration, ${depth}`, deep, { hasZero: true }),
+            ),
+        );
+        figures.push(
+            ...this.addPlot(
+                new TimePlot(
+                    this,
+                    `${joint.name}: ${joint.is_torsional ? "torque" : "force"} less that of the ` +
+                        `reference, ${joint.is_torsional ? "N m" : "N"}`,
+                    this.lines("joint", number, "force_difference", 1),
+                    { isSpiky: true },
+                ),
             ),
         );
         const rows = [element("div", { className: "plots" }, ...figures)];
@@ -693,12 +782,12 @@ class Page {
     }
 
     build(live) {
-        this.mechanism = new Mechanism(this);
+        this.mechanism = this.data.is_spatial ? new SpaceMechanism(this) : new Mechanism(this);
         this.magnification = this.mechanism.usualMagnification;
         const hint =
             "Click a plot to go to a time, drag over it to zoom, double-click for the whole run. " +
             "Keys: space plays, arrows step, + and - zoom.";
-        const spatial = this.data.is_spatial ? " The mechanism is seen along the z axis." : "";
+        const spatial = this.data.is_spatial ? " Drag the mechanism to turn it." : "";
         live.append(
             element(
                 "section",
@@ -712,6 +801,7 @@ class Page {
             ...this.makeJoints(),
             this.makeBodies(),
             ...this.makeDrive(),
+            ...new Revolutions(this).make(),
             this.makeSaving(),
         );
         this.observer = new IntersectionObserver(

@@ -93,7 +93,7 @@ class TimePlot {
                 low = value < low ? value : low;
                 high = value > high ? value : high;
             }
-            return `${line.backend} from ${formatNumber(low)} to ${formatNumber(high)}`;
+            return `${line.name || line.backend} from ${formatNumber(low)} to ${formatNumber(high)}`;
         });
         return `${this.title}: ${parts.join("; ")}`;
     }
@@ -106,7 +106,7 @@ class TimePlot {
                     "span",
                     { className: "key" },
                     element("span", { className: "swatch " + line.backend }),
-                    line.backend + " ",
+                    (line.name || line.backend) + " ",
                     reading,
                 ),
             );
@@ -226,6 +226,26 @@ class TimePlot {
         context.strokeRect(PLOT_LEFT + 0.5, PLOT_TOP + 0.5, this.width - 1, this.height - 1);
     }
 
+    // When the crank is in a band of its angles, in each of the revolutions that are seen.
+    bandTimes() {
+        const { crank } = this.page.data;
+        if (crank === null || !this.options.bands) {
+            return [];
+        }
+        const ends = [this.page.view.from, this.page.view.to].map((t) => this.page.degrees(t));
+        const first = Math.floor(Math.min(...ends) / 360);
+        const last = Math.floor(Math.max(...ends) / 360);
+        const timeOf = (degrees) => (degrees / DEG - crank.start_rad) / crank.speed_rad_s;
+        const found = [];
+        for (let turn = first; turn <= last && found.length < 400; turn++) {
+            for (const band of this.options.bands) {
+                const times = band.map((degrees) => timeOf(degrees + 360 * turn));
+                found.push(times.sort((a, b) => a - b));
+            }
+        }
+        return found;
+    }
+
     // Shades what is not counted, and what cannot be predicted.
     drawShades(context) {
         const { from, to } = this.page.view;
@@ -244,6 +264,9 @@ class TimePlot {
                 }
             }
         };
+        for (const [begin, end] of this.bandTimes()) {
+            shade(begin, end, "uncounted", "");
+        }
         if (counted > from) {
             shade(from, counted, "uncounted", "not counted");
         }
@@ -261,6 +284,7 @@ class TimePlot {
         context.strokeStyle = colourOf(line.backend);
         context.lineWidth = line.backend === "analytic" ? 3.5 : line.run.is_truth ? 2.2 : 1.3;
         context.lineJoin = "round";
+        context.setLineDash(line.dash || []);
         context.beginPath();
         let column = NaN;
         let low = 0;
@@ -298,6 +322,7 @@ class TimePlot {
         }
         close();
         context.stroke();
+        context.setLineDash([]);
     }
 
     // The size of the part with the lines, pixels.

@@ -32,6 +32,7 @@ typedef struct RunReport {
     const Truth *truth;             // NULL where no reference was asked for
     const RunMatches *matches;      // one a run; NULL without a reference
     const Ensemble *ensembles;      // one a run, some empty; NULL where the motion is predictable
+    bool has_log_forces;            // whether the picture has forces in decades
 } RunReport;
 
 // Whether there is a certified solution.
@@ -99,7 +100,7 @@ static inline bool run_report_has_body_spikes(const RunReport *report, const Tra
                                               size_t body)
 {
     return run->is_complete && run->alpha_spikes[body].is_known &&
-           (int)body != linkage_driven_body(&report->scenario->linkage);
+           !linkage_is_driven(&report->scenario->linkage, (int)body);
 }
 
 // Besides the places of write/fields.h: columns of mechanisms with a driven crank and of those
@@ -212,6 +213,10 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text);
 // truth, null where nothing was; and the bands of the crank angle with their spikes. New
 // references.
 json_t *spike_json_bands(const RunReport *report, const Trajectory *run);
+
+// Puts `section` and `spectrum` of a complete run into an object: its state once a revolution, and
+// its signals by order; null where nothing drives it with a period, or for less than one.
+void run_signals_json(json_t *object, const Scenario *scenario, const Trajectory *run);
 
 // Puts the spikes of a signal into an object: <name>_spikes, their count, threshold and resolution.
 // `where` is RUN_ALPHA or RUN_FORCE.

@@ -4,6 +4,8 @@
 // follower_omega_max_rad_s. What was not measured, or is not finite, is NAN.
 #include "commands/study/metrics.h"
 #include "base/text.h"
+#include "measure/section.h"
+#include "measure/spectrum.h"
 #include "model/joint_numbers.h"
 
 #include <assert.h>
@@ -71,7 +73,7 @@ static double find_alpha_peak(const Measured *measured, size_t unused)
     double peak = 0.0;
     for (size_t i = 0; i < measured->linkage->body_count; i++) {
         const BodyExtremes *extremes = &measured->run->bodies[i];
-        if ((int)i != linkage_driven_body(measured->linkage)) {
+        if (!linkage_is_driven(measured->linkage, (int)i)) {
             peak = fmax(peak, fmax(extremes->alpha_max.value, -extremes->alpha_min.value));
         }
     }
@@ -84,6 +86,43 @@ static double find_period(const Measured *measured, size_t unused)
     return (double)measured->settled->motions[0].period;
 }
 
+static double find_order_1(const Measured *measured, size_t body)
+{
+    return spectrum_body_order(measured->run, body, 1);
+}
+
+static double find_order_2(const Measured *measured, size_t body)
+{
+    return spectrum_body_order(measured->run, body, 2);
+}
+
+static double find_between_orders(const Measured *measured, size_t body)
+{
+    return spectrum_body_between(measured->run, body);
+}
+
+// The sections that a row has, the last one first.
+#define SECTION_LIST(member) member(1) member(2) member(3) member(4) member(5) member(6)
+
+#define FIND_SECTION(number)                                                                       \
+    static double find_section_##number(const Measured *measured, size_t body)                     \
+    {                                                                                              \
+        return section_omega(measured->run, body, (number)-1);                                     \
+    }
+SECTION_LIST(FIND_SECTION)
+
+static double find_section_period(const Measured *measured, size_t unused)
+{
+    (void)unused;
+    return section_period(measured->run);
+}
+
+static double find_section_change(const Measured *measured, size_t unused)
+{
+    (void)unused;
+    return section_find(measured->run).change;
+}
+
 // clang-format off
 #define ROW(owner, of, name, kind, need, field, meaning) \
     {owner, name, COLUMN_##kind, need, offsetof(of, field), NULL, meaning}
@@ -94,12 +133,22 @@ static double find_period(const Measured *measured, size_t unused)
 #define TRUTH(...) ROW(OF_TRUTH, Truth, __VA_ARGS__)
 #define FOUND(owner, name, kind, need, find, meaning) \
     {owner, name, COLUMN_##kind, need, 0, find, meaning}
+#define SECTION(number) \
+    FOUND(OF_BODY, "section_" #number "_rad_s", REAL, NOTHING, find_section_##number, \
+          (number) == 1 ? "angular velocity at the end of the last whole revolution" \
+                        : "the same of the revolution before"),
 
 static const Metric METRICS[] = {
     BODY("omega_max_rad_s", REAL, NOTHING, omega_max.value, "largest angular velocity"),
     BODY("omega_min_rad_s", REAL, NOTHING, omega_min.value, "smallest angular velocity"),
     BODY("alpha_max_rad_s2", REAL, NOTHING, alpha_max.value, "largest angular acceleration"),
     BODY("alpha_min_rad_s2", REAL, NOTHING, alpha_min.value, "smallest angular acceleration"),
+    FOUND(OF_BODY, "omega_order_1_rad_s", REAL, NOTHING, find_order_1,
+          "amplitude of the angular velocity at once the crank's speed"),
+    FOUND(OF_BODY, "omega_order_2_rad_s", REAL, NOTHING, find_order_2, "the same at twice its speed"),
+    FOUND(OF_BODY, "omega_between_orders_rad_s", REAL, NOTHING, find_between_orders,
+          "its largest amplitude between whole multiples of the crank's speed"),
+    SECTION_LIST(SECTION)
     FOUND(OF_RUN, "impacts", WHOLE, NOTHING, find_impacts, "contacts begun in all joints"),
     FOUND(OF_RUN, "alpha_peak_rad_s2", REAL, NOTHING, find_alpha_peak,
           "largest magnitude of any body's angular acceleration"),
@@ -114,6 +163,10 @@ static const Metric METRICS[] = {
     RUN("error_estimate", REAL, TRIALS, error_estimate,
         "upper bound of the error, for a step chosen for a tolerance"),
     RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds"),
+    FOUND(OF_RUN, "section_period", WHOLE, NOTHING, find_section_period,
+          "revolutions after which the run repeats; 0: it has not"),
+    FOUND(OF_RUN, "section_change", REAL, NOTHING, find_section_change,
+          "by how much its last sections differ from those a period before"),
     FOUND(OF_SETTLED, "settled_period", WHOLE, NOTHING, find_period,
           "revolutions after which the settled motion repeats; 0: it does not"),
     SETTLED("settled_revolutions", WHOLE, NOTHING, revolutions,
@@ -217,7 +270,7 @@ static bool metrics_find_member(const Linkage *linkage, Owner owner, size_t memb
 {
     if (owner == OF_BODY) {
         *name = linkage->bodies[member].name;
-        return (int)member != linkage_driven_body(linkage);
+        return !linkage_is_driven(linkage, (int)member);
     }
     if (owner == OF_JOINT) {
         *name = linkage->joints[member].name;
@@ -280,6 +333,24 @@ static size_t list_results(const Linkage *linkage, Lists lists, Result results[R
         }
     }
     return count;
+}
+
+bool metrics_fit(const Scenario *scenario, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    size_t of_body = 0;
+    for (size_t k = 0; k < METRIC_COUNT; k++) {
+        of_body += METRICS[k].owner == OF_BODY ? 1 : 0;
+    }
+    size_t count = METRIC_COUNT + JOINT_NUMBER_COUNT + of_body * linkage->body_count;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        count += linkage_has_play(&linkage->joints[i]) ? JOINT_NUMBER_COUNT : 0;
+    }
+    return count <= RECORD_RESULT_MAX ||
+           err_set(err, ERR_CASE,
+                   "the mechanism has %zu bodies, and a row of a study has room for %d numbers of "
+                   "bodies and joints; 'jointplay run --json' has them all",
+                   linkage->body_count, RECORD_RESULT_MAX);
 }
 
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)

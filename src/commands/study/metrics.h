@@ -8,6 +8,9 @@
 // The columns of a study: its variables and what is measured of the linkage of its case.
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout);
 
+// Whether a row has room for all results of a linkage; else ERR_CASE.
+bool metrics_fit(const Scenario *scenario, Err *err);
+
 // The results of a complete run, in the order of metrics_layout. Without a truth (NULL) there is
 // no error. Returns false where error_fail_unstable makes it one that failed.
 bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *trajectory,

@@ -10,7 +10,7 @@ enum {
     RECORD_WORD_SIZE = 64,
     RECORD_REASON_SIZE = 256,
     RECORD_SETTING_MAX = 48,
-    RECORD_RESULT_MAX = 256, // a linkage with all bodies and joints there may be has 210
+    RECORD_RESULT_MAX = 1024, // some 35 bodies and as many joints with play
 };
 
 typedef enum ColumnKind {

@@ -57,9 +57,10 @@ static bool find_layout(const Spec *spec, Layout *layout, Err *err)
     Err first = {0};
     design_values(spec, 0, values);
     const bool is_found =
-        design_scenario(spec, values, scenario, &backend, &first) ||
-        casefile_load_text(spec->case_path, spec->case_text, spec->case_size,
-                           (const char *const *)spec->set, spec->set_count, scenario, err);
+        (design_scenario(spec, values, scenario, &backend, &first) ||
+         casefile_load_text(spec->case_path, spec->case_text, spec->case_size,
+                            (const char *const *)spec->set, spec->set_count, scenario, err)) &&
+        metrics_fit(scenario, err);
     if (is_found) {
         metrics_layout(spec, scenario, layout);
     }

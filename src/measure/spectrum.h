@@ -1,0 +1,46 @@
+// The spectra of a run by order: amplitudes at multiples of the crank's speed.
+//
+// Order k is k oscillations a revolution, a period of the drive. Between whole orders there is
+// something only where the motion does not repeat every revolution: at multiples of 1/p of one that
+// repeats after p.
+#pragma once
+
+#include "measure/section.h"
+
+// The highest order that is looked at; revolutions that a motion which does not repeat is looked at
+// over, at most, and so the finest distance of its orders.
+enum { SPECTRUM_ORDER_MAX = 20, SPECTRUM_REVOLUTION_MAX = 16 };
+
+// The orders of a run: whole multiples of 1 / `per_order`.
+typedef struct Orders {
+    size_t count;       // 0: there is no whole revolution of samples, or no drive with a period
+    size_t per_order;   // lines from one whole order to the next
+    size_t revolutions; // that it is taken over: the last whole ones of the run
+    size_t first;       // sample that these begin at
+    size_t samples;     // in them
+} Orders;
+
+// Those of a run with these sections.
+Orders spectrum_orders(const Sections *sections);
+
+static inline double spectrum_order(const Orders *orders, size_t line)
+{
+    return (double)line / (double)orders->per_order;
+}
+
+// A signal of a run at a sample.
+typedef double SpectrumSignal(const void *context, size_t sample);
+
+// The amplitudes of a signal, one an order: of order 0 its mean, of any other
+//     a_k = (2 / N) |sum over n of x_n exp(-2 pi i k n / M)|
+// with M samples a revolution and N in all. What the signal has above half the sampling rate is
+// folded into lower orders.
+void spectrum_find(const Orders *orders, SpectrumSignal *signal, const void *context,
+                   double *amplitudes);
+
+// The amplitude of a body's angular velocity at one whole order, rad/s; NAN where there is none.
+double spectrum_body_order(const Trajectory *run, size_t body, size_t order);
+
+// The largest amplitude of a body's angular velocity between whole orders, rad/s: 0 of a motion
+// that repeats every revolution. NAN where there is no spectrum.
+double spectrum_body_between(const Trajectory *run, size_t body);

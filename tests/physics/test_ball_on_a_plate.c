@@ -1,0 +1,115 @@
+// Do period and growth of a settled motion come out as they are known?
+//
+// A ball bounces once a revolution on a plate that an eccentric moves as A sin(w t). With
+// restitution e it lands on the plate where that moves up with u = V (1 - e) / (1 + e), V = g T /
+// 2, and is accelerated by a = -w u tan(phase). From one bounce to the next changes of the time and
+// the speed after it go over by the matrix
+//     [1, (1 + e) / g;  (1 + e) a, (1 + e)^2 a / g + e^2]
+// of determinant e^2 (the flight and the bounce by their differentials; see also J. Guckenheimer,
+// P. Holmes, Nonlinear oscillations, 1983, 2.4). So its growth a revolution is e while its
+// eigenvalues are complex, the larger of them while they are real, and beyond
+// -a = 2 g (1 + e^2) / (1 + e)^2 the motion doubles its period. Bounces take no time there; here
+// they take some 0.1 ms of 100 ms, and the growth is that to 2 %.
+#include "load_case.h"
+
+#include "measure/section.h"
+#include "run/registry.h"
+#include "run/run.h"
+#include "run/settle.h"
+
+#include <stdio.h>
+
+static const double GRAVITY = 9.80665;
+static const double TURN_S = 0.1;
+
+// A plate that gives the ball the acceleration -share g where it lands, and restitution e.
+static Scenario ball(double e, double share)
+{
+    const double w = 2.0 * M_PI / TURN_S;
+    const double launch = 0.5 * GRAVITY * TURN_S;
+    const double upwards = launch * (1.0 - e) / (1.0 + e);
+    const double inwards = share * GRAVITY / w;
+    const double size_mm = 1e3 * hypot(upwards, inwards) / w;
+    const double phase = atan2(inwards, upwards);
+    const double height_mm = 10.0 + size_mm * sin(phase);
+    char text[2048];
+    const int length = snprintf(
+        text, sizeof text,
+        "bodies:\n"
+        "  eccentric: {mass: 1 kg, inertia: 1000 kg mm^2, at: [0 mm, 0 mm]}\n"
+        "  ball: {mass: 0.1 kg, inertia: 10 kg mm^2, at: [0 mm, %.9f mm], velocity: [0 m/s, %.9f "
+        "m/s], spin: 0 rad/s}\n"
+        "joints:\n"
+        "  pivot: {between: [ground, eccentric], at: [0 mm, 0 mm]}\n"
+        "  guide: {between: [ground, ball], at: [0 mm, %.9f mm], along: 90 deg}\n"
+        "  plate: {between: [ball, eccentric], at-a: [0 mm, %.9f mm], at-b: [%.9f mm, %.9f mm],\n"
+        "          normal: -90 deg, radius: 10 mm}\n"
+        "drive: {joint: pivot, speed: %.9f rad/s}\n"
+        "contact: {stiffness: 1e8 N/m, damping: exact, restitution: %.3f}\n"
+        "run: {revolutions: 8, samples: 100, start: settled, settle-starts: 1}\n",
+        height_mm, launch, height_mm, height_mm, size_mm * cos(phase), size_mm * sin(phase), w, e);
+    Scenario scenario;
+    Err err = {0};
+    if (!casefile_load_text("ball.yaml", text, (size_t)length, NULL, 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    settle_scenario(&scenario, (RunWatch){.progress = NULL});
+    if (scenario.settled.motion_count == 0) {
+        fail_msg("%s", scenario.settled.message);
+    }
+    return scenario;
+}
+
+static double growth_of(double e, double share)
+{
+    Scenario scenario = ball(e, share);
+    assert_int_equal(scenario.settled.motions[0].period, 1);
+    settle_growth(&scenario, (RunWatch){.progress = NULL});
+    assert_false(scenario.settled.growth.is_at_most);
+    const double growth = scenario.settled.growth.factor;
+    scenario_free(&scenario);
+    return growth;
+}
+
+static void growth_is_the_restitution_where_it_turns(void **state)
+{
+    (void)state;
+    assert_close(growth_of(0.5, 0.5), 0.5, 0.02);
+    // the control: another restitution
+    assert_close(growth_of(0.7, 0.5), 0.7, 0.02);
+}
+
+static void growth_is_the_larger_eigenvalue(void **state)
+{
+    (void)state;
+    const double trace = 1.0 + 0.25 - 2.25 * 1.05;
+    const double larger = 0.5 * fabs(trace - sqrt(trace * trace - 4.0 * 0.25));
+    assert_close(growth_of(0.5, 1.05), larger, 0.02);
+}
+
+static void the_period_doubles_where_it_must(void **state)
+{
+    (void)state;
+    // 2 (1 + e^2) / (1 + e)^2 = 1.111
+    const double shares[] = {1.05, 1.2};
+    for (size_t i = 0; i < 2; i++) {
+        Scenario scenario = ball(0.5, shares[i]);
+        assert_int_equal(scenario.settled.motions[0].period, 1 + i);
+        assert_int_equal(scenario.settled.motions[0].section_count, 1 + i);
+        Trajectory *run = run_scenario(&scenario, registry_solver(BACKEND_REFERENCE),
+                                       (RunWatch){.progress = NULL});
+        assert_int_equal(section_find(run).period, 1 + i);
+        trajectory_destroy(run);
+        scenario_free(&scenario);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(growth_is_the_restitution_where_it_turns),
+        cmocka_unit_test(growth_is_the_larger_eigenvalue),
+        cmocka_unit_test(the_period_doubles_where_it_must),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
