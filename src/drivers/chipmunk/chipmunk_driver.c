@@ -334,5 +334,4 @@ int main(void)
         take_step(&run, is_native);
     }
     driver_run_write(&run.run);
-    return 0;
 }
