@@ -88,7 +88,7 @@ static bool evaluate(const Analytic *analytic, double from_s, double time_s, Sam
             sample->joints[i].eccentricity.x = vec2_dot(along, gap);
         }
     }
-    *torque = reactions.drive_torque;
+    *torque = reactions.drive_torques[0];
     return true;
 }
 

@@ -1,8 +1,8 @@
 // Finds the torque and the joint forces that make a linkage move as it does.
 //
-//     J^T lambda = M qddot - Q,      J the constraint Jacobian with the driver's row
+//     J^T lambda = M qddot - Q,      J the constraint Jacobian with the drives' rows
 // lambda: of a pin the force on body b, of a prismatic joint the force on body b across the line
-// and the couple (model/joint_rows.h), then the torque on the driven body; M the masses and
+// and the couple (model/joint_rows.h), then the torque of each drive; M the masses and
 // inertias, Q gravity, springs, dampers and loads. Source: Haug 1989, chapter 6 (Lagrange
 // multipliers as reactions).
 #include "analytic/inverse_dynamics.h"
@@ -67,7 +67,7 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
                        "the joint reactions are not determined: the mechanism is at a dead centre");
     }
     size_t row = 0;
-    *reactions = (Reactions){.drive_torque = 0.0};
+    *reactions = (Reactions){.drive_torques = {0.0}};
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const size_t count = joint_rows_count(linkage->joints[i].kind);
         if (count > 0) {
@@ -75,7 +75,9 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
         }
         row += count;
     }
-    reactions->drive_torque = right[row];
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        reactions->drive_torques[i] = right[row + i];
+    }
     return true;
 }
 

@@ -1,4 +1,4 @@
-// The forces behind a known motion: drive torque and the reaction in every ideal joint.
+// The forces behind a known motion: drive torques and the reaction in every ideal joint.
 #pragma once
 
 #include "model/kinematics.h"
@@ -7,7 +7,7 @@ typedef struct Reactions {
     Vec2 force_on_b[KINEMATICS_JOINT_MAX];    // N, on body b of each joint, at its anchor there; on
                                               // body a its opposite at the same point
     double moment_on_b[KINEMATICS_JOINT_MAX]; // N m, likewise, of prismatic joints: the couple
-    double drive_torque;                      // N m, on the driven body
+    double drive_torques[LINKAGE_DRIVE_MAX];  // N m, of each drive on the body that it turns
 } Reactions;
 
 // The instant of the motions, for loads: and that from which on a load's piece holds, which is no

@@ -81,7 +81,7 @@ static double curve_value(double crank, void *context)
     if (!evaluate(curve, crank, motions, &reactions)) {
         return NAN;
     }
-    return curve->sign * (curve->joint < 0 ? reactions.drive_torque
+    return curve->sign * (curve->joint < 0 ? reactions.drive_torques[0]
                                            : vec2_length(reactions.force_on_b[curve->joint]));
 }
 
@@ -104,7 +104,7 @@ static double *sample_turn(const Curve *curve)
         Reactions reactions;
         const bool is_known = evaluate(curve, turn_angle(linkage, i), motions, &reactions);
         double *row = samples + (size_t)i * columns;
-        row[0] = is_known ? reactions.drive_torque : NAN;
+        row[0] = is_known ? reactions.drive_torques[0] : NAN;
         for (size_t k = 0; k < linkage->joint_count; k++) {
             row[1 + k] = is_known ? vec2_length(reactions.force_on_b[k]) : NAN;
         }
@@ -163,7 +163,7 @@ static double power_residual(const Scenario *scenario, Err *err)
         if (!evaluate(&curve, crank, motions, &reactions)) {
             return NAN;
         }
-        const double drive = reactions.drive_torque * scenario->linkage.driver.speed;
+        const double drive = reactions.drive_torques[0] * scenario->linkage.driver.speed;
         const double power = inverse_dynamics_power(&scenario->linkage, motions, scenario->gravity,
                                                     time_of(&scenario->linkage, crank));
         power_max = fmax(power_max, fabs(drive));

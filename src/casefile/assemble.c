@@ -6,10 +6,10 @@
 #include "casefile/build.h"
 #include "casefile/check.h"
 #include "casefile/closure.h"
+#include "casefile/drives.h"
 #include "casefile/joint_kind.h"
 #include "casefile/limits.h"
 #include "casefile/loads.h"
-#include "casefile/over_time.h"
 #include "casefile/slider.h"
 #include "casefile/store.h"
 #include "casefile/unused.h"
@@ -39,6 +39,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         .springs = names[SCHEMA_SPRING].count,
         .torsions = names[SCHEMA_TORSION_SPRING].count,
         .loads = names[SCHEMA_LOAD_FAMILY].count,
+        .further = names[SCHEMA_DRIVE].count,
     });
     linkage->body_count = names[SCHEMA_BODY].count;
     linkage->joint_count = names[SCHEMA_JOINT].count;
@@ -68,6 +69,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
                   names[SCHEMA_TORSION_SPRING].names[i]);
     }
     loads_prepare(entries, linkage);
+    drives_prepare(entries, linkage);
     const bool has_torque =
         entries_blame(entries, "drive.torque drive.force drive.stall-torque", 0) != NULL;
     linkage->driver.is_present =
@@ -185,7 +187,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
     complete_motor(entries, &scenario->linkage);
     if (!limits_join_gears(entries, &scenario->linkage, err) ||
-        !over_time_repeat(entries, &scenario->linkage.driver, err) ||
+        !drives_complete(entries, &scenario->linkage, err) ||
         !loads_complete(entries, &scenario->linkage, err)) {
         return false;
     }

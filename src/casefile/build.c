@@ -7,6 +7,7 @@
 #include "casefile/build.h"
 
 #include "base/zeroed.h"
+#include "casefile/drives.h"
 #include "casefile/keys.h"
 #include "casefile/limits.h"
 #include "casefile/speeds.h"
@@ -116,18 +117,19 @@ static Linkage shift_holes(const Linkage *linkage, const Motion *motions)
 
 bool build_is_determined(const Linkage *linkage)
 {
-    return linkage->driver.is_present && joint_rows_total(linkage) + 1 == 3 * linkage->body_count;
+    return kinematics_is_determined(linkage);
 }
 
 bool build_start(Linkage *linkage, Motion *motions, Err *err)
 {
-    const DriveState start = drive_at(&linkage->driver, 0.0);
-    if (!kinematics_solve_driven(linkage, &start, motions, err)) {
+    DriveState start[LINKAGE_DRIVE_MAX];
+    linkage_drives_since(linkage, 0.0, 0.0, start);
+    if (!kinematics_solve_driven(linkage, start, motions, err)) {
         return false;
     }
     for (int i = 0; i < PASS_COUNT; i++) {
         Linkage shifted = shift_holes(linkage, motions);
-        const bool is_solved = kinematics_solve_driven(&shifted, &start, motions, err);
+        const bool is_solved = kinematics_solve_driven(&shifted, start, motions, err);
         linkage_free(&shifted);
         if (!is_solved) {
             return false;
@@ -183,6 +185,20 @@ static void set_force_anchors(const Entries *entries, Linkage *linkage, const Mo
     }
 }
 
+// A drive starts where its body is. An ideal joint has no sides: the ground becomes its first.
+static void start_drive(Linkage *linkage, const Motion *motions, Driver *driver)
+{
+    Joint *joint = &linkage->joints[driver->joint];
+    if (joint->body_a != LINKAGE_GROUND) {
+        const Joint other = *joint;
+        joint->body_a = other.body_b;
+        joint->anchor_a = other.anchor_b;
+        joint->body_b = other.body_a;
+        joint->anchor_b = other.anchor_a;
+    }
+    driver->start = motions[joint->body_b].angle;
+}
+
 static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *motions)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -198,20 +214,33 @@ static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *
         joint->held_angle = angle_of(motions, joint->body_b) - angle_of(motions, joint->body_a);
     }
     set_force_anchors(entries, linkage, motions);
-    Driver *driver = &linkage->driver;
-    if (driver->is_present) {
-        Joint *joint = &linkage->joints[driver->joint];
-        // an ideal joint has no sides: the ground becomes its first
-        if (joint->body_a != LINKAGE_GROUND) {
-            const Joint other = *joint;
-            joint->body_a = other.body_b;
-            joint->anchor_a = other.anchor_b;
-            joint->body_b = other.body_a;
-            joint->anchor_b = other.anchor_a;
-        }
-        driver->start = motions[joint->body_b].angle;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        start_drive(linkage, motions, i == 0 ? &linkage->driver : &linkage->further[i - 1]);
     }
     limits_place_gears(linkage, motions);
+}
+
+// The first of the further drives that prescribes what others do already; their number where there
+// is none.
+static size_t excess_drive(const Linkage *linkage, const Motion *motions)
+{
+    const size_t count = linkage_drive_count(linkage);
+    bool *is_ideal = zeroed(linkage->joint_count, sizeof *is_ideal);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        is_ideal[i] = linkage_kind_is_ideal(linkage->joints[i].kind);
+    }
+    size_t before = 0;
+    size_t excess = count;
+    for (size_t used = 1; count > 1 && excess == count && used <= count; used++) {
+        Linkage some = *linkage;
+        some.further_count = used - 1;
+        size_t rows;
+        const size_t rank = kinematics_rank(&some, motions, is_ideal, true, INDEPENDENT, &rows);
+        excess = used > 1 && rank == before ? used - 1 : excess;
+        before = rank;
+    }
+    free(is_ideal);
+    return excess;
 }
 
 static bool check_redundancy(const Entries *entries, const Linkage *linkage, const Motion *motions,
@@ -225,6 +254,10 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
     const size_t rank = kinematics_rank(linkage, motions, is_ideal, true, INDEPENDENT, &rows);
     free(is_ideal);
     const EntryGroup *joints = entries_group(entries, "joints", 0);
+    const size_t excess = excess_drive(linkage, motions);
+    if (rank < rows && excess < linkage_drive_count(linkage)) {
+        return drives_refuse_redundant(entries, linkage, excess, err);
+    }
     return rank == rows ||
            entries_refuse_group(joints, err,
                                 "ideal joints%s are redundant: only %zu of their %zu "

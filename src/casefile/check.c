@@ -6,6 +6,7 @@
 #include "casefile/check_forces.h"
 #include "casefile/check_joints.h"
 #include "casefile/check_space.h"
+#include "casefile/drives.h"
 #include "casefile/joint_kind.h"
 #include "casefile/keys.h"
 #include "casefile/target.h"
@@ -176,7 +177,9 @@ static const char *no_revolutions(const Entries *entries)
                ? "with a force the drive makes no given number of revolutions"
            : entries_blame(entries, "drive.torque drive.stall-torque", 0) != NULL
                ? "with a torque the drive makes no given number of revolutions"
-           : entries_find(entries, "drive.speed", 0) != NULL
+           : entries_group(entries, "drives", 0) != NULL
+               ? "with several drives a run is not counted in the revolutions of one"
+           : entries_blame(entries, "drive.speed drive.angle", 0) != NULL
                ? "a run with a drive of changing speed is not counted in revolutions"
                : "without a drive there are no revolutions";
 }
@@ -310,8 +313,9 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
                               "stepping: plain or staggered, or space: planar",
                               word);
     }
-    if (scenario->linkage.driver.speeds.count > 0 && !is_general) {
-        return entries_refuse(entries_blame(entries, "ode.stepping drive.speed", 0), err,
+    if (scenario->linkage.driver.table.count > 0 && !is_general) {
+        return entries_refuse(entries_blame(entries, "ode.stepping drive.speed drive.angle", 0),
+                              err,
                               "%s stepping is for drives of constant speed: a speed over "
                               "time has kinks\nallowed: plain, staggered",
                               word);
@@ -335,8 +339,9 @@ static bool check_run(const Entries *entries, const Scenario *scenario, Err *err
 {
     const bool is_driven = scenario->linkage.driver.is_present;
     if (is_driven && scenario->linkage.driver.speed == 0.0) {
-        return entries_refuse(entries_find(entries, "drive.speed", 0), err,
-                              "the crank does not turn\nallowed: any speed but 0");
+        return entries_refuse(entries_blame(entries, "drive.speed drive.angle", 0), err,
+                              "the crank does not turn\nallowed: any speed but 0, or angles that "
+                              "differ");
     }
     const bool is_turning = drive_is_steady(&scenario->linkage.driver);
     return check_length(entries, is_turning, err) &&
@@ -345,44 +350,6 @@ static bool check_run(const Entries *entries, const Scenario *scenario, Err *err
            check_tolerance(entries, scenario, err) &&
            check_steps(entries, &scenario->run, scenario_duration(scenario), is_turning, err) &&
            (!is_turning || check_samples(entries, &scenario->run, err));
-}
-
-// The drive of a case with bodies turns about an ideal joint with the ground.
-static bool check_drive(const Entries *entries, const Linkage *linkage, Err *err)
-{
-    const Entry *entry = entries_find(entries, "drive.joint", 0);
-    if (entry == NULL) {
-        return true;
-    }
-    const Joint *driven = &linkage->joints[linkage->driver.joint];
-    const bool has_play = linkage_has_play(driven);
-    const bool turns = driven->kind == JOINT_REVOLUTE;
-    if (entries_find(entries, "drive.force", 0) != NULL) {
-        return driven->kind == JOINT_PRISMATIC ||
-               entries_refuse(entry, err,
-                              "a force cannot push along joint '%s', which %s\nallowed: an ideal "
-                              "prismatic joint",
-                              driven->name, has_play ? "has play" : "has no line");
-    }
-    if (turns && linkage->torque.table.count > 0) {
-        return true;
-    }
-    if (turns && has_play) {
-        return entries_refuse(entry, err,
-                              "the drive prescribes the motion of joint '%s', so nothing can "
-                              "press at its limits\nallowed: a torque, or another joint",
-                              driven->name);
-    }
-    if (turns && (driven->body_a == LINKAGE_GROUND || driven->body_b == LINKAGE_GROUND)) {
-        return true;
-    }
-    return entries_refuse(entry, err,
-                          "the drive cannot turn a body about joint '%s', which %s\nallowed: an "
-                          "ideal joint with the ground",
-                          driven->name,
-                          has_play ? "has play"
-                          : turns  ? "is not with the ground"
-                                   : "does not turn");
 }
 
 // Speeds at the start are the drive's where it determines them.
@@ -406,7 +373,7 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
                                     "kg mm^2, at: [0 mm, 0 mm]}");
     }
     return check_joints(entries, scenario, err) && check_space(entries, scenario, err) &&
-           check_forces(entries, scenario, err) && check_drive(entries, linkage, err) &&
+           check_forces(entries, scenario, err) && drives_check(entries, linkage, err) &&
            check_speeds(entries, linkage, err) && check_contact(entries, scenario, err) &&
            check_run(entries, scenario, err) && check_collider(entries, scenario, err);
 }

@@ -70,9 +70,10 @@ static bool check_motor(const Entries *entries, const Linkage *linkage, Err *err
         return entries_refuse(motor, err,
                               "only a motor has this\nallowed: with drive.stall-torque");
     }
-    if (soft != NULL && entries_find(entries, "drive.speed", 0) == NULL) {
+    if (soft != NULL && entries_blame(entries, "drive.speed drive.angle", 0) == NULL) {
         return entries_refuse(soft, err,
-                              "only a speed is followed softly\nallowed: with drive.speed");
+                              "only a speed or an angle is followed softly\nallowed: with "
+                              "drive.speed or drive.angle");
     }
     if (stall == NULL) {
         return true;

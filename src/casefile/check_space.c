@@ -44,8 +44,13 @@ bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
                                         joint->name);
         }
     }
-    if (linkage->is_spatial && linkage->driver.speeds.count > 0) {
-        return entries_refuse(entries_blame(entries, "space drive.speed", 0), err,
+    if (linkage->is_spatial && linkage->further_count > 0) {
+        return entries_refuse_group(entries_group(entries, "drives", 0), err,
+                                    "several drives are not available in space\nallowed: space: "
+                                    "planar, or one drive");
+    }
+    if (linkage->is_spatial && linkage->driver.table.count > 0) {
+        return entries_refuse(entries_blame(entries, "space drive.speed drive.angle", 0), err,
                               "in space a drive turns at constant speed\nallowed: a speed such as "
                               "1000 rpm, or space: planar");
     }

@@ -10,13 +10,14 @@
 #include "base/grouped.h"
 #include "base/zeroed.h"
 #include "model/joint_rows.h"
+#include "model/kinematics.h"
 #include "model/lock.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { STARTS_SIZE = 192 };
+enum { STARTS_SIZE = 192, POSES_LEAST = 100, POSES_MOST = 20000 };
 
 // Relative: as close as this to a dead centre, the accelerations are those of rounding errors.
 static const double MARGIN = 1e-9;
@@ -156,17 +157,17 @@ static DriveExtent run_extent(const Scenario *scenario)
 {
     const Driver *driver = &scenario->linkage.driver;
     const double turned = 2.0 * M_PI * scenario->run.revolutions;
-    return driver->speeds.count > 0 ? drive_extent(driver, scenario->run.duration)
-           : driver->speed < 0.0    ? (DriveExtent){.back = -turned}
-                                    : (DriveExtent){.forth = turned};
+    return driver->table.count > 0 ? drive_extent(driver, scenario->run.duration)
+           : driver->speed < 0.0   ? (DriveExtent){.back = -turned}
+                                   : (DriveExtent){.forth = turned};
 }
 
 // What keeps the drive away from an angle that is so many revolutions from its start.
 static void describe_less(const Driver *driver, double turns, char *text, size_t size)
 {
     snprintf(text, size,
-             driver->speeds.count == 0 ? "less than %.4g revolutions"
-                                       : "speeds that turn it by less than %.4g revolutions",
+             driver->table.count == 0 ? "less than %.4g revolutions"
+                                      : "speeds that turn it by less than %.4g revolutions",
              turns);
 }
 
@@ -207,8 +208,52 @@ bool closure_check(const Entries *entries, const Scenario *scenario, Err *err)
             check_way(entries, scenario, &reach, &most, -1.0, -extent.back, err));
 }
 
+// How many poses of a run with several drives are tried: a degree of the fastest, or less.
+static size_t pose_count(const Scenario *scenario)
+{
+    const Linkage *linkage = &scenario->linkage;
+    double fastest = 0.0;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        fastest = fmax(fastest, fabs(linkage_drive(linkage, i)->speed));
+    }
+    const double degrees = fastest * scenario_duration(scenario) / DEGREE;
+    return (size_t)fmin(fmax(ceil(degrees), POSES_LEAST), POSES_MOST);
+}
+
+// Several drives that leave no freedom must find the mechanism closed all the way.
+static bool check_several(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    if (linkage->further_count == 0 || !kinematics_is_determined(linkage) ||
+        scenario_has_clearance(scenario)) {
+        return true;
+    }
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    linkage_start(linkage, motions);
+    const size_t count = pose_count(scenario);
+    double time_s = 0.0;
+    bool is_closed = true;
+    for (size_t i = 1; is_closed && i <= count; i++) {
+        Err unused = {ERR_NONE, ""};
+        DriveState drives[LINKAGE_DRIVE_MAX];
+        time_s = scenario_duration(scenario) * (double)i / (double)count;
+        linkage_drives_since(linkage, time_s, time_s, drives);
+        is_closed = kinematics_solve_driven(linkage, drives, motions, &unused);
+    }
+    free(motions);
+    return is_closed ||
+           entries_refuse(entries_blame(entries, "run.duration drive.speed drive.angle", 0), err,
+                          "the drives cannot move the mechanism through the run: at %.4g ms it "
+                          "cannot be closed, with the crank at %.4g deg\nallowed: a shorter run, "
+                          "other speeds or angles, or lengths with which it closes",
+                          1e3 * time_s, linkage_crank_angle(linkage, time_s) / DEGREE);
+}
+
 bool closure_check_ideal(const Entries *entries, const Scenario *scenario, Err *err)
 {
+    if (scenario->linkage.further_count > 0) {
+        return check_several(entries, scenario, err);
+    }
     const Driver *driver = &scenario->linkage.driver;
     const DriveExtent extent = run_extent(scenario);
     const Lock lock = lock_find_between(&scenario->linkage, LOCK_IDEAL_ONLY, extent);

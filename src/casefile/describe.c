@@ -110,7 +110,7 @@ static void describe_default(size_t row_number, Text *text)
     if (row->is_required && row->default_words == NULL) {
         text_append(text, row->rivalry == SCHEMA_SIZES ? "required without radial-clearance"
                           : row->rivalry == SCHEMA_DRIVING
-                              ? "required without torque, force or stall-torque"
+                              ? "required without angle, torque, force or stall-torque"
                           : row->rivalry == SCHEMA_STOPPING ? "required of a stop, or discs"
                                                             : "required");
         append_kinds(row, text);

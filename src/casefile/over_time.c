@@ -1,4 +1,4 @@
-// Reads a torque or a speed over time.
+// Reads a torque, a speed or an angle over time.
 #include "casefile/over_time.h"
 
 #include "casefile/quantity.h"
@@ -37,6 +37,13 @@ static const Words SPEED_WORDS = {
                "0 rpm], [10 ms, 1000 rpm]]",
 };
 
+static const Words ANGLE_WORDS = {
+    .name = "an angle",
+    .bare = "angle",
+    .allowed = "points [time, angle] in the order of time: [[0 s, 0 deg], [0.5 s, 90 deg], [1 s, "
+               "0 deg]]",
+};
+
 static const Words *words_of(const Entry *entry)
 {
     switch (entry->row->dimension) {
@@ -44,6 +51,8 @@ static const Words *words_of(const Entry *entry)
         return &TORQUE_WORDS;
     case DIMENSION_FORCE:
         return &FORCE_WORDS;
+    case DIMENSION_ANGLE:
+        return &ANGLE_WORDS;
     default:
         return &SPEED_WORDS;
     }
@@ -140,75 +149,36 @@ bool over_time_store(const Entry *entry, TimeTable *table, Err *err)
 
 bool over_time_store_speed(const Entry *entry, Driver *driver, Err *err)
 {
-    if (!over_time_store(entry, &driver->speeds, err)) {
+    if (!over_time_store(entry, &driver->table, err)) {
         return false;
     }
-    drive_take_largest(driver);
+    driver->has_angles = false;
+    drive_complete(driver);
     bool is_constant = true;
-    for (size_t i = 0; i < driver->speeds.count; i++) {
-        is_constant = is_constant && driver->speeds.values[i] == driver->speed;
+    for (size_t i = 0; i < driver->table.count; i++) {
+        is_constant = is_constant && driver->table.values[i] == driver->speed;
     }
     if (is_constant) {
-        driver->speeds = (TimeTable){.count = 0};
+        driver->table = (TimeTable){.count = 0};
     }
     return true;
 }
 
-// 1: of a period or of a turn, what rounding may leave
-static const double PERIOD_ROUNDING = 1e-12;
-static const double TURN_ROUNDING = 1e-9;
-
-static bool over_time_check_turns(const Entry *entry, const TimeTable *speeds, Err *err)
+bool over_time_store_angles(const Entry *entry, Driver *driver, Err *err)
 {
-    const double turns = (double)time_table_integral(speeds, speeds->period_s) / (2.0 * M_PI);
-    const double whole = round(turns);
-    if (fabs(turns - whole) <= TURN_ROUNDING) {
-        return true;
+    TimeTable read = {.period_s = driver->table.period_s};
+    if (!over_time_store(entry, &read, err)) {
+        return false;
     }
-    if (whole == 0.0) {
-        return entries_refuse(
-            entry, err,
-            "the drive turns by %.9g of a revolution in a period, and would start "
-            "the next elsewhere\nallowed: whole turns in a period, or none",
-            turns);
+    const Node *node = entry->node;
+    if (node->kind != NODE_LIST || read.count < 2) {
+        return refuse(entry, node, err, "%s takes two points at least", entry->row->path);
     }
-    return entries_refuse(entry, err,
-                          "the drive turns by %.9g revolutions in a period, and would start the "
-                          "next elsewhere\nallowed: whole turns in a period, as with all speeds "
-                          "times %.9g",
-                          turns, whole / turns);
-}
-
-bool over_time_repeat(const Entries *entries, Driver *driver, Err *err)
-{
-    const Entry *entry = entries_find(entries, "drive.period", 0);
-    TimeTable *speeds = &driver->speeds;
-    if (entry == NULL) {
-        return true;
+    if (read.values[0] != 0.0) {
+        return refuse(entry, node->first, err, "%s counts from the start, so that it begins with 0",
+                      entry->row->path);
     }
-    if (!driver->is_present) {
-        return entries_refuse(entry, err,
-                              "only a speed over time repeats\nallowed: drive.period beside "
-                              "drive.speed alone");
-    }
-    if (speeds->count == 0) {
-        return true; // a constant speed has no use for it, which is said elsewhere
-    }
-    const size_t last = speeds->count - 1;
-    const double end_s = speeds->times[last];
-    const bool is_at_end = fabs(end_s - speeds->period_s) <= PERIOD_ROUNDING * speeds->period_s;
-    if (is_at_end && speeds->times[0] == 0.0 && speeds->values[last] != speeds->values[0]) {
-        return entries_refuse(entry, err,
-                              "the speed at the end of a period is not that at its start\nallowed: "
-                              "the same at both, or a period longer than %.6g s",
-                              end_s);
-    }
-    if (!is_at_end && end_s > speeds->period_s) {
-        return entries_refuse(entry, err,
-                              "the points of drive.speed do not fit into a period\nallowed: a "
-                              "period of at least %.6g s, the time of the last point",
-                              end_s);
-    }
-    speeds->count -= is_at_end && speeds->times[0] == 0.0 ? 1 : 0;
-    return over_time_check_turns(entry, speeds, err);
+    driver->table = read;
+    driver->has_angles = true;
+    return true;
 }

@@ -1,4 +1,4 @@
-// A torque or a speed, constant or over time, as a case writes it.
+// A torque, a speed or an angle over time, as a case writes it.
 #pragma once
 
 #include "casefile/entries.h"
@@ -10,7 +10,5 @@ bool over_time_store(const Entry *entry, TimeTable *table, Err *err);
 // The same for the speed of a drive: the same value at all times is a constant speed.
 bool over_time_store_speed(const Entry *entry, Driver *driver, Err *err);
 
-// Lets a speed over time repeat, once speed and period are read: a last point that is the first of
-// the next period is left out. Fails with ERR_CASE where the points do not fit into the period, or
-// the drive does not turn by whole turns in it.
-bool over_time_repeat(const Entries *entries, Driver *driver, Err *err);
+// The angles of a drive: two points at least, the first of angle 0.
+bool over_time_store_angles(const Entry *entry, Driver *driver, Err *err);

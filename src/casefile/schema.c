@@ -117,6 +117,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
         [SCHEMA_SPEED] = {"an angular speed, or a list of [time, speed]",
                           "a speed such as 1000 rpm, or points [[0 s, 0 rpm], [10 ms, 1000 rpm]]"},
+        [SCHEMA_ANGLES] = {"a list of [time, angle]",
+                           "points [[0 s, 0 deg], [0.5 s, 90 deg], [1 s, 0 deg]]"},
         [SCHEMA_LOAD_PERIOD] = {"none, or a time, an angle or a length",
                                 "none, or a time, an angle or a length such as 720 deg"},
         [SCHEMA_EXPECT] = {"a mapping of paths to limits", "a mapping of paths to limits"},
@@ -166,7 +168,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
 bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other)
 {
     return row->rivalry != SCHEMA_NO_RIVAL && other->rivalry == row->rivalry &&
-           other->side != row->side;
+           other->family == row->family && other->side != row->side;
 }
 
 bool schema_is_of_kind(const SchemaRow *row, JointKind kind)
@@ -234,7 +236,8 @@ size_t schema_member_count(const Scenario *scenario, SchemaFamily family)
                                                 scenario->point_count,
                                                 linkage->spring_count,
                                                 linkage->torsion_count,
-                                                linkage->load_count};
+                                                linkage->load_count,
+                                                linkage->further_count};
     return counts[family];
 }
 
@@ -246,6 +249,7 @@ const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t 
     static const Spring NO_SPRING;
     static const TorsionSpring NO_TORSION;
     static const Load NO_LOAD;
+    static const Driver NO_DRIVE;
     const Linkage *linkage = &scenario->linkage;
     const bool is_there = index < schema_member_count(scenario, family);
     switch (family) {
@@ -261,6 +265,8 @@ const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t 
         return is_there ? &linkage->torsions[index] : &NO_TORSION;
     case SCHEMA_LOAD_FAMILY:
         return is_there ? &linkage->loads[index] : &NO_LOAD;
+    case SCHEMA_DRIVE:
+        return is_there ? &linkage->further[index] : &NO_DRIVE;
     default:
         return scenario;
     }

@@ -39,13 +39,14 @@ typedef enum SchemaType {
     SCHEMA_JOINT_NAME,       // name of a joint -> int
     SCHEMA_TORQUE,           // torque, or list of [time, torque] -> TimeTable
     SCHEMA_SPEED,            // speed, or list of [time, speed] -> Driver
+    SCHEMA_ANGLES,           // list of [time, angle] -> Driver
     SCHEMA_LOAD,             // force or torque, a list of points, or a CSV file -> Load
     SCHEMA_LOAD_PERIOD,      // time, angle or length -> the period of a Load
     SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 
-// Keys that come once, or once a body, joint, traced point or spring. A `*` in the path stands for
-// the name of that.
+// Keys that come once, or once a body, joint, traced point, spring, load or drive. A `*` in the
+// path stands for the name of that.
 typedef enum SchemaFamily {
     SCHEMA_SINGLE,
     SCHEMA_BODY,
@@ -54,6 +55,7 @@ typedef enum SchemaFamily {
     SCHEMA_SPRING,
     SCHEMA_TORSION_SPRING,
     SCHEMA_LOAD_FAMILY,
+    SCHEMA_DRIVE,
     SCHEMA_FAMILY_COUNT,
 } SchemaFamily;
 
@@ -84,7 +86,7 @@ typedef enum SchemaRivalry {
     SCHEMA_NO_RIVAL,
     SCHEMA_SIZES,      // hole against radial-clearance
     SCHEMA_ELASTICITY, // law against stiffness
-    SCHEMA_DRIVING,    // speed against torque
+    SCHEMA_DRIVING,    // speed against angle, torque and others
     SCHEMA_STOPPING,   // the normal of a line, and a radius, against two discs
     SCHEMA_LIMITING,   // backlash against low and high
 } SchemaRivalry;

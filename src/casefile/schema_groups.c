@@ -30,9 +30,12 @@ const SchemaGroup SCHEMA_GROUPS[] = {
     {"loads", "Forces and torques from outside, by name: on a body, or along the coordinate of a "
               "joint, such as a gas force on a piston; constant, or over time, the crank's angle or "
               "the joint's position. In the plane only."},
-    {"drive", "How the crank turns; optional with bodies. At a constant speed, or with bodies by a "
+    {"drive", "How the crank turns; optional with bodies. At a constant speed, or over time, or with bodies by a "
               "torque, a force or a motor, or softly after a speed: they then start with their own speeds, at rest by default, and the run has "
               "a duration."},
+    {"drives", "Further drives beside `drive`, each named by the joint that it turns a body about, "
+               "with bodies: a five-bar has two. Angles of the crank are those of `drive`. The run "
+               "has a duration. In the plane only."},
     {"material", "Material of pins and holes; steel by default."},
     {"contact", "The contact between pin and hole."},
     {"run", "Duration, samples, step and solvers."},

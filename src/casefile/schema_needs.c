@@ -2,6 +2,7 @@
 #include "casefile/schema_needs.h"
 
 #include "casefile/build.h"
+#include "casefile/drives.h"
 #include "casefile/loads.h"
 #include "contact/law.h"
 
@@ -64,7 +65,7 @@ static const Condition WANTS[] = {
     {SETTLED, 0, {"run.start: settled", "run.start", false}},
     {REMEMBERED, 0, {"a contact.damping but none, viscous and dissipation", "contact.damping", false}},
     {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
-    {UNSTEADY, 0, {"a drive.speed over time", "drive.speed", false}},
+    {UNSTEADY, 0, {"a drive.speed or drive.angle over time", "drive.speed", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
 };
 // clang-format on
@@ -173,10 +174,13 @@ static unsigned joint_bits(const Scenario *scenario, const Joint *joint)
 
 // Whether a key of a drive by a torque says how it is: a torque over time, a motor, or a soft
 // drive.
-static bool drives_apply(const SchemaRow *row, const Linkage *linkage)
+static bool torque_applies(const SchemaRow *row, const Linkage *linkage)
 {
     const Torque *torque = &linkage->torque;
     const bool is_soft = torque->followed.is_present;
+    if (!drives_apply(row, &linkage->driver)) {
+        return false;
+    }
     const bool is_motor = torque->no_load != 0.0;
     switch (row->offset) {
     case offsetof(Scenario, linkage.torque.table):
@@ -213,7 +217,11 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         }
     }
     if (strncmp(row->path, "drive.", strlen("drive.")) == 0 &&
-        !drives_apply(row, &scenario->linkage)) {
+        !torque_applies(row, &scenario->linkage)) {
+        return false;
+    }
+    if (row->family == SCHEMA_DRIVE && is_member &&
+        !drives_apply(row, &scenario->linkage.further[index])) {
         return false;
     }
     if (row->family == SCHEMA_LOAD_FAMILY && is_member &&
@@ -269,7 +277,7 @@ static unsigned row_bits(const Scenario *scenario)
            bit(SHUFFLED, scenario->ode.iterations > SHUFFLE_ITERATIONS) |
            bit(MOVED, build_is_determined(&scenario->linkage)) |
            bit(SETTLED, scenario->run.start == START_SETTLED) |
-           bit(UNSTEADY, scenario->linkage.driver.speeds.count > 0) |
+           bit(UNSTEADY, scenario->linkage.driver.table.count > 0) |
            bit(REMEMBERED, scenario->contact.damping != DAMPING_DISSIPATION) |
            bit(DERIVED, scenario->contact.damping != DAMPING_DISSIPATION ||
                             scenario->contact.dissipation == 0.0);

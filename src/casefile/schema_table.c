@@ -33,10 +33,12 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_SPRING] = {"springs", "spring", SIZE_MAX},
     [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", SIZE_MAX},
     [SCHEMA_LOAD_FAMILY] = {"loads", "load", SIZE_MAX},
+    [SCHEMA_DRIVE] = {"drives", "drive", SIZE_MAX},
 };
 
 static const char *const LOAD_FRAMES[] = {"world", "body", NULL};
 static const char *const LOAD_OVERS[] = {"time", "crank-angle", "position", NULL};
+static const char *const PROFILES[] = {"cycloid", "polynomial", "trapezoid", "spline", NULL};
 static const char *const ASSEMBLIES[] = {"open", "crossed", NULL};
 static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 
@@ -112,6 +114,15 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define LOAD(field) \
     .family = SCHEMA_LOAD_FAMILY, .holder = SCHEMA_LOAD_FAMILY, \
     .offset = offsetof(Load, field), .needs = MEMBER
+#define FURTHER(field) \
+    .family = SCHEMA_DRIVE, .form = SCHEMA_LONG, .holder = SCHEMA_DRIVE, \
+    .offset = field, .needs = MEMBER
+#define ANGLES_DOC \
+    "angle by which the body has turned since the start, at points of time, the first 0; between " \
+    "them it moves by the profile, before and after them it stands"
+#define PROFILE_DOC \
+    "from one angle to the next: cycloid, polynomial (3-4-5) and trapezoid (of the speed, in " \
+    "thirds) rest at each; a cubic spline goes through all"
 #define POINT(field) \
     .family = SCHEMA_POINT, .holder = SCHEMA_POINT, .offset = offsetof(TracedPoint, field), .needs = MEMBER
 #define DAMPING_DOC(name, word, words, factor) "; " word ": " words
@@ -263,11 +274,17 @@ const SchemaRow SCHEMA_ROWS[] = {
      .rivalry = SCHEMA_DRIVING, .side = 0, .needs = DRIVE,
      .doc = "angular velocity of the driven body, counter-clockwise positive: constant and not 0, "
             "or linear in time between points with constant ends, at most 32, not all 0"},
-    {.path = "drive.period", .dimension = DIMENSION_TIME, AT(linkage.driver.speeds.period_s),
+    {.path = "drive.angle", .type = SCHEMA_ANGLES, .dimension = DIMENSION_ANGLE,
+     AT(linkage.driver), .low = -1e6, .high = 1e6, .default_words = "none",
+     .rivalry = SCHEMA_DRIVING, .side = 4, .needs = DRIVE, .doc = "instead of speed: " ANGLES_DOC},
+    {.path = "drive.profile", .type = SCHEMA_CHOICE, AT(linkage.driver.profile),
+     .words = PROFILES, .needs = DRIVE, .doc = "of drive.angle, " PROFILE_DOC},
+    {.path = "drive.period", .dimension = DIMENSION_TIME, AT(linkage.driver.table.period_s),
      .low = 0.0, .high = 1e6, .low_is_open = true, .default_words = "none", .needs = DRIVE | VALUED,
      .wants = UNSTEADY,
      .doc = "time after which a speed over time repeats, for ever: it is linear from its last point "
-            "to the first of the next period, and turns the drive by whole turns in each"},
+            "to the first of the next period, and turns the drive by whole turns in each; an angle "
+            "over time likewise, from 0 s to the end of the period"},
     {.path = "drive.torque", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
      .dimension = DIMENSION_TORQUE, AT(linkage.torque.table), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 1, .default_words = "none", .needs = TORQUE,
@@ -299,6 +316,18 @@ const SchemaRow SCHEMA_ROWS[] = {
      AT(linkage.torque.slope), .low = 0.0, .high = 1e12, .default_words = "none",
      .needs = TORQUE,
      .doc = "likewise, torque over the difference of the speeds"},
+    {.path = "drives.*.speed", .type = SCHEMA_SPEED, .dimension = DIMENSION_ANGULAR_SPEED,
+     FURTHER(0), .low = -1e6, .high = 1e6, .is_required = true, .rivalry = SCHEMA_DRIVING,
+     .side = 0, .doc = "angular velocity of the body that turns about that joint, as drive.speed; "
+                       "0 rpm holds it"},
+    {.path = "drives.*.angle", .type = SCHEMA_ANGLES, .dimension = DIMENSION_ANGLE, FURTHER(0),
+     .low = -1e6, .high = 1e6, .default_words = "none", .rivalry = SCHEMA_DRIVING, .side = 4,
+     .doc = "instead of speed, as drive.angle"},
+    {.path = "drives.*.profile", .type = SCHEMA_CHOICE, FURTHER(offsetof(Driver, profile)),
+     .words = PROFILES, .doc = "of angle, as drive.profile"},
+    {.path = "drives.*.period", .dimension = DIMENSION_TIME,
+     FURTHER(offsetof(Driver, table.period_s)) | VALUED, .low = 0.0, .high = 1e6,
+     .low_is_open = true, .default_words = "none", .doc = "as drive.period"},
     {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is the "

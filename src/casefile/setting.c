@@ -235,10 +235,21 @@ static void set_load_period(CasefileSetting *setting, const Linkage *linkage, co
     text_copy(setting->unit, sizeof setting->unit, units_si(loads_dimension(linkage, load)));
 }
 
+// With the point at the end of a period, which is the first of the next.
+static void set_angles(CasefileSetting *setting, const SchemaRow *row, const Driver *driver)
+{
+    TimeTable table = driver->table;
+    if (table.period_s > 0.0 && table.count > 0 && table.count < TIME_TABLE_MAX) {
+        table.times[table.count] = table.times[0] + table.period_s;
+        table.values[table.count++] = table.values[0] + driver->gain;
+    }
+    set_over_time(setting, row, &table);
+}
+
 static void set_speed(CasefileSetting *setting, const SchemaRow *row, const Driver *driver)
 {
-    if (driver->speeds.count > 0) {
-        set_over_time(setting, row, &driver->speeds);
+    if (driver->table.count > 0) {
+        set_over_time(setting, row, &driver->table);
     } else {
         set_number(setting, driver->speed);
     }
@@ -354,6 +365,9 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     case SCHEMA_SPEED:
         set_speed(setting, row, field);
         break;
+    case SCHEMA_ANGLES:
+        set_angles(setting, row, field);
+        break;
     case SCHEMA_LOAD:
         set_load(setting, row, linkage, schema_member(scenario, SCHEMA_LOAD_FAMILY, index));
         break;
@@ -385,6 +399,8 @@ const char *schema_member_name(const Scenario *scenario, SchemaFamily family, si
         return ((const TorsionSpring *)named)->name;
     case SCHEMA_LOAD_FAMILY:
         return ((const Load *)named)->name;
+    case SCHEMA_DRIVE:
+        return scenario->linkage.joints[((const Driver *)named)->joint].name;
     default:
         return "*";
     }

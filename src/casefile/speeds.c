@@ -13,16 +13,16 @@ enum { REASON_SIZE = 192, NEAREST_LISTED = 4 };
 
 static const double SPEED_PRINTED = 1e-12; // of m/s and rad/s, and of a speed: not printed
 
-// The driven body moves as the drive says, unless the case says how it moves.
-static void turn_driven_body(const Entries *entries, const Linkage *linkage, Motion *motions)
+// A driven body moves as its drive says, unless the case says how it moves.
+static void turn_driven_body(const Entries *entries, const Linkage *linkage, size_t drive,
+                             Motion *motions)
 {
-    const int body = linkage_driven_body(linkage);
-    if (body != LINKAGE_GROUND &&
-        entries_find(entries, "bodies.*.velocity", (size_t)body) == NULL &&
+    const int body = linkage_drive_body(linkage, drive);
+    if (entries_find(entries, "bodies.*.velocity", (size_t)body) == NULL &&
         entries_find(entries, "bodies.*.spin", (size_t)body) == NULL) {
-        const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_a;
+        const Vec2 pivot = linkage->joints[linkage_drive(linkage, drive)->joint].anchor_a;
         const Vec2 arm = vec2_sub(motions[body].position, pivot);
-        const double speed = drive_at(&linkage->driver, 0.0).omega;
+        const double speed = drive_at(linkage_drive(linkage, drive), 0.0).omega;
         motions[body].omega = speed;
         motions[body].velocity = vec2_scale(speed, vec2_perp(arm));
     }
@@ -70,7 +70,7 @@ static void append_nearest(const Linkage *linkage, const Motion *motions, const 
 static bool refuse_speeds(const Entry *entry, const Linkage *linkage, int joint, double distance,
                           const Motion *motions, const Motion *nearest, Err *err)
 {
-    char reason[REASON_SIZE] = "the driven body does not turn as the drive does";
+    char reason[REASON_SIZE] = "a driven body does not turn as its drive does";
     if (joint >= 0) {
         snprintf(reason, sizeof reason,
                  "the speeds at the start pull the ideal joint '%s' apart by %.4g m/s",
@@ -89,7 +89,9 @@ static bool refuse_speeds(const Entry *entry, const Linkage *linkage, int joint,
 bool speeds_find(const Entries *entries, const Linkage *linkage, Motion *motions, Err *err)
 {
     const Entry *given = entries_speed(entries, linkage->body_count);
-    turn_driven_body(entries, linkage, motions);
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        turn_driven_body(entries, linkage, i, motions);
+    }
     Motion *nearest = zeroed(linkage->body_count, sizeof *nearest);
     memcpy(nearest, motions, linkage->body_count * sizeof *motions);
     if (given == NULL && linkage->driver.is_present) {

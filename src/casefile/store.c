@@ -305,7 +305,8 @@ static bool store_speed(const Target *target)
         return false;
     }
     driver->speed = number.value;
-    driver->speeds.count = 0;
+    driver->table.count = 0;
+    driver->has_angles = false;
     return true;
 }
 
@@ -359,6 +360,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return over_time_store(entry, target.field, err);
     case SCHEMA_SPEED:
         return store_speed(&target);
+    case SCHEMA_ANGLES:
+        return over_time_store_angles(entry, target.field, err);
     case SCHEMA_LOAD:
         return loads_store_value(&target, &scenario->linkage,
                                  &scenario->linkage.loads[entry->index]);

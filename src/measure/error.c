@@ -101,7 +101,7 @@ static void error_add_beside(const Trajectory *trajectory, const Trajectory *ref
     const double fastest = fastest_change(reference);
     for (size_t i = 0; i < reference->body_count; i++) {
         const double scale = alpha_scale(reference, i, fastest);
-        const bool is_driven = (int)i == reference->driven_body;
+        const bool is_driven = linkage_is_driven(&reference->linkage, (int)i);
         for (size_t k = 0; k < reference->sample_count && !is_driven; k++) {
             const Vec3 apart = vec3_sub(angular_acceleration(trajectory, k, i),
                                         angular_acceleration(reference, k, i));
@@ -138,7 +138,7 @@ static void add_rates(const Trajectory *trajectory, const Trajectory *reference,
         error->max_in_horizon = fmax(error->max_in_horizon, rate.max_in_horizon);
         square += rate.square;
         if (measure->rates[i].kind == DISTANCE_TURNING &&
-            measure->rates[i].number != reference->driven_body) {
+            !linkage_is_driven(&reference->linkage, (int)measure->rates[i].number)) {
             error->omega_max = fmax(error->omega_max, rate.max);
             error->omega_max_in_horizon = fmax(error->omega_max_in_horizon, rate.max_in_horizon);
             omega_square += rate.square;
@@ -495,7 +495,7 @@ static void error_add_peak_alphas(const Trajectory *trajectory, const Trajectory
     // a run that was made to be compared by its motion alone has no extremes
     const bool has_extremes = trajectory->states != NULL && reference->states != NULL;
     for (size_t i = 0; has_extremes && i < reference->body_count; i++) {
-        if ((int)i != reference->driven_body) {
+        if (!linkage_is_driven(&reference->linkage, (int)i)) {
             const BodyError body = error_of_body(trajectory, reference, i, horizon_s);
             keep_larger(body.peak_max, body.peak_max_in_horizon, reference->linkage.bodies[i].name,
                         &error->peak_alpha_max, &error->peak_alpha_max_in_horizon,

@@ -131,16 +131,15 @@ static void add_backend(BackendKind backend, Scheme *schemes, size_t *count)
 bool scheme_check(const Scenario *scenario, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
-    const int driven = linkage_driven_body(linkage);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != driven) {
+        if (!linkage_is_driven(linkage, (int)i)) {
             return true;
         }
     }
     return err_set(err, ERR_CASE,
                    "there is nothing to compare: the drive prescribes how '%s' moves, and there is "
                    "no other body whose motion could be in error",
-                   linkage->bodies[driven].name);
+                   linkage->bodies[linkage_driven_body(linkage)].name);
 }
 
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])

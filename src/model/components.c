@@ -26,6 +26,10 @@ static size_t number_components(const Linkage *linkage, size_t *member_of)
     for (size_t i = 0; i < linkage->spring_count; i++) {
         connect(parents, linkage->springs[i].body_a, linkage->springs[i].body_b);
     }
+    // the crank's angle is that of all: what further drives turn goes with it
+    for (size_t i = 1; i < linkage_drive_count(linkage); i++) {
+        connect(parents, linkage_driven_body(linkage), linkage_drive_body(linkage, i));
+    }
     for (size_t i = 0; i < linkage->body_count; i++) {
         const size_t leader = union_find_root(parents, i);
         member_of[i] = leader == i ? count++ : member_of[leader];
@@ -67,6 +71,20 @@ static void renumber_gears(const int *own_body, const int *own_joint, Linkage *l
     }
 }
 
+// Gives a component the drive of a joint.
+static void take_drive(const Linkage *whole, int joint, int own_joint, Linkage *linkage)
+{
+    const int drive = linkage_drive_of_joint(whole, (size_t)joint);
+    if (drive == 0) {
+        linkage->driver = whole->driver;
+        linkage->driver.joint = own_joint;
+    } else if (drive > 0) {
+        Driver *further = &linkage->further[linkage->further_count++];
+        *further = whole->further[drive - 1];
+        further->joint = own_joint;
+    }
+}
+
 // What the linkage has more than bodies: by component, then with their numbers there.
 static void share_out(const Linkage *whole, const size_t *member_of, Component *components,
                       size_t count)
@@ -89,10 +107,7 @@ static void share_out(const Linkage *whole, const size_t *member_of, Component *
         own_joint[i] = (int)linkage->joint_count;
         component->joints[linkage->joint_count] = (int)i;
         linkage->joints[linkage->joint_count++] = joint;
-        if (whole->driver.is_present && whole->driver.joint == (int)i) {
-            linkage->driver = whole->driver;
-            linkage->driver.joint = own_joint[i];
-        }
+        take_drive(whole, (int)i, own_joint[i], linkage);
         if (whole->torque.table.count > 0 && whole->torque.joint == (int)i) {
             linkage->torque = whole->torque;
             linkage->torque.joint = own_joint[i];
@@ -141,6 +156,9 @@ static LinkageRoom *count_rooms(const Linkage *whole, const size_t *member_of, s
     for (size_t i = 0; i < whole->joint_count; i++) {
         const Joint *joint = &whole->joints[i];
         rooms[member_of_pair(member_of, joint->body_a, joint->body_b)].joints++;
+    }
+    for (size_t i = 1; i < linkage_drive_count(whole); i++) {
+        rooms[member_of[linkage_driven_body(whole)]].further++;
     }
     for (size_t i = 0; i < whole->spring_count; i++) {
         const Spring *spring = &whole->springs[i];

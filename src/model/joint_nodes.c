@@ -6,7 +6,7 @@
 int joint_nodes_mover(const Linkage *linkage, int joint, int side)
 {
     const int body = linkage_end(&linkage->joints[joint], side).body;
-    return body == linkage_driven_body(linkage) ? LINKAGE_GROUND : body;
+    return linkage_is_driven(linkage, body) ? LINKAGE_GROUND : body;
 }
 
 void joint_nodes_list(const Linkage *linkage, const int *joints, size_t count, size_t *first,

@@ -75,9 +75,9 @@ static void add_blocks(const Motion *motions, const bool *include, bool with_dri
             scale_block(system, block);
         }
     }
-    if (with_driver && linkage->driver.is_present) {
+    for (size_t i = 0; with_driver && i < linkage_drive_count(linkage); i++) {
         JointBlock *block =
-            add_joint_block(system, 1, LINKAGE_GROUND, linkage_driven_body(linkage));
+            add_joint_block(system, 1, LINKAGE_GROUND, linkage_drive_body(linkage, i));
         block->entries[0][1][2] = 1.0;
         scale_block(system, block);
     }
@@ -180,7 +180,7 @@ void joint_system_init(const Linkage *linkage, const Motion *motions, const bool
 {
     *system = (JointSystem){
         .linkage = linkage,
-        .blocks = zeroed(linkage->joint_count + 1, sizeof *system->blocks),
+        .blocks = zeroed(linkage->joint_count + LINKAGE_DRIVE_MAX, sizeof *system->blocks),
         .scales = zeroed(3 * linkage->body_count, sizeof *system->scales),
     };
     for (size_t i = 0; i < linkage->body_count; i++) {

@@ -2,7 +2,7 @@
 //
 // For a joint between bodies a and b with anchors s_a, s_b (body frames), R(phi) the rotation:
 //     Phi = r_b + R(phi_b) s_b - r_a - R(phi_a) s_a = 0          two rows a joint
-//     Phi_drive = phi_crank - (start + speed t) = 0               one row
+//     Phi_drive = phi_crank - (start + speed t) = 0               one row a drive
 // Positions by Newton's method on Phi = 0; velocities from J qdot = -dPhi/dt; accelerations from
 //     J qddot = gamma,   gamma = sum over bodies of  +-omega^2 R s   (the centripetal terms).
 // Of a prismatic joint Phi and gamma are those of model/joint_rows.c, a stop has none.
@@ -70,7 +70,7 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
 {
     jacobian->rows = 0;
     jacobian->columns = 3 * linkage->body_count;
-    const size_t row_most = 2 * linkage->joint_count + 1;
+    const size_t row_most = 2 * linkage->joint_count + linkage_drive_count(linkage);
     memset(jacobian->entries, 0, row_most * jacobian->columns * sizeof *jacobian->entries);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointKind kind = linkage->joints[i].kind;
@@ -85,8 +85,8 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
         }
         jacobian->rows += 2;
     }
-    if (with_driver && linkage->driver.is_present) {
-        const size_t column = 3 * (size_t)linkage_driven_body(linkage) + 2;
+    for (size_t i = 0; with_driver && i < linkage_drive_count(linkage); i++) {
+        const size_t column = 3 * (size_t)linkage_drive_body(linkage, i) + 2;
         jacobian->entries[jacobian->rows * jacobian->columns + column] = 1.0;
         jacobian->rows++;
     }
@@ -196,11 +196,13 @@ static double linkage_size(const Linkage *linkage)
 // Room for what the rows of the joints and the drive say, and for what the bodies do.
 static double *create_rows(const Linkage *linkage)
 {
-    return zeroed(joint_rows_total(linkage) + 1, sizeof(double));
+    return zeroed(joint_rows_total(linkage) + linkage_drive_count(linkage), sizeof(double));
 }
 
-static bool newton(const Linkage *linkage, double crank_angle, double *residual, Motion *motions)
+static bool newton(const Linkage *linkage, const DriveState *drives, double *residual,
+                   Motion *motions)
 {
+    const size_t drive_count = linkage_drive_count(linkage);
     const double size = linkage_size(linkage);
     for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
         double *row = residual;
@@ -211,9 +213,12 @@ static bool newton(const Linkage *linkage, double crank_angle, double *residual,
                 *row++ = -opening.y;
             }
         }
-        double *turn = row;
-        *turn = crank_angle - motions[linkage_driven_body(linkage)].angle;
-        if (fabs(*turn) <= CLOSED && kinematics_closure_error(linkage, motions) <= CLOSED * size) {
+        double turn = 0.0; // the largest that a drive misses
+        for (size_t i = 0; i < drive_count; i++) {
+            row[i] = drives[i].angle - motions[linkage_drive_body(linkage, i)].angle;
+            turn = fmax(turn, fabs(row[i]));
+        }
+        if (turn <= CLOSED && kinematics_closure_error(linkage, motions) <= CLOSED * size) {
             return true;
         }
         if (!solve_rows(linkage, motions, residual)) {
@@ -224,10 +229,12 @@ static bool newton(const Linkage *linkage, double crank_angle, double *residual,
     return false;
 }
 
-static bool solve_velocities(const Linkage *linkage, double speed, Motion *motions)
+static bool solve_velocities(const Linkage *linkage, const DriveState *drives, Motion *motions)
 {
     double *rates = create_rows(linkage);
-    rates[joint_rows_total(linkage)] = speed;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        rates[joint_rows_total(linkage) + i] = drives[i].omega;
+    }
     const bool is_solved = solve_rows(linkage, motions, rates);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
@@ -259,7 +266,7 @@ static Vec2 joint_gamma(const Linkage *linkage, const Motion *motions, int numbe
                     centripetal(motions, joint->body_a, joint->anchor_a));
 }
 
-static bool solve_accelerations(const Linkage *linkage, double alpha, Motion *motions)
+static bool solve_accelerations(const Linkage *linkage, const DriveState *drives, Motion *motions)
 {
     double *rates = create_rows(linkage);
     double *row = rates;
@@ -270,7 +277,9 @@ static bool solve_accelerations(const Linkage *linkage, double alpha, Motion *mo
             *row++ = gamma.y;
         }
     }
-    *row = alpha;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        *row++ = drives[i].alpha;
+    }
     const bool is_solved = solve_rows(linkage, motions, rates);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
         motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
@@ -280,21 +289,21 @@ static bool solve_accelerations(const Linkage *linkage, double alpha, Motion *mo
     return is_solved;
 }
 
-static bool solve_all(const Linkage *linkage, const DriveState *drive, Motion *motions, Err *err)
+static bool solve_all(const Linkage *linkage, const DriveState *drives, Motion *motions, Err *err)
 {
     double *residual = create_rows(linkage);
-    const bool is_closed = newton(linkage, drive->angle, residual, motions);
+    const bool is_closed = newton(linkage, drives, residual, motions);
     free(residual);
     if (!is_closed) {
         return err_set(err, ERR_SOLVER, "the linkage does not close at a crank angle of %.6g deg",
-                       drive->angle * 180.0 / M_PI);
+                       drives[0].angle * 180.0 / M_PI);
     }
-    return (solve_velocities(linkage, drive->omega, motions) &&
-            solve_accelerations(linkage, drive->alpha, motions)) ||
+    return (solve_velocities(linkage, drives, motions) &&
+            solve_accelerations(linkage, drives, motions)) ||
            err_set(err, ERR_SOLVER,
                    "the linkage is at a dead centre at a crank angle of %.6g deg: its "
                    "velocities are not determined",
-                   drive->angle * 180.0 / M_PI);
+                   drives[0].angle * 180.0 / M_PI);
 }
 
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)
@@ -303,19 +312,24 @@ bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motion
     return kinematics_solve_driven(linkage, &drive, motions, err);
 }
 
-bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drive, Motion *motions,
+bool kinematics_is_determined(const Linkage *linkage)
+{
+    return linkage->driver.is_present &&
+           joint_rows_total(linkage) + linkage_drive_count(linkage) == 3 * linkage->body_count;
+}
+
+bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drives, Motion *motions,
                              Err *err)
 {
-    if (!linkage->driver.is_present || joint_rows_total(linkage) + 1 != 3 * linkage->body_count) {
+    if (!kinematics_is_determined(linkage)) {
         return err_set(err, ERR_SOLVER,
-                       "the driver alone does not determine the motion of this linkage: %zu "
-                       "bodies, %zu joints%s",
-                       linkage->body_count, linkage->joint_count,
-                       linkage->driver.is_present ? "" : ", no driver");
+                       "the drives alone do not determine the motion of this linkage: %zu "
+                       "bodies, %zu joints, %zu drives",
+                       linkage->body_count, linkage->joint_count, linkage_drive_count(linkage));
     }
     Motion *solved = zeroed(linkage->body_count, sizeof *solved);
     memcpy(solved, motions, linkage->body_count * sizeof *motions);
-    const bool is_solved = solve_all(linkage, drive, solved, err);
+    const bool is_solved = solve_all(linkage, drives, solved, err);
     if (is_solved) {
         memcpy(motions, solved, linkage->body_count * sizeof *motions);
     }

@@ -18,7 +18,7 @@ static inline bool kinematics_is_small(const Linkage *linkage)
 // One row per scalar constraint, three columns (x, y, angle) per body, row by row.
 enum {
     KINEMATICS_COLUMN_MAX = 3 * KINEMATICS_BODY_MAX,
-    KINEMATICS_ROW_MAX = 2 * KINEMATICS_JOINT_MAX + 1,
+    KINEMATICS_ROW_MAX = 2 * KINEMATICS_JOINT_MAX + LINKAGE_DRIVE_MAX,
 };
 
 typedef struct Jacobian {
@@ -28,8 +28,7 @@ typedef struct Jacobian {
 } Jacobian;
 
 // The constraint Jacobian of a small mechanism: two rows a joint for which `include` is true (all
-// where it is NULL; a stop has none), then one row for the driver if there is one and `with_driver`
-// is set.
+// where it is NULL; a stop has none), then one row a drive where `with_driver` is set.
 void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
                          bool with_driver, Jacobian *jacobian);
 
@@ -41,18 +40,22 @@ void kinematics_move(const Linkage *linkage, const double *change, Motion *motio
 size_t kinematics_rank(const Linkage *linkage, const Motion *motions, const bool *include,
                        bool with_driver, double independent, size_t *rows);
 
-// The freedoms left with the driver free: three a body less the independent constraint rows.
+// Whether ideal joints and drives together say where every body is.
+bool kinematics_is_determined(const Linkage *linkage);
+
+// The freedoms left with the drives free: three a body less the independent constraint rows.
 // With `ideal_only`, joints with clearance are left open (two freedoms more each).
 size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool ideal_only);
 
 // Moves the bodies so that every joint closes and the driver stands at the angle given, starting
 // from the motions given; then sets velocities and accelerations for the driver's constant speed.
 // Fails with ERR_SOLVER where the linkage does not close, is at a dead centre, or has not exactly
-// one freedom; the motions are then untouched.
+// one freedom; the motions are then untouched. With one drive.
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err);
 
-// The same for the driver's speed and acceleration at a time.
-bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drive, Motion *motions,
+// The same for the states of all drives at a time, as many as there are; their messages have the
+// first's angle.
+bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drives, Motion *motions,
                              Err *err);
 
 // What a joint misses of being closed, in its rows: x and y of the second anchor against the first,

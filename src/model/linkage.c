@@ -42,7 +42,37 @@ double linkage_guide_tilt(const Guide *guide)
 bool linkage_is_ideal(const Linkage *linkage, size_t joint)
 {
     return linkage_kind_is_ideal(linkage->joints[joint].kind) &&
-           !(linkage->driver.is_present && linkage->driver.joint == (int)joint);
+           linkage_drive_of_joint(linkage, joint) < 0;
+}
+
+int linkage_drive_of_joint(const Linkage *linkage, size_t joint)
+{
+    const size_t count = linkage_drive_count(linkage);
+    for (size_t i = 0; i < count; i++) {
+        if (linkage_drive(linkage, i)->joint == (int)joint) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+void linkage_drives_since(const Linkage *linkage, double from_s, double time_s,
+                          DriveState states[LINKAGE_DRIVE_MAX])
+{
+    const size_t count = linkage_drive_count(linkage);
+    for (size_t i = 0; i < count; i++) {
+        states[i] = drive_since(linkage_drive(linkage, i), from_s, time_s);
+    }
+}
+
+double linkage_next_kink(const Linkage *linkage, double time_s)
+{
+    double next_s = INFINITY;
+    const size_t count = linkage_drive_count(linkage);
+    for (size_t i = 0; i < count; i++) {
+        next_s = fmin(next_s, drive_next_kink(linkage_drive(linkage, i), time_s));
+    }
+    return next_s;
 }
 
 void linkage_turning(const Linkage *linkage, int joint, int *turned, int *against)
@@ -78,9 +108,15 @@ void linkage_describe_instant(const Linkage *linkage, double time_s,
 double linkage_period(const Linkage *linkage)
 {
     const Driver *driver = &linkage->driver;
-    return drive_is_steady(driver)    ? 2.0 * M_PI / fabs(driver->speed)
-           : driver->speeds.count > 0 ? driver->speeds.period_s
-                                      : 0.0;
+    if (drive_is_steady(driver)) {
+        return 2.0 * M_PI / fabs(driver->speed);
+    }
+    // of several drives what all of them have in common
+    double period_s = driver->table.period_s;
+    for (size_t i = 0; i < linkage->further_count; i++) {
+        period_s = linkage->further[i].table.period_s == period_s ? period_s : 0.0;
+    }
+    return driver->table.count > 0 ? period_s : 0.0;
 }
 
 // How far a body goes beyond its anchor in a joint that slides or stops, m.

@@ -1,5 +1,5 @@
-// A linkage as data: rigid bodies with mass properties, the joints and springs between them, one
-// driver. It moves in the plane, or in space where the case asks for it.
+// A linkage as data: rigid bodies with mass properties, the joints and springs between them, and
+// what drives it. It moves in the plane, or in space where the case asks for it.
 //
 // Coordinates: a body's frame has its origin at the centre of mass; its x axis runs along the link.
 // The ground is no body; it has the number LINKAGE_GROUND and the fixed frame of the world, y up.
@@ -18,6 +18,7 @@
 enum {
     LINKAGE_GROUND = -1,
     LINKAGE_NAME_SIZE = 48,
+    LINKAGE_DRIVE_MAX = 8,
 };
 
 // Of a clearance: how much deeper than its wall something may start that is to touch it, for the
@@ -265,8 +266,10 @@ typedef struct Linkage {
     TorsionSpring *torsions;
     size_t load_count;
     Load *loads;
-    Driver driver;
-    Torque torque; // instead of a driver
+    Driver driver; // the crank's: angles of the crank are those of its body
+    size_t further_count;
+    Driver *further; // drives beside it, at other joints
+    Torque torque;   // instead of a driver
 } Linkage;
 
 // How many of each a linkage has room for.
@@ -276,6 +279,7 @@ typedef struct LinkageRoom {
     size_t springs;
     size_t torsions;
     size_t loads;
+    size_t further;
 } LinkageRoom;
 
 // A linkage without bodies and joints, with room for so many, all zero. For linkage_free.
@@ -345,15 +349,60 @@ double linkage_guide_tilt(const Guide *guide);
 // the opening (of a sleeve more), m; 0 of other kinds.
 double linkage_radial_clearance(const Joint *joint);
 
-// Whether a joint holds its bodies in its rows and is not the drive's: one that constrains how
-// bodies move.
+// How many drives prescribe the motion of a body each, and which: the crank's is the first.
+static inline size_t linkage_drive_count(const Linkage *linkage)
+{
+    return linkage->driver.is_present ? 1 + linkage->further_count : 0;
+}
+
+static inline const Driver *linkage_drive(const Linkage *linkage, size_t number)
+{
+    return number == 0 ? &linkage->driver : &linkage->further[number - 1];
+}
+
+// The body that a drive turns.
+static inline int linkage_drive_body(const Linkage *linkage, size_t number)
+{
+    return linkage->joints[linkage_drive(linkage, number)->joint].body_b;
+}
+
+// The number of the drive that turns a body or holds a joint, or -1.
+static inline int linkage_drive_of_body(const Linkage *linkage, int body)
+{
+    const size_t count = linkage_drive_count(linkage);
+    for (size_t i = 0; i < count; i++) {
+        if (linkage_drive_body(linkage, i) == body) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+int linkage_drive_of_joint(const Linkage *linkage, size_t joint);
+
+// Whether a drive prescribes how a body moves.
+static inline bool linkage_is_driven(const Linkage *linkage, int body)
+{
+    return linkage_drive_of_body(linkage, body) >= 0;
+}
+
+// The states of all drives at a time; of the pieces that hold from a time on, which is no later.
+void linkage_drives_since(const Linkage *linkage, double from_s, double time_s,
+                          DriveState states[LINKAGE_DRIVE_MAX]);
+
+// The first kink of any drive after a time, s; INFINITY where there is none.
+double linkage_next_kink(const Linkage *linkage, double time_s);
+
+// Whether a joint holds its bodies in its rows and is not a drive's: one that constrains how bodies
+// move.
 bool linkage_is_ideal(const Linkage *linkage, size_t joint);
 
 // The body that a joint turns and the one that it turns against: its bodies b and a, but the other
 // way round where b is the ground. The joint's angle is that of the first less that of the second.
 void linkage_turning(const Linkage *linkage, int joint, int *turned, int *against);
 
-// The number of the driven body, or LINKAGE_GROUND where there is no driver.
+// The number of the crank, the body that the first drive turns, or LINKAGE_GROUND where there is no
+// driver.
 int linkage_driven_body(const Linkage *linkage);
 
 // Angle of the driven body at a time, rad; 0 where there is no driver.

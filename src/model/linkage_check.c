@@ -161,12 +161,9 @@ static bool check_joint(const Linkage *linkage, size_t number, Err *err)
     return joint->limits.kind == LIMIT_NONE || check_own_contact(joint, err);
 }
 
-static bool check_driver(const Linkage *linkage, Err *err)
+static bool check_driver(const Linkage *linkage, size_t number, Err *err)
 {
-    const Driver *driver = &linkage->driver;
-    if (!driver->is_present) {
-        return true;
-    }
+    const Driver *driver = linkage_drive(linkage, number);
     if (driver->joint < 0 || driver->joint >= (int)linkage->joint_count) {
         return err_set(err, ERR_CASE, "the driver's joint does not exist");
     }
@@ -177,16 +174,36 @@ static bool check_driver(const Linkage *linkage, Err *err)
                        "with the ground",
                        joint->name);
     }
-    if (!(driver->speed != 0.0) || !isfinite(driver->speed) || !isfinite(driver->start)) {
+    if (linkage_drive_of_body(linkage, joint->body_b) != (int)number) {
+        return err_set(err, ERR_CASE, "two drives turn one body, at joint '%s'", joint->name);
+    }
+    if ((number == 0 && !(driver->speed != 0.0)) || !isfinite(driver->speed) ||
+        !isfinite(driver->start)) {
         return err_set(err, ERR_CASE, "drive speed %g rad/s, allowed: any speed but 0",
                        driver->speed);
     }
-    if (driver->speeds.count > 0 && driver->speed != time_table_largest(&driver->speeds)) {
+    Driver completed = *driver;
+    drive_complete(&completed);
+    if (driver->speed != completed.speed) {
         return err_set(err, ERR_CASE, "drive speed %g rad/s is not the largest of its table",
                        driver->speed);
     }
-    return time_table_is_ordered(&driver->speeds) ||
+    return time_table_is_ordered(&driver->table) ||
            err_set(err, ERR_CASE, "the times of a speed must increase, within its period");
+}
+
+static bool check_drivers(const Linkage *linkage, Err *err)
+{
+    const size_t count = linkage_drive_count(linkage);
+    if (count > LINKAGE_DRIVE_MAX) {
+        return err_set(err, ERR_CASE, "%zu drives, allowed: at most %d", count, LINKAGE_DRIVE_MAX);
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (!check_driver(linkage, i, err)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static bool check_springs(const Linkage *linkage, Err *err)
@@ -283,6 +300,6 @@ bool linkage_check(const Linkage *linkage, Err *err)
             return false;
         }
     }
-    return check_springs(linkage, err) && check_driver(linkage, err) &&
+    return check_springs(linkage, err) && check_drivers(linkage, err) &&
            check_torque(linkage, err) && check_loads(linkage, err);
 }

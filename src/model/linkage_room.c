@@ -16,6 +16,7 @@ Linkage linkage_create(LinkageRoom room)
         .springs = zeroed(room.springs, sizeof(Spring)),
         .torsions = zeroed(room.torsions, sizeof(TorsionSpring)),
         .loads = zeroed(room.loads, sizeof(Load)),
+        .further = zeroed(room.further, sizeof(Driver)),
     };
 }
 
@@ -28,20 +29,26 @@ static void copy_block(void *target, const void *source, size_t count, size_t si
 
 Linkage linkage_copy(const Linkage *linkage)
 {
-    const LinkageRoom room = {linkage->body_count, linkage->joint_count, linkage->spring_count,
-                              linkage->torsion_count, linkage->load_count};
+    const LinkageRoom room = {.bodies = linkage->body_count,
+                              .joints = linkage->joint_count,
+                              .springs = linkage->spring_count,
+                              .torsions = linkage->torsion_count,
+                              .loads = linkage->load_count,
+                              .further = linkage->further_count};
     const Linkage made = linkage_create(room);
     copy_block(made.bodies, linkage->bodies, room.bodies, sizeof(Body));
     copy_block(made.joints, linkage->joints, room.joints, sizeof(Joint));
     copy_block(made.springs, linkage->springs, room.springs, sizeof(Spring));
     copy_block(made.torsions, linkage->torsions, room.torsions, sizeof(TorsionSpring));
     copy_block(made.loads, linkage->loads, room.loads, sizeof(Load));
+    copy_block(made.further, linkage->further, room.further, sizeof(Driver));
     Linkage copy = *linkage;
     copy.bodies = made.bodies;
     copy.joints = made.joints;
     copy.springs = made.springs;
     copy.torsions = made.torsions;
     copy.loads = made.loads;
+    copy.further = made.further;
     return copy;
 }
 
@@ -52,5 +59,6 @@ void linkage_free(Linkage *linkage)
     free(linkage->springs);
     free(linkage->torsions);
     free(linkage->loads);
+    free(linkage->further);
     *linkage = (Linkage){.body_count = 0};
 }

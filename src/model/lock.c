@@ -279,7 +279,8 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
 {
     const double start_angle = linkage->driver.start;
     const Lock unknown = {LOCK_UNKNOWN, start_angle, false, start_angle};
-    if (!linkage->driver.is_present || !space_has_plane(linkage) || !kinematics_is_small(linkage)) {
+    if (!linkage->driver.is_present || linkage->further_count > 0 || !space_has_plane(linkage) ||
+        !kinematics_is_small(linkage)) {
         return unknown;
     }
     Linkage ideal = idealised(linkage, joints);
@@ -300,7 +301,7 @@ Lock lock_find(const Linkage *linkage, LockJoints joints, double turn)
 Lock lock_find_between(const Linkage *linkage, LockJoints joints, DriveExtent extent)
 {
     Linkage one_way = *linkage;
-    one_way.driver.speeds.count = 0;
+    one_way.driver.table.count = 0;
     one_way.driver.speed = -fabs(linkage->driver.speed);
     Lock back = {.state = LOCK_NONE};
     if (extent.back < 0.0) {
@@ -317,7 +318,7 @@ Lock lock_find_between(const Linkage *linkage, LockJoints joints, DriveExtent ex
 Lock lock_met(const Scenario *scenario, double time_s)
 {
     const Linkage *linkage = &scenario->linkage;
-    if (linkage->driver.speeds.count == 0) {
+    if (linkage->driver.table.count == 0) {
         const double turned = fabs(linkage->driver.speed) * time_s + NEAR_LOCK;
         return lock_find(linkage, LOCK_ALL_AS_IDEAL, turned);
     }

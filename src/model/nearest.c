@@ -25,7 +25,7 @@ typedef struct Demand {
     bool *include; // by joint; owned, like the next two
     double *wanted;
     double *change;  // room for what it asks for, three columns a body
-    size_t rows;     // of the joints; the drive's row stands behind them
+    size_t rows;     // of the joints; those of drives stand behind them
     double distance; // the largest that is missing at any joint, m or m/s
 } Demand;
 
@@ -33,7 +33,7 @@ static Demand create_demand(const Linkage *linkage)
 {
     return (Demand){
         .include = zeroed(linkage->joint_count, sizeof(bool)),
-        .wanted = zeroed(2 * linkage->joint_count + 1, sizeof(double)),
+        .wanted = zeroed(2 * linkage->joint_count + LINKAGE_DRIVE_MAX, sizeof(double)),
         .change = zeroed(3 * linkage->body_count, sizeof(double)),
     };
 }
@@ -134,9 +134,9 @@ static bool demand_positions(const Linkage *linkage, const Motion *motions, Dema
             add_demand_rows(linkage, (int)i, missing, demand);
         }
     }
-    if (linkage->driver.is_present) {
-        const double angle = motions[linkage_driven_body(linkage)].angle;
-        demand->wanted[demand->rows] = linkage->driver.start - angle;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const double angle = motions[linkage_drive_body(linkage, i)].angle;
+        demand->wanted[demand->rows + i] = linkage_drive(linkage, i)->start - angle;
     }
     return demand->distance > NEAREST_CLOSED * size;
 }
@@ -181,9 +181,9 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
             worst = (int)i;
         }
     }
-    if (linkage->driver.is_present) {
-        const double omega = motions[linkage_driven_body(linkage)].omega;
-        demand->wanted[demand->rows] = drive_at(&linkage->driver, 0.0).omega - omega;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const double omega = motions[linkage_drive_body(linkage, i)].omega;
+        demand->wanted[demand->rows + i] = drive_at(linkage_drive(linkage, i), 0.0).omega - omega;
     }
     return demand->distance <= AGREES * largest ? -1 : worst;
 }
@@ -215,8 +215,8 @@ void nearest_change(const Linkage *linkage, const Motion *motions, SpeedChange *
             moved[i].omega = changes[i].omega;
         }
         demand_speeds(linkage, moved, false, &demand);
-        if (linkage->driver.is_present) {
-            demand.wanted[demand.rows] = -moved[linkage_driven_body(linkage)].omega;
+        for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+            demand.wanted[demand.rows + i] = -moved[linkage_drive_body(linkage, i)].omega;
         }
         const bool is_solved = least_change(linkage, motions, &demand);
         for (size_t i = 0; i < linkage->body_count; i++) {
@@ -234,8 +234,11 @@ bool nearest_check(const Linkage *linkage, const Motion *motions, int *joint, do
     Demand demand = create_demand(linkage);
     *joint = demand_speeds(linkage, motions, false, &demand);
     *distance = demand.distance;
-    const Driver *driver = &linkage->driver;
-    const double turn = driver->is_present ? fabs(demand.wanted[demand.rows]) : 0.0;
+    bool follow = true;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const double missing = fabs(demand.wanted[demand.rows + i]);
+        follow = follow && missing <= AGREES * fabs(linkage_drive(linkage, i)->speed);
+    }
     free_demand(&demand);
-    return *joint < 0 && turn <= AGREES * fabs(driver->speed);
+    return *joint < 0 && follow;
 }

@@ -68,7 +68,7 @@ static double change_size(const Linkage *linkage, const PerturbUnit *units,
 {
     double size = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != linkage_driven_body(linkage)) {
+        if (!linkage_is_driven(linkage, (int)i)) {
             const PerturbUnit unit = units[i];
             size = fmax(size, vec2_length(changes[i].velocity) / unit.moving);
             size = fmax(size, fabs(changes[i].omega) / unit.turning);
@@ -107,7 +107,7 @@ static void draw_changes(const Scenario *scenario, const PerturbUnit *units, con
     uint64_t seed = lcg_stirred(member);
     for (size_t i = 0; i < linkage->body_count; i++) {
         changes[i] = (SpeedChange){.omega = 0.0};
-        if ((int)i != linkage_driven_body(linkage)) {
+        if (!linkage_is_driven(linkage, (int)i)) {
             const PerturbUnit unit = units[i];
             const Vec2 along = vec2_scale(unit.moving, own_direction(scenario, motions, i));
             const double ahead = lcg_draw(&seed);
@@ -187,7 +187,7 @@ static size_t allow_each(const Linkage *linkage, const PerturbUnit *units, Pertu
     each->count = 0;
     for (size_t i = 0; i < linkage->body_count; i++) {
         const PerturbUnit unit = units[i];
-        for (int rate = 0; rate < rates && (int)i != linkage_driven_body(linkage); rate++) {
+        for (int rate = 0; rate < rates && !linkage_is_driven(linkage, (int)i); rate++) {
             SpeedChange *changes = each->changes[each->count++];
             for (size_t k = 0; k < linkage->body_count; k++) {
                 changes[k] = (SpeedChange){.omega = 0.0};
@@ -207,7 +207,6 @@ static size_t allow_each(const Linkage *linkage, const PerturbUnit *units, Pertu
 // by a number.
 static void find_groups(const Linkage *linkage, size_t *groups)
 {
-    const int driven = linkage_driven_body(linkage);
     for (size_t i = 0; i < linkage->body_count; i++) {
         groups[i] = i;
     }
@@ -215,7 +214,8 @@ static void find_groups(const Linkage *linkage, size_t *groups)
         for (size_t i = 0; i < linkage->joint_count; i++) {
             const int a = linkage->joints[i].body_a;
             const int b = linkage->joints[i].body_b;
-            if (a != LINKAGE_GROUND && b != LINKAGE_GROUND && a != driven && b != driven) {
+            if (a != LINKAGE_GROUND && b != LINKAGE_GROUND && !linkage_is_driven(linkage, a) &&
+                !linkage_is_driven(linkage, b)) {
                 const size_t lower = groups[a] < groups[b] ? groups[a] : groups[b];
                 groups[a] = groups[b] = lower;
             }

@@ -25,7 +25,6 @@ static void find_movers(const ResponseNodes *nodes, size_t node, int movers[2])
 static void number_groups(const ResponseNodes *nodes, ResponseGroups *groups)
 {
     const size_t body_count = nodes->linkage->body_count;
-    const int driven = linkage_driven_body(nodes->linkage);
     size_t *parents = zeroed(body_count, sizeof *parents);
     union_find_start(parents, body_count);
     for (size_t node = 0; node < nodes->ideal; node++) {
@@ -37,12 +36,12 @@ static void number_groups(const ResponseNodes *nodes, ResponseGroups *groups)
     }
     for (size_t i = 0; i < body_count; i++) {
         const size_t leader = union_find_root(parents, i);
-        if ((int)i != driven) {
+        if (!linkage_is_driven(nodes->linkage, (int)i)) {
             groups->group_of[i] = leader == i ? groups->count++ : groups->group_of[leader];
         }
     }
-    if (driven >= 0) {
-        groups->group_of[driven] = groups->count;
+    for (size_t i = 0; i < linkage_drive_count(nodes->linkage); i++) {
+        groups->group_of[linkage_drive_body(nodes->linkage, i)] = groups->count;
     }
     free(parents);
 }

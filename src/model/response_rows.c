@@ -15,7 +15,7 @@
 
 static bool is_fixed(const Linkage *linkage, int body)
 {
-    return body == LINKAGE_GROUND || body == linkage_driven_body(linkage);
+    return body == LINKAGE_GROUND || linkage_is_driven(linkage, body);
 }
 
 // Two rows, x and y: pin or second anchor against hole or first.
@@ -158,7 +158,7 @@ static double free_turning(const Linkage *linkage, const Motion *motions, int bo
     if (body == LINKAGE_GROUND) {
         return 0.0;
     }
-    if (body == linkage_driven_body(linkage)) {
+    if (linkage_is_driven(linkage, body)) {
         return motions[body].alpha;
     }
     return loads == NULL ? 0.0 : loads[body].moment / linkage->bodies[body].inertia;
@@ -173,7 +173,7 @@ static Vec2 end_acceleration(const Response *response, const Motion *motions, in
     }
     const Linkage *linkage = response->linkage;
     const Motion *motion = &motions[body];
-    const bool is_driven = body == linkage_driven_body(linkage);
+    const bool is_driven = linkage_is_driven(linkage, body);
     const double alpha = free_turning(linkage, motions, body, loads);
     Vec2 centre = is_driven ? motion->acceleration : (Vec2){0.0, -gravity};
     const Vec2 arm = response_arm(response, motions, body, anchor);
@@ -250,7 +250,7 @@ static void prismatic_free(const Linkage *linkage, int joint, const Motion *moti
         if (body == LINKAGE_GROUND) {
             continue;
         }
-        const bool is_driven = body == linkage_driven_body(linkage);
+        const bool is_driven = linkage_is_driven(linkage, body);
         Vec2 centre = is_driven ? motions[body].acceleration : (Vec2){0.0, -gravity};
         if (loads != NULL && !is_driven) {
             const double mass = linkage->bodies[body].mass;

@@ -12,11 +12,11 @@
 
 #include "model/loads.h"
 
-// How far the driven body reaches from its pivot, m.
-static double driven_span(const Linkage *linkage)
+// How far the body of a drive reaches from its pivot, m.
+static double driven_span(const Linkage *linkage, size_t drive)
 {
-    const int driven = linkage_driven_body(linkage);
-    const Vec2 pivot = linkage->joints[linkage->driver.joint].anchor_b;
+    const int driven = linkage_drive_body(linkage, drive);
+    const Vec2 pivot = linkage->joints[linkage_drive(linkage, drive)->joint].anchor_b;
     double span = 0.0;
     for (size_t i = 0; i < 2 * linkage->joint_count; i++) {
         const JointEnd end = linkage_end(&linkage->joints[i / 2], i % 2);
@@ -82,10 +82,10 @@ SpeedScale scale_speeds(const Scenario *scenario)
         scale.moving = fmax(scale.moving, speed + omega * reach);
     }
     double fall = sqrt(2.0 * gravity * largest);
-    if (linkage->driver.is_present) {
-        const double speed = fabs(linkage->driver.speed);
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const double speed = fabs(linkage_drive(linkage, i)->speed);
         turning = fmax(turning, speed);
-        scale.moving = fmax(scale.moving, speed * driven_span(linkage));
+        scale.moving = fmax(scale.moving, speed * driven_span(linkage, i));
         fall = fmin(fall, gravity * (2.0 * M_PI / speed));
     }
     scale.moving = fmax(scale.moving, fall);

@@ -126,6 +126,15 @@ static void shake_torque(Torque *torque, uint64_t *seed)
     }
 }
 
+// The values of a table; angles that turn it by whole turns still do.
+static void shake_drive(Driver *driver, uint64_t *seed)
+{
+    for (size_t i = 0; i < driver->table.count; i++) {
+        shake(&driver->table.values[i], seed);
+    }
+    drive_complete(driver);
+}
+
 static void shake_forces(Linkage *linkage, uint64_t *seed)
 {
     for (size_t i = 0; i < linkage->spring_count; i++) {
@@ -149,10 +158,12 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
         }
         load_table_settle(table);
     }
-    for (size_t i = 0; i < linkage->driver.speeds.count; i++) {
-        shake(&linkage->driver.speeds.values[i], seed);
+    shake_drive(&linkage->driver, seed);
+    for (size_t i = 0; i < linkage->further_count; i++) {
+        shake(&linkage->further[i].speed, seed);
+        shake(&linkage->further[i].start, seed);
+        shake_drive(&linkage->further[i], seed);
     }
-    drive_take_largest(&linkage->driver);
 }
 
 static void shake_world(Scenario *scenario, uint64_t *seed)

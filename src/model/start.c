@@ -94,6 +94,9 @@ static void walk_joint(Walk *walk, Joint *joint)
 static size_t walk_start(Walk *walk, Linkage *linkage)
 {
     walk_number(walk, &linkage->driver.start);
+    for (size_t i = 0; i < linkage->further_count; i++) {
+        walk_number(walk, &linkage->further[i].start);
+    }
     for (size_t i = 0; i < linkage->body_count; i++) {
         walk_body(walk, &linkage->bodies[i], linkage->is_spatial);
     }

@@ -152,16 +152,26 @@ static void shift_loads(Linkage *linkage, double time_s, double turns_rad)
     }
 }
 
+// Lets a drive start where it is at a time, within a turn. Returns the whole turns that it has
+// made, rad.
+static double turn_on(Driver *driver, double time_s)
+{
+    const double turned = drive_angle(driver, time_s) - driver->start;
+    double of_a_turn = remainder(turned, 2.0 * M_PI);
+    of_a_turn = fabs(of_a_turn) > TURN_ROUNDING * fabs(turned) ? of_a_turn : 0.0;
+    driver->start += of_a_turn;
+    return 2.0 * M_PI * round((turned - of_a_turn) / (2.0 * M_PI));
+}
+
 void run_state_start(const RunState *state, Scenario *scenario)
 {
     Linkage *linkage = &scenario->linkage;
     double turns_rad = 0.0;
     if (linkage->driver.is_present) {
-        const double turned = drive_angle(&linkage->driver, state->time_s) - linkage->driver.start;
-        double of_a_turn = remainder(turned, 2.0 * M_PI);
-        of_a_turn = fabs(of_a_turn) > TURN_ROUNDING * fabs(turned) ? of_a_turn : 0.0;
-        linkage->driver.start += of_a_turn;
-        turns_rad = 2.0 * M_PI * round((turned - of_a_turn) / (2.0 * M_PI));
+        turns_rad = turn_on(&linkage->driver, state->time_s);
+    }
+    for (size_t i = 0; i < linkage->further_count; i++) {
+        turn_on(&linkage->further[i], state->time_s);
     }
     shift_loads(linkage, state->time_s, turns_rad);
     if (linkage->is_spatial) {

@@ -68,6 +68,13 @@ static long point_after(const TimeTable *table, double time_s)
     return after;
 }
 
+static void end_piece(const TimeTable *table, size_t to, TimePiece *piece)
+{
+    piece->to = to;
+    piece->width_s = width_of(table, piece->from, to);
+    piece->slope = (table->values[to] - piece->value) / piece->width_s;
+}
+
 TimePiece time_table_piece(const TimeTable *table, double time_s)
 {
     if (table->count == 0) {
@@ -76,11 +83,21 @@ TimePiece time_table_piece(const TimeTable *table, double time_s)
     const long after = point_after(table, time_s);
     const long first = is_there(table, after - 1) ? after - 1 : 0;
     const size_t from = place_of(table, first);
-    TimePiece piece = {.time_s = time_of(table, first), .value = table->values[from]};
+    TimePiece piece = {.time_s = time_of(table, first),
+                       .value = table->values[from],
+                       .from = from,
+                       .to = from,
+                       .period = period_of(table, first)};
     if (first < after && is_there(table, after)) {
-        const size_t to = place_of(table, after);
-        piece.slope = (table->values[to] - piece.value) / width_of(table, from, to);
+        end_piece(table, place_of(table, after), &piece);
     }
+    return piece;
+}
+
+TimePiece time_table_between(const TimeTable *table, size_t from)
+{
+    TimePiece piece = {.time_s = table->times[from], .value = table->values[from], .from = from};
+    end_piece(table, from + 1 < table->count ? from + 1 : 0, &piece);
     return piece;
 }
 

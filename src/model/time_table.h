@@ -22,6 +22,10 @@ typedef struct TimePiece {
     double time_s;
     double value;
     double slope; // of the value, per s
+    size_t from;  // the point at which it begins, and the next
+    size_t to;
+    long period;    // the how manieth period the first is of, from 0
+    double width_s; // from one to the other; 0: nothing changes
 } TimePiece;
 
 // Whether all numbers are finite, and the times increase and lie within one period.
@@ -31,6 +35,9 @@ double time_table_at(const TimeTable *table, double time_s);
 
 // The piece that holds from a time on: at a bend the one after it.
 TimePiece time_table_piece(const TimeTable *table, double time_s);
+
+// The piece from a point to the next, in the first period; there must be a next one.
+TimePiece time_table_between(const TimeTable *table, size_t from);
 
 // The first time after the one given at which the table bends, s; INFINITY after the last.
 double time_table_next_bend(const TimeTable *table, double time_s);

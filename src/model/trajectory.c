@@ -80,7 +80,6 @@ static Trajectory *create(const Scenario *scenario, const char *backend, bool ha
     trajectory->joints = zeroed(trajectory->joint_count, sizeof *trajectory->joints);
     trajectory->alpha_spikes = zeroed(trajectory->body_count, sizeof(SignalSpikes));
     trajectory->force_spikes = zeroed(trajectory->joint_count, sizeof(SignalSpikes));
-    trajectory->driven_body = linkage_driven_body(&scenario->linkage);
     linkage_reaches(&scenario->linkage, trajectory->reach);
     trajectory->linkage = linkage_copy(&scenario->linkage);
     trajectory->sample_count = samples;

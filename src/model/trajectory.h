@@ -128,7 +128,6 @@ typedef struct Trajectory {
     char message[ERR_TEXT_SIZE];       // why it failed
     size_t body_count;
     size_t joint_count;
-    int driven_body; // whose motion is prescribed, or LINKAGE_GROUND
     double *reach;   // m, of each body's points from its centre: linkage_reach; owned
     Linkage linkage; // what moved; owned
     size_t sample_count;

@@ -28,7 +28,7 @@ ImpulseScope impulse_scope_whole(const Linkage *linkage, size_t place_count)
 {
     return (ImpulseScope){
         .is_whole = true,
-        .has_drive = linkage_driven_body(linkage) >= 0,
+        .has_drive = linkage->driver.is_present,
         .body_count = linkage->body_count,
         .bodies = make_numbers(linkage->body_count),
         .joint_count = linkage->joint_count,

@@ -16,7 +16,7 @@ enum { IMPULSE_FEW_PLACES = 16 };
 // Bodies, joints and places; all, or those of one island.
 typedef struct ImpulseScope {
     bool is_whole;
-    bool has_drive; // whether the driven body is among the bodies
+    bool has_drive; // whether a driven body is among the bodies: then all drives are in it
     size_t body_count;
     size_t *bodies; // owned, as are all arrays
     size_t joint_count;

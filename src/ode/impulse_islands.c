@@ -226,7 +226,6 @@ static void add_group(const ResponseGroups *groups, size_t group, ScopeRoom *roo
 static void add_bodies_of(const ImpulseIslands *islands, const Joint *joint, ScopeRoom *room)
 {
     const ResponseGroups *groups = islands->view->groups;
-    const int driven = linkage_driven_body(&islands->view->scenario->linkage);
     const int bodies[2] = {joint->body_a, joint->body_b};
     for (int i = 0; i < 2; i++) {
         if (bodies[i] == LINKAGE_GROUND) {
@@ -238,7 +237,8 @@ static void add_bodies_of(const ImpulseIslands *islands, const Joint *joint, Sco
             add_group(groups, group, room);
         }
         add_body(room, body);
-        room->scope.has_drive = room->scope.has_drive || bodies[i] == driven;
+        room->scope.has_drive = room->scope.has_drive ||
+                                linkage_is_driven(&islands->view->scenario->linkage, bodies[i]);
     }
 }
 
@@ -429,7 +429,7 @@ static void take_end(ImpulseIslands *islands, ImpulsePart *part)
     islands->is_ended = true;
 }
 
-// Lists what the last part was of. The drive answers what presses on its body.
+// Lists what the last part was of. The drives answer what presses on their bodies.
 static void note_changed(ImpulseIslands *islands)
 {
     const Linkage *linkage = &islands->view->scenario->linkage;
@@ -440,11 +440,16 @@ static void note_changed(ImpulseIslands *islands)
         .bodies = scope->bodies,
         .joints = scope->joints,
     };
-    const size_t driver = (size_t)linkage->driver.joint;
-    if (scope->has_drive && !scope->is_whole && !islands->scope.has_joint[driver]) {
-        memcpy(islands->changed_joints, scope->joints, scope->joint_count * sizeof *scope->joints);
-        islands->changed_joints[islands->changed.joint_count++] = driver;
-        islands->changed.joints = islands->changed_joints;
+    if (!scope->has_drive || scope->is_whole) {
+        return;
+    }
+    memcpy(islands->changed_joints, scope->joints, scope->joint_count * sizeof *scope->joints);
+    islands->changed.joints = islands->changed_joints;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const size_t driven = (size_t)linkage_drive(linkage, i)->joint;
+        if (!islands->scope.has_joint[driven]) {
+            islands->changed_joints[islands->changed.joint_count++] = driven;
+        }
     }
 }
 
@@ -572,11 +577,11 @@ static void look_at_rows(const KernelIslands *all, const ImpulseScope *scope, do
 bool impulse_islands_observe(ImpulseIslands *islands, double since_s, const SolverSome *some,
                              Sample *sample)
 {
-    const Driver *driver = &islands->view->scenario->linkage.driver;
     ScopeRoom *room = &islands->some;
     const bool is_body = some->body_count == 1;
     if (some->body_count + some->joint_count != 1 ||
-        (!is_body && driver->is_present && some->joints[0] == (size_t)driver->joint)) {
+        (!is_body &&
+         linkage_drive_of_joint(&islands->view->scenario->linkage, some->joints[0]) >= 0)) {
         return false;
     }
     clear_scope(room);

@@ -1,6 +1,6 @@
 // Holds what all ways of stepping ODE have in common.
 //
-// On the driven body, whose motion is given: m a = m g + F_drive + sum of F_i, so that the drive's
+// On a driven body, whose motion is given: m a = m g + F_drive + sum of F_i, so that the drive's
 // force follows from the others, and its power is what they and gravity do not deliver:
 //     P = m (a - g) . v + I alpha omega - sum (F_i . v_i + M_i omega),
 // v_i velocity of the point where F_i acts.
@@ -13,16 +13,19 @@
 #include <math.h>
 #include <stdio.h>
 
-static Vec2 driven_arm(const Linkage *linkage, double angle_rad)
+static const Joint *joint_of(const Linkage *linkage, size_t drive)
 {
-    const Joint *joint = &linkage->joints[linkage->driver.joint];
+    return &linkage->joints[linkage_drive(linkage, drive)->joint];
+}
+
+static Vec2 driven_arm(const Joint *joint, double angle_rad)
+{
     return vec2_scale(-1.0, vec2_rotate(angle_rad, joint->anchor_b));
 }
 
-// How the driven body moves whose centre is so far from its joint.
-static Motion driven_motion(const Linkage *linkage, const DriveState *drive, Vec2 arm)
+// How a driven body moves whose centre is so far from its joint.
+static Motion driven_motion(const Joint *joint, const DriveState *drive, Vec2 arm)
 {
-    const Joint *joint = &linkage->joints[linkage->driver.joint];
     const double omega = drive->omega;
     Motion motion = {.angle = drive->angle, .omega = omega, .alpha = drive->alpha};
     motion.position = vec2_add(joint->anchor_a, arm);
@@ -35,29 +38,34 @@ static Motion driven_motion(const Linkage *linkage, const DriveState *drive, Vec
     return motion;
 }
 
-Motion stepping_driven(const Linkage *linkage, double time_s)
+Motion stepping_driven(const Linkage *linkage, size_t drive, double time_s)
 {
-    if (!linkage->driver.is_present) {
-        return (Motion){.angle = 0.0};
+    const Joint *joint = joint_of(linkage, drive);
+    const DriveState state = drive_at(linkage_drive(linkage, drive), time_s);
+    return driven_motion(joint, &state, driven_arm(joint, state.angle));
+}
+
+void stepping_set_driven(const Linkage *linkage, double time_s, Motion *motions)
+{
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        motions[linkage_drive_body(linkage, i)] = stepping_driven(linkage, i, time_s);
     }
-    const DriveState drive = drive_at(&linkage->driver, time_s);
-    return driven_motion(linkage, &drive, driven_arm(linkage, drive.angle));
 }
 
-SteppingArm stepping_arm(const Linkage *linkage, double time_s)
+SteppingArm stepping_arm(const Linkage *linkage, size_t drive, double time_s)
 {
-    const double angle = drive_angle(&linkage->driver, time_s);
-    return (SteppingArm){angle, driven_arm(linkage, angle)};
+    const double angle = drive_angle(linkage_drive(linkage, drive), time_s);
+    return (SteppingArm){angle, driven_arm(joint_of(linkage, drive), angle)};
 }
 
-Motion stepping_driven_since(const Linkage *linkage, const SteppingArm *near, double from_s,
-                             double time_s)
+Motion stepping_driven_since(const Linkage *linkage, size_t drive, const SteppingArm *near,
+                             double from_s, double time_s)
 {
-    const DriveState drive = linkage->driver.speeds.count == 0
-                                 ? drive_at(&linkage->driver, time_s)
-                                 : drive_since(&linkage->driver, from_s, time_s);
-    const double turned = drive.angle - near->angle;
-    return driven_motion(linkage, &drive, vec2_rotate_slightly(turned, near->arm));
+    const Driver *driver = linkage_drive(linkage, drive);
+    const DriveState state =
+        driver->table.count == 0 ? drive_at(driver, time_s) : drive_since(driver, from_s, time_s);
+    const double turned = state.angle - near->angle;
+    return driven_motion(joint_of(linkage, drive), &state, vec2_rotate_slightly(turned, near->arm));
 }
 
 long stepping_start(const Scenario *scenario, double step_s, long steps_back, Motion *motions)
@@ -70,8 +78,10 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
     // step by step backwards, so that the loop stays closed the same way round
     for (long back = 1; back <= steps_back; back++) {
         Err unused = {ERR_NONE, ""};
-        const DriveState drive = drive_at(&linkage->driver, -(double)back * step_s);
-        if (!kinematics_solve_driven(linkage, &drive, motions, &unused)) {
+        const double time_s = -(double)back * step_s;
+        DriveState drives[LINKAGE_DRIVE_MAX];
+        linkage_drives_since(linkage, time_s, time_s, drives);
+        if (!kinematics_solve_driven(linkage, drives, motions, &unused)) {
             return back - 1;
         }
     }
@@ -88,17 +98,17 @@ void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, V
     }
 }
 
-// What the driven body needs so as to move as it does, N.
+// What a driven body needs so as to move as it does, N.
 static Vec2 driven_force(const Scenario *scenario, const Body *own, const Motion *driven)
 {
     return vec2_scale(own->mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
 }
 
-void stepping_drive_force(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
-                          JointState *joints)
+void stepping_drive_force(const Scenario *scenario, size_t drive, const Motion *driven,
+                          const BodyLoad *load, JointState *joints)
 {
     const Linkage *linkage = &scenario->linkage;
-    const int driver = linkage->driver.joint;
+    const int driver = linkage_drive(linkage, drive)->joint;
     const int body = linkage->joints[driver].body_b;
     Vec2 others = load->force;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
@@ -114,21 +124,18 @@ void stepping_drive_force(const Scenario *scenario, const Motion *driven, const 
     joints[driver].force = vec2_length(joints[driver].force_on_b);
 }
 
-double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
-                      const Vec2 *offsets, JointState *joints)
+double stepping_drive(const Scenario *scenario, size_t drive, const Motion *driven,
+                      const BodyLoad *load, const Vec2 *offsets, JointState *joints)
 {
     const Linkage *linkage = &scenario->linkage;
-    const int body = linkage_driven_body(linkage);
-    if (body < 0) {
-        return 0.0;
-    }
+    const int body = linkage_drive_body(linkage, drive);
     const Body *own = &linkage->bodies[body];
     double power = vec2_dot(driven_force(scenario, own, driven), driven->velocity) +
                    own->inertia * driven->alpha * driven->omega - forces_load_power(load, driven);
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool is_on_a = joint->body_a == body;
-        if (i == linkage->driver.joint || (!is_on_a && joint->body_b != body)) {
+        if (i == linkage_drive(linkage, drive)->joint || (!is_on_a && joint->body_b != body)) {
             continue;
         }
         const double sign = is_on_a ? -1.0 : 1.0;
@@ -138,7 +145,7 @@ double stepping_drive(const Scenario *scenario, const Motion *driven, const Body
         const Vec2 velocity = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
         power -= vec2_dot(force, velocity) + sign * joints[i].moment_on_b * driven->omega;
     }
-    stepping_drive_force(scenario, driven, load, joints);
+    stepping_drive_force(scenario, drive, driven, load, joints);
     return power;
 }
 

@@ -25,23 +25,26 @@ typedef struct ContactEnergy {
     double elastic;
 } ContactEnergy;
 
-// How the driven body moves at a time: it turns about its joint with the ground, exactly. Zero
-// where there is no driver.
-Motion stepping_driven(const Linkage *linkage, double time_s);
+// How the body of a drive (linkage_drive) moves at a time: it turns about its joint with the
+// ground, exactly.
+Motion stepping_driven(const Linkage *linkage, size_t drive, double time_s);
 
-// Where the centre of the driven body stands from its joint with the ground, m, at an angle.
+// Puts the bodies of all drives among the motions of all bodies.
+void stepping_set_driven(const Linkage *linkage, double time_s, Motion *motions);
+
+// Where the centre of a drive's body stands from its joint with the ground, m, at an angle.
 typedef struct SteppingArm {
     double angle; // rad
     Vec2 arm;
 } SteppingArm;
 
-SteppingArm stepping_arm(const Linkage *linkage, double time_s);
+SteppingArm stepping_arm(const Linkage *linkage, size_t drive, double time_s);
 
-// How the driven body moves within a step: with the acceleration that holds from its start on, also
-// where the step ends at a kink of the drive's speed. From where it stands at a time nearby that is
-// soon worked out.
-Motion stepping_driven_since(const Linkage *linkage, const SteppingArm *near, double from_s,
-                             double time_s);
+// How the body of a drive moves within a step: with the acceleration that holds from its start on,
+// also where the step ends at a kink of the drive's speed. From where it stands at a time nearby
+// that is soon worked out.
+Motion stepping_driven_since(const Linkage *linkage, size_t drive, const SteppingArm *near,
+                             double from_s, double time_s);
 
 // Where the bodies stand at the start of a run, or at most so many steps earlier: where the drive
 // determines the motion, and not further back than the linkage closes. Returns how many steps.
@@ -51,16 +54,16 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
 // prismatic joint at the anchor on its body b.
 void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, Vec2 *offsets);
 
-// The force in the driven joint, N, and the power of the drive, W, from the body's own equations:
-// all other forces on it are known. `joints` holds those forces and couples, and receives the
-// driven joint's; `offsets` lead, by joint, from the driven body's anchor to where the force acts,
-// m; `load` is of springs and dampers on the driven body.
-double stepping_drive(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
-                      const Vec2 *offsets, JointState *joints);
+// The force in the joint of a drive, N, and its power, W, from its body's own equations: all other
+// forces on it are known. `joints` holds those forces and couples, and receives the driven joint's;
+// `offsets` lead, by joint, from the body's anchor to where the force acts, m; `load` is of springs
+// and dampers on the body.
+double stepping_drive(const Scenario *scenario, size_t drive, const Motion *driven,
+                      const BodyLoad *load, const Vec2 *offsets, JointState *joints);
 
 // The force in the driven joint alone.
-void stepping_drive_force(const Scenario *scenario, const Motion *driven, const BodyLoad *load,
-                          JointState *joints);
+void stepping_drive_force(const Scenario *scenario, size_t drive, const Motion *driven,
+                          const BodyLoad *load, JointState *joints);
 
 // Where a step ends that would end on a tick, s: there, but not beyond the run, so that no contact
 // is recorded there. What is left to its end by less than a share of a tick is no step of its own.

@@ -30,10 +30,9 @@ static Span span_begin(const Linkage *linkage)
         span.ranks[i] = -1;
     }
     span.ranks[0] = span.rank++;
-    const int driven = linkage_driven_body(linkage);
-    if (driven >= 0) {
-        span.ranks[driven + 1] = span.rank++;
-        span.is_used[linkage->driver.joint] = true;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        span.ranks[linkage_drive_body(linkage, i) + 1] = span.rank++;
+        span.is_used[linkage_drive(linkage, i)->joint] = true;
     }
     return span;
 }
@@ -183,10 +182,9 @@ static Span span_in_order(const Linkage *linkage)
     Span span = span_begin(linkage);
     Waiting waiting = waiting_create(linkage);
     Heap open = {0};
-    const int driven = linkage_driven_body(linkage);
     open_joints(&waiting, LINKAGE_GROUND, START, &open);
-    if (driven >= 0) {
-        open_joints(&waiting, driven, START, &open);
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        open_joints(&waiting, linkage_drive_body(linkage, i), START, &open);
     }
     grow_in_order(&span, &waiting, &open);
     for (int body = 0; body < (int)linkage->body_count; body++) {
@@ -205,9 +203,11 @@ static Span span_nearby(const Linkage *linkage)
 {
     Span span = span_begin(linkage);
     Waiting waiting = waiting_create(linkage);
-    const int driven = linkage_driven_body(linkage);
     wait_for(&waiting, LINKAGE_GROUND);
-    grow_nearby(&span, &waiting, driven >= 0 ? driven : LINKAGE_GROUND);
+    for (size_t i = 1; i < linkage_drive_count(linkage); i++) {
+        wait_for(&waiting, linkage_drive_body(linkage, i));
+    }
+    grow_nearby(&span, &waiting, linkage_driven_body(linkage));
     for (int body = 0; body < (int)linkage->body_count; body++) {
         if (!is_known(&span, body)) {
             hang(&span, body, -1, LINKAGE_GROUND);

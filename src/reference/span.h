@@ -10,12 +10,12 @@ typedef struct SpanStep {
     int parent; // body at the joint's other end, or LINKAGE_GROUND
 } SpanStep;
 
-// A tree over all bodies but the driven one. The joints that it does not use close loops.
+// A tree over all bodies but the driven ones. The joints that it does not use close loops.
 typedef struct Span {
     const Linkage *linkage;
     size_t count;
     SpanStep *steps; // parents before children; owned, as the arrays below
-    bool *is_used;   // by joint: the tree's, and the drive's
+    bool *is_used;   // by joint: the tree's, and the drives'
     int *parents;    // by body, and the ground first; LINKAGE_GROUND at a root
     size_t *depths;  // likewise: how many joints it is from a root; 0 at one
     int *ranks;      // likewise: the how manieth body of the tree, roots before; -1: not in it yet

@@ -664,7 +664,7 @@ static double smooth_limit(const Stepper *stepper)
     const double least_s = STEP_SHORTEST_SHARE * time_s; // a bend nearer than this has been reached
     const double after_s = time_s + least_s;
     double bend_s = fmin(time_table_next_bend(&linkage->torque.table, after_s),
-                         drive_next_kink(&linkage->driver, after_s));
+                         linkage_next_kink(linkage, after_s));
     bend_s = fmin(bend_s, loads_next_bend(linkage, after_s));
     bend_s = linkage->torque.followed.is_present
                  ? fmin(bend_s, drive_next_kink(&linkage->torque.followed, after_s))

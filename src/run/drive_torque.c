@@ -1,5 +1,5 @@
-// Finds the torque of the drive by Euler's law of the driven body about the pivot that is driven,
-// whose force it does not need,
+// Finds the torque of a drive by Euler's law of the body that it turns about the pivot there, whose
+// force it does not need,
 //
 //     I alpha + s x m (a + g) = T + M + sum of (r x F + c)
 //
@@ -53,17 +53,18 @@ static double moment_of_loads(const Linkage *linkage, const Motion *motions, dou
     return moment;
 }
 
-double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t sample)
+double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t drive, size_t sample)
 {
     const Linkage *linkage = &scenario->linkage;
-    const int driven = linkage_driven_body(linkage);
     const Motion *motions = trajectory_motion(run, sample, 0);
     if (!linkage->driver.is_present) {
         return forces_drive_torque(linkage, motions, run->times[sample]);
     }
+    const int driven = linkage_drive_body(linkage, drive);
+    const int pivoted = linkage_drive(linkage, drive)->joint;
     const Motion *body = &motions[driven];
     const double mass = linkage->bodies[driven].mass;
-    const Joint *pivot = &linkage->joints[linkage->driver.joint];
+    const Joint *pivot = &linkage->joints[pivoted];
     const Vec2 point = linkage_point(motions, pivot->body_b, pivot->anchor_b);
     const Vec2 pull = vec2_add(body->acceleration, (Vec2){0.0, scenario->gravity});
     double torque = linkage->bodies[driven].inertia * body->alpha +
@@ -71,8 +72,7 @@ double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t s
                     moment_of_loads(linkage, motions, run->times[sample], driven, point);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if ((int)i == linkage->driver.joint ||
-            (joint->body_a != driven && joint->body_b != driven)) {
+        if ((int)i == pivoted || (joint->body_a != driven && joint->body_b != driven)) {
             continue;
         }
         const JointState *state = trajectory_state(run, sample, i);

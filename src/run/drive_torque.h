@@ -11,6 +11,8 @@ double joint_moment(const Linkage *linkage, const Motion *motions, size_t joint,
 // Whether the motion of a body is prescribed by a torque at a pivot, in the plane.
 bool drive_torque_exists(const Linkage *linkage);
 
-// That torque at a sample, N m, counter-clockwise on the driven body: what Euler's law of the body
-// leaves when joints, springs and dampers have their share.
-double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t sample);
+// That torque at a sample, N m, counter-clockwise on the body of a drive (linkage_drive; of a
+// torque the only one): what Euler's law of the body leaves when joints, springs and dampers have
+// their share.
+double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t drive,
+                       size_t sample);

@@ -30,15 +30,15 @@ static bool moves_freely(const Linkage *linkage, const Motion *motions)
            jacobian.columns;
 }
 
-static bool move_to(const Scenario *scenario, const DriveState *drive, Motion *motions)
+static bool move_to(const Scenario *scenario, const DriveState *drives, Motion *motions)
 {
     const bool is_steady = drive_is_steady(&scenario->linkage.driver);
     if (scenario_has_closed_form(scenario)) {
-        return is_steady ? closed_form_bodies(scenario, drive->angle, motions)
-                         : closed_form_driven(scenario, drive, motions);
+        return is_steady ? closed_form_bodies(scenario, drives->angle, motions)
+                         : closed_form_driven(scenario, drives, motions);
     }
     Err unused = {ERR_NONE, ""};
-    return kinematics_solve_driven(&scenario->linkage, drive, motions, &unused) &&
+    return kinematics_solve_driven(&scenario->linkage, drives, motions, &unused) &&
            moves_freely(&scenario->linkage, motions);
 }
 
@@ -51,14 +51,17 @@ static int pose_count(const Scenario *scenario)
                                    : (int)fmin(fmax(ANGLES, ceil(ANGLES * turns)), POSES_MAX);
 }
 
-static DriveState pose(const Scenario *scenario, int number, int count)
+static void pose(const Scenario *scenario, int number, int count,
+                 DriveState drives[LINKAGE_DRIVE_MAX])
 {
     const Driver *driver = &scenario->linkage.driver;
     if (drive_is_steady(driver)) {
-        return (DriveState){.angle = driver->start + 2.0 * M_PI * number / ANGLES,
-                            .omega = driver->speed};
+        drives[0] = (DriveState){.angle = driver->start + 2.0 * M_PI * number / ANGLES,
+                                 .omega = driver->speed};
+        return;
     }
-    return drive_at(driver, scenario_duration(scenario) * number / count);
+    const double time_s = scenario_duration(scenario) * number / count;
+    linkage_drives_since(&scenario->linkage, time_s, time_s, drives);
 }
 
 // Takes one pose; `least` and `most` are the accelerations so far, by body.
@@ -74,7 +77,9 @@ static void take_pose(const Linkage *linkage, const Motion *motions, const React
     for (size_t i = 0; i < linkage->joint_count; i++) {
         sizes->force_max[i] = fmax(sizes->force_max[i], vec2_length(reactions->force_on_b[i]));
     }
-    sizes->torque_max = fmax(sizes->torque_max, fabs(reactions->drive_torque));
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        sizes->torque_max[i] = fmax(sizes->torque_max[i], fabs(reactions->drive_torques[i]));
+    }
 }
 
 static InverseTime pose_time(const Scenario *scenario, const DriveState *drive, int number,
@@ -104,11 +109,12 @@ IdealSizes ideal_sizes(const Scenario *scenario)
     for (int k = 0; sizes.is_known && k < count; k++) {
         Err unused = {ERR_NONE, ""};
         Reactions reactions;
-        const DriveState drive = pose(scenario, k, count);
+        DriveState drives[LINKAGE_DRIVE_MAX];
+        pose(scenario, k, count, drives);
         sizes.is_known =
-            move_to(scenario, &drive, motions) &&
+            move_to(scenario, drives, motions) &&
             inverse_dynamics_solve(linkage, motions, scenario->gravity,
-                                   pose_time(scenario, &drive, k, count), &reactions, &unused);
+                                   pose_time(scenario, drives, k, count), &reactions, &unused);
         if (sizes.is_known) {
             take_pose(linkage, motions, &reactions, least, most, &sizes);
         }

@@ -10,7 +10,7 @@ typedef struct IdealSizes {
     double *alpha_max;   // rad/s^2, by body: largest size; owned, as the two below
     double *alpha_range; // rad/s^2, by body: from the least to the most
     double *force_max;   // N, by joint: largest size
-    double torque_max;   // N m, of the drive: largest size
+    double torque_max[LINKAGE_DRIVE_MAX]; // N m, of each drive: largest size
 } IdealSizes;
 
 IdealSizes ideal_sizes(const Scenario *scenario);

@@ -105,11 +105,10 @@ static void turning_add(Turning *turning, const StepRecord *record)
 // turn that the bodies are in.
 static void turning_unwrap(const Turning *turning, const SolverPart *part, Sample *sample)
 {
-    const int driven = linkage_driven_body(turning->linkage);
     const size_t count = solver_body_count(part, turning->linkage);
     for (size_t k = 0; k < count; k++) {
         const size_t i = solver_body(part, k);
-        if ((int)i == driven) {
+        if (linkage_is_driven(turning->linkage, (int)i)) {
             continue;
         }
         const double ahead = turning->omega[i] * (turning->reported_s[i] - sample->time_s);

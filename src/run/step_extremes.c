@@ -187,9 +187,8 @@ static bool next_aim(Looker *looker, size_t *number, Aim *aim)
     const Linkage *linkage = &looker->scenario->linkage;
     const SolverPart *part = looker->part;
     const size_t body_count = solver_body_count(part, linkage);
-    const size_t driven = (size_t)linkage_driven_body(linkage);
-    if (*number < 2 * body_count && linkage->driver.is_present &&
-        solver_body(part, *number / 2) == driven) {
+    while (*number < 2 * body_count &&
+           linkage_is_driven(linkage, (int)solver_body(part, *number / 2))) {
         *number += 2;
     }
     const size_t i = (*number)++;
@@ -529,11 +528,10 @@ static void step_extremes_raise_all(const Cluster *cluster)
     const SolverPart *part = cluster->looker->part;
     const size_t body_count = solver_body_count(part, linkage);
     const size_t joint_count = solver_joint_count(part, linkage);
-    const int driven = linkage_driven_body(linkage);
     for (size_t k = 0; k < body_count; k++) {
         const size_t body = solver_body(part, k);
         forget_peaks(cluster->looker->alpha_peaks[body]);
-        if ((int)body == driven) {
+        if (linkage_is_driven(linkage, (int)body)) {
             continue; // it moves as it is told
         }
         for (int sign = -1; sign <= 1; sign += 2) {

@@ -24,7 +24,7 @@
 // Whether a body hands on forces from one of its joints to another.
 static bool hands_on(const Linkage *linkage, int body)
 {
-    return body != LINKAGE_GROUND && body != linkage_driven_body(linkage);
+    return body != LINKAGE_GROUND && !linkage_is_driven(linkage, body);
 }
 
 // By body: the first of those that ideal joints connect with it.
@@ -113,7 +113,7 @@ typedef struct Tracer {
 
 static bool is_traced(const Tracer *tracer, size_t body)
 {
-    return (int)body != linkage_driven_body(&tracer->scenario->linkage);
+    return !linkage_is_driven(&tracer->scenario->linkage, (int)body);
 }
 
 static void *tracer_begin(const Scenario *scenario, const Solver *solver, const void *state,

@@ -170,7 +170,8 @@ static double wall_deg(const SeriesPlace *place)
 
 static double torque_of_drive(const SeriesPlace *place)
 {
-    return drive_torque_at(place->columns->scenario, place->trajectory, place->sample);
+    return drive_torque_at(place->columns->scenario, place->trajectory, place->number,
+                           place->sample);
 }
 
 static double load_of(const SeriesPlace *place)
@@ -449,6 +450,23 @@ static void add_rates(SeriesColumns *columns)
     }
 }
 
+// The torque of the drive, or of each of several: those beside the crank's have the names of their
+// joints.
+static void add_torques(SeriesColumns *columns)
+{
+    const Linkage *linkage = &columns->scenario->linkage;
+    for (size_t i = 0; i == 0 || i < linkage_drive_count(linkage); i++) {
+        SeriesColumn column = {.what = "drive_torque_N_m", .find = torque_of_drive, .number = i};
+        if (i == 0) {
+            text_copy(column.name, sizeof column.name, column.what);
+        } else {
+            snprintf(column.name, sizeof column.name, "%s_%s",
+                     linkage->joints[linkage_drive(linkage, i)->joint].name, column.what);
+        }
+        add_column(columns, column);
+    }
+}
+
 SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges)
 {
     SeriesColumns columns = {
@@ -478,9 +496,7 @@ SeriesColumns series_columns_create(const Scenario *scenario, bool has_ranges)
     add_joints(&columns, OF_FORCES);
     add_joints(&columns, is_spatial ? OF_FORCES_IN_SPACE : OF_FORCES_IN_PLANE);
     if (drive_torque_exists(&scenario->linkage)) {
-        add_column(&columns, (SeriesColumn){.name = "drive_torque_N_m",
-                                            .what = "drive_torque_N_m",
-                                            .find = torque_of_drive});
+        add_torques(&columns);
     }
     for (size_t i = 0; i < scenario->linkage.load_count; i++) {
         const Load *load = &scenario->linkage.loads[i];

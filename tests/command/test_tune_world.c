@@ -249,6 +249,8 @@ static void what_the_library_cannot_do_is_refused(void **state)
                    "libjointplay has round holes and no polygons");
     expect_refused(*state, "$cases/mechanisms/compressor.yaml --error 1e-2",
                    "programs have no loads, motors or soft drives");
+    expect_refused(*state, "$cases/mechanisms/five-bar.yaml --error 1e-2",
+                   "programs have one drive, of a speed");
     expect_refused(*state, "$cases/space/offset-coupler.yaml --error 1e-2",
                    "programs are written for cases in the plane alone");
 }

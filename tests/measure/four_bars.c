@@ -39,7 +39,7 @@ static Made make(const Scenario *scenario, BackendKind backend)
 static Scenario four_bars(size_t count, double duration_s)
 {
     Scenario scenario = scenario_default();
-    scenario.linkage = linkage_create((LinkageRoom){2 * count + 1, 3 * count + 1, 0, 0, 0});
+    scenario.linkage = linkage_create((LinkageRoom){.bodies = 2 * count + 1, .joints = 3 * count + 1});
     four_bars_fill(&scenario, count, duration_s);
     return scenario;
 }

@@ -305,9 +305,9 @@ static void put_driven(const Plane *plane, Real time_s, Real *q, Real *v)
     const Driver *driver = &plane->linkage->driver;
     const Joint *joint = &plane->linkage->joints[driver->joint];
     Real omega = driver->speed;
-    if (driver->speeds.count > 0) {
+    if (driver->table.count > 0) {
         // either piece says the same at a bend
-        const TimePiece piece = time_table_piece(&driver->speeds, (double)time_s);
+        const TimePiece piece = time_table_piece(&driver->table, (double)time_s);
         omega = piece.value + piece.slope * (time_s - piece.time_s);
     }
     Real *of = q + 3 * plane->driven;
@@ -563,7 +563,7 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
         const Driver *driver = &linkage->driver;
         const Joint *joint = &linkage->joints[driver->joint];
         const Real alpha =
-            driver->speeds.count > 0 ? time_table_piece(&driver->speeds, since_s).slope : 0.0;
+            driver->table.count > 0 ? time_table_piece(&driver->table, since_s).slope : 0.0;
         const Real omega = view.v[3 * plane->driven + 2];
         const Vec arm = arm_of(view, plane->driven, joint->anchor_b);
         Real *of = accelerations + 3 * plane->driven;

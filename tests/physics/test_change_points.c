@@ -50,7 +50,8 @@ enum { MANY = 40 };
 static Scenario many_four_bars(double duration_s)
 {
     Scenario scenario = scenario_default();
-    scenario.linkage = linkage_create((LinkageRoom){2 * MANY + 1, 3 * MANY + 1, 0, 0, 0});
+    scenario.linkage =
+        linkage_create((LinkageRoom){.bodies = 2 * MANY + 1, .joints = 3 * MANY + 1});
     four_bars_fill(&scenario, MANY, duration_s);
     return scenario;
 }

@@ -16,12 +16,12 @@ static const double RPM = 3.14159265358979323846 / 30.0;
 static Scenario run_up(void)
 {
     Scenario scenario = mechanism_paper();
-    scenario.linkage.driver.speeds = (TimeTable){
+    scenario.linkage.driver.table = (TimeTable){
         .count = 5,
         .times = {0.0, 5.03e-3, 8.011e-3, 13.0007e-3, 17e-3},
         .values = {0.0, 400.0 * RPM, 400.0 * RPM, -200.0 * RPM, 0.0},
     };
-    drive_take_largest(&scenario.linkage.driver);
+    drive_complete(&scenario.linkage.driver);
     const DriveState start = drive_at(&scenario.linkage.driver, 0.0);
     Motion motions[CLOSED_FORM_BODIES];
     assert_true(closed_form_driven(&scenario, &start, motions));

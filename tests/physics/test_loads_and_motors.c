@@ -127,7 +127,7 @@ static double forces_error(const Scenario *scenario, const Trajectory *run, doub
         apart = fmax(apart, vec2_length(vec2_sub(joints[1].force_on_b, at.pin)));
         apart = fmax(apart, vec2_length(vec2_sub(joints[2].force_on_b, at.wrist)));
         apart = fmax(apart, fabs(joints[3].force_on_b.y - at.guide));
-        apart = fmax(apart, fabs(drive_torque_at(scenario, run, i) - at.torque) / COMPRESSOR.r);
+        apart = fmax(apart, fabs(drive_torque_at(scenario, run, 0, i) - at.torque) / COMPRESSOR.r);
         largest = fmax(largest, vec2_length(at.pivot));
     }
     return apart / largest;

@@ -150,8 +150,10 @@ static void add_joints(const Scenario *scenario, const Series *series, size_t ro
             fault.leaves_out_moment ? 0.0 : cell(series, row, joint->name, "moment_N_m");
         push(motions, joint->body_b, point, force, moment, loads, balance);
         push(motions, joint->body_a, point, vec2_scale(-1.0, force), -moment, loads, balance);
-        if (linkage->driver.is_present && linkage->driver.joint == (int)i) {
-            const double torque = cell(series, row, "", "drive_torque_N_m");
+        const int drive = linkage_drive_of_joint(linkage, i);
+        if (drive >= 0) {
+            const double torque =
+                cell(series, row, drive == 0 ? "" : joint->name, "drive_torque_N_m");
             push(motions, joint->body_b, point, (Vec2){0.0, 0.0}, torque, loads, balance);
             push(motions, joint->body_a, point, (Vec2){0.0, 0.0}, -torque, loads, balance);
         }
@@ -235,6 +237,7 @@ static void the_shipped_cases_obey(void **state)
         "cases/paper/stackup-impact.yaml",
         "cases/mechanisms/andrews.yaml",
         "cases/mechanisms/compressor.yaml",
+        "cases/mechanisms/five-bar.yaml",
         "cases/mechanisms/gear-pair.yaml",
         "cases/mechanisms/newtons-cradle.yaml",
         "cases/mechanisms/planetary-gear.yaml",

@@ -20,8 +20,12 @@ static inline Linkage kept_linkage(void)
     Kept *kept = malloc(sizeof *kept);
     assert(kept != NULL);
     *kept = (Kept){
-        .linkage = linkage_create(
-            (LinkageRoom){.bodies = 64, .joints = 96, .springs = 32, .torsions = 32, .loads = 8}),
+        .linkage = linkage_create((LinkageRoom){.bodies = 64,
+                                                .joints = 96,
+                                                .springs = 32,
+                                                .torsions = 32,
+                                                .loads = 8,
+                                                .further = LINKAGE_DRIVE_MAX}),
         .before = last,
     };
     last = kept;
@@ -50,6 +54,7 @@ static inline Linkage kept_linkage_copy(const Linkage *linkage)
     copy.torsions =
         memcpy(own.torsions, linkage->torsions, copy.torsion_count * sizeof *own.torsions);
     copy.loads = memcpy(own.loads, linkage->loads, copy.load_count * sizeof *own.loads);
+    copy.further = memcpy(own.further, linkage->further, copy.further_count * sizeof *own.further);
     return copy;
 }
 
@@ -79,6 +84,7 @@ static inline void kept_settled(const Scenario *scenario)
     kept_hold(scenario->linkage.springs);
     kept_hold(scenario->linkage.torsions);
     kept_hold(scenario->linkage.loads);
+    kept_hold(scenario->linkage.further);
     kept_hold(scenario->settled.first);
     kept_hold(scenario->settled.motions);
     kept_hold(scenario->settled.halved.joints);

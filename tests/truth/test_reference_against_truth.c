@@ -49,7 +49,7 @@ static double error_of(const Scenario *scenario, const TruthSample *truth)
     assert_true(trajectory->is_complete);
     double error = 0.0;
     for (size_t body = 0; body < trajectory->body_count; body++) {
-        if ((int)body == trajectory->driven_body) {
+        if (linkage_is_driven(&trajectory->linkage, (int)body)) {
             continue;
         }
         double scale = 0.0;

@@ -269,7 +269,7 @@ static void speeds_that_agree_are_taken_as_they_are(void **state)
     const Scenario nearest = load(CHAIN, NEAREST, 2);
     assert_near(vec2_length(parting(&nearest.linkage, 1)), 0.0, 1e-15);
     refuse(CHAIN, "bodies.crank.spin=0 rad/s",
-           "--set bodies.crank.spin=0 rad/s: the driven body does not turn as the drive does\n"
+           "--set bodies.crank.spin=0 rad/s: a driven body does not turn as its drive does\n"
            "    --set bodies.crank.spin=0 rad/s\n"
            "                            ^~~~~~~\n"
            "allowed: speeds that keep the joints closed, such as the nearest: crank: {velocity: [0 "

@@ -29,6 +29,11 @@ static const double REST[3] = {1e-9, -2e-9, 3e-8};
 static const Motion BEFORE = {
     .position = {0.1, 0.2}, .angle = 3.0, .velocity = {5.0, -6.0}, .omega = 70.0};
 
+// Of two bodies, of which one is driven.
+static Joint pivot = {.body_a = LINKAGE_GROUND, .body_b = DRIVEN};
+static const Linkage LINKAGE = {
+    .body_count = BODIES, .joint_count = 1, .joints = &pivot, .driver = {.is_present = true}};
+
 static ImpulseCurves make_curves(void)
 {
     double columns[IMPULSE_COLUMNS][NUMBERS];
@@ -41,7 +46,7 @@ static ImpulseCurves make_curves(void)
         }
         all[k] = columns[k];
     }
-    ImpulseCurves curves = impulse_curves_create(0, ROWS, BODIES, DRIVEN);
+    ImpulseCurves curves = impulse_curves_create(&LINKAGE, 0, ROWS);
     curves.width_s = WIDTH_S;
     impulse_curves_set_body(&curves, 1, &BEFORE, MEAN, RATE, REST);
     impulse_curves_set_columns(&curves, all, MIDDLES_S, rates);

@@ -69,7 +69,7 @@ static void drive_power_is_the_change_of_energy(void **state)
     assert_true(fourbar_motion_bodies(&lengths, speed, 1.0, motions));
     assert_true(inverse_dynamics_solve(&scenario.linkage, motions, scenario.gravity,
                                        (InverseTime){0.0, 0.0}, &reactions, &err));
-    const double power = reactions.drive_torque * speed;
+    const double power = reactions.drive_torques[0] * speed;
     assert_true(fabs(power - inverse_dynamics_power(&scenario.linkage, motions, 0.0,
                                                     (InverseTime){0.0, 0.0})) > 1e-6 * fabs(power));
 }
@@ -93,7 +93,7 @@ static void a_crank_alone_obeys_the_textbook(void **state)
                                        &reactions, &err));
     assert_near(reactions.force_on_b[0].x, 0.0, 1e-12);
     assert_near(reactions.force_on_b[0].y, 0.12 * (10.0 - 0.054 * omega * omega), 1e-9);
-    assert_near(reactions.drive_torque, 0.0, 1e-12);
+    assert_near(reactions.drive_torques[0], 0.0, 1e-12);
 }
 
 // Along x a spring pulls at the middle of the crank with 1000 N/m (300 mm - 100 mm) and a damper
@@ -124,7 +124,7 @@ static void a_spring_and_a_damper_pull_at_the_crank(void **state)
     const double pull = 1000.0 * 0.2 + 10.0 * 0.054 * omega;
     assert_near(reactions.force_on_b[0].x, -pull, 1e-9);
     assert_near(reactions.force_on_b[0].y, 0.12 * (10.0 - 0.054 * omega * omega), 1e-9);
-    assert_near(reactions.drive_torque, 0.054 * pull, 1e-9);
+    assert_near(reactions.drive_torques[0], 0.054 * pull, 1e-9);
 }
 
 static void reactions_that_are_not_determined_are_refused(void **state)

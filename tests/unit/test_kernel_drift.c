@@ -184,7 +184,8 @@ static void curves_of_a_step_have_its_rows_where_they_are(void **state)
 {
     (void)state;
     Kernel pin = turning_pin(true);
-    ImpulseCurves curves = impulse_curves_create(1, KERNEL_ROWS_PLAIN, 0, LINKAGE_GROUND);
+    const Linkage none = {.body_count = 0};
+    ImpulseCurves curves = impulse_curves_create(&none, 1, KERNEL_ROWS_PLAIN);
     curves.width_s = DURATION_S;
     assert_true(kernel_run(&pin, DURATION_S));
     impulse_curves_set_places(&curves, &pin);

@@ -154,7 +154,7 @@ static RunReport make_many(size_t count, Scenario *scenario, Trajectory **runs,
                            TrajectoryError *errors)
 {
     *scenario = scenario_default();
-    scenario->linkage = linkage_create((LinkageRoom){count, count, 0, 0, 0});
+    scenario->linkage = linkage_create((LinkageRoom){.bodies = count, .joints = count});
     scenario->run.duration = 0.1;
     scenario->run.samples = 50;
     Linkage *linkage = &scenario->linkage;

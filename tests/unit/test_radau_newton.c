@@ -14,7 +14,7 @@ static const double STEP = 0.3; // s
 // the two couples them as well, but for the moment nothing presses there.
 static Coupling *make_coupling(void)
 {
-    Linkage linkage = linkage_create((LinkageRoom){COUNT, COUNT, 0, 0, 0});
+    Linkage linkage = linkage_create((LinkageRoom){.bodies = COUNT, .joints = COUNT});
     CouplingBody bodies[COUNT];
     linkage.body_count = linkage.joint_count = COUNT;
     for (size_t i = 0; i < COUNT; i++) {

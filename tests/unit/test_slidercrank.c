@@ -174,7 +174,7 @@ static double reaction_error(const Scenario *scenario, double gravity_of_book)
         worst = worst_of(worst, reactions.force_on_b[1], book.on_rod, scale);
         worst = worst_of(worst, reactions.force_on_b[2], book.on_slider, scale);
         worst = worst_of(worst, reactions.force_on_b[3], book.guide, scale);
-        worst = fmax(worst, fabs(reactions.drive_torque - book.torque) / (0.05 * scale));
+        worst = fmax(worst, fabs(reactions.drive_torques[0] - book.torque) / (0.05 * scale));
         worst = fmax(worst, fabs(reactions.moment_on_b[3]) / (0.05 * scale));
     }
     return worst;

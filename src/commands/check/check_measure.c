@@ -252,7 +252,7 @@ static void check_measure_add_bodies(CheckAdd *work, const Trajectory *run, Back
     };
     const char *const *names = NAMES[is_by_samples(backend) ? 1 : 0];
     for (size_t i = 0; i < run->body_count; i++) {
-        if ((int)i == run->driven_body) {
+        if (linkage_is_driven(&run->linkage, (int)i)) {
             continue;
         }
         const char *name = work->scenario->linkage.bodies[i].name;
@@ -329,7 +329,7 @@ static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backen
     for (size_t i = 0; !is_by_samples(backend) && i < run->body_count; i++) {
         const char *name = linkage->bodies[i].name;
         const SignalSpikes *found = &run->alpha_spikes[i];
-        if ((int)i != run->driven_body && found->is_known) {
+        if (!linkage_is_driven(&run->linkage, (int)i) && found->is_known) {
             add_count(work, run, name, "alpha_spikes", found->count);
             add_real(work, run, name, "alpha_spikes_mean_rad_s2", mean_size(found),
                      found->threshold);

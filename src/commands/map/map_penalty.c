@@ -46,7 +46,7 @@ static Scenario at_speed(const Scenario *scenario, double rpm)
     Driver *driver = &turned.linkage.driver;
     const double ratio = rpm * RAD_PER_S_PER_RPM / fabs(driver->speed);
     driver->speed *= ratio;
-    driver->speeds.count = 0;
+    driver->table.count = 0;
     for (size_t i = 0; i < turned.linkage.body_count; i++) {
         Motion *start = &turned.linkage.bodies[i].start;
         start->velocity = vec2_scale(ratio, start->velocity);

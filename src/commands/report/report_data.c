@@ -31,8 +31,7 @@ static json_t *bodies_json(const Linkage *linkage)
         const Body *body = &linkage->bodies[i];
         json_t *object = json_object();
         json_object_set_new(object, "name", json_value_text(body->name));
-        json_object_set_new(object, "is_driven",
-                            json_boolean((int)i == linkage_driven_body(linkage)));
+        json_object_set_new(object, "is_driven", json_boolean(linkage_is_driven(linkage, (int)i)));
         json_value_set(object, "gyration_m", sqrt(body->inertia / body->mass));
         json_array_append_new(bodies, object);
     }

@@ -69,8 +69,8 @@ static void append_overview(const RunReport *report, Text *html)
         for (size_t i = 0; i < bodies; i++) {
             answer_row(&overview.bodies[i], has_crank, html);
         }
-        if (overview.has_drive) {
-            answer_row(&overview.drive, has_crank, html);
+        for (size_t i = 0; i < overview.drive_count; i++) {
+            answer_row(&overview.drives[i], has_crank, html);
         }
         text_append(html, "</tbody></table></div>\n");
     }

@@ -149,7 +149,7 @@ static void plot_lines_choose_bodies(PlotView *view)
     Ranked *ranked = zeroed(linkage->body_count, sizeof *ranked);
     size_t count = 0;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        view->bodies.is_shown[i] = (int)i != linkage_driven_body(linkage);
+        view->bodies.is_shown[i] = !linkage_is_driven(linkage, (int)i);
         if (view->bodies.is_shown[i]) {
             ranked[count++].number = i;
         }

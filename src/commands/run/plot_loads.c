@@ -7,8 +7,8 @@
 static double plot_loads_torque_of(const RunReport *report, const Trajectory *run, size_t sample,
                                    size_t joint)
 {
-    (void)joint;
-    return drive_torque_at(report->scenario, run, sample);
+    const int drive = linkage_drive_of_joint(&report->scenario->linkage, joint);
+    return drive_torque_at(report->scenario, run, drive < 0 ? 0 : (size_t)drive, sample);
 }
 
 bool plot_loads_has_torque(const Linkage *linkage)
@@ -16,33 +16,44 @@ bool plot_loads_has_torque(const Linkage *linkage)
     return drive_torque_exists(linkage);
 }
 
-// The joint in whose colour the torque is drawn.
-static size_t driven_joint(const Linkage *linkage)
+// The joints in whose colours torques are drawn. Returns how many.
+static size_t driven_joints(const Linkage *linkage, size_t joints[LINKAGE_DRIVE_MAX])
 {
-    return (size_t)(linkage->driver.is_present ? linkage->driver.joint : linkage->torque.joint);
+    const size_t count = linkage_drive_count(linkage);
+    joints[0] = (size_t)linkage->torque.joint;
+    for (size_t i = 0; i < count; i++) {
+        joints[i] = (size_t)linkage_drive(linkage, i)->joint;
+    }
+    return count > 1 ? count : 1;
+}
+
+// Widens the axis to the torques of a joint in a run.
+static void show_torques(const RunReport *report, const Trajectory *of, size_t joint, Axis *axis)
+{
+    for (size_t i = 0; of->is_complete && i < of->sample_count; i++) {
+        const double torque = plot_loads_torque_of(report, of, i, joint);
+        axis->low = fmin(axis->low, torque);
+        axis->high = fmax(axis->high, torque);
+    }
 }
 
 void plot_loads_torque(const PlotView *view, PlotPanel panel)
 {
     static const PlotQuantity TORQUE = {"torque", true, -1, plot_loads_torque_of};
     const RunReport *report = view->report;
-    const size_t joint = driven_joint(&report->scenario->linkage);
-    panel.title = "Torque of the drive";
+    size_t joints[LINKAGE_DRIVE_MAX];
+    const size_t count = driven_joints(&report->scenario->linkage, joints);
+    panel.title = count > 1 ? "Torques of the drives" : "Torque of the drive";
     panel.y.title = "torque, N m";
-    for (size_t run = 0; run < report->run_count; run++) {
-        const Trajectory *of = report->runs[run];
-        for (size_t i = 0; of->is_complete && i < of->sample_count; i++) {
-            const double torque = plot_loads_torque_of(report, of, i, joint);
-            panel.y.low = fmin(panel.y.low, torque);
-            panel.y.high = fmax(panel.y.high, torque);
-        }
+    for (size_t n = 0; n < count * report->run_count; n++) {
+        show_torques(report, report->runs[n / count], joints[n % count], &panel.y);
     }
     axis_round(&panel.y.low, &panel.y.high);
     plot_enter(&panel);
     plot_look_shade(view, &panel);
-    for (size_t run = 0; run < report->run_count; run++) {
-        if (report->runs[run]->is_complete) {
-            plot_look_draw(view, &panel, run, TORQUE, joint);
+    for (size_t n = 0; n < count * report->run_count; n++) {
+        if (report->runs[n / count]->is_complete) {
+            plot_look_draw(view, &panel, n / count, TORQUE, joints[n % count]);
         }
     }
     plot_leave(&panel);

@@ -62,7 +62,7 @@ static void set_error_members(json_t *object, const RunReport *report, size_t in
         }
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != against->driven_body) {
+        if (!linkage_is_driven(&against->linkage, (int)i)) {
             const BodyError error = error_of_body(run, against, i, horizon_s);
             json_object_set_new(bodies, linkage->bodies[i].name,
                                 fields_json(ERROR_BODY_FIELDS, FIELD_JSON, &error));
@@ -290,7 +290,7 @@ static json_t *bodies_object(const Linkage *linkage, const Trajectory *run)
 {
     json_t *bodies = json_object();
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != linkage_driven_body(linkage)) {
+        if (!linkage_is_driven(linkage, (int)i)) {
             json_t *body = fields_json(RUN_BODY_FIELDS, FIELD_JSON, &run->bodies[i]);
             spike_json_set(body, RUN_ALPHA, linkage, &run->alpha_spikes[i]);
             json_object_set_new(bodies, linkage->bodies[i].name, body);

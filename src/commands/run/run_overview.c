@@ -93,26 +93,30 @@ static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSiz
     };
 }
 
-static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run,
+// Of several drives each has the name of its joint.
+static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run, size_t drive,
                              const IdealSizes *ideal)
 {
-    OverviewRow row = {.name = "drive",
-                       .number = "torque_max",
-                       .unit = "N m",
-                       .unit_key = "N_m",
-                       .crank_rad = NAN,
-                       .impacts = NAN,
-                       .contact = NAN,
-                       .deepest = NAN};
+    const Linkage *linkage = &scenario->linkage;
+    const bool is_alone = linkage_drive_count(linkage) <= 1;
+    OverviewRow row = {
+        .name = is_alone ? "drive" : linkage->joints[linkage_drive(linkage, drive)->joint].name,
+        .number = "torque_max",
+        .unit = "N m",
+        .unit_key = "N_m",
+        .crank_rad = NAN,
+        .impacts = NAN,
+        .contact = NAN,
+        .deepest = NAN};
     for (size_t k = 0; k < run->sample_count; k++) {
-        const double size = fabs(drive_torque_at(scenario, run, k));
+        const double size = fabs(drive_torque_at(scenario, run, drive, k));
         if (run->times[k] >= run->report_from_s && size > row.largest) {
             row.largest = size;
             row.crank_rad = run->crank_angles[k];
             row.time_s = run->times[k];
         }
     }
-    row.ratio = ideal->is_known ? ratio_of(row.largest, ideal->torque_max) : NAN;
+    row.ratio = ideal->is_known ? ratio_of(row.largest, ideal->torque_max[drive]) : NAN;
     return row;
 }
 
@@ -141,15 +145,18 @@ Overview run_overview_make(const RunReport *report)
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
         const OverviewRow row = body_row(overview.run, i, &ideal);
-        if ((int)i != linkage_driven_body(linkage) && row.largest > 0.0) {
+        if (!linkage_is_driven(linkage, (int)i) && row.largest > 0.0) {
             overview.bodies[overview.body_count++] = row;
         }
     }
     qsort(overview.joints, overview.joint_count, sizeof *overview.joints, by_size);
     qsort(overview.bodies, overview.body_count, sizeof *overview.bodies, by_size);
-    overview.has_drive = drive_torque_exists(linkage);
-    if (overview.has_drive) {
-        overview.drive = drive_row(scenario, overview.run, &ideal);
+    if (drive_torque_exists(linkage)) {
+        const size_t count = linkage_drive_count(linkage);
+        overview.drive_count = count > 1 ? count : 1; // that of a torque is none of them
+    }
+    for (size_t i = 0; i < overview.drive_count; i++) {
+        overview.drives[i] = drive_row(scenario, overview.run, i, &ideal);
     }
     ideal_sizes_free(&ideal);
     return overview;
@@ -232,8 +239,8 @@ static void write_table(const Overview *overview, const Scenario *scenario, Over
     for (size_t i = 0; i < bodies; i++) {
         overview_row(&overview->bodies[i], has_crank, table);
     }
-    if (overview->has_drive) {
-        overview_row(&overview->drive, has_crank, table);
+    for (size_t i = 0; i < overview->drive_count; i++) {
+        overview_row(&overview->drives[i], has_crank, table);
     }
     table_write(table, text);
     table_destroy(table);
@@ -503,7 +510,7 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_object_set_new(made, "joints", joints);
     json_object_set_new(made, "bodies", bodies);
     json_object_set_new(made, "drive",
-                        overview.has_drive ? row_json(&overview.drive) : json_null());
+                        overview.drive_count > 0 ? row_json(&overview.drives[0]) : json_null());
     Rebound rebound;
     const bool is_other = find_rebound(report->scenario, &rebound);
     json_value_set(made, "restitution_delivered", is_other ? rebound.delivered : NAN);

@@ -5,7 +5,7 @@
 
 enum { RUN_OVERVIEW_LINES = 24 };
 
-// One line: a joint, a body or the drive.
+// One line: a joint, a body or a drive.
 typedef struct OverviewRow {
     const char *name;
     const char *number;   // what is the largest, in keys
@@ -27,8 +27,8 @@ typedef struct Overview {
     OverviewRow *joints; // the largest first; owned, as the next
     size_t body_count;
     OverviewRow *bodies;
-    bool has_drive;
-    OverviewRow drive;
+    size_t drive_count; // 0 where no torque turns a body
+    OverviewRow drives[LINKAGE_DRIVE_MAX];
 } Overview;
 
 // Its numbers, for run_overview_free.
@@ -40,7 +40,7 @@ void run_overview_free(Overview *overview);
 void run_overview_sentences(const RunReport *report, Text *text);
 
 // Of the run that is taken for the truth, or the last that is complete: of each joint with play its
-// largest force, of each body its largest angular acceleration, of the drive its largest torque,
+// largest force, of each body its largest angular acceleration, of each drive its largest torque,
 // each beside that with ideal joints; how the motion settled and what the damping does to it; how
 // far ODE is off; and what was assumed. `is_alone` without the tables of run_text.c below it.
 void run_overview_write(const RunReport *report, bool is_alone, Text *text);

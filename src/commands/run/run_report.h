@@ -99,7 +99,7 @@ static inline bool run_report_has_body_spikes(const RunReport *report, const Tra
                                               size_t body)
 {
     return run->is_complete && run->alpha_spikes[body].is_known &&
-           (int)body != linkage_driven_body(&report->scenario->linkage);
+           !linkage_is_driven(&report->scenario->linkage, (int)body);
 }
 
 // Besides the places of write/fields.h: columns of mechanisms with a driven crank and of those

@@ -278,7 +278,7 @@ json_t *spike_json_bands(const RunReport *report, const Trajectory *run)
             bands, json_pack("[f, f]", spike_bands_first_deg(i), spike_bands_last_deg(i)));
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != linkage_driven_body(linkage) && run->alpha_spikes[i].is_known) {
+        if (!linkage_is_driven(linkage, (int)i) && run->alpha_spikes[i].is_known) {
             json_object_set_new(bodies, linkage->bodies[i].name,
                                 band_object(&run->alpha_spikes[i], "rad_s2"));
         }

@@ -42,7 +42,7 @@ void run_tables_extremes(const RunReport *report, const Style *style, Text *text
     for (size_t body = 0; body < linkage->body_count; body++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (!run->is_complete || (int)body == linkage_driven_body(linkage)) {
+            if (!run->is_complete || linkage_is_driven(linkage, (int)body)) {
                 continue;
             }
             if (table == NULL) {
@@ -449,7 +449,7 @@ void run_turns_write(const RunReport *report, const Style *style, Text *text)
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
             if (!run->is_complete || run->space_motions == NULL ||
-                (int)body == linkage_driven_body(linkage)) {
+                linkage_is_driven(linkage, (int)body)) {
                 continue;
             }
             if (table == NULL) {

@@ -573,30 +573,51 @@ static void write_mechanism(const RunReport *report, size_t width, Text *text)
     }
 }
 
-static void write_speeds(const Driver *driver, Text *text)
+static void write_table_of(const Driver *driver, Text *text)
 {
-    const TimeTable *speeds = &driver->speeds;
-    const size_t last = speeds->count - 1;
-    text_append(text, "  drive       from %.6g rpm to %.6g rpm by %zu points over time\n",
-                speeds->values[0] * UNITS_RPM, speeds->values[last] * UNITS_RPM, speeds->count);
+    static const char *const PROFILES[] = {"cycloids", "polynomials", "trapezoids", "a spline"};
+    const TimeTable *table = &driver->table;
+    const size_t last = table->count - 1;
+    if (driver->has_angles) {
+        const DriveExtent extent =
+            drive_extent(driver, table->period_s > 0.0 ? table->period_s : table->times[last]);
+        text_append(text, "by %.4g to %.4g deg over time in %s, %zu points\n",
+                    extent.back * UNITS_DEG, extent.forth * UNITS_DEG, PROFILES[driver->profile],
+                    table->count);
+    } else {
+        text_append(text, "from %.6g rpm to %.6g rpm by %zu points over time\n",
+                    table->values[0] * UNITS_RPM, table->values[last] * UNITS_RPM, table->count);
+    }
     text_append(text, "              largest %.6g rpm, %.6g rad/s, from %.4g deg\n",
                 driver->speed * UNITS_RPM, driver->speed, driver->start * UNITS_DEG);
 }
 
-static void write_drive(const Scenario *scenario, Text *text)
+static void write_driver(const Driver *driver, Text *text)
 {
-    const Driver *driver = &scenario->linkage.driver;
-    const bool is_steady = drive_is_steady(driver);
-    if (is_steady) {
-        text_append(text, "  drive       %.6g rpm %s, %.6g rad/s, from %.4g deg\n",
+    if (driver->table.count > 0) {
+        write_table_of(driver, text);
+    } else {
+        text_append(text, "%.6g rpm %s, %.6g rad/s, from %.4g deg\n",
                     fabs(driver->speed) * UNITS_RPM,
                     driver->speed < 0.0 ? "clockwise" : "counter-clockwise", fabs(driver->speed),
                     driver->start * UNITS_DEG);
-    } else if (driver->is_present) {
-        write_speeds(driver, text);
+    }
+}
+
+static void write_drive(const Scenario *scenario, Text *text)
+{
+    const Linkage *linkage = &scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const Driver *driver = linkage_drive(linkage, i);
+        text_append(text, i == 0 ? "  drive       " : "              ");
+        if (linkage->further_count > 0) {
+            text_append_shown(text, linkage->joints[driver->joint].name);
+            text_append(text, ": ");
+        }
+        write_driver(driver, text);
     }
     text_append(text, "  run         ");
-    if (is_steady) {
+    if (drive_is_steady(&linkage->driver)) {
         text_append(text, "%.6g revolution%s, ", scenario->run.revolutions,
                     scenario->run.revolutions == 1.0 ? "" : "s");
     }

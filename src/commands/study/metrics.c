@@ -75,7 +75,7 @@ static double find_alpha_peak(const Measured *measured, size_t unused)
     double peak = 0.0;
     for (size_t i = 0; i < measured->linkage->body_count; i++) {
         const BodyExtremes *extremes = &measured->run->bodies[i];
-        if ((int)i != linkage_driven_body(measured->linkage)) {
+        if (!linkage_is_driven(measured->linkage, (int)i)) {
             peak = fmax(peak, fmax(extremes->alpha_max.value, -extremes->alpha_min.value));
         }
     }
@@ -281,7 +281,7 @@ static bool metrics_find_member(const Linkage *linkage, Owner owner, size_t memb
 {
     if (owner == OF_BODY) {
         *name = linkage->bodies[member].name;
-        return (int)member != linkage_driven_body(linkage);
+        return !linkage_is_driven(linkage, (int)member);
     }
     if (owner == OF_JOINT) {
         *name = linkage->joints[member].name;

@@ -188,6 +188,9 @@ static const char *tune_options_program_lacks(const Scenario *scenario, const Sc
     if (scenario->linkage.load_count > 0 || torque->slope > 0.0 || torque->stiffness > 0.0) {
         return "programs have no loads, motors or soft drives";
     }
+    if (scenario->linkage.further_count > 0 || scenario->linkage.driver.has_angles) {
+        return "programs have one drive, of a speed";
+    }
     Scenario setting = *scenario;
     scheme_apply(scheme, scenario->run.step, &setting);
     if (!scheme_has_step(scheme)) {

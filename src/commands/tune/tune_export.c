@@ -150,7 +150,7 @@ static const double STEP_SHARE = 0.1;
 
 static double inverse_mass(const Linkage *linkage, int body)
 {
-    return body == LINKAGE_GROUND || body == linkage_driven_body(linkage)
+    return body == LINKAGE_GROUND || linkage_is_driven(linkage, body)
                ? 0.0
                : 1.0 / linkage->bodies[body].mass;
 }

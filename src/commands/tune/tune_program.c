@@ -215,9 +215,9 @@ static void drive(const LibraryWorld *world)
 {
     const Linkage *linkage = &world->scenario->linkage;
     const double end_s = ((double)world->steps + 1.0) * world->scenario->run.step;
-    if (linkage->driver.speeds.count > 0) {
+    if (linkage->driver.table.count > 0) {
         dJointSetHingeParam(world->joints[linkage->driver.joint], dParamVel,
-                            time_table_at(&linkage->driver.speeds, end_s));
+                            time_table_at(&linkage->driver.table, end_s));
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];

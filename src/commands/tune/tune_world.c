@@ -134,7 +134,7 @@ static size_t tune_world_number(const Linkage *linkage, int joint)
 
 bool tune_world_is_led(const Linkage *linkage, int body)
 {
-    return body != LINKAGE_GROUND && body == linkage_driven_body(linkage) &&
+    return body != LINKAGE_GROUND && linkage_is_driven(linkage, body) &&
            drive_is_steady(&linkage->driver);
 }
 
@@ -532,7 +532,7 @@ static void tune_world_write_torque(const Linkage *linkage, Text *text)
 // Appends the function that pushes there, with what it needs; and the tables over time.
 static void tune_world_push(const Linkage *linkage, Text *text)
 {
-    const TimeTable *speeds = &linkage->driver.speeds;
+    const TimeTable *speeds = &linkage->driver.table;
     const TimeTable *torques = &linkage->torque.table;
     if (speeds->count > 0) {
         tune_world_write_table("DRIVE", speeds, "rad/s", text);
@@ -625,8 +625,8 @@ static void tune_world_motors(const Linkage *linkage, Text *text)
 // Appends what is set before each step.
 static void tune_world_drive(const Linkage *linkage, Text *text)
 {
-    if (linkage->driver.speeds.count > 0) {
-        const double period_s = linkage->driver.speeds.period_s;
+    if (linkage->driver.table.count > 0) {
+        const double period_s = linkage->driver.table.period_s;
         Text speed;
         text_init(&speed);
         text_append(&speed, "at(DRIVE, sizeof DRIVE / sizeof *DRIVE, ");

@@ -208,30 +208,31 @@ static void negate_speeds(size_t body_count, Motion *motions)
     }
 }
 
+// Puts the driven bodies to a time with their speeds at another, in the direction of the steps.
+static void place_driven(const Linkage *linkage, double middle_s, double speed_s, long direction,
+                         World *world)
+{
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        Motion motion = stepping_driven(linkage, i, middle_s);
+        const Motion moving = stepping_driven(linkage, i, speed_s);
+        motion.velocity = vec2_scale((double)direction, moving.velocity);
+        motion.omega = (double)direction * moving.omega;
+        world_place(world, (size_t)linkage_drive_body(linkage, i), &motion);
+    }
+}
+
 // One step of one world, forwards (1) or backwards (-1) in time.
 static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err)
 {
     const Scenario *scenario = nodes->scenario;
     const Linkage *linkage = &scenario->linkage;
-    const int driven = linkage_driven_body(linkage);
     const double start_s = (double)level->index * level->step_s;
     const double step_s = (double)direction * level->step_s;
-    const bool has_driven_speed = driven >= 0 && forces_damp(linkage);
-    if (has_driven_speed) {
-        Motion motion = stepping_driven(linkage, start_s + 0.5 * step_s);
-        const Motion start = stepping_driven(linkage, start_s);
-        motion.velocity = vec2_scale((double)direction, start.velocity);
-        motion.omega = (double)direction * start.omega;
-        world_place(&level->world, (size_t)driven, &motion);
+    if (forces_damp(linkage)) {
+        place_driven(linkage, start_s + 0.5 * step_s, start_s, direction, &level->world);
     }
     applied_push(&level->world.applied, start_s, level->step_s, APPLIED_AT_MEAN, (int)direction);
-    if (driven >= 0) {
-        Motion motion = stepping_driven(linkage, start_s + 0.5 * step_s);
-        const Motion end = stepping_driven(linkage, start_s + step_s);
-        motion.velocity = vec2_scale((double)direction, end.velocity);
-        motion.omega = (double)direction * end.omega;
-        world_place(&level->world, (size_t)driven, &motion);
-    }
+    place_driven(linkage, start_s + 0.5 * step_s, start_s + step_s, direction, &level->world);
     const bool is_quick = scenario->ode.solver == ODE_QUICK;
     nodes->steps++;
     if (!world_step(&level->world, level->step_s, is_quick, err) ||
@@ -416,7 +417,6 @@ typedef struct Extrapolated {
     const Scenario *scenario;
     Nodes nodes;
     Response *response;  // room to work in; owned
-    int driven;          // body, or LINKAGE_GROUND
     bool is_begun;       // the part at time zero has been handed out
     long interval;       // number of the node before it
     Hermite (*paths)[3]; // x, y and angle in the interval; owned, as are all arrays
@@ -485,7 +485,6 @@ static bool extrapolated_open(const Scenario *scenario, void **state, Err *err)
     own->begin = sample_create(&scenario->linkage);
     own->middle = sample_create(&scenario->linkage);
     own->end = sample_create(&scenario->linkage);
-    own->driven = linkage_driven_body(&scenario->linkage);
     make_extrapolated(&scenario->linkage, own);
     if (nodes_init(scenario, &own->nodes, err)) {
         *state = own;
@@ -528,8 +527,7 @@ static void fill_motions(const Extrapolated *own, double time_s, Motion *motions
 {
     const Linkage *linkage = &own->scenario->linkage;
     for (int i = 0; i < (int)linkage->body_count; i++) {
-        if (i == own->driven) {
-            motions[i] = stepping_driven(linkage, time_s);
+        if (linkage_is_driven(linkage, i)) {
             continue;
         }
         const HermitePoint x = hermite_at(&own->paths[i][0], time_s);
@@ -544,6 +542,7 @@ static void fill_motions(const Extrapolated *own, double time_s, Motion *motions
             .alpha = angle.curvature,
         };
     }
+    stepping_set_driven(linkage, time_s, motions);
 }
 
 // The motions and the joints' forces at a time in the interval, and the powers. Returns false where
@@ -563,10 +562,11 @@ static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Pow
     powers->drive = forces_torque_power(linkage, sample->bodies, time_s);
     powers->damping = forces_damping_power(linkage, sample->bodies);
     powers->loads = loads_power(linkage, sample->bodies, time_s, time_s);
-    if (own->driven >= 0) {
-        stepping_offsets(linkage, sample->bodies, own->driven, own->offsets);
-        powers->drive = stepping_drive(own->scenario, &sample->bodies[own->driven],
-                                       &loads[own->driven], own->offsets, sample->joints);
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const int body = linkage_drive_body(linkage, i);
+        stepping_offsets(linkage, sample->bodies, body, own->offsets);
+        powers->drive += stepping_drive(own->scenario, i, &sample->bodies[body], &loads[body],
+                                        own->offsets, sample->joints);
     }
     return true;
 }

@@ -124,7 +124,7 @@ static void impulse_step_carry(ImpulseStep *step, Carry *carry)
     CARRY(carry, step->count);
     CARRY(carry, step->start_s);
     CARRY(carry, step->width_s);
-    CARRY(carry, step->arm);
+    CARRY(carry, step->arms);
     CARRY(carry, step->steady);
     CARRY(carry, step->is_calm);
     CARRY_ARRAY(carry, step->middle, bodies);

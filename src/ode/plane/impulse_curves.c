@@ -6,13 +6,13 @@
 
 #include "base/zeroed.h"
 
-ImpulseCurves impulse_curves_create(size_t place_count, size_t row_count, size_t body_count,
-                                    int driven)
+ImpulseCurves impulse_curves_create(const Linkage *linkage, size_t place_count, size_t row_count)
 {
+    const size_t body_count = linkage->body_count;
     return (ImpulseCurves){
+        .linkage = linkage,
         .body_count = body_count,
         .row_count = row_count,
-        .driven = driven,
         .place_count = place_count,
         .bodies = zeroed(body_count * IMPULSE_HALVES, sizeof(ImpulseCurve)),
         .columns = zeroed(body_count * row_count, sizeof(ImpulseColumn)),
@@ -168,7 +168,7 @@ void impulse_curves_at(const ImpulseCurves *curves, double since_s, const Kernel
     const double off_s = since_s - 0.5 * curves->width_s;
     const size_t rows = has_pushed(sums, curves->row_count) ? curves->row_count : 0;
     for (size_t i = 0; i < curves->body_count; i++) {
-        if ((int)i != curves->driven) {
+        if (!linkage_is_driven(curves->linkage, (int)i)) {
             motions[i] =
                 body_at(curves->bodies + i * IMPULSE_HALVES,
                         curves->columns + i * curves->row_count, rows, since_s, off_s, sums);

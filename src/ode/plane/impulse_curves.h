@@ -49,9 +49,9 @@ typedef struct ImpulsePlaceColumn {
 } ImpulsePlaceColumn;
 
 typedef struct ImpulseCurves {
+    const Linkage *linkage; // whose driven bodies are left alone
     size_t body_count;
     size_t row_count;
-    int driven; // a body that is left alone, or LINKAGE_GROUND
     size_t place_count;
     double width_s;                    // of the step
     ImpulseCurve *bodies;              // by body IMPULSE_HALVES; owned, as all arrays
@@ -60,9 +60,9 @@ typedef struct ImpulseCurves {
     ImpulsePlaceColumn *place_columns; // of a place those of all rows, place by place
 } ImpulseCurves;
 
-// Room for curves of so many places, rows and bodies, but for the driven one.
-ImpulseCurves impulse_curves_create(size_t place_count, size_t row_count, size_t body_count,
-                                    int driven);
+// Room for curves of so many places and rows, and of the bodies of a linkage, which must outlive
+// it.
+ImpulseCurves impulse_curves_create(const Linkage *linkage, size_t place_count, size_t row_count);
 void impulse_curves_finish(ImpulseCurves *curves);
 void impulse_curves_carry(ImpulseCurves *curves, Carry *carry);
 

@@ -32,12 +32,6 @@ static void push_bodies(const ImpulseStep *step, const ImpulseScope *scope, doub
     push_scope(step, scope, sums->moment, positions);
 }
 
-static Motion driven_at(const ImpulseStep *step, double since_s)
-{
-    return stepping_driven_since(&step->scenario->linkage, &step->arm, step->start_s,
-                                 step->start_s + since_s);
-}
-
 // How the bodies move at a time within the step, from the contacts' sums up to then.
 static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
                          const KernelSums *sums, Motion *motions)
@@ -69,7 +63,7 @@ static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, dou
             .position = {q[0], q[1]}, .angle = q[2], .velocity = {w[0], w[1]}, .omega = w[2]};
     }
     if (scope->has_drive) {
-        motions[step->driven] = driven_at(step, since_s);
+        impulse_step_place_driven(step, step->start_s + since_s, motions);
     }
 }
 
@@ -78,9 +72,7 @@ static void follow_curves(const ImpulseStep *step, double since_s, const KernelS
                           Motion *motions)
 {
     impulse_curves_at(&step->curves, since_s, sums, motions);
-    if (step->driven >= 0) {
-        motions[step->driven] = driven_at(step, since_s);
-    }
+    impulse_step_place_driven(step, step->start_s + since_s, motions);
     for (size_t i = 0; since_s == step->width_s && i < step->scenario->linkage.body_count; i++) {
         const Motion *after = &step->after[i];
         motions[i].position = after->position;
@@ -363,11 +355,15 @@ static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, Impu
     }
 }
 
-// That of the drive, which answers all the others on its body.
-static void find_drive(const ImpulseStep *step, const Motion *motions, JointState *joints)
+// Those of the drives, which answer all the others on their bodies.
+static void find_drives(const ImpulseStep *step, const Motion *motions, JointState *joints)
 {
-    const BodyLoad load = applied_on(&step->world.applied, step->driven);
-    stepping_drive_force(step->scenario, &motions[step->driven], &load, joints);
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const int body = linkage_drive_body(linkage, i);
+        const BodyLoad load = applied_on(&step->world.applied, body);
+        stepping_drive_force(step->scenario, i, &motions[body], &load, joints);
+    }
 }
 
 void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, ImpulseTime at,
@@ -382,7 +378,7 @@ void impulse_step_inside(const ImpulseStep *step, const ImpulseScope *scope, Imp
     }
     find_joints(step, scope, at, sums, motions, joints, depths);
     if (scope->has_drive) {
-        find_drive(step, motions, joints);
+        find_drives(step, motions, joints);
     }
 }
 

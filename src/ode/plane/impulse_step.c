@@ -82,7 +82,7 @@ static void make_arrays(ImpulseStep *step)
         kernel_make_drift(&step->kernel);
         step->drift = response_drift_create(&step->response);
         step->columns[0] = step->drift.columns;
-        step->curves = impulse_curves_create(step->place_count, rows, bodies, step->driven);
+        step->curves = impulse_curves_create(&step->scenario->linkage, step->place_count, rows);
     }
     for (size_t i = 1; step->has_few_rows && i < IMPULSE_COLUMNS; i++) {
         step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);
@@ -221,18 +221,33 @@ static bool init_kernel(ImpulseStep *step, Err *err)
     return true;
 }
 
+// Where the driven bodies stand at a time, from which they are soon worked out at others.
+static void set_arms(ImpulseStep *step, double time_s)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        step->arms[i] = stepping_arm(linkage, i, time_s);
+    }
+}
+
+void impulse_step_place_driven(const ImpulseStep *step, double time_s, Motion *motions)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        motions[linkage_drive_body(linkage, i)] =
+            stepping_driven_since(linkage, i, &step->arms[i], step->start_s, time_s);
+    }
+}
+
 bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
 {
     step->scenario = scenario;
-    step->driven = linkage_driven_body(&scenario->linkage);
     step->tick_s = scenario->run.step / (double)scenario->ode.gear;
     if (!init_kernel(step, err)) {
         return false;
     }
     make_arrays(step);
-    if (step->driven >= 0) {
-        step->arm = stepping_arm(&scenario->linkage, 0.0);
-    }
+    set_arms(step, 0.0);
     step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
     linkage_start(&scenario->linkage, step->after);
     if (!world_build(scenario, step->after, &step->world, err)) {
@@ -335,9 +350,10 @@ static void impulse_step_push(ImpulseStep *step, const Motion *middle)
     }
     Motion *motions = step->work->motions;
     memcpy(motions, middle, step->scenario->linkage.body_count * sizeof *motions);
-    if (step->driven >= 0) {
+    for (size_t i = 0; i < linkage_drive_count(&step->scenario->linkage); i++) {
         // the others have the speeds of the start already
-        motions[step->driven].velocity = step->before[step->driven].velocity;
+        const int body = linkage_drive_body(&step->scenario->linkage, i);
+        motions[body].velocity = step->before[body].velocity;
     }
     applied_push_at(&step->world.applied, motions, step->start_s, step->width_s, APPLIED_AT_MEAN,
                     1);
@@ -422,12 +438,8 @@ static void impulse_step_find_middle(ImpulseStep *step, double width_before_s, M
         middle[i].position = vec2_add(motion->position, vec2_scale(half_s, motion->velocity));
         middle[i].angle = motion->angle + half_s * motion->omega;
     }
-    if (step->driven >= 0) {
-        const Linkage *linkage = &step->scenario->linkage;
-        step->arm = stepping_arm(linkage, step->start_s + half_s);
-        middle[step->driven] =
-            stepping_driven_since(linkage, &step->arm, step->start_s, step->start_s + half_s);
-    }
+    set_arms(step, step->start_s + half_s);
+    impulse_step_place_driven(step, step->start_s + half_s, middle);
     if (step->has_few_rows && step->steady > 0) {
         move_middle(step, width_before_s, middle);
     }
@@ -482,204 +494,6 @@ static void impulse_step_keep_free(ImpulseStep *step, double *free_before)
         pushed = fmax(pushed, fabs(change));
     }
     step->is_calm = pushed <= CALM * size;
-}
-
-// The mean forces of the joints with play in a step, and the work of the drive.
-//
-// The mean forces of the step do theirs at the speeds of mid-step. With P a place's impulse and Q
-// its integral, its force does beyond that (h/2 P - Q) times the rate at which the speed of the
-// driven body changes along the row. Of a pin that is the acceleration of its point; of a line with
-// directions e, which turn with body a, and touching point X,
-//     (e . v(X))' = e' . v(X) + e . (acc(X) + w perp (X' - v(X)))
-
-// The acceleration of a point of the driven body, by its arm from the centre.
-static Vec2 arm_acceleration(const Motion *driven, Vec2 arm)
-{
-    const Vec2 steady =
-        vec2_sub(driven->acceleration, vec2_scale(driven->omega * driven->omega, arm));
-    return driven->alpha == 0.0 ? steady
-                                : vec2_add(steady, vec2_scale(driven->alpha, vec2_perp(arm)));
-}
-
-// Adds the mean force of a place to that of its joint, with its moment about the anchor of body b
-// where it does not act there.
-static void add_mean(const ImpulseStep *step, size_t number, const Motion *middle, JointState *mean)
-{
-    const Touch *place = &step->places[number];
-    const double *sum = step->total.impulse + step->kernel.contacts[number].first_row;
-    const Vec2 force = {sum[0] / step->width_s, sum[1] / step->width_s};
-    if (step->scenario->linkage.joints[place->joint].limits.kind != LIMIT_NONE) {
-        impulse_step_add_end(&step->scenario->linkage, place, force.x, middle, mean);
-        return;
-    }
-    if (place->shape != TOUCH_LINE) {
-        mean->force_on_b = force;
-        return;
-    }
-    const Linkage *linkage = &step->scenario->linkage;
-    const Joint *joint = &linkage->joints[place->joint];
-    const TouchPose pose = touch_pose(linkage, place, middle);
-    const Vec2 push =
-        vec2_add(vec2_scale(force.x, pose.normal), vec2_scale(force.y, vec2_perp(pose.normal)));
-    const Vec2 arm = vec2_sub(vec2_sub(linkage_point(middle, joint->body_b, place->anchor_b),
-                                       linkage_point(middle, joint->body_b, joint->anchor_b)),
-                              vec2_scale(place->radius_b, pose.normal));
-    mean->force_on_b = vec2_add(mean->force_on_b, push);
-    mean->moment_on_b += vec2_cross(arm, push);
-}
-
-// The mean forces of the joints with play, and where those on the driven body act, seen from its
-// anchors: at the anchor of body b, of all joints with lines.
-static void find_play_means(ImpulseStep *step, const Motion *middle, Vec2 *offsets)
-{
-    const Linkage *linkage = &step->scenario->linkage;
-    JointState *means = step->work->joints;
-    memcpy(means, step->mean, linkage->joint_count * sizeof *means);
-    for (size_t i = 0; i < step->place_count; i++) {
-        const int joint = step->places[i].joint;
-        // what holds a joint beside its limited coordinate is known
-        if (linkage->joints[joint].limits.kind == LIMIT_NONE) {
-            means[joint] = (JointState){.force = 0.0};
-        }
-    }
-    for (size_t i = 0; i < step->place_count; i++) {
-        add_mean(step, i, middle, &means[step->places[i].joint]);
-    }
-    stepping_offsets(linkage, middle, step->driven, offsets);
-    for (size_t i = 0; i < step->place_count; i++) {
-        const int joint = step->places[i].joint;
-        if (touch_is_scalar(&step->places[i]) && linkage->joints[joint].body_a == step->driven) {
-            offsets[joint] = linkage_joint_gap(linkage, middle, joint).position;
-        }
-    }
-}
-
-// What the force of a pin or disc does on the driven body beyond its mean, J.
-static double work_at_point(const ImpulseStep *step, size_t number, const Motion *driven,
-                            bool is_on_a)
-{
-    const KernelContact *at = &step->kernel.contacts[number];
-    const Touch *place = &step->places[number];
-    const double *sum = step->total.impulse + at->first_row;
-    const double *moment = step->total.moment + at->first_row;
-    const double half_s = 0.5 * step->width_s;
-    const Vec2 early = {half_s * sum[0] - moment[0], half_s * sum[1] - moment[1]};
-    const Vec2 arm = vec2_rotate(driven->angle, is_on_a ? place->anchor_a : place->anchor_b);
-    const Vec2 turning = arm_acceleration(driven, arm);
-    return (is_on_a ? -1.0 : 1.0) * vec2_dot(early, turning);
-}
-
-// What friction's moment about the anchor does on it, J.
-static double work_of_turn(const ImpulseStep *step, size_t number, const Motion *driven,
-                           bool is_on_a)
-{
-    const KernelContact *at = &step->kernel.contacts[number];
-    const double *sum = step->total.impulse + at->first_row;
-    return at->row_count == RESPONSE_ROWS_A_JOINT ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
-}
-
-// Likewise of a line.
-static double work_at_line(const ImpulseStep *step, size_t number, const Motion *motions,
-                           bool is_on_a)
-{
-    const Linkage *linkage = &step->scenario->linkage;
-    const Touch *place = &step->places[number];
-    const Joint *joint = &linkage->joints[place->joint];
-    const size_t row = step->kernel.contacts[number].first_row;
-    const Motion *driven = &motions[step->driven];
-    const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
-    const TouchPose pose = touch_pose(linkage, place, motions);
-    const Vec2 directions[2] = {pose.normal, vec2_perp(pose.normal)};
-    const Vec2 point = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
-                                vec2_scale(place->radius_b, pose.normal));
-    const Vec2 moving = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
-                                 vec2_scale(place->radius_b * omega_a, directions[1]));
-    const Vec2 arm = vec2_sub(point, driven->position);
-    const Vec2 speed = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
-    const Vec2 pushed = vec2_add(arm_acceleration(driven, arm),
-                                 vec2_scale(driven->omega, vec2_perp(vec2_sub(moving, speed))));
-    double work = 0.0;
-    for (size_t i = 0; i < 2; i++) {
-        const double early =
-            0.5 * step->width_s * step->total.impulse[row + i] - step->total.moment[row + i];
-        work += early * (omega_a * vec2_dot(vec2_perp(directions[i]), speed) +
-                         vec2_dot(directions[i], pushed));
-    }
-    return is_on_a ? -work : work;
-}
-
-// Likewise of an end of an angle, or of teeth: the driven body turns about the ground.
-static double work_at_end(const ImpulseStep *step, size_t number, const Motion *driven,
-                          bool is_on_a)
-{
-    const Touch *place = &step->places[number];
-    const Joint *joint = &step->scenario->linkage.joints[place->joint];
-    const size_t row = step->kernel.contacts[number].first_row;
-    const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
-    const double turn = place->shape == TOUCH_TEETH
-                            ? -(is_on_a ? place->radius_a : place->radius_b)
-                            : coordinate_sense(joint) * (is_on_a ? -1.0 : 1.0);
-    return early * place->sign * turn * driven->alpha;
-}
-
-// The bodies at mid-step with the means of their speeds.
-static void find_mean_motions(const ImpulseStep *step, const Motion *middle, Motion *motions)
-{
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
-        motions[i] = middle[i];
-        if (impulse_step_is_free(step, i)) {
-            motions[i].velocity =
-                vec2_scale(0.5, vec2_add(step->before[i].velocity, step->after[i].velocity));
-            motions[i].omega = 0.5 * (step->before[i].omega + step->after[i].omega);
-        }
-    }
-}
-
-// What a torque over time does, J: contacts change the speeds inside the step, so it is taken by
-// the way that it goes.
-static double work_of_torque(const ImpulseStep *step)
-{
-    const Linkage *linkage = &step->scenario->linkage;
-    if (linkage->torque.table.count == 0) {
-        return 0.0;
-    }
-    return step->world.applied.torque * (forces_drive_turn(linkage, step->after).angle -
-                                         forces_drive_turn(linkage, step->before).angle);
-}
-
-// Finds the mean forces of the joints with play and the works of the drive and of dampers in the
-// step that has just been taken, from the bodies at mid-step.
-static void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
-{
-    const Linkage *linkage = &step->scenario->linkage;
-    const Motion *driven = &middle[step->driven >= 0 ? step->driven : 0];
-    Vec2 *offsets = step->work->offsets;
-    Motion *motions = step->work->motions;
-    double work = 0.0;
-    find_play_means(step, middle, offsets);
-    find_mean_motions(step, middle, motions);
-    for (size_t i = 0; step->driven >= 0 && i < step->place_count; i++) {
-        const Joint *joint = &linkage->joints[step->places[i].joint];
-        const bool is_on_a = joint->body_a == step->driven;
-        if (!is_on_a && joint->body_b != step->driven) {
-            continue;
-        }
-        if (step->places[i].shape == TOUCH_LINE) {
-            work -= work_at_line(step, i, motions, is_on_a);
-        } else if (touch_is_scalar(&step->places[i])) {
-            work -= work_at_end(step, i, driven, is_on_a);
-        } else {
-            work -= work_at_point(step, i, driven, is_on_a);
-            work -= work_of_turn(step, i, driven, is_on_a);
-        }
-    }
-    const AppliedWork applied = applied_book(&step->world.applied, step->width_s);
-    const BodyLoad load = applied_on(&step->world.applied, step->driven);
-    const double power = stepping_drive(step->scenario, driven, &load, offsets, step->work->joints);
-    step->damped = applied.damping;
-    step->load_work =
-        loads_work(linkage, step->world.applied.pushed, step->before, middle, step->after);
-    step->drive_work = work + step->width_s * power + work_of_torque(step) + applied.slope;
 }
 
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
@@ -943,7 +757,7 @@ static void find_means(ImpulseStep *step, const Motion *middle)
 static void set_end(ImpulseStep *step, size_t ticks)
 {
     const double rounding_s = STEPPING_ROUNDING * step->tick_s;
-    const double kink_s = drive_next_kink(&step->scenario->linkage.driver, step->start_s);
+    const double kink_s = linkage_next_kink(&step->scenario->linkage, step->start_s);
     step->tick += ticks;
     step->end_s = stepping_end(step->scenario, step->start_s, (double)step->tick * step->tick_s,
                                step->tick_s);
@@ -963,20 +777,14 @@ bool impulse_step_take(ImpulseStep *step, Err *err)
     Motion *middle = step->middle;
     step->start_s = step->end_s;
     memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
-    if (step->driven >= 0) {
-        step->before[step->driven] = stepping_driven_since(&step->scenario->linkage, &step->arm,
-                                                           step->start_s, step->start_s);
-    }
+    impulse_step_place_driven(step, step->start_s, step->before);
     fill_rows(step);
     const double coarse_s = (double)options->gear * step->tick_s;
     const size_t ticks =
         options->gear > 1 && (step->count == 0 || is_near_wall(step, coarse_s)) ? 1 : options->gear;
     set_end(step, ticks);
     step->width_s = step->end_s - step->start_s;
-    if (step->driven >= 0) {
-        step->after[step->driven] =
-            stepping_driven_since(&step->scenario->linkage, &step->arm, step->start_s, step->end_s);
-    }
+    impulse_step_place_driven(step, step->end_s, step->after);
     impulse_step_look_ahead(step);
     impulse_step_find_middle(step, width_before_s, middle);
     impulse_step_push(step, middle);

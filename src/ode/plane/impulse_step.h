@@ -32,7 +32,6 @@ typedef struct ImpulseStep {
     ImpulseScope whole;
     size_t place_count;
     Touch *places; // owned, as are all arrays here
-    int driven;    // body, or LINKAGE_GROUND
     double tick_s; // the finest step
     size_t tick;   // at the end of the last step, or before it
     bool is_kink;  // whether the last step ends at a kink of the drive's speed
@@ -40,12 +39,12 @@ typedef struct ImpulseStep {
     size_t count;
     double start_s; // of the last step
     double width_s;
-    Motion *before;    // at its start
-    Motion *middle;    // at mid-step, with the speeds of its start
-    Motion *after;     // at its end
-    SteppingArm arm;   // of the driven body, at mid-step
-    double *free;      // mean acceleration beside the contacts', three a body
-    double *free_rate; // its rate of change
+    Motion *before;                      // at its start
+    Motion *middle;                      // at mid-step, with the speeds of its start
+    Motion *after;                       // at its end
+    SteppingArm arms[LINKAGE_DRIVE_MAX]; // of the driven bodies, at mid-step
+    double *free;                        // mean acceleration beside the contacts', three a body
+    double *free_rate;                   // its rate of change
     double *ahead;     // of few rows, what it will be at mid-step, from the steps before, or zero
     size_t steady;     // steps before this one since the start, or since a kink
     bool is_calm;      // whether the contacts did not change the accelerations much in the last
@@ -72,8 +71,11 @@ typedef struct ImpulseStep {
 // Whether a body moves by the forces on it, and not by the drive.
 static inline bool impulse_step_is_free(const ImpulseStep *step, size_t body)
 {
-    return (int)body != step->driven;
+    return !linkage_is_driven(&step->scenario->linkage, (int)body);
 }
+
+// Puts the driven bodies to a time within the step, from where they stand at its middle.
+void impulse_step_place_driven(const ImpulseStep *step, double time_s, Motion *motions);
 
 // Builds the world of a scenario at its start. The step must not be copied, and is to be finished
 // after a failure too.
@@ -116,6 +118,10 @@ static inline bool impulse_step_has_curves(const ImpulseStep *step)
 {
     return step->has_few_rows && step->count >= IMPULSE_COLUMNS;
 }
+
+// Finds the mean forces of the joints with play and the works of the drives, of loads and of dampers
+// in the step that has just been taken, from the bodies at mid-step (impulse_work.c).
+void impulse_step_find_work(ImpulseStep *step, const Motion *middle);
 
 // Takes the next step.
 bool impulse_step_take(ImpulseStep *step, Err *err);

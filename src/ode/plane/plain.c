@@ -23,7 +23,6 @@ typedef struct Plain {
     double step_s;
     long index; // of the next step: it starts at index times step_s
     size_t steps;
-    int driven;       // body, or LINKAGE_GROUND
     Snapshot *before; // at the start of the last step; owned, as are the arrays below
     double *omega;    // at its end
     double *alpha;
@@ -59,28 +58,40 @@ static void read_velocities(Plain *plain)
         plain->omega[i] = dBodyGetAngularVel(plain->world.bodies[i])[2];
         plain->alpha[i] = (plain->omega[i] - plain->before[i].omega) / plain->step_s;
     }
-    if (plain->driven >= 0) {
-        plain->omega[plain->driven] = plain->scenario->linkage.driver.speed;
-        plain->alpha[plain->driven] = 0.0;
+    const double end_s = (double)(plain->index + 1) * plain->step_s;
+    const Linkage *linkage = &plain->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const int body = linkage_drive_body(linkage, i);
+        const DriveState drive = drive_at(linkage_drive(linkage, i), end_s);
+        plain->omega[body] = drive.omega;
+        plain->alpha[body] = drive.alpha;
     }
 }
 
-// The force of each joint acts at its contact, where it has one.
-static double drive_power(Plain *plain, const Motion *driven)
+// Of all drives. The force of each joint acts at its contact, where it has one.
+static double drive_power(Plain *plain, double start_s)
 {
-    contact_rows_offsets(&plain->contacts, plain->driven, plain->offsets);
-    const BodyLoad load = applied_on(&plain->world.applied, plain->driven);
-    return stepping_drive(plain->scenario, driven, &load, plain->offsets, plain->joints);
+    const Linkage *linkage = &plain->scenario->linkage;
+    double power = 0.0;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const int body = linkage_drive_body(linkage, i);
+        const Motion driven = stepping_driven(linkage, i, start_s);
+        const BodyLoad load = applied_on(&plain->world.applied, body);
+        contact_rows_offsets(&plain->contacts, body, plain->offsets);
+        power += stepping_drive(plain->scenario, i, &driven, &load, plain->offsets, plain->joints);
+    }
+    return power;
 }
 
 static bool advance(Plain *plain, Err *err)
 {
     const double start_s = (double)plain->index * plain->step_s;
-    const Motion driven = stepping_driven(&plain->scenario->linkage, start_s);
-    if (plain->driven >= 0) {
-        world_place(&plain->world, (size_t)plain->driven, &driven);
+    const Linkage *linkage = &plain->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const Motion driven = stepping_driven(linkage, i, start_s);
+        world_place(&plain->world, (size_t)linkage_drive_body(linkage, i), &driven);
     }
-    for (size_t i = 0; i < plain->scenario->linkage.body_count; i++) {
+    for (size_t i = 0; i < linkage->body_count; i++) {
         plain->before[i] = snapshot_of(plain->world.bodies[i]);
     }
     applied_push(&plain->world.applied, start_s, plain->step_s, APPLIED_AT_END, 1);
@@ -97,7 +108,7 @@ static bool advance(Plain *plain, Err *err)
     read_velocities(plain);
     if (!is_lean) {
         plain->applied = applied_book(&plain->world.applied, plain->step_s);
-        plain->drive_work = drive_power(plain, &driven) * plain->step_s + plain->applied.torque +
+        plain->drive_work = drive_power(plain, start_s) * plain->step_s + plain->applied.torque +
                             plain->applied.slope;
     }
     for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
@@ -139,7 +150,6 @@ static bool plain_open(const Scenario *scenario, void **state, Err *err)
     assert(plain != NULL);
     plain->scenario = scenario;
     plain->step_s = scenario->run.step;
-    plain->driven = linkage_driven_body(&scenario->linkage);
     make_plain(&scenario->linkage, plain);
     Motion *motions = zeroed(scenario->linkage.body_count, sizeof *motions);
     plain->index =
@@ -151,9 +161,10 @@ static bool plain_open(const Scenario *scenario, void **state, Err *err)
         plain_close(plain);
         return false;
     }
-    if (plain->driven >= 0 && scenario->run.is_lean) {
+    for (size_t i = 0; scenario->run.is_lean && i < linkage_drive_count(&scenario->linkage); i++) {
         // it is put on its path at every step's start: only energies ask where a step leaves it
-        dBodySetFiniteRotationMode(plain->world.bodies[plain->driven], 0);
+        dBodySetFiniteRotationMode(plain->world.bodies[linkage_drive_body(&scenario->linkage, i)],
+                                   0);
     }
     *state = plain;
     return true;
@@ -231,9 +242,7 @@ static void plain_observe(const void *state, double time_s, Sample *sample)
         *motion = between(&plain->before[i], &now, share, plain->step_s);
         motion->angle = world_count_turns(&plain->world, i, motion->angle);
     }
-    if (plain->driven >= 0) {
-        sample->bodies[plain->driven] = stepping_driven(linkage, time_s);
-    }
+    stepping_set_driven(linkage, time_s, sample->bodies);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         sample->joints[i] = plain->joints[i];
         stepping_observe_joint(linkage, i, sample);

@@ -54,7 +54,6 @@ typedef struct Staggered {
     double step_s;
     long index; // of the next step: it starts at that many times step_s
     size_t steps;
-    int driven;
     Vec2 *offsets;     // by joint, to work with; owned
     Stride strides[3]; // before the one handed on, that one, and the one ahead of it
     Stride *before;
@@ -139,9 +138,7 @@ static bool move_on(const Scenario *scenario, double start_s, Response *response
         motion->position = vec2_add(motion->position, vec2_scale(0.5 * step_s, motion->velocity));
         motion->angle += 0.5 * step_s * motion->omega;
     }
-    if (linkage->driver.is_present) {
-        motions[linkage_driven_body(linkage)] = stepping_driven(linkage, start_s + 0.5 * step_s);
-    }
+    stepping_set_driven(linkage, start_s + 0.5 * step_s, motions);
     if (!response_place(response, motions)) {
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant at the start: give one joint of the "
@@ -157,7 +154,6 @@ static bool staggered_open(const Scenario *scenario, void **state, Err *err)
     assert(staggered != NULL);
     staggered->scenario = scenario;
     staggered->step_s = scenario->run.step;
-    staggered->driven = linkage_driven_body(&scenario->linkage);
     staggered->before = &staggered->strides[0];
     staggered->now = &staggered->strides[1];
     staggered->ahead = &staggered->strides[2];
@@ -185,14 +181,16 @@ static bool staggered_open(const Scenario *scenario, void **state, Err *err)
     return true;
 }
 
-// Puts the driven body to mid-step with its speed at another time.
-static void place_driven(Staggered *staggered, const Motion *middle, double speed_s)
+// Puts the driven bodies to a time with their speeds at another.
+static void place_driven(Staggered *staggered, double middle_s, double speed_s)
 {
-    if (staggered->driven >= 0) {
-        Motion placed = stepping_driven(&staggered->scenario->linkage, speed_s);
-        placed.position = middle->position;
-        placed.angle = middle->angle;
-        world_place(&staggered->world, (size_t)staggered->driven, &placed);
+    const Linkage *linkage = &staggered->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const Motion middle = stepping_driven(linkage, i, middle_s);
+        Motion placed = stepping_driven(linkage, i, speed_s);
+        placed.position = middle.position;
+        placed.angle = middle.angle;
+        world_place(&staggered->world, (size_t)linkage_drive_body(linkage, i), &placed);
     }
 }
 
@@ -204,20 +202,26 @@ static void read_speeds(const Staggered *staggered, Stride *stride)
         stride->omega[i] = dBodyGetAngularVel(staggered->world.bodies[i])[2];
         stride->alpha[i] = (stride->omega[i] - stride->middle[i].omega) / staggered->step_s;
     }
-    if (staggered->driven >= 0) {
-        stride->alpha[staggered->driven] = 0.0;
+    const Linkage *linkage = &staggered->scenario->linkage;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        stride->alpha[linkage_drive_body(linkage, i)] = 0.0;
     }
 }
 
-// Energies, impulses and the drive's part of a step that has been taken.
-static void book(Staggered *staggered, const Motion *middle, Stride *stride)
+// Energies, impulses and the drives' part of a step that has been taken.
+static void book(Staggered *staggered, double middle_s, Stride *stride)
 {
     const Linkage *linkage = &staggered->scenario->linkage;
-    contact_rows_offsets(&staggered->contacts, staggered->driven, staggered->offsets);
     const AppliedWork applied = applied_book(&staggered->world.applied, staggered->step_s);
-    const BodyLoad load = applied_on(&staggered->world.applied, staggered->driven);
-    const double power =
-        stepping_drive(staggered->scenario, middle, &load, staggered->offsets, stride->joints);
+    double power = 0.0;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const int body = linkage_drive_body(linkage, i);
+        const Motion middle = stepping_driven(linkage, i, middle_s);
+        const BodyLoad load = applied_on(&staggered->world.applied, body);
+        contact_rows_offsets(&staggered->contacts, body, staggered->offsets);
+        power += stepping_drive(staggered->scenario, i, &middle, &load, staggered->offsets,
+                                stride->joints);
+    }
     stride->drive_work = staggered->step_s * power + applied.torque + applied.slope;
     stride->load_work = applied.loads;
     stride->damped = applied.damping;
@@ -233,9 +237,8 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
     World *world = &staggered->world;
     stride->start_s = (double)staggered->index * step_s;
     const double end_s = (double)(staggered->index + 1) * step_s;
-    const Motion middle =
-        stepping_driven(&staggered->scenario->linkage, stride->start_s + 0.5 * step_s);
-    place_driven(staggered, &middle, stride->start_s);
+    const double middle_s = stride->start_s + 0.5 * step_s;
+    place_driven(staggered, middle_s, stride->start_s);
     for (size_t i = 0; i < staggered->scenario->linkage.body_count; i++) {
         stride->middle[i] = world_snapshot(world, i);
     }
@@ -244,7 +247,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
                              err);
     }
-    place_driven(staggered, &middle, end_s);
+    place_driven(staggered, middle_s, end_s);
     const bool is_quick = staggered->scenario->ode.solver == ODE_QUICK;
     if (!world_step(world, step_s, is_quick, err) || !world_check(world, err)) {
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
@@ -254,7 +257,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
     contact_rows_clear(&staggered->contacts, step_s, stride->joints);
     contact_rows_peaks(&staggered->contacts, stride->peaks);
     read_speeds(staggered, stride);
-    book(staggered, &middle, stride);
+    book(staggered, middle_s, stride);
     staggered->index++;
     staggered->steps++;
     return true;
@@ -394,9 +397,7 @@ static void staggered_observe(const void *state, double time_s, Sample *sample)
         *motion = motion_at(staggered, i, time_s - staggered->now->start_s);
         motion->angle = world_count_turns(&staggered->world, i, motion->angle);
     }
-    if (staggered->driven >= 0) {
-        sample->bodies[staggered->driven] = stepping_driven(linkage, time_s);
-    }
+    stepping_set_driven(linkage, time_s, sample->bodies);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         sample->joints[i] = staggered->now->joints[i];
         stepping_observe_joint(linkage, i, sample);

@@ -593,9 +593,8 @@ static void make_bodies(const Scenario *scenario, const Motion *motions, World *
         world->bodies[i] = made;
         world_place(world, i, &motions[i]);
     }
-    const int driven = linkage_driven_body(linkage);
-    if (driven >= 0) {
-        dBodySetKinematic(world->bodies[driven]);
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        dBodySetKinematic(world->bodies[linkage_drive_body(linkage, i)]);
     }
 }
 

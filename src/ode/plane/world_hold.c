@@ -85,12 +85,11 @@ Motion *world_hold_motions(WorldHold *hold)
 // The speeds behind the step if nothing held the joints.
 static void loosen(WorldHold *hold, const dBodyID *bodies, double step_s)
 {
-    const int driven = linkage_driven_body(hold->linkage);
     for (size_t i = 0; i < hold->linkage->body_count; i++) {
         const Body *body = &hold->linkage->bodies[i];
         Motion *motion = &hold->loose[i];
         *motion = hold->motions[i];
-        if ((int)i == driven) {
+        if (linkage_is_driven(hold->linkage, (int)i)) {
             continue;
         }
         const dReal *force = dBodyGetForce(bodies[i]);
@@ -104,7 +103,6 @@ static void loosen(WorldHold *hold, const dBodyID *bodies, double step_s)
 bool world_hold_push(WorldHold *hold, const dBodyID *bodies, double step_s, Err *err)
 {
     Response *response = &hold->response;
-    const int driven = linkage_driven_body(hold->linkage);
     if (!response_place(response, hold->motions)) {
         return err_set(err, ERR_SOLVER,
                        "the ideal joints are redundant here: give one joint of the loop some play");
@@ -123,7 +121,7 @@ bool world_hold_push(WorldHold *hold, const dBodyID *bodies, double step_s, Err 
     response_hold(response, hold->impulses, hold->loads);
     hold->step_s = step_s;
     for (size_t i = 0; i < hold->linkage->body_count; i++) {
-        if ((int)i != driven) {
+        if (!linkage_is_driven(hold->linkage, (int)i)) {
             const double *load = hold->loads + 3 * i;
             dBodyAddForce(bodies[i], load[0] / step_s, load[1] / step_s, 0.0);
             dBodyAddTorque(bodies[i], 0.0, 0.0, load[2] / step_s);

@@ -503,7 +503,9 @@ static void dynamics_start_loads(const Dynamics *dynamics, Loads *loads)
         loads->pushes[body] = (ArticulatedPush){{0.0, -dynamics->weights[body]}, 0.0};
     }
     loads->driven_power = 0.0;
-    loads->driven_force = (Vec2){0.0, 0.0};
+    for (size_t i = 0; i < tree->drive_count; i++) {
+        loads->driven_forces[i] = (Vec2){0.0, 0.0};
+    }
 }
 
 // Adds springs, dampers, a torque and loads; fills in their powers.
@@ -524,9 +526,10 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     const double from_s = tree_from(tree);
     loads_of_all(linkage, motions, time_s, from_s, added);
     for (int i = 0; i < (int)linkage->body_count; i++) {
-        if (i == tree->driven) {
+        const int drive = tree_drive_of(tree, i);
+        if (drive >= 0) {
             loads->driven_power += forces_load_power(&added[i], &motions[i]);
-            loads->driven_force = vec2_add(loads->driven_force, added[i].force);
+            loads->driven_forces[drive] = vec2_add(loads->driven_forces[drive], added[i].force);
         } else {
             ArticulatedPush *push = &loads->pushes[i];
             push->force = vec2_add(push->force, added[i].force);
@@ -563,23 +566,25 @@ static bool dynamics_find_rates(const Dynamics *dynamics, double since_s, const 
         dynamics->articulated, &state->tree, loads->pushes, room->sides, room->solved);
 }
 
-// Power of the drive and force of the driven joint, from the driven body's own equations.
-static inline void dynamics_find_drive(const Dynamics *dynamics, const Loads *loads,
-                                       DynamicsState *state)
+// Power of the drives and forces of the driven joints, from the driven bodies' own equations.
+static inline void dynamics_find_drives(const Dynamics *dynamics, const Loads *loads,
+                                        DynamicsState *state)
 {
     const Tree *tree = &dynamics->tree;
-    if (tree->driven < 0) {
-        return;
-    }
-    const Body *driven = &tree->linkage->bodies[tree->driven];
-    const Motion *motion = &state->tree.motions[tree->driven];
     const Vec2 upward = {0.0, dynamics->system.scenario->gravity};
-    const Vec2 needed = vec2_scale(driven->mass, vec2_add(motion->acceleration, upward));
-    state->drive_power = vec2_dot(needed, motion->velocity) - loads->driven_power;
-    if (motion->alpha != 0.0) {
-        state->drive_power += driven->inertia * motion->alpha * motion->omega;
+    if (tree->drive_count > 0) {
+        state->drive_power = -loads->driven_power;
     }
-    state->reactions[tree->linkage->driver.joint] = vec2_sub(needed, loads->driven_force);
+    for (size_t i = 0; i < tree->drive_count; i++) {
+        const Body *driven = &tree->linkage->bodies[tree->drives[i].body];
+        const Motion *motion = &state->tree.motions[tree->drives[i].body];
+        const Vec2 needed = vec2_scale(driven->mass, vec2_add(motion->acceleration, upward));
+        state->drive_power += vec2_dot(needed, motion->velocity);
+        if (motion->alpha != 0.0) {
+            state->drive_power += driven->inertia * motion->alpha * motion->omega;
+        }
+        state->reactions[tree->drives[i].driver->joint] = vec2_sub(needed, loads->driven_forces[i]);
+    }
 }
 
 static void dynamics_fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
@@ -613,7 +618,7 @@ static void dynamics_fill_rates(const Dynamics *dynamics, const DynamicsState *s
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state, double *rates)
 {
-    if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
+    if (dynamics->hinged != NULL && tree_is_steady(&dynamics->tree)) {
         return hinged_evaluate(dynamics->hinged, since_s, y, state, rates);
     }
     Loads loads = dynamics->room.loads;
@@ -621,7 +626,7 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
         return false;
     }
     dynamics_reactions_find(dynamics, dynamics->room.solved, &loads, state);
-    dynamics_find_drive(dynamics, &loads, state);
+    dynamics_find_drives(dynamics, &loads, state);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         state->shared.contacts[i] = state->contacts[i].press;
     }
@@ -680,11 +685,11 @@ __attribute__((noinline)) static void find_all_rates(const Dynamics *dynamics, d
         }
         return;
     }
-    // the drive's power needs the reactions only where the driven body carries ideal joints
+    // the drives' power needs the reactions only where driven bodies carry ideal joints
     if (tree->is_driven_hung_on) {
         dynamics_reactions_find(dynamics, solved, &loads, state);
     }
-    dynamics_find_drive(dynamics, &loads, state);
+    dynamics_find_drives(dynamics, &loads, state);
     dynamics_fill_rates(dynamics, state, y, rates);
 }
 

@@ -32,16 +32,16 @@ typedef struct DynamicsState {
     ContactForce *contacts; // by contact
     Vec2 *reactions;        // N, on body b, of ideal joints
     double *couples;        // N m, on body b, of prismatic joints, about its anchor
-    double drive_power;     // W, of drive or torque
+    double drive_power;     // W, of all drives, or a torque
     double load_power;      // W, of loads
     double damping_power;   // W, that the dampers take
 } DynamicsState;
 
 // The forces on the bodies at one instant, while they are gathered.
 typedef struct Loads {
-    ArticulatedPush *pushes; // by body: at the centre, and the moment about it
-    double driven_power;     // W, of all forces on the driven body but the drive's
-    Vec2 driven_force;       // N, their sum
+    ArticulatedPush *pushes;               // by body: at the centre, and the moment about it
+    double driven_power;                   // W, of all forces on driven bodies but the drives'
+    Vec2 driven_forces[LINKAGE_DRIVE_MAX]; // N, their sum on each
 } Loads;
 
 // The ways in which a contact pushes: along x, along y, and by friction.
@@ -130,9 +130,10 @@ static inline void dynamics_load_end(const Tree *tree, const TreeState *state, i
     if (body == LINKAGE_GROUND) {
         return;
     }
-    if (body == tree->driven) {
+    const int drive = tree_drive_of(tree, body);
+    if (drive >= 0) {
         loads->driven_power += vec2_dot(force, dynamics_contact_velocity(tree, state, end, beside));
-        loads->driven_force = vec2_add(loads->driven_force, force);
+        loads->driven_forces[drive] = vec2_add(loads->driven_forces[drive], force);
         return;
     }
     ArticulatedPush *push = &loads->pushes[body];
@@ -144,7 +145,7 @@ static inline void dynamics_load_end(const Tree *tree, const TreeState *state, i
 static inline void dynamics_load_couple(const Tree *tree, const TreeState *state, int body,
                                         double couple, Loads *loads)
 {
-    if (body == tree->driven) {
+    if (tree_drive_of(tree, body) >= 0) {
         loads->driven_power += couple * tree_omega(state, body);
     } else if (body != LINKAGE_GROUND) {
         loads->pushes[body].moment += couple;

@@ -13,9 +13,8 @@
 #include <stdlib.h>
 
 // The drive's speed is steady.
-static inline void hinged_move_driven(const DriveState *drive, double since_s, HingedBody *body)
+static inline void hinged_move_driven(double omega, double since_s, HingedBody *body)
 {
-    const double omega = drive->omega;
     body->turn = turned_by(omega * since_s);
     body->omega = omega;
     const Vec2 base = *body->own_base;
@@ -141,7 +140,7 @@ static inline void hinged_move(const Hinged *hinged, double since_s, const doubl
                                const double *u)
 {
     if (hinged->driven != NULL) {
-        hinged_move_driven(&hinged->dynamics->tree.base_drive, since_s, hinged->driven);
+        hinged_move_driven(hinged->dynamics->tree.drives[0].base.terms[0], since_s, hinged->driven);
     }
     for (size_t i = 0; i < hinged->count; i++) {
         HingedBody *body = &hinged->bodies[i];
@@ -476,7 +475,8 @@ static bool hinged_find_state(const Hinged *hinged, double since_s, const double
 static bool is_hinged(const Dynamics *dynamics)
 {
     const Linkage *linkage = dynamics->tree.linkage;
-    bool is_plain = dynamics->articulated->is_plain && !dynamics->has_forces;
+    bool is_plain =
+        dynamics->articulated->is_plain && !dynamics->has_forces && dynamics->tree.drive_count <= 1;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointKind kind = linkage->joints[i].kind;
         is_plain = is_plain && (kind == JOINT_REVOLUTE || kind == JOINT_CLEARANCE);
@@ -648,9 +648,7 @@ void hinged_destroy(Hinged *hinged)
 
 bool hinged_rates(const Hinged *hinged, double since_s, const double *y, double *rates)
 {
-    // without a drive there is none whose speed may change
-    return hinged->dynamics->tree.base_drive.alpha == 0.0 &&
-           hinged->rates(hinged, since_s, y, rates);
+    return tree_is_steady(&hinged->dynamics->tree) && hinged->rates(hinged, since_s, y, rates);
 }
 
 bool hinged_evaluate(const Hinged *hinged, double since_s, const double *y, DynamicsState *state,

@@ -162,7 +162,7 @@ static inline void hinged_pair_fill_rates(const size_t columns[2], const double 
 bool hinged_pair_rates(const Hinged *hinged, double since_s, const double *y, double *rates)
 {
     const HingedBody *bodies = hinged->bodies;
-    const double drive_omega = hinged->dynamics->tree.base_drive.omega;
+    const double drive_omega = hinged->dynamics->tree.drives[0].base.terms[0];
     const size_t columns[2] = {bodies[0].column, bodies[1].column};
     const Moving driven =
         move_on_ground(*hinged->driven->own_base, drive_omega * since_s, drive_omega);
@@ -288,7 +288,7 @@ bool hinged_pair_evaluate(const Hinged *hinged, double since_s, const double *y,
                           DynamicsState *state, double *rates)
 {
     const HingedBody *bodies = hinged->bodies;
-    const double drive_omega = hinged->dynamics->tree.base_drive.omega;
+    const double drive_omega = hinged->dynamics->tree.drives[0].base.terms[0];
     const size_t columns[2] = {bodies[0].column, bodies[1].column};
     const Moving driven =
         move_on_ground(*hinged->driven->own_base, drive_omega * since_s, drive_omega);

@@ -47,8 +47,8 @@ Vec2 loops_bias(const Tree *tree, const TreeState *state, size_t loop)
     const int joint = tree->loops[loop];
     if (is_on_line(tree, joint)) {
         return (Vec2){tree_line_bias(tree, state, joint),
-                      tree_bias_alpha(tree, tree->end_bodies[2 * joint + 1]) -
-                          tree_bias_alpha(tree, tree->end_bodies[2 * joint])};
+                      tree_bias_alpha(tree, state, tree->end_bodies[2 * joint + 1]) -
+                          tree_bias_alpha(tree, state, tree->end_bodies[2 * joint])};
     }
     return vec2_sub(tree_end_bias(tree, state, 2 * joint + 1),
                     tree_end_bias(tree, state, 2 * joint));

@@ -180,12 +180,12 @@ static bool plane_rebase(System *system, double since_s, double *y)
 {
     Dynamics *dynamics = (Dynamics *)system;
     Tree *tree = &dynamics->tree;
-    const double alpha = tree->base_drive.alpha;
+    const double kink_s = linkage_next_kink(tree->linkage, tree_from(tree));
     plane_project(system, since_s, y);
     tree_rebase(tree, since_s, y);
     system->is_astray = dynamics->may_branch && has_gone_astray(dynamics, y);
-    // the rates jump at a kink of the drive's speed
-    return tree->loop_count > 0 || tree->base_drive.alpha != alpha;
+    // the rates jump at a kink of a drive's speed
+    return tree->loop_count > 0 || tree_from(tree) >= kink_s;
 }
 
 static void plane_carry(System *system, Carry *carry)
@@ -193,7 +193,9 @@ static void plane_carry(System *system, Carry *carry)
     Dynamics *dynamics = (Dynamics *)system;
     carry_bytes(carry, dynamics->tree.memory, dynamics->tree.memory_size);
     CARRY(carry, dynamics->tree.base_time_s);
-    CARRY(carry, dynamics->tree.base_drive);
+    for (size_t i = 0; i < dynamics->tree.drive_count; i++) {
+        CARRY(carry, dynamics->tree.drives[i].base);
+    }
     CARRY(carry, dynamics->start_energy);
     CARRY(carry, dynamics->greatest_energy);
 }
@@ -346,7 +348,7 @@ static bool plane_motions(const System *system, double since_s, const double *y,
     if (dynamics->tree.loop_count > 0) {
         return false;
     }
-    if (dynamics->hinged != NULL && dynamics->tree.base_drive.alpha == 0.0) {
+    if (dynamics->hinged != NULL && tree_is_steady(&dynamics->tree)) {
         hinged_motions(dynamics->hinged, since_s, y, sample->bodies);
         return true;
     }

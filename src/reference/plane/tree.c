@@ -75,7 +75,7 @@ double tree_line_bias(const Tree *tree, const TreeState *state, int pair)
     return second_of(tree, state, pair,
                      vec2_sub(tree_end_bias(tree, state, 2 * pair + 1),
                               tree_end_bias(tree, state, 2 * pair))) +
-           tree_bias_alpha(tree, tree->end_bodies[2 * pair]) *
+           tree_bias_alpha(tree, state, tree->end_bodies[2 * pair]) *
                vec2_dot(across, tree_pair_gap(tree, state, pair));
 }
 
@@ -126,7 +126,7 @@ static void tree_slide_move(const Tree *tree, size_t number, const double *q, co
     state->bias[node->body] = vec2_add(
         vec2_sub(tree_end_bias(tree, state, node->parent_end), vec2_scale(omega * omega, behind)),
         vec2_scale(2.0 * omega * speed, vec2_perp(along)));
-    const double alpha = tree_bias_alpha(tree, node->body);
+    const double alpha = tree_bias_alpha(tree, state, node->body);
     if (alpha != 0.0) {
         state->bias[node->body] =
             vec2_add(state->bias[node->body], vec2_scale(alpha, vec2_perp(behind)));
@@ -149,7 +149,7 @@ static Vec2 tree_slide_acceleration(const Tree *tree, size_t number, double rate
     // what the parent does beyond its own bias
     const Motion *parent = &state->motions[node->parent];
     const Vec2 beyond = vec2_sub(parent->acceleration, state->bias[node->parent]);
-    const double spun = parent->alpha - tree_bias_alpha(tree, node->parent);
+    const double spun = parent->alpha - tree_bias_alpha(tree, state, node->parent);
     return vec2_add(acceleration,
                     vec2_add(beyond, vec2_scale(spun, vec2_perp(state->behind[number]))));
 }
@@ -184,24 +184,31 @@ static inline void tree_set_arms(const Tree *tree, int body, double d, TreeState
     }
 }
 
-static void tree_set_driven(const Tree *tree, double since_s, TreeState *state)
+static void tree_set_driven(const Tree *tree, size_t number, double since_s, TreeState *state)
 {
-    const DriveState *base = &tree->base_drive;
-    Motion *motion = &state->motions[tree->driven];
-    const double turned = (base->omega + 0.5 * base->alpha * since_s) * since_s;
-    const double omega = base->omega + base->alpha * since_s;
-    motion->angle = tree->base_motions[tree->driven].angle + turned;
-    motion->omega = omega;
-    motion->alpha = base->alpha;
-    state->turn[tree->driven] = turned;
-    tree_set_arms(tree, tree->driven, turned, state);
-    const int end = 2 * tree->linkage->driver.joint + 1;
+    const TreeDrive *drive = &tree->drives[number];
+    const int body = drive->body;
+    const DriveState now = state->drives[number] = drive_piece_at(&drive->base, since_s);
+    Motion *motion = &state->motions[body];
+    motion->angle = tree->base_motions[body].angle + now.angle;
+    motion->omega = now.omega;
+    motion->alpha = now.alpha;
+    state->turn[body] = now.angle;
+    tree_set_arms(tree, body, now.angle, state);
+    const int end = 2 * drive->driver->joint + 1;
     const Vec2 arm = state->arms[end];
-    tree_set_centre(tree, tree->driven, vec2_scale(-1.0, state->turned[end]), state);
-    motion->velocity = vec2_scale(-omega, vec2_perp(arm));
+    tree_set_centre(tree, body, vec2_scale(-1.0, state->turned[end]), state);
+    motion->velocity = vec2_scale(-now.omega, vec2_perp(arm));
     motion->acceleration =
-        vec2_sub(vec2_scale(omega * omega, arm), vec2_scale(base->alpha, vec2_perp(arm)));
-    state->bias[tree->driven] = motion->acceleration;
+        vec2_sub(vec2_scale(now.omega * now.omega, arm), vec2_scale(now.alpha, vec2_perp(arm)));
+    state->bias[body] = motion->acceleration;
+}
+
+static void tree_set_all_driven(const Tree *tree, double since_s, TreeState *state)
+{
+    for (size_t i = 0; i < tree->drive_count; i++) {
+        tree_set_driven(tree, i, since_s, state);
+    }
 }
 
 static inline void tree_set_floating(const Tree *tree, const TreeNode *node, const double *q,
@@ -230,7 +237,7 @@ static inline void tree_set_hanging(const Tree *tree, const TreeNode *node, Tree
             velocity, vec2_add(parent->velocity, vec2_scale(parent->omega, vec2_perp(outer))));
         bias = vec2_add(bias, vec2_sub(state->bias[node->parent],
                                        vec2_scale(parent->omega * parent->omega, outer)));
-        const double alpha = tree_bias_alpha(tree, node->parent);
+        const double alpha = tree_bias_alpha(tree, state, node->parent);
         if (alpha != 0.0) {
             bias = vec2_add(bias, vec2_scale(alpha, vec2_perp(outer)));
         }
@@ -266,9 +273,7 @@ static inline void tree_set_node(const Tree *tree, size_t number, const double *
 void tree_evaluate(const Tree *tree, double since_s, const double *q, const double *u,
                    TreeState *state)
 {
-    if (tree->driven >= 0) {
-        tree_set_driven(tree, since_s, state);
-    }
+    tree_set_all_driven(tree, since_s, state);
     for (size_t i = 0; i < tree->node_count; i++) {
         tree_set_node(tree, i, q, u, state);
     }
@@ -308,9 +313,7 @@ void tree_evaluate_pair(const Tree *tree, int pair, double since_s, const double
         tree_evaluate(tree, since_s, q, u, state);
         return;
     }
-    if (tree->driven >= 0) {
-        tree_set_driven(tree, since_s, state);
-    }
+    tree_set_all_driven(tree, since_s, state);
     tree_evaluate_up_to(tree, tree->end_bodies[2 * pair], q, u, state);
     tree_evaluate_up_to(tree, tree->end_bodies[2 * pair + 1], q, u, state);
 }
@@ -568,10 +571,10 @@ static void measure(Tree *tree)
 // Centres of the bodies that hang, arms and gaps, from the angles and the floating bodies' centres.
 static void tree_base_settle(Tree *tree)
 {
-    if (tree->driven >= 0) {
-        const int joint = tree->linkage->driver.joint;
-        tree_base_set_arms(tree, tree->driven);
-        tree->base_position[tree->driven] =
+    for (size_t i = 0; i < tree->drive_count; i++) {
+        const int joint = tree->drives[i].driver->joint;
+        tree_base_set_arms(tree, tree->drives[i].body);
+        tree->base_position[tree->drives[i].body] =
             subtract(tree_base_end_point(tree, 2 * joint), tree->long_arms[2 * joint + 1]);
     }
     for (size_t i = 0; i < tree->node_count; i++) {
@@ -605,20 +608,20 @@ static void tree_base_settle(Tree *tree)
     measure(tree);
 }
 
-// The driven body at the base. A kink of its speed that is nearer than rounding has been reached.
-static void put_drive(Tree *tree)
+// The driven bodies at the base. A kink that is nearer than rounding has been reached.
+static void put_drives(Tree *tree)
 {
-    const Driver *driver = &tree->linkage->driver;
-    tree->base_angle[tree->driven] = drive_angle_exact(driver, tree->base_time_s);
-    tree->base_drive = drive_at(driver, tree_from(tree));
+    for (size_t i = 0; i < tree->drive_count; i++) {
+        TreeDrive *drive = &tree->drives[i];
+        tree->base_angle[drive->body] = drive_angle_exact(drive->driver, tree->base_time_s);
+        drive->base = drive_piece(drive->driver, tree_from(tree));
+    }
 }
 
 void tree_start(Tree *tree, const Motion *motions, double *u)
 {
     tree->base_time_s = 0.0L;
-    if (tree->driven >= 0) {
-        put_drive(tree);
-    }
+    put_drives(tree);
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         const Motion *motion = &motions[node->body];
@@ -643,9 +646,7 @@ void tree_start(Tree *tree, const Motion *motions, double *u)
 void tree_rebase(Tree *tree, double since_s, double *q)
 {
     tree->base_time_s += since_s;
-    if (tree->driven >= 0) {
-        put_drive(tree);
-    }
+    put_drives(tree);
     for (size_t i = 0; i < tree->node_count; i++) {
         const TreeNode *node = &tree->nodes[i];
         if (node->is_sliding) {
@@ -675,11 +676,6 @@ double tree_time(const Tree *tree, double since_s)
 // Found once: bodies hang on known ones by ideal joints, those that hang on nothing float, and
 // ideal joints that are left over close loops (reference/span.h).
 
-static bool tree_is_driven(const Tree *tree, int body)
-{
-    return body != LINKAGE_GROUND && body == tree->driven;
-}
-
 static void tree_add_node(Tree *tree, int body, int joint, int parent)
 {
     TreeNode *node = &tree->nodes[tree->node_count++];
@@ -698,9 +694,9 @@ static void tree_add_node(Tree *tree, int body, int joint, int parent)
         node->depth = node->parent_node >= 0 ? tree->nodes[node->parent_node].depth + 1 : 1;
         if (node->is_sliding) {
             node->angle_column = parent == LINKAGE_GROUND ? -1 : tree->angle_column[parent];
-            tree->is_carried[body] = parent != LINKAGE_GROUND && tree->is_carried[parent];
+            tree->carried_by[body] = parent == LINKAGE_GROUND ? -1 : tree->carried_by[parent];
         }
-        tree->is_driven_hung_on = tree->is_driven_hung_on || tree_is_driven(tree, parent);
+        tree->is_driven_hung_on = tree->is_driven_hung_on || tree_drive_of(tree, parent) >= 0;
     }
     tree->angle_column[body] = node->angle_column;
     tree->node_of[body] = (int)tree->node_count - 1;
@@ -816,7 +812,7 @@ static void tree_lay(Tree *tree, Layout *layout)
     tree->anchors = layout_take(layout, ends, sizeof *tree->anchors);
     tree->end_firsts = layout_take(layout, bodies + 1, sizeof *tree->end_firsts);
     tree->ends = layout_take(layout, ends, sizeof *tree->ends);
-    tree->is_carried = layout_take(layout, bodies, sizeof *tree->is_carried);
+    tree->carried_by = layout_take(layout, bodies, sizeof *tree->carried_by);
     tree->loops = layout_take(layout, joints, sizeof *tree->loops);
     tree->base_angle = layout_take(layout, bodies, sizeof *tree->base_angle);
     tree->base_position = layout_take(layout, bodies, sizeof *tree->base_position);
@@ -856,9 +852,26 @@ static void tree_list_loops(Tree *tree, const bool *is_used)
         if (linkage_kind_is_ideal(linkage->joints[i].kind) && !is_used[i]) {
             tree->loops[tree->loop_count++] = i;
             tree->is_driven_hung_on = tree->is_driven_hung_on ||
-                                      tree_is_driven(tree, linkage->joints[i].body_a) ||
-                                      tree_is_driven(tree, linkage->joints[i].body_b);
+                                      tree_drive_of(tree, linkage->joints[i].body_a) >= 0 ||
+                                      tree_drive_of(tree, linkage->joints[i].body_b) >= 0;
         }
+    }
+}
+
+// Puts all driven bodies outside the tree.
+static void list_drives(Tree *tree)
+{
+    const Linkage *linkage = tree->linkage;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        tree->carried_by[i] = -1;
+    }
+    tree->drive_count = linkage_drive_count(linkage);
+    for (size_t i = 0; i < tree->drive_count; i++) {
+        const int body = linkage_drive_body(linkage, i);
+        tree->drives[i] = (TreeDrive){.driver = linkage_drive(linkage, i), .body = body};
+        tree->angle_column[body] = -1;
+        tree->node_of[body] = -1;
+        tree->carried_by[body] = (int)i;
     }
 }
 
@@ -867,11 +880,7 @@ void tree_build(const Linkage *linkage, Tree *tree)
     *tree = (Tree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
     tree_make_room(tree);
     set_pairs(tree);
-    if (tree->driven >= 0) {
-        tree->angle_column[tree->driven] = -1;
-        tree->node_of[tree->driven] = -1;
-        tree->is_carried[tree->driven] = true;
-    }
+    list_drives(tree);
     Span span = span_find(linkage);
     for (size_t i = 0; i < span.count; i++) {
         tree_add_node(tree, span.steps[i].body, span.steps[i].joint, span.steps[i].parent);

@@ -25,7 +25,7 @@ typedef struct TreeNode {
     int joint;        // ideal joint it hangs on, or -1 for a floating body
     bool is_sliding;  // whether that is a prismatic joint
     int parent;       // body at the other end of that joint; LINKAGE_GROUND or a body's number
-    int parent_node;  // and its node, -1: of the ground and the driven body, which have none
+    int parent_node;  // and its node, -1: of the ground and driven bodies, which have none
     int parent_end;   // of the joint, on the parent
     int own_end;      // and on the body
     int angle_column; // coordinate that is its angle, or that of the body on which it slides: -1
@@ -41,15 +41,24 @@ typedef struct TreePoint {
     long double y;
 } TreePoint;
 
+// A body that a drive turns.
+typedef struct TreeDrive {
+    const Driver *driver;
+    int body;
+    DrivePiece base; // how it goes on from the base, through the step
+} TreeDrive;
+
 typedef struct Tree {
     const Linkage *linkage;
     void *memory;       // owned; where all arrays are, none of which holds pointers
     size_t memory_size; // bytes
-    int driven;         // number of the driven body or LINKAGE_GROUND
-    size_t node_count;  // free bodies, parents before children
+    int driven;         // number of the crank, the first driven body, or LINKAGE_GROUND
+    size_t drive_count; // and all drives
+    TreeDrive drives[LINKAGE_DRIVE_MAX];
+    size_t node_count; // free bodies, parents before children
     TreeNode *nodes;
-    int *angle_column;     // by body; -1 for the driven one and what slides on it
-    int *node_of;          // by body; -1 for the driven one
+    int *angle_column;     // by body; -1 for a driven one and what slides on it
+    int *node_of;          // by body; -1 for a driven one
     size_t pair_count;     // those of the joints first
     int *corners;          // first pair of a block's corners or a slider's stops, by joint
     size_t measured_count; // pairs with a line or discs, and which
@@ -63,13 +72,13 @@ typedef struct Tree {
     size_t *end_firsts;    // by body, and one more: where its ends begin in the list of ends
     int *ends;             // body by body
     size_t coordinate_count;
-    bool *is_carried;       // by body: whether its angle is the driven body's, and follows it
-    bool is_driven_hung_on; // whether a body hangs on the driven one by an ideal joint
+    int *carried_by;        // by body: the drive whose angle it has, of a driven body and of what
+                            // slides on it; or -1
+    bool is_driven_hung_on; // whether a body hangs on a driven one by an ideal joint
     size_t loop_count;
     int *loops; // ideal joints that close loops
     // the base
     long double base_time_s;
-    DriveState base_drive;    // its acceleration holds through the step
     long double *base_angle;  // rad
     TreePoint *base_position; // of the centres
     long double *base_slide;  // m, of bodies that slide
@@ -93,9 +102,10 @@ typedef struct TreeState {
     Vec2 *along;     // of a node that slides: the direction
     Vec2 *behind;    // and from the parent's centre to its own, m
     int *path;       // room for the numbers of nodes
+    DriveState drives[LINKAGE_DRIVE_MAX]; // angles since the base, rad
 } TreeState;
 
-// The node of a body, or -1 of the driven one and the ground.
+// The node of a body, or -1 of a driven one and the ground.
 static inline int tree_node_of(const Tree *tree, int body)
 {
     return body == LINKAGE_GROUND ? -1 : tree->node_of[body];
@@ -122,12 +132,29 @@ static inline Vec2 tree_pair_gap(const Tree *tree, const TreeState *state, int p
     return vec2_add(tree->base_gaps[pair], tree_pair_moved(tree, state, pair));
 }
 
-// How fast a body's speed of turning changes with all coordinates' rates steady, rad/s^2: as the
+// How fast a body's speed of turning changes with all coordinates' rates steady, rad/s^2: as a
 // drive's where the body turns with it.
-static inline double tree_bias_alpha(const Tree *tree, int body)
+static inline double tree_bias_alpha(const Tree *tree, const TreeState *state, int body)
 {
-    const double alpha = tree->base_drive.alpha;
-    return alpha != 0.0 && body != LINKAGE_GROUND && tree->is_carried[body] ? alpha : 0.0;
+    const int drive = body == LINKAGE_GROUND ? -1 : tree->carried_by[body];
+    return drive >= 0 ? state->drives[drive].alpha : 0.0;
+}
+
+// The drive of a driven body, or -1 of all others and the ground.
+static inline int tree_drive_of(const Tree *tree, int body)
+{
+    return body == LINKAGE_GROUND || tree->node_of[body] >= 0 ? -1 : tree->carried_by[body];
+}
+
+// Whether the drives turn at constant speeds from the base on.
+static inline bool tree_is_steady(const Tree *tree)
+{
+    bool is_steady = true;
+    for (size_t i = 0; i < tree->drive_count; i++) {
+        const DrivePiece *base = &tree->drives[i].base;
+        is_steady = is_steady && base->is_uniform && base->terms[1] == 0.0;
+    }
+    return is_steady;
 }
 
 // An end of a joint: its position, velocity, bias and (after tree_accelerate) acceleration.
@@ -156,7 +183,7 @@ static inline Vec2 tree_end_bias(const Tree *tree, const TreeState *state, int e
     }
     const double omega = state->motions[body].omega;
     const Vec2 bias = vec2_sub(state->bias[body], vec2_scale(omega * omega, state->arms[end]));
-    const double alpha = tree_bias_alpha(tree, body);
+    const double alpha = tree_bias_alpha(tree, state, body);
     return alpha != 0.0 ? vec2_add(bias, vec2_scale(alpha, vec2_perp(state->arms[end]))) : bias;
 }
 
