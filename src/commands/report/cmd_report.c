@@ -162,10 +162,11 @@ static bool report_any(void *target, Err *err)
         return refuse_choices(command, first, err) && report_files(command, is_store, err);
     }
     if (command->path_count > 1) {
-        return err_set(err, ERR_USAGE,
-                       "report takes one case, or results of compare, map, tune and check; %s is "
-                       "none of these results",
-                       first);
+        return err_set(
+            err, ERR_USAGE,
+            "report takes one case, or results of compare, map, tune, check and paper; %s is "
+            "none of these results",
+            first);
     }
     command->choices.common.path = first;
     return report_case(command, err);

@@ -151,7 +151,7 @@ static void append_orders(const RunReport *report, Text *html)
     for (size_t i = 0; i < linkage->body_count; i++) {
         for (size_t k = 0; k < report->run_count; k++) {
             const Trajectory *run = report->runs[k];
-            if (!run->is_complete || (int)i == linkage_driven_body(linkage) || !has_spectrum(run)) {
+            if (!run->is_complete || linkage_is_driven(linkage, (int)i) || !has_spectrum(run)) {
                 continue;
             }
             text_append(html, "<tr>");

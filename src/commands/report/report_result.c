@@ -13,12 +13,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const ResultKind *const KINDS[] = {&REPORT_COMPARE, &REPORT_MAP, &REPORT_TUNE,
-                                          &REPORT_CHECK};
+static const ResultKind *const KINDS[] = {&REPORT_COMPARE, &REPORT_MAP, &REPORT_TUNE, &REPORT_CHECK,
+                                          &REPORT_PAPER};
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 
-// How every result of the program begins, but for blanks.
-static const char OPENING[] = "{\"tool\":";
+// How results of the program begin, but for blanks: that of paper is of no case.
+static const char *const OPENINGS[] = {"{\"tool\":", "{\"tables\":"};
+
+static bool begins_so(const char *head, size_t size, const char *opening)
+{
+    size_t at = 0;
+    for (const char *c = opening; *c != '\0'; c++) {
+        while (at < size && head[at] != '\0' && strchr(" \t\r\n", head[at]) != NULL) {
+            at++;
+        }
+        if (at == size || head[at++] != *c) {
+            return false;
+        }
+    }
+    return true;
+}
 
 bool result_is_one(const char *path)
 {
@@ -29,16 +43,7 @@ bool result_is_one(const char *path)
     }
     const size_t size = fread(head, 1, sizeof head, stream);
     fclose(stream);
-    size_t at = 0;
-    for (const char *c = OPENING; *c != '\0'; c++) {
-        while (at < size && strchr(" \t\r\n", head[at]) != NULL && head[at] != '\0') {
-            at++;
-        }
-        if (at == size || head[at++] != *c) {
-            return false;
-        }
-    }
-    return true;
+    return begins_so(head, size, OPENINGS[0]) || begins_so(head, size, OPENINGS[1]);
 }
 
 static const ResultKind *find_kind(const json_t *result)
@@ -59,8 +64,8 @@ static bool refuse_kind(const char *path, const json_t *result, Err *err)
                        "CASE makes the page of a run",
                        path);
     }
-    return err_set(err, ERR_USAGE, "%s is no result of jointplay compare, map, tune or check",
-                   path);
+    return err_set(err, ERR_USAGE,
+                   "%s is no result of jointplay compare, map, tune, check or paper", path);
 }
 
 // A new reference, and its kind; NULL on failure.
@@ -136,7 +141,8 @@ void result_made_write(const json_t *result, const char *command, Text *html)
     xml_append(command, html);
     text_append(html, "</pre>\n<table>\n");
     json_t *own = settings_json_tool();
-    append_tool(result != NULL ? json_object_get(result, "tool") : own, html);
+    const json_t *tool = json_object_get(result, "tool");
+    append_tool(tool != NULL ? tool : own, html);
     json_decref(own);
     if (html_text_of(result, "machine")[0] != '\0') {
         html_pair("times are of", html_text_of(result, "machine"), html);

@@ -19,6 +19,7 @@ extern const ResultKind REPORT_COMPARE;
 extern const ResultKind REPORT_MAP;
 extern const ResultKind REPORT_TUNE;
 extern const ResultKind REPORT_CHECK;
+extern const ResultKind REPORT_PAPER;
 
 enum { RESULT_MOST = 32 }; // files of a page
 

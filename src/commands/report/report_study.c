@@ -87,20 +87,28 @@ static bool choose_keys(Store *store, Choice *choice, Err *err)
 // Results that people ask for first, and then those that vary most.
 static bool choose_results(Store *store, Choice *choice, Err *err)
 {
-    static const char *const ENDINGS[] = {"_force_max_N", "alpha_peak_rad_s2", "error_max",
-                                          "_penetration_max_m", "_omega_max_rad_s"};
+    // how the columns end, and below which size one is nothing but rounding
+    static const struct {
+        const char *ending;
+        double least;
+    } WANTED[] = {{"_force_max_N", 0.0},
+                  {"alpha_peak_rad_s2", 1e-6},
+                  {"error_max", 0.0},
+                  {"_penetration_max_m", 0.0},
+                  {"_omega_max_rad_s", 1e-6}};
     const size_t first = choice->layout->setting_count;
-    for (size_t k = 0; k < sizeof ENDINGS / sizeof *ENDINGS; k++) {
+    for (size_t k = 0; k < sizeof WANTED / sizeof *WANTED; k++) {
         for (size_t i = 0; i < choice->layout->result_count; i++) {
             StoreSpread spread;
             if (choice->shown_count == SHOWN_MOST ||
-                !ends_in(choice->layout->results[i].name, ENDINGS[k])) {
+                !ends_in(choice->layout->results[i].name, WANTED[k].ending)) {
                 continue;
             }
             if (!store_spread(store, first + i, &spread, err)) {
                 return false;
             }
-            if (spread.count > 1 && spread.most > spread.least) {
+            if (spread.count > 1 && spread.most > spread.least &&
+                fmax(fabs(spread.most), fabs(spread.least)) > WANTED[k].least) {
                 choice->shown[choice->shown_count++] = first + i;
             }
         }

@@ -37,7 +37,7 @@ void svg_embed(const char *svg, const char *label, Text *html)
     static const char STYLE[] = "<style>";
     static const char STYLE_END[] = "</style>";
     static const char CLASS[] = "class=\"";
-    text_append(html, "<svg role=\"img\" aria-label=\"");
+    text_append(html, "<div class=\"wide picture\"><svg role=\"img\" aria-label=\"");
     xml_append(label, html);
     text_append(html, "\" font-family=\"Arial, sans-serif\" font-size=\"12\" ");
     const char *at = svg + strlen(OPENING);
@@ -56,4 +56,5 @@ void svg_embed(const char *svg, const char *label, Text *html)
             text_append_bytes(html, at++, 1);
         }
     }
+    text_append(html, "</div>\n");
 }

@@ -81,7 +81,7 @@ static double force_at(const void *context, size_t sample)
 static double torque_at(const void *context, size_t sample)
 {
     const Signal *signal = context;
-    return drive_torque_at(signal->scenario, signal->run, sample);
+    return drive_torque_at(signal->scenario, signal->run, signal->number, sample);
 }
 
 // Sections.
@@ -134,7 +134,7 @@ static json_t *section_json(const Scenario *scenario, const Trajectory *run,
     json_value_set(object, "change", sections->change);
     json_t *bodies = json_object();
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i != linkage_driven_body(linkage)) {
+        if (!linkage_is_driven(linkage, (int)i)) {
             json_object_set_new(bodies, linkage->bodies[i].name,
                                 section_members(sections, SECTION_OF_BODY,
                                                 COUNT_OF(SECTION_OF_BODY),
@@ -183,7 +183,7 @@ static json_t *spectrum_json(const Scenario *scenario, const Trajectory *run, co
     json_object_set_new(object, "orders", numbers);
     json_t *bodies = json_object();
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if ((int)i == linkage_driven_body(linkage)) {
+        if (linkage_is_driven(linkage, (int)i)) {
             continue;
         }
         const Signal signal = {scenario, run, i};
