@@ -57,19 +57,20 @@ static void figure_lines(const Figure *figure, const json_t *table, const json_t
                          Drawing *drawing, Text *words)
 {
     for (size_t i = 0; i < 2; i++) {
-        char *const names[] = {"crank-coupler, printed", "coupler-follower, printed"};
-        char *const again[] = {"crank-coupler, recomputed", "coupler-follower, recomputed"};
-        char *const real[] = {"crank-coupler, what physics gives",
-                              "coupler-follower, what physics gives"};
-        DrawLine *line = draw_add(drawing, names[i], plot_style(1, i));
+        static const char *const NAMES[] = {"crank-coupler, printed", "coupler-follower, printed"};
+        static const char *const AGAIN[] = {"crank-coupler, recomputed",
+                                            "coupler-follower, recomputed"};
+        static const char *const REAL[] = {"crank-coupler, what physics gives",
+                                           "coupler-follower, what physics gives"};
+        DrawLine *line = draw_add(drawing, NAMES[i], plot_style(1, i));
         line->is_dots = true;
         add_cells(drawing, json_object_get(table, "cells"), PINS[i], "printed", 1.0, line);
-        line = draw_add(drawing, again[i], plot_style(1, i));
+        line = draw_add(drawing, AGAIN[i], plot_style(1, i));
         line->is_bare = true;
         add_cells(drawing, json_object_get(table, "cells"), PINS[i], "value", 1.0, line);
         text_append(words, "%s goes with the power %.3g of the speed.\n", PINS[i], power_of(line));
         if (figure->physics != NULL) {
-            line = draw_add(drawing, real[i], plot_style(2, i));
+            line = draw_add(drawing, REAL[i], plot_style(2, i));
             line->is_bare = true;
             add_cells(drawing, json_object_get(physics, "pins"), PINS[i], figure->physics,
                       figure->scale, line);
