@@ -911,6 +911,22 @@ static double growth_of_modes(const Start *starts, size_t p, size_t *revolutions
     return larger_root(a, b);
 }
 
+// The most that a change can have grown that was gone before two of its sizes could be told; NaN of
+// one that is still there.
+static SettledGrowth gone_growth(const Start *starts, size_t start, double size)
+{
+    const size_t count = starts[start].settling.count;
+    size_t gone = 0;
+    while (gone < count && sections_apart(starts, start, gone) >= GROWTH_LEAST) {
+        gone++;
+    }
+    if (gone == count) {
+        return (SettledGrowth){.factor = NAN};
+    }
+    const double before = gone == 0 ? size / START_SHARE : sections_apart(starts, start, gone - 1);
+    return (SettledGrowth){GROWTH_LEAST / before, true, 1};
+}
+
 // The mean growth of |x| in a revolution, of the start in which it is larger.
 static SettledGrowth mean_growth(const Start *starts, double size)
 {
@@ -932,10 +948,8 @@ static SettledGrowth mean_growth(const Start *starts, double size)
         if (last > first) {
             const double grown = sections_apart(starts, i, last) / sections_apart(starts, i, first);
             found.factor = pow(grown, 1.0 / (double)(last - first));
-        } else if (first == 0 || sections_apart(starts, i, 0) < GROWTH_LEAST) {
-            // gone at once, or after one revolution
-            const double from = first == 0 ? sections_apart(starts, i, 0) : size / START_SHARE;
-            found = (SettledGrowth){GROWTH_LEAST / from, true, 1};
+        } else {
+            found = gone_growth(starts, i, size);
         }
         growth = !(found.factor <= growth.factor) && !isnan(found.factor) ? found : growth;
     }
