@@ -5,9 +5,11 @@
 #include "base/claims.h"
 #include "base/descriptors.h"
 #include "base/shell.h"
+#include "base/shipped.h"
 
 #include <assert.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +46,9 @@ done:
 bool input_read(const char *what, const char *path, char **text, size_t *size, Err *err)
 {
     struct stat status;
-    if (stat(path, &status) != 0) {
+    char found[PATH_MAX];
+    shipped_find(path, found, sizeof found);
+    if (stat(found, &status) != 0) {
         return err_set(err, ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
     }
     if (S_ISDIR(status.st_mode)) {
@@ -55,11 +59,11 @@ bool input_read(const char *what, const char *path, char **text, size_t *size, E
                        "%s: %lld bytes are too large for a %s file\nallowed: at most %d bytes",
                        path, (long long)status.st_size, what, INPUT_SIZE_MAX);
     }
-    FILE *file = fopen(path, "rb");
+    FILE *file = fopen(found, "rb");
     if (file == NULL) {
         return err_set(err, ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
     }
-    claims_note_read(what, path);
+    claims_note_read(what, found);
     const bool is_read = read_all(what, path, file, text, size, err);
     fclose(file);
     return is_read;

@@ -9,9 +9,9 @@
 
 enum { INPUT_SIZE_MAX = 16 << 20 }; // bytes; a case has some thousand, 20,000 four-bars 12 MiB
 
-// Reads the file into *text (owned by the caller, ends in a zero). Fails with ERR_FILE where it is
-// missing or unreadable, and with ERR_CASE where it is a directory or larger than INPUT_SIZE_MAX;
-// the outputs are then untouched.
+// Reads the file, or the one of that path or name that came with the program, into *text (owned by
+// the caller, ends in a zero). Fails with ERR_FILE where it is missing or unreadable, and with
+// ERR_CASE where it is a directory or larger than INPUT_SIZE_MAX; the outputs are then untouched.
 bool input_read(const char *what, const char *path, char **text, size_t *size, Err *err);
 
 // The same from standard input, which may be asked for again: what a pipe held is kept in memory.

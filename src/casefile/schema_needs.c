@@ -305,6 +305,24 @@ static bool lacks_gap(const SchemaRow *row, const Scenario *scenario, size_t ind
     return true;
 }
 
+// A profile is one of angles: a speed has none.
+static bool lacks_angles(const SchemaRow *row, const Scenario *scenario, size_t index,
+                         SchemaLack *lack)
+{
+    const Linkage *linkage = &scenario->linkage;
+    if (row->offset == offsetof(Scenario, linkage.driver.profile) && row->family == SCHEMA_SINGLE &&
+        row->holder == SCHEMA_SINGLE) {
+        *lack = (SchemaLack){"drive.angle", "drive.angle drive.speed", true};
+        return !linkage->driver.has_angles;
+    }
+    if (row->family == SCHEMA_DRIVE && row->type == SCHEMA_CHOICE &&
+        index < linkage->further_count) {
+        *lack = (SchemaLack){"an angle of that drive", "drives.*.angle drives.*.speed", true};
+        return !linkage->further[index].has_angles;
+    }
+    return false;
+}
+
 // Settings of how a run is computed and reported.
 static bool is_of_computing(const SchemaRow *row)
 {
@@ -337,7 +355,8 @@ bool schema_lacks(const SchemaRow *row, const Scenario *scenario, size_t index, 
             return true;
         }
     }
-    return !applies && lacks_gap(row, scenario, index, lack);
+    return !applies &&
+           (lacks_gap(row, scenario, index, lack) || lacks_angles(row, scenario, index, lack));
 }
 
 void schema_list_needs(const SchemaRow *row, Text *text)

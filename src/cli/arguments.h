@@ -32,9 +32,11 @@ typedef struct OptionRow {
     size_t count_offset; // of a list: how many there are, a size_t
     double low, high;
     Dimension dimension;
-    const char *const *words; // of a choice, ends in NULL
-    const char *what;         // in messages: what a list is of, or "map takes one case"
-    int letter;               // the short option; 0: none
+    // Of a choice: those that there are; of a list between commas: those that completion offers.
+    // Ends in NULL.
+    const char *const *words;
+    const char *what; // in messages: what a list is of, or "map takes one case"
+    int letter;       // the short option; 0: none
     // The value is NULL for an option without one. May fail with ERR_USAGE.
     bool (*read)(const char *value, void *options, Err *err);
 } OptionRow;

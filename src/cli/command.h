@@ -3,6 +3,7 @@
 
 #include "base/err.h"
 #include "base/text.h"
+#include "cli/arguments.h"
 
 #include <stdbool.h>
 
@@ -15,6 +16,10 @@ typedef struct Command {
     // Appends the format of the file that it reads, for 'jointplay help'. NULL: it has none of its
     // own.
     void (*describe)(bool is_markdown, Text *text);
+    // Its command line, of which help, completion and man page are made.
+    const Arguments *arguments;
+    // Commands of its own, such as 'study status'; ends in NULL. NULL: it has none.
+    const struct Command *const *parts;
 } Command;
 
 // All of them, in the order in which they are listed; ends in NULL.

@@ -111,5 +111,6 @@ int main(int argc, char **argv)
     return err.kind;
 }
 
-const Command *const COMMANDS[] = {&cmd_run,   &cmd_compare, &cmd_check,  &cmd_map,  &cmd_tune,
-                                   &cmd_study, &cmd_paper,   &cmd_report, &cmd_help, NULL};
+const Command *const COMMANDS[] = {&cmd_new,   &cmd_run,  &cmd_report, &cmd_compare,
+                                   &cmd_map,   &cmd_tune, &cmd_study,  &cmd_check,
+                                   &cmd_paper, &cmd_help, NULL};

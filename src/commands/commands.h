@@ -11,4 +11,5 @@ extern const Command cmd_map;
 extern const Command cmd_study;
 extern const Command cmd_paper;
 extern const Command cmd_report;
+extern const Command cmd_new;
 extern const Command cmd_help;

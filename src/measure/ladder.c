@@ -506,7 +506,8 @@ static void fit_orders(Ladder *ladder)
     }
 }
 
-// The frontier and the cheapest points are ODE's: the other solvers stand beside them.
+// The frontier and the cheapest points are those of ODE and of other engines: the solvers that the
+// truth is made by stand beside them.
 static void rank_points(Ladder *ladder)
 {
     const size_t count = ladder->point_count;
@@ -516,8 +517,9 @@ static void rank_points(Ladder *ladder)
     assert(times != NULL && errors != NULL && marks != NULL);
     for (size_t i = 0; i < count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        const bool is_ode = ladder->schemes[point->scheme].backend == BACKEND_ODE;
-        times[i] = is_ode ? point->wall_median_s : NAN;
+        const Scheme *scheme = &ladder->schemes[point->scheme];
+        const bool is_ranked = scheme->backend == BACKEND_ODE || scheme->driver != NULL;
+        times[i] = is_ranked ? point->wall_median_s : NAN;
         errors[i] = point->error;
     }
     frontier_mark(count, times, errors, marks);

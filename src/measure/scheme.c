@@ -153,6 +153,69 @@ size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX])
     return count;
 }
 
+// Takes the next part of a text up to one of the separators; false where there is none.
+static bool next_part(const char **text, const char *separators, char part[ENTRY_SIZE])
+{
+    const char *start = *text + strspn(*text, separators);
+    const size_t length = strcspn(start, separators);
+    snprintf(part, ENTRY_SIZE, "%.*s", (int)length, start);
+    *text = start + length;
+    return length > 0;
+}
+
+static bool add_way(const EngineDriver *driver, const char *way, Scheme *schemes, size_t *count,
+                    Err *err)
+{
+    if (*count == SCHEME_ENGINE_MAX) {
+        return err_set(err, ERR_USAGE, "these are too many ways of engines at once");
+    }
+    Scheme *added = &schemes[(*count)++];
+    *added = (Scheme){.backend = BACKEND_COUNT, .driver = driver, .way = way, .is_usual = true};
+    snprintf(added->name, sizeof added->name, "%s/%s", driver->name, way);
+    return true;
+}
+
+// The way of a driver that a word names; NULL, with ERR_USAGE, where it has none such.
+static const char *find_way(const EngineDriver *driver, const char *word, Err *err)
+{
+    Text known;
+    text_init(&known);
+    const char *way = NULL;
+    for (size_t i = 0; i < driver->way_count; i++) {
+        way = strcmp(driver->ways[i], word) == 0 ? driver->ways[i] : way;
+        text_append(&known, "%s%s", i > 0 ? ", " : "", driver->ways[i]);
+    }
+    if (way == NULL) {
+        err_set(err, ERR_USAGE, "'%s' cannot run a case the way '%s'; it has %s", driver->name,
+                word, known.data);
+    }
+    text_finish(&known);
+    return way;
+}
+
+bool scheme_add_engine(const EngineDriver *driver, const char *ways,
+                       Scheme schemes[SCHEME_ENGINE_MAX], size_t *count, Err *err)
+{
+    char word[ENTRY_SIZE];
+    bool is_done = true;
+    if (ways == NULL) {
+        for (size_t i = 0; is_done && i < driver->way_count; i++) {
+            is_done = add_way(driver, driver->ways[i], schemes, count, err);
+        }
+        return is_done;
+    }
+    while (is_done && next_part(&ways, "+", word)) {
+        const char *way = find_way(driver, word, err);
+        is_done = way != NULL && add_way(driver, way, schemes, count, err);
+    }
+    return is_done;
+}
+
+const char *scheme_backend(const Scheme *scheme)
+{
+    return scheme->driver != NULL ? scheme->driver->name : OPTIONS_BACKENDS[scheme->backend];
+}
+
 bool scheme_is_chosen(const Scheme *scheme)
 {
     return scheme->backend == BACKEND_ODE && scheme->tolerance > 0.0;
@@ -160,7 +223,7 @@ bool scheme_is_chosen(const Scheme *scheme)
 
 bool scheme_has_step(const Scheme *scheme)
 {
-    return scheme->backend == BACKEND_ODE && scheme->tolerance == 0.0;
+    return scheme->driver != NULL || (scheme->backend == BACKEND_ODE && scheme->tolerance == 0.0);
 }
 
 void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario)
@@ -173,20 +236,13 @@ void scheme_apply(const Scheme *scheme, double step_s, Scenario *scenario)
         return;
     }
     scenario->run.step = step_s;
+    if (scheme->driver != NULL) {
+        return;
+    }
     scenario->ode.solver = scheme->solver;
     scenario->ode.stepping = scheme->stepping;
     scenario->ode.map = scheme->map;
     scenario->ode.collider = scheme->collider;
-}
-
-// Takes the next part of a text up to one of the separators; false where there is none.
-static bool next_part(const char **text, const char *separators, char part[ENTRY_SIZE])
-{
-    const char *start = *text + strspn(*text, separators);
-    const size_t length = strcspn(start, separators);
-    snprintf(part, ENTRY_SIZE, "%.*s", (int)length, start);
-    *text = start + length;
-    return length > 0;
 }
 
 static bool scheme_has_word(const Scheme *scheme, const char *word)

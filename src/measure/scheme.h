@@ -2,20 +2,24 @@
 // that makes a difference, and the solvers that choose their own steps.
 #pragma once
 
+#include "engine/driver.h"
 #include "model/scenario.h"
 
 enum {
-    SCHEME_CHOSEN = 4, // steps that ODE chooses for an error: auto/1e-3 and finer
-    // every combination of ODE's choices, and the solvers that choose their own steps
+    SCHEME_CHOSEN = 4,      // steps that ODE chooses for an error: auto/1e-3 and finer
+    SCHEME_ENGINE_MAX = 48, // ways of other engines
+    // every combination of ODE's choices, those ways, and the solvers that choose their own steps
     SCHEME_MAX = ODE_SOLVER_COUNT * ODE_STEPPING_COUNT * ODE_MAP_COUNT * ODE_COLLIDER_COUNT +
-                 SCHEME_CHOSEN + BACKEND_COUNT,
+                 SCHEME_CHOSEN + BACKEND_COUNT + SCHEME_ENGINE_MAX,
     SCHEME_NAME_SIZE = 64,
 };
 
 typedef struct Scheme {
     char name[SCHEME_NAME_SIZE]; // "direct/plain/textbook", "auto/1e-4", or the name of the backend
-    BackendKind backend;
-    bool is_usual;    // taken where no schemes are asked for
+    BackendKind backend;         // BACKEND_COUNT: another engine, which has only the two below
+    const EngineDriver *driver;  // NULL: none; not owned
+    const char *way;             // of that driver, likewise
+    bool is_usual;               // taken where no schemes are asked for
     bool is_asked;    // its collider is the exact one or the case's: taken where none is named
     double tolerance; // 1, of BACKEND_ODE with a step that it chooses; else 0
     OdeSolver solver; // of BACKEND_ODE with a given step, as the three below
@@ -34,6 +38,15 @@ bool scheme_check(const Scenario *scenario, Err *err);
 // is CONTACT_POISSON; without play the collider is the exact one. Then come steps chosen for a
 // tolerance, the reference and, for a four-bar without play, the closed form.
 size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
+
+// Adds the ways of another engine to a list of such: "mujoco/kernel". All of them are taken,
+// or those that the list names, separated by '+'; ERR_USAGE for one that the engine has not, or
+// where that is more than there is room for.
+bool scheme_add_engine(const EngineDriver *driver, const char *ways,
+                       Scheme schemes[SCHEME_ENGINE_MAX], size_t *count, Err *err);
+
+// The backend that a scheme runs on: of ours, or another engine's driver.
+const char *scheme_backend(const Scheme *scheme);
 
 // Whether the scheme is ODE with a step chosen for a tolerance.
 bool scheme_is_chosen(const Scheme *scheme);

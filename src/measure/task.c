@@ -27,11 +27,33 @@ Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, co
     Task task = {
         .scenario = *scenario,
         .backend = scheme->backend,
+        .driver = scheme->driver,
+        .way = scheme->way,
         .run = run,
         .truth = truth == NULL || truth->trajectory == NULL ? NULL : truth,
     };
     scheme_apply(scheme, point->step_s, &task.scenario);
     return task;
+}
+
+// The trajectory of a task, and whether its spikes are known.
+static Trajectory *task_trajectory(const Task *task, const Truth *truth)
+{
+    if (task->driver != NULL) {
+        return engine_run(task->driver, task->way, &task->scenario, 0.0, NULL);
+    }
+    return backend_run(&task->scenario, task->backend, truth, (ChosenWatch){.begin = NULL},
+                       task->run.kind == LADDER_ERROR ? backend_run_probe(&task->scenario) : NULL);
+}
+
+// Another engine says of a run what it did at the samples: what is between them is not known.
+static void forget_between_samples(TrajectoryError *error)
+{
+    error->alpha_max = NAN;
+    error->peak_force_max = error->peak_force_max_in_horizon = NAN;
+    error->peak_alpha_max = error->peak_alpha_max_in_horizon = NAN;
+    error->peak_force_in[0] = error->peak_alpha_in[0] = '\0';
+    error->energy_lost = NAN;
 }
 
 void task_measure(const void *context, void *result)
@@ -42,14 +64,13 @@ void task_measure(const void *context, void *result)
     // the reference that a step is chosen against is no part of the time
     Truth own = {.trajectory = NULL};
     const Truth *truth = task->truth;
-    if (truth == NULL && backend_run_is_chosen(&task->scenario, task->backend)) {
+    if (truth == NULL && task->driver == NULL &&
+        backend_run_is_chosen(&task->scenario, task->backend)) {
         own = truth_make(&task->scenario, NOBODY);
         truth = &own;
     }
     const double started_s = clock_processor_s();
-    Trajectory *trajectory =
-        backend_run(&task->scenario, task->backend, truth, (ChosenWatch){.begin = NULL},
-                    run->kind == LADDER_ERROR ? backend_run_probe(&task->scenario) : NULL);
+    Trajectory *trajectory = task_trajectory(task, truth);
     run->processor_s = clock_processor_s() - started_s;
     run->is_complete = trajectory->is_complete;
     shorten_copy(run->message, sizeof run->message, trajectory->message);
@@ -61,6 +82,9 @@ void task_measure(const void *context, void *result)
         const double horizon_s = truth->is_limited ? truth->horizon_s : INFINITY;
         run->error = error_against(trajectory, truth->trajectory, horizon_s);
         run->error.against = NULL;
+        if (task->driver != NULL) {
+            forget_between_samples(&run->error);
+        }
     }
     truth_finish(&own);
     trajectory_destroy(trajectory);

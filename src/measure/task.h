@@ -16,6 +16,8 @@ enum { TASK_TRUTH_RUNS = 10 };
 typedef struct Task {
     Scenario scenario; // with scheme and step applied
     BackendKind backend;
+    const EngineDriver *driver; // of another engine, in whose place the backend then is
+    const char *way;
     LadderRun run;      // kind, point and round of a run that is measured
     const Truth *truth; // NULL where there is none at hand
 } Task;

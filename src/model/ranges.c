@@ -44,11 +44,17 @@ size_t ranges_find(const Ranges *ranges, double time_s)
     return stretch_at(ranges, time_s / ranges->width_s);
 }
 
-void ranges_add(Ranges *ranges, size_t signal, double time_s, double value)
+size_t ranges_find_all(const Ranges *ranges, double time_s, size_t *first)
 {
     const double at = time_s / ranges->width_s;
-    const size_t first = stretch_at(ranges, at - AT_BORDER);
-    const size_t last = stretch_at(ranges, at + AT_BORDER);
+    *first = stretch_at(ranges, at - AT_BORDER);
+    return stretch_at(ranges, at + AT_BORDER);
+}
+
+void ranges_add(Ranges *ranges, size_t signal, double time_s, double value)
+{
+    size_t first;
+    const size_t last = ranges_find_all(ranges, time_s, &first);
     for (size_t i = first; i <= last; i++) {
         range_add(&ranges->values[i * ranges->signal_count + signal], value);
     }

@@ -50,6 +50,10 @@ static inline size_t ranges_of_joint(const Ranges *ranges, size_t joint, RangesO
 // The stretch that holds a time; what lies beyond the last belongs to the last.
 size_t ranges_find(const Ranges *ranges, double time_s);
 
+// The stretches that a time belongs to, one of them or at a border two: writes the first and
+// returns the last.
+size_t ranges_find_all(const Ranges *ranges, double time_s, size_t *first);
+
 // Takes a value in at a time. One at the border of two stretches belongs to both.
 void ranges_add(Ranges *ranges, size_t signal, double time_s, double value);
 

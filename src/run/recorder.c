@@ -144,30 +144,41 @@ static void recorder_ranges_add(RecorderRanges *own, const StepRecord *step)
     add_to_stretch(own, step, own->now);
 }
 
-// Takes in a state of a part or of all (NULL) at any time.
-static void recorder_ranges_see(RecorderRanges *own, const SolverPart *part, const Sample *sample)
+// Takes a state of a part or of all (NULL) into a stretch.
+static void see_in_stretch(const RecorderRanges *own, const SolverPart *part, const Sample *sample,
+                           Range *values)
 {
     const Linkage *linkage = &own->scenario->linkage;
-    Ranges *ranges = &own->trajectory->ranges;
-    if (ranges->count == 0) {
-        return;
-    }
-    const double time_s = sample->time_s;
+    const Ranges *ranges = &own->trajectory->ranges;
     const size_t body_count = solver_body_count(part, linkage);
     const size_t joint_count = solver_joint_count(part, linkage);
     for (size_t k = 0; k < body_count; k++) {
         const size_t i = solver_body(part, k);
         const Motion *motion = &sample->bodies[i];
-        ranges_add(ranges, ranges_of_body(i, RANGES_OMEGA), time_s, motion->omega);
-        ranges_add(ranges, ranges_of_body(i, RANGES_ALPHA), time_s, motion->alpha);
-        ranges_add(ranges, ranges_of_body(i, RANGES_ACCELERATION), time_s,
-                   vec2_length(motion->acceleration));
+        Range *range = values + ranges_of_body(i, 0);
+        range_add(&range[RANGES_OMEGA], motion->omega);
+        range_add(&range[RANGES_ALPHA], motion->alpha);
+        range_add(&range[RANGES_ACCELERATION], vec2_length(motion->acceleration));
     }
     for (size_t k = 0; k < joint_count; k++) {
         const size_t i = solver_joint(part, k);
-        const JointState *state = &sample->joints[i];
-        ranges_add(ranges, ranges_of_joint(ranges, i, RANGES_FORCE), time_s, state->force);
-        ranges_add(ranges, ranges_of_joint(ranges, i, RANGES_GAP), time_s, state->gap);
+        Range *range = values + ranges_of_joint(ranges, i, 0);
+        range_add(&range[RANGES_FORCE], sample->joints[i].force);
+        range_add(&range[RANGES_GAP], sample->joints[i].gap);
+    }
+}
+
+// Takes in a state of a part or of all (NULL) at any time.
+static void recorder_ranges_see(RecorderRanges *own, const SolverPart *part, const Sample *sample)
+{
+    const Ranges *ranges = &own->trajectory->ranges;
+    if (ranges->count == 0) {
+        return;
+    }
+    size_t first;
+    const size_t last = ranges_find_all(ranges, sample->time_s, &first);
+    for (size_t i = first; i <= last; i++) {
+        see_in_stretch(own, part, sample, ranges->values + i * ranges->signal_count);
     }
 }
 

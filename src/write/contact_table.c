@@ -1,10 +1,13 @@
 // Writes the contacts of a run as rows: when each began, how long it lasted, how hard it pressed.
 #include "write/contact_table.h"
 #include "base/hermite.h"
-#include "write/csv.h"
+#include "write/row_file.h"
 #include "write/units.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // The numbers that have the units of what touches: N and m, or N m and rad where limits turn.
@@ -45,44 +48,68 @@ static const ContactColumn COLUMNS[] = {
 };
 enum { COLUMN_COUNT = sizeof COLUMNS / sizeof *COLUMNS };
 
+enum {
+    NAMES_MOST = 6 + 2 * COLUMN_COUNT,
+    NAME_SIZE = 40, // of a quantity and its unit
+};
+
 // Which columns the contacts of a linkage have.
 typedef struct ContactTable {
-    const Trajectory *trajectory;
+    char names[NAMES_MOST][NAME_SIZE];
+    const char *heads[NAMES_MOST]; // these
+    size_t count;
     bool has_crank;
     const Joint *kinds[2]; // a joint with play of lengths, and one of angles; NULL without
     bool has_pins;
 } ContactTable;
 
-static ContactTable find_columns(const Trajectory *trajectory)
+static void add_name(ContactTable *table, const char *name, const char *unit)
 {
-    const Linkage *linkage = &trajectory->linkage;
-    ContactTable table = {
-        .trajectory = trajectory,
-        .has_crank = linkage->driver.is_present,
-    };
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (linkage_has_play(joint)) {
-            table.kinds[linkage_is_torsional(joint) ? 1 : 0] = joint;
-        }
-        table.has_pins = table.has_pins || (joint->kind == JOINT_CLEARANCE && !linkage->is_spatial);
-    }
-    return table;
+    assert(table->count < NAMES_MOST);
+    char *head = table->names[table->count];
+    snprintf(head, NAME_SIZE, "%s%s%s", name, unit[0] != '\0' ? "_" : "", unit);
+    table->heads[table->count++] = head;
 }
 
-static void write_head(const ContactTable *table, FILE *stream)
+// The names point into the table, which is not to be moved.
+static void name_columns(ContactTable *table)
 {
-    fputs("joint,onset_s,duration_s,peak_s", stream);
-    fputs(table->has_crank ? ",onset_crank_deg" : "", stream);
+    static const char *const OF_ALL[] = {"joint", "onset_s", "duration_s", "peak_s"};
+    for (size_t i = 0; i < sizeof OF_ALL / sizeof *OF_ALL; i++) {
+        add_name(table, OF_ALL[i], "");
+    }
+    if (table->has_crank) {
+        add_name(table, "onset_crank_deg", "");
+    }
     for (size_t kind = 0; kind < 2; kind++) {
         const Joint *joint = table->kinds[kind];
         for (size_t i = 0; joint != NULL && i < COLUMN_COUNT; i++) {
-            const char *unit =
-                *(const char *const *)((const char *)joint_units(joint) + COLUMNS[i].unit);
-            fprintf(stream, ",%s_%s", COLUMNS[i].name, unit);
+            const char *units = (const char *)joint_units(joint);
+            add_name(table, COLUMNS[i].name, *(const char *const *)(units + COLUMNS[i].unit));
         }
     }
-    fputs(table->has_pins ? ",wall_deg\n" : "\n", stream);
+    if (table->has_pins) {
+        add_name(table, "wall_deg", "");
+    }
+}
+
+static void find_columns(const Linkage *linkage, ContactTable *table)
+{
+    *table = (ContactTable){.has_crank = linkage->driver.is_present};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (linkage_has_play(joint)) {
+            table->kinds[linkage_is_torsional(joint) ? 1 : 0] = joint;
+        }
+        table->has_pins =
+            table->has_pins || (joint->kind == JOINT_CLEARANCE && !linkage->is_spatial);
+    }
+    name_columns(table);
+}
+
+static RowHead head_of(const ContactTable *table)
+{
+    return (RowHead){"contacts", table->heads, table->count};
 }
 
 // The angle of a body at any time, rad, between the samples around it.
@@ -119,33 +146,28 @@ static double wall_deg(const Trajectory *trajectory, const JointSpike *contact)
     return atan2(at.y, at.x) * UNITS_DEG;
 }
 
-static void write_cell(FILE *stream, double number)
+static void write_row(const ContactTable *table, const Trajectory *trajectory,
+                      const JointSpike *contact, RowFile *file)
 {
-    fputc(',', stream);
-    csv_write_number(stream, number);
-}
-
-static void write_row(const ContactTable *table, const JointSpike *contact, FILE *stream)
-{
-    const Joint *joint = &table->trajectory->linkage.joints[contact->joint];
+    const Joint *joint = &trajectory->linkage.joints[contact->joint];
     const Spike *spike = &contact->spike;
-    csv_write_word(stream, joint->name);
-    write_cell(stream, spike->onset_s);
-    write_cell(stream, spike->duration_s);
-    write_cell(stream, spike->peak_s);
+    row_file_word(file, joint->name);
+    row_file_number(file, spike->onset_s);
+    row_file_number(file, spike->duration_s);
+    row_file_number(file, spike->peak_s);
     if (table->has_crank) {
-        write_cell(stream, spike->crank_rad * UNITS_DEG);
+        row_file_number(file, spike->crank_rad * UNITS_DEG);
     }
     for (size_t kind = 0; kind < 2; kind++) {
         const bool is_own = linkage_is_torsional(joint) == (kind == 1);
         for (size_t i = 0; table->kinds[kind] != NULL && i < COLUMN_COUNT; i++) {
-            write_cell(stream, is_own ? COLUMNS[i].find(spike) : NAN);
+            row_file_number(file, is_own ? COLUMNS[i].find(spike) : NAN);
         }
     }
     if (table->has_pins) {
-        write_cell(stream, wall_deg(table->trajectory, contact));
+        row_file_number(file, wall_deg(trajectory, contact));
     }
-    fputc('\n', stream);
+    row_file_end_row(file);
 }
 
 static int compare_onsets(const void *a, const void *b)
@@ -158,15 +180,29 @@ static int compare_onsets(const void *a, const void *b)
     return (one->joint > other->joint) - (one->joint < other->joint);
 }
 
-void contact_table_write(const Trajectory *trajectory, FILE *stream)
+bool contact_table_claim(const Linkage *linkage, const char *user, const char *path, Err *err)
 {
-    const ContactTable table = find_columns(trajectory);
-    write_head(&table, stream);
+    ContactTable table;
+    find_columns(linkage, &table);
+    const RowHead head = head_of(&table);
+    return row_file_claim(user, path, &head, err);
+}
+
+bool contact_table_write(const Trajectory *trajectory, const char *path, Err *err)
+{
+    ContactTable table;
+    find_columns(&trajectory->linkage, &table);
+    const RowHead head = head_of(&table);
+    RowFile file;
+    if (!row_file_begin(&file, path, &head, err)) {
+        return false;
+    }
     if (trajectory->contact_count > 0) {
         qsort(trajectory->contacts, trajectory->contact_count, sizeof *trajectory->contacts,
               compare_onsets);
     }
     for (size_t i = 0; i < trajectory->contact_count; i++) {
-        write_row(&table, &trajectory->contacts[i], stream);
+        write_row(&table, trajectory, &trajectory->contacts[i], &file);
     }
+    return row_file_end(&file, err);
 }

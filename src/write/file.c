@@ -159,12 +159,14 @@ enum {
     MARK_MAX = 5,        // beginnings of one kind
     HEAD_SIZE = 1 << 16, // bytes that are looked at: the first line of a study's table is long
     SHOWN_SIZE = 33,     // of the beginning of a file that is no kind of ours
+    APPLICATION_AT = 68, // the application_id of an SQLite file
 };
 
 // How a file begins, blanks and line ends aside, and what stands further down.
 typedef struct Mark {
     const char *opening;
     const char *further; // NULL: nothing more is asked
+    size_t at;           // where that stands, in bytes; 0: anywhere
 } Mark;
 
 typedef struct Kind {
@@ -198,10 +200,16 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
     [FILE_COMMENT] = {"a comment of jointplay check (Markdown)", {{"### jointplay check", NULL}}},
     [FILE_BASELINE] = {"a baseline of jointplay check",
                        {{"{\"format\": \"jointplay baseline", NULL}}},
-    [FILE_ROWS] = {"rows of a study (JSON Lines)", {{"{\"run\":", "\"outcome\":"}}},
+    [FILE_ROWS] = {"rows of jointplay (JSON Lines)",
+                   {{"{\"run\":", "\"outcome\":"},
+                    {"{\"time_s\":", NULL},
+                    {"{\"joint\":", "\"onset_s\":"}}},
+    [FILE_DATABASE] = {"a table of jointplay (SQLite)",
+                       {{"SQLite format 3", "JPSR", APPLICATION_AT}}},
+    [FILE_CASE] = {"a case of jointplay new (YAML)", {{"# Written by 'jointplay new", NULL}}},
     [FILE_SCRIPT] = {"a script of jointplay study slurm",
                      {{"#!/bin/bash", "Written by 'jointplay study slurm'"}}},
-    [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST"}}},
+    [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST", APPLICATION_AT}}},
     [FILE_JOURNAL] = {"a store of a comparison", {{"{\"compare\":", NULL}}},
 };
 
@@ -223,12 +231,20 @@ static bool begins_with(const char *head, size_t size, const char *opening)
     return true;
 }
 
+static bool goes_on_with(const char *head, size_t size, const Mark *mark)
+{
+    const size_t length = mark->further != NULL ? strlen(mark->further) : 0;
+    if (mark->at > 0) {
+        return size >= mark->at + length && memcmp(head + mark->at, mark->further, length) == 0;
+    }
+    return length == 0 || memmem(head, size, mark->further, length) != NULL;
+}
+
 static bool is_of_kind(const Kind *kind, const char *head, size_t size)
 {
     for (size_t i = 0; i < MARK_MAX && kind->marks[i].opening != NULL; i++) {
-        const char *further = kind->marks[i].further;
         if (begins_with(head, size, kind->marks[i].opening) &&
-            (further == NULL || memmem(head, size, further, strlen(further)) != NULL)) {
+            goes_on_with(head, size, &kind->marks[i])) {
             return true;
         }
     }

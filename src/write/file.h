@@ -29,7 +29,9 @@ typedef enum FileKind {
     FILE_JUNIT,    // of check: XML
     FILE_COMMENT,  // of check: Markdown
     FILE_BASELINE, // of check: JSON
-    FILE_ROWS,     // of a study: JSON Lines
+    FILE_ROWS,     // JSON Lines
+    FILE_DATABASE, // SQLite
+    FILE_CASE,     // of new: YAML
     FILE_SCRIPT,   // of a study, for Slurm
     FILE_STORE,    // of a study: SQLite, written in place
     FILE_JOURNAL,  // of a comparison: JSON Lines, written in place

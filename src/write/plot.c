@@ -33,8 +33,7 @@ static double axis_share(const Axis *axis, double value)
     return (plot_scaled(axis, value) - low) / (plot_scaled(axis, axis->high) - low);
 }
 
-// The spacing of about that many ticks over a span: 1, 2 or 5 times a power of ten.
-static double choose_tick(double span, int wanted)
+double axis_step(double span, int wanted)
 {
     const double raw = span / wanted;
     const double power = pow(10.0, floor(log10(raw)));
@@ -51,9 +50,25 @@ void axis_round(double *low, double *high)
         *high += margin;
     }
     const double margin = 0.02 * (*high - *low);
-    const double tick = choose_tick(*high - *low, AXIS_TICKS_WANTED);
+    const double tick = axis_step(*high - *low, AXIS_TICKS_WANTED);
     *low = tick * floor((*low - margin) / tick);
     *high = tick * ceil((*high + margin) / tick);
+}
+
+// Farther from 0 than this many times its own width, a range stands by itself: with 0 more than
+// half of the axis would be empty.
+static const double AXIS_FAR = 1.0;
+
+void axis_fit(double *low, double *high)
+{
+    const double nearest = *low > 0.0 ? *low : *high < 0.0 ? -*high : 0.0;
+    const bool has_zero = nearest <= AXIS_FAR * (*high - *low);
+    const bool is_size = has_zero && *low >= 0.0;
+    *low = has_zero ? fmin(*low, 0.0) : *low;
+    *high = has_zero ? fmax(*high, 0.0) : *high;
+    axis_round(low, high);
+    // what is never below 0 needs no room there
+    *low = is_size ? 0.0 : *low;
 }
 
 // The nearest of 1, 2 and 5 times a power of ten below, or with `up` above.
@@ -112,7 +127,7 @@ static size_t axis_ticks(const Axis *axis, double *ticks)
     }
     const double wanted = axis->tick;
     const double tick =
-        wanted > 0.0 ? wanted : choose_tick(axis->high - axis->low, AXIS_TICKS_WANTED);
+        wanted > 0.0 ? wanted : axis_step(axis->high - axis->low, AXIS_TICKS_WANTED);
     const double first = ceil(axis->low / tick - 1e-9);
     const double last = floor(axis->high / tick + 1e-9);
     for (double i = first; i <= last && count < AXIS_TICK_MAX; i += 1.0) {
@@ -132,7 +147,8 @@ static const char STYLE_SHEET[] =
     "fill:#222}"
     ".title{font-size:17px;font-weight:bold}.panel{font-size:14px;font-weight:bold}"
     ".note{fill:#555}.grid{stroke:#e4e4e4}.zero{stroke:#b0b0b0}.frame{stroke:#444;fill:none}"
-    ".line{fill:none;stroke-linejoin:round}";
+    ".line{fill:none;stroke-linejoin:round}"
+    ".halo{fill:#555;paint-order:stroke;stroke:#fff;stroke-width:3px}";
 
 enum { PALETTE_SIZE = 10, LINE_KINDS = 3 };
 
@@ -149,6 +165,14 @@ PlotStyle plot_style(size_t kind, size_t colour)
     PlotStyle style = KINDS[kind % LINE_KINDS];
     style.colour = PALETTE[colour % PALETTE_SIZE];
     return style;
+}
+
+PlotStyle plot_style_dark(size_t colour)
+{
+    static const char *const DARK[PALETTE_SIZE] = {"#003350", "#602a00", "#004734", "#5c364b",
+                                                   "#275169", "#684800", "#2a1b45", "#3f2405",
+                                                   "#500b13", "#23300e"};
+    return (PlotStyle){DARK[colour % PALETTE_SIZE], 0.9, 1.0, NULL};
 }
 
 void plot_begin(Text *svg, double width, double height, const char *title)
@@ -202,12 +226,15 @@ double plot_y(const PlotPanel *panel, double y)
     return panel->top + panel->height * (1.0 - axis_share(&panel->y, y));
 }
 
+static const double AXIS_PLAIN_MOST = 1e5; // longer numbers would run into the axis' title
+
 // Of a linear axis of very small or large numbers the power of ten that all of its labels have;
 // else 0.
 static int power_of(const Axis *axis)
 {
     const double largest = fmax(fabs(axis->low), fabs(axis->high));
-    const bool is_plain = axis->scale != AXIS_LINEAR || (largest >= 1e-3 && largest < 1e6);
+    const bool is_plain =
+        axis->scale != AXIS_LINEAR || (largest >= 1e-3 && largest < AXIS_PLAIN_MOST);
     return is_plain || !(largest > 0.0) ? 0 : (int)floor(log10(largest));
 }
 
@@ -242,7 +269,6 @@ static void draw_x_axis(const PlotPanel *panel)
         append_tick_label(svg, ticks[i], &panel->x);
         text_append(svg, "</text>\n");
     }
-    plot_text(svg, panel->left + 0.5 * panel->width, bottom + 37.0, "middle", "", panel->x.title);
 }
 
 static void draw_y_axis(const PlotPanel *panel)
@@ -261,11 +287,21 @@ static void draw_y_axis(const PlotPanel *panel)
         append_tick_label(svg, ticks[i], &panel->y);
         text_append(svg, "</text>\n");
     }
+}
+
+static void draw_titles(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    const double bottom = panel->top + panel->height;
     const double x = panel->left - 58.0;
     const double y = panel->top + 0.5 * panel->height;
-    text_append(svg, "<g transform=\"rotate(-90 %.1f %.1f)\">", x, y);
-    plot_text(svg, x, y, "middle", "", panel->y.title);
-    text_append(svg, "</g>\n");
+    plot_text(svg, panel->left + 0.5 * panel->width, bottom + 37.0, "middle", "", panel->x.title);
+    if (panel->y.title != NULL) {
+        text_append(svg, "<g transform=\"rotate(-90 %.1f %.1f)\">", x, y);
+        plot_text(svg, x, y, "middle", "", panel->y.title);
+        text_append(svg, "</g>\n");
+    }
+    plot_text(svg, panel->left, panel->top - 10.0, "start", "panel", panel->title);
 }
 
 // Where the fine lines of an axis stand; nothing of an axis that is not logarithmic.
@@ -298,10 +334,15 @@ void plot_fine_grid(const PlotPanel *panel)
 
 void plot_enter(const PlotPanel *panel)
 {
-    Text *svg = panel->svg;
     draw_x_axis(panel);
     draw_y_axis(panel);
-    plot_text(svg, panel->left, panel->top - 10.0, "start", "panel", panel->title);
+    plot_enter_bare(panel);
+}
+
+void plot_enter_bare(const PlotPanel *panel)
+{
+    Text *svg = panel->svg;
+    draw_titles(panel);
     // the clip path is named after its position, which no two panels share
     text_append(svg,
                 "<clipPath id=\"cut-%.0f-%.0f\"><rect x=\"%g\" y=\"%g\" width=\"%g\" "

@@ -25,8 +25,15 @@ typedef struct Axis {
     double tick;      // of AXIS_LINEAR: distance of the ticks; 0: chosen
 } Axis;
 
+// The spacing of about so many ticks over a span: 1, 2 or 5 times a power of ten.
+double axis_step(double span, int wanted);
+
 // Widens a range to whole ticks, so that nothing touches the edges.
 void axis_round(double *low, double *high);
+
+// Widens a range to 0 and then to whole ticks; not to 0 where that would leave most of the axis
+// empty.
+void axis_fit(double *low, double *high);
 
 // Widens a range of a logarithmic axis to 1, 2 or 5 times powers of ten, and so far that at least
 // two powers of ten stand in it.
@@ -55,6 +62,10 @@ typedef struct PlotStyle {
 // both repeat after the last.
 PlotStyle plot_style(size_t kind, size_t colour);
 
+// A very thin line in a dark shade of the colour of that number, which shows on lines of the colour
+// itself.
+PlotStyle plot_style_dark(size_t colour);
+
 // Begins and ends a picture of that size in pixels.
 void plot_begin(Text *svg, double width, double height, const char *title);
 void plot_end(Text *svg);
@@ -76,6 +87,10 @@ void plot_fine_grid(const PlotPanel *panel);
 // The grid, the ticks, the titles. What is drawn next in the panel is cut at its edges, up to
 // plot_leave.
 void plot_enter(const PlotPanel *panel);
+
+// The same without ticks and lines of its own: the titles alone.
+void plot_enter_bare(const PlotPanel *panel);
+
 void plot_leave(const PlotPanel *panel);
 
 // A line through points. What cannot be seen at half a pixel is left out.

@@ -1,11 +1,12 @@
 // Writes the rows of a series: one table of columns gives the head and the cells.
 #include "write/series_rows.h"
+#include "base/zeroed.h"
 #include "contact/law.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
 #include "model/loads.h"
 #include "run/drive_torque.h"
-#include "write/csv.h"
+#include "write/row_file.h"
 #include "write/units.h"
 
 #include <assert.h>
@@ -77,6 +78,19 @@ static bool is_pin(const Scenario *scenario, size_t joint)
 static bool has_limits(const Scenario *scenario, size_t joint)
 {
     return joint_of(scenario, joint)->limits.kind != LIMIT_NONE;
+}
+
+static bool has_play(const Scenario *scenario, size_t joint)
+{
+    return linkage_has_play(joint_of(scenario, joint));
+}
+
+// Whether a body's speed can change: that of a drive of constant speed cannot.
+static bool speeds_up(const Scenario *scenario, size_t body)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int drive = linkage_drive_of_body(linkage, (int)body);
+    return drive < 0 || linkage_drive(linkage, (size_t)drive)->table.count > 0;
 }
 
 // Whether a moment comes with the force at the anchor of body b that is not a slider's: of limits,
@@ -329,15 +343,15 @@ static const SeriesRow OF_FORCES_IN_SPACE[] = {
     {0},
 };
 static const SeriesRow OF_BODIES_BETWEEN[] = {
-    {"omega_min_rad_s", SERIES_AS_NAMED, NULL, omega_min},
-    {"omega_max_rad_s", SERIES_AS_NAMED, NULL, omega_max},
-    {"alpha_min_rad_s2", SERIES_AS_NAMED, NULL, alpha_min},
-    {"alpha_max_rad_s2", SERIES_AS_NAMED, NULL, alpha_max},
+    {"omega_min_rad_s", SERIES_AS_NAMED, speeds_up, omega_min},
+    {"omega_max_rad_s", SERIES_AS_NAMED, speeds_up, omega_max},
+    {"alpha_min_rad_s2", SERIES_AS_NAMED, speeds_up, alpha_min},
+    {"alpha_max_rad_s2", SERIES_AS_NAMED, speeds_up, alpha_max},
     {0},
 };
 static const SeriesRow OF_JOINTS_BETWEEN[] = {
-    {"gap_min", SERIES_LENGTH, NULL, gap_min},
-    {"gap_max", SERIES_LENGTH, NULL, gap_max},
+    {"gap_min", SERIES_LENGTH, has_play, gap_min},
+    {"gap_max", SERIES_LENGTH, has_play, gap_max},
     {"force_min", SERIES_FORCE, NULL, force_min},
     {"force_max", SERIES_FORCE, NULL, force_max},
     {0},
@@ -560,14 +574,20 @@ void series_columns_choose(SeriesColumns *columns, const char *patterns)
     columns->count = kept;
 }
 
-// Says that no column is called so, and which might be meant.
-static bool fail_unknown(const SeriesColumns *columns, const char *pattern, Err *err)
+// The names of all columns; the caller frees them.
+static const char **names_of(const SeriesColumns *columns)
 {
-    const char **names = malloc(columns->count * sizeof *names);
-    assert(names != NULL);
+    const char **names = zeroed(columns->count, sizeof *names);
     for (size_t i = 0; i < columns->count; i++) {
         names[i] = columns->columns[i].name;
     }
+    return names;
+}
+
+// Says that no column is called so, and which might be meant.
+static bool fail_unknown(const SeriesColumns *columns, const char *pattern, Err *err)
+{
+    const char **names = names_of(columns);
     const char *nearest = text_nearest(pattern, names, columns->count);
     err_set(err, ERR_USAGE,
             "--columns: no column is called '%s'; %s%s%s* stands for any letters, and the file "
@@ -614,17 +634,18 @@ double series_columns_value(const SeriesColumns *columns, const Trajectory *traj
     return column->find(&place);
 }
 
-static void write_head(const SeriesColumns *columns, FILE *stream)
+bool series_columns_claim(const SeriesColumns *columns, const char *user, const char *path,
+                          Err *err)
 {
-    for (size_t i = 0; i < columns->count; i++) {
-        fprintf(stream, "%s%s", i > 0 ? "," : "", columns->columns[i].name);
-    }
-    fputc('\n', stream);
+    const char **names = names_of(columns);
+    const RowHead head = {"series", names, columns->count};
+    const bool is_claimed = row_file_claim(user, path, &head, err);
+    free(names);
+    return is_claimed;
 }
 
-void series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory, FILE *stream)
+static void write_rows(const SeriesColumns *columns, const Trajectory *trajectory, RowFile *file)
 {
-    write_head(columns, stream);
     SeriesPlace place = {
         .columns = columns,
         .linkage = &columns->scenario->linkage,
@@ -635,11 +656,23 @@ void series_columns_write(const SeriesColumns *columns, const Trajectory *trajec
             const SeriesColumn *column = &columns->columns[i];
             place.number = column->number;
             place.component = column->component;
-            if (i > 0) {
-                fputc(',', stream);
-            }
-            csv_write_number(stream, column->find(&place));
+            row_file_number(file, column->find(&place));
         }
-        fputc('\n', stream);
+        row_file_end_row(file);
     }
+}
+
+bool series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory,
+                          const char *path, Err *err)
+{
+    const char **names = names_of(columns);
+    const RowHead head = {"series", names, columns->count};
+    RowFile file;
+    bool is_written = row_file_begin(&file, path, &head, err);
+    if (is_written) {
+        write_rows(columns, trajectory, &file);
+        is_written = row_file_end(&file, err);
+    }
+    free(names);
+    return is_written;
 }

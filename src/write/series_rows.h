@@ -5,8 +5,6 @@
 #include "model/distance.h"
 #include "model/trajectory.h"
 
-#include <stdio.h>
-
 typedef struct SeriesColumn SeriesColumn;
 
 // What a column is of.
@@ -55,5 +53,10 @@ SeriesName series_columns_name(const SeriesColumns *columns, size_t number);
 double series_columns_value(const SeriesColumns *columns, const Trajectory *trajectory,
                             size_t sample, size_t number);
 
-// Writes the head and one row a sample; the trajectory is complete.
-void series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory, FILE *stream);
+// Claims a file for the series, and writes it with a row a sample, whole or not at all: CSV, JSON
+// Lines or SQLite, whose table is `series` (write/row_file.h). The trajectory is complete. They
+// fail as row_file_claim and row_file_end do.
+bool series_columns_claim(const SeriesColumns *columns, const char *user, const char *path,
+                          Err *err);
+bool series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory,
+                          const char *path, Err *err);

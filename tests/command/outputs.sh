@@ -76,6 +76,7 @@ words_of() {
     check--baselines/*) echo "check i.yaml --bless" ;;
     check--*) echo "check i.yaml --quick --baselines b" ;;
     study--*) echo "study s.yaml" ;;
+    new@*) echo "new --force @" ;;
     "study export"*) echo "study export s.sqlite" ;;
     "study plot"*) echo "study plot s.sqlite --x step_s @" ;;
     "study merge"*) echo "study merge @ s.sqlite" ;;
@@ -120,6 +121,7 @@ list_command() {
     "$program" help $1 | awk -v command="$(echo "$1" | tr ' ' '_')" '
         /^(Usage:|  or:)/ && command != "study" {
             for (i = 1; i <= NF; i++) {
+                gsub(/[][]/, "", $i)
                 if ($i ~ /^(FILE\.[a-z]+|OUT\.[a-z]+)$/) { print command, "@", $i }
             }
         }

@@ -289,17 +289,25 @@ static void json_of_a_failed_run_holds_no_number(void **state)
     json_decref(root);
 }
 
-// The heights in a picture, pixels, at which a line of points passes one that stands at an x.
+// The heights in a picture, pixels, at which a line passes one that stands at an x: where it
+// crosses it, and where it starts on it.
 static size_t heights_at(const char *path, double x, double *heights, size_t room)
 {
     size_t count = 0;
-    for (const char *at = path; *at == 'M' || *at == 'L';) {
-        char *end;
-        const double here = strtod(at + 1, &end);
-        const double height = strtod(end, &end);
-        if (fabs(here - x) < 0.5 && count < room) {
-            heights[count++] = height;
+    double before[2] = {0.0, 0.0};
+    for (const char *at = path; strchr("MLHV", *at) != NULL && *at != '\0';) {
+        char *end = (char *)at + 1;
+        double here[2] = {before[0], before[1]};
+        here[0] = *at == 'V' ? here[0] : strtod(end, &end);
+        here[1] = *at == 'H' ? here[1] : strtod(end, &end);
+        const bool is_start = *at == 'M' && here[0] == x;
+        const bool crosses = *at != 'M' && (before[0] - x) * (here[0] - x) <= 0.0 &&
+                             before[0] != x && here[0] != before[0];
+        if ((is_start || crosses) && count < room) {
+            const double share = is_start ? 1.0 : (x - before[0]) / (here[0] - before[0]);
+            heights[count++] = before[1] + share * (here[1] - before[1]);
         }
+        memcpy(before, here, sizeof before);
         at = end;
     }
     return count;

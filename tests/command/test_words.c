@@ -66,6 +66,7 @@ static void every_line_fits_a_terminal(void **state)
         "help study slurm",
         "paper --help",
         "report --help",
+        "new --help",
     };
     for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++) {
         program_run(program, WORDS[i]);

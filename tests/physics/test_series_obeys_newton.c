@@ -196,7 +196,7 @@ static Series series_of(const Scenario *scenario, const Trajectory *run)
     char path[256];
     Err err = {0};
     scratch_path("newton.csv", path, sizeof path);
-    assert_true(series_csv_write(scenario, run, NULL, path, &err));
+    assert_true(series_write(scenario, run, NULL, path, &err));
     Series series = read_series(path);
     unlink(path);
     return series;

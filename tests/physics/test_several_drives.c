@@ -384,7 +384,7 @@ static void random_speeds_are_the_closed_form(void **state)
                      k == 0 ? "drive" : "drives.right-pivot", cranks[k].speed);
         }
         const char *const settings[] = {speeds[0], speeds[1], "run.duration=120ms",
-                                        "run.step=100us"};
+                                        "run.step=50us"};
         Scenario scenario = load(FIVE_BAR, settings, 4);
         Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
         const Apart apart = apart_of(&scenario, run, cranks, 1.0);
@@ -396,7 +396,7 @@ static void random_speeds_are_the_closed_form(void **state)
         run = complete_run(&scenario, BACKEND_ODE);
         const Apart of_ode = apart_of(&scenario, run, cranks, 1.0);
         print_message("# %s: %.2g, %.2g\n", run->label, of_ode.rates, of_ode.forces);
-        // forces come from second differences over 100 us
+        // forces come from second differences over 50 us
         assert_true(of_ode.rates < 1e-9 && of_ode.forces < 1e-7);
         trajectory_destroy(run);
     }

@@ -4,7 +4,7 @@
 set -u
 root=$1
 library="base kernel model contact world casefile analytic reference ode run"
-layers="$library measure write cli commands"
+layers="$library engine measure write cli commands drivers"
 
 # Lines 'file included' for every include of one source tree.
 includes() {
@@ -26,6 +26,11 @@ broken_layers() {
             return ranks[parts[1]]
         }
         BEGIN { count = split(layers, names, " "); for (i = 1; i <= count; i++) ranks[names[i]] = i }
+        # programs of their own, of which anybody could write one: they take the kernel alone
+        room($1) == "drivers" && $2 !~ /^(drivers|kernel|base)\// {
+            print $1 ": a driver includes " $2
+            next
+        }
         $1 == "cli/main.c" || $2 == "commands/commands.h" { next }
         !rank($1) { print $1 ": folder " room($1) " is no layer" }
         !rank($2) || rank($2) > rank($1) {
@@ -61,8 +66,8 @@ broken_walls() {
     broken_wall "$1" 'ode/' '/(ode|world)/'
     broken_wall "$1" 'ccd/' '/ode/plane/collider_staves\.c$'
     broken_wall "$1" 'yaml\.h' '/casefile/document\.c$'
-    broken_wall "$1" 'jansson\.h' '/(write|commands)/'
-    broken_wall "$1" 'sqlite3\.h' '/commands/study/store[a-z_]*\.c$'
+    broken_wall "$1" 'jansson\.h' '/(engine|drivers|write|commands)/'
+    broken_wall "$1" 'sqlite3\.h' '/(commands/study/store[a-z_]*|write/row_sqlite)\.c$'
     broken_wall "$1" 'argp\.h' '/cli/'
 }
 
@@ -111,6 +116,8 @@ printf '#include "commands/map/map.h"\n' >"$control/rooms/commands/report/page.c
 printf '#include "commands/map/map.h"\n' >"$control/rooms/commands/tune/tune.c"
 printf '#include "commands/commands.h"\n' >"$control/rooms/commands/tune/cmd_tune.c"
 printf '#include "commands/map/map.h"\n' >"$control/rooms/cli/main.c"
+mkdir -p "$control/program/drivers/mine"
+printf '#include "kernel/kernel.h"\n#include "model/linkage.h"\n' >"$control/program/drivers/mine/a.c"
 mkdir -p "$control/circle/run"
 printf '#include "run/b.h"\n' >"$control/circle/run/a.c"
 printf '#include "run/a.h"\n' >"$control/circle/run/b.h"
@@ -127,7 +134,7 @@ printf '// Where does it stand?\n' >"$control/opening/a.c"
 printf '#include <stdio.h>\n' >"$control/opening/b.c"
 printf '// Finds where it stands.\n' >"$control/opening/c.c"
 
-echo 1..16
+echo 1..17
 report "a file includes only its own folder and those above it" "$(broken_layers "$root/src")"
 report "each library is included in its own place alone" "$(broken_walls "$root/src")"
 report "no two files need each other" "$(cycles "$root/src")"
@@ -139,9 +146,12 @@ report "a file that includes a lower layer is caught" "$(caught "$(broken_layers
 found=$(broken_layers "$control/rooms")
 report "a command that includes another is caught, and nothing else" \
     "$([ "$found" = 'commands/tune/tune.c: includes commands/map/, another command' ] || echo "found: $found")"
+found=$(broken_layers "$control/program")
+report "a driver that includes more than the kernel is caught" \
+    "$([ "$found" = 'drivers/mine/a.c: a driver includes model/linkage.h' ] || echo "found: $found")"
 report "a library outside its place is caught" "$(caught "$(broken_walls "$control")")"
 found=$(broken_walls "$control/walls" | sed 's|.*/||')
-report "SQLite is caught outside the store alone" \
+report "SQLite is caught outside its places alone" \
     "$([ "$found" = 'sweep.c: includes <sqlite3.h' ] || echo "found: $found")"
 found=$(broken_walls "$control/inside" | sed 's|.*/ode/plane/||')
 report "libccd is caught in any file but one" \

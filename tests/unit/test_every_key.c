@@ -46,6 +46,7 @@ static const char *const UNWRITTEN[] = {
     "drive.period",
     // refused where it has them
     "drive.stall-torque",
+    "drive.profile",
     "drive.no-load-speed",
     "drive.rotor-inertia",
     "drive.stiffness",

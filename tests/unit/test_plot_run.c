@@ -1,4 +1,5 @@
 // Is the picture of a run well-formed, and is nothing lost in it?
+#include "commands/run/plot_lines.h"
 #include "commands/run/run_report.h"
 
 #include "report_fixture.h"
@@ -101,7 +102,8 @@ static void a_picture_of_nothing_but_failures_is_still_one(void **state)
     expect_well_formed(svg.data);
     assert_null(strstr(svg.data, "nan"));
     assert_null(strstr(svg.data, "inf"));
-    assert_non_null(strstr(svg.data, "No run to compare with"));
+    // there is no difference, and no panel for one
+    assert_null(strstr(svg.data, "Difference"));
     text_finish(&svg);
 }
 
@@ -147,6 +149,250 @@ static void a_body_that_does_not_turn_shows_its_speed(void **state)
         assert_null(strstr(svg.data, CASES[i].not_shown));
         text_finish(&svg);
     }
+}
+
+// The frames of the panels, in their order.
+typedef struct Frame {
+    double left, top, width, height;
+} Frame;
+
+enum { FRAMES_MAX = 24 };
+
+static size_t find_frames(const char *svg, Frame frames[FRAMES_MAX])
+{
+    size_t count = 0;
+    for (const char *c = svg; (c = strstr(c, "<rect class=\"frame\"")) != NULL; c++) {
+        Frame *frame = &frames[count++];
+        assert_int_equal(sscanf(c,
+                                "<rect class=\"frame\" x=\"%lf\" y=\"%lf\" width=\"%lf\" "
+                                "height=\"%lf\"",
+                                &frame->left, &frame->top, &frame->width, &frame->height),
+                         4);
+    }
+    return count;
+}
+
+// How far apart the dots of the strongest contacts are, whose forces fall by 100 N each, in pixels.
+static void measure_dots(const Fixture *fixture, double steps[6])
+{
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    double last = 0.0;
+    size_t count = 0;
+    for (const char *c = svg.data; (c = strstr(c, "<circle")) != NULL; c++) {
+        double x;
+        double y;
+        assert_int_equal(sscanf(c, "<circle cx=\"%lf\" cy=\"%lf\"", &x, &y), 2);
+        if (count++ > 0) {
+            steps[count - 2] = y - last;
+        }
+        last = y;
+    }
+    assert_int_equal(count, 7);
+    text_finish(&svg);
+}
+
+static void forces_are_linear_unless_decades_are_asked_for(void **state)
+{
+    Fixture *fixture = *state;
+    double steps[6];
+    // also where the largest is far above all else
+    fixture->runs[1]->joints[1].spikes[0].force_max = 1234.5;
+    measure_dots(fixture, steps);
+    for (int i = 1; i < 6; i++) {
+        assert_near(steps[i], steps[0], 0.03);
+    }
+    assert_true(steps[0] > 5.0);
+    // the control: of decades each is longer than the one before
+    fixture->report.has_log_forces = true;
+    measure_dots(fixture, steps);
+    for (int i = 1; i < 6; i++) {
+        assert_true(steps[i] > steps[i - 1] + 0.03);
+    }
+}
+
+static void marks_of_spikes_stand_in_the_frame(void **state)
+{
+    Fixture *fixture = *state;
+    Frame frames[FRAMES_MAX];
+    // far below the samples, which are all that the axis would have else
+    add_spikes(fixture);
+    fixture->runs[1]->alpha_spikes[1].spikes[0].value = -1.3e4;
+    for (size_t i = 0; i < fixture->runs[1]->sample_count * 3; i++) {
+        fixture->runs[1]->motions[i].alpha = -1e4;
+        fixture->runs[0]->motions[i].alpha = -1e4;
+    }
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    assert_true(find_frames(svg.data, frames) > 2);
+    const char *title = strstr(svg.data, "<title>alpha coupler: -13000 rad/s^2");
+    assert_non_null(title);
+    const char *mark = title;
+    while (strncmp(mark, "<path", 5) != 0) {
+        mark--;
+    }
+    double x;
+    double y;
+    assert_int_equal(sscanf(mark, "<path class=\"mark\" d=\"M%lf %lf", &x, &y), 2);
+    // the mark hangs below its tip by its height
+    assert_true(y > frames[1].top && y + 7.0 < frames[1].top + frames[1].height);
+    assert_true(x > frames[1].left && x < frames[1].left + frames[1].width);
+    text_finish(&svg);
+}
+
+static void ideal_joints_are_a_thin_dark_line_on_top(void **state)
+{
+    Fixture *fixture = *state;
+    for (size_t i = 0; i < fixture->runs[0]->sample_count; i++) {
+        fixture->runs[0]->states[i * 4 + 1].force = 50.0;
+    }
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    const char *ideal = strstr(svg.data, "<title>analytic: force crank-coupler</title>");
+    const char *other = strstr(svg.data, "<title>ode: force crank-coupler</title>");
+    assert_true(ideal != NULL && other != NULL && ideal > other);
+    // of the joint's colour, but dark
+    assert_non_null(strstr(other, "title"));
+    assert_memory_equal(ideal -
+                            strlen("stroke=\"#004734\" stroke-width=\"0.9\" stroke-opacity=\"1\">"),
+                        "stroke=\"#004734\" stroke-width=\"0.9\"", 34);
+    text_finish(&svg);
+    // the control: without play it is what the others are held against, wide and below them
+    fixture->scenario.linkage.joints[1].kind = JOINT_REVOLUTE;
+    fixture->runs[1]->joints[1].spike_count = 0;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    ideal = strstr(svg.data, "<title>analytic: force crank-coupler</title>");
+    other = strstr(svg.data, "<title>ode: force crank-coupler</title>");
+    assert_true(ideal != NULL && other != NULL && ideal < other);
+    text_finish(&svg);
+}
+
+// Where the middle of the circles is in the panel of loads, as a share of its width.
+static double find_middle(const Fixture *fixture)
+{
+    Text svg;
+    text_init(&svg);
+    plot_run_write(&fixture->report, &svg);
+    const char *panel = strstr(svg.data, "Force on the pin, seen from its hole");
+    assert_non_null(panel);
+    assert_non_null(strstr(panel, ">90\302\260<"));
+    assert_non_null(strstr(panel, " N</text>"));
+    const char *spoke = strstr(panel, "<path class=\"line\" d=\"M");
+    double x;
+    double y;
+    assert_int_equal(sscanf(spoke, "<path class=\"line\" d=\"M%lf %lf", &x, &y), 2);
+    Frame frame;
+    Frame frames[FRAMES_MAX];
+    find_frames(panel, frames);
+    frame = frames[0];
+    text_finish(&svg);
+    return (x - frame.left) / frame.width;
+}
+
+static void no_quarter_of_the_loads_is_empty(void **state)
+{
+    Fixture *fixture = *state;
+    for (size_t i = 0; i < 2 * fixture->runs[1]->sample_count; i++) {
+        Trajectory *run = fixture->runs[i % 2];
+        run->motions[i / 2 * 3].angle = 0.0;
+        run->states[i / 2 * 4 + 1].force_on_b = (Vec2){100.0 * (double)(i / 2), 10.0};
+    }
+    // to one side alone
+    assert_true(find_middle(fixture) < 0.15);
+    // the control: to both
+    for (size_t i = 0; i < fixture->runs[1]->sample_count; i++) {
+        fixture->runs[1]->states[i * 4 + 1].force_on_b.x = 400.0 * (i % 2 == 0 ? 1.0 : -1.0);
+    }
+    assert_near(find_middle(fixture), 0.5, 0.01);
+}
+
+static void no_quarter_of_the_picture_is_empty(void **state)
+{
+    Fixture *fixture = *state;
+    for (int is_odd = 0; is_odd < 2; is_odd++) {
+        // with or without the panel of the difference
+        fixture->errors[1].is_known = is_odd == 0;
+        fixture->errors[0].is_known = false;
+        Text svg;
+        Frame frames[FRAMES_MAX];
+        text_init(&svg);
+        plot_run_write(&fixture->report, &svg);
+        const size_t count = find_frames(svg.data, frames);
+        for (size_t i = 0; i < count; i++) {
+            const bool is_alone = count % 2 == 1 && i + 1 == count;
+            assert_near(frames[i].width, is_alone ? 890.0 : 390.0, 0.0);
+        }
+        // nothing but the picture's margin below the last
+        double height;
+        assert_int_equal(sscanf(strstr(svg.data, " height=\""), " height=\"%lf\"", &height), 1);
+        assert_true(height - frames[count - 1].top - frames[count - 1].height < 70.0);
+        text_finish(&svg);
+    }
+}
+
+enum { CORNERS = 8 };
+
+static double turned_at(size_t sample)
+{
+    return 2.0 * acos(-1.0) * (double)sample / CORNERS;
+}
+
+static Vec2 circle_at(const RunReport *report, const Trajectory *run, size_t sample,
+                      const PlotPath *path)
+{
+    (void)report;
+    (void)run;
+    (void)path;
+    return (Vec2){cos(turned_at(sample)), sin(turned_at(sample))};
+}
+
+static Vec2 circle_rate(const RunReport *report, const Trajectory *run, size_t sample,
+                        const PlotPath *path)
+{
+    (void)report;
+    (void)path;
+    const double rate = turned_at(1) / (run->times[1] - run->times[0]);
+    return (Vec2){-rate * sin(turned_at(sample)), rate * cos(turned_at(sample))};
+}
+
+// How far a path through a few points of a circle leaves it, of its radius.
+static double leave_circle(const Fixture *fixture, bool has_rate)
+{
+    PlotView view = plot_view_begin(&fixture->report);
+    Text svg;
+    text_init(&svg);
+    const PlotPanel panel = {.svg = &svg,
+                             .title = "",
+                             .width = 200.0,
+                             .height = 200.0,
+                             .x = {.low = -1.0, .high = 1.0},
+                             .y = {.low = -1.0, .high = 1.0}};
+    plot_look_path(&view, &panel, 1,
+                   &(PlotPath){.joint = 1, .at = circle_at, .rate = has_rate ? circle_rate : NULL});
+    double most = 0.0;
+    for (const char *c = svg.data; (c = strpbrk(c, "ML")) != NULL; c++) {
+        double x;
+        double y;
+        if (sscanf(c + 1, "%lf %lf", &x, &y) == 2) {
+            most = fmax(most, fabs(hypot(x - 100.0, y - 100.0) / 100.0 - 1.0));
+        }
+    }
+    text_finish(&svg);
+    plot_view_finish(&view);
+    return most;
+}
+
+static void an_orbit_is_as_smooth_as_its_velocities(void **state)
+{
+    const Fixture *fixture = *state;
+    // the cubic through points an eighth of a turn apart leaves the circle by (pi / 4)^4 / 384
+    assert_true(leave_circle(fixture, true) < 0.002);
+    // the control: one that only stays between its points leaves it by much more
+    assert_true(leave_circle(fixture, false) > 0.02);
 }
 
 // Pendulums with play side by side; what happens to one goes up and down with its number.
@@ -254,6 +500,18 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_body_that_does_not_turn_shows_its_speed, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test_setup_teardown(a_spiky_quantity_gets_decades_on_both_sides, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(forces_are_linear_unless_decades_are_asked_for,
+                                        fixture_set_up, fixture_tear_down),
+        cmocka_unit_test_setup_teardown(marks_of_spikes_stand_in_the_frame, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(ideal_joints_are_a_thin_dark_line_on_top, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(no_quarter_of_the_loads_is_empty, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(no_quarter_of_the_picture_is_empty, fixture_set_up,
+                                        fixture_tear_down),
+        cmocka_unit_test_setup_teardown(an_orbit_is_as_smooth_as_its_velocities, fixture_set_up,
                                         fixture_tear_down),
         cmocka_unit_test(of_a_thousand_bodies_those_are_drawn_that_most_happens_to),
         cmocka_unit_test(of_twenty_bodies_all_are_drawn),

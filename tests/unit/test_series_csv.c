@@ -15,7 +15,7 @@ static void a_series_has_the_columns_that_others_rely_on(void **state)
     char content[8192];
     Err err = {0};
     scratch_path("series.csv", path, sizeof path);
-    assert_true(series_csv_write(&fixture->scenario, fixture->runs[1], NULL, path, &err));
+    assert_true(series_write(&fixture->scenario, fixture->runs[1], NULL, path, &err));
     read_whole(path, content, sizeof content);
     unlink(path);
     char *line = strtok(content, "\n");
@@ -106,7 +106,7 @@ static void ranges_stand_behind_the_samples(void **state)
     static char content[32768];
     Err err = {0};
     scratch_path("ranges.csv", path, sizeof path);
-    assert_true(series_csv_write(&fixture->scenario, run, NULL, path, &err));
+    assert_true(series_write(&fixture->scenario, run, NULL, path, &err));
     read_whole(path, content, sizeof content);
     unlink(path);
     char *rows[SAMPLES + 1];
@@ -142,7 +142,7 @@ static void a_number_that_does_not_exist_is_an_empty_cell(void **state)
     static char content[8192];
     Err err = {0};
     scratch_path("none.csv", path, sizeof path);
-    assert_true(series_csv_write(&fixture->scenario, run, NULL, path, &err));
+    assert_true(series_write(&fixture->scenario, run, NULL, path, &err));
     read_whole(path, content, sizeof content);
     unlink(path);
     const char *head = strtok(content, "\n");
@@ -161,8 +161,8 @@ static void columns_are_chosen_by_name(void **state)
     char path[256];
     Err err = {0};
     scratch_path("chosen.csv", path, sizeof path);
-    assert_true(series_csv_write(&fixture->scenario, fixture->runs[1], "coupler_a?pha*, *_force_N",
-                                 path, &err));
+    assert_true(series_write(&fixture->scenario, fixture->runs[1], "coupler_a?pha*, *_force_N",
+                             path, &err));
     read_whole(path, content, sizeof content);
     unlink(path);
     // in the order of the series
@@ -202,11 +202,11 @@ static void a_series_of_several_runs_has_a_file_each(void **state)
 {
     (void)state;
     char path[64];
-    series_csv_path("out.csv", "ode", 1, path, sizeof path);
+    series_path("out.csv", "ode", 1, path, sizeof path);
     assert_string_equal(path, "out.csv");
-    series_csv_path("a.b/out.csv", "ode", 2, path, sizeof path);
+    series_path("a.b/out.csv", "ode", 2, path, sizeof path);
     assert_string_equal(path, "a.b/out-ode.csv");
-    series_csv_path("a.b/out", "ode", 2, path, sizeof path);
+    series_path("a.b/out", "ode", 2, path, sizeof path);
     assert_string_equal(path, "a.b/out-ode");
 }
 

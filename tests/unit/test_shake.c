@@ -50,6 +50,7 @@ static bool is_alike(const Scenario *one, const Scenario *other)
     shared.linkage.springs = one->linkage.springs;
     shared.linkage.torsions = one->linkage.torsions;
     shared.linkage.loads = one->linkage.loads;
+    shared.linkage.further = one->linkage.further;
     return memcmp(one, &shared, sizeof shared) == 0 &&
            memcmp(one->linkage.bodies, linkage->bodies,
                   linkage->body_count * sizeof *linkage->bodies) == 0 &&

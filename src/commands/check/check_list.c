@@ -3,6 +3,7 @@
 // The baseline of cases/paper/impact-k66.yaml is DIR/impact-k66.json, and names the case by its
 // path from DIR, so that both can move together.
 #include "commands/check/check_list.h"
+#include "base/shipped.h"
 #include "base/text.h"
 #include "casefile/casefile.h"
 #include "cli/warnings.h"
@@ -228,14 +229,16 @@ static void add_path(const char *path, CheckItem **items, size_t *count)
     assert(*items != NULL);
     CheckItem *item = &(*items)[(*count)++];
     *item = (CheckItem){.has_baseline = false};
-    text_copy(item->path, sizeof item->path, path);
+    shipped_find(path, item->path, sizeof item->path);
 }
 
 // Adds the cases of a folder; false where it is none.
-static bool add_folder(const char *path, CheckItem **items, size_t *count, Err *err)
+static bool add_folder(const char *given, CheckItem **items, size_t *count, Err *err)
 {
     struct dirent **entries;
     struct stat status;
+    char path[FILE_PATH_SIZE];
+    shipped_find(given, path, sizeof path);
     if (stat(path, &status) != 0 || !S_ISDIR(status.st_mode)) {
         return false;
     }
@@ -355,9 +358,23 @@ static const OptionRow OPTIONS[] = {
     COMMON_QUIET(3),
 };
 
+// Without baselines here, those that came with the program are meant where all cases are to be
+// checked, or one of its own.
+static void choose_folder(CheckOptions *options)
+{
+    char path[FILE_PATH_SIZE];
+    const bool is_meant =
+        options->folder == DEFAULT_FOLDER && !options->is_blessing &&
+        (options->path_count == 0 || shipped_find(options->paths[0], path, sizeof path));
+    if (is_meant && shipped_find(DEFAULT_FOLDER, options->shipped, sizeof options->shipped)) {
+        options->folder = options->shipped;
+    }
+}
+
 static bool check_together(void *target, Err *err)
 {
-    const CheckOptions *options = target;
+    CheckOptions *options = target;
+    choose_folder(options);
     if (options->is_blessing && (options->is_quick || options->shake > 0)) {
         return err_set(err, ERR_USAGE,
                        "--bless measures in full and unshaken: it goes with "

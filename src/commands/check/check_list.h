@@ -18,6 +18,8 @@ typedef struct CheckOptions {
     const char *paths[CHECK_PATH_MAX]; // of the cases; none: all that have a baseline
     size_t path_count;
     const char *folder; // of the baselines
+    char
+        shipped[FILE_PATH_SIZE]; // folder of those that came with the program, where they are meant
     bool is_blessing;
     bool is_quick;
     bool is_expect_only;

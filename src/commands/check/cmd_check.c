@@ -129,4 +129,5 @@ const Command cmd_check = {
     .name = "check",
     .summary = "regression of spikes and all other numbers against baselines",
     .run = run_check,
+    .arguments = &CHECK_ARGUMENTS,
 };

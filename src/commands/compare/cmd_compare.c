@@ -42,6 +42,13 @@ static const OptionRow OPTIONS[] = {
      "steps in the run (default: those of them that take a minute together)",
      1, OPTION_TEXT, AT(steps)},
     COMMON_SCHEMES(1),
+    {"backends", "LIST",
+     "Engines to compare, such as ode,mujoco or ode,mujoco/kernel+force with some of its ways "
+     "(default: ode)",
+     1, OPTION_TEXT, AT(backends)},
+    {"driver", "NAME=PROGRAM", "A program that runs cases on another engine; may be given often", 1,
+     OPTION_LIST, AT(drivers), .what = "drivers",
+     .count_offset = offsetof(CompareOptions, driver_count), .high = ENGINE_DRIVER_MAX},
     COMMON_SET(1),
     {"repeats", "N", "Timing runs of each point, at least 5 (default: 5)", 2, OPTION_COUNT,
      AT(repeats), .low = LADDER_REPEAT_LEAST, .high = LADDER_REPEAT_MAX},
@@ -157,8 +164,9 @@ static size_t usual_steps(const CompareOptions *options, const Scenario *scenari
 
 // The ladder that the options ask for: schemes of the scenario, steps coarse to fine. Fails with
 // ERR_USAGE for a step that is none or that the scenario cannot be run at.
-static bool compare_options_ladder(const CompareOptions *options, const Scenario *scenario,
-                                   Ladder **ladder, LadderLeft *left, Err *err)
+static bool compare_options_ladder(const CompareOptions *options, const CompareEngines *engines,
+                                   const Scenario *scenario, Ladder **ladder, LadderLeft *left,
+                                   Err *err)
 {
     if (!scheme_check(scenario, err)) {
         return false;
@@ -167,7 +175,8 @@ static bool compare_options_ladder(const CompareOptions *options, const Scenario
     size_t scheme_count;
     double steps[LADDER_STEP_MAX];
     size_t step_count;
-    if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err)) {
+    if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err) ||
+        !compare_engines_apply(engines, scenario, schemes, &scheme_count, err)) {
         return false;
     }
     *left = (LadderLeft){.finest_s = 0.0};
@@ -339,7 +348,7 @@ static bool check_points(const Ladder *ladder, Err *err)
         }
         failed = point->step_s > 0.0 && failed == NULL ? point : failed;
     }
-    return failed == NULL || err_set(err, ERR_SOLVER, "every run of ODE failed: %s at %.4g us: %s",
+    return failed == NULL || err_set(err, ERR_SOLVER, "every run failed: %s at %.4g us: %s",
                                      failed->name, 1e6 * failed->step_s, failed->reason);
 }
 
@@ -397,8 +406,9 @@ static bool compare_case(void *target, Err *err)
     LadderLeft left = {.finest_s = 0.0};
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
-    bool is_done = common_options_load(&options->common, scenario, err) &&
-                   compare_options_ladder(options, scenario, &ladder, &left, err) &&
+    CompareEngines *engines = compare_engines_read(options, err);
+    bool is_done = engines != NULL && common_options_load(&options->common, scenario, err) &&
+                   compare_options_ladder(options, engines, scenario, &ladder, &left, err) &&
                    results_claim(&RESULTS, &options->common, scenario_path(scenario), err);
     if (is_done) {
         cmd_compare_warn(options, scenario);
@@ -406,6 +416,7 @@ static bool compare_case(void *target, Err *err)
     }
     ladder_destroy(ladder);
     scenario_destroy(scenario);
+    free(engines);
     return is_done;
 }
 
@@ -419,4 +430,5 @@ const Command cmd_compare = {
     .name = "compare",
     .summary = "speed against error: every scheme over a ladder of steps",
     .run = compare_run,
+    .arguments = &COMPARE_ARGUMENTS,
 };

@@ -48,6 +48,9 @@ json_t *compare_json_build(const void *report);
 
 typedef struct CompareOptions {
     CommonOptions common;
+    const char *backends;                   // as given, or NULL: ODE, and the engines of --driver
+    const char *drivers[ENGINE_DRIVER_MAX]; // NAME=PROGRAM
+    size_t driver_count;
     const char *steps; // as given, or NULL
     size_t repeats;
     const char *store; // NULL: the usual one
@@ -57,6 +60,40 @@ typedef struct CompareOptions {
 } CompareOptions;
 
 extern const Arguments COMPARE_ARGUMENTS;
+
+// Other engines in a comparison (docs/engines.md).
+
+typedef struct CompareEngines {
+    size_t count;
+    EngineDriver drivers[ENGINE_DRIVER_MAX];
+    bool has_ode;
+    size_t scheme_count;
+    Scheme schemes[SCHEME_ENGINE_MAX]; // their ways, which point to the drivers
+} CompareEngines;
+
+// Finds the engines that --backends and --driver name, and asks them what they are. The caller
+// frees it, after the last use of its schemes. NULL: fails with ERR_USAGE, or ERR_SOLVER where a
+// program is no driver.
+CompareEngines *compare_engines_read(const CompareOptions *options, Err *err);
+
+// Adds their ways to the schemes of a scenario, and takes ODE's out where it is not asked for.
+// Fails with ERR_CASE where the engines cannot be told of it.
+bool compare_engines_apply(const CompareEngines *engines, const Scenario *scenario, Scheme *schemes,
+                           size_t *count, Err *err);
+
+// Whether a ladder has other engines than ODE.
+bool compare_engines_are_any(const Ladder *ladder);
+
+// New references: which engines there are, in the key of a store and in a result; and for every
+// backend the cheapest points.
+json_t *compare_engines_key(const Ladder *ladder);
+json_t *compare_engines_json(const Ladder *ladder);
+json_t *compare_engines_cheapest(const Ladder *ladder);
+
+// A line of the head for each engine; the table of the least times, and that of the ways.
+void compare_engines_write(const Ladder *ladder, Text *text);
+void compare_engines_write_times(const Ladder *ladder, const Style *style, Text *text);
+void compare_engines_write_ways(const Ladder *ladder, const Style *style, Text *text);
 
 // Where a comparison keeps what it has finished, and how it goes on from there.
 

@@ -2,7 +2,9 @@
 //
 // Both axes are logarithmic. Colour shows stepping and map, solid or dashed line the solver, full
 // or hollow dots the collider. What is faster and more accurate than all else lies on the wide
-// pale line. The axes are ODE's: a solver far below their edge is an arrow there.
+// pale line. Other engines have a
+// colour each, and a line for each of their ways. The axes are those of engines: a solver far below
+// their edge is an arrow there.
 #include "commands/compare/compare.h"
 #include "write/plot.h"
 #include "write/units.h"
@@ -36,8 +38,33 @@ static bool is_drawn(const LadderPoint *point)
     return !point->is_failed && isfinite(point->wall_median_s) && point->error > 0.0;
 }
 
+// Of another engine: its colour, and a line for each of its ways.
+static PlotStyle engine_style_of(const Scheme *scheme)
+{
+    static const char *const COLOURS[] = {"#d9541e", "#1b9e77", "#8e44ad", "#b8860b", "#0096a8"};
+    static const char *const DASHES[] = {"2 4", "8 4", "8 3 2 3", NULL};
+    const EngineDriver *driver = scheme->driver;
+    // the colour is that of the name, so that it does not depend on what else is compared
+    unsigned sum = 0;
+    for (const char *letter = driver->name; *letter != '\0'; letter++) {
+        sum = 31 * sum + (unsigned char)*letter;
+    }
+    size_t way = 0;
+    while (way + 1 < driver->way_count && driver->ways[way] != scheme->way) {
+        way++;
+    }
+    const bool is_last = way + 1 == driver->way_count;
+    return (PlotStyle){.colour = COLOURS[sum % (sizeof COLOURS / sizeof *COLOURS)],
+                       .width = is_last ? 2.6 : 1.4,
+                       .opacity = 1.0,
+                       .dash = is_last ? NULL : DASHES[way % 3]};
+}
+
 static PlotStyle compare_plot_style_of(const Scheme *scheme)
 {
+    if (scheme->driver != NULL) {
+        return engine_style_of(scheme);
+    }
     // with play the map has the colour, else the stepping, which is then all there is
     const bool has_map = strchr(scheme->name, '/') != strrchr(scheme->name, '/');
     PlotStyle style = plot_style(1, has_map ? (size_t)scheme->map : (size_t)scheme->stepping);
@@ -69,7 +96,8 @@ static void compare_plot_choose_axes(const Ladder *ladder, PlotPanel *panel)
         }
         low_x = fmin(low_x, point->wall_median_s * UNITS_MS);
         high_x = fmax(high_x, point->wall_median_s * UNITS_MS);
-        if (ladder->schemes[point->scheme].backend == BACKEND_ODE) {
+        if (ladder->schemes[point->scheme].backend == BACKEND_ODE ||
+            ladder->schemes[point->scheme].driver != NULL) {
             low_y = fmin(low_y, point->error);
             high_y = fmax(high_y, point->error);
         }

@@ -197,7 +197,9 @@ static json_t *compare_rows_cheapest(const Ladder *ladder, size_t target)
 // The same as tables.
 static void compare_rows_write_cheapest(const Ladder *ladder, const Style *style, Text *text)
 {
-    Table *table = fields_table("Cheapest setting of ODE", POINT_FIELDS, CHEAPEST, style, text);
+    const char *title =
+        compare_engines_are_any(ladder) ? "Cheapest setting" : "Cheapest setting of ODE";
+    Table *table = fields_table(title, POINT_FIELDS, CHEAPEST, style, text);
     for (size_t i = 0; i < LADDER_TARGET_COUNT; i++) {
         table_cell(table, "%.0e", LADDER_TARGETS[i]);
         fields_table_row(POINT_FIELDS, CHEAPEST, cheapest_point(ladder, i), table);
@@ -327,6 +329,7 @@ static void compare_report_write_head(const CompareReport *report, const Style *
         text_append(text, "  contact     the reference has the elastic law, ODE the POISSON model: "
                           "errors contain the difference of the two models\n");
     }
+    compare_engines_write(ladder, text);
     text_append(text, "  times       median of %zu runs, taken in turn, on %s\n", ladder->repeats,
                 report->machine);
 }
@@ -368,8 +371,9 @@ static void write_others(const Ladder *ladder, Text *text)
 {
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        const bool is_ode = ladder->schemes[point->scheme].backend == BACKEND_ODE;
-        if (!is_ode && !point->is_failed && isfinite(point->wall_median_s)) {
+        const Scheme *scheme = &ladder->schemes[point->scheme];
+        const bool is_beside = scheme->backend != BACKEND_ODE && scheme->driver == NULL;
+        if (is_beside && !point->is_failed && isfinite(point->wall_median_s)) {
             text_append(text, "  beside it: %s, ", point->name);
             text_append(text, isfinite(point->error) ? "error %.1e" : "without an error",
                         point->error);
@@ -384,7 +388,7 @@ void compare_text_write(const void *of, const Style *style, Text *text)
     compare_report_write_head(report, style, text);
     compare_rows_write_points(report->ladder, style, text);
     text_append(text,
-                "  frontier: every faster point of ODE has an error at least a hundredth larger.\n"
+                "  frontier: every faster point has an error at least a hundredth larger.\n"
                 "  truth-limited: the error is below ten times the truth's uncertainty, which "
                 "dominates it.\n");
     compare_text_write_failures(report, style, text);
@@ -392,6 +396,9 @@ void compare_text_write(const void *of, const Style *style, Text *text)
     compare_rows_write_orders(report->ladder, style, text);
     text_append(text, "  none: the error does not fall alike over any three steps in a row.\n");
     compare_rows_write_cheapest(report->ladder, style, text);
+    if (compare_engines_are_any(report->ladder)) {
+        compare_engines_write_ways(report->ladder, style, text);
+    }
     write_others(report->ladder, text);
     compare_report_left(report, text);
     compare_spread_write(report, style, text);
@@ -435,6 +442,9 @@ void compare_screen_write(const void *of, const Style *style, Text *text)
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
     compare_rows_write_cheapest(report->ladder, style, text);
+    if (compare_engines_are_any(report->ladder)) {
+        compare_engines_write_times(report->ladder, style, text);
+    }
     write_others(report->ladder, text);
     compare_screen_orders(report->ladder, text);
     screen_truth(&report->ladder->truth, text);
@@ -483,9 +493,11 @@ static json_t *compare_report_scheme_object(const CompareReport *report, size_t 
 {
     const Ladder *ladder = report->ladder;
     const Scheme *scheme = &ladder->schemes[index];
-    json_t *object = json_pack("{s:s, s:s}", "scheme", scheme->name, "backend",
-                               OPTIONS_BACKENDS[scheme->backend]);
-    if (scheme_has_step(scheme)) {
+    json_t *object =
+        json_pack("{s:s, s:s}", "scheme", scheme->name, "backend", scheme_backend(scheme));
+    if (scheme->driver != NULL) {
+        json_object_set_new(object, "way", json_string(scheme->way));
+    } else if (scheme_has_step(scheme)) {
         json_object_set_new(object, "solver", json_string(OPTIONS_ODE_SOLVERS[scheme->solver]));
         json_object_set_new(object, "stepping",
                             json_string(OPTIONS_ODE_STEPPINGS[scheme->stepping]));
@@ -530,5 +542,9 @@ json_t *compare_json_build(const void *of)
         json_array_append_new(cheapest, compare_rows_cheapest(ladder, i));
     }
     json_object_set_new(object, "cheapest", cheapest);
+    if (compare_engines_are_any(ladder)) {
+        json_object_set_new(object, "engines", compare_engines_json(ladder));
+        json_object_set_new(object, "cheapest_of_backends", compare_engines_cheapest(ladder));
+    }
     return object;
 }

@@ -80,8 +80,12 @@ json_t *ladder_json_key(const Ladder *ladder, const Scenario *scenario, const ch
     for (size_t i = 0; i < ladder->step_count; i++) {
         json_array_append_new(steps, json_value_real(ladder->steps[i]));
     }
-    return json_pack("{s:o, s:s, s:o, s:o}", "tool", settings_json_tool(), "build", build,
-                     "settings", settings_json_all(scenario), "steps_s", steps);
+    json_t *key = json_pack("{s:o, s:s, s:o, s:o}", "tool", settings_json_tool(), "build", build,
+                            "settings", settings_json_all(scenario), "steps_s", steps);
+    if (compare_engines_are_any(ladder)) {
+        json_object_set_new(key, "engines", compare_engines_key(ladder));
+    }
+    return key;
 }
 
 json_t *ladder_json_truth(const LadderTruth *truth)

@@ -2,6 +2,7 @@
 #include "casefile/casefile.h"
 #include "cli/arguments.h"
 #include "commands/commands.h"
+#include "commands/help/help.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -11,12 +12,20 @@ enum { WORD_MAX = 2, WORD_SIZE = 32 }; // of a topic: a command and one of its o
 typedef struct HelpOptions {
     const char *words[WORD_MAX];
     size_t word_count; // 0: the list of commands
+    const char *shell; // to complete command lines in, or NULL
     bool is_markdown;
+    bool is_man;
 } HelpOptions;
+
+static const char *const SHELLS[] = {"bash", "zsh", NULL};
 
 static const OptionRow OPTIONS[] = {
     {"markdown", NULL, "Of the format of a file: as Markdown", 0, OPTION_FLAG,
      offsetof(HelpOptions, is_markdown), .letter = 'm'},
+    {"man", NULL, "Print the manual page of the program or a command, for 'man -l -'", 0,
+     OPTION_FLAG, .offset = offsetof(HelpOptions, is_man)},
+    {"completion", "SHELL", "Print the script that completes command lines in bash or zsh", 0,
+     OPTION_CHOICE, .offset = offsetof(HelpOptions, shell), .words = SHELLS},
 };
 
 static bool cmd_help_read_word(const char *word, void *target, Err *err)
@@ -80,9 +89,47 @@ static bool explain_command(const HelpOptions *options, Err *err)
     return true;
 }
 
+// The manual page of a command, or of the program where none is named.
+static bool print_man(const HelpOptions *options, Err *err)
+{
+    const Command *command = NULL;
+    if (options->word_count > 0) {
+        command = command_find(options->words[0], err);
+        if (command == NULL) {
+            return false;
+        }
+    }
+    Text text;
+    text_init(&text);
+    help_man(command, &text);
+    fputs(text.data, stdout);
+    text_finish(&text);
+    return true;
+}
+
+static void print_completion(const char *shell)
+{
+    Text text;
+    text_init(&text);
+    if (strcmp(shell, "bash") == 0) {
+        help_completion_bash(&text);
+    } else {
+        help_completion_zsh(&text);
+    }
+    fputs(text.data, stdout);
+    text_finish(&text);
+}
+
 static bool cmd_help_explain(void *target, Err *err)
 {
     const HelpOptions *options = target;
+    if (options->shell != NULL) {
+        print_completion(options->shell);
+        return true;
+    }
+    if (options->is_man) {
+        return print_man(options, err);
+    }
     if (options->word_count == 0) {
         command_list();
         return true;
@@ -94,21 +141,23 @@ static bool cmd_help_explain(void *target, Err *err)
     return explain_command(options, err);
 }
 
+static const Arguments HELP_ARGUMENTS = {
+    .program = "jointplay help",
+    .usage = "[case|COMMAND]\nstudy COMMAND",
+    .doc = "Shows how a command is used, or how a case or study file is written.",
+    .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
+    OPTION_ROWS(OPTIONS),
+};
+
 static bool run_help(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay help",
-        .usage = "[case|COMMAND]\nstudy COMMAND",
-        .doc = "Shows how a command is used, or how a case or study file is written.",
-        .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
-        OPTION_ROWS(OPTIONS),
-    };
     HelpOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, cmd_help_explain, err);
+    return arguments_run(&HELP_ARGUMENTS, argc, argv, &options, cmd_help_explain, err);
 }
 
 const Command cmd_help = {
     .name = "help",
     .summary = "explains a command, or with 'case' the format of a case file",
     .run = run_help,
+    .arguments = &HELP_ARGUMENTS,
 };

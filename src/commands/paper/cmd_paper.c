@@ -29,20 +29,22 @@ static bool compute(void *target, Err *err)
     return is_reproduced;
 }
 
+static const Arguments PAPER_ARGUMENTS = {
+    .program = "jointplay paper",
+    .doc = "Recomputes the tables of the paper that this program began with: printed, "
+           "recomputed, difference, and what physics gives.",
+    OPTION_ROWS(OPTIONS),
+};
+
 static bool run_paper(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay paper",
-        .doc = "Recomputes the tables of the paper that this program began with: printed, "
-               "recomputed, difference, and what physics gives.",
-        OPTION_ROWS(OPTIONS),
-    };
     CommonOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, compute, err);
+    return arguments_run(&PAPER_ARGUMENTS, argc, argv, &options, compute, err);
 }
 
 const Command cmd_paper = {
     .name = "paper",
     .summary = "recomputes the paper's tables and compares them with the printed ones",
     .run = run_paper,
+    .arguments = &PAPER_ARGUMENTS,
 };

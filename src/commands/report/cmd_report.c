@@ -181,28 +181,29 @@ static bool check_command(void *target, Err *err)
     return run_choices_end(&command->choices, err);
 }
 
+static const Arguments REPORT_ARGUMENTS = {
+    .program = "jointplay report",
+    .usage = "CASE|STORE|RESULT.json...",
+    .doc = "Writes one HTML file that opens offline: of a case, which is run, the answer, the "
+           "mechanism moving, and plots; of the store of a study distributions, maps over two keys "
+           "and its bifurcation; of results of compare, map, tune, check and paper, written with "
+           "--json or --out, what they found."
+           "\vThe page needs no other file and asks nothing of any other place. Without script it "
+           "has the same answer, tables and pictures.",
+    .argument = {.type = OPTION_LIST,
+                 .offset = offsetof(ReportCommand, paths),
+                 .count_offset = offsetof(ReportCommand, path_count),
+                 .high = RESULT_MOST,
+                 .what = "files"},
+    OPTION_ROWS(OPTIONS),
+    .check = check_command,
+};
+
 static bool run_report(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay report",
-        .usage = "CASE|STORE|RESULT.json...",
-        .doc = "Writes one HTML file that opens offline: of a case, which is run, the answer, the "
-               "mechanism moving, and plots; of the store of a study distributions, maps over two "
-               "keys and its bifurcation; of results of compare, map, tune and check, written with "
-               "--json or --out, what they found."
-               "\vThe page needs no other file and asks nothing of any other place. Without script "
-               "it has the same answer, tables and pictures.",
-        .argument = {.type = OPTION_LIST,
-                     .offset = offsetof(ReportCommand, paths),
-                     .count_offset = offsetof(ReportCommand, path_count),
-                     .high = RESULT_MOST,
-                     .what = "files"},
-        OPTION_ROWS(OPTIONS),
-        .check = check_command,
-    };
     ReportCommand command = {0};
     run_choices_begin(&command.choices);
-    const bool is_done = arguments_run(&ARGUMENTS, argc, argv, &command, report_any, err);
+    const bool is_done = arguments_run(&REPORT_ARGUMENTS, argc, argv, &command, report_any, err);
     run_choices_finish(&command.choices);
     return is_done;
 }
@@ -211,4 +212,5 @@ const Command cmd_report = {
     .name = "report",
     .summary = "one HTML file of a case, a study or results: motion, plots, tables",
     .run = run_report,
+    .arguments = &REPORT_ARGUMENTS,
 };

@@ -199,25 +199,27 @@ bool run_files_check_columns(const CaseRun *run, Err *err)
     return has_them;
 }
 
-bool series_csv_write(const Scenario *scenario, const Trajectory *trajectory, const char *patterns,
-                      const char *path, Err *err)
+// The columns of a run's series, those that are chosen; for series_columns_finish.
+static SeriesColumns choose_columns(const Scenario *scenario, const char *patterns, bool has_ranges)
 {
-    assert(trajectory->is_complete);
-    WholeFile file;
-    if (!file_begin(&file, FILE_TABLE, path, err)) {
-        return false;
-    }
-    SeriesColumns columns = series_columns_create(scenario, trajectory->ranges.count > 0);
+    SeriesColumns columns = series_columns_create(scenario, has_ranges);
     if (patterns != NULL) {
         series_columns_choose(&columns, patterns);
     }
-    series_columns_write(&columns, trajectory, file.stream);
-    series_columns_finish(&columns);
-    return file_end(&file, err);
+    return columns;
 }
 
-void series_csv_path(const char *path, const char *backend, size_t run_count, char *target,
-                     size_t size)
+bool series_write(const Scenario *scenario, const Trajectory *trajectory, const char *patterns,
+                  const char *path, Err *err)
+{
+    assert(trajectory->is_complete);
+    SeriesColumns columns = choose_columns(scenario, patterns, trajectory->ranges.count > 0);
+    const bool is_written = series_columns_write(&columns, trajectory, path, err);
+    series_columns_finish(&columns);
+    return is_written;
+}
+
+void series_path(const char *path, const char *backend, size_t run_count, char *target, size_t size)
 {
     const char *slash = strrchr(path, '/');
     const char *dot = strrchr(slash == NULL ? path : slash + 1, '.');
@@ -232,9 +234,43 @@ void series_csv_path(const char *path, const char *backend, size_t run_count, ch
 static bool write_series(const CaseRun *run, const Trajectory *trajectory, const char *path,
                          bool is_quiet, Err *err)
 {
-    return series_csv_write(&run->scenario, trajectory, run->columns, path, err) &&
+    return series_write(&run->scenario, trajectory, run->columns, path, err) &&
            written_say(path, is_quiet);
 }
+
+static bool claim_series(const CaseRun *run, const char *user, const char *path, Err *err)
+{
+    SeriesColumns columns =
+        choose_columns(&run->scenario, run->columns, run->scenario.run.keeps_ranges);
+    const bool is_claimed = series_columns_claim(&columns, user, path, err);
+    series_columns_finish(&columns);
+    return is_claimed;
+}
+
+static bool write_contacts(const CaseRun *run, const Trajectory *trajectory, const char *path,
+                           bool is_quiet, Err *err)
+{
+    (void)run;
+    return contact_table_write(trajectory, path, err) && written_say(path, is_quiet);
+}
+
+static bool claim_contacts(const CaseRun *run, const char *user, const char *path, Err *err)
+{
+    return contact_table_claim(&run->scenario.linkage, user, path, err);
+}
+
+// A table of each run.
+typedef struct RunTableFile {
+    const char *option;
+    bool (*claim)(const CaseRun *run, const char *user, const char *path, Err *err);
+    bool (*write)(const CaseRun *run, const Trajectory *trajectory, const char *path, bool is_quiet,
+                  Err *err);
+} RunTableFile;
+
+static const RunTableFile TABLES[] = {
+    [RUN_SERIES] = {"--series", claim_series, write_series},
+    [RUN_CONTACTS] = {"--contacts", claim_contacts, write_contacts},
+};
 
 // The file that a run's series goes to.
 static void find_series(const CaseRun *run, const char *path, size_t number, char *target)
@@ -242,59 +278,34 @@ static void find_series(const CaseRun *run, const char *path, size_t number, cha
     const RunOptions *options = &run->scenario.run;
     // a stream takes all series as it is; a name is only made for files
     const size_t file_count = file_is_stream(path) ? 1 : options->backend_count;
-    series_csv_path(path, OPTIONS_BACKENDS[options->backends[number]], file_count, target,
-                    FILE_PATH_SIZE);
+    series_path(path, OPTIONS_BACKENDS[options->backends[number]], file_count, target,
+                FILE_PATH_SIZE);
 }
 
-static bool write_contacts(const CaseRun *run, const Trajectory *trajectory, const char *path,
-                           bool is_quiet, Err *err)
-{
-    (void)run;
-    WholeFile file;
-    if (!file_begin(&file, FILE_TABLE, path, err)) {
-        return false;
-    }
-    contact_table_write(trajectory, file.stream);
-    return file_end(&file, err) && written_say(path, is_quiet);
-}
-
-typedef bool RunFileWrite(const CaseRun *run, const Trajectory *trajectory, const char *path,
-                          bool is_quiet, Err *err);
-
-// Writes one file of every run that is complete.
-static bool write_each(const CaseRun *run, const char *path, RunFileWrite *write, bool is_quiet,
-                       Err *err)
+bool run_files_write(const CaseRun *run, RunTable table, const char *path, bool is_quiet, Err *err)
 {
     for (size_t i = 0; i < run->report.run_count; i++) {
         const Trajectory *trajectory = run->runs[i];
         char target[FILE_PATH_SIZE];
         find_series(run, path, i, target);
-        if (trajectory->is_complete && !write(run, trajectory, target, is_quiet, err)) {
+        if (trajectory->is_complete &&
+            !TABLES[table].write(run, trajectory, target, is_quiet, err)) {
             return false;
         }
     }
     return true;
 }
 
-bool run_files_series(const CaseRun *run, const char *path, bool is_quiet, Err *err)
-{
-    return write_each(run, path, write_series, is_quiet, err);
-}
-
-bool run_files_contacts(const CaseRun *run, const char *path, bool is_quiet, Err *err)
-{
-    return write_each(run, path, write_contacts, is_quiet, err);
-}
-
-bool run_files_claim(const CaseRun *run, const char *option, const char *path, Err *err)
+bool run_files_claim(const CaseRun *run, RunTable table, const char *path, Err *err)
 {
     // a stream takes all of them
     const size_t count = file_is_stream(path) ? 1 : run->scenario.run.backend_count;
-    bool is_claimed = file_check_input(option, path, err);
+    const RunTableFile *of = &TABLES[table];
+    bool is_claimed = file_check_input(of->option, path, err);
     for (size_t i = 0; i < count && is_claimed; i++) {
         char target[FILE_PATH_SIZE];
         find_series(run, path, i, target);
-        is_claimed = file_claim(option, FILE_TABLE, target, err);
+        is_claimed = of->claim(run, of->option, target, err);
     }
     return is_claimed;
 }
@@ -302,21 +313,20 @@ bool run_files_claim(const CaseRun *run, const char *option, const char *path, E
 // What each run has in the folder: its series, and with play its contacts.
 typedef struct FolderFile {
     const char *ending; // behind the names of case and backend
-    RunFileWrite *write;
-    bool is_of_contacts;
+    RunTable table;
 } FolderFile;
 
 static const FolderFile FOLDER_FILES[] = {
-    {".csv", write_series, false},
-    {"-contacts.csv", write_contacts, true},
+    {".csv", RUN_SERIES},
+    {"-contacts.csv", RUN_CONTACTS},
 };
 enum { FOLDER_FILE_COUNT = sizeof FOLDER_FILES / sizeof *FOLDER_FILES };
 
 // Whether a backend has a file; the closed form has no contacts.
 static bool has_file(const CaseRun *run, const FolderFile *file, size_t number)
 {
-    return !file->is_of_contacts || (scenario_has_clearance(&run->scenario) &&
-                                     run->scenario.run.backends[number] != BACKEND_ANALYTIC);
+    return file->table != RUN_CONTACTS || (scenario_has_clearance(&run->scenario) &&
+                                           run->scenario.run.backends[number] != BACKEND_ANALYTIC);
 }
 
 static bool case_run_find_member(const CaseRun *run, const CommonOptions *options,
@@ -339,7 +349,7 @@ bool run_files_claim_folder(const CaseRun *run, const CommonOptions *options, Er
         const size_t number = i / FOLDER_FILE_COUNT;
         if (has_file(run, file, number) &&
             (!case_run_find_member(run, options, file, number, path, err) ||
-             !file_claim("--out", FILE_TABLE, path, err))) {
+             !TABLES[file->table].claim(run, "--out", path, err))) {
             return false;
         }
     }
@@ -359,7 +369,7 @@ static bool write_member(const CaseRun *run, const CommonOptions *options, const
         file_remove(FILE_TABLE, path);
         return true;
     }
-    return file->write(run, trajectory, path, options->is_quiet, err);
+    return TABLES[file->table].write(run, trajectory, path, options->is_quiet, err);
 }
 
 bool run_files_folder(const CaseRun *run, const CommonOptions *options, Err *err)

@@ -22,25 +22,32 @@ typedef struct RunCommand {
     const char *columns;
     const char *contacts;
     const char *plot;
+    const char *force_axis; // one of FORCE_AXES
 } RunCommand;
 
 #define AT(field) .offset = offsetof(RunCommand, field)
+
+static const char *const FORCE_AXES[] = {"linear", "log", NULL};
 
 static const OptionRow OPTIONS[] = {
     RUN_CHOICES(1),
     COMMON_JSON(2),
     COMMON_FULL(2),
     COMMON_WIDE(2),
-    {"series", "FILE.csv", "Write every sample; with several backends to FILE-<backend>.csv each",
+    {"series", "FILE.csv",
+     "Write every sample, as JSON Lines to FILE.jsonl and as SQLite to FILE.sqlite; with several "
+     "backends to FILE-<backend>.csv each",
      2, OPTION_TEXT, AT(series)},
     {"columns", "NAME[,NAME]",
      "Write the time and these columns of the series alone, such as 'crank_deg,rod_*'", 2,
      OPTION_TEXT, AT(columns)},
     {"contacts", "FILE.csv",
-     "Write every contact; with several backends to FILE-<backend>.csv each", 2, OPTION_TEXT,
-     AT(contacts)},
+     "Write every contact, likewise; with several backends to FILE-<backend>.csv each", 2,
+     OPTION_TEXT, AT(contacts)},
     {"plot", "FILE.svg", "Draw motion, forces and the pin in its hole", 2, OPTION_PICTURE,
      AT(plot)},
+    {"force-axis", "SCALE", "Forces in the picture: linear (default) or log", 2, OPTION_CHOICE,
+     AT(force_axis), .words = FORCE_AXES},
     COMMON_OUT(2, "Write <case>.json, .txt, .svg, <case>-<backend>.csv and -contacts.csv there"),
     COMMON_QUIET(2),
 };
@@ -103,9 +110,9 @@ static bool report_case(const RunCommand *command, const CaseRun *run, json_t *o
         results_print(&RESULTS, common, &run->report);
     }
     return (command->series == NULL ||
-            run_files_series(run, command->series, common->is_quiet, err)) &&
+            run_files_write(run, RUN_SERIES, command->series, common->is_quiet, err)) &&
            (command->contacts == NULL ||
-            run_files_contacts(run, command->contacts, common->is_quiet, err)) &&
+            run_files_write(run, RUN_CONTACTS, command->contacts, common->is_quiet, err)) &&
            (common->folder == NULL || run_files_folder(run, common, err)) &&
            results_write(&RESULTS, common, scenario_path(&run->scenario), &run->report, err);
 }
@@ -141,9 +148,9 @@ static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err
 {
     const CommonOptions *common = &command->choices.common;
     bool is_claimed =
-        (command->series == NULL || run_files_claim(&runs[0], "--series", command->series, err)) &&
+        (command->series == NULL || run_files_claim(&runs[0], RUN_SERIES, command->series, err)) &&
         (command->contacts == NULL ||
-         run_files_claim(&runs[0], "--contacts", command->contacts, err));
+         run_files_claim(&runs[0], RUN_CONTACTS, command->contacts, err));
     for (size_t i = 0; i < command->case_count && is_claimed; i++) {
         is_claimed = results_claim(&RESULTS, common, scenario_path(&runs[i].scenario), err) &&
                      (common->folder == NULL || run_files_claim_folder(&runs[i], common, err));
@@ -165,6 +172,7 @@ static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
     progress_begin(&progress, command->choices.common.is_quiet);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
         case_run_execute(&runs[i], &progress);
+        runs[i].report.has_log_forces = strcmp(command->force_axis, "log") == 0;
         is_reported = report_case(command, &runs[i], objects, err);
     }
     if (is_reported && objects != NULL) {
@@ -193,6 +201,11 @@ static bool check_command(void *target, Err *err)
             err, ERR_USAGE,
             "--columns chooses from the series: give --series FILE.csv or --out DIR too");
     }
+    if (command->force_axis != FORCE_AXES[0] && command->plot == NULL &&
+        command->choices.common.folder == NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--force-axis is of the picture: give --plot FILE.svg or --out DIR too");
+    }
     return run_choices_end(&command->choices, err);
 }
 
@@ -209,25 +222,26 @@ static bool run_cases(void *target, Err *err)
     return is_done;
 }
 
+static const Arguments RUN_ARGUMENTS = {
+    .program = "jointplay run",
+    .usage = "CASE...",
+    .doc = "Runs a case on its backends and prints extremes, spikes, error and cost."
+           "\vWith --json one case is one object; several are {\"cases\": [...]}. "
+           "'jointplay help case' lists what can be set.",
+    .argument = {.type = OPTION_LIST,
+                 AT(cases),
+                 .count_offset = offsetof(RunCommand, case_count),
+                 .high = CASE_MAX,
+                 .what = "cases"},
+    OPTION_ROWS(OPTIONS),
+    .check = check_command,
+};
+
 static bool run_run(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay run",
-        .usage = "CASE...",
-        .doc = "Runs a case on its backends and prints extremes, spikes, error and cost."
-               "\vWith --json one case is one object; several are {\"cases\": [...]}. "
-               "'jointplay help case' lists what can be set.",
-        .argument = {.type = OPTION_LIST,
-                     AT(cases),
-                     .count_offset = offsetof(RunCommand, case_count),
-                     .high = CASE_MAX,
-                     .what = "cases"},
-        OPTION_ROWS(OPTIONS),
-        .check = check_command,
-    };
-    RunCommand command = {0};
+    RunCommand command = {.force_axis = FORCE_AXES[0]};
     run_choices_begin(&command.choices);
-    const bool is_done = arguments_run(&ARGUMENTS, argc, argv, &command, run_cases, err);
+    const bool is_done = arguments_run(&RUN_ARGUMENTS, argc, argv, &command, run_cases, err);
     run_choices_finish(&command.choices);
     return is_done;
 }
@@ -236,4 +250,5 @@ const Command cmd_run = {
     .name = "run",
     .summary = "runs a case on its backends: extremes, spikes, error, cost",
     .run = run_run,
+    .arguments = &RUN_ARGUMENTS,
 };

@@ -190,43 +190,13 @@ static void widen_force_range(const RunReport *report, const Trajectory *run, si
     if (extremes->spike_count > 0) {
         forces->most = fmax(forces->most, extremes->spikes[0].force_max);
     }
-}
-
-// Forces above this multiple of the median of a joint's would press all others to the bottom.
-static const double FORCE_SPIKY = 30.0;
-
-// The median of a joint's force over the stretches of a run, N.
-static double median_force(const RunReport *report, const Trajectory *run, size_t joint)
-{
-    const size_t count = plot_look_stretch_count(run, FORCE);
-    double *forces = zeroed(count, sizeof *forces);
-    for (size_t i = 0; i < count; i++) {
-        forces[i] = plot_look_stretch(report, run, FORCE, i, joint).range.most;
+    const SignalSpikes *spikes = &run->force_spikes[joint];
+    for (size_t i = 0; spikes->is_known && i < spikes->kept; i++) {
+        forces->most = fmax(forces->most, spikes->spikes[i].value);
     }
-    sorted_make(forces, count);
-    const double median = count > 0 ? forces[count / 2] : 0.0;
-    free(forces);
-    return median;
 }
 
-// Whether all joints that are drawn show on one linear axis up to a force.
-static bool is_linear(const PlotView *view, double most)
-{
-    const RunReport *report = view->report;
-    for (size_t run = 0; run < report->run_count; run++) {
-        const Trajectory *of = report->runs[run];
-        for (size_t joint = 0; joint < of->joint_count; joint++) {
-            const bool is_drawn = of->is_complete && view->joints.is_shown[joint];
-            if (is_drawn && knows_force(report, of, joint) &&
-                most > FORCE_SPIKY * median_force(report, of, joint)) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-// The range of the forces that are drawn: from 0 where that shows them all, else in whole decades.
+// The range of the forces that are drawn: from 0, or in whole decades where that is asked for.
 static void choose_force_range(const PlotView *view, Axis *axis)
 {
     const RunReport *report = view->report;
@@ -240,12 +210,12 @@ static void choose_force_range(const PlotView *view, Axis *axis)
             }
         }
     }
-    if (forces.most > 0.0 && is_linear(view, forces.most)) {
-        *axis = (Axis){.title = axis->title, .low = 0.0, .high = 1.02 * forces.most};
-        axis_round(&axis->low, &axis->high);
-        axis->low = 0.0;
+    if (!report->has_log_forces) {
+        *axis = (Axis){.title = axis->title, .low = 0.0, .high = PLOT_MARK_ROOM * forces.most};
+        axis_fit(&axis->low, &axis->high);
         return;
     }
+    axis->scale = AXIS_LOG;
     axis->high = forces.most > 0.0 ? pow(10.0, ceil(log10(forces.most))) : 1.0;
     axis->low = fmax(pow(10.0, floor(log10(fmin(forces.least, 0.1 * axis->high)))),
                      FORCE_DEPTH * axis->high);
@@ -286,20 +256,33 @@ static void name_forces(const PlotView *view, PlotPanel *panel)
     }
 }
 
+static bool shows_force(const PlotView *view, size_t run, size_t joint)
+{
+    return plot_look_shows(view, true, joint) &&
+           knows_force(view->report, view->report->runs[run], joint);
+}
+
 void plot_joints_forces(const PlotView *view, PlotPanel panel)
 {
     const RunReport *report = view->report;
-    panel.y = (Axis){.scale = AXIS_LOG};
     name_forces(view, &panel);
     choose_force_range(view, &panel.y);
     plot_enter(&panel);
     plot_look_shade(view, &panel);
     plot_look_others(view, &panel, FORCE);
+    for (size_t i = 0; i < report->run_count; i++) {
+        const size_t run = plot_look_run(view, i);
+        for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
+            if (shows_force(view, run, joint)) {
+                plot_look_draw(view, &panel, run, FORCE, joint);
+            }
+        }
+    }
+    plot_leave(&panel);
+    // dots and marks at the edge are not cut
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            if (plot_look_shows(view, true, joint) &&
-                knows_force(report, report->runs[run], joint)) {
-                plot_look_draw(view, &panel, run, FORCE, joint);
+            if (shows_force(view, run, joint)) {
                 draw_spikes(view, &panel, run, joint);
             }
         }
@@ -311,7 +294,6 @@ void plot_joints_forces(const PlotView *view, PlotPanel panel)
             plot_look_marks(view, &panel, &spiky->force_spikes[joint], FORCE, joint, unit);
         }
     }
-    plot_leave(&panel);
 }
 
 static Vec2 pin_at(const RunReport *report, const Trajectory *run, size_t sample,
@@ -323,6 +305,17 @@ static Vec2 pin_at(const RunReport *report, const Trajectory *run, size_t sample
             : plot_pins_across(report, run, sample, path->joint,
                                trajectory_space_state(run, sample, path->joint)->offset);
     return vec2_scale(path->per_metre, eccentricity);
+}
+
+// How a pin in the plane moves in its hole, in the units of its path.
+static Vec2 pin_rate(const RunReport *report, const Trajectory *run, size_t sample,
+                     const PlotPath *path)
+{
+    const Joint *joint = &report->scenario->linkage.joints[path->joint];
+    const Motion *motions = trajectory_motion(run, sample, 0);
+    const Vec2 rate = vec2_sub(linkage_point_velocity(motions, joint->body_b, joint->anchor_b),
+                               linkage_point_velocity(motions, joint->body_a, joint->anchor_a));
+    return vec2_scale(path->per_metre, rate);
 }
 
 // Whether the path of a pin is drawn, and then in which unit: um, or where there are several pins
@@ -337,7 +330,8 @@ static bool plot_joints_find_path(const PlotView *view, size_t run, size_t joint
     }
     *path = (PlotPath){.joint = joint,
                        .per_metre = is_one ? UNITS_UM : 1.0 / linkage_radial_clearance(shape),
-                       .at = pin_at};
+                       .at = pin_at,
+                       .rate = view->report->scenario->linkage.is_spatial ? NULL : pin_rate};
     return true;
 }
 
@@ -459,25 +453,53 @@ static void choose_error_range(const RunReport *report, const Trajectory *truth,
     axis->low = fmax(axis->high / ERROR_DECADES, 1e-3 * pow(10.0, floor(log10(rounding))));
 }
 
+// Whether there is a difference to draw, and not rounding alone.
+static bool differs(const RunReport *report, size_t run, size_t body)
+{
+    const Trajectory *truth = find_truth(report);
+    const double floor = ERROR_FLOOR * trajectory_omega_scale(truth, body);
+    for (size_t i = 0; i < truth->sample_count; i++) {
+        if (omega_error(report, report->runs[run], i, body) > floor) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool draws_error(const PlotView *view, size_t run, size_t body)
+{
+    return shows_error(view->report, run) && plot_look_shows(view, false, body) &&
+           differs(view->report, run, body);
+}
+
+bool plot_joints_has_errors(const PlotView *view)
+{
+    const RunReport *report = view->report;
+    const Trajectory *truth = find_truth(report);
+    for (size_t run = 0; truth != NULL && run < report->run_count; run++) {
+        for (size_t body = 0; body < truth->body_count; body++) {
+            if (draws_error(view, run, body)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 void plot_joints_errors(const PlotView *view, PlotPanel panel)
 {
     const RunReport *report = view->report;
     static const PlotQuantity ERROR = {"difference of omega", false, -1, omega_error};
     const Trajectory *truth = find_truth(report);
     char title[128];
-    snprintf(title, sizeof title, "%s%s",
-             truth == NULL ? "No run to compare with" : "Difference from ",
-             truth == NULL ? "" : truth->backend);
+    snprintf(title, sizeof title, "Difference from %s", truth->backend);
     panel.title = title;
-    panel.y = (Axis){
-        .title = "|difference of omega|, rad/s", .scale = AXIS_LOG, .low = 1e-6, .high = 1.0};
-    if (truth != NULL) {
-        choose_error_range(report, truth, &panel.y);
-    }
+    panel.y = (Axis){.title = "|difference of omega|, rad/s", .scale = AXIS_LOG};
+    choose_error_range(report, truth, &panel.y);
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
-        for (size_t body = 0; shows_error(report, run) && body < truth->body_count; body++) {
-            if (plot_look_shows(view, false, body)) {
+        for (size_t body = 0; body < truth->body_count; body++) {
+            if (draws_error(view, run, body)) {
                 plot_look_draw(view, &panel, run, ERROR, body);
             }
         }
@@ -772,6 +794,32 @@ static double plot_joints_acceleration_of(const RunReport *report, const Traject
     return slide_range_acceleration(&report->scenario->linkage, run, sample, joint);
 }
 
+// Where a slider is along its line, mm, and how fast it goes, m/s.
+static double plot_slides_position_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                      size_t joint)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    return forces_coordinate(linkage, (int)joint, trajectory_motion(run, sample, 0)).angle *
+           UNITS_MM;
+}
+
+static double plot_slides_speed_of(const RunReport *report, const Trajectory *run, size_t sample,
+                                   size_t joint)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    return forces_coordinate(linkage, (int)joint, trajectory_motion(run, sample, 0)).rate;
+}
+
+static double offset_limit(const Joint *joint)
+{
+    return linkage_radial_clearance(joint) * UNITS_UM;
+}
+
+static double plot_slides_tilt_limit(const Joint *joint)
+{
+    return linkage_guide_tilt(&joint->guide) * UNITS_MRAD;
+}
+
 // A quantity of every joint that a panel shows, with lines at the limits of each.
 typedef struct SlidePanel {
     const char *title;
@@ -782,6 +830,36 @@ typedef struct SlidePanel {
     bool (*shows)(const PlotView *view, size_t run, size_t joint); // NULL: those of the kind
 } SlidePanel;
 
+static const SlidePanel SLIDE_PANELS[] = {
+    [PLOT_SLIDE_OFFSET] = {.title = "Block across its guides; dashed: not tilted",
+                           .axis = "off the middle line, um",
+                           .quantity = {"offset, um", true, -1, offset_of},
+                           .kind = JOINT_GUIDE,
+                           .limit = offset_limit},
+    [PLOT_SLIDE_TILT] = {.title = "Tilt of the block; dashed: opposite corners touch",
+                         .axis = "tilt, mrad",
+                         .quantity = {"tilt, mrad", true, -1, plot_slides_tilt_of},
+                         .kind = JOINT_GUIDE,
+                         .limit = plot_slides_tilt_limit},
+    [PLOT_SLIDE_POSITION] = {.title = "Position of the slider on its line",
+                             .axis = "position, mm",
+                             .quantity = {"position, mm", true, -1, plot_slides_position_of},
+                             .shows = shows_acceleration},
+    [PLOT_SLIDE_SPEED] = {.title = "Velocity of the slider along its line",
+                          .axis = "velocity, m/s",
+                          .quantity = {"velocity", true, -1, plot_slides_speed_of},
+                          .shows = shows_acceleration},
+    [PLOT_SLIDE_ACCELERATION] = {.title = "Acceleration of the slider, at the samples",
+                                 .axis = "acceleration, m/s^2",
+                                 .quantity = {"acceleration", true, -1,
+                                              plot_joints_acceleration_of},
+                                 .shows = shows_acceleration},
+    [PLOT_SLIDE_STOP] = {.title = "Distance from the stop",
+                         .axis = "gap, mm",
+                         .quantity = {"gap, mm", true, -1, gap_of},
+                         .kind = JOINT_STOP},
+};
+
 static bool panel_shows(const SlidePanel *slide, const PlotView *view, size_t run, size_t joint)
 {
     return slide->shows != NULL ? slide->shows(view, run, joint)
@@ -791,15 +869,17 @@ static bool panel_shows(const SlidePanel *slide, const PlotView *view, size_t ru
 static void plot_slides_widen(const SlidePanel *slide, const PlotView *view, PlotPanel *panel)
 {
     const RunReport *report = view->report;
+    panel->y.low = INFINITY;
+    panel->y.high = -INFINITY;
     for (size_t run = 0; run < report->run_count; run++) {
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             const bool is_shown = panel_shows(slide, view, run, joint);
-            const double limit = is_shown && slide->limit != NULL
-                                     ? slide->limit(plot_slides_joint_of(report, joint))
-                                     : 0.0;
-            panel->y.high = fmax(panel->y.high, 1.08 * limit);
-            panel->y.low = fmin(panel->y.low, -1.08 * limit);
+            if (is_shown && slide->limit != NULL) {
+                const double limit = slide->limit(plot_slides_joint_of(report, joint));
+                panel->y.high = fmax(panel->y.high, 1.08 * limit);
+                panel->y.low = fmin(panel->y.low, -1.08 * limit);
+            }
             for (size_t i = 0; is_shown && i < trajectory->sample_count; i++) {
                 const double value = slide->quantity.at(report, trajectory, i, joint);
                 panel->y.high = fmax(panel->y.high, value);
@@ -807,7 +887,11 @@ static void plot_slides_widen(const SlidePanel *slide, const PlotView *view, Plo
             }
         }
     }
-    axis_round(&panel->y.low, &panel->y.high);
+    if (!(panel->y.low <= panel->y.high)) {
+        panel->y.low = 0.0;
+        panel->y.high = 0.0;
+    }
+    axis_fit(&panel->y.low, &panel->y.high);
 }
 
 static void plot_slides_draw_limits(const SlidePanel *slide, const PlotView *view,
@@ -825,16 +909,18 @@ static void plot_slides_draw_limits(const SlidePanel *slide, const PlotView *vie
     }
 }
 
-static void plot_slides_draw(const SlidePanel *slide, const PlotView *view, PlotPanel panel)
+void plot_slides_draw(const PlotView *view, PlotPanel panel, PlotSlide which)
 {
     const RunReport *report = view->report;
+    const SlidePanel *slide = &SLIDE_PANELS[which];
     panel.title = slide->title;
     panel.y.title = slide->axis;
     plot_slides_widen(slide, view, &panel);
     plot_enter(&panel);
     plot_look_shade(view, &panel);
     plot_slides_draw_limits(slide, view, &panel);
-    for (size_t run = 0; run < report->run_count; run++) {
+    for (size_t i = 0; i < report->run_count; i++) {
+        const size_t run = plot_look_run(view, i);
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
             if (panel_shows(slide, view, run, joint)) {
                 plot_look_draw(view, &panel, run, slide->quantity, joint);
@@ -842,100 +928,6 @@ static void plot_slides_draw(const SlidePanel *slide, const PlotView *view, Plot
         }
     }
     plot_leave(&panel);
-}
-
-static double offset_limit(const Joint *joint)
-{
-    return linkage_radial_clearance(joint) * UNITS_UM;
-}
-
-static double plot_slides_tilt_limit(const Joint *joint)
-{
-    return linkage_guide_tilt(&joint->guide) * UNITS_MRAD;
-}
-
-void plot_slides_offsets(const PlotView *view, PlotPanel panel)
-{
-    static const SlidePanel OFFSET = {
-        .title = "Block across its guides; dashed: not tilted",
-        .axis = "off the middle line, um",
-        .quantity = {"offset, um", true, -1, offset_of},
-        .kind = JOINT_GUIDE,
-        .limit = offset_limit,
-    };
-    plot_slides_draw(&OFFSET, view, panel);
-}
-
-void plot_slides_tilts(const PlotView *view, PlotPanel panel)
-{
-    static const SlidePanel TILT = {
-        .title = "Tilt of the block; dashed: opposite corners touch",
-        .axis = "tilt, mrad",
-        .quantity = {"tilt, mrad", true, -1, plot_slides_tilt_of},
-        .kind = JOINT_GUIDE,
-        .limit = plot_slides_tilt_limit,
-    };
-    plot_slides_draw(&TILT, view, panel);
-}
-
-// Where a slider is along its line, mm, and how fast it goes, m/s.
-static double plot_slides_position_of(const RunReport *report, const Trajectory *run, size_t sample,
-                                      size_t joint)
-{
-    const Linkage *linkage = &report->scenario->linkage;
-    return forces_coordinate(linkage, (int)joint, trajectory_motion(run, sample, 0)).angle *
-           UNITS_MM;
-}
-
-static double plot_slides_speed_of(const RunReport *report, const Trajectory *run, size_t sample,
-                                   size_t joint)
-{
-    const Linkage *linkage = &report->scenario->linkage;
-    return forces_coordinate(linkage, (int)joint, trajectory_motion(run, sample, 0)).rate;
-}
-
-void plot_slides_positions(const PlotView *view, PlotPanel panel)
-{
-    static const SlidePanel POSITION = {
-        .title = "Position of the slider on its line",
-        .axis = "position, mm",
-        .quantity = {"position, mm", true, -1, plot_slides_position_of},
-        .shows = shows_acceleration,
-    };
-    plot_slides_draw(&POSITION, view, panel);
-}
-
-void plot_slides_speeds(const PlotView *view, PlotPanel panel)
-{
-    static const SlidePanel SPEED = {
-        .title = "Velocity of the slider along its line",
-        .axis = "velocity, m/s",
-        .quantity = {"velocity", true, -1, plot_slides_speed_of},
-        .shows = shows_acceleration,
-    };
-    plot_slides_draw(&SPEED, view, panel);
-}
-
-void plot_slides_accelerations(const PlotView *view, PlotPanel panel)
-{
-    static const SlidePanel ACCELERATION = {
-        .title = "Acceleration of the slider, at the samples",
-        .axis = "acceleration, m/s^2",
-        .quantity = {"acceleration", true, -1, plot_joints_acceleration_of},
-        .shows = shows_acceleration,
-    };
-    plot_slides_draw(&ACCELERATION, view, panel);
-}
-
-void plot_slides_stops(const PlotView *view, PlotPanel panel)
-{
-    static const SlidePanel GAP = {
-        .title = "Distance from the stop",
-        .axis = "gap, mm",
-        .quantity = {"gap, mm", true, -1, gap_of},
-        .kind = JOINT_STOP,
-    };
-    plot_slides_draw(&GAP, view, panel);
 }
 
 // The path of one block: its offset over the play, its tilt over the tilt at which it jams.

@@ -1,6 +1,7 @@
 // Chooses line, colour and axis of each quantity in the picture of a run, and which bodies and
 // joints it draws.
 #include "commands/run/plot_lines.h"
+#include "base/hermite.h"
 #include "base/zeroed.h"
 #include "commands/run/run_report.h"
 #include "write/units.h"
@@ -9,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 // The bodies and joints that a picture draws.
 //
@@ -205,7 +207,8 @@ void plot_view_finish(PlotView *view)
 // The kind of line, the colour and the axis of each quantity.
 //
 // A backend has a kind of line, a body or joint a colour. The first backend is drawn wide and
-// pale, the next thin over it: where the two agree, the thin line lies in the middle of the pale.
+// pale, the next thin over it: where the two agree, the thin line lies in the middle of the pale. A
+// run with ideal joints beside others with play is a very thin dark line on top.
 
 bool plot_look_shows(const PlotView *view, bool is_joint, size_t index)
 {
@@ -215,6 +218,50 @@ bool plot_look_shows(const PlotView *view, bool is_joint, size_t index)
 size_t plot_look_colour(const PlotView *view, bool is_joint, size_t index)
 {
     return plot_view_set(view, is_joint)->of_palette[index];
+}
+
+static bool is_ideal(const PlotView *view, size_t run)
+{
+    const RunReport *report = view->report;
+    return scenario_has_clearance(report->scenario) && report->run_count > 1 &&
+           strcmp(report->runs[run]->backend, OPTIONS_BACKENDS[BACKEND_ANALYTIC]) == 0;
+}
+
+PlotStyle plot_look_style(const PlotView *view, size_t run, size_t colour)
+{
+    size_t kind = 0;
+    for (size_t i = 0; i < run; i++) {
+        kind += is_ideal(view, i) ? 0 : 1;
+    }
+    return is_ideal(view, run) ? plot_style_dark(colour) : plot_style(kind, colour);
+}
+
+size_t plot_look_run(const PlotView *view, size_t i)
+{
+    size_t place = 0;
+    for (size_t run = 0; run < view->report->run_count; run++) {
+        if (!is_ideal(view, run) && place++ == i) {
+            return run;
+        }
+    }
+    size_t ideal = 0;
+    for (size_t run = 0; run < view->report->run_count; run++) {
+        ideal = is_ideal(view, run) ? run : ideal;
+    }
+    return ideal;
+}
+
+// The distance of the ticks of an axis of so many revolutions, deg; 0: any.
+static double crank_tick(double turns)
+{
+    static const double TICKS[][2] = {{0.1, 5.0},  {0.2, 10.0}, {0.3, 15.0}, {0.6, 30.0},
+                                      {1.0, 60.0}, {2.0, 90.0}, {3.0, 180.0}};
+    for (size_t i = 0; i < sizeof TICKS / sizeof *TICKS; i++) {
+        if (turns <= TICKS[i][0]) {
+            return turns > 0.02 ? TICKS[i][1] : 0.0;
+        }
+    }
+    return 0.0;
 }
 
 Axis plot_look_x_axis(const PlotView *view)
@@ -227,9 +274,7 @@ Axis plot_look_x_axis(const PlotView *view)
     return (Axis){
         .title = "crank angle from the start, deg",
         .high = 360.0 * turns,
-        .tick = turns <= 1.0   ? 60.0
-                : turns <= 2.0 ? 90.0
-                               : 0.0,
+        .tick = crank_tick(turns),
     };
 }
 
@@ -351,7 +396,7 @@ void plot_look_draw(const PlotView *view, const PlotPanel *panel, size_t run, Pl
     snprintf(title, sizeof title, "%s: %s %s", trajectory->backend, quantity.name,
              plot_lines_name_of(report, quantity, index));
     plot_band(panel, curve.count, curve.x, curve.low, curve.high, title,
-              plot_style(run, plot_look_colour(view, quantity.is_joint, index)));
+              plot_look_style(view, run, plot_look_colour(view, quantity.is_joint, index)));
     free(curve.x);
 }
 
@@ -388,23 +433,102 @@ void plot_look_others(const PlotView *view, const PlotPanel *panel, PlotQuantity
     free(curve.x);
 }
 
-void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path)
+// Slopes at the samples with which a cubic between two of them stays between them.
+static void limit_slopes(size_t count, const double *times, const double *values, double *slopes)
 {
-    const RunReport *report = view->report;
-    const Trajectory *trajectory = report->runs[run];
-    const size_t count = trajectory->sample_count;
-    double *x = calloc(2 * count, sizeof *x);
-    assert(x != NULL);
-    double *y = x + count;
-    for (size_t i = 0; i < count; i++) {
-        const Vec2 place = path->at(report, trajectory, i, path);
-        x[i] = place.x;
-        y[i] = place.y;
+    slopes[0] = 0.0;
+    slopes[count - 1] = 0.0;
+    for (size_t i = 1; i + 1 < count; i++) {
+        const double before = (values[i] - values[i - 1]) / (times[i] - times[i - 1]);
+        const double after = (values[i + 1] - values[i]) / (times[i + 1] - times[i]);
+        slopes[i] = before * after > 0.0 ? 2.0 * before * after / (before + after) : 0.0;
     }
-    PlotStyle style = plot_style(1, plot_look_colour(view, true, path->joint));
-    style.width = 1.0;
-    style.opacity = 0.8;
-    style.dash = path->end == 0 ? NULL : "3 2";
+}
+
+// A path at the samples, and how it moves.
+typedef struct PathCurve {
+    size_t count;
+    const double *times; // s
+    double *x;           // owned, with the three below
+    double *y;
+    double *x_rate;
+    double *y_rate;
+} PathCurve;
+
+static PathCurve path_take(const RunReport *report, const Trajectory *run, const PlotPath *path)
+{
+    const size_t count = run->sample_count;
+    double *all = zeroed(4 * count, sizeof *all);
+    const PathCurve curve = {count, run->times, all, all + count, all + 2 * count, all + 3 * count};
+    for (size_t i = 0; i < count; i++) {
+        const Vec2 place = path->at(report, run, i, path);
+        const Vec2 rate = path->rate != NULL ? path->rate(report, run, i, path) : (Vec2){0.0, 0.0};
+        curve.x[i] = place.x;
+        curve.y[i] = place.y;
+        curve.x_rate[i] = rate.x;
+        curve.y_rate[i] = rate.y;
+    }
+    if (path->rate == NULL && count > 1) {
+        limit_slopes(count, run->times, curve.x, curve.x_rate);
+        limit_slopes(count, run->times, curve.y, curve.y_rate);
+    }
+    return curve;
+}
+
+static const double PATH_STEP = 3.0; // pixels that a piece of a path may go straight
+enum { PATH_PIECES_MOST = 24 };      // between two samples
+
+// Into how many straight pieces the path from a sample to the next is divided.
+static size_t count_pieces(const PlotPanel *panel, const PathCurve *curve, size_t sample)
+{
+    const double width = curve->times[sample + 1] - curve->times[sample];
+    const double far_x = plot_x(panel, curve->x[sample + 1]) - plot_x(panel, curve->x[sample]);
+    const double far_y = plot_y(panel, curve->y[sample + 1]) - plot_y(panel, curve->y[sample]);
+    double way = hypot(far_x, far_y);
+    for (size_t i = sample; i <= sample + 1; i++) {
+        // a path that comes back has its way in its rates
+        const double x = plot_x(panel, curve->x_rate[i] * width) - plot_x(panel, 0.0);
+        const double y = plot_y(panel, curve->y_rate[i] * width) - plot_y(panel, 0.0);
+        way = fmax(way, hypot(x, y));
+    }
+    return (size_t)fmin(fmax(ceil(way / PATH_STEP), 1.0), PATH_PIECES_MOST);
+}
+
+static double between(const PathCurve *curve, const double *values, const double *rates,
+                      size_t sample, double time_s)
+{
+    const Hermite hermite = hermite_fit(2, curve->times + sample, values + sample, rates + sample);
+    return hermite_at(&hermite, time_s).value;
+}
+
+static void draw_curve(const PlotPanel *panel, const PathCurve *curve, PlotStyle style)
+{
+    double *x = zeroed(2 * (curve->count * PATH_PIECES_MOST + 1), sizeof *x);
+    double *y = x + curve->count * PATH_PIECES_MOST + 1;
+    size_t count = 0;
+    for (size_t i = 0; i < curve->count; i++) {
+        x[count] = curve->x[i];
+        y[count++] = curve->y[i];
+        const size_t pieces = i + 1 < curve->count ? count_pieces(panel, curve, i) : 1;
+        for (size_t k = 1; k < pieces; k++) {
+            const double share = (double)k / (double)pieces;
+            const double time_s = curve->times[i] + share * (curve->times[i + 1] - curve->times[i]);
+            x[count] = between(curve, curve->x, curve->x_rate, i, time_s);
+            y[count++] = between(curve, curve->y, curve->y_rate, i, time_s);
+        }
+    }
     plot_line(panel, count, x, y, style);
     free(x);
+}
+
+void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path)
+{
+    PlotStyle style = plot_look_style(view, run, plot_look_colour(view, true, path->joint));
+    // a path is no band: wide lines would run into each other
+    style.width = fmin(style.width, 1.0);
+    style.opacity = fmax(style.opacity, 0.8);
+    style.dash = path->end == 0 ? NULL : "3 2";
+    const PathCurve curve = path_take(view->report, view->report->runs[run], path);
+    draw_curve(panel, &curve, style);
+    free(curve.x);
 }

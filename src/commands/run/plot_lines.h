@@ -68,6 +68,13 @@ bool plot_look_shows(const PlotView *view, bool is_joint, size_t index);
 // The number of the colour of a body or joint.
 size_t plot_look_colour(const PlotView *view, bool is_joint, size_t index);
 
+// The line of a run in the colour of that number: a dark one, very thin, of the run with ideal
+// joints where others have play; of the others the kinds of write/plot.h in their order.
+PlotStyle plot_look_style(const PlotView *view, size_t run, size_t colour);
+
+// The run that is drawn as the i-th: the one with ideal joints last, for it lies on the others.
+size_t plot_look_run(const PlotView *view, size_t i);
+
 // The axis of the crank angle from the start, or of time where no driver turns at constant speed.
 Axis plot_look_x_axis(const PlotView *view);
 
@@ -79,6 +86,9 @@ void plot_look_shade(const PlotView *view, const PlotPanel *panel);
 
 // The run whose strongest spikes the tables list, the last that has any; NULL where none has.
 const Trajectory *plot_look_spike_run(const PlotView *view);
+
+// How much farther than the largest value an axis goes, so that the mark there is in the frame.
+static const double PLOT_MARK_ROOM = 1.04;
 
 // Marks the spikes of one signal that the tables list.
 void plot_look_marks(const PlotView *view, const PlotPanel *panel, const SignalSpikes *spikes,
@@ -99,13 +109,17 @@ typedef struct PlotPath {
     double per_metre; // the panel's unit, of a pin in its hole
     Vec2 (*at)(const RunReport *report, const Trajectory *run, size_t sample,
                const struct PlotPath *path);
+    // How it moves there, per second; NULL: not known.
+    Vec2 (*rate)(const RunReport *report, const Trajectory *run, size_t sample,
+                 const struct PlotPath *path);
 } PlotPath;
 
-// Draws the path of one joint of one run.
+// Draws the path of one joint of one run: through the samples, between them a cubic with the rates
+// at both or, where these are not known, one that leaves their range in neither direction.
 void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path);
 
 // Joint forces over the crank angle, every step of them, with a dot for the strongest contacts and
-// marks for the spikes of the table.
+// marks for the spikes of the table; from 0, or in decades where the report asks for them.
 void plot_joints_forces(const PlotView *view, PlotPanel panel);
 
 // The path of each pin in its hole, in space of its middle across the hole's axis, as the
@@ -122,16 +136,21 @@ Vec2 plot_pins_across(const RunReport *report, const Trajectory *run, size_t sam
 void plot_pins_tilts(const PlotView *view, PlotPanel panel);
 void plot_pins_ends(const PlotView *view, PlotPanel panel);
 
-// Of blocks between guides: the path of each over its play and its tilt, both over the crank angle,
-// and where its corners touch; of any slider its acceleration along its line; of stops how far the
-// bodies are from them.
+// Of blocks between guides the path of each over its play and its tilt, and where its corners
+// touch.
 void plot_slides_paths(const PlotView *view, PlotPanel panel);
-void plot_slides_positions(const PlotView *view, PlotPanel panel);
-void plot_slides_speeds(const PlotView *view, PlotPanel panel);
-void plot_slides_accelerations(const PlotView *view, PlotPanel panel);
-void plot_slides_offsets(const PlotView *view, PlotPanel panel);
-void plot_slides_tilts(const PlotView *view, PlotPanel panel);
-void plot_slides_stops(const PlotView *view, PlotPanel panel);
+
+// What a panel of sliders, blocks or stops shows over the crank angle.
+typedef enum PlotSlide {
+    PLOT_SLIDE_OFFSET, // of blocks between guides, across them
+    PLOT_SLIDE_TILT,
+    PLOT_SLIDE_POSITION, // of any slider along its line
+    PLOT_SLIDE_SPEED,
+    PLOT_SLIDE_ACCELERATION,
+    PLOT_SLIDE_STOP, // how far bodies are from their stops
+} PlotSlide;
+
+void plot_slides_draw(const PlotView *view, PlotPanel panel, PlotSlide which);
 
 // Of limited coordinates: where they are between their stops, or in their backlash; and whether a
 // linkage has any of a kind that are angles, or lengths.
@@ -146,8 +165,10 @@ bool plot_limits_any(const Linkage *linkage, bool is_angle, LimitKind kind);
 void plot_limits_loop(const PlotView *view, PlotPanel panel);
 bool plot_limits_has_loop(const Linkage *linkage);
 
-// Where no joint has play: how far omega is from the run that is taken as the truth.
+// How far omega is from the run that is taken as the truth, of runs that feel the play where there
+// is any; and whether there is such a run, in which a body turns otherwise.
 void plot_joints_errors(const PlotView *view, PlotPanel panel);
+bool plot_joints_has_errors(const PlotView *view);
 
 // What the drive of a pivot has to give, or gives; and whether a linkage has that.
 void plot_loads_torque(const PlotView *view, PlotPanel panel);

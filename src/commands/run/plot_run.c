@@ -1,4 +1,5 @@
 // Draws a run as SVG: the motion of its bodies, and below it what its joints did.
+#include "base/sorted.h"
 #include "base/zeroed.h"
 #include "commands/run/plot_lines.h"
 
@@ -54,17 +55,24 @@ typedef struct Reach {
     double usual; // what most of the run stays below on either side of zero
 } Reach;
 
-static int plot_run_by_size(const void *a, const void *b)
+// The marks of spikes stand in the frame, too.
+static void widen_by_spikes(const PlotView *view, const Trajectory *run, PlotQuantity quantity,
+                            Reach *reach)
 {
-    const double first = *(const double *)a;
-    const double second = *(const double *)b;
-    return (first > second) - (first < second);
+    for (size_t body = 0; quantity.signal == RANGES_ALPHA && body < run->body_count; body++) {
+        const SignalSpikes *spikes = &run->alpha_spikes[body];
+        for (size_t i = 0; view->bodies.is_shown[body] && spikes->is_known && i < spikes->kept;
+             i++) {
+            reach->low = fmin(reach->low, PLOT_MARK_ROOM * spikes->spikes[i].value);
+            reach->high = fmax(reach->high, PLOT_MARK_ROOM * spikes->spikes[i].value);
+        }
+    }
 }
 
 static Reach plot_run_find_reach(const PlotView *view, const Trajectory *run, PlotQuantity quantity)
 {
     const PlotSet *bodies = &view->bodies;
-    Reach reach = {0};
+    Reach reach = {.low = INFINITY, .high = -INFINITY};
     const size_t count = plot_look_stretch_count(run, quantity);
     double *sizes = calloc(count, sizeof *sizes);
     assert(sizes != NULL);
@@ -81,7 +89,8 @@ static Reach plot_run_find_reach(const PlotView *view, const Trajectory *run, Pl
             }
         }
     }
-    qsort(sizes, count, sizeof *sizes, plot_run_by_size);
+    widen_by_spikes(view, run, quantity, &reach);
+    sorted_make(sizes, count);
     reach.usual = sizes[(size_t)(USUAL * (double)(count - 1))];
     free(sizes);
     return reach;
@@ -92,6 +101,8 @@ static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis
 {
     const RunReport *report = view->report;
     double least = INFINITY;
+    axis->low = INFINITY;
+    axis->high = -INFINITY;
     for (size_t i = 0; i < report->run_count; i++) {
         if (!report->runs[i]->is_complete) {
             continue;
@@ -103,18 +114,21 @@ static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis
         axis->low = fmin(axis->low, reach.low);
         axis->high = fmax(axis->high, reach.high);
     }
+    if (!(axis->low <= axis->high)) {
+        axis->low = 0.0;
+        axis->high = 0.0;
+    }
     const double most = fmax(-axis->low, axis->high);
-    const bool is_size = axis->low == 0.0;
     if (most > SPIKY * least) {
+        const bool is_size = axis->low >= 0.0;
         axis->scale = AXIS_SYMLOG;
         axis->threshold = pow(10.0, floor(log10(least)));
         axis->high = pow(10.0, ceil(log10(most)));
-        axis->low = -axis->high;
+        // what is never below 0 needs no room there
+        axis->low = is_size ? 0.0 : -axis->high;
     } else {
-        axis_round(&axis->low, &axis->high);
+        axis_fit(&axis->low, &axis->high);
     }
-    // what is never below 0 needs no room there
-    axis->low = is_size ? 0.0 : axis->low;
 }
 
 static void draw_motion(const PlotView *view, PlotPanel panel, PlotQuantity quantity,
@@ -125,20 +139,22 @@ static void draw_motion(const PlotView *view, PlotPanel panel, PlotQuantity quan
     plot_enter(&panel);
     plot_look_shade(view, &panel);
     plot_look_others(view, &panel, quantity);
-    for (size_t run = 0; run < report->run_count; run++) {
+    for (size_t i = 0; i < report->run_count; i++) {
+        const size_t run = plot_look_run(view, i);
         for (size_t body = 0; body < report->scenario->linkage.body_count; body++) {
             if (plot_look_shows(view, false, body) && report->runs[run]->is_complete) {
                 plot_look_draw(view, &panel, run, quantity, body);
             }
         }
     }
+    plot_leave(&panel);
+    // marks at the edge are not cut
     const Trajectory *spiky = has_spikes ? plot_look_spike_run(view) : NULL;
     for (size_t body = 0; spiky != NULL && body < spiky->body_count; body++) {
         if (plot_look_shows(view, false, body)) {
             plot_look_marks(view, &panel, &spiky->alpha_spikes[body], quantity, body, "rad/s^2");
         }
     }
-    plot_leave(&panel);
 }
 
 // How bodies turn whose axes are not all along z: the sizes of their vectors.
@@ -251,13 +267,13 @@ static void draw_run(const PlotView *view, const PlotPanel *panel, bool is_joint
             y[drawn++] = plot_view_most(view, is_joint, trajectory, i);
         }
     }
-    PlotStyle style = plot_style(run, 0);
+    PlotStyle style = plot_look_style(view, run, 0);
     style.colour = "#333333";
     plot_line(panel, drawn, x, y, style);
     for (size_t i = 0; i < count; i++) {
         if (set->is_shown[i]) {
             plot_dot(panel, (double)(i + 1), plot_view_most(view, is_joint, trajectory, i),
-                     plot_style(run, plot_look_colour(view, is_joint, i)));
+                     plot_look_style(view, run, plot_look_colour(view, is_joint, i)));
         }
     }
     free(x);
@@ -311,18 +327,20 @@ static const double LEGEND_END = 106.0; // the last row that leaves the panels w
 // The part of a picture that is drawn below its legend.
 typedef struct Sheet {
     Text *svg;
-    double top; // of the first row of panels
+    double top;   // of the first row of panels
+    size_t count; // of all panels
 } Sheet;
 
-static PlotPanel place_panel(const PlotView *view, Sheet sheet, int row, int column,
-                             const char *title)
+// The panel of that number. One that has no other beside it takes the whole row.
+static PlotPanel place_panel(const PlotView *view, Sheet sheet, size_t number, const char *title)
 {
+    const bool is_alone = number % 2 == 0 && number + 1 == sheet.count;
     return (PlotPanel){
         .svg = sheet.svg,
         .title = title,
-        .left = PANEL_LEFT[column],
-        .top = sheet.top + row * ROW_HEIGHT,
-        .width = PANEL_WIDTH,
+        .left = PANEL_LEFT[number % 2],
+        .top = sheet.top + (double)(number / 2) * ROW_HEIGHT,
+        .width = is_alone ? PANEL_LEFT[1] - PANEL_LEFT[0] + PANEL_WIDTH : PANEL_WIDTH,
         .height = PANEL_HEIGHT,
         .x = plot_look_x_axis(view),
     };
@@ -399,8 +417,8 @@ static double plot_run_draw_legend(const PlotView *view, Text *svg)
     Legend legend = {svg, PANEL_LEFT[0], LEGEND_TOP};
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
-        PlotStyle style = plot_style(i, 0);
-        style.colour = "#333333";
+        PlotStyle style = plot_look_style(view, i, 0);
+        style.colour = style.width < plot_style(1, 0).width ? "#000000" : "#666666";
         char words[TRAJECTORY_LABEL_SIZE + LINKAGE_NAME_SIZE + 16];
         name_run(run, words, sizeof words);
         plot_run_add_entry(&legend, style, words);
@@ -426,7 +444,15 @@ static double plot_run_draw_legend(const PlotView *view, Text *svg)
 // What is drawn from the second panel of the second row on.
 typedef void (*DrawPanel)(const PlotView *view, PlotPanel panel);
 
-enum { PANEL_MAX = 22 };
+typedef struct PanelChoice {
+    DrawPanel draw; // NULL: that of sliders
+    PlotSlide slide;
+} PanelChoice;
+
+enum {
+    PANEL_MAX = 22,
+    FIRST_PANELS = 3, // those of motion and the one of forces
+};
 
 static bool plot_run_has_joint(const RunReport *report, JointKind kind)
 {
@@ -440,39 +466,36 @@ static bool plot_run_has_joint(const RunReport *report, JointKind kind)
 }
 
 // The panels of the joints that the mechanism has.
-static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
+static size_t choose_panels(const PlotView *view, PanelChoice panels[PANEL_MAX])
 {
     const RunReport *report = view->report;
     size_t count = 0;
-    if (!scenario_has_clearance(report->scenario)) {
-        panels[count++] = plot_joints_errors;
-    }
     if (plot_run_has_joint(report, JOINT_CLEARANCE)) {
-        panels[count++] = plot_joints_paths;
+        panels[count++].draw = plot_joints_paths;
     }
     if (plot_run_has_joint(report, JOINT_CLEARANCE) && report->scenario->linkage.is_spatial) {
-        panels[count++] = plot_pins_tilts;
-        panels[count++] = plot_pins_ends;
+        panels[count++].draw = plot_pins_tilts;
+        panels[count++].draw = plot_pins_ends;
     }
     if (plot_run_has_joint(report, JOINT_GUIDE)) {
-        panels[count++] = plot_slides_paths;
-        panels[count++] = plot_slides_offsets;
-        panels[count++] = plot_slides_tilts;
+        panels[count++].draw = plot_slides_paths;
+        panels[count++].slide = PLOT_SLIDE_OFFSET;
+        panels[count++].slide = PLOT_SLIDE_TILT;
     }
     const bool is_planar = !report->scenario->linkage.is_spatial;
     if (is_planar && plot_run_has_joint(report, JOINT_CLEARANCE)) {
-        panels[count++] = plot_loads_pins;
+        panels[count++].draw = plot_loads_pins;
     }
     if (plot_run_has_joint(report, JOINT_GUIDE) || plot_run_has_joint(report, JOINT_PRISMATIC)) {
-        panels[count++] = plot_slides_positions;
-        panels[count++] = plot_slides_speeds;
-        panels[count++] = plot_slides_accelerations;
+        panels[count++].slide = PLOT_SLIDE_POSITION;
+        panels[count++].slide = PLOT_SLIDE_SPEED;
+        panels[count++].slide = PLOT_SLIDE_ACCELERATION;
     }
     if (plot_loads_has_torque(&report->scenario->linkage)) {
-        panels[count++] = plot_loads_torque;
+        panels[count++].draw = plot_loads_torque;
     }
     if (plot_run_has_joint(report, JOINT_STOP)) {
-        panels[count++] = plot_slides_stops;
+        panels[count++].slide = PLOT_SLIDE_STOP;
     }
     static const struct {
         bool is_angle;
@@ -486,21 +509,20 @@ static size_t choose_panels(const PlotView *view, DrawPanel panels[PANEL_MAX])
     };
     for (size_t i = 0; i < sizeof LIMITED / sizeof *LIMITED; i++) {
         if (plot_limits_any(&report->scenario->linkage, LIMITED[i].is_angle, LIMITED[i].kind)) {
-            panels[count++] = LIMITED[i].draw;
+            panels[count++].draw = LIMITED[i].draw;
         }
     }
     if (plot_limits_has_loop(&report->scenario->linkage)) {
-        panels[count++] = plot_limits_loop;
+        panels[count++].draw = plot_limits_loop;
     }
     if (view->bodies.left_out > 0) {
-        panels[count++] = plot_overview_bodies;
+        panels[count++].draw = plot_overview_bodies;
     }
     if (view->joints.left_out > 0) {
-        panels[count++] = plot_overview_joints;
+        panels[count++].draw = plot_overview_joints;
     }
-    // with play, the difference takes the quarter that would stay empty
-    if (scenario_has_clearance(report->scenario) && count % 2 == 0 && report->run_count > 1) {
-        panels[count++] = plot_joints_errors;
+    if (plot_joints_has_errors(view)) {
+        panels[count++].draw = plot_joints_errors;
     }
     return count;
 }
@@ -510,25 +532,28 @@ void plot_run_write(const void *of, Text *svg)
     const RunReport *report = of;
     const char *title = report->scenario->title;
     PlotView view = plot_view_begin(report);
-    DrawPanel panels[PANEL_MAX];
+    PanelChoice panels[PANEL_MAX] = {0};
     const size_t count = choose_panels(&view, panels);
-    const int more_rows = (int)count / 2;
+    const size_t all = count + FIRST_PANELS;
+    const double rows_below = (double)((all + 1) / 2) - 2.0;
     Text legend;
     text_init(&legend);
     const double pushed = fmax(0.0, plot_run_draw_legend(&view, &legend) - LEGEND_END);
-    const Sheet sheet = {svg, PANEL_TOP + pushed};
-    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + pushed + more_rows * ROW_HEIGHT, title);
+    const Sheet sheet = {svg, PANEL_TOP + pushed, all};
+    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT + pushed + rows_below * ROW_HEIGHT, title);
     plot_text(svg, PANEL_LEFT[0], 34.0, "start", "title", title);
     text_append(svg, "%s", legend.data);
     text_finish(&legend);
-    for (int i = 0; i < 2; i++) {
-        plot_motions_draw(&view, i, place_panel(&view, sheet, 0, i, ""));
-    }
-    plot_joints_forces(&view, place_panel(&view, sheet, 1, 0, "Force in the joint"));
+    plot_motions_draw(&view, 0, place_panel(&view, sheet, 0, ""));
+    plot_motions_draw(&view, 1, place_panel(&view, sheet, 1, ""));
+    plot_joints_forces(&view, place_panel(&view, sheet, 2, "Force in the joint"));
     for (size_t i = 0; i < count; i++) {
-        // the first stands beside the forces
-        const int place = (int)i + 1;
-        panels[i](&view, place_panel(&view, sheet, 1 + place / 2, place % 2, ""));
+        const PlotPanel panel = place_panel(&view, sheet, FIRST_PANELS + i, "");
+        if (panels[i].draw != NULL) {
+            panels[i].draw(&view, panel);
+        } else {
+            plot_slides_draw(&view, panel, panels[i].slide);
+        }
     }
     plot_end(svg);
     plot_view_finish(&view);

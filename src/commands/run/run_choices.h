@@ -17,7 +17,7 @@ typedef struct RunChoices {
 // clang-format off
 #define RUN_CHOICES(help_group) \
     {"backend", "NAME[,NAME]", "Run on these instead of the case's run.backends", help_group, \
-     OPTION_READ, .read = run_choices_read_backend}, \
+     OPTION_READ, .read = run_choices_read_backend, .words = OPTIONS_BACKENDS}, \
     {"step", "TIME", "The step, such as '2 us': short for --set run.step=TIME", help_group, \
      OPTION_READ, .read = run_choices_read_step}, \
     COMMON_SET(help_group), \

@@ -511,6 +511,13 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_object_set_new(made, "bodies", bodies);
     json_object_set_new(made, "drive",
                         overview.drive_count > 0 ? row_json(&overview.drives[0]) : json_null());
+    if (overview.drive_count > 1) {
+        json_t *drives = json_array();
+        for (size_t i = 0; i < overview.drive_count; i++) {
+            json_array_append_new(drives, row_json(&overview.drives[i]));
+        }
+        json_object_set_new(made, "drives", drives);
+    }
     Rebound rebound;
     const bool is_other = find_rebound(report->scenario, &rebound);
     json_value_set(made, "restitution_delivered", is_other ? rebound.delivered : NAN);

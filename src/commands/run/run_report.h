@@ -32,6 +32,7 @@ typedef struct RunReport {
     const Truth *truth;             // NULL where no reference was asked for
     const RunMatches *matches;      // one a run; NULL without a reference
     const Ensemble *ensembles;      // one a run, some empty; NULL where the motion is predictable
+    bool has_log_forces;            // whether the picture has forces in decades
 } RunReport;
 
 // Whether there is a certified solution.

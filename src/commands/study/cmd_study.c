@@ -225,23 +225,25 @@ static bool tell(void *target, Err *err)
     return is_reported;
 }
 
+static const Arguments STUDY_STATUS_ARGUMENTS = {
+    .program = "jointplay study status",
+    .usage = "FILE-or-STORE...",
+    .doc = "Shows how far a study has come. For a study file, the stores of the usual names in "
+           "the working folder are read. The study may be running meanwhile.",
+    .argument = {.type = OPTION_READ, .read = study_words_read},
+    OPTION_ROWS(STUDY_STATUS_OPTIONS),
+};
+
 static bool study_status_run(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay study status",
-        .usage = "FILE-or-STORE...",
-        .doc = "Shows how far a study has come. For a study file, the stores of the usual names in "
-               "the working folder are read. The study may be running meanwhile.",
-        .argument = {.type = OPTION_READ, .read = study_words_read},
-        OPTION_ROWS(STUDY_STATUS_OPTIONS),
-    };
-    return study_words_run(&ARGUMENTS, argc, argv, tell, err);
+    return study_words_run(&STUDY_STATUS_ARGUMENTS, argc, argv, tell, err);
 }
 
 const Command study_command_status = {
     .name = "status",
     .summary = "how far a study has come",
     .run = study_status_run,
+    .arguments = &STUDY_STATUS_ARGUMENTS,
 };
 
 // study export: the store as a table for other programs.
@@ -292,26 +294,28 @@ static bool cmd_study_write_all(void *target, Err *err)
     return store_close(store, err) && is_written;
 }
 
+static const Arguments STUDY_EXPORT_ARGUMENTS = {
+    .program = "jointplay study export",
+    .usage = "FILE-or-STORE",
+    .doc = "Writes the rows of a store, one per run, in the order of their numbers."
+           "\vA study file stands for its usual store in the working folder; - for standard "
+           "output.",
+    .argument = {.type = OPTION_TEXT, STUDY_EXPORT_AT(store), .what = "export takes one store"},
+    OPTION_ROWS(STUDY_EXPORT_OPTIONS),
+    .check = study_export_check,
+};
+
 static bool study_export_run(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay study export",
-        .usage = "FILE-or-STORE",
-        .doc = "Writes the rows of a store, one per run, in the order of their numbers."
-               "\vA study file stands for its usual store in the working folder; - for standard "
-               "output.",
-        .argument = {.type = OPTION_TEXT, STUDY_EXPORT_AT(store), .what = "export takes one store"},
-        OPTION_ROWS(STUDY_EXPORT_OPTIONS),
-        .check = study_export_check,
-    };
     ExportOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, cmd_study_write_all, err);
+    return arguments_run(&STUDY_EXPORT_ARGUMENTS, argc, argv, &options, cmd_study_write_all, err);
 }
 
 const Command study_command_export = {
     .name = "export",
     .summary = "the rows of a store as CSV or JSON Lines",
     .run = study_export_run,
+    .arguments = &STUDY_EXPORT_ARGUMENTS,
 };
 
 // study merge: the stores of shards become one.
@@ -423,25 +427,27 @@ static bool merge_words(void *target, Err *err)
     return merge(words->words[0], words->words + 1, words->count - 1, words->is_quiet, err);
 }
 
+static const Arguments STUDY_MERGE_ARGUMENTS = {
+    .program = "jointplay study merge",
+    .usage = "FILE\nOUT.sqlite IN.sqlite...",
+    .doc = "Merges the shards of a study into one store: those of a study file by their usual "
+           "names in the working folder, or those that are named."
+           "\vRuns that are there already are left alone. Stores of different studies or "
+           "programs are refused, and nothing is written then.",
+    .argument = {.type = OPTION_READ, .read = study_words_read},
+    OPTION_ROWS(STUDY_MERGE_OPTIONS),
+};
+
 static bool study_merge_run(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay study merge",
-        .usage = "FILE\nOUT.sqlite IN.sqlite...",
-        .doc = "Merges the shards of a study into one store: those of a study file by their usual "
-               "names in the working folder, or those that are named."
-               "\vRuns that are there already are left alone. Stores of different studies or "
-               "programs are refused, and nothing is written then.",
-        .argument = {.type = OPTION_READ, .read = study_words_read},
-        OPTION_ROWS(STUDY_MERGE_OPTIONS),
-    };
-    return study_words_run(&ARGUMENTS, argc, argv, merge_words, err);
+    return study_words_run(&STUDY_MERGE_ARGUMENTS, argc, argv, merge_words, err);
 }
 
 const Command study_command_merge = {
     .name = "merge",
     .summary = "the shards of a study into one store",
     .run = study_merge_run,
+    .arguments = &STUDY_MERGE_ARGUMENTS,
 };
 
 // study plot: one column over another.
@@ -512,26 +518,28 @@ static bool cmd_study_draw(void *target, Err *err)
     return is_drawn;
 }
 
+static const Arguments STUDY_DRAW_ARGUMENTS = {
+    .program = "jointplay study plot",
+    .usage = "FILE-or-STORE FILE.svg",
+    .doc = "Draws one column of a study over another, as SVG: one dot per run, or, if many "
+           "runs share each x, their median and a band from 5 to 95 %."
+           "\vThe first line of 'jointplay study export' names the columns.",
+    .argument = {.type = OPTION_READ, .read = cmd_study_read_word},
+    OPTION_ROWS(STUDY_DRAW_OPTIONS),
+    .check = study_draw_check,
+};
+
 static bool study_draw_run(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay study plot",
-        .usage = "FILE-or-STORE FILE.svg",
-        .doc = "Draws one column of a study over another, as SVG: one dot per run, or, if many "
-               "runs share each x, their median and a band from 5 to 95 %."
-               "\vThe first line of 'jointplay study export' names the columns.",
-        .argument = {.type = OPTION_READ, .read = cmd_study_read_word},
-        OPTION_ROWS(STUDY_DRAW_OPTIONS),
-        .check = study_draw_check,
-    };
     DrawOptions options = {0};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, cmd_study_draw, err);
+    return arguments_run(&STUDY_DRAW_ARGUMENTS, argc, argv, &options, cmd_study_draw, err);
 }
 
 const Command study_command_plot = {
     .name = "plot",
     .summary = "a picture of one column over another",
     .run = study_draw_run,
+    .arguments = &STUDY_DRAW_ARGUMENTS,
 };
 
 enum { NUMBER_SIZE = 24 };
@@ -607,7 +615,7 @@ static bool cmd_study_check(void *target, Err *err)
            study_path_store(options->common.path, options->shard, options->store, err);
 }
 
-static const Arguments ARGUMENTS = {
+static const Arguments STUDY_ARGUMENTS = {
     .program = "jointplay study",
     .usage = "FILE\nstatus FILE-or-STORE...\nexport FILE-or-STORE\nmerge FILE\n"
              "merge OUT.sqlite IN.sqlite...\nplot FILE-or-STORE FILE.svg\nslurm FILE",
@@ -643,9 +651,9 @@ static bool study_words_run(const Arguments *arguments, int argc, char **argv,
 }
 
 static const Command *const PARTS[] = {&study_command_status, &study_command_export,
-                                       &study_command_merge, &study_command_plot,
-                                       &study_command_slurm};
-enum { PART_COUNT = sizeof PARTS / sizeof *PARTS };
+                                       &study_command_merge,  &study_command_plot,
+                                       &study_command_slurm,  NULL};
+enum { PART_COUNT = sizeof PARTS / sizeof *PARTS - 1 };
 
 static const Command *find_part(const char *word)
 {
@@ -681,13 +689,15 @@ static bool cmd_study_run(int argc, char **argv, Err *err)
     }
     _Static_assert((int)SWEEP_JOB_MAX >= (int)OPTION_JOB_MAX, "a default that is refused");
     StudyOptions options = {.common.jobs = common_options_count_jobs(), .shard = {0, 1}};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, study_run, err);
+    return arguments_run(&STUDY_ARGUMENTS, argc, argv, &options, study_run, err);
 }
 
 const Command cmd_study = {
     .name = "study",
     .summary = "sweeps values of a case into a store; resumes where it was stopped",
     .run = cmd_study_run,
+    .arguments = &STUDY_ARGUMENTS,
+    .parts = PARTS,
     .describe = spec_describe,
 };
 

@@ -1,6 +1,7 @@
 // Writes the scripts that run a study on a cluster, and says what is to be typed then.
 #include "commands/study/study_slurm.h"
 #include "base/shell.h"
+#include "base/shipped.h"
 #include "cli/arguments.h"
 #include "cli/output.h"
 #include "cli/written.h"
@@ -238,7 +239,9 @@ static bool check_shards(const SlurmOptions *options, Err *err)
 // A path that holds wherever a job begins.
 static bool find_whole(const char *path, char target[FILE_PATH_SIZE], Err *err)
 {
-    char *whole = realpath(path, NULL);
+    char found[FILE_PATH_SIZE];
+    shipped_find(path, found, sizeof found);
+    char *whole = realpath(found, NULL);
     if (whole == NULL || strlen(whole) >= FILE_PATH_SIZE) {
         free(whole);
         return err_set(err, ERR_FILE, "cannot find %s: %s", path, strerror(errno));
@@ -367,25 +370,27 @@ static bool make_scripts(void *target, Err *err)
     return true;
 }
 
+static const Arguments STUDY_SLURM_ARGUMENTS = {
+    .program = "jointplay study slurm",
+    .usage = "FILE --shards N",
+    .doc = "Writes the scripts that make a study on a cluster: a job array of shards, a job "
+           "that merges their stores, and a script that submits both."
+           "\vA task that is killed, preempted or runs out of time goes back in the queue and "
+           "resumes where it was.",
+    .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
+    OPTION_ROWS(OPTIONS),
+    .check = study_slurm_check,
+};
+
 static bool study_slurm_run(int argc, char **argv, Err *err)
 {
-    static const Arguments ARGUMENTS = {
-        .program = "jointplay study slurm",
-        .usage = "FILE --shards N",
-        .doc = "Writes the scripts that make a study on a cluster: a job array of shards, a job "
-               "that merges their stores, and a script that submits both."
-               "\vA task that is killed, preempted or runs out of time goes back in the queue and "
-               "resumes where it was.",
-        .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
-        OPTION_ROWS(OPTIONS),
-        .check = study_slurm_check,
-    };
     SlurmOptions options = {.job = {.folder = ".", .cpus = 1, .requeues = SLURM_REQUEUE_USUAL}};
-    return arguments_run(&ARGUMENTS, argc, argv, &options, make_scripts, err);
+    return arguments_run(&STUDY_SLURM_ARGUMENTS, argc, argv, &options, make_scripts, err);
 }
 
 const Command study_command_slurm = {
     .name = "slurm",
     .summary = "writes the scripts that make a study on a cluster",
     .run = study_slurm_run,
+    .arguments = &STUDY_SLURM_ARGUMENTS,
 };

@@ -569,4 +569,5 @@ const Command cmd_tune = {
     .name = "tune",
     .summary = "the cheapest setting that meets an error, checked by running it",
     .run = tune_run,
+    .arguments = &TUNE_ARGUMENTS,
 };

@@ -1,0 +1,331 @@
+// Runs a case in Chipmunk, in the ways that its users have.
+//
+//     native     the hole is a slide joint between the two centres, from 0 to the play
+//     force      the contact's law is a force, set within the step where the velocities are changed
+//     staggered  the same, with the velocities read as what they are in that order
+//
+// A step of Chipmunk moves the bodies first, x(n+1) = x(n) + h v(n), then changes v by the forces
+// and the constraints there. So v(n) is the mean velocity of [n, n+1]: read as that at n + 1/2, the
+// steps are a leapfrog. `staggered` reads it so, and evaluates the law where the positions are, at
+// the velocities that the acceleration of the step before says. A force that is set before a step,
+// as is usual, acts where the bodies no longer are: then the law fails at steps above 1 us. The
+// driven body is kinematic, about its pivot. Errors of joints are corrected in the next step, all
+// of them.
+#include "drivers/common/driver.h"
+
+#include <chipmunk/chipmunk.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// iterations of the solver: with fewer than some 30 the joints of a four-bar give way, more than
+// these change nothing in the first four digits
+enum { ITERATIONS = 100 };
+
+typedef struct ChipmunkRun {
+    const DriverCase *of;
+    cpSpace *space;
+    cpBody **bodies;         // by body; owned, as all arrays
+    Vec2 *centres;           // of each body's frame, where the centre of mass is
+    cpConstraint **holds;    // by joint; NULL of a law
+    DriverContact *contacts; // by joint
+    DriverMotion *motions;
+    DriverMotion *before; // of the step before
+    Vec2 *forces;         // by joint, on body b
+    double lag_s;         // of velocities behind positions, as the law is to know
+    double now_s;         // of the positions
+    DriverRun run;
+} ChipmunkRun;
+
+static void *room(size_t count, size_t size)
+{
+    void *memory = calloc(count + 1, size);
+    if (memory == NULL) {
+        driver_fail("there is no memory");
+    }
+    return memory;
+}
+
+static cpVect to_vect(Vec2 a)
+{
+    return cpv(a.x, a.y);
+}
+
+static cpBody *body_of(const ChipmunkRun *run, int body)
+{
+    return body == DRIVER_GROUND ? cpSpaceGetStaticBody(run->space) : run->bodies[body];
+}
+
+// A joint's point in the frame that Chipmunk has of a body: the driven one turns about its pivot.
+static cpVect anchor_of(const ChipmunkRun *run, const DriverJoint *joint, int side)
+{
+    const int body = joint->bodies[side];
+    const Vec2 centre = body == DRIVER_GROUND ? (Vec2){0.0, 0.0} : run->centres[body];
+    return to_vect(vec2_add(joint->anchors[side], centre));
+}
+
+static void make_body(ChipmunkRun *run, size_t i)
+{
+    const DriverBody *body = &run->of->bodies[i];
+    const DriverMotion *start = &body->start;
+    const bool is_driven = run->of->has_drive && run->of->driven_body == (int)i;
+    cpBody *made = is_driven ? cpBodyNewKinematic() : cpBodyNew(body->mass, body->inertia);
+    Vec2 position = start->position;
+    Vec2 velocity = start->velocity;
+    if (is_driven) {
+        const DriverJoint *joint = &run->of->joints[run->of->drive_joint];
+        const int own = joint->bodies[1] == (int)i ? 1 : 0;
+        if (joint->bodies[1 - own] != DRIVER_GROUND || joint->kind != DRIVER_REVOLUTE) {
+            driver_refuse("a drive that does not turn a body about the ground");
+        }
+        position = joint->anchors[1 - own];
+        velocity = (Vec2){0.0, 0.0};
+        run->centres[i] = vec2_scale(-1.0, joint->anchors[own]);
+    }
+    cpBodySetPosition(made, to_vect(position));
+    cpBodySetAngle(made, start->angle);
+    cpBodySetVelocity(made, to_vect(velocity));
+    cpBodySetAngularVelocity(made, start->omega);
+    cpSpaceAddBody(run->space, made);
+    run->bodies[i] = made;
+}
+
+static void hold(ChipmunkRun *run, size_t joint, cpConstraint *constraint)
+{
+    cpConstraintSetErrorBias(constraint, 0.0);
+    cpSpaceAddConstraint(run->space, constraint);
+    run->holds[joint] = constraint;
+}
+
+static void make_joint(ChipmunkRun *run, size_t i, bool is_native)
+{
+    const DriverJoint *joint = &run->of->joints[i];
+    cpBody *a = body_of(run, joint->bodies[0]);
+    cpBody *b = body_of(run, joint->bodies[1]);
+    const cpVect on_a = anchor_of(run, joint, 0);
+    const cpVect on_b = anchor_of(run, joint, 1);
+    if (run->of->has_drive && run->of->drive_joint == (int)i) {
+        return; // the kinematic body stands on it
+    }
+    if (joint->kind == DRIVER_REVOLUTE) {
+        hold(run, i, cpPivotJointNew2(a, b, on_a, on_b));
+    } else if (joint->kind == DRIVER_PRISMATIC) {
+        // a groove has ends: far away
+        const double reach = 1e3;
+        const cpVect along = cpvmult(cpvforangle(joint->direction), reach);
+        hold(run, i, cpGrooveJointNew(a, b, cpvsub(on_a, along), cpvadd(on_a, along), on_b));
+        const double held = cpBodyGetAngle(b) - cpBodyGetAngle(a);
+        cpConstraint *angle = cpRotaryLimitJointNew(a, b, held, held);
+        cpConstraintSetErrorBias(angle, 0.0);
+        cpSpaceAddConstraint(run->space, angle);
+    } else if (is_native) {
+        hold(run, i, cpSlideJointNew(a, b, on_a, on_b, 0.0, joint->clearance));
+    }
+}
+
+static void read_motions(const ChipmunkRun *run, DriverMotion *motions)
+{
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        const cpBody *body = run->bodies[i];
+        const cpVect at = cpBodyGetPosition(body);
+        const cpVect going = cpBodyGetVelocity(body);
+        DriverMotion *motion = &motions[i];
+        motion->angle = cpBodyGetAngle(body);
+        motion->omega = cpBodyGetAngularVelocity(body);
+        const Vec2 arm = vec2_rotate(motion->angle, run->centres[i]);
+        motion->position = vec2_add((Vec2){at.x, at.y}, arm);
+        motion->velocity =
+            vec2_add((Vec2){going.x, going.y}, vec2_scale(motion->omega, vec2_perp(arm)));
+    }
+}
+
+// The bodies as the law is to feel them: their velocities at the time of the positions.
+static void read_felt(ChipmunkRun *run)
+{
+    const double share = run->lag_s / run->of->step_s;
+    read_motions(run, run->motions);
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        DriverMotion *now = &run->motions[i];
+        const DriverMotion before = run->before[i];
+        run->before[i] = *now;
+        if (share > 0.0) {
+            now->velocity = vec2_add(now->velocity,
+                                     vec2_scale(share, vec2_sub(now->velocity, before.velocity)));
+            now->omega += share * (now->omega - before.omega);
+        }
+    }
+}
+
+// Follows the contacts and finds the forces of their laws, with the bodies as they are.
+static void find_forces(ChipmunkRun *run)
+{
+    read_felt(run);
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        if (joint->kind != DRIVER_PIN_IN_HOLE) {
+            continue;
+        }
+        const PinHole pose = driver_pose(joint, run->motions);
+        DriverTotals *totals = &run->run.totals[i];
+        driver_follow(joint, &pose, &run->contacts[i], totals);
+        run->forces[i] = driver_force(joint, &run->contacts[i], &pose);
+        totals->force_max = fmax(totals->force_max, vec2_length(run->forces[i]));
+    }
+}
+
+// Pushes the bodies by the laws' forces until the end of the step under way.
+static void push(const ChipmunkRun *run)
+{
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        const Vec2 force = run->forces[i];
+        if (joint->kind != DRIVER_PIN_IN_HOLE || (force.x == 0.0 && force.y == 0.0)) {
+            continue;
+        }
+        for (int side = 0; side < 2; side++) {
+            cpBody *body = body_of(run, joint->bodies[side]);
+            if (cpBodyGetType(body) == CP_BODY_TYPE_DYNAMIC) {
+                const cpVect at =
+                    to_vect(driver_point(run->motions, joint->bodies[side], joint->anchors[side]));
+                cpBodyApplyForceAtWorldPoint(
+                    body, to_vect(vec2_scale(side == 0 ? -1.0 : 1.0, force)), at);
+            }
+        }
+    }
+}
+
+// Chipmunk's callbacks know their body: what they are for is in the space.
+static void change_velocity(cpBody *body, cpVect gravity, cpFloat damping, cpFloat step_s)
+{
+    ChipmunkRun *run = cpSpaceGetUserData(cpBodyGetSpace(body));
+    // the first body of the step: all positions are new, all velocities old
+    if (body == cpBodyGetUserData(run->bodies[0])) {
+        find_forces(run);
+        push(run);
+    }
+    cpBodyUpdateVelocity(body, gravity, damping, step_s);
+}
+
+static void stamp(ChipmunkRun *run, double velocity_s)
+{
+    DriverStamp *now = driver_run_stamp(&run->run);
+    now->position_s = run->now_s;
+    now->velocity_s = velocity_s;
+    read_motions(run, now->motions);
+    if (run->of->has_drive) {
+        // the driven body's velocity is known at any time
+        DriverMotion *driven = &now->motions[run->of->driven_body];
+        const double angle = driven->angle + driven->omega * (velocity_s - run->now_s);
+        const Vec2 arm = vec2_rotate(angle, run->centres[run->of->driven_body]);
+        driven->velocity = vec2_scale(driven->omega, vec2_perp(arm));
+    }
+    memcpy(now->forces, run->forces, run->of->joint_count * sizeof *now->forces);
+    driver_run_stamped(&run->run);
+}
+
+// The forces of slide joints, along the line of the centres.
+static void read_slides(ChipmunkRun *run)
+{
+    read_motions(run, run->motions);
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        if (joint->kind != DRIVER_PIN_IN_HOLE) {
+            continue;
+        }
+        const PinHole pose = driver_pose(joint, run->motions);
+        DriverTotals *totals = &run->run.totals[i];
+        driver_follow(joint, &pose, &run->contacts[i], totals);
+        const double force = cpConstraintGetImpulse(run->holds[i]) / run->of->step_s;
+        run->forces[i] = vec2_scale(force, pose.normal);
+        totals->force_max = fmax(totals->force_max, force);
+    }
+}
+
+static void take_step(ChipmunkRun *run, bool is_native)
+{
+    const double step_s = run->of->step_s;
+    if (run->of->has_drive) {
+        // to a rounding, however many steps there are
+        cpBodySetAngle(run->bodies[run->of->driven_body],
+                       run->of->bodies[run->of->driven_body].start.angle +
+                           run->of->drive_speed * run->now_s);
+    }
+    cpSpaceStep(run->space, step_s);
+    run->now_s = step_s * (double)++run->run.steps;
+    if (is_native) {
+        read_slides(run);
+    }
+    stamp(run, run->now_s + run->lag_s);
+}
+
+static void make(const DriverCase *of, ChipmunkRun *run)
+{
+    const bool is_native = driver_is_way(of, "native");
+    *run = (ChipmunkRun){.of = of,
+                         .space = cpSpaceNew(),
+                         .bodies = room(of->body_count, sizeof *run->bodies),
+                         .centres = room(of->body_count, sizeof *run->centres),
+                         .holds = room(of->joint_count, sizeof *run->holds),
+                         .contacts = room(of->joint_count, sizeof *run->contacts),
+                         .motions = room(of->body_count, sizeof *run->motions),
+                         .before = room(of->body_count, sizeof *run->before),
+                         .forces = room(of->joint_count, sizeof *run->forces),
+                         .run = driver_run_start(of)};
+    cpSpaceSetIterations(run->space, ITERATIONS);
+    cpSpaceSetGravity(run->space, cpv(0.0, -of->gravity));
+    cpSpaceSetUserData(run->space, run);
+    for (size_t i = 0; i < of->body_count; i++) {
+        make_body(run, i);
+    }
+    for (size_t i = 0; i < of->joint_count; i++) {
+        make_joint(run, i, is_native);
+        run->contacts[i].state = of->joints[i].contact;
+    }
+    read_motions(run, run->before);
+}
+
+// Lets the law act within the steps.
+static void set_law(ChipmunkRun *run)
+{
+    cpBody *first = NULL;
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        if (cpBodyGetType(run->bodies[i]) == CP_BODY_TYPE_DYNAMIC) {
+            cpBodySetVelocityUpdateFunc(run->bodies[i], change_velocity);
+            first = first == NULL ? run->bodies[i] : first;
+        }
+    }
+    cpBodySetUserData(run->bodies[0], first);
+}
+
+int main(void)
+{
+    static const char *const WAYS[] = {"native", "force", "staggered", NULL};
+    const DriverIdentity identity = {"Chipmunk", cpVersionString, "double", WAYS};
+    int status;
+    const DriverCase *of = driver_read(&identity, &status);
+    if (of == NULL) {
+        return status;
+    }
+    if (sizeof(cpFloat) != sizeof(double)) {
+        driver_fail("this Chipmunk calculates in single precision");
+    }
+    ChipmunkRun run;
+    const bool is_native = driver_is_way(of, "native");
+    make(of, &run);
+    cpSpaceSetUserData(run.space, &run);
+    if (!is_native) {
+        set_law(&run);
+    }
+    run.lag_s = driver_is_way(of, "staggered") ? 0.5 * of->step_s : 0.0;
+    run.run.is_linear = is_native;
+    snprintf(run.run.settings, sizeof run.run.settings,
+             "%d iterations, errorBias 0 of all constraints, driven body kinematic", ITERATIONS);
+    driver_run_begin(&run.run);
+    stamp(&run, 0.0);
+    while (!driver_run_is_full(&run.run)) {
+        take_step(&run, is_native);
+    }
+    driver_run_write(&run.run);
+    return 0;
+}

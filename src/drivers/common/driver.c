@@ -1,0 +1,497 @@
+// Speaks the protocol of drivers: reads the request, keeps samples, writes the answer.
+//
+// An engine's states stand at its steps, and in some ways positions and velocities stand at
+// different times. Samples between them are those of a cubic through four of these (Lagrange), in
+// ways whose velocities jump of the line between two.
+#include "drivers/common/driver.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { PROTOCOL = 1, REQUEST_MOST = 1 << 28 };
+
+static void *memory(size_t count, size_t size)
+{
+    void *room = calloc(count + 1, size);
+    if (room == NULL) {
+        driver_fail("there is no memory");
+    }
+    return room;
+}
+
+static double clock_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// Where answers go: the program's standard output, which engines are kept from, for some greet.
+
+static FILE *answers;
+
+static void open_answers(void)
+{
+    const int channel = dup(STDOUT_FILENO);
+    answers = channel >= 0 ? fdopen(channel, "w") : NULL;
+    if (answers == NULL || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) {
+        _Exit(1);
+    }
+}
+
+// Answers that end everything.
+
+static _Noreturn void end_with(const char *key, const char *format, va_list arguments)
+{
+    char words[512];
+    vsnprintf(words, sizeof words, format, arguments);
+    json_t *line = json_pack("{s:s%}", key, words, strlen(words));
+    char *text = line != NULL ? json_dumps(line, JSON_COMPACT) : NULL;
+    if (text != NULL) {
+        fprintf(answers, "%s\n", text);
+    } else {
+        fprintf(answers, "{\"%s\": \"for a reason that is no text\"}\n", key);
+    }
+    fflush(answers);
+    _Exit(0);
+}
+
+void driver_fail(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    end_with("failed", format, arguments);
+}
+
+void driver_refuse(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    end_with("refused", format, arguments);
+}
+
+// The request.
+
+static const json_t *member(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    if (value == NULL) {
+        driver_fail("the request has no '%s'", key);
+    }
+    return value;
+}
+
+static double number(const json_t *object, const char *key)
+{
+    return json_number_value(member(object, key));
+}
+
+static Vec2 pair(const json_t *object, const char *key)
+{
+    const json_t *value = member(object, key);
+    return (Vec2){json_number_value(json_array_get(value, 0)),
+                  json_number_value(json_array_get(value, 1))};
+}
+
+static void copy_text(const json_t *object, const char *key, char target[DRIVER_NAME_SIZE])
+{
+    const char *text = json_string_value(member(object, key));
+    snprintf(target, DRIVER_NAME_SIZE, "%s", text != NULL ? text : "");
+}
+
+static DriverBody read_body(const json_t *object)
+{
+    DriverBody body = {.mass = number(object, "mass_kg"),
+                       .inertia = number(object, "inertia_kg_m2"),
+                       .start = {.position = pair(object, "position_m"),
+                                 .angle = number(object, "angle_rad"),
+                                 .velocity = pair(object, "velocity_m_s"),
+                                 .omega = number(object, "omega_rad_s")}};
+    copy_text(object, "name", body.name);
+    return body;
+}
+
+static ForceLaw read_law(const json_t *object)
+{
+    ForceLaw law = {.family = FORCE_LAW_POWER};
+    if (strcmp(json_string_value(member(object, "family")), "power") == 0) {
+        law.stiffness = number(object, "stiffness_N_m");
+        law.exponent = number(object, "exponent");
+    } else {
+        law.family = FORCE_LAW_LOGARITHMIC;
+        law.compliance = number(object, "compliance_m_N");
+        law.offset = number(object, "offset");
+        law.log_scale = number(object, "log_scale");
+    }
+    law.hysteresis = number(object, "hysteresis");
+    law.viscous = number(object, "viscous_N_s_m");
+    law.impact_speed_floor = number(object, "impact_speed_floor_m_s");
+    law.resting_speed = number(object, "resting_speed_m_s");
+    law.friction = number(object, "friction");
+    law.friction_speed = number(object, "friction_speed_m_s");
+    return law;
+}
+
+static ContactState read_contact(const json_t *object)
+{
+    if (json_is_null(object)) {
+        return (ContactState){.is_touching = false};
+    }
+    return (ContactState){.is_touching = true,
+                          .is_slack = json_is_true(member(object, "is_slack")),
+                          .is_released = json_is_true(member(object, "is_released")),
+                          .is_resting = json_is_true(member(object, "is_resting")),
+                          .impact_speed = number(object, "impact_speed_m_s"),
+                          .damping_speed = number(object, "damping_speed_m_s"),
+                          .age_s = number(object, "age_s")};
+}
+
+static DriverJoint read_joint(const json_t *object)
+{
+    DriverJoint joint = {.kind = DRIVER_REVOLUTE};
+    copy_text(object, "name", joint.name);
+    joint.bodies[0] = (int)number(object, "body_a");
+    joint.bodies[1] = (int)number(object, "body_b");
+    joint.anchors[0] = pair(object, "anchor_a_m");
+    joint.anchors[1] = pair(object, "anchor_b_m");
+    const char *kind = json_string_value(member(object, "kind"));
+    if (strcmp(kind, "prismatic") == 0) {
+        joint.kind = DRIVER_PRISMATIC;
+        joint.direction = number(object, "direction_rad");
+    } else if (strcmp(kind, "pin-in-hole") == 0) {
+        joint.kind = DRIVER_PIN_IN_HOLE;
+        joint.clearance = number(object, "radial_clearance_m");
+        joint.law = read_law(member(object, "law"));
+        joint.contact = read_contact(member(object, "contact"));
+    } else if (strcmp(kind, "revolute") != 0) {
+        driver_refuse("the %s '%s'", kind, joint.name);
+    }
+    if (joint.law.friction > 0.0) {
+        driver_refuse("friction in '%s'", joint.name);
+    }
+    return joint;
+}
+
+static void read_drive(const json_t *drive, DriverCase *of)
+{
+    of->driven_body = DRIVER_GROUND;
+    of->has_drive = !json_is_null(drive);
+    if (of->has_drive) {
+        of->driven_body = (int)number(drive, "body");
+        of->drive_joint = (int)number(drive, "joint");
+        of->drive_speed = number(drive, "speed_rad_s");
+    }
+}
+
+static DriverCase *read_case(const json_t *request)
+{
+    DriverCase *of = memory(1, sizeof *of);
+    copy_text(request, "way", of->way);
+    of->step_s = number(request, "step_s");
+    of->duration_s = number(request, "duration_s");
+    of->gravity = number(request, "gravity_m_s2");
+    const json_t *bodies = member(request, "bodies");
+    const json_t *joints = member(request, "joints");
+    const json_t *times = member(request, "sample_times_s");
+    of->body_count = json_array_size(bodies);
+    of->joint_count = json_array_size(joints);
+    of->sample_count = json_array_size(times);
+    of->bodies = memory(of->body_count, sizeof *of->bodies);
+    of->joints = memory(of->joint_count, sizeof *of->joints);
+    of->sample_times = memory(of->sample_count, sizeof *of->sample_times);
+    for (size_t i = 0; i < of->body_count; i++) {
+        of->bodies[i] = read_body(json_array_get(bodies, i));
+    }
+    for (size_t i = 0; i < of->joint_count; i++) {
+        of->joints[i] = read_joint(json_array_get(joints, i));
+    }
+    for (size_t i = 0; i < of->sample_count; i++) {
+        of->sample_times[i] = json_number_value(json_array_get(times, i));
+    }
+    read_drive(member(request, "drive"), of);
+    return of;
+}
+
+static void say_hello(const DriverIdentity *identity)
+{
+    json_t *ways = json_array();
+    for (size_t i = 0; identity->ways[i] != NULL; i++) {
+        json_array_append_new(ways, json_string(identity->ways[i]));
+    }
+    json_t *line = json_pack("{s:i, s:s, s:s, s:s, s:o}", "jointplay-driver", PROTOCOL, "engine",
+                             identity->engine, "version", identity->version, "precision",
+                             identity->precision, "ways", ways);
+    json_dumpf(line, answers, JSON_COMPACT);
+    fputc('\n', answers);
+    fflush(answers);
+    json_decref(line);
+}
+
+DriverCase *driver_read(const DriverIdentity *identity, int *status)
+{
+    open_answers();
+    json_t *request = json_loadf(stdin, JSON_DISABLE_EOF_CHECK, NULL);
+    *status = 0;
+    if (json_integer_value(json_object_get(request, "jointplay-driver")) != PROTOCOL) {
+        fprintf(stderr,
+                "this is a driver of jointplay's protocol %d, and reads a request of it "
+                "from standard input\n",
+                PROTOCOL);
+        *status = 2;
+        json_decref(request);
+        return NULL;
+    }
+    say_hello(identity);
+    const char *ask = json_string_value(json_object_get(request, "ask"));
+    DriverCase *of = NULL;
+    if (ask != NULL && strcmp(ask, "run") == 0) {
+        of = read_case(request);
+        bool is_known = false;
+        for (size_t i = 0; identity->ways[i] != NULL; i++) {
+            is_known = is_known || driver_is_way(of, identity->ways[i]);
+        }
+        if (!is_known) {
+            driver_fail("there is no way '%s'", of->way);
+        }
+    }
+    json_decref(request);
+    return of;
+}
+
+bool driver_is_way(const DriverCase *of, const char *way)
+{
+    return strcmp(of->way, way) == 0;
+}
+
+// The run.
+
+DriverRun driver_run_start(const DriverCase *of)
+{
+    DriverRun run = {
+        .of = of,
+        .motions = memory(of->sample_count * of->body_count, sizeof *run.motions),
+        .forces = memory(of->sample_count * of->joint_count, sizeof *run.forces),
+        .totals = memory(of->joint_count, sizeof *run.totals),
+    };
+    for (size_t i = 0; i < DRIVER_STAMPS; i++) {
+        run.stamps[i].motions = memory(of->body_count, sizeof(DriverMotion));
+        run.stamps[i].forces = memory(of->joint_count, sizeof(Vec2));
+    }
+    return run;
+}
+
+void driver_run_begin(DriverRun *run)
+{
+    run->began_s = clock_s();
+}
+
+DriverMotion *driver_run_motions(DriverRun *run)
+{
+    return run->motions + run->sampled * run->of->body_count;
+}
+
+Vec2 *driver_run_forces(DriverRun *run)
+{
+    return run->forces + run->sampled * run->of->joint_count;
+}
+
+void driver_run_sampled(DriverRun *run)
+{
+    run->sampled++;
+}
+
+DriverStamp *driver_run_stamp(DriverRun *run)
+{
+    if (run->stamp_count == DRIVER_STAMPS) {
+        const DriverStamp oldest = run->stamps[0];
+        memmove(run->stamps, run->stamps + 1, (DRIVER_STAMPS - 1) * sizeof *run->stamps);
+        run->stamps[DRIVER_STAMPS - 1] = oldest;
+        run->stamp_count--;
+    }
+    return &run->stamps[run->stamp_count];
+}
+
+// The weights of the stamps at a time: of a cubic, or of the line between the two about it.
+static void find_weights(const DriverRun *run, double time_s, bool is_velocity,
+                         double weights[DRIVER_STAMPS])
+{
+    double times[DRIVER_STAMPS];
+    for (size_t i = 0; i < DRIVER_STAMPS; i++) {
+        times[i] = is_velocity ? run->stamps[i].velocity_s : run->stamps[i].position_s;
+        weights[i] = 0.0;
+    }
+    size_t first = 0;
+    size_t last = DRIVER_STAMPS - 1;
+    if (run->is_linear) {
+        while (first + 2 < DRIVER_STAMPS && times[first + 1] < time_s) {
+            first++;
+        }
+        last = first + 1;
+    }
+    for (size_t i = first; i <= last; i++) {
+        weights[i] = 1.0;
+        for (size_t k = first; k <= last; k++) {
+            weights[i] *= k != i ? (time_s - times[k]) / (times[i] - times[k]) : 1.0;
+        }
+    }
+}
+
+static void make_sample(DriverRun *run, double time_s)
+{
+    double at[DRIVER_STAMPS];
+    double going[DRIVER_STAMPS];
+    find_weights(run, time_s, false, at);
+    find_weights(run, time_s, true, going);
+    DriverMotion *motions = driver_run_motions(run);
+    Vec2 *forces = driver_run_forces(run);
+    for (size_t i = 0; i < DRIVER_STAMPS; i++) {
+        const DriverStamp *stamp = &run->stamps[i];
+        for (size_t k = 0; k < run->of->body_count; k++) {
+            const DriverMotion *from = &stamp->motions[k];
+            DriverMotion *to = &motions[k];
+            to->position = vec2_add(to->position, vec2_scale(at[i], from->position));
+            to->angle += at[i] * from->angle;
+            to->velocity = vec2_add(to->velocity, vec2_scale(going[i], from->velocity));
+            to->omega += going[i] * from->omega;
+        }
+        for (size_t k = 0; k < run->of->joint_count; k++) {
+            forces[k] = vec2_add(forces[k], vec2_scale(at[i], stamp->forces[k]));
+        }
+    }
+    driver_run_sampled(run);
+}
+
+void driver_run_stamped(DriverRun *run)
+{
+    run->stamp_count++;
+    if (run->stamp_count < DRIVER_STAMPS) {
+        return;
+    }
+    const DriverStamp *inner = &run->stamps[DRIVER_STAMPS - 2];
+    const double known_s = fmin(inner->position_s, inner->velocity_s);
+    while (!driver_run_is_full(run) && driver_run_next(run) <= known_s) {
+        make_sample(run, driver_run_next(run));
+    }
+}
+
+// The answer.
+
+static void write_rows(const DriverRun *run, size_t sample)
+{
+    const DriverCase *of = run->of;
+    fprintf(answers, "{\"sample\":%.17g,\"bodies\":[", of->sample_times[sample]);
+    for (size_t i = 0; i < of->body_count; i++) {
+        const DriverMotion *at = &run->motions[sample * of->body_count + i];
+        if (!isfinite(at->position.x + at->position.y + at->angle + at->velocity.x +
+                      at->velocity.y + at->omega)) {
+            fputc('\n', answers);
+            driver_fail("the motion of '%s' is not finite after %.6g s", of->bodies[i].name,
+                        of->sample_times[sample]);
+        }
+        fprintf(answers, "%s[%.17g,%.17g,%.17g,%.17g,%.17g,%.17g]", i > 0 ? "," : "",
+                at->position.x, at->position.y, at->angle, at->velocity.x, at->velocity.y,
+                at->omega);
+    }
+    fprintf(answers, "],\"joints\":[");
+    for (size_t i = 0; i < of->joint_count; i++) {
+        const Vec2 force = run->forces[sample * of->joint_count + i];
+        fprintf(answers, "%s[%.9g,%.9g]", i > 0 ? "," : "", isfinite(force.x) ? force.x : 0.0,
+                isfinite(force.y) ? force.y : 0.0);
+    }
+    fprintf(answers, "]}\n");
+}
+
+static void write_done(const DriverRun *run)
+{
+    json_t *joints = json_array();
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverTotals *of = &run->totals[i];
+        json_array_append_new(
+            joints, json_pack("[f, f, I]", of->force_max, of->depth_max, (json_int_t)of->begun));
+    }
+    json_t *done = json_pack("{s:{s:I, s:f, s:o, s:s}}", "done", "steps", (json_int_t)run->steps,
+                             "wall_s", run->wall_s, "joints", joints, "settings", run->settings);
+    if (done == NULL) {
+        driver_fail("the totals of the joints are not finite");
+    }
+    json_dumpf(done, answers, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    fputc('\n', answers);
+    json_decref(done);
+}
+
+void driver_run_write(DriverRun *run)
+{
+    run->wall_s = clock_s() - run->began_s;
+    for (size_t i = 0; i < run->of->sample_count; i++) {
+        write_rows(run, i);
+    }
+    write_done(run);
+    fflush(answers);
+}
+
+// Pins in their holes.
+
+Vec2 driver_point(const DriverMotion *motions, int body, Vec2 local)
+{
+    return body == DRIVER_GROUND
+               ? local
+               : vec2_add(motions[body].position, vec2_rotate(motions[body].angle, local));
+}
+
+Vec2 driver_point_velocity(const DriverMotion *motions, int body, Vec2 local)
+{
+    if (body == DRIVER_GROUND) {
+        return (Vec2){0.0, 0.0};
+    }
+    const Vec2 arm = vec2_rotate(motions[body].angle, local);
+    return vec2_add(motions[body].velocity, vec2_scale(motions[body].omega, vec2_perp(arm)));
+}
+
+PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions)
+{
+    const Vec2 hole = driver_point(motions, joint->bodies[0], joint->anchors[0]);
+    const Vec2 pin = driver_point(motions, joint->bodies[1], joint->anchors[1]);
+    const Vec2 going =
+        vec2_sub(driver_point_velocity(motions, joint->bodies[1], joint->anchors[1]),
+                 driver_point_velocity(motions, joint->bodies[0], joint->anchors[0]));
+    return pin_hole_pose(hole, pin, going, joint->clearance);
+}
+
+Vec2 driver_force(const DriverJoint *joint, const DriverContact *contact, const PinHole *pose)
+{
+    if (!(pose->penetration > 0.0)) {
+        return (Vec2){0.0, 0.0};
+    }
+    const double began = fmax(contact->approach_before, pose->approach_speed);
+    const double speed = contact->state.is_touching ? contact->state.damping_speed : began;
+    const double force =
+        force_law_force(&joint->law, pose->penetration, pose->approach_speed, speed);
+    return vec2_scale(force, pose->normal);
+}
+
+void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,
+                   DriverTotals *totals)
+{
+    ContactState *state = &contact->state;
+    if (pose->penetration > 0.0) {
+        if (!state->is_touching) {
+            const double before = fmax(contact->gap_before, 0.0);
+            const double share = before / (before + pose->penetration);
+            *state = contact_state_begun((1.0 - share) * contact->approach_before +
+                                         share * pose->approach_speed);
+            totals->begun++;
+        }
+        contact_state_follow(state, pose->approach_speed, joint->law.resting_speed);
+        totals->depth_max = fmax(totals->depth_max, pose->penetration);
+    } else {
+        state->is_touching = false;
+    }
+    contact->gap_before = pose->gap;
+    contact->approach_before = pose->approach_speed;
+}

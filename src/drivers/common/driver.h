@@ -1,0 +1,161 @@
+// What every driver written in C shares: the request read, samples kept and the answer written
+// (docs/drivers.md). Everything is in SI units; bodies move in the plane.
+#pragma once
+
+#include "kernel/contact_state.h"
+#include "kernel/force_law.h"
+#include "kernel/pin_hole.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { DRIVER_GROUND = -1, DRIVER_NAME_SIZE = 64, DRIVER_STAMPS = 4 };
+
+// How a body moves at an instant: the centre of mass, and the angle.
+typedef struct DriverMotion {
+    Vec2 position;
+    double angle;
+    Vec2 velocity;
+    double omega;
+} DriverMotion;
+
+typedef struct DriverBody {
+    char name[DRIVER_NAME_SIZE];
+    double mass;
+    double inertia;
+    DriverMotion start;
+} DriverBody;
+
+typedef enum DriverJointKind {
+    DRIVER_REVOLUTE,
+    DRIVER_PRISMATIC,
+    DRIVER_PIN_IN_HOLE,
+} DriverJointKind;
+
+typedef struct DriverJoint {
+    char name[DRIVER_NAME_SIZE];
+    DriverJointKind kind;
+    int bodies[2];        // a and b; DRIVER_GROUND
+    Vec2 anchors[2];      // in their frames
+    double direction;     // of a line, in body a's frame
+    double clearance;     // radial, of a pin in its hole
+    ForceLaw law;         // likewise
+    ContactState contact; // under way at the start
+} DriverJoint;
+
+typedef struct DriverCase {
+    char way[DRIVER_NAME_SIZE];
+    double step_s;
+    double duration_s;
+    double gravity; // m/s^2, along -y
+    size_t body_count;
+    DriverBody *bodies; // owned, as all arrays
+    size_t joint_count;
+    DriverJoint *joints;
+    bool has_drive;
+    int driven_body;
+    int drive_joint;
+    double drive_speed; // rad/s
+    size_t sample_count;
+    double *sample_times;
+} DriverCase;
+
+// What the program is.
+typedef struct DriverIdentity {
+    const char *engine;
+    const char *version;
+    const char *precision;
+    const char *const *ways; // ends in NULL
+} DriverIdentity;
+
+// The state at a step's end, or what of it belongs to other instants.
+typedef struct DriverStamp {
+    double position_s; // time of positions and angles
+    double velocity_s; // time of velocities
+    DriverMotion *motions;
+    Vec2 *forces; // on body b of each joint, at position_s
+} DriverStamp;
+
+// Totals of a joint.
+typedef struct DriverTotals {
+    double force_max;
+    double depth_max;
+    size_t begun; // contacts
+} DriverTotals;
+
+// A run under way.
+typedef struct DriverRun {
+    const DriverCase *of;
+    size_t sampled;                    // samples so far
+    DriverMotion *motions;             // by sample and body
+    Vec2 *forces;                      // by sample and joint
+    DriverStamp stamps[DRIVER_STAMPS]; // oldest first
+    size_t stamp_count;
+    bool is_linear;       // between two stamps; else a cubic through four
+    DriverTotals *totals; // by joint
+    size_t steps;
+    double began_s;
+    double wall_s;
+    char settings[512]; // of the engine, that are not its defaults
+} DriverRun;
+
+// Reads the request and says what the program is. Returns NULL where that was all that was asked
+// for, or where the request is none: then it has said so, and *status is the program's.
+DriverCase *driver_read(const DriverIdentity *identity, int *status);
+
+// Say that the run failed, or what of the case the driver cannot express, and end the program.
+void driver_fail(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
+void driver_refuse(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
+
+// Whether the way is that one.
+bool driver_is_way(const DriverCase *of, const char *way);
+
+// A run of no steps. The clock begins with driver_run_begin.
+DriverRun driver_run_start(const DriverCase *of);
+void driver_run_begin(DriverRun *run);
+
+// Whether all samples are there; the time of the next one.
+static inline bool driver_run_is_full(const DriverRun *run)
+{
+    return run->sampled == run->of->sample_count;
+}
+static inline double driver_run_next(const DriverRun *run)
+{
+    return run->of->sample_times[run->sampled];
+}
+
+// Room for the next sample, or the next stamp, to be filled in.
+DriverMotion *driver_run_motions(DriverRun *run);
+Vec2 *driver_run_forces(DriverRun *run);
+void driver_run_sampled(DriverRun *run);
+DriverStamp *driver_run_stamp(DriverRun *run);
+
+// Takes in the stamp that has been filled in: makes the samples that lie between stamps.
+void driver_run_stamped(DriverRun *run);
+
+// Ends the clock, and writes the answer.
+void driver_run_write(DriverRun *run);
+
+// A pin in its hole whose law acts as a force.
+
+// A contact, and what its pin did at the end of the step before.
+typedef struct DriverContact {
+    ContactState state;
+    double gap_before;
+    double approach_before;
+} DriverContact;
+
+// The pin of a joint in its hole, from the motions of all bodies.
+PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions);
+
+// The force on body b, N.
+Vec2 driver_force(const DriverJoint *joint, const DriverContact *contact, const PinHole *pose);
+
+// Follows a contact to the end of a step. It began where the gap was zero, and its impact speed is
+// that between the speeds at both ends of the step.
+void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,
+                   DriverTotals *totals);
+
+// A point of a body, or of the ground, and its velocity.
+Vec2 driver_point(const DriverMotion *motions, int body, Vec2 local);
+Vec2 driver_point_velocity(const DriverMotion *motions, int body, Vec2 local);

@@ -1,0 +1,48 @@
+// A mechanism as a tree of bodies, for engines whose coordinates are those of joints: which joint
+// carries each body, which joints are left over to close loops, and how the bodies move.
+#pragma once
+
+#include "drivers/common/driver.h"
+
+typedef enum TreeKind {
+    TREE_TURNS,  // about a point of its parent: one coordinate, the angle
+    TREE_SLIDES, // along a line of its parent: one coordinate, the way along it
+    TREE_FREE,   // x and y of its centre, and its angle
+} TreeKind;
+
+// A body in the tree. Coordinates are 0 where the bodies are at the start.
+typedef struct TreeBody {
+    TreeKind kind;
+    int parent;   // or DRIVER_GROUND; of TREE_FREE as well
+    int joint;    // that carries it; -1 of TREE_FREE
+    size_t first; // its first coordinate, and how many
+    size_t count;
+    Vec2 anchor; // of TREE_TURNS: the pivot, in its own frame
+    Vec2 axis;   // of TREE_SLIDES: in its own frame, which keeps its angle to the parent
+    Vec2 offset; // in the parent's frame: the pivot, or its centre at the start
+    double turn; // its angle less the parent's at the start
+} TreeBody;
+
+typedef struct Tree {
+    const DriverCase *of;
+    TreeBody *bodies; // by body; owned, as the next
+    size_t *order;    // bodies, parents first
+    bool *is_left;    // by joint: an ideal one that the tree does not hold
+    size_t coordinates;
+    size_t left_count;
+} Tree;
+
+// The tree of a case, by sliding joints first. Refuses a case with a sliding joint in a loop of
+// ideal joints that would be left over.
+Tree tree_make(const DriverCase *of);
+
+// The rates of the coordinates at the start.
+void tree_start(const Tree *tree, double *rates);
+
+// How all bodies move, from the coordinates and their rates.
+void tree_motions(const Tree *tree, const double *coordinates, const double *rates,
+                  DriverMotion *motions);
+
+// Adds what a force on a point of a body does to the forces along the coordinates.
+void tree_push(const Tree *tree, const DriverMotion *motions, int body, Vec2 local, Vec2 force,
+               double *pushes);

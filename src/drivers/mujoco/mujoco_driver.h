@@ -1,0 +1,39 @@
+// What the files of MuJoCo's driver share: the model made of a case, and the ways to step it.
+#pragma once
+
+#include "drivers/common/tree.h"
+
+#include <mujoco/mujoco.h>
+
+typedef struct MujocoRun {
+    const DriverCase *of;
+    Tree tree;
+    mjModel *model;
+    mjData *data;
+    int *addresses; // by coordinate of the tree: in qpos and qvel
+    DriverRun run;
+    // room
+    double *coordinates; // of the tree
+    double *rates;
+    DriverMotion *motions;
+    DriverContact *contacts; // by joint
+} MujocoRun;
+
+// How the model differs between the ways.
+typedef struct MujocoModel {
+    const char *integrator; // "Euler", "RK4"
+    bool has_tendons;       // limited tendons in the place of pins in their holes
+    double hardness_s;      // time constant of limits and of loops that are closed by constraints
+} MujocoModel;
+
+// Makes the model of a case, with the bodies at the start.
+void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run);
+
+// Reads the engine's coordinates and rates into those of the tree, and moves the bodies so.
+void mujoco_read(MujocoRun *run, const double *qpos, const double *qvel, DriverMotion *motions);
+
+// Fails where MuJoCo has warned: it starts over on numbers that are none, and says so nowhere else.
+void mujoco_check(const MujocoRun *run);
+
+// The contacts integrated within the step, by jointplay's kernel.
+void mujoco_run_kernel(MujocoRun *run);

@@ -1,0 +1,239 @@
+// Makes MuJoCo's model of a case: a tree of bodies, and constraints where loops are left over.
+//
+// A driven body has an armature so large that nothing slows it down: its speed is kept to a
+// rounding. Loops of ideal joints that the tree does not close are MuJoCo's `connect`, which is
+// soft: the hardest that its steps bear is that of a time constant of two steps.
+#include "drivers/mujoco/mujoco_driver.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double ARMATURE =
+    1e9; // kg m^2: forces of 1e4 N at .1 m change the speed by 1e-6 a second
+
+enum { XML_SIZE = 1 << 16, JOINT_NAME_SIZE = 32 };
+
+typedef struct Xml {
+    char *text;
+    size_t length;
+} Xml;
+
+static void add(Xml *xml, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void add(Xml *xml, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const int length =
+        vsnprintf(xml->text + xml->length, XML_SIZE - xml->length, format, arguments);
+    va_end(arguments);
+    xml->length += length > 0 ? (size_t)length : 0;
+    if (xml->length >= XML_SIZE) {
+        driver_refuse("so large a mechanism");
+    }
+}
+
+static void add_joint(Xml *xml, size_t coordinate, const char *type, Vec2 axis, Vec2 place)
+{
+    const bool is_hinge = strcmp(type, "hinge") == 0;
+    add(xml, "<joint name='c%zu' type='%s' axis='%.17g %.17g %d' pos='%.17g %.17g 0'", coordinate,
+        type, is_hinge ? 0.0 : axis.x, is_hinge ? 0.0 : axis.y, is_hinge ? 1 : 0, place.x, place.y);
+}
+
+static void add_joints(const MujocoRun *run, Xml *xml, size_t number)
+{
+    const TreeBody *body = &run->tree.bodies[number];
+    const double angle = run->of->bodies[number].start.angle;
+    const Vec2 none = {0.0, 0.0};
+    if (body->kind == TREE_FREE) {
+        for (size_t i = 0; i < 2; i++) {
+            const Vec2 axis = {i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0};
+            add_joint(xml, body->first + i, "slide", vec2_rotate(-angle, axis), none);
+            add(xml, "/>\n");
+        }
+        add_joint(xml, body->first + 2, "hinge", none, none);
+    } else if (body->kind == TREE_TURNS) {
+        add_joint(xml, body->first, "hinge", none, body->anchor);
+    } else {
+        add_joint(xml, body->first, "slide", body->axis, none);
+    }
+    if (run->of->has_drive && run->of->driven_body == (int)number) {
+        add(xml, " armature='%g'", ARMATURE);
+    }
+    add(xml, "/>\n");
+}
+
+// The points of the pins and holes on a body.
+static void add_sites(const MujocoRun *run, Xml *xml, int body)
+{
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        for (int side = 0; side < 2; side++) {
+            if (joint->kind == DRIVER_PIN_IN_HOLE && joint->bodies[side] == body) {
+                add(xml, "<site name='%s%zu' pos='%.17g %.17g 0'/>\n", side == 0 ? "hole" : "pin",
+                    i, joint->anchors[side].x, joint->anchors[side].y);
+            }
+        }
+    }
+}
+
+// A body with all that hangs on it.
+static void add_body(const MujocoRun *run, Xml *xml, size_t number)
+{
+    const DriverBody *body = &run->of->bodies[number];
+    const int parent = run->tree.bodies[number].parent;
+    const DriverMotion still = {.omega = 0.0};
+    const DriverMotion *from = parent == DRIVER_GROUND ? &still : &run->of->bodies[parent].start;
+    const Vec2 place = vec2_rotate(-from->angle, vec2_sub(body->start.position, from->position));
+    const double half = 0.5 * (body->start.angle - from->angle);
+    add(xml, "<body name='b%zu' pos='%.17g %.17g 0' quat='%.17g 0 0 %.17g'>\n", number, place.x,
+        place.y, cos(half), sin(half));
+    add(xml, "<inertial pos='0 0 0' mass='%.17g' diaginertia='%.17g %.17g %.17g'/>\n", body->mass,
+        body->inertia, body->inertia, body->inertia);
+    add_joints(run, xml, number);
+    add_sites(run, xml, (int)number);
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        if (run->tree.bodies[i].parent == (int)number) {
+            add_body(run, xml, i);
+        }
+    }
+    add(xml, "</body>\n");
+}
+
+static void add_loops(const MujocoRun *run, const MujocoModel *how, Xml *xml)
+{
+    add(xml, "<equality>\n");
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        if (!run->tree.is_left[i]) {
+            continue;
+        }
+        // the anchor is in the frame of the first body, which is no ground
+        const int first = joint->bodies[0] == DRIVER_GROUND ? 1 : 0;
+        const int other = joint->bodies[1 - first];
+        add(xml, "<connect body1='b%d'", joint->bodies[first]);
+        if (other != DRIVER_GROUND) {
+            add(xml, " body2='b%d'", other);
+        }
+        add(xml, " anchor='%.17g %.17g 0' solref='%.17g 1' solimp='.9999 .9999 .001 .5 2'/>\n",
+            joint->anchors[first].x, joint->anchors[first].y, how->hardness_s);
+    }
+    add(xml, "</equality>\n");
+}
+
+static void add_tendons(const MujocoRun *run, const MujocoModel *how, Xml *xml)
+{
+    add(xml, "<tendon>\n");
+    for (size_t i = 0; how->has_tendons && i < run->of->joint_count; i++) {
+        if (run->of->joints[i].kind == DRIVER_PIN_IN_HOLE) {
+            add(xml,
+                "<spatial limited='true' range='0 %.17g' solreflimit='%.17g 1' "
+                "solimplimit='.9999 .9999 .001 .5 2'><site site='hole%zu'/><site site='pin%zu'/>"
+                "</spatial>\n",
+                run->of->joints[i].clearance, how->hardness_s, i, i);
+        }
+    }
+    add(xml, "</tendon>\n");
+}
+
+static void add_model(const MujocoRun *run, const MujocoModel *how, Xml *xml)
+{
+    add(xml,
+        "<mujoco><compiler angle='radian'/>\n"
+        "<option timestep='%.17g' integrator='%s' gravity='0 %.17g 0' tolerance='1e-14' "
+        "iterations='200'><flag contact='disable'/></option>\n<worldbody>\n",
+        run->of->step_s, how->integrator, -run->of->gravity);
+    add_sites(run, xml, DRIVER_GROUND);
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        if (run->tree.bodies[i].parent == DRIVER_GROUND) {
+            add_body(run, xml, i);
+        }
+    }
+    add(xml, "</worldbody>\n");
+    add_loops(run, how, xml);
+    add_tendons(run, how, xml);
+    add(xml, "</mujoco>\n");
+}
+
+// MuJoCo reads a model from a file: here one in memory.
+static mjModel *load(const Xml *xml)
+{
+    static const char NAME[] = "case.xml";
+    char words[512] = "";
+    mjVFS *files = calloc(1, sizeof *files);
+    if (files == NULL) {
+        driver_fail("there is no memory");
+    }
+    mj_defaultVFS(files);
+    if (mj_makeEmptyFileVFS(files, NAME, (int)xml->length) != 0) {
+        driver_fail("MuJoCo does not take a model of %zu bytes", xml->length);
+    }
+    memcpy(files->filedata[mj_findFileVFS(files, NAME)], xml->text, xml->length);
+    mjModel *model = mj_loadXML(NAME, files, words, sizeof words);
+    mj_deleteVFS(files);
+    free(files);
+    if (model == NULL) {
+        driver_fail("MuJoCo does not take the model: %s", words);
+    }
+    return model;
+}
+
+static void *room(size_t count, size_t size)
+{
+    void *memory = calloc(count + 1, size);
+    if (memory == NULL) {
+        driver_fail("there is no memory");
+    }
+    return memory;
+}
+
+void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
+{
+    *run = (MujocoRun){.of = of, .tree = tree_make(of), .run = driver_run_start(of)};
+    if (of->has_drive && run->tree.bodies[of->driven_body].joint != of->drive_joint) {
+        driver_refuse("a driven body that another joint holds");
+    }
+    Xml xml = {.text = room(XML_SIZE, 1)};
+    add_model(run, how, &xml);
+    run->model = load(&xml);
+    free(xml.text);
+    run->data = mj_makeData(run->model);
+    const size_t count = run->tree.coordinates;
+    run->addresses = room(count, sizeof *run->addresses);
+    run->coordinates = room(count, sizeof *run->coordinates);
+    run->rates = room(count, sizeof *run->rates);
+    run->motions = room(of->body_count, sizeof *run->motions);
+    run->contacts = room(of->joint_count, sizeof *run->contacts);
+    tree_start(&run->tree, run->rates);
+    for (size_t i = 0; i < count; i++) {
+        char name[JOINT_NAME_SIZE];
+        snprintf(name, sizeof name, "c%zu", i);
+        const int joint = mj_name2id(run->model, mjOBJ_JOINT, name);
+        run->addresses[i] = run->model->jnt_dofadr[joint];
+        run->data->qvel[run->addresses[i]] = run->rates[i];
+    }
+    for (size_t i = 0; i < of->joint_count; i++) {
+        run->contacts[i].state = of->joints[i].contact;
+    }
+    mujoco_read(run, run->data->qpos, run->data->qvel, run->motions);
+}
+
+void mujoco_read(MujocoRun *run, const double *qpos, const double *qvel, DriverMotion *motions)
+{
+    for (size_t i = 0; i < run->tree.coordinates; i++) {
+        run->coordinates[i] = qpos[run->addresses[i]];
+        run->rates[i] = qvel[run->addresses[i]];
+    }
+    tree_motions(&run->tree, run->coordinates, run->rates, motions);
+}
+
+void mujoco_check(const MujocoRun *run)
+{
+    for (int i = 0; i < mjNWARNING; i++) {
+        if (run->data->warning[i].number > 0) {
+            driver_fail("MuJoCo warned after %.6g s: %s", run->data->time,
+                        mju_warningText(i, (int)run->data->warning[i].lastinfo));
+        }
+    }
+}

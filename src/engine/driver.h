@@ -1,0 +1,57 @@
+// Drivers: programs that run a case on a physics engine and say what came of it (docs/drivers.md).
+//
+// One conversation is one request, a JSON object on the driver's standard input, and an answer of
+// one JSON object a line. A driver is asked once what it is, and then for runs.
+#pragma once
+
+#include "model/trajectory.h"
+
+enum {
+    ENGINE_PROTOCOL = 1,
+    ENGINE_NAME_SIZE = 32, // of drivers and ways
+    ENGINE_TEXT_SIZE = 128,
+    ENGINE_WAY_MAX = 8,
+    ENGINE_DRIVER_MAX = 16,
+    ENGINE_PATH_SIZE = 4096,
+};
+
+// A driver, and what it says of itself.
+typedef struct EngineDriver {
+    char name[ENGINE_NAME_SIZE];
+    char program[ENGINE_PATH_SIZE];
+    char engine[ENGINE_TEXT_SIZE]; // "MuJoCo"
+    char version[ENGINE_TEXT_SIZE];
+    char precision[ENGINE_TEXT_SIZE]; // "double"
+    size_t way_count;
+    char ways[ENGINE_WAY_MAX][ENGINE_NAME_SIZE]; // in which it can run a case
+} EngineDriver;
+
+// Whether a word can be the name of a driver: lower-case letters, digits and '-', a letter first.
+bool engine_is_name(const char *word);
+
+// Finds a driver that came with the program, by its name, and asks it what it is. Fails with
+// ERR_USAGE where there is none, and says which there are.
+bool engine_find(const char *name, EngineDriver *driver, Err *err);
+
+// Asks a program that is said to be a driver what it is: NAME=PROGRAM. Fails with ERR_USAGE where
+// that has another form, with ERR_SOLVER where the program is no driver of this protocol.
+bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err);
+
+// The names of the drivers that came with the program, separated by ", "; empty where none did.
+void engine_list(char *text, size_t size);
+
+// What a run says of itself beside its trajectory.
+typedef struct EngineSaid {
+    char settings[4 * ENGINE_TEXT_SIZE]; // of the engine, that are not its defaults
+    double opening_m;                    // largest, of an ideal joint at a sample
+} EngineSaid;
+
+// Runs a scenario by a driver in one of its ways, at the scenario's step, within so many seconds.
+// Never fails as a function: where the run failed, or the case cannot be expressed, the trajectory
+// is not complete and says why. Its wall time is that of the driver's stepping loop. The caller
+// destroys it. `said` may be NULL.
+Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                       double time_limit_s, EngineSaid *said);
+
+// Whether a scenario can be expressed in the protocol; ERR_CASE, naming what cannot, where not.
+bool engine_check(const Scenario *scenario, Err *err);

@@ -1,0 +1,216 @@
+// Finds drivers of other engines, asks them what they are, and runs cases by them.
+#include "engine/driver.h"
+
+#include "base/text.h"
+#include "engine/converse.h"
+#include "engine/protocol.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// for a driver to say what it is: a Python script with its libraries takes some seconds
+static const double HELLO_LIMIT_S = 20.0;
+
+enum {
+    HELLO_OUTPUT_MOST = 1 << 20,
+    OUTPUT_MOST = 1 << 30, // of a run: samples of 50,000 a second for minutes
+    FOLDER_COUNT = 3,
+};
+
+bool engine_is_name(const char *word)
+{
+    static const char LETTERS[] = "abcdefghijklmnopqrstuvwxyz";
+    static const char ALL[] = "abcdefghijklmnopqrstuvwxyz0123456789-";
+    const size_t length = strlen(word);
+    return length > 0 && length < ENGINE_NAME_SIZE && strchr(LETTERS, word[0]) != NULL &&
+           strspn(word, ALL) == length;
+}
+
+// Where drivers that came with the program may be: a folder that the user names instead, that of an
+// installation, and that of a build. Returns how many there are.
+static size_t list_folders(char folders[FOLDER_COUNT][ENGINE_PATH_SIZE])
+{
+    const char *named = getenv("JOINTPLAY_DRIVERS");
+    if (named != NULL) {
+        text_copy(folders[0], ENGINE_PATH_SIZE, named);
+        return 1;
+    }
+    char program[ENGINE_PATH_SIZE / 2];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length <= 0) {
+        return 0;
+    }
+    program[length] = '\0';
+    *strrchr(program, '/') = '\0';
+    snprintf(folders[0], ENGINE_PATH_SIZE, "%s/../libexec/jointplay", program);
+    snprintf(folders[1], ENGINE_PATH_SIZE, "%s/../drivers", program);
+    return 2;
+}
+
+// Whether a name is that of one of our own solvers.
+static bool is_own(const char *name)
+{
+    bool is_any = false;
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        is_any = is_any || strcmp(OPTIONS_BACKENDS[i], name) == 0;
+    }
+    return is_any;
+}
+
+// Whether a file of that name in a folder can be run; writes its path.
+static bool find_in(const char *folder, const char *name, char path[ENGINE_PATH_SIZE])
+{
+    const int length = snprintf(path, ENGINE_PATH_SIZE, "%s/jointplay-%s", folder, name);
+    return length < ENGINE_PATH_SIZE && access(path, X_OK) == 0;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(a, b);
+}
+
+void engine_list(char *text, size_t size)
+{
+    char folders[FOLDER_COUNT][ENGINE_PATH_SIZE];
+    char names[ENGINE_DRIVER_MAX][ENGINE_NAME_SIZE];
+    char path[ENGINE_PATH_SIZE];
+    static const char PREFIX[] = "jointplay-";
+    const size_t prefix = sizeof PREFIX - 1;
+    size_t count = 0;
+    const size_t folder_count = list_folders(folders);
+    for (size_t i = 0; i < folder_count && count == 0; i++) {
+        DIR *folder = opendir(folders[i]);
+        for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
+            const char *name = entry->d_name + prefix;
+            if (strncmp(entry->d_name, PREFIX, prefix) == 0 && engine_is_name(name) &&
+                count < ENGINE_DRIVER_MAX && find_in(folders[i], name, path)) {
+                text_copy(names[count++], ENGINE_NAME_SIZE, name);
+            }
+        }
+        if (folder != NULL) {
+            closedir(folder);
+        }
+    }
+    qsort(names, count, sizeof names[0], by_name);
+    size_t length = 0;
+    text[0] = '\0';
+    for (size_t i = 0; i < count && length < size; i++) {
+        length +=
+            (size_t)snprintf(text + length, size - length, "%s%s", i > 0 ? ", " : "", names[i]);
+    }
+}
+
+// Asks a driver, whose name and program are known, what it is.
+static bool ask_hello(EngineDriver *driver, Err *err)
+{
+    EngineReply reply = engine_reply_start(NULL, driver, NULL, NULL);
+    Err own = {0};
+    const Converse with = {
+        .program = driver->program,
+        .input = ENGINE_HELLO,
+        .input_size = strlen(ENGINE_HELLO),
+        .time_limit_s = HELLO_LIMIT_S,
+        .output_most = HELLO_OUTPUT_MOST,
+        .take = engine_reply_take,
+        .context = &reply,
+    };
+    const bool is_known = converse(&with, &own) && engine_reply_check(&reply, &own);
+    engine_reply_finish(&reply);
+    return is_known || err_set(err, ERR_SOLVER, "the driver '%s' (%s): %s", driver->name,
+                               driver->program, own.text);
+}
+
+bool engine_find(const char *name, EngineDriver *driver, Err *err)
+{
+    char folders[FOLDER_COUNT][ENGINE_PATH_SIZE];
+    *driver = (EngineDriver){.way_count = 0};
+    const size_t count = list_folders(folders);
+    for (size_t i = 0; engine_is_name(name) && i < count; i++) {
+        if (find_in(folders[i], name, driver->program)) {
+            text_copy(driver->name, sizeof driver->name, name);
+            return ask_hello(driver, err);
+        }
+    }
+    char known[ENGINE_DRIVER_MAX * ENGINE_NAME_SIZE];
+    engine_list(known, sizeof known);
+    return err_set(err, ERR_USAGE,
+                   "there is no driver for '%s' here: %s%s; --driver %s=PROGRAM "
+                   "names one",
+                   name, known[0] != '\0' ? "there are ode, " : "there is ode alone", known,
+                   engine_is_name(name) ? name : "NAME");
+}
+
+bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err)
+{
+    const char *mark = strchr(name_and_program, '=');
+    char name[ENGINE_NAME_SIZE] = "";
+    *driver = (EngineDriver){.way_count = 0};
+    if (mark != NULL && mark - name_and_program < ENGINE_NAME_SIZE) {
+        snprintf(name, sizeof name, "%.*s", (int)(mark - name_and_program), name_and_program);
+    }
+    if (!engine_is_name(name) || is_own(name) || mark[1] == '\0') {
+        return err_set(err, ERR_USAGE,
+                       "--driver takes NAME=PROGRAM, with a name of lower-case letters, digits "
+                       "and '-' that is none of our own backends, not '%s'",
+                       name_and_program);
+    }
+    // a program without a folder is one in this folder: nothing is looked for in PATH
+    const int length = snprintf(driver->program, sizeof driver->program, "%s%s",
+                                strchr(mark + 1, '/') == NULL ? "./" : "", mark + 1);
+    if (length >= (int)sizeof driver->program) {
+        return err_set(err, ERR_USAGE, "the path of the driver '%s' is too long", name);
+    }
+    text_copy(driver->name, sizeof driver->name, name);
+    return ask_hello(driver, err);
+}
+
+// Runs the scenario and fills the trajectory.
+static bool fill(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                 double time_limit_s, Trajectory *trajectory, EngineSaid *said, Err *err)
+{
+    EngineDriver again = *driver; // what it says of itself in this run
+    char *request = engine_request(scenario, way, err);
+    if (request == NULL) {
+        return false;
+    }
+    EngineReply reply = engine_reply_start(scenario, &again, trajectory, said);
+    const Converse with = {
+        .program = driver->program,
+        .input = request,
+        .input_size = strlen(request),
+        .time_limit_s = time_limit_s,
+        .output_most = OUTPUT_MOST,
+        .take = engine_reply_take,
+        .context = &reply,
+    };
+    const bool is_done = converse(&with, err) && engine_reply_check(&reply, err);
+    engine_reply_finish(&reply);
+    free(request);
+    return is_done;
+}
+
+Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                       double time_limit_s, EngineSaid *said)
+{
+    EngineSaid own;
+    Err err = {0};
+    said = said != NULL ? said : &own;
+    *said = (EngineSaid){.opening_m = 0.0};
+    Trajectory *trajectory = trajectory_create(scenario, driver->name);
+    if (trajectory->message[0] != '\0') {
+        return trajectory; // there is no room for the samples
+    }
+    snprintf(trajectory->label, sizeof trajectory->label, "%s %s", driver->name, way);
+    trajectory->step_s = scenario->run.step;
+    trajectory->duration_s = scenario_duration(scenario);
+    trajectory->is_complete = fill(driver, way, scenario, time_limit_s, trajectory, said, &err);
+    if (!trajectory->is_complete) {
+        err_prefix(&err, trajectory->label);
+        text_copy(trajectory->message, sizeof trajectory->message, err.text);
+    }
+    return trajectory;
+}

@@ -1,0 +1,35 @@
+// What the files of the protocol's side share: the request, and the reading of the answer.
+#pragma once
+
+#include "engine/driver.h"
+
+// The request for a run, as one line of JSON; the caller frees it. NULL, with ERR_CASE, where the
+// scenario cannot be expressed.
+char *engine_request(const Scenario *scenario, const char *way, Err *err);
+
+// The request that asks a driver what it is.
+extern const char ENGINE_HELLO[];
+
+// An answer under way.
+typedef struct EngineReply {
+    const Scenario *scenario; // NULL: of a driver that is asked what it is
+    EngineDriver *driver;
+    Trajectory *trajectory; // of a run
+    EngineSaid *said;
+    Sample sample;  // room; owned, as are the arrays
+    double *bodies; // numbers of a line: by body
+    double *joints; // by joint, and its totals
+    size_t samples;
+    bool is_introduced; // the first line is there
+    bool is_done;       // the last one is there
+} EngineReply;
+
+EngineReply engine_reply_start(const Scenario *scenario, EngineDriver *driver,
+                               Trajectory *trajectory, EngineSaid *said);
+void engine_reply_finish(EngineReply *reply);
+
+// Takes a line of the answer, an EngineReply (engine/converse.h).
+bool engine_reply_take(char *line, size_t size, void *reply, Err *err);
+
+// Whether all that belongs to an answer was there once the driver has ended.
+bool engine_reply_check(const EngineReply *reply, Err *err);

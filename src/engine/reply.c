@@ -1,0 +1,356 @@
+// Reads the answer of a driver, line by line, into a trajectory (docs/drivers.md).
+//
+// A run is believed only where its answer is whole and of this case: every sample is there, at its
+// time, finite, follows from the one before, has the drive's angle and joints that hold. An engine
+// that starts over or flies apart is so a run that failed, whatever it says itself.
+#include "engine/protocol.h"
+
+#include "base/memory.h"
+#include "base/text.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// rad: a driven body that is further off is not driven as the case has it
+static const double DRIVE_OFF_MOST = 1e-2;
+
+// of a body's reach: an ideal joint that opens by more no longer is one
+static const double OPENING_MOST = 0.05;
+
+// how many times further than its speeds at both samples say a body may have gone between them,
+// and of the mechanism's size, which is let go in any case: impacts change speeds in between
+static const double JUMP_MOST = 20.0;
+static const double JUMP_FLOOR = 1e-3;
+
+enum {
+    BODY_NUMBERS = 6,  // x, y, angle and their rates
+    JOINT_NUMBERS = 2, // force on body b
+    TOTAL_NUMBERS = 3, // of a joint: largest force and depth, contacts begun
+    SHOWN_MOST = 60,   // bytes of a line that is shown
+};
+
+EngineReply engine_reply_start(const Scenario *scenario, EngineDriver *driver,
+                               Trajectory *trajectory, EngineSaid *said)
+{
+    EngineReply reply = {
+        .scenario = scenario, .driver = driver, .trajectory = trajectory, .said = said};
+    if (scenario != NULL) {
+        const Linkage *linkage = &scenario->linkage;
+        reply.sample = sample_create(linkage);
+        reply.bodies = memory_zeroed(BODY_NUMBERS * linkage->body_count, sizeof *reply.bodies);
+        reply.joints = memory_zeroed(TOTAL_NUMBERS * linkage->joint_count, sizeof *reply.joints);
+    }
+    return reply;
+}
+
+void engine_reply_finish(EngineReply *reply)
+{
+    if (reply->scenario != NULL) {
+        sample_free(&reply->sample);
+    }
+    free(reply->bodies);
+    free(reply->joints);
+}
+
+static bool refuse_key(Err *err, const char *object, const char *key, const char *what)
+{
+    return err_set(err, ERR_SOLVER, "its line '%s' has no '%s', which has to be %s", object, key,
+                   what);
+}
+
+static bool read_text(const json_t *object, const char *in, const char *key, char *target,
+                      size_t size, Err *err)
+{
+    const json_t *value = json_object_get(object, key);
+    if (!json_is_string(value)) {
+        return refuse_key(err, in, key, "a text");
+    }
+    text_copy(target, size, json_string_value(value));
+    return true;
+}
+
+static bool read_number(const json_t *object, const char *in, const char *key, double *number,
+                        Err *err)
+{
+    const json_t *value = json_object_get(object, key);
+    if (!json_is_number(value)) {
+        return refuse_key(err, in, key, "a number");
+    }
+    *number = json_number_value(value);
+    return true;
+}
+
+// Reads rows of so many numbers each: finite ones, for JSON has no others.
+static bool read_rows(const json_t *object, const char *key, size_t rows, size_t columns,
+                      double *numbers, Err *err)
+{
+    const json_t *array = json_object_get(object, key);
+    bool is_right = json_is_array(array) && json_array_size(array) == rows;
+    for (size_t i = 0; is_right && i < rows; i++) {
+        const json_t *row = json_array_get(array, i);
+        is_right = json_is_array(row) && json_array_size(row) == columns;
+        for (size_t k = 0; is_right && k < columns; k++) {
+            const json_t *value = json_array_get(row, k);
+            is_right = json_is_number(value);
+            numbers[columns * i + k] = json_number_value(value);
+        }
+    }
+    return is_right ||
+           err_set(err, ERR_SOLVER, "its samples have '%s' that is not %zu rows of %zu numbers",
+                   key, rows, columns);
+}
+
+static bool take_hello(EngineReply *reply, const json_t *line, Err *err)
+{
+    EngineDriver *driver = reply->driver;
+    const json_t *protocol = json_object_get(line, "jointplay-driver");
+    if (json_integer_value(protocol) != ENGINE_PROTOCOL) {
+        return err_set(err, ERR_SOLVER, "its first line is not of protocol %d", ENGINE_PROTOCOL);
+    }
+    static const char HELLO[] = "jointplay-driver";
+    if (!read_text(line, HELLO, "engine", driver->engine, sizeof driver->engine, err) ||
+        !read_text(line, HELLO, "version", driver->version, sizeof driver->version, err) ||
+        !read_text(line, HELLO, "precision", driver->precision, sizeof driver->precision, err)) {
+        return false;
+    }
+    const json_t *ways = json_object_get(line, "ways");
+    const size_t count = json_array_size(ways);
+    if (count == 0 || count > ENGINE_WAY_MAX) {
+        return refuse_key(err, HELLO, "ways", "a list of one to eight names");
+    }
+    for (size_t i = 0; i < count; i++) {
+        const char *way = json_string_value(json_array_get(ways, i));
+        if (way == NULL || strlen(way) >= ENGINE_NAME_SIZE || !engine_is_name(way)) {
+            return refuse_key(err, HELLO, "ways", "a list of names such as 'native'");
+        }
+        text_copy(driver->ways[i], sizeof driver->ways[i], way);
+    }
+    driver->way_count = count;
+    reply->is_introduced = true;
+    return true;
+}
+
+// The size of a mechanism: the largest reach of a body, m.
+static double size_of(const Trajectory *run)
+{
+    double size = 0.0;
+    for (size_t i = 0; i < run->body_count; i++) {
+        size = fmax(size, run->reach[i]);
+    }
+    return size;
+}
+
+// Whether the bodies went on from the sample before.
+static bool check_jump(const EngineReply *reply, Err *err)
+{
+    const Trajectory *run = reply->trajectory;
+    const Sample *now = &reply->sample;
+    if (reply->samples == 0) {
+        return true;
+    }
+    const size_t last = reply->samples - 1;
+    const double since_s = now->time_s - run->times[last];
+    double fastest = 0.0;
+    for (size_t i = 0; i < run->body_count; i++) {
+        const Motion *before = trajectory_motion(run, last, i);
+        fastest = fmax(fastest, fmax(vec2_length(before->velocity), //
+                                     vec2_length(now->bodies[i].velocity)));
+        fastest =
+            fmax(fastest, run->reach[i] * fmax(fabs(before->omega), fabs(now->bodies[i].omega)));
+    }
+    const double most = JUMP_MOST * since_s * fastest + JUMP_FLOOR * size_of(run);
+    for (size_t i = 0; i < run->body_count; i++) {
+        const Motion *before = trajectory_motion(run, last, i);
+        const double gone = vec2_length(vec2_sub(now->bodies[i].position, before->position));
+        if (!(gone <= most)) {
+            return err_set(err, ERR_SOLVER,
+                           "after %.6g s '%s' is suddenly %.3g m away: the engine started over, or "
+                           "its motion diverged",
+                           now->time_s, run->linkage.bodies[i].name, gone);
+        }
+    }
+    return true;
+}
+
+static bool check_drive(const EngineReply *reply, Err *err)
+{
+    const Linkage *linkage = &reply->scenario->linkage;
+    const int driven = linkage_driven_body(linkage);
+    if (driven < 0) {
+        return true;
+    }
+    const Sample *sample = &reply->sample;
+    const double off = sample->bodies[driven].angle - drive_angle(&linkage->driver, sample->time_s);
+    return fabs(off) <= DRIVE_OFF_MOST ||
+           err_set(err, ERR_SOLVER, "after %.6g s its drive is %.3g rad off", sample->time_s, off);
+}
+
+// Whether the ideal joints hold; keeps how far they open.
+static bool check_joints(EngineReply *reply, Err *err)
+{
+    const Trajectory *run = reply->trajectory;
+    const Linkage *linkage = &reply->scenario->linkage;
+    const double most = OPENING_MOST * size_of(run);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const JointGap gap = linkage_joint_gap(linkage, reply->sample.bodies, (int)i);
+        reply->sample.joints[i].eccentricity = gap.position;
+        const double away =
+            joint->kind == JOINT_PRISMATIC ? fabs(gap.position.y) : vec2_length(gap.position);
+        const double opening = away - linkage_radial_clearance(joint);
+        reply->sample.joints[i].gap = linkage_has_play(joint) ? -opening : 0.0;
+        reply->sample.joints[i].is_touching = !linkage_has_play(joint) || opening > 0.0;
+        if (!(opening <= most)) {
+            return err_set(err, ERR_SOLVER, "after %.6g s the joint '%s' is %.3g m apart",
+                           reply->sample.time_s, joint->name, opening);
+        }
+        if (!linkage_has_play(joint)) {
+            reply->said->opening_m = fmax(reply->said->opening_m, opening);
+        }
+    }
+    return true;
+}
+
+static void fill_sample(EngineReply *reply, const double *bodies, const double *joints)
+{
+    const Linkage *linkage = &reply->scenario->linkage;
+    Sample *sample = &reply->sample;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const double *of = bodies + BODY_NUMBERS * i;
+        sample->bodies[i] = (Motion){
+            .position = {of[0], of[1]}, .angle = of[2], .velocity = {of[3], of[4]}, .omega = of[5]};
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Vec2 force = {joints[JOINT_NUMBERS * i], joints[JOINT_NUMBERS * i + 1]};
+        sample->joints[i] = (JointState){.force_on_b = force, .force = vec2_length(force)};
+    }
+    sample->crank_rad =
+        linkage->driver.is_present ? drive_angle(&linkage->driver, sample->time_s) : 0.0;
+}
+
+static bool take_sample(EngineReply *reply, const json_t *line, Err *err)
+{
+    const Linkage *linkage = &reply->scenario->linkage;
+    const Trajectory *run = reply->trajectory;
+    double time_s = 0.0;
+    if (!read_number(line, "sample", "sample", &time_s, err)) {
+        return false;
+    }
+    if (reply->samples == run->sample_count) {
+        return err_set(err, ERR_SOLVER, "has more than the %zu samples asked for",
+                       run->sample_count);
+    }
+    const double asked_s = scenario_sample_time(reply->scenario, reply->samples);
+    if (!(fabs(time_s - asked_s) <= 1e-9 * scenario_duration(reply->scenario))) {
+        return err_set(err, ERR_SOLVER, "its sample %zu is of %.9g s, and was asked for at %.9g s",
+                       reply->samples, time_s, asked_s);
+    }
+    double *bodies = reply->bodies;
+    double *joints = reply->joints;
+    if (!read_rows(line, "bodies", linkage->body_count, BODY_NUMBERS, bodies, err) ||
+        !read_rows(line, "joints", linkage->joint_count, JOINT_NUMBERS, joints, err)) {
+        return false;
+    }
+    reply->sample.time_s = asked_s;
+    fill_sample(reply, bodies, joints);
+    if (!check_jump(reply, err) || !check_drive(reply, err) || !check_joints(reply, err)) {
+        return false;
+    }
+    trajectory_store(reply->trajectory, reply->samples++, &reply->sample);
+    return true;
+}
+
+// The totals of a joint: its largest force, N, deepest penetration, m, and contacts begun.
+static bool take_totals(EngineReply *reply, const json_t *done, Err *err)
+{
+    Trajectory *run = reply->trajectory;
+    double *totals = reply->joints;
+    if (!read_rows(done, "joints", run->joint_count, TOTAL_NUMBERS, totals, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < run->joint_count; i++) {
+        run->joints[i].force_max.value = totals[TOTAL_NUMBERS * i];
+        run->joints[i].penetration_max.value = totals[TOTAL_NUMBERS * i + 1];
+        const double begun = totals[TOTAL_NUMBERS * i + 2];
+        run->joints[i].impacts = begun > 0.0 && begun < 1e15 ? (size_t)begun : 0;
+    }
+    return true;
+}
+
+static bool take_done(EngineReply *reply, const json_t *done, Err *err)
+{
+    Trajectory *run = reply->trajectory;
+    double steps = 0.0;
+    if (reply->samples != run->sample_count) {
+        return err_set(err, ERR_SOLVER, "says that it is done after %zu of %zu samples",
+                       reply->samples, run->sample_count);
+    }
+    if (!read_number(done, "done", "steps", &steps, err) ||
+        !read_number(done, "done", "wall_s", &run->wall_s, err) || !take_totals(reply, done, err)) {
+        return false;
+    }
+    if (!(steps >= 1.0) || !(run->wall_s > 0.0)) {
+        return err_set(err, ERR_SOLVER, "says that it made %g steps in %g s", steps, run->wall_s);
+    }
+    const json_t *settings = json_object_get(done, "settings");
+    if (json_is_string(settings)) {
+        text_copy(reply->said->settings, sizeof reply->said->settings, json_string_value(settings));
+    }
+    run->steps = (size_t)steps;
+    reply->is_done = true;
+    return true;
+}
+
+// A line that is JSON, by what it begins with.
+static bool take_line(EngineReply *reply, const json_t *line, Err *err)
+{
+    const json_t *value;
+    if (reply->is_done) {
+        return err_set(err, ERR_SOLVER, "goes on after it said that it is done");
+    }
+    if (!reply->is_introduced) {
+        return take_hello(reply, line, err);
+    }
+    if ((value = json_object_get(line, "failed")) != NULL) {
+        const char *why = json_string_value(value);
+        return err_set(err, ERR_SOLVER, "%s", why != NULL ? why : "it does not say why");
+    }
+    if ((value = json_object_get(line, "refused")) != NULL) {
+        const char *what = json_string_value(value);
+        return err_set(err, ERR_SOLVER, "cannot express %s", what != NULL ? what : "this case");
+    }
+    if (reply->scenario != NULL && json_object_get(line, "sample") != NULL) {
+        return take_sample(reply, line, err);
+    }
+    if (reply->scenario != NULL && (value = json_object_get(line, "done")) != NULL) {
+        return take_done(reply, value, err);
+    }
+    return err_set(err, ERR_SOLVER, "wrote a line without a key that means anything here");
+}
+
+bool engine_reply_take(char *text, size_t size, void *context, Err *err)
+{
+    EngineReply *reply = context;
+    json_t *line = json_loadb(text, size, 0, NULL);
+    if (!json_is_object(line)) {
+        json_decref(line);
+        text[size < SHOWN_MOST ? size : SHOWN_MOST] = '\0';
+        return err_set(err, ERR_SOLVER, "wrote a line that is no JSON object: '%s%s'", text,
+                       size > SHOWN_MOST ? " ..." : "");
+    }
+    const bool is_taken = take_line(reply, line, err);
+    json_decref(line);
+    return is_taken;
+}
+
+bool engine_reply_check(const EngineReply *reply, Err *err)
+{
+    if (!reply->is_introduced) {
+        return err_set(err, ERR_SOLVER, "said nothing");
+    }
+    return reply->scenario == NULL || reply->is_done ||
+           err_set(err, ERR_SOLVER, "ended after %zu of %zu samples", reply->samples,
+                   reply->trajectory->sample_count);
+}

@@ -1,0 +1,205 @@
+// Writes a resolved case as the request of the driver protocol (docs/drivers.md).
+//
+// Everything is in SI units; the settled start is resolved, with the contacts that it begins with.
+// What the protocol has no words for is refused by name: a driver is never given half a case.
+#include "engine/protocol.h"
+
+#include "contact/law.h"
+
+#include <assert.h>
+#include <jansson.h>
+
+const char ENGINE_HELLO[] = "{\"jointplay-driver\": 1, \"ask\": \"hello\"}\n";
+
+enum { REQUEST_FLAGS = JSON_REAL_PRECISION(17) | JSON_COMPACT };
+
+static bool refuse(Err *err, const char *what)
+{
+    return err_set(err, ERR_CASE, "protocol %d for engines cannot express %s", ENGINE_PROTOCOL,
+                   what);
+}
+
+static bool refuse_named(Err *err, const char *what, const char *name)
+{
+    return err_set(err, ERR_CASE, "protocol %d for engines cannot express %s '%s'", ENGINE_PROTOCOL,
+                   what, name);
+}
+
+static bool check_joint(const Joint *joint, Err *err)
+{
+    if (joint->limits.kind != LIMIT_NONE) {
+        return refuse_named(err, "the limits of joint", joint->name);
+    }
+    switch (joint->kind) {
+    case JOINT_REVOLUTE:
+    case JOINT_CLEARANCE:
+    case JOINT_PRISMATIC:
+        return true;
+    case JOINT_GUIDE:
+        return refuse_named(err, "the block between guides", joint->name);
+    case JOINT_STOP:
+        return refuse_named(err, "the stop", joint->name);
+    case JOINT_GEAR:
+        return refuse_named(err, "the gears", joint->name);
+    case JOINT_KIND_COUNT:
+        break;
+    }
+    return false;
+}
+
+bool engine_check(const Scenario *scenario, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    if (linkage->is_spatial) {
+        return refuse(err, "a mechanism in space");
+    }
+    if (scenario->contact.model != CONTACT_IMPACT && scenario_has_clearance(scenario)) {
+        return refuse(err, "contact.model: poisson");
+    }
+    if (linkage->further_count > 0) {
+        return refuse(err, "several drives");
+    }
+    if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
+        return refuse(err, "a drive whose speed is over time");
+    }
+    if (linkage->torque.table.count > 0) {
+        return refuse(err, "a drive by torque");
+    }
+    if (linkage->spring_count > 0) {
+        return refuse_named(err, "the spring", linkage->springs[0].name);
+    }
+    if (linkage->torsion_count > 0) {
+        return refuse_named(err, "the torsion spring", linkage->torsions[0].name);
+    }
+    if (linkage->load_count > 0) {
+        return refuse_named(err, "the load", linkage->loads[0].name);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (!check_joint(&linkage->joints[i], err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static json_t *pair(Vec2 value)
+{
+    return json_pack("[f, f]", value.x, value.y);
+}
+
+static json_t *body_object(const Body *body)
+{
+    const Motion *start = &body->start;
+    return json_pack("{s:s, s:f, s:f, s:o, s:f, s:o, s:f}", "name", body->name, "mass_kg",
+                     body->mass, "inertia_kg_m2", body->inertia, "position_m",
+                     pair(start->position), "angle_rad", start->angle, "velocity_m_s",
+                     pair(start->velocity), "omega_rad_s", start->omega);
+}
+
+static json_t *law_object(const ForceLaw *law)
+{
+    json_t *object =
+        law->family == FORCE_LAW_POWER
+            ? json_pack("{s:s, s:f, s:f}", "family", "power", "stiffness_N_m", law->stiffness,
+                        "exponent", law->exponent)
+            : json_pack("{s:s, s:f, s:f, s:f}", "family", "logarithmic", "compliance_m_N",
+                        law->compliance, "offset", law->offset, "log_scale", law->log_scale);
+    const int is_added = json_object_update_new(
+        object, json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "hysteresis", law->hysteresis,
+                          "viscous_N_s_m", law->viscous, "impact_speed_floor_m_s",
+                          law->impact_speed_floor, "resting_speed_m_s", law->resting_speed,
+                          "friction", law->friction, "friction_speed_m_s", law->friction_speed));
+    assert(is_added == 0);
+    return object;
+}
+
+// A contact that is under way at the start, or null.
+static json_t *contact_object(const ContactState *state)
+{
+    if (!state->is_touching) {
+        return json_null();
+    }
+    return json_pack("{s:b, s:b, s:b, s:f, s:f, s:f}", "is_slack", state->is_slack, "is_released",
+                     state->is_released, "is_resting", state->is_resting, "impact_speed_m_s",
+                     state->impact_speed, "damping_speed_m_s", state->damping_speed, "age_s",
+                     state->age_s);
+}
+
+static json_t *joint_object(const Scenario *scenario, const Joint *joint, Err *err)
+{
+    static const char *const KINDS[JOINT_KIND_COUNT] = {
+        [JOINT_REVOLUTE] = "revolute",
+        [JOINT_CLEARANCE] = "pin-in-hole",
+        [JOINT_PRISMATIC] = "prismatic",
+    };
+    json_t *object =
+        json_pack("{s:s, s:s, s:i, s:i, s:o, s:o}", "name", joint->name, "kind", KINDS[joint->kind],
+                  "body_a", joint->body_a, "body_b", joint->body_b, "anchor_a_m",
+                  pair(joint->anchor_a), "anchor_b_m", pair(joint->anchor_b));
+    if (joint->kind == JOINT_PRISMATIC) {
+        json_object_set_new(object, "direction_rad", json_real(joint->direction));
+        json_object_set_new(object, "held_angle_rad", json_real(joint->held_angle));
+    }
+    if (joint->kind == JOINT_CLEARANCE) {
+        ForceLaw law;
+        if (!law_of_joint(scenario, joint, &law, err)) {
+            json_decref(object);
+            return NULL;
+        }
+        json_object_set_new(object, "radial_clearance_m",
+                            json_real(linkage_radial_clearance(joint)));
+        json_object_set_new(object, "hole_radius_m", json_real(joint->clearance.hole_radius));
+        json_object_set_new(object, "law", law_object(&law));
+        json_object_set_new(object, "contact", contact_object(&joint->contacts[0]));
+    }
+    return object;
+}
+
+static json_t *times_array(const Scenario *scenario)
+{
+    json_t *times = json_array();
+    for (size_t i = 0; i < scenario_sample_count(scenario); i++) {
+        json_array_append_new(times, json_real(scenario_sample_time(scenario, i)));
+    }
+    return times;
+}
+
+static json_t *drive_object(const Linkage *linkage)
+{
+    const Driver *driver = &linkage->driver;
+    return driver->is_present ? json_pack("{s:i, s:i, s:f, s:f}", "joint", driver->joint, "body",
+                                          linkage_driven_body(linkage), "speed_rad_s",
+                                          driver->speed, "start_rad", driver->start)
+                              : json_null();
+}
+
+char *engine_request(const Scenario *scenario, const char *way, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    if (!engine_check(scenario, err)) {
+        return NULL;
+    }
+    json_t *bodies = json_array();
+    json_t *joints = json_array();
+    bool is_whole = true;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        json_array_append_new(bodies, body_object(&linkage->bodies[i]));
+    }
+    for (size_t i = 0; is_whole && i < linkage->joint_count; i++) {
+        json_t *joint = joint_object(scenario, &linkage->joints[i], err);
+        is_whole = joint != NULL;
+        if (is_whole) {
+            json_array_append_new(joints, joint);
+        }
+    }
+    json_t *request = json_pack(
+        "{s:i, s:s, s:s, s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "jointplay-driver", ENGINE_PROTOCOL,
+        "ask", "run", "way", way, "step_s", scenario->run.step, "duration_s",
+        scenario_duration(scenario), "gravity_m_s2", scenario->gravity, "bodies", bodies, "joints",
+        joints, "drive", drive_object(linkage), "sample_times_s", times_array(scenario));
+    assert(request != NULL);
+    char *text = is_whole ? json_dumps(request, REQUEST_FLAGS) : NULL;
+    json_decref(request);
+    assert(text != NULL || !is_whole);
+    return text;
+}

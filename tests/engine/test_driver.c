@@ -1,0 +1,303 @@
+// Can a program in any language run a case by the driver protocol, and does one that misbehaves
+// harm nothing but its own run?
+//
+// The program is toy_driver.py, which integrates the angles of an ideal four-bar. The truth is the
+// closed form; what the driver is told to do wrong must be said, and nothing may hang.
+#include "engine/driver.h"
+
+#include "close.h"
+#include "load_case.h"
+
+#include "base/clock.h"
+#include "measure/error.h"
+#include "run/registry.h"
+#include "run/run.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+// s: within which a run that goes wrong has ended; a driver alone takes .2 s, a busy machine some
+static const double SOON_S = 20.0;
+
+static const RunWatch NOBODY = {NULL, NULL};
+
+static EngineDriver toy(void)
+{
+    char given[ENGINE_PATH_SIZE];
+    EngineDriver driver;
+    Err err = {0};
+    snprintf(given, sizeof given, "toy=%s", getenv("JOINTPLAY_TOY_DRIVER"));
+    if (!engine_given(given, &driver, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return driver;
+}
+
+static Scenario ideal(double step_s)
+{
+    Scenario scenario = load("cases/paper/ideal-nominal.yaml", NULL, 0);
+    scenario.run.step = step_s;
+    scenario.run.samples = 90;
+    return scenario;
+}
+
+static void fault(const char *name)
+{
+    setenv("JOINTPLAY_TOY_FAULT", name, 1);
+}
+
+static double error_of_way(const EngineDriver *driver, const char *way, double step_s)
+{
+    Scenario scenario = ideal(step_s);
+    Trajectory *run = engine_run(driver, way, &scenario, SOON_S, NULL);
+    Trajectory *truth = run_scenario(&scenario, registry_solver(BACKEND_ANALYTIC), NOBODY);
+    if (!run->is_complete) {
+        fail_msg("%s", run->message);
+    }
+    const TrajectoryError error = error_against(run, truth, INFINITY);
+    assert_true(error.is_known && run->wall_s > 0.0);
+    assert_int_equal(run->steps, lround(scenario_duration(&scenario) / step_s));
+    trajectory_destroy(run);
+    trajectory_destroy(truth);
+    return error.max;
+}
+
+static void a_driver_says_what_it_is(void **state)
+{
+    (void)state;
+    const EngineDriver driver = toy();
+    assert_string_equal(driver.engine, "Toy");
+    assert_string_equal(driver.version, "1.0");
+    assert_string_equal(driver.precision, "double");
+    assert_int_equal(driver.way_count, 2);
+    assert_string_equal(driver.ways[1], "midpoint");
+}
+
+// Euler's method is of order 1, the midpoint rule of order 2: at a fifth of the step their errors
+// are a fifth and a 25th. An order that is off by .2 is off by 1.4 in these ratios.
+static void its_methods_have_their_orders(void **state)
+{
+    (void)state;
+    const EngineDriver driver = toy();
+    const double euler = error_of_way(&driver, "euler", 200e-6);
+    const double midpoint = error_of_way(&driver, "midpoint", 200e-6);
+    assert_near(log(euler / error_of_way(&driver, "euler", 40e-6)) / log(5.0), 1.0, 0.2);
+    assert_near(log(midpoint / error_of_way(&driver, "midpoint", 40e-6)) / log(5.0), 2.0, 0.2);
+    assert_true(midpoint < 0.05 * euler);
+}
+
+static void what_goes_wrong_is_a_failed_run_with_its_reason(void **state)
+{
+    (void)state;
+    static const char *const FAULTS[][2] = {
+        {"nan", "is no JSON object"},
+        {"far", "is suddenly 1e+06 m away"},
+        {"apart", "is suddenly 0.36"},
+        {"drive", "its drive is"},
+        {"starts-over", "its drive is"},
+        {"abort", "ended by signal 6"},
+        {"killed", "ended by signal 9"},
+        {"exit", "ended with exit status 1: out of luck"},
+        {"garbage", "is no JSON object: '\\x1b[31mgarbage'"},
+        {"half", "ended in the middle of a line"},
+        {"failed", "toy midpoint: the engine warned: bad number"},
+        {"short", "done after 90 of 91 samples"},
+        {"other-times", "its sample 0 is of 0.06 s"},
+        {"child", "ended after 0 of 91 samples"},
+        {"no-end", "ended after 91 of 91 samples"},
+        {"goes-on", "goes on after it said that it is done"},
+        {"lingers", "closed its output and went on"},
+    };
+    const EngineDriver driver = toy();
+    Scenario scenario = ideal(600e-6);
+    for (size_t i = 0; i < sizeof FAULTS / sizeof *FAULTS; i++) {
+        fault(FAULTS[i][0]);
+        const double began_s = clock_now_s();
+        Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
+        if (run->is_complete || strstr(run->message, FAULTS[i][1]) == NULL) {
+            fail_msg("%s: '%s' does not say '%s'", FAULTS[i][0], run->message, FAULTS[i][1]);
+        }
+        assert_true(clock_now_s() - began_s < SOON_S);
+        trajectory_destroy(run);
+    }
+    // the control: without a fault there is none
+    fault("");
+    Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
+    assert_true(run->is_complete);
+    trajectory_destroy(run);
+}
+
+static void one_that_hangs_is_ended(void **state)
+{
+    (void)state;
+    const EngineDriver driver = toy();
+    Scenario scenario = ideal(600e-6);
+    fault("hang");
+    const double began_s = clock_now_s();
+    Trajectory *run = engine_run(&driver, "midpoint", &scenario, 1.0, NULL);
+    assert_false(run->is_complete);
+    assert_non_null(strstr(run->message, "exceeded its time limit of 1 s"));
+    assert_true(clock_now_s() - began_s < SOON_S);
+    fault("");
+    trajectory_destroy(run);
+}
+
+static void what_is_no_driver_is_refused(void **state)
+{
+    (void)state;
+    static const char *const GIVEN[][2] = {
+        {"toy", "--driver takes NAME=PROGRAM"},
+        {"ode=/bin/true", "none of our own backends"},
+        {"Toy=/bin/true", "lower-case letters"},
+        {"toy=", "--driver takes NAME=PROGRAM"},
+        {"toy=/bin/true", "the driver 'toy' (/bin/true): said nothing"},
+        {"toy=/bin/cat",
+         "the driver 'toy' (/bin/cat): its line 'jointplay-driver' has no 'engine'"},
+        {"toy=/no/such", "/no/such cannot be run: No such file or directory"},
+        {"toy=/bin", "cannot be run: Permission denied"},
+    };
+    for (size_t i = 0; i < sizeof GIVEN / sizeof *GIVEN; i++) {
+        EngineDriver driver;
+        Err err = {0};
+        assert_false(engine_given(GIVEN[i][0], &driver, &err));
+        if (strstr(err.text, GIVEN[i][1]) == NULL) {
+            fail_msg("%s: '%s' does not say '%s'", GIVEN[i][0], err.text, GIVEN[i][1]);
+        }
+    }
+    EngineDriver driver;
+    Err err = {0};
+    fault("other-protocol");
+    char given[ENGINE_PATH_SIZE];
+    snprintf(given, sizeof given, "toy=%s", getenv("JOINTPLAY_TOY_DRIVER"));
+    assert_false(engine_given(given, &driver, &err));
+    assert_non_null(strstr(err.text, "its first line is not of protocol 1"));
+    fault("");
+}
+
+static void a_name_without_a_driver_says_which_there_are(void **state)
+{
+    (void)state;
+    EngineDriver driver;
+    Err err = {0};
+    setenv("JOINTPLAY_DRIVERS", "/no/such/folder", 1);
+    assert_false(engine_find("mujoco", &driver, &err));
+    assert_int_equal(err.kind, ERR_USAGE);
+    assert_string_equal(err.text, "there is no driver for 'mujoco' here: there is ode alone; "
+                                  "--driver mujoco=PROGRAM names one");
+    // a folder with one in it
+    char folder[] = "/tmp/jointplay-drivers-XXXXXX";
+    char link[sizeof folder + 32];
+    assert_non_null(mkdtemp(folder));
+    snprintf(link, sizeof link, "%s/jointplay-toy", folder);
+    assert_int_equal(symlink(getenv("JOINTPLAY_TOY_DRIVER"), link), 0);
+    setenv("JOINTPLAY_DRIVERS", folder, 1);
+    err = (Err){0};
+    assert_false(engine_find("../toy", &driver, &err));
+    assert_non_null(strstr(err.text, "there are ode, toy; --driver NAME=PROGRAM names one"));
+    err = (Err){0};
+    assert_true(engine_find("toy", &driver, &err));
+    assert_string_equal(driver.program, link);
+    unlink(link);
+    rmdir(folder);
+    unsetenv("JOINTPLAY_DRIVERS");
+}
+
+// What the protocol has no words for is refused by name, before any program is started.
+static void what_cannot_be_told_is_refused_by_name(void **state)
+{
+    (void)state;
+    static const char *const CASES[][2] = {
+        {"cases/mechanisms/compressor.yaml", "cannot express the load 'gas'"},
+        {"cases/mechanisms/slider-crank-guide.yaml", "cannot express the block between guides"},
+        {"cases/mechanisms/pendulum.yaml", ""},
+        {"cases/mechanisms/gear-pair.yaml", "cannot express"},
+        {"cases/mechanisms/bouncing-ball.yaml", "cannot express the stop"},
+        {"cases/mechanisms/start-and-stop.yaml", "cannot express a drive whose speed is over time"},
+        {"cases/paper/stackup-poisson.yaml", "cannot express contact.model: poisson"},
+        {"cases/paper/impact-k66.yaml", ""},
+        {"cases/mechanisms/slider-crank.yaml", ""},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        Scenario scenario = load(CASES[i][0], NULL, 0);
+        Err err = {0};
+        const bool is_right = engine_check(&scenario, &err);
+        if (is_right != (CASES[i][1][0] == '\0') || strstr(err.text, CASES[i][1]) == NULL) {
+            fail_msg("%s: '%s' is not '%s'", CASES[i][0], err.text, CASES[i][1]);
+        }
+    }
+    // a driver that cannot express what the protocol can says so itself
+    const EngineDriver driver = toy();
+    Scenario scenario = load_with("cases/paper/impact-k66.yaml", "run.start=centred");
+    Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
+    assert_string_equal(run->message,
+                        "toy midpoint: cannot express the pin-in-hole 'crank-coupler'");
+    trajectory_destroy(run);
+}
+
+// Starts a process that after a while kills what the parent has started besides.
+static pid_t start_killer(pid_t parent)
+{
+    const useconds_t wait_us = (useconds_t)(rand() % 80000);
+    const pid_t killer = fork();
+    if (killer == 0) {
+        char path[64];
+        int process;
+        usleep(wait_us);
+        snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
+        FILE *children = fopen(path, "r");
+        while (children != NULL && fscanf(children, "%d", &process) == 1) {
+            if (process != (int)getpid()) {
+                kill(process, SIGKILL);
+            }
+        }
+        _exit(0);
+    }
+    return killer;
+}
+
+// Kills at random moments of a conversation: the caller sees each end, and goes on.
+static void a_hundred_kills_leave_nothing_hanging(void **state)
+{
+    (void)state;
+    const EngineDriver driver = toy();
+    Scenario scenario = ideal(1e-3);
+    scenario.run.samples = 20;
+    srand(1);
+    size_t failed = 0;
+    for (int i = 0; i < 100; i++) {
+        const pid_t killer = start_killer(getpid());
+        Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
+        const bool is_told = run->is_complete || strstr(run->message, "signal 9") != NULL ||
+                             strstr(run->message, "ended") != NULL;
+        if (!is_told) {
+            fail_msg("%s", run->message);
+        }
+        failed += run->is_complete ? 0 : 1;
+        trajectory_destroy(run);
+        waitpid(killer, NULL, 0);
+    }
+    // the control: some of them were hit
+    assert_true(failed > 0);
+    // and there is no process left that nobody waits for
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_driver_says_what_it_is),
+        cmocka_unit_test(its_methods_have_their_orders),
+        cmocka_unit_test(what_goes_wrong_is_a_failed_run_with_its_reason),
+        cmocka_unit_test(one_that_hangs_is_ended),
+        cmocka_unit_test(what_is_no_driver_is_refused),
+        cmocka_unit_test(a_name_without_a_driver_says_which_there_are),
+        cmocka_unit_test(what_cannot_be_told_is_refused_by_name),
+        cmocka_unit_test(a_hundred_kills_leave_nothing_hanging),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

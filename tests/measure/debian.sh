@@ -1,0 +1,22 @@
+#!/bin/sh
+# Builds the Debian packages, asks lintian about them, and runs the commands of README and tutorial from
+# the unpacked package in an empty folder. Needs debhelper, lintian and what packages.txt lists under
+# build; some three minutes. Usage: debian.sh [FOLDER for the packages]
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/jointplay"
+(cd "$root" && git ls-files -z | tar --null -T - -cf -) | tar -xf - -C "$work/jointplay"
+(cd "$work/jointplay" && dpkg-buildpackage -us -uc -b) >"$work/log" 2>&1 || {
+    tail -n 40 "$work/log"
+    exit 1
+}
+lintian --allow-root --fail-on error,warning "$work"/jointplay_*.changes
+echo "lintian has no error and no warning"
+for package in "$work"/*.deb; do
+    dpkg-deb -x "$package" "$work/root"
+done
+python3 "$root/tests/command/pages.py" "$work/root/usr/bin/jointplay" "$root/README.md" \
+    "$root/docs/tutorial.md"
+[ $# = 0 ] || cp "$work"/*.deb "$1"
