@@ -17,8 +17,7 @@ enum {
 typedef struct Revolution {
     double *force_max; // N, by joint, of those with play; owned
     size_t *impacts;   // by joint: contacts begun; owned
-    double *
-        section; // velocities at its end, over the fastest so far: SETTLE_RATES of each body; owned
+    double *section;   // velocities at its end, SETTLE_RATES of each body; owned
 } Revolution;
 
 typedef struct Settling {
