@@ -48,7 +48,7 @@ static void next_to_no_restitution_is_delivered(void **state)
 static Scenario weight_on_wall(void)
 {
     Scenario scenario = mechanism_pin(0.1, 1e-4);
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.linkage.bodies[0].start.position = (Vec2){0.0, -1e-4};
     scenario.run.duration = 0.1;
     scenario.run.samples = 2;
