@@ -70,7 +70,7 @@ static const char *new_text(const char *kind)
             return NEW_KINDS[i].text;
         }
     }
-    assert(!"a kind that was read is one of the list");
+    assert(false && "a kind that was read is one of the list");
     return NULL;
 }
 
