@@ -32,6 +32,8 @@ typedef enum Need {
     TRIALS,      // the step was chosen for a tolerance
     CERTIFICATE, // the reference is certified
     FOLLOWED,    // the run started in the motion of its neighbour
+    TURNS,       // the body does not slide on the ground
+    SLIDES,      // it does
 } Need;
 
 // What the results of a run are taken from.
@@ -108,6 +110,10 @@ static double find_between_orders(const Measured *measured, size_t body)
     static double find_section_##number(const Measured *measured, size_t body)                     \
     {                                                                                              \
         return section_omega(measured->run, body, (number)-1);                                     \
+    }                                                                                              \
+    static double find_slide_##number(const Measured *measured, size_t body)                       \
+    {                                                                                              \
+        return section_slide(measured->run, body, (number)-1);                                     \
     }
 SECTION_LIST(FIND_SECTION)
 
@@ -135,10 +141,15 @@ static double find_section_change(const Measured *measured, size_t unused)
 #define FOUND(owner, name, kind, need, find, ...) \
     {owner, name, COLUMN_##kind, need, 0, find, {__VA_ARGS__}}
 #define SECTION(number) \
-    FOUND(OF_BODY, "section_" #number "_rad_s", REAL, NOTHING, find_section_##number, \
+    FOUND(OF_BODY, "section_" #number "_rad_s", REAL, TURNS, find_section_##number, \
           (number) == 1 ? "angular velocity at the end of the last whole revolution" \
                         : "the same of the revolution before", \
           "angular velocity at the end of revolution -" #number),
+#define SLIDE(number) \
+    FOUND(OF_BODY, "section_" #number "_m_s", REAL, SLIDES, find_slide_##number, \
+          (number) == 1 ? "of a body that slides on the ground its velocity there, along its line" \
+                        : "the same of the revolution before", \
+          "velocity of the slider at the end of revolution -" #number),
 
 static const Metric METRICS[] = {
     BODY("omega_max_rad_s", REAL, NOTHING, omega_max.value, "largest angular velocity"),
@@ -155,6 +166,7 @@ static const Metric METRICS[] = {
           "its largest amplitude between whole multiples of the crank's speed",
           "largest amplitude of omega between orders"),
     SECTION_LIST(SECTION)
+    SECTION_LIST(SLIDE)
     FOUND(OF_RUN, "impacts", WHOLE, NOTHING, find_impacts, "contacts begun in all joints"),
     FOUND(OF_RUN, "alpha_peak_rad_s2", REAL, NOTHING, find_alpha_peak,
           "largest magnitude of any body's angular acceleration",
@@ -321,6 +333,13 @@ static JointNumberId number_at(size_t place)
     return JOINT_NUMBER_COUNT;
 }
 
+// Whether a body's way of moving is that which a number is for.
+static bool metrics_moves(const Linkage *linkage, const Metric *metric, size_t body)
+{
+    return (metric->need != TURNS && metric->need != SLIDES) ||
+           (section_slider(linkage, body) >= 0) == (metric->need == SLIDES);
+}
+
 // Of which results there are none in some studies.
 typedef struct Lists {
     bool has_settled;
@@ -340,7 +359,8 @@ static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Li
         results[count++] = (Result){.number = number_at(k), .member = member, .of = name};
     }
     for (size_t k = 0; k < METRIC_COUNT; k++) {
-        if (METRICS[k].owner == owner && (lists.is_following || METRICS[k].need != FOLLOWED)) {
+        if (METRICS[k].owner == owner && (lists.is_following || METRICS[k].need != FOLLOWED) &&
+            metrics_moves(linkage, &METRICS[k], member)) {
             results[count++] = (Result){.metric = &METRICS[k], .member = member, .of = name};
         }
     }
@@ -367,7 +387,8 @@ bool metrics_fit(const Scenario *scenario, Err *err)
     const Linkage *linkage = &scenario->linkage;
     size_t of_body = 0;
     for (size_t k = 0; k < METRIC_COUNT; k++) {
-        of_body += METRICS[k].owner == OF_BODY ? 1 : 0;
+        // a body either turns or slides, and has as many numbers for both
+        of_body += METRICS[k].owner == OF_BODY && METRICS[k].need != SLIDES ? 1 : 0;
     }
     size_t count = METRIC_COUNT + JOINT_NUMBER_COUNT + of_body * linkage->body_count;
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -526,7 +547,7 @@ bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *tr
 static void describe_one(bool is_markdown, const char *owner, const char *name, const char *meaning,
                          Text *text)
 {
-    text_append(text, is_markdown ? "| `%s%s` | %s |\n" : "    %s%s\n        %s\n", owner, name,
+    text_append(text, is_markdown ? "- `%s%s`: %s\n" : "    %s%s\n        %s\n", owner, name,
                 meaning);
 }
 
