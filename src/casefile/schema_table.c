@@ -332,9 +332,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is the "
             "world's x axis; with bodies, their angles define it"},
-    {.path = "gravity", .dimension = DIMENSION_ACCELERATION, AT(gravity),
+    {.path = "gravity", .type = SCHEMA_GRAVITY, .dimension = DIMENSION_ACCELERATION, AT(gravity),
      .low = -1e3, .high = 1e3,
-     .doc = "acceleration of gravity, downward, along -y; 0 m/s^2 for none"},
+     .doc = "acceleration of gravity: one number is downward, along -y, and 0 m/s^2 none; [x, y], "
+            "or with space: spatial [x, y, z], is the acceleration of free fall in the world's "
+            "axes, so that 9.81 m/s^2 is [0 m/s^2, -9.81 m/s^2]"},
 
     {.path = "material.youngs-modulus", .dimension = DIMENSION_PRESSURE,
      AT(material.youngs_modulus), .low = 1e3, .high = 1e13, .needs = MATERIAL,

@@ -166,7 +166,6 @@ enum {
 typedef struct Mark {
     const char *opening;
     const char *further; // NULL: nothing more is asked
-    size_t at;           // where that stands, in bytes; 0: anywhere
 } Mark;
 
 typedef struct Kind {
@@ -176,43 +175,40 @@ typedef struct Kind {
 
 static const Kind KINDS[FILE_KIND_COUNT] = {
     [FILE_TABLE] = {"a table of jointplay (CSV)",
-                    {{"time_s,", NULL, 0},
-                     {"joint,onset_s,", NULL, 0},
-                     {"scheme,step_s,", NULL, 0},
-                     {"joint,law,map,step_s,", NULL, 0},
-                     {"run,", ",outcome,reason,", 0}}},
+                    {{"time_s,", NULL},
+                     {"joint,onset_s,", NULL},
+                     {"scheme,step_s,", NULL},
+                     {"joint,law,map,step_s,", NULL},
+                     {"run,", ",outcome,reason,"}}},
     [FILE_PICTURE] = {"a picture of jointplay (SVG)",
-                      {{"<svg xmlns=\"http://www.w3.org/2000/svg\" width=", "<style>text{", 0}}},
-    [FILE_RESULT] = {"a result of jointplay (JSON)", {{"{\"tool\": {\"version\":", "\"ode\":", 0}}},
+                      {{"<svg xmlns=\"http://www.w3.org/2000/svg\" width=", "<style>text{"}}},
+    [FILE_RESULT] = {"a result of jointplay (JSON)", {{"{\"tool\": {\"version\":", "\"ode\":"}}},
     [FILE_REPORT] = {"a report of jointplay (text)",
-                     {{"", "\n\n  case    ", 0}, {"A lone contact", "\n\n  valid    ", 0}}},
+                     {{"", "\n\n  case    "}, {"A lone contact", "\n\n  valid    "}}},
     [FILE_PAGE] = {"a page of jointplay report (HTML)",
-                   {{"<!DOCTYPE html>", "content=\"jointplay report\"", 0}}},
+                   {{"<!DOCTYPE html>", "content=\"jointplay report\""}}},
     [FILE_CODE] = {"C code of jointplay tune",
                    {{"// A mechanism with play in its joints in the Open Dynamics Engine,",
-                     "`jointplay tune`", 0}}},
-    [FILE_SDF] = {"SDF of jointplay tune",
-                  {{"<!-- error with these constants, measured:", NULL, 0}}},
-    [FILE_MJCF] = {"MJCF of jointplay tune", {{"<!-- spring ", "not run here; for bodies", 0}}},
+                     "`jointplay tune`"}}},
+    [FILE_SDF] = {"SDF of jointplay tune", {{"<!-- error with these constants, measured:", NULL}}},
+    [FILE_MJCF] = {"MJCF of jointplay tune", {{"<!-- spring ", "not run here; for bodies"}}},
     [FILE_JUNIT] = {"JUnit XML of jointplay check",
                     {{"<?xml version=\"1.0\" encoding=\"UTF-8\"?><testsuites name=\"jointplay "
                       "check\"",
-                      NULL, 0}}},
-    [FILE_COMMENT] = {"a comment of jointplay check (Markdown)",
-                      {{"### jointplay check", NULL, 0}}},
+                      NULL}}},
+    [FILE_COMMENT] = {"a comment of jointplay check (Markdown)", {{"### jointplay check", NULL}}},
     [FILE_BASELINE] = {"a baseline of jointplay check",
-                       {{"{\"format\": \"jointplay baseline", NULL, 0}}},
+                       {{"{\"format\": \"jointplay baseline", NULL}}},
     [FILE_ROWS] = {"rows of jointplay (JSON Lines)",
-                   {{"{\"run\":", "\"outcome\":", 0},
-                    {"{\"time_s\":", NULL, 0},
-                    {"{\"joint\":", "\"onset_s\":", 0}}},
-    [FILE_DATABASE] = {"a table of jointplay (SQLite)",
-                       {{"SQLite format 3", "JPSR", APPLICATION_AT}}},
-    [FILE_CASE] = {"a case of jointplay new (YAML)", {{"# Written by 'jointplay new", NULL, 0}}},
+                   {{"{\"run\":", "\"outcome\":"},
+                    {"{\"time_s\":", NULL},
+                    {"{\"joint\":", "\"onset_s\":"}}},
+    [FILE_DATABASE] = {"a table of jointplay (SQLite)", {{"SQLite format 3", "JPSR"}}},
+    [FILE_CASE] = {"a case of jointplay new (YAML)", {{"# Written by 'jointplay new", NULL}}},
     [FILE_SCRIPT] = {"a script of jointplay study slurm",
-                     {{"#!/bin/bash", "Written by 'jointplay study slurm'", 0}}},
-    [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST", APPLICATION_AT}}},
-    [FILE_JOURNAL] = {"a store of a comparison", {{"{\"compare\":", NULL, 0}}},
+                     {{"#!/bin/bash", "Written by 'jointplay study slurm'"}}},
+    [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST"}}},
+    [FILE_JOURNAL] = {"a store of a comparison", {{"{\"compare\":", NULL}}},
 };
 
 static bool begins_with(const char *head, size_t size, const char *opening)
@@ -233,20 +229,25 @@ static bool begins_with(const char *head, size_t size, const char *opening)
     return true;
 }
 
-static bool goes_on_with(const char *head, size_t size, const Mark *mark)
+// Where what stands further down in a file of a kind does, in bytes; 0: anywhere.
+static const size_t FURTHER_AT[FILE_KIND_COUNT] = {
+    [FILE_DATABASE] = APPLICATION_AT, [FILE_STORE] = APPLICATION_AT};
+
+static bool goes_on_with(const char *head, size_t size, const char *further, size_t at)
 {
-    const size_t length = mark->further != NULL ? strlen(mark->further) : 0;
-    if (mark->at > 0) {
-        return size >= mark->at + length && memcmp(head + mark->at, mark->further, length) == 0;
+    const size_t length = further != NULL ? strlen(further) : 0;
+    if (at > 0) {
+        return size >= at + length && memcmp(head + at, further, length) == 0;
     }
-    return length == 0 || memmem(head, size, mark->further, length) != NULL;
+    return length == 0 || memmem(head, size, further, length) != NULL;
 }
 
-static bool is_of_kind(const Kind *kind, const char *head, size_t size)
+static bool is_of_kind(FileKind kind, const char *head, size_t size)
 {
-    for (size_t i = 0; i < MARK_MAX && kind->marks[i].opening != NULL; i++) {
-        if (begins_with(head, size, kind->marks[i].opening) &&
-            goes_on_with(head, size, &kind->marks[i])) {
+    const Mark *marks = KINDS[kind].marks;
+    for (size_t i = 0; i < MARK_MAX && marks[i].opening != NULL; i++) {
+        if (begins_with(head, size, marks[i].opening) &&
+            goes_on_with(head, size, marks[i].further, FURTHER_AT[kind])) {
             return true;
         }
     }
@@ -285,7 +286,7 @@ static bool refuse_head(const char *user, const char *path, const char *head, si
 {
     char what[2 * SHOWN_SIZE + 64];
     for (size_t i = 0; i < FILE_KIND_COUNT; i++) {
-        if (is_of_kind(&KINDS[i], head, size)) {
+        if (is_of_kind((FileKind)i, head, size)) {
             snprintf(what, sizeof what, "is %s", KINDS[i].name);
             return file_refuse(user, path, what, kind, err);
         }
@@ -326,8 +327,8 @@ static bool file_kind_check(FileKind kind, const char *user, const char *path, E
         snprintf(what, sizeof what, "cannot be read (%s)", strerror(errno));
         file_refuse(user, path, what, &KINDS[kind], err);
     } else {
-        is_own = is_of_kind(&KINDS[kind], head, size) ||
-                 refuse_head(user, path, head, size, &KINDS[kind], err);
+        is_own =
+            is_of_kind(kind, head, size) || refuse_head(user, path, head, size, &KINDS[kind], err);
     }
     free(head);
     return is_own;
