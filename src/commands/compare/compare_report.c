@@ -497,6 +497,8 @@ static json_t *compare_report_scheme_object(const CompareReport *report, size_t 
         json_pack("{s:s, s:s}", "scheme", scheme->name, "backend", scheme_backend(scheme));
     if (scheme->driver != NULL) {
         json_object_set_new(object, "way", json_string(scheme->way));
+        json_object_set_new(object, "engine_settings",
+                            json_value_text(compare_engines_settings(ladder, index)));
     } else if (scheme_has_step(scheme)) {
         json_object_set_new(object, "solver", json_string(OPTIONS_ODE_SOLVERS[scheme->solver]));
         json_object_set_new(object, "stepping",
