@@ -441,16 +441,19 @@ void compare_screen_write(const void *of, const Style *style, Text *text)
     const CompareReport *report = of;
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
-    compare_rows_write_cheapest(report->ladder, style, text);
     if (compare_engines_are_any(report->ladder)) {
         compare_engines_write_times(report->ladder, style, text);
+    } else {
+        compare_rows_write_cheapest(report->ladder, style, text);
     }
     write_others(report->ladder, text);
     compare_screen_orders(report->ladder, text);
     screen_truth(&report->ladder->truth, text);
     settled_lines(scenario, text);
     compare_report_left(report, text);
-    text_append(text, "  --full: every scheme at every step\n");
+    text_append(text, "  --full: every scheme at every step%s\n",
+                compare_engines_are_any(report->ladder) ? ", and the way and step of these times"
+                                                        : "");
 }
 
 // The JSON.
