@@ -6,6 +6,8 @@
 // difference of any body's velocity, or of its angular velocity times its reach.
 #include "measure/section.h"
 
+#include "model/joint_rows.h"
+
 #include <math.h>
 
 const double SECTION_TOLERANCE = 1e-5;
@@ -115,12 +117,40 @@ double section_period(const Trajectory *run)
     return sections.is_period_known ? (double)sections.period : NAN;
 }
 
-double section_omega(const Trajectory *run, size_t body, size_t before)
+// The sample of a section counted from the end; false where there is none.
+static bool sample_before(const Trajectory *run, size_t before, size_t *sample)
 {
     const Sections sections = section_find(run);
-    if (before + 1 >= sections.count) {
+    const bool is_there = before + 1 < sections.count;
+    *sample = is_there ? section_sample(&sections, sections.count - 1 - before) : 0;
+    return is_there;
+}
+
+double section_omega(const Trajectory *run, size_t body, size_t before)
+{
+    size_t sample = 0;
+    return sample_before(run, before, &sample) ? trajectory_motion(run, sample, body)->omega : NAN;
+}
+
+int section_slider(const Linkage *linkage, size_t body)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const bool slides = joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE;
+        if (slides && joint->body_a == LINKAGE_GROUND && joint->body_b == (int)body) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+double section_slide(const Trajectory *run, size_t body, size_t before)
+{
+    size_t sample = 0;
+    const int joint = section_slider(&run->linkage, body);
+    if (joint < 0 || !sample_before(run, before, &sample)) {
         return NAN;
     }
-    const size_t sample = section_sample(&sections, sections.count - 1 - before);
-    return trajectory_motion(run, sample, body)->omega;
+    const Motion *motions = trajectory_motion(run, sample, 0);
+    return vec2_dot(joint_rows_along(&run->linkage, motions, joint), motions[body].velocity);
 }

@@ -39,5 +39,11 @@ double section_period(const Trajectory *run);
 // before it. NAN where there is none.
 double section_omega(const Trajectory *run, size_t body, size_t before);
 
+// The joint by which a body slides on the ground, of a prismatic joint or guides; -1: it turns.
+int section_slider(const Linkage *linkage, size_t body);
+
+// The same of the velocity of a body that slides, along its line, m/s.
+double section_slide(const Trajectory *run, size_t body, size_t before);
+
 // The largest difference of the velocities of all bodies' points at two samples, m/s.
 double section_difference(const Trajectory *run, size_t a, size_t b);

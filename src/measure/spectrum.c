@@ -90,19 +90,6 @@ static double omega_of(const void *context, size_t sample)
     return trajectory_motion(signal->run, sample, signal->body)->omega;
 }
 
-// Its amplitudes, owned by the caller; NULL where there are none.
-static double *body_amplitudes(const Trajectory *run, size_t body, Orders *orders)
-{
-    const Sections sections = section_find(run);
-    *orders = spectrum_orders(&sections);
-    if (orders->count == 0) {
-        return NULL;
-    }
-    double *amplitudes = zeroed(orders->count, sizeof *amplitudes);
-    spectrum_find(orders, omega_of, &(BodySignal){run, body}, amplitudes);
-    return amplitudes;
-}
-
 double spectrum_body_order(const Trajectory *run, size_t body, size_t order)
 {
     const Sections sections = section_find(run);
@@ -122,9 +109,14 @@ double spectrum_body_order(const Trajectory *run, size_t body, size_t order)
 
 double spectrum_body_between(const Trajectory *run, size_t body)
 {
-    Orders orders;
-    double *amplitudes = body_amplitudes(run, body, &orders);
-    double most = amplitudes != NULL ? 0.0 : NAN;
+    const Sections sections = section_find(run);
+    const Orders orders = spectrum_orders(&sections);
+    if (orders.count == 0 || orders.per_order == 1) {
+        return orders.count == 0 ? NAN : 0.0;
+    }
+    double *amplitudes = zeroed(orders.count, sizeof *amplitudes);
+    spectrum_find(&orders, omega_of, &(BodySignal){run, body}, amplitudes);
+    double most = 0.0;
     for (size_t k = 0; k < orders.count; k++) {
         most = k % orders.per_order != 0 ? fmax(most, amplitudes[k]) : most;
     }

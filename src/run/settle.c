@@ -30,8 +30,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { RATES = 6 }; // of a body at a section
-
 // 1: of two changes, the ratio above which nothing can be said of what is to come
 static const double RATIO_MOST = 0.98;
 
@@ -103,7 +101,7 @@ static Revolution *add_revolution(Settling *settling)
     *added = (Revolution){
         .force_max = zeroed(linkage->joint_count, sizeof *added->force_max),
         .impacts = zeroed(linkage->joint_count, sizeof *added->impacts),
-        .section = zeroed(RATES * linkage->body_count, sizeof *added->section),
+        .section = zeroed(SETTLE_RATES * linkage->body_count, sizeof *added->section),
     };
     return added;
 }
@@ -140,9 +138,9 @@ static void take_section(Settling *settling, Revolution *revolution)
             motion = settling->state.sample.space_bodies[i];
         }
         const Vec3 turning = vec3_scale(linkage_reach(linkage, (int)i), motion.omega);
-        const double rates[RATES] = {motion.velocity.x, motion.velocity.y, motion.velocity.z,
-                                     turning.x,         turning.y,         turning.z};
-        memcpy(revolution->section + RATES * i, rates, sizeof rates);
+        const double rates[SETTLE_RATES] = {motion.velocity.x, motion.velocity.y, motion.velocity.z,
+                                            turning.x,         turning.y,         turning.z};
+        memcpy(revolution->section + SETTLE_RATES * i, rates, sizeof rates);
         settling->fastest =
             fmax(settling->fastest, vec3_length(motion.velocity) + vec3_length(turning));
     }
@@ -188,7 +186,7 @@ static double revolutions_apart(const Linkage *linkage, const Revolution *now,
                                 const Revolution *then, double fastest)
 {
     double apart = 0.0;
-    for (size_t i = 0; i < RATES * linkage->body_count; i++) {
+    for (size_t i = 0; i < SETTLE_RATES * linkage->body_count; i++) {
         apart = fmax(apart, fabs(now->section[i] - then->section[i]) / fastest);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
@@ -354,7 +352,6 @@ typedef struct StartsWatch {
     double started_s;     // by the clock
     atomic_size_t turned; // revolutions of all
     size_t most;          // of all
-    size_t each;          // of each
 } StartsWatch;
 
 static void count_turn(void *context)
@@ -390,22 +387,15 @@ static void tell_nobody(double share, double wall_s, void *context)
     (void)context;
 }
 
-// Runs starts side by side, each over so many revolutions at most.
-static void starts_turn(Start *starts, size_t count, SideBySidePiece work, size_t most,
-                        RunWatch watch)
+static void starts_run(Start *starts, size_t count, RunWatch watch)
 {
-    StartsWatch all = {
-        .watch = watch, .started_s = clock_now_s(), .most = count * most, .each = most};
+    StartsWatch all = {.watch = watch, .started_s = clock_now_s()};
     all.watch.progress = watch.progress != NULL ? watch.progress : tell_nobody;
     for (size_t i = 0; i < count; i++) {
         starts[i].watch = &all;
+        all.most += starts[i].is_made ? starts[i].settling.scenario.run.settle_most : 0;
     }
-    side_by_side_run(count, side_by_side_processors(), work, starts);
-}
-
-static void starts_run(Start *starts, size_t count, RunWatch watch)
-{
-    starts_turn(starts, count, start_run, starts[0].settling.scenario.run.settle_most, watch);
+    side_by_side_run(count, side_by_side_processors(), start_run, starts);
 }
 
 static void starts_finish(Start *starts, size_t count)
@@ -423,9 +413,7 @@ static void starts_finish(Start *starts, size_t count)
 static const double START_SIZES[] = {0.05, 0.2, 0.01};
 enum { START_SIZE_COUNT = sizeof START_SIZES / sizeof *START_SIZES };
 
-// Gives the bodies other velocities, by that of the drive times a size; the member is the seed.
-// False where joints and drive leave none.
-static bool start_changed(Scenario *scenario, double size, unsigned member)
+bool settle_change_start(Scenario *scenario, double size, unsigned member)
 {
     const Linkage *linkage = &scenario->linkage;
     PerturbUnit *units = zeroed(linkage->body_count, sizeof *units);
@@ -440,7 +428,8 @@ static bool start_changed(Scenario *scenario, double size, unsigned member)
 
 static bool start_perturbed(Scenario *scenario, size_t number)
 {
-    return start_changed(scenario, START_SIZES[number % START_SIZE_COUNT], (unsigned)number + 1);
+    return settle_change_start(scenario, START_SIZES[number % START_SIZE_COUNT],
+                               (unsigned)number + 1);
 }
 
 // The starts that a motion is looked for from: as written, pressed, and with other velocities.
@@ -554,9 +543,10 @@ static void add_sections(const Settling *settling, SettledMotion *motion)
         const size_t number = settling->count - motion->section_count + k;
         for (size_t i = 0; i < linkage->body_count; i++) {
             // the last of the rates is that about z, times the reach
-            const double turning = settling->revolutions[number].section[RATES * i + RATES - 1];
+            const double *rates = settling->revolutions[number].section + SETTLE_RATES * i;
+            const double reach = linkage_reach(linkage, (int)i);
             motion->sections[k * linkage->body_count + i] =
-                turning / linkage_reach(linkage, (int)i);
+                reach > 0.0 ? rates[SETTLE_RATES - 1] / reach : 0.0;
         }
     }
 }
@@ -785,209 +775,4 @@ void settle_damping(Scenario *scenario, RunWatch watch)
         }
     }
     starts_finish(starts, 2);
-}
-
-// The growth of small changes.
-//
-// Beside the settled motion two others are turned, whose bodies start a little faster or slower.
-// With x_k the difference of the velocities of one from those of the settled motion at the end of
-// revolution k, small against them and far above rounding, two modes that last longest give
-//     x_(k+2p) = a x_(k+p) + b x_k
-// of a motion that repeats every p revolutions. a and b by least squares, each equation over
-// |x_k|; the growth a revolution is |z|^(1/p) of the larger root of z^2 = a z + b. Where the motion
-// does not repeat, or too few differences can be told, the growth is that of |x| alone: its mean
-// over the revolutions.
-
-enum {
-    GROWTH_STARTS = 2,      // beside the motion itself
-    GROWTH_MOST = 10,       // revolutions, and some more of longer periods
-    GROWTH_PERIOD_MOST = 4, // that modes are looked for of
-};
-
-// Of a start, over the drive's speed at the bodies' reach: small enough for what follows to be in
-// proportion to it, with room to die out by the first and to grow by the second.
-static const double GROWTH_REPEATING = 1e-5;
-static const double GROWTH_RANDOM = 1e-7;
-
-// 1: changes that can be told from those of the reference's tolerance, which it has for settling,
-// and that are still in proportion
-static const double GROWTH_LEAST = 30.0 * 1e-10;
-static const double GROWTH_LARGEST = 1e-3;
-
-// of the drive's speed at the bodies' reach, in which a start is changed, at most so many are the
-// fastest point's speed, in which sections are compared
-static const double START_SHARE = 10.0;
-
-// 1: the squared sine of the angle between x_k and x_(k+p), below which there is one mode alone
-static const double ONE_MODE = 1e-4;
-
-static double difference_at(const Start *starts, size_t start, size_t number, size_t rate)
-{
-    return starts[start].settling.revolutions[number].section[rate] -
-           starts[0].settling.revolutions[number].section[rate];
-}
-
-static size_t rate_count(const Start *starts)
-{
-    return RATES * starts[0].settling.scenario.linkage.body_count;
-}
-
-// |x_k|, over the fastest point's speed.
-static double sections_apart(const Start *starts, size_t start, size_t number)
-{
-    double apart = 0.0;
-    for (size_t i = 0; i < rate_count(starts); i++) {
-        apart = fmax(apart, fabs(difference_at(starts, start, number, i)));
-    }
-    return apart / starts[0].settling.fastest;
-}
-
-static bool is_told(const Start *starts, size_t start, size_t number)
-{
-    if (number >= starts[0].settling.count || number >= starts[start].settling.count) {
-        return false;
-    }
-    const double apart = sections_apart(starts, start, number);
-    return apart >= GROWTH_LEAST && apart <= GROWTH_LARGEST;
-}
-
-// The sums of the least squares: of x_(k+p) and x_k with themselves, each other and x_(k+2p).
-typedef struct GrowthSums {
-    size_t count; // equations, each of all rates
-    double now_now;
-    double now_then;
-    double then_then;
-    double now_next;
-    double then_next;
-} GrowthSums;
-
-static void add_equation(const Start *starts, size_t start, size_t k, size_t p, GrowthSums *sums)
-{
-    const double size = sections_apart(starts, start, k) * starts[0].settling.fastest;
-    for (size_t i = 0; i < rate_count(starts); i++) {
-        const double then = difference_at(starts, start, k, i) / size;
-        const double now = difference_at(starts, start, k + p, i) / size;
-        const double next = difference_at(starts, start, k + 2 * p, i) / size;
-        sums->now_now += now * now;
-        sums->now_then += now * then;
-        sums->then_then += then * then;
-        sums->now_next += now * next;
-        sums->then_next += then * next;
-    }
-    sums->count++;
-}
-
-// |z| of the larger root of z^2 = a z + b.
-static double larger_root(double a, double b)
-{
-    const double under = 0.25 * a * a + b;
-    return under < 0.0 ? sqrt(-b) : fabs(0.5 * a) + sqrt(under);
-}
-
-// Growth over p revolutions, by two modes or one; NAN of too few equations.
-static double growth_of_modes(const Start *starts, size_t p, size_t *revolutions)
-{
-    GrowthSums sums = {0};
-    for (size_t i = 1; i <= GROWTH_STARTS; i++) {
-        for (size_t k = 0; starts[i].is_settled && k + 2 * p < starts[i].settling.count; k++) {
-            if (is_told(starts, i, k) && is_told(starts, i, k + p) &&
-                is_told(starts, i, k + 2 * p)) {
-                add_equation(starts, i, k, p, &sums);
-                *revolutions = k + 2 * p > *revolutions ? k + 2 * p : *revolutions;
-            }
-        }
-    }
-    if (sums.count < 2) {
-        return NAN;
-    }
-    const double both = sums.now_now * sums.then_then;
-    const double determinant = both - sums.now_then * sums.now_then;
-    if (determinant < ONE_MODE * both) {
-        return fabs(sums.now_next / sums.now_now);
-    }
-    const double a =
-        (sums.now_next * sums.then_then - sums.then_next * sums.now_then) / determinant;
-    const double b = (sums.then_next * sums.now_now - sums.now_next * sums.now_then) / determinant;
-    return larger_root(a, b);
-}
-
-// The mean growth of |x| in a revolution, of the start in which it is larger.
-static SettledGrowth mean_growth(const Start *starts, double size)
-{
-    SettledGrowth growth = {.factor = NAN};
-    for (size_t i = 1; i <= GROWTH_STARTS; i++) {
-        if (!starts[i].is_settled) {
-            continue;
-        }
-        const size_t count = starts[i].settling.count;
-        size_t first = 0;
-        while (first < count && !is_told(starts, i, first)) {
-            first++;
-        }
-        size_t last = first;
-        while (is_told(starts, i, last + 1)) {
-            last++;
-        }
-        SettledGrowth found = {.factor = NAN, .revolutions = last - first};
-        if (last > first) {
-            const double grown = sections_apart(starts, i, last) / sections_apart(starts, i, first);
-            found.factor = pow(grown, 1.0 / (double)(last - first));
-        } else if (first == 0 || sections_apart(starts, i, 0) < GROWTH_LEAST) {
-            // gone at once, or after one revolution
-            const double from = first == 0 ? sections_apart(starts, i, 0) : size / START_SHARE;
-            found = (SettledGrowth){GROWTH_LEAST / from, true, 1};
-        }
-        growth = !(found.factor <= growth.factor) && !isnan(found.factor) ? found : growth;
-    }
-    return growth;
-}
-
-static SettledGrowth find_growth(const Start *starts, size_t period, double size)
-{
-    if (period > 0 && period <= GROWTH_PERIOD_MOST) {
-        size_t revolutions = 0;
-        const double growth = growth_of_modes(starts, period, &revolutions);
-        if (isfinite(growth)) {
-            return (SettledGrowth){.factor = pow(growth, 1.0 / (double)period),
-                                   .revolutions = revolutions};
-        }
-    }
-    return mean_growth(starts, size);
-}
-
-static void growth_run(size_t index, bool is_callers, void *context)
-{
-    Start *start = (Start *)context + index;
-    start->settling.turned = is_callers ? tell_turn : count_turn;
-    start->settling.context = start->watch;
-    start->is_settled = start->is_made;
-    while (start->is_settled && start->settling.count < start->watch->each) {
-        start->is_settled = settling_turn(&start->settling, &start->err);
-        start->settling.turned(start->settling.context);
-    }
-}
-
-void settle_growth(Scenario *scenario, RunWatch watch)
-{
-    SettledStart *settled = &scenario->settled;
-    if (settled->motion_count == 0) {
-        return;
-    }
-    const size_t period = settled->motions[0].period;
-    const double size = period > 0 ? GROWTH_REPEATING : GROWTH_RANDOM;
-    Start *starts = zeroed(1 + GROWTH_STARTS, sizeof *starts);
-    for (size_t i = 0; i <= GROWTH_STARTS; i++) {
-        starts[i].settling = settling_start(scenario);
-        starts[i].is_made = true;
-        if (i > 0 && !start_changed(&starts[i].settling.scenario, size, (unsigned)i)) {
-            settling_finish(&starts[i].settling);
-            starts[i].is_made = false;
-        }
-    }
-    const size_t more = period > 1 && period <= GROWTH_PERIOD_MOST ? 2 * (period - 1) : 0;
-    starts_turn(starts, 1 + GROWTH_STARTS, growth_run, GROWTH_MOST + more, watch);
-    settled->has_growth = true;
-    settled->growth =
-        starts[0].is_settled ? find_growth(starts, period, size) : (SettledGrowth){.factor = NAN};
-    starts_finish(starts, 1 + GROWTH_STARTS);
 }

@@ -8,13 +8,16 @@
 #include "model/state.h"
 #include "run/run.h"
 
-enum { SETTLE_PERIOD_MAX = 12 }; // revolutions after which a motion is seen to repeat, at most
+enum {
+    SETTLE_PERIOD_MAX = 12, // revolutions after which a motion is seen to repeat, at most
+    SETTLE_RATES = 6        // of a body at a section
+};
 
 // What happened in one revolution.
 typedef struct Revolution {
     double *force_max; // N, by joint, of those with play; owned
     size_t *impacts;   // by joint: contacts begun; owned
-    double *section;   // velocities at its end, over the fastest so far: three of each body; owned
+    double *section;   // velocities at its end, SETTLE_RATES of each body; owned
 } Revolution;
 
 typedef struct Settling {
@@ -35,6 +38,10 @@ typedef struct Settling {
 // Prepares a scenario whose drive has a period; it starts as the scenario does.
 Settling settling_start(const Scenario *scenario);
 void settling_finish(Settling *settling);
+
+// Gives the bodies of a scenario other velocities, by that of the drive at their reach times a
+// size; the member is the seed. False where joints and drive leave no freedom.
+bool settle_change_start(Scenario *scenario, double size, unsigned member);
 
 // Goes on by one revolution. Fails with ERR_SOLVER.
 bool settling_turn(Settling *settling, Err *err);

@@ -309,6 +309,41 @@ def canvases_have_roles_and_names(browser, page):
     assert unlabelled == 0
 
 
+def pages_of_results_fit_and_are_silent(browser, page):
+    folder = os.path.dirname(page)
+    words = ["--set", "run.revolutions=0.1", "--set", "run.start=centred", "--quiet", "--json"]
+    made = {
+        "compare": ["--schemes", "direct/plain", "--steps", "20 us, 10 us"],
+        "map": ["--steps", "20 us, 5 us"],
+        "tune": ["--error", "0.3", "--schemes", "direct/staggered"],
+    }
+    for name, more in made.items():
+        path = os.path.join(folder, name + ".json")
+        with open(path, "w") as stream:
+            subprocess.run([program, name, case, *words, *more], check=True, stdout=stream)
+    paths = [os.path.join(folder, name + ".json") for name in made]
+    results = os.path.join(folder, "results.html")
+    subprocess.run([program, "report", *paths, "--quiet", "--out", results], check=True)
+    for dark in [False, True]:
+        for width in [390, 1200]:
+            browser.open(results, width=width, dark=dark)
+            assert browser.value("document.documentElement.scrollWidth") <= width
+            browser.picture(f"results-{'dark' if dark else 'light'}-{width}")
+            browser.wait_for("document.querySelectorAll('#saving button').length === 2")
+            browser.check_silence()
+    assert browser.value("document.querySelectorAll('svg').length") >= 4
+    saved = json.loads(browser.value("JSON.stringify(jointplay.data.results)"))
+    assert [one["case"] for one in saved] == [case] * 3
+    lines = browser.value("tablesAsCsv()").splitlines()
+    assert any(line.startswith("direct/plain") for line in lines), lines[:5]
+    # without script all but saving is there
+    browser.open(results, script=False)
+    assert browser.value("document.querySelectorAll('td').length") > 40
+    assert browser.value("document.querySelector('svg').getBoundingClientRect().width") > 300
+    browser.picture("results-no-script")
+    browser.check_silence()
+
+
 def a_hostile_title_stays_text(browser, page):
     hostile = os.path.join(os.path.dirname(page), "hostile.html")
     make(hostile, "--set", "title=" + HOSTILE)
@@ -399,6 +434,7 @@ CLAIMS = [
     canvases_have_roles_and_names,
     a_spectrum_and_a_phase_plane_are_those_of_the_results,
     a_mechanism_in_space_turns,
+    pages_of_results_fit_and_are_silent,
     a_hostile_title_stays_text,
 ]
 

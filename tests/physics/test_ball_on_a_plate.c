@@ -87,6 +87,29 @@ static void growth_is_the_larger_eigenvalue(void **state)
     assert_close(growth_of(0.5, 1.05), larger, 0.02);
 }
 
+// What an impact all but takes is gone within a revolution: e = 0.002 is what can be told at most.
+static void a_change_that_is_gone_has_a_bound(void **state)
+{
+    (void)state;
+    Scenario scenario = ball(0.002, 0.5);
+    settle_growth(&scenario, (RunWatch){.progress = NULL});
+    assert_true(scenario.settled.has_growth);
+    assert_true(scenario.settled.growth.factor < 0.02);
+    scenario_free(&scenario);
+}
+
+// Beyond its cascade of periods the motion does not repeat, and small changes grow.
+static void changes_grow_where_nothing_repeats(void **state)
+{
+    (void)state;
+    Scenario scenario = ball(0.8, 4.0);
+    assert_int_equal(scenario.settled.motions[0].period, 0);
+    settle_growth(&scenario, (RunWatch){.progress = NULL});
+    assert_true(scenario.settled.growth.factor > 1.05);
+    assert_true(scenario.settled.growth.revolutions > 2);
+    scenario_free(&scenario);
+}
+
 static void the_period_doubles_where_it_must(void **state)
 {
     (void)state;
@@ -109,6 +132,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(growth_is_the_restitution_where_it_turns),
         cmocka_unit_test(growth_is_the_larger_eigenvalue),
+        cmocka_unit_test(a_change_that_is_gone_has_a_bound),
+        cmocka_unit_test(changes_grow_where_nothing_repeats),
         cmocka_unit_test(the_period_doubles_where_it_must),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

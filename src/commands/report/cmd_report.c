@@ -1,11 +1,12 @@
-// Runs a case on its backends and writes one HTML file that shows what came out.
+// Writes one HTML file: of a case, which is run on its backends, of a study, or of results.
 #include "base/shell.h"
-#include "casefile/input.h"
 #include "cli/output.h"
 #include "cli/warnings.h"
 #include "cli/written.h"
 #include "commands/commands.h"
 #include "commands/report/report_page.h"
+#include "commands/report/report_result.h"
+#include "commands/report/report_study.h"
 #include "commands/run/run_choices.h"
 #include "write/file.h"
 
@@ -15,11 +16,13 @@
 typedef struct ReportCommand {
     RunChoices choices;
     const char *out; // NULL: <case>.html
+    size_t path_count;
+    const char *paths[RESULT_MOST]; // one case, one store, or results
 } ReportCommand;
 
 static const OptionRow OPTIONS[] = {
     RUN_CHOICES(1),
-    {"out", "FILE.html", "Write this file; without it <case>.html in the current folder", 2,
+    {"out", "FILE.html", "Write this file; without it <name>.html in the current folder", 2,
      OPTION_TEXT, .offset = offsetof(ReportCommand, out), .letter = 'o'},
     COMMON_QUIET(2),
 };
@@ -28,15 +31,34 @@ static const OptionRow OPTIONS[] = {
 static void append_command(const ReportCommand *command, const char *path, Text *text)
 {
     const CommonOptions *common = &command->choices.common;
-    const char *case_path = common->path;
-    text_append(text, "jointplay report ");
-    shell_append_path(text, strcmp(case_path, INPUT_STDIN) == 0 ? "-" : case_path);
+    text_append(text, "jointplay report");
+    for (size_t i = 0; i < command->path_count; i++) {
+        const char *of = command->paths[i];
+        text_append(text, " ");
+        if (strcmp(of, "-") == 0) {
+            text_append(text, "-");
+        } else {
+            shell_append_path(text, of);
+        }
+    }
     for (size_t i = 0; i < common->override_count; i++) {
         text_append(text, " --set ");
         shell_append_word(text, common->overrides[i]);
     }
     text_append(text, "%s --out ", command->choices.is_uncertified ? " --uncertified" : "");
     shell_append_path(text, path);
+}
+
+// The path of the page: that of --out, or after the file that it is of.
+static void find_path(const ReportCommand *command, const char *of, char path[FILE_PATH_SIZE])
+{
+    if (command->out != NULL) {
+        snprintf(path, FILE_PATH_SIZE, "%s", command->out);
+    } else {
+        char name[SCENARIO_PATH_SIZE - 8];
+        file_stem(of, name, sizeof name);
+        snprintf(path, FILE_PATH_SIZE, "%s.html", name);
+    }
 }
 
 static bool write_page(const ReportCommand *command, const CaseRun *run, const char *path, Err *err)
@@ -74,13 +96,7 @@ static bool make_report(const ReportCommand *command, CaseRun *run, Err *err)
     if (!run_choices_load(&command->choices, common->path, run, err)) {
         return false;
     }
-    if (command->out != NULL) {
-        snprintf(path, sizeof path, "%s", command->out);
-    } else {
-        char name[SCENARIO_PATH_SIZE - 8];
-        file_stem(scenario_path(&run->scenario), name, sizeof name);
-        snprintf(path, sizeof path, "%s.html", name);
-    }
+    find_path(command, scenario_path(&run->scenario), path);
     // what cannot be written is reported before anything runs
     if (!file_claim("--out", FILE_PAGE, path, err)) {
         return false;
@@ -93,19 +109,73 @@ static bool make_report(const ReportCommand *command, CaseRun *run, Err *err)
     return write_page(command, run, path, err) && check_failures(run, err);
 }
 
-static bool report_case(void *target, Err *err)
+static bool report_case(const ReportCommand *command, Err *err)
 {
-    const ReportCommand *command = target;
     CaseRun run = {0};
     const bool is_done = make_report(command, &run, err);
     case_run_finish(&run);
     return is_done;
 }
 
+// Of what is there already: results, or the store of a study.
+static bool report_files(const ReportCommand *command, bool is_store, Err *err)
+{
+    char path[FILE_PATH_SIZE];
+    Text line;
+    Text html;
+    text_init(&line);
+    text_init(&html);
+    find_path(command, command->paths[0], path);
+    append_command(command, path, &line);
+    const ResultPage page = {command->path_count, command->paths, line.data};
+    const bool is_done =
+        (is_store ? study_page_write(command->paths[0], line.data, &html, err)
+                  : result_page_write(&page, &html, err)) &&
+        file_claim("--out", FILE_PAGE, path, err) &&
+        written_text(FILE_PAGE, path, html.data, command->choices.common.is_quiet, err);
+    text_finish(&html);
+    text_finish(&line);
+    return is_done;
+}
+
+// Whether options that a case is run with were given for what is over already. ERR_USAGE.
+static bool refuse_choices(const ReportCommand *command, const char *path, Err *err)
+{
+    return (command->choices.common.override_count == 0 && !command->choices.is_uncertified) ||
+           err_set(err, ERR_USAGE,
+                   "%s is what came of runs; --set, --step, --backend and --uncertified are for a "
+                   "case that is run",
+                   path);
+}
+
+static bool report_any(void *target, Err *err)
+{
+    ReportCommand *command = target;
+    const char *first = command->paths[0];
+    const bool is_store = study_page_is_store(first);
+    const bool is_result = !is_store && result_is_one(first);
+    if (is_store && command->path_count > 1) {
+        return err_set(err, ERR_USAGE,
+                       "report takes one store; 'jointplay study merge' makes one of several");
+    }
+    if (is_store || is_result) {
+        return refuse_choices(command, first, err) && report_files(command, is_store, err);
+    }
+    if (command->path_count > 1) {
+        return err_set(
+            err, ERR_USAGE,
+            "report takes one case, or results of compare, map, tune, check and paper; %s is "
+            "none of these results",
+            first);
+    }
+    command->choices.common.path = first;
+    return report_case(command, err);
+}
+
 static bool check_command(void *target, Err *err)
 {
     ReportCommand *command = target;
-    if (command->choices.common.path == NULL) {
+    if (command->path_count == 0) {
         return err_set(err, ERR_USAGE, "no case given: jointplay report CASE.yaml");
     }
     return run_choices_end(&command->choices, err);
@@ -113,12 +183,18 @@ static bool check_command(void *target, Err *err)
 
 static const Arguments REPORT_ARGUMENTS = {
     .program = "jointplay report",
-    .usage = "CASE",
-    .doc = "Runs a case on its backends and writes one HTML file that opens offline: the answer, "
-           "the mechanism moving, and plots."
-           "\vThe page needs no other file and asks nothing of any other place. Without script "
-           "it has the same answer, tables and a picture.",
-    .argument = COMMON_PATH("report takes one case"),
+    .usage = "CASE|STORE|RESULT.json...",
+    .doc = "Writes one HTML file that opens offline: of a case, which is run, the answer, the "
+           "mechanism moving, and plots; of the store of a study distributions, maps over two keys "
+           "and its bifurcation; of results of compare, map, tune, check and paper, written with "
+           "--json or --out, what they found."
+           "\vThe page needs no other file and asks nothing of any other place. Without script it "
+           "has the same answer, tables and pictures.",
+    .argument = {.type = OPTION_LIST,
+                 .offset = offsetof(ReportCommand, paths),
+                 .count_offset = offsetof(ReportCommand, path_count),
+                 .high = RESULT_MOST,
+                 .what = "files"},
     OPTION_ROWS(OPTIONS),
     .check = check_command,
 };
@@ -127,14 +203,14 @@ static bool run_report(int argc, char **argv, Err *err)
 {
     ReportCommand command = {0};
     run_choices_begin(&command.choices);
-    const bool is_done = arguments_run(&REPORT_ARGUMENTS, argc, argv, &command, report_case, err);
+    const bool is_done = arguments_run(&REPORT_ARGUMENTS, argc, argv, &command, report_any, err);
     run_choices_finish(&command.choices);
     return is_done;
 }
 
 const Command cmd_report = {
     .name = "report",
-    .summary = "runs a case and writes one HTML file: motion, plots, tables",
+    .summary = "one HTML file of a case, a study or results: motion, plots, tables",
     .run = run_report,
     .arguments = &REPORT_ARGUMENTS,
 };

@@ -60,3 +60,53 @@ void html_list(const char *sentences, Text *html)
     }
     text_append(html, "</ul>\n");
 }
+
+void html_table_begin(const char *caption, size_t count, const char *const *heads, Text *html)
+{
+    text_append(html, "<div class=\"wide\"><table class=\"numbers\">\n");
+    html_words("caption", caption, html);
+    text_append(html, "<thead><tr>");
+    for (size_t i = 0; i < count; i++) {
+        const bool is_words = heads[i][0] == '~';
+        html_words(is_words ? "th scope=\"col\" class=\"words\"" : "th scope=\"col\"",
+                   heads[i] + (is_words ? 1 : 0), html);
+    }
+    text_append(html, "</tr></thead>\n<tbody>\n");
+}
+
+void html_table_end(Text *html)
+{
+    text_append(html, "</tbody></table></div>\n");
+}
+
+double html_number_of(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
+const char *html_text_of(const json_t *object, const char *key)
+{
+    const char *text = json_string_value(json_object_get(object, key));
+    return text != NULL ? text : "";
+}
+
+bool html_flag_of(const json_t *object, const char *key)
+{
+    return json_is_true(json_object_get(object, key));
+}
+
+void html_cell_text_of(const json_t *object, const char *key, Text *html)
+{
+    html_words("td", html_text_of(object, key), html);
+}
+
+void html_cell_number_of(const json_t *object, const char *key, const char *format, Text *html)
+{
+    html_cell_number(format, html_number_of(object, key), html);
+}
+
+void html_cell_units_of(const json_t *object, const char *key, const char *unit, Text *html)
+{
+    html_cell_units(html_number_of(object, key), unit, html);
+}

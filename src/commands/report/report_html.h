@@ -3,6 +3,9 @@
 
 #include "base/text.h"
 
+#include <jansson.h>
+#include <stdbool.h>
+
 // An element with words in it; the tag may have attributes: "th scope=\"row\"".
 void html_words(const char *tag, const char *words, Text *html);
 
@@ -16,3 +19,18 @@ void html_cell_number(const char *format, double value, Text *html);
 
 // A list of sentences, one a line; blanks before them do not count. Nothing of none.
 void html_list(const char *sentences, Text *html);
+
+// Begins and ends a table of numbers, with a caption and a head of each column; one that begins
+// with a ~, which is not shown, heads words, whose cells are "td class=\"words\"".
+void html_table_begin(const char *caption, size_t count, const char *const *heads, Text *html);
+void html_table_end(Text *html);
+
+// Members of JSON that may lack or be of another kind: NaN, an empty text, false.
+double html_number_of(const json_t *object, const char *key);
+const char *html_text_of(const json_t *object, const char *key);
+bool html_flag_of(const json_t *object, const char *key);
+
+// A cell with a text or a number of JSON.
+void html_cell_text_of(const json_t *object, const char *key, Text *html);
+void html_cell_number_of(const json_t *object, const char *key, const char *format, Text *html);
+void html_cell_units_of(const json_t *object, const char *key, const char *unit, Text *html);

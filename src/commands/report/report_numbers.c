@@ -54,7 +54,33 @@ static void append_energy(const RunReport *report, Text *html)
 
 // How the motion repeats.
 
-static void append_repeats(const Trajectory *run, Text *words)
+// 1: how far a section may be from one of a settled motion, over the largest angular velocity, to
+// be that of the same motion: by what the error of a run moves it
+static const double SAME_MOTION = 1e-3;
+
+// How far the last section of a run is from the nearest of all settled motions, over the largest
+// angular velocity there.
+static double motion_distance(const Scenario *scenario, const Trajectory *run)
+{
+    const SettledStart *settled = &scenario->settled;
+    const size_t bodies = scenario->linkage.body_count;
+    double nearest = INFINITY;
+    for (size_t m = 0; m < settled->motion_count; m++) {
+        for (size_t k = 0; k < settled->motions[m].section_count; k++) {
+            const double *section = settled->motions[m].sections + k * bodies;
+            double apart = 0.0;
+            double largest = 0.0;
+            for (size_t i = 0; i < bodies; i++) {
+                apart = fmax(apart, fabs(section_omega(run, i, 0) - section[i]));
+                largest = fmax(largest, fabs(section[i]));
+            }
+            nearest = fmin(nearest, apart / largest);
+        }
+    }
+    return nearest;
+}
+
+static void append_repeats(const Scenario *scenario, const Trajectory *run, Text *words)
 {
     const Sections sections = section_find(run);
     if (!sections.is_period_known) {
@@ -68,8 +94,16 @@ static void append_repeats(const Trajectory *run, Text *words)
     } else {
         text_append(words, " repeats every %zu revolutions", sections.period);
     }
-    text_append(words, ": its sections differ by %.2g of the fastest point's speed.\n",
+    text_append(words, ": its sections differ by %.2g of the fastest point's speed.",
                 sections.change);
+    const double distance = motion_distance(scenario, run);
+    if (scenario->settled.motion_count > 0 && distance > SAME_MOTION) {
+        text_append(words,
+                    " None of the %zu starts of the reference came to this motion: the nearest "
+                    "differs by %.2g of the largest angular velocity.",
+                    scenario->settled.starts, distance);
+    }
+    text_append(words, "\n");
 }
 
 // What becomes of small changes, in a sentence.
@@ -88,9 +122,7 @@ static void append_growth(const Scenario *scenario, Text *words)
         text_append(words,
                     "A small change of the state becomes %.3g times itself in a revolution: "
                     "%s.\n",
-                    growth->factor,
-                    growth->factor < 1.0 ? "it dies out"
-                                         : "it grows, and the motion cannot be predicted for long");
+                    growth->factor, growth->factor < 1.0 ? "it dies out" : "it grows");
     }
 }
 
@@ -181,7 +213,7 @@ static void append_repeating(const RunReport *report, Text *html)
     Text words;
     text_init(&words);
     for (size_t i = 0; i < report->run_count; i++) {
-        append_repeats(report->runs[i], &words);
+        append_repeats(report->scenario, report->runs[i], &words);
     }
     append_growth(report->scenario, &words);
     text_append(html, "<section id=\"repeating\">\n<h2>How the motion repeats</h2>\n");

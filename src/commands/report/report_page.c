@@ -1,11 +1,10 @@
-// Writes the page of a report: what is said in words and tables, and around it the one style sheet
-// and the one script.
+// Writes the page of a run: what is said of it in words and tables.
 #include "commands/report/report_page.h"
 #include "commands/report/report_data.h"
 #include "commands/report/report_html.h"
 #include "commands/report/report_numbers.h"
-#include "commands/report/report_pack.h"
-#include "commands/report/report_sha256.h"
+#include "commands/report/report_shell.h"
+#include "commands/report/report_svg.h"
 #include "commands/run/run_overview.h"
 #include "write/assumed.h"
 #include "write/json_value.h"
@@ -15,17 +14,6 @@
 
 #include <stdio.h>
 #include <string.h>
-
-// The files that the script is made of, and the style sheet; see meson.build.
-// clang-format off
-#define REPORT_SCRIPT_LIST(member) \
-    member(data) member(signals) member(plot) member(round) member(xy) member(turns) \
-    member(mechanism) member(space) member(page)
-// clang-format on
-#define REPORT_DECLARE(name)                                                                       \
-    extern const char embedded_report_##name[], embedded_report_##name##_end[];
-REPORT_SCRIPT_LIST(REPORT_DECLARE)
-REPORT_DECLARE(style)
 
 // The answer.
 
@@ -193,61 +181,6 @@ static void append_tables(const RunReport *report, Text *html)
 
 // The picture, for readers without script.
 
-// What a class of the picture's style sheet stands for, as attributes: they need no style sheet.
-typedef struct ClassAttributes {
-    const char *name;
-    const char *attributes;
-} ClassAttributes;
-
-static const ClassAttributes CLASSES[] = {
-    {"title", "font-size=\"17\" font-weight=\"bold\""},
-    {"panel", "font-size=\"14\" font-weight=\"bold\""},
-    {"note", "fill=\"#555\""},
-    {"grid", "stroke=\"#e4e4e4\""},
-    {"zero", "stroke=\"#b0b0b0\""},
-    {"frame", "stroke=\"#444\" fill=\"none\""},
-    {"line", "fill=\"none\" stroke-linejoin=\"round\""},
-};
-
-static void append_class(const char *name, size_t length, Text *html)
-{
-    for (size_t i = 0; i < sizeof CLASSES / sizeof *CLASSES; i++) {
-        if (strlen(CLASSES[i].name) == length && strncmp(CLASSES[i].name, name, length) == 0) {
-            text_append(html, "%s", CLASSES[i].attributes);
-        }
-    }
-}
-
-// Appends SVG of the program with attributes where it has classes. A quote in a text of a user's is
-// escaped there, so that none looks like a class.
-static void append_svg(const char *svg, Text *html)
-{
-    // in HTML SVG needs no name of its own kind
-    static const char OPENING[] = "<svg xmlns=\"http://www.w3.org/2000/svg\" ";
-    static const char STYLE[] = "<style>";
-    static const char STYLE_END[] = "</style>";
-    static const char CLASS[] = "class=\"";
-    text_append(html,
-                "<svg role=\"img\" aria-label=\"Motion of the bodies and forces in the joints\" "
-                "font-family=\"Arial, sans-serif\" font-size=\"12\" ");
-    const char *at = svg + strlen(OPENING);
-    while (*at != '\0') {
-        const size_t plain = strcspn(at, "<c");
-        text_append_bytes(html, at, plain);
-        at += plain;
-        if (strncmp(at, STYLE, strlen(STYLE)) == 0) {
-            at = strstr(at, STYLE_END) + strlen(STYLE_END);
-        } else if (strncmp(at, CLASS, strlen(CLASS)) == 0) {
-            at += strlen(CLASS);
-            const size_t length = strcspn(at, "\"");
-            append_class(at, length, html);
-            at += length + 1;
-        } else if (*at != '\0') {
-            text_append_bytes(html, at++, 1);
-        }
-    }
-}
-
 static void append_picture(const RunReport *report, Text *html)
 {
     Text svg;
@@ -255,70 +188,28 @@ static void append_picture(const RunReport *report, Text *html)
     plot_run_write(report, &svg);
     text_append(html, "<section id=\"picture\">\n<h2>Motion and forces</h2>\n<p>With script this "
                       "page shows the mechanism moving, and plots that can be zoomed.</p>\n");
-    append_svg(svg.data, html);
+    svg_embed(svg.data, "Motion of the bodies and forces in the joints", html);
     text_append(html, "</section>\n");
     text_finish(&svg);
-}
-
-// The page around all of it.
-
-static void append_hash(const Text *content, Text *html)
-{
-    unsigned char digest[SHA256_SIZE];
-    report_sha256(content->data, content->length, digest);
-    text_append(html, "'sha256-");
-    pack_base64(digest, sizeof digest, html);
-    text_append(html, "'");
-}
-
-static void append_head(const char *title, const Text *style, const Text *script, Text *html)
-{
-    text_append(html, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                      "<meta name=\"generator\" content=\"jointplay report\">\n"
-                      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-                      "base-uri 'none'; form-action 'none'; img-src data:; script-src ");
-    append_hash(script, html);
-    text_append(html, "; style-src ");
-    append_hash(style, html);
-    text_append(html, "\">\n<meta name=\"viewport\" content=\"width=device-width, "
-                      "initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n"
-                      "<meta name=\"referrer\" content=\"no-referrer\">\n");
-    html_words("title", title, html);
-    text_append(html, "<style>%s</style>\n</head>\n", style->data);
-}
-
-static void append_embedded(const char *from, const char *end, Text *text)
-{
-    text_append_bytes(text, from, (size_t)(end - from));
 }
 
 void report_page_write(const ReportPage *page, Text *html)
 {
     const RunReport *report = page->report;
+    const char *path = scenario_path(report->scenario);
     const char *title = report->scenario->title;
-    const char *shown = title[0] != '\0' ? title : scenario_path(report->scenario);
-    Text style;
-    Text script;
-    text_init(&style);
-    text_init(&script);
-    append_embedded(embedded_report_style, embedded_report_style_end, &style);
-#define REPORT_APPEND(name)                                                                        \
-    append_embedded(embedded_report_##name, embedded_report_##name##_end, &script);
-    REPORT_SCRIPT_LIST(REPORT_APPEND)
-    append_head(shown, &style, &script, html);
-    text_append(html, "<body>\n<header>\n");
-    html_words("h1", shown, html);
-    html_words("p class=\"note\"", scenario_path(report->scenario), html);
-    text_append(html, "</header>\n<main>\n");
+    Shell shell = shell_create(SHELL_RUN, title[0] != '\0' ? title : path, path);
+    Text data;
+    text_init(&data);
+    report_data_write(report, page->command, &data);
+    shell_begin(&shell, html);
     append_answer(report, html);
     text_append(html, "<div id=\"live\" hidden></div>\n");
     append_picture(report, html);
     report_numbers_write(report, html);
     append_making(page, html);
     append_tables(report, html);
-    text_append(html, "</main>\n<template id=\"data\">\n");
-    report_data_write(report, page->command, html);
-    text_append(html, "</template>\n<script>%s</script>\n</body>\n</html>\n", script.data);
-    text_finish(&script);
-    text_finish(&style);
+    shell_end(&shell, data.data, html);
+    text_finish(&data);
+    shell_finish(&shell);
 }

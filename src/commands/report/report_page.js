@@ -726,15 +726,28 @@ class Page {
         return [section];
     }
 
+    // The torque of each drive: the crank's, and those beside it.
     makeDrive() {
-        const figures = this.addPlot(
-            new TimePlot(
-                this,
-                "Torque of the drive, N m",
-                this.lines("run", 0, "drive_torque_N_m", 1),
-                { isSpiky: true },
-            ),
-        );
+        const figures = [];
+        const named = (number) =>
+            this.data.runs
+                .flatMap((run) => run.signals)
+                .find((one) => one.what === "drive_torque_N_m" && one.number === number);
+        for (let number = 0; named(number) !== undefined; number++) {
+            const joint = named(number).name.replace(/_?drive_torque_N_m$/, "");
+            figures.push(
+                ...this.addPlot(
+                    new TimePlot(
+                        this,
+                        joint === ""
+                            ? "Torque of the drive, N m"
+                            : `Torque of the drive at ${joint}, N m`,
+                        this.lines("run", number, "drive_torque_N_m", 1),
+                        { isSpiky: true },
+                    ),
+                ),
+            );
+        }
         return figures.length > 0
             ? [this.section("Drive", element("div", { className: "plots" }, ...figures))]
             : [];

@@ -81,7 +81,7 @@ static double force_at(const void *context, size_t sample)
 static double torque_at(const void *context, size_t sample)
 {
     const Signal *signal = context;
-    return drive_torque_at(signal->scenario, signal->run, 0, sample);
+    return drive_torque_at(signal->scenario, signal->run, signal->number, sample);
 }
 
 // Sections.

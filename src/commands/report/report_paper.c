@@ -1,0 +1,205 @@
+// Writes the paper's figures from its tables, recomputed: each beside what the paper says of it and
+// what physics gives instead.
+#include "commands/report/report_draw.h"
+#include "commands/report/report_html.h"
+#include "commands/report/report_result.h"
+#include "write/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// One of Figures 2 to 4, which show Tables I to III over the speed of the crank.
+typedef struct Figure {
+    const char *title;
+    const char *y_title;
+    const char *says;    // the paper of it
+    const char *physics; // key of what physics gives instead; NULL: there is nothing to compare
+    double scale;        // from SI to the unit of the table
+} Figure;
+
+static const Figure FIGURES[] = {
+    {"Figure 2: crank speed and tangential force", "force, N",
+     "Table I shows the estimated maximum tangential force for different input speeds.", "force_N",
+     1.0},
+    {"Figure 3: crank speed and penalty parameter", "penalty parameter, N",
+     "The penalty parameter is varying linearly with the speed of the drive link.", NULL, 1.0},
+    {"Figure 4: crank speed and mutual approach", "approach, um",
+     "A polynomial trend of the mutual approach is observed.", "johnson_approach_m", UNITS_UM},
+};
+enum { FIGURE_COUNT = sizeof FIGURES / sizeof *FIGURES };
+
+static const char *const PINS[] = {"crank-coupler", "coupler-follower"};
+
+static void add_cells(Drawing *drawing, const json_t *rows, const char *pin, const char *key,
+                      double scale, DrawLine *line)
+{
+    size_t i;
+    json_t *row;
+    json_array_foreach(rows, i, row)
+    {
+        if (strcmp(html_text_of(row, "pin"), pin) == 0) {
+            draw_point(drawing, line, html_number_of(row, "rpm"), scale * html_number_of(row, key));
+        }
+    }
+}
+
+// d ln y / d ln x from the first point of a line to its last.
+static double power_of(const DrawLine *line)
+{
+    const DrawPoint *points = line->points;
+    return line->count < 2 ? NAN
+                           : log(points[line->count - 1].y / points[0].y) /
+                                 log(points[line->count - 1].x / points[0].x);
+}
+
+static void figure_lines(const Figure *figure, const json_t *table, const json_t *physics,
+                         Drawing *drawing, Text *words)
+{
+    for (size_t i = 0; i < 2; i++) {
+        static const char *const NAMES[] = {"crank-coupler, printed", "coupler-follower, printed"};
+        static const char *const AGAIN[] = {"crank-coupler, recomputed",
+                                            "coupler-follower, recomputed"};
+        static const char *const REAL[] = {"crank-coupler, what physics gives",
+                                           "coupler-follower, what physics gives"};
+        DrawLine *line = draw_add(drawing, NAMES[i], plot_style(1, i));
+        line->is_dots = true;
+        add_cells(drawing, json_object_get(table, "cells"), PINS[i], "printed", 1.0, line);
+        line = draw_add(drawing, AGAIN[i], plot_style(1, i));
+        line->is_bare = true;
+        add_cells(drawing, json_object_get(table, "cells"), PINS[i], "value", 1.0, line);
+        text_append(words, "%s goes with the power %.3g of the speed.\n", PINS[i], power_of(line));
+        if (figure->physics != NULL) {
+            line = draw_add(drawing, REAL[i], plot_style(2, i));
+            line->is_bare = true;
+            add_cells(drawing, json_object_get(physics, "pins"), PINS[i], figure->physics,
+                      figure->scale, line);
+        }
+    }
+}
+
+static void append_figure(const Figure *figure, const json_t *table, const json_t *physics,
+                          Text *html)
+{
+    Drawing drawing = {.title = figure->title,
+                       .x_title = "speed of the crank, rpm",
+                       .y_title = figure->y_title,
+                       .is_x_log = true,
+                       .is_y_log = true,
+                       .level = NAN};
+    Text words;
+    text_init(&words);
+    figure_lines(figure, table, physics, &drawing, &words);
+    text_append(&words, "%.0f of %.0f cells of %s come out as printed.\n",
+                html_number_of(table, "cells_as_printed"), html_number_of(table, "cell_count"),
+                html_text_of(table, "name"));
+    text_append(html, "<section>\n");
+    html_words("h2", figure->title, html);
+    text_append(html, "<p>The paper says: <i>%s</i> Here:</p>\n", figure->says);
+    html_list(words.data, html);
+    draw_end(&drawing, html);
+    text_append(html, "</section>\n");
+    text_finish(&words);
+}
+
+// The extremes of Figures 5 to 8, which are Tables VII and VIII.
+
+static void extreme_row(const json_t *row, const char *which, const char *key, Text *html)
+{
+    static const char *const KEYS[] = {"coupler_omega_max_rad_s",   "coupler_omega_min_rad_s",
+                                       "follower_omega_max_rad_s",  "follower_omega_min_rad_s",
+                                       "coupler_alpha_max_rad_s2",  "coupler_alpha_min_rad_s2",
+                                       "follower_alpha_max_rad_s2", "follower_alpha_min_rad_s2"};
+    text_append(html, "<tr>");
+    html_words("th scope=\"row\"", html_text_of(row, "row"), html);
+    html_words("td", which, html);
+    for (size_t i = 0; i < sizeof KEYS / sizeof *KEYS; i++) {
+        html_cell_number_of(json_object_get(row, key), KEYS[i], "%.6g", html);
+    }
+    text_append(html, "</tr>\n");
+}
+
+static void append_extremes(const json_t *result, Text *html)
+{
+    static const char *const HEADS[] = {"case",
+                                        "which",
+                                        "coupler omega max",
+                                        "min",
+                                        "follower omega max",
+                                        "min",
+                                        "coupler alpha max",
+                                        "min",
+                                        "follower alpha max",
+                                        "min"};
+    text_append(html,
+                "<section>\n<h2>Figures 5 to 8: velocity and acceleration over the crank's angle"
+                "</h2>\n<p>Figure 5 (without play), 6 (restitution model) and 7 (impact model) "
+                "show the angular velocity of coupler and follower, 8 their acceleration. The "
+                "paper says: <i>the variation of angular velocity is due to the change in the link "
+                "dimensions</i> (5), <i>an increase is observed at the initial stage of motion, "
+                "and small spikes between 120 and 130 and 290 and 300 deg</i> (6). The curves on "
+                "these axes, with those bands, stand in the pages of <code>jointplay report "
+                "cases/paper/ideal-stackup.yaml</code>, <code>stackup-poisson.yaml</code> and "
+                "<code>stackup-impact.yaml</code>; their extremes are these:</p>\n");
+    html_table_begin("Tables VII and VIII, rad/s and rad/s^2", 10, HEADS, html);
+    size_t i;
+    json_t *row;
+    json_array_foreach(json_object_get(result, "extremes"), i, row)
+    {
+        extreme_row(row, "printed", "printed", html);
+        extreme_row(row, "recomputed", "recomputed", html);
+    }
+    html_table_end(html);
+    text_append(html, "</section>\n");
+}
+
+static void append_answer(const json_t *result, Text *html)
+{
+    const json_t *physics = json_object_get(result, "physics");
+    Text words;
+    text_init(&words);
+    text_append(&words, "%.0f of %.0f cells of Tables I to III come out as they are printed.\n",
+                html_number_of(result, "cells_as_printed"), html_number_of(result, "cell_count"));
+    text_append(&words, "At 1000 rpm the pin bears ");
+    units_append(&words, html_number_of(physics, "real_force_N"), "N");
+    text_append(&words, ", and not the ");
+    units_append(&words, html_number_of(physics, "paper_force_N"), "N");
+    text_append(&words, " of Table I.\n");
+    text_append(html, "<section>\n<h2>The answer</h2>\n");
+    html_list(words.data, html);
+    text_append(html, "</section>\n");
+    text_finish(&words);
+}
+
+static void append_typos(const json_t *result, Text *html)
+{
+    static const char *const HEADS[] = {"where", "~printed", "~read as", "~because"};
+    text_append(html, "<section>\n<h2>How it was read</h2>\n");
+    html_table_begin("Places of the paper that need a reading", 4, HEADS, html);
+    size_t i;
+    json_t *typo;
+    json_array_foreach(json_object_get(result, "typos"), i, typo)
+    {
+        text_append(html, "<tr>");
+        html_words("th scope=\"row\"", html_text_of(typo, "where"), html);
+        html_words("td class=\"words\"", html_text_of(typo, "printed"), html);
+        html_words("td class=\"words\"", html_text_of(typo, "reading"), html);
+        html_words("td class=\"words\"", html_text_of(typo, "evidence"), html);
+        text_append(html, "</tr>\n");
+    }
+    html_table_end(html);
+    text_append(html, "</section>\n");
+}
+
+static void report_paper_write(const json_t *result, Text *html)
+{
+    append_answer(result, html);
+    for (size_t i = 0; i < FIGURE_COUNT; i++) {
+        append_figure(&FIGURES[i], json_array_get(json_object_get(result, "tables"), i),
+                      json_object_get(result, "physics"), html);
+    }
+    append_extremes(result, html);
+    append_typos(result, html);
+}
+
+const ResultKind REPORT_PAPER = {.command = "paper", .key = "typos", .write = report_paper_write};

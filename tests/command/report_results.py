@@ -1,0 +1,258 @@
+# Do pages of 'jointplay report' of a comparison, a map, a tune, a check and a study show the numbers
+# of what they are made of, as text whatever that holds, without asking another place?
+# Usage: report_results.py PROGRAM CASE. Prints TAP.
+import csv, html, io, json, os, re, subprocess, sys
+
+from report_reading import Page, check_claims, check_policy, check_requests, unpack
+
+program, case = sys.argv[1:3]
+HOSTILE = "</script></title><img src=x onerror=\"document.title='x'\">&lt;b&gt; \u9023 'q'"
+SETS = ["--set", "run.revolutions=0.1", "--set", "run.start=centred"]
+STUDY = """case: ball.yaml
+vary:
+  drive.speed: {from: 63.5 rad/s, to: 65.5 rad/s, count: 9}
+  contact.restitution: [0.45, 0.5]
+"""
+# a ball on a plate that an eccentric moves, see tests/physics/test_ball_on_a_plate.c
+BALL = """title: Ball on a plate
+bodies:
+  eccentric: {mass: 1 kg, inertia: 1000 kg mm^2, at: [0 mm, 0 mm]}
+  ball: {mass: 0.1 kg, inertia: 10 kg mm^2, at: [0 mm, 12.6 mm], velocity: [0 m/s, 0.49 m/s]}
+joints:
+  pivot: {between: [ground, eccentric], at: [0 mm, 0 mm]}
+  guide: {between: [ground, ball], at: [0 mm, 12.6 mm], along: 90 deg}
+  plate: {between: [ball, eccentric], at-a: [0 mm, 12.6 mm], at-b: [2.6 mm, 2.5 mm],
+          normal: -90 deg, radius: 10 mm}
+drive: {joint: pivot, speed: 62.8 rad/s}
+contact: {stiffness: 1e8 N/m, damping: exact, restitution: 0.5}
+run: {revolutions: 8, samples: 60, start: settled, settle-starts: 1, backends: [reference]}
+"""
+
+
+def run(*words, folder=None):
+    done = subprocess.run([program, *words], capture_output=True, text=True, cwd=folder)
+    return done.returncode, done.stdout, done.stderr
+
+
+MADE = {}
+
+
+def result(work, name):
+    """The path of a result, and what it holds; made once."""
+    commands = {
+        "compare": ["compare", case, *SETS, "--schemes", "direct/plain", "--steps", "20 us, 10 us"],
+        "map": ["map", case, "--steps", "20 us, 5 us", *SETS],
+        "tune": ["tune", case, "--error", "0.3", *SETS, "--schemes", "direct/staggered"],
+        "check": ["check", case, "--quick", "--baselines",
+                  os.path.join(os.path.dirname(case), "../../results/baseline")],
+        "paper": ["paper"],
+    }
+    if name not in MADE:
+        quiet = [] if name == "paper" else ["--quiet"]
+        status, output, errors = run(*commands[name], "--json", *quiet)
+        assert status in (0, 1), errors
+        path = f"{work}/{name}.json"
+        open(path, "w").write(output)
+        MADE[name] = path, json.loads(output)
+    return MADE[name]
+
+
+def make(path, *of):
+    status, _, errors = run("report", *of, "--quiet", "--out", path)
+    assert status == 0, errors
+    return open(path, encoding="utf-8").read()
+
+
+def store(work):
+    path = work + "/ball.sqlite"
+    if not os.path.exists(path):
+        open(work + "/ball.yaml", "w").write(BALL)
+        open(work + "/study.yaml", "w").write(STUDY)
+        status, _, errors = run("study", "study.yaml", "--store", path, "--quiet", folder=work)
+        assert status == 0, errors
+    return path
+
+
+KINDS = ["compare", "map", "tune", "check", "paper"]
+
+
+def pages(work):
+    for name in KINDS:
+        yield name, make(f"{work}/{name}.html", result(work, name)[0])
+    yield "study", make(work + "/study.html", store(work))
+    paths = [result(work, name)[0] for name in KINDS]
+    yield "all", make(work + "/all.html", *paths)
+
+
+# The claims.
+
+
+def policies_and_requests_are_those_of_a_run(work):
+    for name, text in pages(work):
+        check_policy(Page(text))
+        check_requests(text)
+
+
+def pictures_need_no_style_sheet(work):
+    for name, text in pages(work):
+        pictures = re.findall(r"<svg.*?</svg>", text, re.DOTALL)
+        assert pictures, name
+        for picture in pictures:
+            assert "<style" not in picture and "class=" not in picture, name
+
+
+def answers_are_those_of_the_results(work):
+    cells = lambda name: Page(make(f"{work}/{name}.html", result(work, name)[0])).texts["td"]
+    compare = result(work, "compare")[1]
+    for row in compare["cheapest"]:
+        if row["scheme"]:
+            assert row["scheme"] in cells("compare")
+            assert f"{row['error_max']:.2e}" in cells("compare")
+    contact = result(work, "map")[1]["contacts"][0]
+    for row in contact["rows"]:
+        if row["erp"] is not None:
+            assert f"{row['erp']:.4g}" in cells("map"), row
+            mean = row["delivered"]["restitution"]["mean"]
+            assert f"{mean:.3g}" in cells("map"), row
+    tune = result(work, "tune")[1]
+    words = Page(make(work + "/t.html", result(work, "tune")[0])).text("li")
+    assert f"{tune['cheapest']['scheme']}, step" in words, words
+    assert f"error {tune['cheapest']['error_max']:.3g}" in words, words
+    check = result(work, "check")[1]
+    assert str(check["cases"][0]["within"]) in cells("check")
+    names = Page(make(work + "/c.html", result(work, "check")[0])).texts["th"]
+    for metric in check["cases"][0]["metrics"]:
+        assert metric["metric"] in names, metric
+
+
+def figures_of_the_paper_go_with_the_powers_that_its_text_has(work):
+    page = Page(make(work + "/paper.html", result(work, "paper")[0]))
+    # F = k n^2; P = 949 sqrt(F); an approach of F^(2/3)
+    words = page.text("li")
+    for power in ["2", "1", "1.33"]:
+        assert f"crank-coupler goes with the power {power} of the speed" in words, words
+    assert "90 of 90 cells of Tables I to III come out as they are printed" in words
+    assert "-78.6973" in page.texts["td"] or "78.6973" in page.texts["td"], page.texts["td"]
+
+
+def a_number_that_left_its_band_stands_first(work):
+    path, check = result(work, "check")
+    check = json.loads(json.dumps(check))
+    moved = check["cases"][0]["metrics"][7]
+    moved.update(verdict="out", bands_off=40.0)
+    open(work + "/out.json", "w").write(json.dumps(check))
+    text = make(work + "/out.html", work + "/out.json")
+    table = text[text.index("<caption>Numbers") :]
+    first = html.unescape(re.search(r'<th scope="row">(.*?)</th>', table).group(1))
+    assert first == moved["metric"], first
+    assert "<details open>" in text
+    # the control: in the page of the check as it is nothing is out
+    assert "<details open>" not in make(work + "/in.html", path)
+
+
+def what_is_saved_is_what_was_given(work):
+    for name in KINDS:
+        text = make(f"{work}/{name}.html", result(work, name)[0])
+        assert unpack(Page(text))["results"] == result(work, name)[1], name
+
+
+def texts_of_a_result_are_shown_as_text(work):
+    def spoil(value):
+        if isinstance(value, dict):
+            return {key: spoil(one) for key, one in value.items()}
+        if isinstance(value, list):
+            return [spoil(one) for one in value]
+        # words that say what to do stay
+        kept = ("ok", "failed", "within", "out", "reference")
+        return HOSTILE + value if isinstance(value, str) and value not in kept else value
+
+    for name in KINDS:
+        spoiled = spoil(result(work, name)[1])
+        open(f"{work}/bad-{name}.json", "w").write(json.dumps(spoiled))
+        text = make(f"{work}/bad-{name}.html", f"{work}/bad-{name}.json")
+        page = Page(text)
+        assert "img" not in page.tags and page.tags.count("script") == 1, name
+        check_policy(page)
+        assert "onerror" in page.text("td") + page.text("th") + page.text("h1"), name
+
+
+def members_that_lack_or_are_of_another_kind_do_no_harm(work):
+    for name in KINDS:
+        whole = result(work, name)[1]
+        for key in whole:
+            for other in [None, 7, "words", [], {}, [None, 3, "x", [], {}]]:
+                changed = dict(whole)
+                changed[key] = other
+                if key in ("tool", "tables"):
+                    continue
+                open(work + "/odd.json", "w").write(json.dumps(changed))
+                status, _, errors = run(
+                    "report", work + "/odd.json", "--quiet", "--out", work + "/odd.html")
+                assert status in (0, 2), (name, key, other, errors)
+
+
+def quantiles_of_a_study_are_those_of_its_rows(work):
+    path = store(work)
+    page = Page(make(work + "/study.html", path))
+    status, output, _ = run("study", "export", path, "--csv", "-")
+    assert status == 0
+    rows = list(csv.DictReader(io.StringIO(output)))
+    values = sorted(float(row["plate_force_max_N"]) for row in rows)
+    assert len(values) == 18
+    # each is a value that occurs: that at rank ceil(share * count)
+    for at in [values[0], values[0], values[8], values[17], values[17]]:
+        assert f"{at:.4g}" in page.texts["td"], at
+    text = open(work + "/study.html", encoding="utf-8").read()
+    map_part = text[text.index("plate_force_max_N: median over both keys") :]
+    for row in rows:
+        cell = f"{float(row['plate_force_max_N']):.4g} at {float(row['drive_speed_rad_s']):.4g}"
+        assert cell in map_part, cell
+    # where the period has doubled there are two values of the section
+    doubled = [row for row in rows if row["section_period"] == "2"]
+    single = [row for row in rows if row["section_period"] == "1"]
+    assert doubled and single
+    bifurcation = text[text.index("<h2>Bifurcation") : text.index("<h2>All results")]
+    assert bifurcation.count("<circle") == sum(
+        row[f"ball_section_{k}_m_s"] != "" for row in rows for k in range(1, 7))
+
+
+def what_is_no_result_is_refused(work):
+    status, output, _ = run("run", case, *SETS, "--backend", "reference", "--json", "--quiet")
+    open(work + "/run.json", "w").write(output)
+    for content, expected, words in [
+        (output, 2, "jointplay report CASE makes the page of a run"),
+        ('{"tool": {}, "other": 1}', 2, "is no result of jointplay compare, map, tune, check or paper"),
+        ('{"tool": {', 5, "this is no JSON"),
+    ]:
+        open(work + "/no.json", "w").write(content)
+        status, _, errors = run("report", work + "/no.json", "--quiet", "--out", work + "/no.html")
+        assert status == expected and words in errors, (status, errors)
+        assert not os.path.exists(work + "/no.html")
+    compare = result(work, "compare")[0]
+    for words, expected in [
+        ([compare, "--set", "title=x"], "are for a case that is run"),
+        ([store(work), compare], "report takes one store"),
+        ([case, compare], "report takes one case, or results"),
+    ]:
+        status, _, errors = run("report", *words, "--quiet", "--out", work + "/no.html")
+        assert status == 2 and expected in errors, errors
+    # a store that was cut short
+    whole = open(store(work), "rb").read()
+    open(work + "/cut.sqlite", "wb").write(whole[: len(whole) // 2])
+    status, _, errors = run("report", work + "/cut.sqlite", "--quiet", "--out", work + "/no.html")
+    assert status == 5, (status, errors)
+    assert not os.path.exists(work + "/no.html")
+
+
+check_claims([
+    policies_and_requests_are_those_of_a_run,
+    pictures_need_no_style_sheet,
+    answers_are_those_of_the_results,
+    figures_of_the_paper_go_with_the_powers_that_its_text_has,
+    a_number_that_left_its_band_stands_first,
+    what_is_saved_is_what_was_given,
+    texts_of_a_result_are_shown_as_text,
+    members_that_lack_or_are_of_another_kind_do_no_harm,
+    quantiles_of_a_study_are_those_of_its_rows,
+    what_is_no_result_is_refused,
+])
