@@ -92,6 +92,7 @@ static bool choose_results(Store *store, Choice *choice, Err *err)
         const char *ending;
         double least;
     } WANTED[] = {{"_force_max_N", 0.0},
+                  {"settled_growth", 0.0},
                   {"alpha_peak_rad_s2", 1e-6},
                   {"error_max", 0.0},
                   {"_penetration_max_m", 0.0},
