@@ -222,6 +222,16 @@ def quantiles_of_a_study_are_those_of_its_rows(work):
         row[f"ball_section_{k}_m_s"] != "" for row in rows for k in range(1, 7))
 
 
+def a_case_may_come_from_a_pipe(work):
+    # nothing of it is read before the case is
+    text = open(case).read()
+    words = [program, "report", "/dev/stdin", *SETS, "--backend", "analytic", "--quiet", "--out"]
+    done = subprocess.run([*words, work + "/pipe.html"], input=text, text=True, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    done = subprocess.run([*words, work + "/pipe.html"], input="{}", text=True, capture_output=True)
+    assert done.returncode == 3, done.stderr
+
+
 def what_is_no_result_is_refused(work):
     status, output, _ = run("run", case, *SETS, "--backend", "reference", "--json", "--quiet")
     open(work + "/run.json", "w").write(output)
@@ -260,5 +270,6 @@ check_claims([
     texts_of_a_result_are_shown_as_text,
     members_that_lack_or_are_of_another_kind_do_no_harm,
     quantiles_of_a_study_are_those_of_its_rows,
+    a_case_may_come_from_a_pipe,
     what_is_no_result_is_refused,
 ])
