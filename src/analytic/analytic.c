@@ -70,7 +70,7 @@ static bool evaluate(const Analytic *analytic, double from_s, double time_s, Sam
                        closed_form_name(analytic->scenario));
     }
     Reactions reactions;
-    if (!inverse_dynamics_solve(linkage, sample->bodies, analytic->scenario->gravity,
+    if (!inverse_dynamics_solve(linkage, sample->bodies, scenario_gravity(analytic->scenario),
                                 (InverseTime){time_s, from_s}, &reactions, err)) {
         return false;
     }

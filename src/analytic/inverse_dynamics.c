@@ -26,7 +26,7 @@ static void set_reaction(const Linkage *linkage, const Motion *motions, int join
     reactions->moment_on_b[joint] = is_guided ? lambda[1] : 0.0;
 }
 
-bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
+bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, Vec2 gravity,
                             InverseTime time, Reactions *reactions, Err *err)
 {
     if (!kinematics_is_small(linkage)) {
@@ -58,8 +58,8 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
     loads_add(linkage, motions, time.time_s, time.from_s, loads);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Body *body = &linkage->bodies[i];
-        right[3 * i] = body->mass * motions[i].acceleration.x - loads[i].force.x;
-        right[3 * i + 1] = body->mass * (motions[i].acceleration.y + gravity) - loads[i].force.y;
+        right[3 * i] = body->mass * (motions[i].acceleration.x - gravity.x) - loads[i].force.x;
+        right[3 * i + 1] = body->mass * (motions[i].acceleration.y - gravity.y) - loads[i].force.y;
         right[3 * i + 2] = body->inertia * motions[i].alpha - loads[i].moment;
     }
     if (!dense_solve(n, transposed, right)) {
@@ -81,7 +81,7 @@ bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, doubl
     return true;
 }
 
-double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity,
+double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, Vec2 gravity,
                               InverseTime time)
 {
     BodyLoad loads[KINEMATICS_BODY_MAX] = {0};
@@ -92,8 +92,9 @@ double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, dou
         const Body *body = &linkage->bodies[i];
         const Motion *motion = &motions[i];
         power += body->mass * vec2_dot(motion->velocity, motion->acceleration) +
-                 body->inertia * motion->omega * motion->alpha +
-                 body->mass * gravity * motion->velocity.y - forces_load_power(&loads[i], motion);
+                 body->inertia * motion->omega * motion->alpha -
+                 vec2_dot(vec2_scale(body->mass, gravity), motion->velocity) -
+                 forces_load_power(&loads[i], motion);
     }
     return power;
 }

@@ -18,14 +18,14 @@ typedef struct InverseTime {
 } InverseTime;
 
 // Solves the Newton-Euler equations of every body for the reactions. The motions hold position,
-// velocity and acceleration; every joint counts as ideal; gravity acts along -y, m/s^2, beside
-// the linkage's springs, dampers and loads.
+// velocity and acceleration; every joint counts as ideal; gravity acts, m/s^2, beside the
+// linkage's springs, dampers and loads.
 // Fails with ERR_SOLVER where the reactions are not determined, or the mechanism is not small
 // (model/kinematics.h).
-bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, double gravity,
+bool inverse_dynamics_solve(const Linkage *linkage, const Motion *motions, Vec2 gravity,
                             InverseTime time, Reactions *reactions, Err *err);
 
 // Rate of change of the kinetic and potential energy of all bodies less the power of springs,
 // dampers and loads, W. In a linkage with ideal joints it equals drive torque times crank speed.
-double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, double gravity,
+double inverse_dynamics_power(const Linkage *linkage, const Motion *motions, Vec2 gravity,
                               InverseTime time);

@@ -69,7 +69,7 @@ static bool evaluate(const Curve *curve, double crank, Motion motions[CLOSED_FOR
         return err_set(curve->err, ERR_SOLVER, "the %s does not close at a crank angle of %.6g deg",
                        closed_form_name(curve->scenario), crank * 180.0 / M_PI);
     }
-    return inverse_dynamics_solve(linkage, motions, curve->scenario->gravity,
+    return inverse_dynamics_solve(linkage, motions, scenario_gravity(curve->scenario),
                                   time_of(linkage, crank), reactions, curve->err);
 }
 
@@ -164,8 +164,9 @@ static double power_residual(const Scenario *scenario, Err *err)
             return NAN;
         }
         const double drive = reactions.drive_torques[0] * scenario->linkage.driver.speed;
-        const double power = inverse_dynamics_power(&scenario->linkage, motions, scenario->gravity,
-                                                    time_of(&scenario->linkage, crank));
+        const double power =
+            inverse_dynamics_power(&scenario->linkage, motions, scenario_gravity(scenario),
+                                   time_of(&scenario->linkage, crank));
         power_max = fmax(power_max, fabs(drive));
         residual_max = fmax(residual_max, fabs(drive - power));
     }

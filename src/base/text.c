@@ -4,7 +4,9 @@
 #include "base/printable.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,13 +114,52 @@ void text_show(Text *text, const char *const *marks)
     *text = target;
 }
 
+enum { NUMBER_DIGITS = 17, NUMBER_SIZE = 40 }; // digits that read back any double
+
+// The digits of a printed number as a whole number, from the first that is not 0; how many.
+static uint64_t take_digits(const char *words, size_t *count)
+{
+    uint64_t digits = 0;
+    *count = 0;
+    for (const char *c = words; *c != '\0' && *c != 'e'; c++) {
+        if (*c >= '1' || (*c == '0' && *count > 0)) {
+            digits = 10 * digits + (uint64_t)(*c - '0');
+            ++*count;
+        }
+    }
+    return digits;
+}
+
+// Whether a number printed with 17 digits may read back with fewer, of which `unit` is the last:
+// they leave it by no more than half the way to the next double, and a unit of the 17th for
+// roundings.
+static bool may_drop(uint64_t digits, double value, uint64_t unit)
+{
+    const double step = nextafter(fabs(value), INFINITY) - fabs(value);
+    const double half = step / fabs(value) * (0.5 * (double)digits);
+    const uint64_t tail = digits % unit;
+    return (double)(tail < unit - tail ? tail : unit - tail) <= half + 1.0;
+}
+
 void text_append_number(Text *text, double value)
 {
-    char words[40];
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(words, sizeof words, "%.*g", digits, value);
-        if (strtod(words, NULL) == value) {
-            break;
+    if (value == rint(value) && fabs(value) < 1e15) {
+        text_append(text, "%.0f", value);
+        return;
+    }
+    char words[NUMBER_SIZE];
+    char shorter[NUMBER_SIZE];
+    size_t count;
+    snprintf(words, sizeof words, "%.*g", NUMBER_DIGITS, value);
+    const uint64_t digits = take_digits(words, &count);
+    for (int fewer = 15; fewer < NUMBER_DIGITS; fewer++) {
+        // one with fewer digits than 17 has lost zeros at its end
+        if (count < NUMBER_DIGITS || may_drop(digits, value, fewer == 15 ? 100 : 10)) {
+            snprintf(shorter, sizeof shorter, "%.*g", fewer, value);
+            if (strtod(shorter, NULL) == value) {
+                text_append(text, "%s", shorter);
+                return;
+            }
         }
     }
     text_append(text, "%s", words);

@@ -38,6 +38,9 @@ size_t text_width(const char *text, size_t size);
 // they are; so does a word that is too long for any line.
 void text_fold(Text *text, size_t width);
 
+// The same of what stands behind so many bytes alone.
+void text_fold_behind(Text *text, size_t start, size_t width);
+
 // Copies a name into a fixed buffer, cut if it is too long.
 void text_copy(char *target, size_t size, const char *source);
 

@@ -118,3 +118,15 @@ void text_fold(Text *text, size_t width)
     text_finish(text);
     *text = target;
 }
+
+void text_fold_behind(Text *text, size_t start, size_t width)
+{
+    Text words;
+    text_init(&words);
+    text_append_bytes(&words, text->data + start, text->length - start);
+    text_fold(&words, width);
+    text->length = start;
+    text->data[start] = '\0';
+    text_append_bytes(text, words.data, words.length);
+    text_finish(&words);
+}

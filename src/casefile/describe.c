@@ -177,7 +177,79 @@ static void describe_meaning(const SchemaRow *row, Text *text)
     text_finish(&needs);
 }
 
-// A row in words for a terminal, or as a line of a table.
+// Whether two keys of links, such as four-bar.crank.offset and four-bar.coupler.offset, are one to
+// people.
+static bool are_alike(const SchemaRow *row, const SchemaRow *other)
+{
+    const char *dot = strchr(row->path, '.');
+    const char *last = strrchr(row->path, '.');
+    const char *other_last = strrchr(other->path, '.');
+    return dot != NULL && last != dot && other_last != NULL && row->family == SCHEMA_SINGLE &&
+           other->family == SCHEMA_SINGLE && strcmp(last, other_last) == 0 &&
+           strncmp(row->path, other->path, (size_t)(dot - row->path) + 1) == 0 &&
+           strcmp(row->doc, other->doc) == 0 && row->low == other->low && row->high == other->high;
+}
+
+// How many of the rows from first to before end are alike to one, besides it.
+static size_t count_alike(const SchemaRow *row, size_t first, size_t end)
+{
+    size_t count = 0;
+    for (size_t i = first; i < end; i++) {
+        count += &SCHEMA_ROWS[i] != row && are_alike(row, &SCHEMA_ROWS[i]) ? 1 : 0;
+    }
+    return count;
+}
+
+// What a value is, without the units, which the page lists once.
+static void describe_value(const SchemaRow *row, Text *text)
+{
+    Text words;
+    Text units;
+    text_init(&words);
+    text_init(&units);
+    schema_describe(row, false, &words);
+    text_append(&units, " in ");
+    units_list(row->dimension, &units);
+    const char *listed = strstr(words.data, units.data);
+    // without its article
+    const char *name = words.data;
+    name += strncmp(name, "a ", 2) == 0 ? 2 : strncmp(name, "an ", 3) == 0 ? 3 : 0;
+    if (row->dimension != DIMENSION_NONE && listed != NULL) {
+        text_append(text, "%.*s%s", (int)(listed - name), name, listed + units.length);
+    } else {
+        text_append(text, "%s", name);
+    }
+    text_finish(&units);
+    text_finish(&words);
+}
+
+// A key on the page; links that share one share the line.
+static void describe_line(size_t row_number, const char *path, Text *text)
+{
+    const SchemaRow *row = &SCHEMA_ROWS[row_number];
+    if (count_alike(row, 0, row_number) > 0) {
+        return;
+    }
+    Text words;
+    text_init(&words);
+    if (count_alike(row, row_number, SCHEMA_ROW_COUNT) > 0) {
+        const int length = (int)(strchr(path, '.') - path);
+        text_append(text, "- `%.*s.<link>%s` (", length, path, strrchr(path, '.'));
+    } else {
+        text_append(text, "- `%s` (", path);
+    }
+    describe_value(row, text);
+    describe_default(row_number, &words);
+    if (strcmp(words.data, "none") != 0) {
+        text_append(text, row->is_required ? "; %s" : "; default %s", words.data);
+    }
+    text_finish(&words);
+    text_append(text, "): ");
+    describe_meaning(row, text);
+    text_append(text, "\n");
+}
+
+// A row in words for a terminal, or on a line of the page.
 static void describe_row(size_t row_number, bool is_page, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
@@ -186,15 +258,7 @@ static void describe_row(size_t row_number, bool is_page, Text *text)
     snprintf(name, sizeof name, "<%s>", SCHEMA_FAMILIES[row->family].what);
     schema_path(row, name, path);
     if (is_page) {
-        text_append(text, "| `%s` | ", path);
-        schema_describe(row, false, text);
-        text_append(text, " | ");
-        describe_range(row, text);
-        text_append(text, " | ");
-        describe_default(row_number, text);
-        text_append(text, " | ");
-        describe_meaning(row, text);
-        text_append(text, " |\n");
+        describe_line(row_number, path, text);
         return;
     }
     Text words;
@@ -221,8 +285,6 @@ static void describe_groups(bool is_page, Text *text)
         if (is_page) {
             text_append(text, is_peak ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
                         is_peak ? "Top level" : group->path, group->doc);
-            text_append(text, "| key | value | range, SI | default | meaning |\n"
-                              "|---|---|---|---|---|\n");
         } else {
             text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
             append_wrapped(group->doc, 2, text);
@@ -232,6 +294,22 @@ static void describe_groups(bool is_page, Text *text)
                 describe_row(i, is_page, text);
             }
         }
+    }
+}
+
+// The units of every quantity, once.
+static void describe_units(Text *text)
+{
+    text_append(text, "\n## Units\n\nA quantity is given in one of these units; `jointplay help "
+                      "case` has the range of each key, too:\n\n");
+    for (int i = 0; i < DIMENSION_COUNT; i++) {
+        Text units;
+        text_init(&units);
+        units_list((Dimension)i, &units);
+        if (units.length > 0) {
+            text_append(text, "- %s: %s\n", units_dimension_name((Dimension)i), units.data);
+        }
+        text_finish(&units);
     }
 }
 
@@ -251,22 +329,22 @@ static const char *expect_path(ExpectGroup group)
 
 static void describe_expectation(const ExpectRow *row, bool is_page, Text *text)
 {
+    if (is_page) {
+        text_append(text, "- `%s%s`: %s%s\n", expect_path(row->group), row->name, row->doc,
+                    row->needs_play ? "; of a joint with play" : "");
+        return;
+    }
     Text units;
     text_init(&units);
     units_list(row->dimension, &units);
     const char *unit = units.length > 0 ? units.data : row->is_count ? "a whole number" : "plain";
-    if (is_page) {
-        text_append(text, "| `%s%s` | %s | %s%s |\n", expect_path(row->group), row->name, unit,
-                    row->doc, row->needs_play ? "; of a joint with play" : "");
-    } else {
-        text_append(text, "    %s%s\n", expect_path(row->group), row->name);
-        Text words;
-        text_init(&words);
-        text_append(&words, "%s%s; %s", row->doc, row->needs_play ? ", of a joint with play" : "",
-                    unit);
-        append_wrapped(words.data, DESCRIBE_INDENT, text);
-        text_finish(&words);
-    }
+    text_append(text, "    %s%s\n", expect_path(row->group), row->name);
+    Text words;
+    text_init(&words);
+    text_append(&words, "%s%s; %s", row->doc, row->needs_play ? ", of a joint with play" : "",
+                unit);
+    append_wrapped(words.data, DESCRIBE_INDENT, text);
+    text_finish(&words);
     text_finish(&units);
 }
 
@@ -315,7 +393,7 @@ static void describe_expect(bool is_page, Text *text)
     text_append(text,
                 is_page ? "\n## `expect`\n\n%s\n\nA limit is one of: `%s`. The ends are "
                           "included in between and within, and excluded from below and above.\n\n"
-                          "```yaml\n%s```\n\n| path | units | meaning |\n|---|---|---|\n"
+                          "```yaml\n%s```\n\n"
                         : "\nexpect\n",
                 WORDS, EXPECT_FORMS, EXPECT_EXAMPLE);
     if (!is_page) {
@@ -355,6 +433,7 @@ void casefile_describe_markdown(Text *text)
         "\n```yaml\n%s```\n\nOr, for a slider-crank:\n\n```yaml\n%s```\n\nOr, for any other "
         "linkage:\n\n```yaml\n%s```\n",
         EXAMPLE, SLIDER_EXAMPLE, LONG_EXAMPLE);
+    describe_units(text);
     describe_groups(true, text);
     describe_expect(true, text);
 }

@@ -3,6 +3,7 @@
 // The key is taken as an override of the case, and the value is stored into a scratch
 // scenario: so the words of a mistake are those of a mistake in the case itself.
 #include "casefile/probe.h"
+#include "casefile/quantity.h"
 
 #include "casefile/assemble.h"
 #include "casefile/check.h"
@@ -155,7 +156,12 @@ bool probe_number(const Source *source, const ProbeKey *key, const Node *value, 
         return source_error(source, value->span, "a length alone", err,
                             "this value has a tolerance");
     }
+    double si;
+    const Unit *given = NULL;
+    const bool has_given =
+        quantity_parse_unit(value->text, row->dimension, &si, &given, &(Complaint){0});
     number->value = read.value;
+    number->given = has_given ? given : NULL;
     text_copy(number->unit, sizeof number->unit,
               row->type != SCHEMA_SPAN ? units_si(row->dimension)
               : read.is_in_turns       ? "revolutions"

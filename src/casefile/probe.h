@@ -3,6 +3,7 @@
 
 #include "casefile/casefile.h"
 #include "casefile/entries.h"
+#include "casefile/units.h"
 
 typedef struct Probe Probe;
 
@@ -26,6 +27,7 @@ typedef struct ProbeKey {
 typedef struct ProbeNumber {
     double value;
     char unit[CASEFILE_UNIT_SIZE]; // SI; N/m^1.5 of a stiffness, empty for a plain number
+    const Unit *given;             // that the value is written with; NULL: none of the table
 } ProbeNumber;
 
 // Reads the text of a case, which must outlive the probe, as must the name that stands in messages.

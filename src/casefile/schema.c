@@ -104,6 +104,9 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
     static const char *const WORDS[][2] = {
         [SCHEMA_TEXT] = {"text", "text on one line"},
         [SCHEMA_INTEGER] = {"a whole number", "a whole number such as 100"},
+        [SCHEMA_GRAVITY] = {"an acceleration in m/s^2, mm/s^2, or in [x, y] or [x, y, z]",
+                            "an acceleration such as 9.80665 m/s^2, or [x, y] such as "
+                            "[1 m/s^2, -9.8 m/s^2], or with space: spatial [x, y, z]"},
         [SCHEMA_DIRECTION] = {"[x, y, z]", "a direction such as [0, 0, 1]"},
         [SCHEMA_START] = {"centred, or a length in [x, y], or [distance, tilt]",
                           "centred, or [x, y] such as [5 um, 0 um]"},

@@ -22,6 +22,7 @@ typedef enum SchemaType {
     SCHEMA_STIFFNESS,  // N/m^n -> stiffness and exponent of the contact or of a joint
     SCHEMA_SPAN,       // time or turns of the driver -> run.report_from
     SCHEMA_VECTOR,     // [x, y], or `centred` where the row has it as default -> Vec2
+    SCHEMA_GRAVITY,    // acceleration along -y, [x, y], or in space [x, y, z] -> Vec3
     SCHEMA_DIRECTION,  // [x, y, z] without units, of any length -> Vec3 of length 1
     SCHEMA_START,      // [x, y] of a pin, [distance, tilt] of a block, of a backlash one number,
                        // or `centred`

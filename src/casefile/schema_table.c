@@ -56,15 +56,15 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     .low = 1e-18, .high = 1e9, .is_required = true
 #define MOMENT(axis, member, own) \
     .dimension = DIMENSION_INERTIA, AT_BODY(member, space.inertia_##axis), \
-    .low = 1e-18, .high = 1e9, .default_words = own, .doc = "with space: spatial, moment of " \
+    .low = 1e-18, .high = 1e9, .default_words = own, .doc = "moment of " \
     "inertia about the body's " #axis " axis"
 #define PRODUCT(axes, member) \
     .dimension = DIMENSION_INERTIA, AT_BODY(member, space.product_##axes), \
-    .low = -1e9, .high = 1e9, .doc = "with space: spatial, product of inertia: sum of mass times " \
+    .low = -1e9, .high = 1e9, .doc = "product of inertia: sum of mass times " \
     "both distances from the centre of mass"
 #define OFFSET(member) \
     .dimension = DIMENSION_LENGTH, AT_BODY(member, space.height), .low = -1e3, \
-    .high = 1e3, .doc = "with space: spatial, z of the centre of mass at time zero"
+    .high = 1e3, .doc = "z of the centre of mass at time zero"
 #define X_OWN "a hundredth of inertia"
 #define Y_OWN "inertia"
 #define LENGTH(link, words) \
@@ -192,15 +192,15 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "bodies.*.velocity-z", BODY, .dimension = DIMENSION_SPEED,
      AT_BODY(0, space.velocity_z), .low = -1e4, .high = 1e4,
      .needs = MEMBER | FREE | SPATIAL,
-     .doc = "with space: spatial, velocity of the centre of mass along z at time zero"},
+     .doc = "velocity of the centre of mass along z at time zero"},
     {.path = "bodies.*.spin-x", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
      AT_BODY(0, space.omega_x), .low = -1e6, .high = 1e6,
      .needs = MEMBER | FREE | SPATIAL,
-     .doc = "with space: spatial, angular velocity about the world's x axis at time zero"},
+     .doc = "angular velocity about the world's x axis at time zero"},
     {.path = "bodies.*.spin-y", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
      AT_BODY(0, space.omega_y), .low = -1e6, .high = 1e6,
      .needs = MEMBER | FREE | SPATIAL,
-     .doc = "with space: spatial, angular velocity about the world's y axis at time zero"},
+     .doc = "angular velocity about the world's y axis at time zero"},
 
 #include "casefile/schema_joints.inc"
 
@@ -332,9 +332,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is the "
             "world's x axis; with bodies, their angles define it"},
-    {.path = "gravity", .dimension = DIMENSION_ACCELERATION, AT(gravity),
+    {.path = "gravity", .type = SCHEMA_GRAVITY, .dimension = DIMENSION_ACCELERATION, AT(gravity),
      .low = -1e3, .high = 1e3,
-     .doc = "acceleration of gravity, downward, along -y; 0 m/s^2 for none"},
+     .doc = "acceleration of gravity: one number is downward, along -y, and 0 m/s^2 none; [x, y], "
+            "or with space: spatial [x, y, z], is the acceleration of free fall in the world's "
+            "axes, so that 9.81 m/s^2 is [0 m/s^2, -9.81 m/s^2]"},
 
     {.path = "material.youngs-modulus", .dimension = DIMENSION_PRESSURE,
      AT(material.youngs_modulus), .low = 1e3, .high = 1e13, .needs = MATERIAL,

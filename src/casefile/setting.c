@@ -125,6 +125,19 @@ static void set_direction(CasefileSetting *setting, Vec3 direction)
     setting->number_count = 3;
 }
 
+// One number where it is along -y or there is none, as most cases have it.
+static void set_gravity(CasefileSetting *setting, const Scenario *scenario)
+{
+    const Vec3 gravity = scenario->gravity;
+    if (gravity.x == 0.0 && gravity.z == 0.0) {
+        set_number(setting, 0.0 - gravity.y); // never -0
+    } else if (scenario->space == SCENARIO_SPATIAL) {
+        set_direction(setting, gravity);
+    } else {
+        set_vector(setting, scenario_gravity(scenario));
+    }
+}
+
 // Where a pin starts in its hole, or a block between its guides.
 static void set_start(CasefileSetting *setting, const Joint *joint)
 {
@@ -346,6 +359,9 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         break;
     case SCHEMA_VECTOR:
         set_vector(setting, *(const Vec2 *)field);
+        break;
+    case SCHEMA_GRAVITY:
+        set_gravity(setting, scenario);
         break;
     case SCHEMA_DIRECTION:
         set_direction(setting, *(const Vec3 *)field);

@@ -227,22 +227,64 @@ static bool store_discs(const Target *target, Stop *stop)
     return true;
 }
 
-// A direction of any length, kept as one of length 1.
-static bool store_direction(const Target *target)
+// The numbers of a list, at most three; false where it has more, or one of them is wrong. How many
+// there are is counted up to four.
+static bool read_numbers(const Target *target, double numbers[3], int *count)
 {
     const Node *node = target->entry->node;
     const Node *item = node->kind == NODE_LIST ? node->first : NULL;
-    double parts[3] = {0.0, 0.0, 0.0};
-    int count = 0;
-    for (; item != NULL && count < 3; item = item->next) {
+    for (*count = 0; item != NULL && *count < 3; item = item->next) {
         TargetNumber number;
         if (!target_number(target, item, &number)) {
             return false;
         }
-        parts[count++] = number.value;
+        numbers[(*count)++] = number.value;
+    }
+    *count += item != NULL ? 1 : 0;
+    return true;
+}
+
+// One number along -y, or a vector; `space` comes before it in the schema.
+static bool store_gravity(const Target *target, Scenario *scenario)
+{
+    const Node *node = target->entry->node;
+    TargetNumber downward;
+    if (node->kind == NODE_SCALAR) {
+        if (!target_number(target, node, &downward)) {
+            return false;
+        }
+        scenario->gravity = scenario_downward(downward.value);
+        return true;
+    }
+    double parts[3] = {0.0, 0.0, 0.0};
+    int count;
+    if (!read_numbers(target, parts, &count)) {
+        return false;
+    }
+    if (count == 3 && scenario->space != SCENARIO_SPATIAL) {
+        return source_error(target->entry->source, node->first->next->next->span,
+                            "[x, y] such as [1 m/s^2, -9.8 m/s^2], or space: spatial", target->err,
+                            "%s in the plane has no third number", target->path);
+    }
+    if (count != 2 && count != 3) {
+        return target_refuse(target, node->span, "%s takes one number, or a list of two or three",
+                             target->path);
+    }
+    scenario->gravity = (Vec3){parts[0], parts[1], parts[2]};
+    return true;
+}
+
+// A direction of any length, kept as one of length 1.
+static bool store_direction(const Target *target)
+{
+    const Node *node = target->entry->node;
+    double parts[3] = {0.0, 0.0, 0.0};
+    int count;
+    if (!read_numbers(target, parts, &count)) {
+        return false;
     }
     const Vec3 along = {parts[0], parts[1], parts[2]};
-    if (count < 3 || item != NULL || !(vec3_length(along) > 0.0)) {
+    if (count != 3 || !(vec3_length(along) > 0.0)) {
         return target_refuse(target, node->span, "%s takes a direction of three numbers, not all 0",
                              target->path);
     }
@@ -343,6 +385,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return limits_store_teeth(&target, &scenario->linkage.joints[entry->index].gear);
     case SCHEMA_DISCS:
         return store_discs(&target, target.field);
+    case SCHEMA_GRAVITY:
+        return store_gravity(&target, scenario);
     case SCHEMA_DIRECTION:
         return store_direction(&target);
     case SCHEMA_BETWEEN:

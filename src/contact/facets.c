@@ -116,7 +116,7 @@ double facets_expected_depth(const Scenario *scenario, int joint)
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
     linkage_start(linkage, motions);
     // the pin falls under gravity and what a point that the drive turns feels
-    double pull = fabs(scenario->gravity);
+    double pull = vec3_length(scenario->gravity);
     if (linkage->driver.is_present) {
         const Joint *driven = &linkage->joints[linkage->driver.joint];
         const Vec2 axis = linkage_point(motions, driven->body_a, driven->anchor_a);

@@ -714,7 +714,7 @@ static void single_pin(const Scenario *scenario, int joint, double mass, Scenari
     single->has_fourbar = false;
     single->has_slidercrank = false;
     single->point_count = 0;
-    single->gravity = 0.0;
+    single->gravity = (Vec3){0.0, 0.0, 0.0};
     single->linkage.body_count = 1;
     single->linkage.bodies[0] = (Body){
         .name = "pin",

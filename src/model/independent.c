@@ -191,6 +191,14 @@ void independent_observe_some(const void *state, double time_s, const SolverSome
     sample->time_s = time_s;
 }
 
+void independent_sketch(const void *state, double time_s, double *omega, double *alpha,
+                        double *force)
+{
+    const Independent *independent = state;
+    const Component *component = &independent->components[independent->now];
+    independent->solver->sketch(component->state, time_s, omega, alpha, force);
+}
+
 void independent_glance(const void *state, double time_s, Sample *sample)
 {
     const Independent *independent = state;

@@ -15,6 +15,8 @@ void independent_observe(const void *state, double time_s, Sample *sample);
 void independent_observe_part(const void *state, double time_s, Sample *sample);
 void independent_observe_some(const void *state, double time_s, const SolverSome *some,
                               Sample *sample);
+void independent_sketch(const void *state, double time_s, double *omega, double *alpha,
+                        double *force);
 void independent_glance(const void *state, double time_s, Sample *sample);
 void independent_contacts(const void *state, ContactState (*states)[JOINT_PLACES]);
 bool independent_carry(void *state, Carry *carry);

@@ -246,11 +246,11 @@ double linkage_kinetic_energy(const Linkage *linkage, const Motion *motions)
     return energy;
 }
 
-double linkage_potential_energy(const Linkage *linkage, const Motion *motions, double gravity)
+double linkage_potential_energy(const Linkage *linkage, const Motion *motions, Vec2 gravity)
 {
     double energy = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        energy += linkage->bodies[i].mass * gravity * motions[i].position.y;
+        energy -= vec2_dot(vec2_scale(linkage->bodies[i].mass, gravity), motions[i].position);
     }
     return energy;
 }

@@ -450,7 +450,7 @@ JointGap linkage_joint_gap(const Linkage *linkage, const Motion *motions, int jo
 // offender.
 bool linkage_check(const Linkage *linkage, Err *err);
 
-// Kinetic energy of all bodies, J, sum (m v^2 + I w^2) / 2; and potential energy in gravity along
-// -y, m/s^2, zero at the ground frame's origin, sum m g y.
+// Kinetic energy of all bodies, J, sum (m v^2 + I w^2) / 2; and potential energy in gravity,
+// m/s^2, zero at the ground frame's origin, -sum m g . x.
 double linkage_kinetic_energy(const Linkage *linkage, const Motion *motions);
-double linkage_potential_energy(const Linkage *linkage, const Motion *motions, double gravity);
+double linkage_potential_energy(const Linkage *linkage, const Motion *motions, Vec2 gravity);

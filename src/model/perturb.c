@@ -97,7 +97,12 @@ static Vec2 own_direction(const Scenario *scenario, const Motion *motions, size_
         }
     }
     const double speed = vec2_length(motions[body].velocity);
-    return speed > 0.0 ? vec2_scale(1.0 / speed, motions[body].velocity) : (Vec2){0.0, -1.0};
+    if (speed > 0.0) {
+        return vec2_scale(1.0 / speed, motions[body].velocity);
+    }
+    const Vec2 gravity = scenario_gravity(scenario);
+    const double pull = vec2_length(gravity);
+    return pull > 0.0 ? vec2_scale(1.0 / pull, gravity) : (Vec2){0.0, -1.0};
 }
 
 static void draw_changes(const Scenario *scenario, const PerturbUnit *units, const Motion *motions,

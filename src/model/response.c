@@ -132,7 +132,7 @@ void response_mobility(const Response *response, double *mobility)
     response_matrix_mobility(&response->matrix, mobility);
 }
 
-void response_free(const Response *response, const Motion *motions, double gravity,
+void response_free(const Response *response, const Motion *motions, Vec2 gravity,
                    const BodyLoad *loads, double *rates)
 {
     double *gamma = response->work;

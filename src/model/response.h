@@ -43,9 +43,9 @@ void response_mobility(const Response *response, double *mobility);
 const double *response_block(const Response *response, size_t place, size_t other);
 
 // Writes the acceleration of the rows of the joints with play while nothing acts in them: under
-// gravity, m/s^2 along -y, and loads on the bodies (NULL: none), at the velocities given; of the
+// gravity, m/s^2, and loads on the bodies (NULL: none), at the velocities given; of the
 // driven body its own acceleration.
-void response_free(const Response *response, const Motion *motions, double gravity,
+void response_free(const Response *response, const Motion *motions, Vec2 gravity,
                    const BodyLoad *loads, double *rates);
 
 // Writes the impulses, N s, with which the ideal joints answer impulses in the joints with play:

@@ -166,7 +166,7 @@ static double free_turning(const Linkage *linkage, const Motion *motions, int bo
 
 // Acceleration of the end of a joint on one body under gravity and loads.
 static Vec2 end_acceleration(const Response *response, const Motion *motions, int body, Vec2 anchor,
-                             double gravity, const BodyLoad *loads)
+                             Vec2 gravity, const BodyLoad *loads)
 {
     if (body == LINKAGE_GROUND) {
         return (Vec2){0.0, 0.0};
@@ -175,7 +175,7 @@ static Vec2 end_acceleration(const Response *response, const Motion *motions, in
     const Motion *motion = &motions[body];
     const bool is_driven = linkage_is_driven(linkage, body);
     const double alpha = free_turning(linkage, motions, body, loads);
-    Vec2 centre = is_driven ? motion->acceleration : (Vec2){0.0, -gravity};
+    Vec2 centre = is_driven ? motion->acceleration : gravity;
     const Vec2 arm = response_arm(response, motions, body, anchor);
     if (loads != NULL && !is_driven) {
         const double mass = linkage->bodies[body].mass;
@@ -189,8 +189,7 @@ static Vec2 end_acceleration(const Response *response, const Motion *motions, in
 
 // Acceleration of the anchor on body b less that of the anchor on body a.
 static Vec2 relative_acceleration(const Response *response, const Motion *motions, int joint,
-                                  Vec2 anchor_a, Vec2 anchor_b, double gravity,
-                                  const BodyLoad *loads)
+                                  Vec2 anchor_a, Vec2 anchor_b, Vec2 gravity, const BodyLoad *loads)
 {
     const Joint *of = &response->linkage->joints[joint];
     return vec2_sub(end_acceleration(response, motions, of->body_b, anchor_b, gravity, loads),
@@ -238,7 +237,7 @@ static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
 }
 
 // The rates of the rates of a prismatic joint's rows: their own and those of the bodies.
-static void prismatic_free(const Linkage *linkage, int joint, const Motion *motions, double gravity,
+static void prismatic_free(const Linkage *linkage, int joint, const Motion *motions, Vec2 gravity,
                            const BodyLoad *loads, double *gamma)
 {
     JointRows rows;
@@ -251,7 +250,7 @@ static void prismatic_free(const Linkage *linkage, int joint, const Motion *moti
             continue;
         }
         const bool is_driven = linkage_is_driven(linkage, body);
-        Vec2 centre = is_driven ? motions[body].acceleration : (Vec2){0.0, -gravity};
+        Vec2 centre = is_driven ? motions[body].acceleration : gravity;
         if (loads != NULL && !is_driven) {
             const double mass = linkage->bodies[body].mass;
             centre = vec2_add(centre, vec2_scale(1.0 / mass, loads[body].force));
@@ -264,7 +263,7 @@ static void prismatic_free(const Linkage *linkage, int joint, const Motion *moti
     }
 }
 
-void response_rows_loose(const Response *response, const Motion *motions, double gravity,
+void response_rows_loose(const Response *response, const Motion *motions, Vec2 gravity,
                          const BodyLoad *loads, double *gamma)
 {
     const Linkage *linkage = response->linkage;

@@ -122,5 +122,5 @@ void response_rows_place_play(Response *response, size_t number, const Motion *m
 
 // Writes the accelerations of all rows under gravity and loads (NULL: none) while nothing acts in
 // any of them, those of the ideal joints included.
-void response_rows_loose(const Response *response, const Motion *motions, double gravity,
+void response_rows_loose(const Response *response, const Motion *motions, Vec2 gravity,
                          const BodyLoad *loads, double *rates);

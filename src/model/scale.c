@@ -62,7 +62,7 @@ static void set_bodies(const Linkage *linkage, SpeedScale *scale)
 SpeedScale scale_speeds(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
-    const double gravity = fabs(scenario->gravity);
+    const double gravity = vec3_length(scenario->gravity);
     SpeedScale scale = {
         .turning = zeroed(linkage->body_count, sizeof *scale.turning),
         .speeding = zeroed(linkage->body_count, sizeof *scale.speeding),

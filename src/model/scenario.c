@@ -10,7 +10,7 @@ const char *const SCENARIO_SPACES[] = {"planar", "spatial", NULL};
 Scenario scenario_default(void)
 {
     return (Scenario){
-        .gravity = 9.80665, // m/s^2, standard gravity
+        .gravity = {0.0, -9.80665, 0.0}, // m/s^2, standard gravity
         .material = material_options_default(),
         .contact = contact_options_default(),
         .run = run_options_default(),
@@ -264,9 +264,14 @@ bool scenario_check(const Scenario *scenario, Err *err)
         return err_set(err, ERR_CASE, "reports from %g s, allowed: before the end of the run, %g s",
                        scenario_report_from(scenario), scenario_duration(scenario));
     }
-    if (!isfinite(scenario->gravity)) {
-        return err_set(err, ERR_CASE, "gravity %g m/s^2, allowed: any finite number",
-                       scenario->gravity);
+    const Vec3 gravity = scenario->gravity;
+    if (!isfinite(gravity.x) || !isfinite(gravity.y) || !isfinite(gravity.z)) {
+        return err_set(err, ERR_CASE, "gravity [%g, %g, %g] m/s^2, allowed: any finite numbers",
+                       gravity.x, gravity.y, gravity.z);
+    }
+    if (gravity.z != 0.0 && !scenario->linkage.is_spatial) {
+        return err_set(err, ERR_CASE, "gravity of %g m/s^2 along z, allowed in the plane: 0",
+                       gravity.z);
     }
     return true;
 }

@@ -91,7 +91,7 @@ typedef struct Scenario {
     SliderCrank slidercrank;
     size_t point_count;
     TracedPoint points[SCENARIO_POINT_MAX];
-    double gravity; // m/s^2, along -y
+    Vec3 gravity; // acceleration of free fall, m/s^2, in the world's axes; in the plane z is 0
     MaterialOptions material;
     ContactOptions contact;
     RunOptions run;
@@ -144,6 +144,24 @@ static inline double scenario_restitution(const Scenario *scenario, const Joint 
 {
     return joint->contact.has_restitution ? joint->contact.restitution
                                           : scenario->contact.restitution;
+}
+
+// Gravity as one number has it: along -y, m/s^2.
+static inline Vec3 scenario_downward(double gravity)
+{
+    return (Vec3){0.0, -gravity, 0.0};
+}
+
+// Gravity in the plane, m/s^2.
+static inline Vec2 scenario_gravity(const Scenario *scenario)
+{
+    return (Vec2){scenario->gravity.x, scenario->gravity.y};
+}
+
+// Its opposite: what a body's joints must give it, beside its own acceleration, m/s^2.
+static inline Vec2 scenario_upward(const Scenario *scenario)
+{
+    return vec2_sub((Vec2){0.0, 0.0}, scenario_gravity(scenario));
 }
 
 // Whether runs are to start in a settled motion: it is asked for, and there is one to come to.

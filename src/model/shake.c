@@ -168,6 +168,7 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
 
 static void shake_world(Scenario *scenario, uint64_t *seed)
 {
+    double downward = 0.0 - scenario->gravity.y; // as the case file has it
     double *const values[] = {
         &scenario->fourbar.ground.nominal,
         &scenario->fourbar.crank.nominal,
@@ -175,7 +176,7 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
         &scenario->fourbar.follower.nominal,
         &scenario->linkage.driver.speed,
         &scenario->linkage.driver.start,
-        &scenario->gravity,
+        &downward,
         &scenario->material.youngs_modulus,
         &scenario->material.poisson_ratio,
         &scenario->contact.stiffness,
@@ -199,10 +200,13 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
         &scenario->slidercrank.rod,
         &scenario->slidercrank.offset,
         &scenario->slidercrank.line,
+        &scenario->gravity.x,
+        &scenario->gravity.z,
     };
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         shake(values[i], seed);
     }
+    scenario->gravity.y = -downward;
     // more than everything no contact gives back
     scenario->contact.restitution = fmin(scenario->contact.restitution, 1.0);
 }

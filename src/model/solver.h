@@ -100,6 +100,10 @@ typedef struct Solver {
     // last record, in time that grows with their number alone. The rest of the sample is not for
     // use.
     void (*observe_some)(const void *state, double time_s, const SolverSome *some, Sample *sample);
+    // Optional: what the signals of the last record are likely to be at a time in it, to within the
+    // error of a step and without an evaluation: omega and alpha of its bodies, rad/s and rad/s^2,
+    // forces of its joints, N. NAN where that is not known. Writes them in the record's order.
+    void (*sketch)(const void *state, double time_s, double *omega, double *alpha, double *force);
     // Optional: the bodies' positions and velocities alone, which may take less; the rest of the
     // sample stays as it is. NULL: observe has them.
     void (*glance)(const void *state, double time_s, Sample *sample);

@@ -202,11 +202,11 @@ double space_kinetic_energy(const Linkage *linkage, const SpaceMotion *motions)
     return sum;
 }
 
-double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, double gravity)
+double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, Vec3 gravity)
 {
     double sum = 0.0;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        sum += linkage->bodies[i].mass * gravity * motions[i].position.y;
+        sum -= vec3_dot(vec3_scale(linkage->bodies[i].mass, gravity), motions[i].position);
     }
     return sum;
 }

@@ -71,9 +71,9 @@ Vec3 space_velocity_at(const SpaceMotion *motions, int body, Vec3 point);
 // Likewise its acceleration.
 Vec3 space_acceleration_at(const SpaceMotion *motions, int body, Vec3 point);
 
-// Sum (m v^2 + w' I w) / 2, and sum m g y, J.
+// Sum (m v^2 + w' I w) / 2, and -sum m g . x, J, with gravity in m/s^2.
 double space_kinetic_energy(const Linkage *linkage, const SpaceMotion *motions);
-double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, double gravity);
+double space_potential_energy(const Linkage *linkage, const SpaceMotion *motions, Vec3 gravity);
 
 // Whether some distribution of mass has the body's moments and products of inertia.
 bool space_is_possible(const Body *body);

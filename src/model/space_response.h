@@ -103,9 +103,9 @@ const double *space_response_block(const SpaceResponse *response, size_t place, 
 // Writes the mobility of all rows of play, row by row.
 void space_response_mobility(const SpaceResponse *response, double *mobility);
 
-// Fills in the accelerations that the bodies would have if no joint held them: gravity's, along -y,
+// Fills in the accelerations that the bodies would have if no joint held them: gravity's, m/s^2,
 // and that of turning inertias, I alpha = -omega x I omega. Those of the driven body stay.
-void space_response_loosen(const SpaceResponse *response, double gravity, SpaceMotion *motions);
+void space_response_loosen(const SpaceResponse *response, Vec3 gravity, SpaceMotion *motions);
 
 // Writes how fast the rates of the ideal rows change under the accelerations of the motions.
 void space_response_drift(const SpaceResponse *response, const SpaceMotion *motions, double *drift);

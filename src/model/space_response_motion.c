@@ -7,7 +7,7 @@
 //     r' = s . (alpha_b - alpha_a) + (omega_a x s) . (omega_b - omega_a)
 #include "model/space_response.h"
 
-void space_response_loosen(const SpaceResponse *response, double gravity, SpaceMotion *motions)
+void space_response_loosen(const SpaceResponse *response, Vec3 gravity, SpaceMotion *motions)
 {
     const int driven = linkage_driven_body(response->linkage);
     for (size_t i = 0; i < response->linkage->body_count; i++) {
@@ -19,7 +19,7 @@ void space_response_loosen(const SpaceResponse *response, double gravity, SpaceM
         const Vec3 omega = mat3_apply_back(turn, motion->omega);
         const Vec3 momentum = mat3_apply(&response->own_inertia[i], omega);
         const Vec3 alpha = mat3_apply(&response->own_inverse[i], vec3_cross(momentum, omega));
-        motion->acceleration = (Vec3){0.0, -gravity, 0.0};
+        motion->acceleration = gravity;
         motion->alpha = mat3_apply(turn, alpha);
     }
 }

@@ -101,7 +101,7 @@ void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, V
 // What a driven body needs so as to move as it does, N.
 static Vec2 driven_force(const Scenario *scenario, const Body *own, const Motion *driven)
 {
-    return vec2_scale(own->mass, vec2_add(driven->acceleration, (Vec2){0.0, scenario->gravity}));
+    return vec2_scale(own->mass, vec2_add(driven->acceleration, scenario_upward(scenario)));
 }
 
 void stepping_drive_force(const Scenario *scenario, size_t drive, const Motion *driven,

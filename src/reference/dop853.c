@@ -251,6 +251,10 @@ bool dop853_attempt(Dop853 *integrator, double longest)
         integrator->was_rejected = true;
         // not a number where the state is none
         step *= error > 1.0 ? fmax(SHRINK_MOST, SAFETY * pow(error, -1.0 / 8.0)) : SHRINK_MOST;
+        if (integrator->method != NULL && step < integrator->method_least) {
+            integrator->method = NULL;
+            step = fmin(step, integrator->otherwise);
+        }
         integrator->step = step;
         if (!(step > integrator->shortest) || !(step > DBL_MIN)) {
             return false;
@@ -435,6 +439,21 @@ const double *dop853_dense_some(Dop853 *integrator, double time, const size_t *n
         integrator->at[numbers[k]] = at[other];
     }
     return integrator->at;
+}
+
+double dop853_sketch(const Dop853 *integrator, size_t number, double share, double *slope)
+{
+    double *const *p = integrator->polynomial;
+    double value = p[DOP853_POLYNOMIAL - 1][number];
+    double by_share = 0.0;
+    for (int k = DOP853_POLYNOMIAL - 2; k >= 0; k--) {
+        const bool is_behind = k % 2 == 0;
+        const double factor = is_behind ? share : 1.0 - share;
+        by_share = factor * by_share + (is_behind ? value : -value);
+        value = p[k][number] + factor * value;
+    }
+    *slope = by_share / integrator->tried;
+    return value;
 }
 
 void dop853_dense_motion(Dop853 *integrator, double time, double *y)

@@ -134,7 +134,11 @@ struct Dop853Method {
 
 struct Dop853 {
     Dop853Method *method; // takes the steps where it is not NULL
-    size_t size;          // number of equations
+    // s: rather than a step of the method that is refused and would have to be shorter, one is
+    // taken without it, and with a length; 0: none
+    double method_least;
+    double otherwise;
+    size_t size; // number of equations
     // Of those, the first: the others are sums, on which no rate depends; their errors are judged
     // by themselves.
     size_t motion_size;
@@ -206,6 +210,10 @@ void dop853_dense_motion(Dop853 *integrator, double time, double *y);
 
 // The polynomial at a share of the step; beyond 1 as it goes on.
 void dop853_polynomial(const Dop853 *integrator, double share, double *y);
+
+// One equation at a share of the step, on the polynomial through it, which must be there (fill),
+// and how that changes there, per second: on a rate to within the error of a step.
+double dop853_sketch(const Dop853 *integrator, size_t number, double share, double *slope);
 
 // Moves the end of the tried step by a time so short that its cube counts for nothing; two
 // evaluations. Not where another method takes the steps.
@@ -311,6 +319,10 @@ void radau_destroy(Radau *radau);
 
 // Carries all that steps from here on depend on.
 void radau_carry(Radau *radau, Carry *carry);
+
+// What an implicit step costs by the number of its operations, in explicit steps, with the
+// couplings that the last derivatives show.
+double radau_step_cost(Radau *radau);
 
 // How fast rates die away where the next step starts: the largest rate of decay, 1/s. The next step
 // takes nothing from one before.

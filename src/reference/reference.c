@@ -316,6 +316,44 @@ static void mechanism_observe(const void *state, double time_s, Sample *sample)
     system->kind->joints(system, at, sample->joints, sample->space_joints);
 }
 
+// In the plane: there a coordinate that turns is the angle of its body, and the impulse of a
+// contact is added up from the size of its force.
+static void mechanism_sketch(const void *state, double time_s, double *omega, double *alpha,
+                             double *force)
+{
+    const Mechanism *mechanism = state;
+    const System *system = mechanism->stepper->system;
+    const Linkage *linkage = &mechanism->stepper->scenario->linkage;
+    Dop853 *integrator = &mechanism->stepper->integrator;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        omega[i] = alpha[i] = NAN;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        force[i] = NAN;
+    }
+    if (linkage->is_spatial || integrator->tried == 0.0) {
+        return;
+    }
+    dop853_fill(integrator);
+    const double share =
+        (system->kind->since(system, time_s) - integrator->time) / integrator->tried;
+    for (size_t i = 0; i < system->coordinate_count; i++) {
+        const int body = system->coordinates[i].turning;
+        if (body >= 0) {
+            const size_t rate = system->coordinate_count + i;
+            omega[body] = dop853_sketch(integrator, rate, share, &alpha[body]);
+        }
+    }
+    for (size_t i = 0; i < system->contact_count; i++) {
+        force[system->contacts[i].joint] = 0.0;
+    }
+    for (size_t i = 0; i < system->contact_count; i++) {
+        double own;
+        dop853_sketch(integrator, system_sum_index(system, SYSTEM_IMPULSES + i), share, &own);
+        force[system->contacts[i].joint] += own;
+    }
+}
+
 static void mechanism_glance(const void *state, double time_s, Sample *sample)
 {
     const Mechanism *mechanism = state;
@@ -384,6 +422,7 @@ static const Solver MECHANISM_SOLVER = {
     .stride = mechanism_stride,
     .record = mechanism_record,
     .observe = mechanism_observe,
+    .sketch = mechanism_sketch,
     .glance = mechanism_glance,
     .contacts = mechanism_contacts,
     .carry = mechanism_carry,
@@ -418,6 +457,7 @@ static const Solver MECHANISMS_SOLVER = {
     .name = "reference",
     .open = open_each,
     .stride = independent_stride,
+    .sketch = independent_sketch,
     .glance = independent_glance,
     .model = model_of_all,
     INDEPENDENT_FUNCTIONS,
@@ -472,6 +512,13 @@ static void reference_observe_part(const void *state, double time_s, Sample *sam
     reference->solver->observe_part(reference->state, time_s, sample);
 }
 
+static void reference_sketch(const void *state, double time_s, double *omega, double *alpha,
+                             double *force)
+{
+    const Reference *reference = state;
+    reference->solver->sketch(reference->state, time_s, omega, alpha, force);
+}
+
 static void reference_glance(const void *state, double time_s, Sample *sample)
 {
     const Reference *reference = state;
@@ -513,6 +560,7 @@ const Solver REFERENCE_SOLVER = {
     .record = reference_record,
     .observe = reference_observe,
     .observe_part = reference_observe_part,
+    .sketch = reference_sketch,
     .glance = reference_glance,
     .contacts = reference_contacts,
     .carry = reference_carry,

@@ -235,8 +235,21 @@ static const double STIFFNESS_UNLIMITED = 0.5;
 static const double STIFFNESS_TRIAL_DECAY = 0.02;
 static const double STIFFNESS_TRIAL_DAMPING = 1.0;
 
-// an implicit step takes the work of some eight explicit ones
+// An implicit step of few coordinates takes the work of some eight explicit ones. Of a row of
+// four-bars, where all coordinates depend on one another, it takes that of a hundred, so that no
+// rate of decay tells whether it is worth it. Above so many explicit steps, with more coordinates
+// than three loose bodies have, the implicit method is always put on trial.
 static const double STIFFNESS_STEP_COST = 8.0;
+static const double STIFFNESS_COST_MUCH = 40.0;
+enum { STIFFNESS_COORDINATES_FEW = 9 };
+
+// A trial follows when explicit steps that were held back have taken some times its work. After it
+// each implicit step is held against the explicit ones that it has beaten, which are as long as the
+// decay lets them be: one that is worth less than the share of its work counts against the method,
+// which is left when that comes to so many steps; in its favour no more than as many count.
+static const double STIFFNESS_HELD = 4.0;
+static const double STIFFNESS_LEAVE = 0.5;
+static const double STIFFNESS_GAIN_MOST = 2.0;
 
 // What accelerations are differentiated by: of the fastest speed, and of a depth
 static const double SPEED_SHARE = 1e-7;
@@ -285,24 +298,58 @@ static bool is_doubtful(const System *system, const SystemState *state, double s
     return step * decay > STIFFNESS_TRIAL_DECAY && decay * relaxation_s > STIFFNESS_TRIAL_DAMPING;
 }
 
+// Puts the implicit method on trial, with a step that is longer by more than it costs.
+static bool begin_trial(Stiffness *stiffness, double cost, Dop853 *integrator)
+{
+    stiffness->beaten_s = integrator->step;
+    integrator->step *= 2.0 * cost;
+    return true;
+}
+
+// The same where a trial costs much.
+static bool takes_over_at_cost(Stiffness *stiffness, bool is_held, Dop853 *integrator)
+{
+    stiffness->held += is_held ? STIFFNESS_CHECK_INTERVAL : 0.0;
+    if (!is_held || stiffness->held < STIFFNESS_HELD * stiffness->cost) {
+        return false;
+    }
+    stiffness->held = 0.0;
+    stiffness->gain = 0.0;
+    stiffness->beaten_decay = integrator->step * stiffness->radau->decay;
+    return begin_trial(stiffness, stiffness->cost, integrator);
+}
+
 // Whether the implicit method takes over from the explicit one, or is put on trial.
 static bool takes_over(Stiffness *stiffness, const System *system, const SystemState *state,
                        Dop853 *integrator)
 {
     const double decay = stiffness->radau->decay;
-    if (integrator->step * decay > STIFFNESS_LIMITED) {
-        return true;
+    const bool is_limited = integrator->step * decay > STIFFNESS_LIMITED;
+    const bool is_held = is_limited || is_doubtful(system, state, integrator->step, decay);
+    stiffness->cost = radau_step_cost(stiffness->radau);
+    if (system->coordinate_count <= STIFFNESS_COORDINATES_FEW) {
+        stiffness->cost = STIFFNESS_STEP_COST;
     }
-    if (!is_doubtful(system, state, integrator->step, decay)) {
-        return false;
+    if (stiffness->cost > STIFFNESS_COST_MUCH) {
+        return takes_over_at_cost(stiffness, is_held, integrator);
+    }
+    if (is_limited || !is_held) {
+        return is_limited;
     }
     if (stiffness->wait > 0) {
         stiffness->wait--;
         return false;
     }
-    stiffness->beaten_s = integrator->step;
-    integrator->step *= 2.0 * STIFFNESS_STEP_COST;
-    return true;
+    return begin_trial(stiffness, STIFFNESS_STEP_COST, integrator);
+}
+
+// Whether implicit steps, of which one has just been taken, have been worth what they cost.
+static bool is_worth(Stiffness *stiffness, double taken_s)
+{
+    const double explicit_s = stiffness->beaten_decay / stiffness->radau->decay;
+    const double worth = taken_s / (stiffness->cost * explicit_s);
+    stiffness->gain = fmin(stiffness->gain + worth - STIFFNESS_LEAVE, STIFFNESS_GAIN_MOST);
+    return stiffness->gain > -STIFFNESS_GAIN_MOST;
 }
 
 // Whether the implicit method stays: after a trial where its step was worth it.
@@ -310,10 +357,14 @@ static bool stays(Stiffness *stiffness, double taken_s, Dop853 *integrator)
 {
     const double beaten_s = stiffness->beaten_s;
     stiffness->beaten_s = 0.0;
+    const bool costs_much = stiffness->cost > STIFFNESS_COST_MUCH;
+    if (beaten_s == 0.0 && costs_much) {
+        return is_worth(stiffness, taken_s);
+    }
     if (beaten_s == 0.0) {
         return integrator->step * stiffness->radau->decay > STIFFNESS_UNLIMITED;
     }
-    if (taken_s > STIFFNESS_STEP_COST * beaten_s) {
+    if (taken_s > (costs_much ? stiffness->cost : STIFFNESS_STEP_COST) * beaten_s) {
         stiffness->pause = 0;
         return true;
     }
@@ -332,7 +383,9 @@ static void stiffness_follow(Stiffness *stiffness, const System *system, const S
 {
     const double depth = smallest_depth(system, state, integrator->step);
     const bool is_implicit = integrator->method != NULL;
-    stiffness->steps = is_event ? 0 : stiffness->steps + 1;
+    // of many coordinates events follow one another at once
+    const bool starts_anew = is_event && system->coordinate_count <= STIFFNESS_COORDINATES_FEW;
+    stiffness->steps = starts_anew ? 0 : stiffness->steps + 1;
     if (is_event || !(depth > 0.0)) {
         stiffness->beaten_s = 0.0;
         stiffness->wait = stiffness->pause = 0;
@@ -340,6 +393,9 @@ static void stiffness_follow(Stiffness *stiffness, const System *system, const S
     if (!(depth > 0.0)) {
         integrator->method = NULL;
         return;
+    }
+    if (!is_implicit) {
+        stiffness->beaten_s = 0.0;
     }
     if (!is_implicit && stiffness->steps < STIFFNESS_CHECK_INTERVAL) {
         return;
@@ -356,6 +412,11 @@ static void stiffness_follow(Stiffness *stiffness, const System *system, const S
     const bool is_next = is_implicit ? stays(stiffness, taken_s, integrator)
                                      : takes_over(stiffness, system, state, integrator);
     integrator->method = is_next ? &radau->method : NULL;
+    integrator->method_least = 0.0;
+    if (is_next && stiffness->beaten_s > 0.0 && stiffness->cost > STIFFNESS_COST_MUCH) {
+        integrator->otherwise = stiffness->beaten_s;
+        integrator->method_least = stiffness->cost * stiffness->beaten_s;
+    }
 }
 
 static void stiffness_finish(Stiffness *stiffness)
@@ -556,6 +617,10 @@ static void stiffness_carry(Stiffness *stiffness, Dop853 *integrator, Carry *car
     CARRY(carry, stiffness->beaten_s);
     CARRY(carry, stiffness->wait);
     CARRY(carry, stiffness->pause);
+    CARRY(carry, stiffness->cost);
+    CARRY(carry, stiffness->held);
+    CARRY(carry, stiffness->beaten_decay);
+    CARRY(carry, stiffness->gain);
     if (has_radau && stiffness->radau == NULL) {
         stiffness->radau = radau_create(integrator);
     }

@@ -86,6 +86,13 @@ typedef struct Stiffness {
     double beaten_s;
     size_t wait;  // checks until another trial may follow the last one
     size_t pause; // as many were waited for after the last trial that was lost
+    double cost;  // of an implicit step, in explicit ones
+    // Where that is much: explicit steps that were held back since the last trial; the step that
+    // was beaten then, times the rate of decay there; and by how much the implicit steps since then
+    // have been worth their work, in steps.
+    double held;
+    double beaten_decay;
+    double gain;
 } Stiffness;
 
 typedef struct Stepper {

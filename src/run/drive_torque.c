@@ -1,9 +1,9 @@
 // Finds the torque of a drive by Euler's law of the body that it turns about the pivot there, whose
 // force it does not need,
 //
-//     I alpha + s x m (a + g) = T + M + sum of (r x F + c)
+//     I alpha + s x m (a - g) = T + M + sum of (r x F + c)
 //
-// with s from the pivot to the centre of mass, g upward, M the moment of springs and dampers, and
+// with s from the pivot to the centre of mass, g gravity, M the moment of springs and dampers, and
 // of each other joint its force F at the arm r and its moment c.
 #include "run/drive_torque.h"
 #include "contact/touch.h"
@@ -66,7 +66,7 @@ double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t d
     const double mass = linkage->bodies[driven].mass;
     const Joint *pivot = &linkage->joints[pivoted];
     const Vec2 point = linkage_point(motions, pivot->body_b, pivot->anchor_b);
-    const Vec2 pull = vec2_add(body->acceleration, (Vec2){0.0, scenario->gravity});
+    const Vec2 pull = vec2_add(body->acceleration, scenario_upward(scenario));
     double torque = linkage->bodies[driven].inertia * body->alpha +
                     mass * vec2_cross(vec2_sub(body->position, point), pull) -
                     moment_of_loads(linkage, motions, run->times[sample], driven, point);

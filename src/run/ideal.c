@@ -113,7 +113,7 @@ IdealSizes ideal_sizes(const Scenario *scenario)
         pose(scenario, k, count, drives);
         sizes.is_known =
             move_to(scenario, drives, motions) &&
-            inverse_dynamics_solve(linkage, motions, scenario->gravity,
+            inverse_dynamics_solve(linkage, motions, scenario_gravity(scenario),
                                    pose_time(scenario, drives, k, count), &reactions, &unused);
         if (sizes.is_known) {
             take_pose(linkage, motions, &reactions, least, most, &sizes);

@@ -41,7 +41,7 @@ bool pressed_start(Scenario *scenario, Err *err)
     linkage_start(linkage, motions);
     Reactions *reactions = zeroed(1, sizeof *reactions);
     Linkage pressed = linkage_copy(linkage);
-    bool is_good = inverse_dynamics_solve(linkage, motions, scenario->gravity,
+    bool is_good = inverse_dynamics_solve(linkage, motions, scenario_gravity(scenario),
                                           (InverseTime){0.0, 0.0}, reactions, err);
     if (is_good) {
         for (size_t i = 0; i < linkage->joint_count; i++) {

@@ -57,7 +57,7 @@ static void add_up_forces(const Scenario *scenario, const StepRecord *step, Vec2
     const size_t joint_count = solver_joint_count(step->part, linkage);
     for (size_t k = 0; k < body_count; k++) {
         const size_t i = solver_body(step->part, k);
-        forces[i] = (Vec2){0.0, -linkage->bodies[i].mass * scenario->gravity};
+        forces[i] = vec2_scale(linkage->bodies[i].mass, scenario_gravity(scenario));
     }
     for (size_t k = 0; k < joint_count; k++) {
         const Joint *joint = &linkage->joints[solver_joint(step->part, k)];

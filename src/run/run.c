@@ -303,7 +303,7 @@ static double mechanical_energy(const Scenario *scenario, const Sample *sample)
                space_potential_energy(linkage, sample->space_bodies, scenario->gravity);
     }
     return linkage_kinetic_energy(linkage, sample->bodies) +
-           linkage_potential_energy(linkage, sample->bodies, scenario->gravity) +
+           linkage_potential_energy(linkage, sample->bodies, scenario_gravity(scenario)) +
            forces_energy(linkage, sample->bodies);
 }
 

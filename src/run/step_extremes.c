@@ -1,9 +1,10 @@
 // Finds the extremes of signals inside a step.
 #include "run/step_extremes.h"
 #include "base/curve.h"
-#include "base/room.h"
 #include "base/root.h"
-#include "base/zeroed.h"
+
+#include <math.h>
+#include <string.h>
 
 // One signal at a time.
 //
@@ -34,121 +35,6 @@ enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
 enum { SOUGHT_MOST = 16 };
 
 enum { CLIMBS_MAX = 12 }; // a parabola gains half as many digits again each time
-
-Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
-                    Recorder *recorder)
-{
-    const Linkage *linkage = &scenario->linkage;
-    return (Looker){.scenario = scenario,
-                    .solver = solver,
-                    .state = state,
-                    .recorder = recorder,
-                    .sample = sample_create(linkage),
-                    .alpha_peaks = zeroed(linkage->body_count, sizeof(LookPeak[LOOK_SIGNS])),
-                    .force_peaks = zeroed(linkage->joint_count, sizeof(LookPeak[LOOK_SIGNS]))};
-}
-
-void looker_finish(Looker *looker)
-{
-    for (size_t i = 0; i < looker->block_count; i++) {
-        free(looker->blocks[i]);
-    }
-    free(looker->blocks);
-    free(looker->alpha_peaks);
-    free(looker->force_peaks);
-    sample_free(&looker->sample);
-}
-
-// Where the numbers of a look stand in its block.
-static Look look_in(const Looker *looker, double *block, double time_s)
-{
-    const size_t bodies = looker->scenario->linkage.body_count;
-    return (Look){time_s, block, block + bodies, block + 2 * bodies};
-}
-
-static Look new_look(Looker *looker, double time_s)
-{
-    const Linkage *linkage = &looker->scenario->linkage;
-    looker->blocks = room_grow(looker->blocks, &looker->block_count, looker->look_count + 1,
-                               sizeof *looker->blocks);
-    double **block = &looker->blocks[looker->look_count++];
-    if (*block == NULL) {
-        *block = zeroed(2 * linkage->body_count + linkage->joint_count, sizeof **block);
-    }
-    return look_in(looker, *block, time_s);
-}
-
-Look looker_first(Looker *looker)
-{
-    assert(looker->look_count == 0);
-    return new_look(looker, 0.0);
-}
-
-void looker_keep(Looker *looker, Look *first, const Look *look)
-{
-    const Linkage *linkage = &looker->scenario->linkage;
-    const size_t body_count = solver_body_count(looker->part, linkage);
-    const size_t joint_count = solver_joint_count(looker->part, linkage);
-    assert(looker->look_count > 0 && looker->blocks[0] == first->omega);
-    first->time_s = look->time_s;
-    for (size_t k = 0; k < body_count; k++) {
-        const size_t i = solver_body(looker->part, k);
-        first->omega[i] = look->omega[i];
-        first->alpha[i] = look->alpha[i];
-    }
-    for (size_t k = 0; k < joint_count; k++) {
-        const size_t i = solver_joint(looker->part, k);
-        first->force[i] = look->force[i];
-    }
-    looker->look_count = 1;
-    looker->has_peaks = false;
-}
-
-Look look_inside(Looker *looker, double time_s)
-{
-    const Linkage *linkage = &looker->scenario->linkage;
-    const SolverPart *part = looker->part;
-    const Solver *solver = looker->solver;
-    const Look look = new_look(looker, time_s);
-    const Sample *sample = &looker->sample;
-    if (looker->some != NULL) {
-        solver->observe_some(looker->state, time_s, looker->some, &looker->sample);
-    } else if (part != NULL) {
-        solver->observe_part(looker->state, time_s, &looker->sample);
-    } else {
-        solver->observe(looker->state, time_s, &looker->sample);
-    }
-    recorder_see(looker->recorder, part, sample);
-    const size_t body_count = solver_body_count(part, linkage);
-    const size_t joint_count = solver_joint_count(part, linkage);
-    for (size_t k = 0; k < body_count; k++) {
-        const size_t i = solver_body(part, k);
-        look.omega[i] = sample->bodies[i].omega;
-        look.alpha[i] = sample->bodies[i].alpha;
-    }
-    for (size_t k = 0; k < joint_count; k++) {
-        const size_t i = solver_joint(part, k);
-        look.force[i] = sample->joints[i].force;
-    }
-    return look;
-}
-
-Look look_at_end(Looker *looker, const StepRecord *step)
-{
-    const Linkage *linkage = &looker->scenario->linkage;
-    const Look look = new_look(looker, step->end_s);
-    const size_t body_count = solver_body_count(step->part, linkage);
-    const size_t joint_count = solver_joint_count(step->part, linkage);
-    for (size_t k = 0; k < body_count; k++) {
-        const size_t i = solver_body(step->part, k);
-        look.omega[i] = step->omega[k];
-        look.alpha[i] = step->alpha[k];
-    }
-    for (size_t k = 0; k < joint_count; k++) {
-        look.force[solver_joint(step->part, k)] = step->joints[k].force;
-    }
-    return look;
-}
 
 // An acceleration or a force, and whether its largest or its smallest value is looked for.
 typedef struct Aim {
@@ -218,6 +104,30 @@ static double rise_between(const Aim *aim, const Look *first, const Look *last)
     return fmax(1.5 * above, 0.0);
 }
 
+// Whether a signal may come near the run's extreme between the ends of a step's parts, as far as
+// these tell.
+static bool aim_may_come_near(const Aim *aim, const Look *before, int parts, const Look *looks)
+{
+    double most = aim_value(aim, before);
+    double least = most;
+    double top = most; // what it may reach in between
+    for (int k = 0; k < parts; k++) {
+        const double value = aim_value(aim, &looks[k]);
+        if (aim->looker->some != NULL) {
+            const Look *first = k > 0 ? &looks[k - 1] : before;
+            const double rise = rise_between(aim, first, &looks[k]);
+            top = fmax(top, fmax(value, aim_value(aim, first)) + rise);
+        }
+        // once a signal and step: fmin and fmax would be calls
+        most = value > most ? value : most;
+        least = value < least ? value : least;
+    }
+    top = most > top ? most : top;
+    // what stays as it is has no maximum
+    return step_extremes_is_near(aim, top, STEP_EXTREMES_RISE_MAX) &&
+           top - least > ALIKE * fabs(most);
+}
+
 // How many signals come near the run's extremes; at most so many are counted.
 static size_t count_near(Looker *looker, const Look *before, int parts, const Look *looks,
                          size_t enough)
@@ -225,26 +135,7 @@ static size_t count_near(Looker *looker, const Look *before, int parts, const Lo
     size_t count = 0;
     Aim aim;
     for (size_t number = 0; count < enough && next_aim(looker, &number, &aim);) {
-        double most = aim_value(&aim, before);
-        double least = most;
-        double top = most; // what it may reach in between
-        for (int k = 0; k < parts; k++) {
-            const double value = aim_value(&aim, &looks[k]);
-            if (looker->some != NULL) {
-                const Look *first = k > 0 ? &looks[k - 1] : before;
-                const double rise = rise_between(&aim, first, &looks[k]);
-                top = fmax(top, fmax(value, aim_value(&aim, first)) + rise);
-            }
-            // once a signal and step: fmin and fmax would be calls
-            most = value > most ? value : most;
-            least = value < least ? value : least;
-        }
-        top = most > top ? most : top;
-        // what stays as it is has no maximum
-        count += step_extremes_is_near(&aim, top, STEP_EXTREMES_RISE_MAX) &&
-                         top - least > ALIKE * fabs(most)
-                     ? 1
-                     : 0;
+        count += aim_may_come_near(&aim, before, parts, looks) ? 1 : 0;
     }
     return count;
 }
@@ -352,6 +243,17 @@ static bool may_turn(const Looker *looker, size_t body, const Look *first, const
            fmin(first->omega[body], last->omega[body]) - room < extremes->omega_min.value;
 }
 
+// Looks for one between two times, to a share of a step of a width.
+static bool look_for_turn(Turn *turn, double from_s, double to_s, double width_s)
+{
+    double time_s;
+    const bool is_found = root_find(turn_rate, turn, from_s, to_s, NEXT_TO_END * width_s, &time_s);
+    if (is_found) {
+        turn_rate(time_s, turn); // for the recorder
+    }
+    return is_found;
+}
+
 // Looks for them; at most so many are sought. Returns how many were.
 static size_t look_for_turns(Looker *looker, const Look *first, const Look *last, size_t most)
 {
@@ -359,27 +261,31 @@ static size_t look_for_turns(Looker *looker, const Look *first, const Look *last
     size_t sought = 0;
     for (size_t k = 0; k < body_count && sought < most; k++) {
         const size_t i = solver_body(looker->part, k);
-        Turn turn = {looker, i};
-        double time_s;
-        if (!may_turn(looker, i, first, last)) {
-            continue;
-        }
-        sought++;
-        if (root_find(turn_rate, &turn, first->time_s, last->time_s,
-                      NEXT_TO_END * (last->time_s - first->time_s), &time_s)) {
-            turn_rate(time_s, &turn); // for the recorder
+        if (may_turn(looker, i, first, last)) {
+            sought++;
+            look_for_turn(&(Turn){looker, i}, first->time_s, last->time_s,
+                          last->time_s - first->time_s);
         }
     }
     return sought;
 }
 
-bool look_is_cluster(Looker *looker, const Look *before, int parts, const Look *looks)
+// Whether there are more signals than are climbed to one by one: a body has an extreme of omega and
+// two of alpha in a step, a joint one.
+static bool is_large(const Looker *looker)
+{
+    const Linkage *linkage = &looker->scenario->linkage;
+    return 3 * solver_body_count(looker->part, linkage) +
+               solver_joint_count(looker->part, linkage) >
+           SOUGHT_MOST;
+}
+
+// Whether so many signals of a step may come near the run's extremes that these are found together
+// for less than one by one.
+static bool look_is_cluster(Looker *looker, const Look *before, int parts, const Look *looks)
 {
     const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
-    const size_t joint_count = solver_joint_count(looker->part, &looker->scenario->linkage);
-    // a body has an extreme of omega and two of alpha in a step, a joint one
-    if (!(looks[parts - 1].time_s > before->time_s) ||
-        3 * body_count + joint_count <= SOUGHT_MOST) {
+    if (!(looks[parts - 1].time_s > before->time_s) || !is_large(looker)) {
         return false;
     }
     size_t count = count_near(looker, before, parts, looks, SOUGHT_MOST + 1);
@@ -466,11 +372,6 @@ static double step_extremes_value_of(const Look *look, const Signal *signal)
     }
 }
 
-static LookPeak *peaks_of(const Looker *looker, RecorderSignal which, size_t number)
-{
-    return which == RECORDER_FORCE ? looker->force_peaks[number] : looker->alpha_peaks[number];
-}
-
 // Lets the looker have a top of an acceleration or a force, with the speed there.
 static void note_peak(const Cluster *cluster, const Signal *signal, double share, double value)
 {
@@ -486,7 +387,7 @@ static void note_peak(const Cluster *cluster, const Signal *signal, double share
         }
         top.omega = curve_at(speeds, share);
     }
-    peaks_of(cluster->looker, signal->which, signal->number)[signal->sign > 0.0 ? 1 : 0] = top;
+    looker_peaks(cluster->looker, signal->which, signal->number)[signal->sign > 0.0 ? 1 : 0] = top;
 }
 
 // Raises an extreme to the top of its signal.
@@ -546,7 +447,7 @@ static void step_extremes_raise_all(const Cluster *cluster)
     }
 }
 
-void look_at_cluster(Looker *looker, const Look *before, const Look *end)
+static void look_at_cluster(Looker *looker, const Look *before, const Look *end)
 {
     Cluster cluster = {
         .looker = looker, .start_s = before->time_s, .width_s = end->time_s - before->time_s};
@@ -559,35 +460,483 @@ void look_at_cluster(Looker *looker, const Look *before, const Look *end)
     looker->has_peaks = true;
 }
 
-// Adds the peaks between two times to a path, the earlier one first.
-static size_t add_peaks(const LookPeak *peaks, double from_s, double to_s, LookPoint *path,
-                        size_t count)
+// Signals that a solver can sketch.
+//
+// A sketch costs no evaluation, and is right to within the error of a step, e:
+//     e(s) = e_0 (1 - s) + e_1 s + e_c min(1, 100 d^2),  d = min(s, 1 - s)
+// at a share s of the step, with its errors e_0 and e_1 at the ends, where the state is known, and
+// e_c from one look inside: where a step is whole the sketch touches the signal at both ends. So it
+// is known which signals may have an extreme in the step, and where, before anybody looks at more.
+
+// of the step: from where a top is likely to either side of it
+static const double SKETCH_REACH = 0.01;
+
+// of the step: where a sketch is held against a look. The polynomial through a step of order 8 is
+// worst at 0.35 and 0.75, and right at 4/7.
+static const double SKETCH_CHECK = 0.4;
+
+// e_c over the error there
+static const double SKETCH_CAUTION = 2.0;
+
+// of a signal's range in the step: a sketch that is further off says nothing
+static const double SKETCH_ERROR_MOST = 0.1;
+
+// Of a large mechanism tops and turns that are found one by one, in some five looks each, rather
+// than all together in ten.
+enum { LIKELY_MOST = 2 };
+
+// A signal that is to be looked for: its top is likely at that share of the step.
+typedef struct Likely {
+    Aim aim;
+    double share; // NAN: not known
+} Likely;
+
+// Of omega of a body, where alpha is likely to be zero.
+typedef struct LikelyTurn {
+    size_t body;
+    double share;
+} LikelyTurn;
+
+// What is likely in a step; of each kind one more than are sought.
+typedef struct Sketch {
+    Cluster cluster; // of sketches instead of looks, with the states at the ends
+    Look ends[2];    // the sketch there, and at the check
+    Look check;
+    Look look; // at the check
+    size_t top_count;
+    size_t turn_count;
+    Likely tops[SOUGHT_MOST + 1];
+    LikelyTurn turns[SOUGHT_MOST + 1];
+} Sketch;
+
+static Look look_sketch(Looker *looker, double time_s)
 {
-    const size_t first = peaks[0].time_s <= peaks[1].time_s ? 0 : 1;
-    for (size_t i = 0; i < LOOK_SIGNS; i++) {
-        const LookPeak *top = &peaks[i == 0 ? first : 1 - first];
-        if (top->is_known && top->time_s > from_s && top->time_s < to_s) {
-            path[count++] = (LookPoint){top->time_s, top->value, top->omega};
+    const SolverPart *part = looker->part;
+    const Linkage *linkage = &looker->scenario->linkage;
+    const Look own = look_room(looker, time_s);
+    if (part == NULL) {
+        looker->solver->sketch(looker->state, time_s, own.omega, own.alpha, own.force);
+        return own;
+    }
+    // from the order of the part to that of the linkage
+    const Look look = look_room(looker, time_s);
+    looker->solver->sketch(looker->state, time_s, own.omega, own.alpha, own.force);
+    for (size_t k = 0; k < solver_body_count(part, linkage); k++) {
+        look.omega[solver_body(part, k)] = own.omega[k];
+        look.alpha[solver_body(part, k)] = own.alpha[k];
+    }
+    for (size_t k = 0; k < solver_joint_count(part, linkage); k++) {
+        look.force[solver_joint(part, k)] = own.force[k];
+    }
+    return look;
+}
+
+// The error of the sketch of a signal at a share of the step.
+static double sketch_error(const double errors[3], double share)
+{
+    const double near = share < 0.5 ? share : 1.0 - share;
+    const double inside = 100.0 * near * near;
+    return errors[0] * (1.0 - share) + errors[1] * share +
+           errors[2] * (inside < 1.0 ? inside : 1.0);
+}
+
+static void sketch_find_errors(const Sketch *sketch, const Aim *aim, double errors[3])
+{
+    const Look *looks = sketch->cluster.looks;
+    const Look *end = &looks[CURVE_NODES - 1];
+    errors[0] = fabs(aim_value(aim, &sketch->ends[0]) - aim_value(aim, &looks[0]));
+    errors[1] = fabs(aim_value(aim, &sketch->ends[1]) - aim_value(aim, end));
+    errors[2] =
+        SKETCH_CAUTION * fabs(aim_value(aim, &sketch->check) - aim_value(aim, &sketch->look));
+}
+
+// Where the polynomial through a sketch has its top, as a share of the step: 0 or 1 at an end.
+static double sketch_top(const double values[CURVE_NODES], size_t top)
+{
+    double share = curve_node(top);
+    const bool is_first = top == 0;
+    if (!is_first && top + 1 < CURVE_NODES) {
+        const double before = share - curve_node(top - 1);
+        const double behind = curve_node(top + 1) - share;
+        const double rise = (values[top] - values[top - 1]) / before;
+        const double fall = (values[top] - values[top + 1]) / behind;
+        return share + 0.5 * (rise * behind - fall * before) / (rise + fall);
+    }
+    // next to the end it may be higher
+    if (curve_at(values, is_first ? NEXT_TO_END : 1.0 - NEXT_TO_END) > values[top]) {
+        curve_top(values, &share);
+    }
+    return share;
+}
+
+// Whether a signal may have a top inside the step that is beyond the extreme so far.
+static bool has_likely_top(const Sketch *sketch, Likely *likely)
+{
+    const Look *looks = sketch->cluster.looks;
+    const Aim *aim = &likely->aim;
+    double values[CURVE_NODES];
+    double errors[3];
+    size_t top = 0;
+    size_t low = 0;
+    for (size_t k = 0; k < CURVE_NODES; k++) {
+        values[k] = aim_value(aim, &looks[k]);
+        top = values[k] > values[top] ? k : top;
+        low = values[k] < values[low] ? k : low;
+    }
+    likely->share = NAN;
+    if (isnan(values[1])) {
+        return true;
+    }
+    sketch_find_errors(sketch, aim, errors);
+    if (sketch_error(errors, 0.5) > SKETCH_ERROR_MOST * (values[top] - values[low])) {
+        return true;
+    }
+    double expected = values[top];
+    if (top > 0 && top + 1 < CURVE_NODES) {
+        top_of_three(aim, &looks[top - 1], &expected);
+    }
+    // a top between two nodes is higher than both by little
+    if (!step_extremes_is_near(aim, expected + sketch_error(errors, 0.5), LIKELY)) {
+        return false;
+    }
+    const double share = sketch_top(values, top);
+    if (share > 0.0 && share < 1.0) {
+        likely->share = share;
+        return true;
+    }
+    // where the sketch does not show a top, there is none unless the error hides it
+    for (size_t k = 1; k + 1 < CURVE_NODES; k++) {
+        if (values[k] + sketch_error(errors, curve_node(k)) >= values[top]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether alpha of a body is likely to be zero between two looks, where omega may then be beyond
+// the run's extremes.
+static bool has_likely_turn(const Looker *looker, const Sketch *sketch, const Look *first,
+                            const Look *last, LikelyTurn *turn)
+{
+    const Cluster *cluster = &sketch->cluster;
+    double alphas[CURVE_NODES];
+    double omegas[CURVE_NODES];
+    for (size_t k = 0; k < CURVE_NODES; k++) {
+        alphas[k] = cluster->looks[k].alpha[turn->body];
+        omegas[k] = cluster->looks[k].omega[turn->body];
+    }
+    double low = (first->time_s - cluster->start_s) / cluster->width_s;
+    double high = (last->time_s - cluster->start_s) / cluster->width_s;
+    if (isnan(alphas[1])) {
+        turn->share = NAN;
+        return true;
+    }
+    while (high - low > NEXT_TO_END) {
+        const double middle = 0.5 * (low + high);
+        const bool is_before = curve_at(alphas, middle) * first->alpha[turn->body] > 0.0;
+        *(is_before ? &low : &high) = middle;
+    }
+    turn->share = 0.5 * (low + high);
+    const double omega = curve_at(omegas, turn->share);
+    const double room = STEP_EXTREMES_RISE_MAX * fabs(omega - first->omega[turn->body]);
+    const BodyExtremes *extremes = &looker->recorder->trajectory->bodies[turn->body];
+    return omega + room > extremes->omega_max.value || omega - room < extremes->omega_min.value;
+}
+
+// How far the mean of an acceleration between two looks lies above the middle of its chord.
+static double mean_above(const Look *first, const Look *last, size_t body)
+{
+    const double mean = (last->omega[body] - first->omega[body]) / (last->time_s - first->time_s);
+    return mean - 0.5 * (first->alpha[body] + last->alpha[body]);
+}
+
+// How far signals may rise above the ends of a step's parts, where the mean says that they bulge by
+// 1: a parabola by 1.5, and four times that where it is none.
+static const double BULGE_MOST = 6.0;
+
+// The largest bulge that an acceleration may have in a step, over the body's largest so far: what
+// forces may bulge by, of which no mean is known.
+static double largest_bulge(const Looker *looker, const Look *before, int parts, const Look *looks)
+{
+    const Linkage *linkage = &looker->scenario->linkage;
+    const size_t body_count = solver_body_count(looker->part, linkage);
+    double largest = 0.0;
+    for (size_t n = 0; n < body_count; n++) {
+        const size_t i = solver_body(looker->part, n);
+        const double most = fmax(extreme_so_far(looker, i, 1.0), extreme_so_far(looker, i, -1.0));
+        for (int k = 0; k < parts && (int)i != linkage_driven_body(linkage); k++) {
+            const double above = fabs(mean_above(k > 0 ? &looks[k - 1] : before, &looks[k], i));
+            largest = above > largest * most ? above / most : largest;
+        }
+    }
+    return BULGE_MOST * largest;
+}
+
+// Whether a signal may have a top between two looks that comes near the run's extreme, as far as
+// these and their means tell. A parabola that rises from the first to the last by r, and whose mean
+// lies b above the middle of its chord, has none between them where 6 b <= r: half of that is asked
+// for. Forces may bulge by a share of their largest so far.
+static bool may_have_top_between(const Aim *aim, const Look *first, const Look *last, double bulge)
+{
+    const double start = aim_value(aim, first);
+    const double end = aim_value(aim, last);
+    const double higher = end > start ? end : start;
+    const double change = fabs(end - start);
+    double rise = bulge * fabs(aim->extreme);
+    if (aim->signal < aim->looker->scenario->linkage.body_count) {
+        const double above = fabs(mean_above(first, last, aim->signal));
+        if (12.0 * above <= change) {
+            return false;
+        }
+        rise = BULGE_MOST * above;
+    }
+    return rise + change > ALIKE * fabs(higher) &&
+           step_extremes_is_near(aim, higher + rise, STEP_EXTREMES_RISE_MAX);
+}
+
+// The same in any part of a step, or where two meet.
+static bool may_have_top_inside(const Aim *aim, const Look *before, int parts, const Look *looks,
+                                double bulge)
+{
+    bool may = false;
+    for (int k = 0; k < parts && !may; k++) {
+        const Look *first = k > 0 ? &looks[k - 1] : before;
+        const double value = aim_value(aim, &looks[k]);
+        may = may_have_top_between(aim, first, &looks[k], bulge) ||
+              (k + 1 < parts && value >= aim_value(aim, first) &&
+               value >= aim_value(aim, &looks[k + 1]) &&
+               step_extremes_is_near(aim, value, STEP_EXTREMES_RISE_MAX));
+    }
+    return may;
+}
+
+// Whether anything may be beyond the run's extremes, as far as ends of parts tell.
+static bool may_have_any(Looker *looker, const Look *before, int parts, const Look *looks,
+                         double bulge)
+{
+    const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
+    for (int k = 0; k < parts; k++) {
+        const Look *first = k > 0 ? &looks[k - 1] : before;
+        for (size_t i = 0; i < body_count; i++) {
+            if (may_turn(looker, solver_body(looker->part, i), first, &looks[k])) {
+                return true;
+            }
+        }
+    }
+    Aim aim;
+    for (size_t number = 0; next_aim(looker, &number, &aim);) {
+        if (may_have_top_inside(&aim, before, parts, looks, bulge)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether the look inside shows a signal near its extreme, higher than at both ends.
+static bool has_seen_top(const Sketch *sketch, const Aim *aim)
+{
+    const double value = aim_value(aim, &sketch->look);
+    return value > aim_value(aim, &sketch->cluster.looks[0]) &&
+           value > aim_value(aim, &sketch->cluster.looks[CURVE_NODES - 1]) &&
+           step_extremes_is_near(aim, value, STEP_EXTREMES_RISE_MAX);
+}
+
+// The step from its ends and what lies between, and what is likely in it.
+static void sketch_step(Looker *looker, const Look *before, int parts, const Look *looks,
+                        double bulge, Sketch *sketch)
+{
+    const Look *end = &looks[parts - 1];
+    const size_t body_count = solver_body_count(looker->part, &looker->scenario->linkage);
+    Cluster *cluster = &sketch->cluster;
+    *cluster = (Cluster){
+        .looker = looker, .start_s = before->time_s, .width_s = end->time_s - before->time_s};
+    cluster->looks[0] = *before;
+    cluster->looks[CURVE_NODES - 1] = *end;
+    for (size_t k = 1; k + 1 < CURVE_NODES; k++) {
+        cluster->looks[k] =
+            look_sketch(looker, cluster->start_s + curve_node(k) * cluster->width_s);
+    }
+    const double check_s = cluster->start_s + SKETCH_CHECK * cluster->width_s;
+    sketch->ends[0] = look_sketch(looker, cluster->start_s);
+    sketch->ends[1] = look_sketch(looker, end->time_s);
+    sketch->check = look_sketch(looker, check_s);
+    sketch->look = look_inside(looker, check_s);
+    sketch->top_count = sketch->turn_count = 0;
+    for (int k = 0; k < parts; k++) {
+        const Look *first = k > 0 ? &looks[k - 1] : before;
+        for (size_t i = 0; i < body_count && sketch->turn_count <= SOUGHT_MOST; i++) {
+            LikelyTurn *turn = &sketch->turns[sketch->turn_count];
+            turn->body = solver_body(looker->part, i);
+            sketch->turn_count += may_turn(looker, turn->body, first, &looks[k]) &&
+                                          has_likely_turn(looker, sketch, first, &looks[k], turn)
+                                      ? 1
+                                      : 0;
+        }
+    }
+    Aim aim;
+    for (size_t number = 0; sketch->top_count <= SOUGHT_MOST && next_aim(looker, &number, &aim);) {
+        Likely *likely = &sketch->tops[sketch->top_count];
+        likely->aim = aim;
+        const bool may =
+            may_have_top_inside(&aim, before, parts, looks, bulge) || has_seen_top(sketch, &aim);
+        sketch->top_count += may && has_likely_top(sketch, likely) ? 1 : 0;
+    }
+}
+
+// Looks where a signal is likely to have its top, and climbs to it from there. Where it is not
+// there its place is not known.
+static bool find_likely_top(Looker *looker, const Sketch *sketch, Likely *likely, Look *found)
+{
+    const Cluster *cluster = &sketch->cluster;
+    const double width_s = cluster->width_s;
+    const double time_s = cluster->start_s + likely->share * width_s;
+    const double reach = fmin(SKETCH_REACH, 0.5 * fmin(likely->share, 1.0 - likely->share));
+    const Look points[] = {
+        cluster->looks[0],
+        look_inside(looker, time_s - reach * width_s),
+        look_inside(looker, time_s),
+        look_inside(looker, time_s + reach * width_s),
+        cluster->looks[CURVE_NODES - 1],
+    };
+    const Aim aim = {looker, likely->aim.signal, likely->aim.sign,
+                     extreme_so_far(looker, likely->aim.signal, likely->aim.sign)};
+    const double top = fmax(aim_value(&aim, &points[1]),
+                            fmax(aim_value(&aim, &points[2]), aim_value(&aim, &points[3])));
+    if (aim_value(&aim, &points[0]) > top || aim_value(&aim, &points[4]) > top) {
+        likely->share = NAN;
+        return false;
+    }
+    return step_extremes_find_top(&aim, sizeof points / sizeof *points, points, found);
+}
+
+// Looks that show tops of signals whose sketch does not.
+typedef struct Shown {
+    Looker *looker;
+    size_t count;
+    Look
+        points[LOOK_PARTS_MAX + 2]; // the ends of the step's parts, or those of the step and a look
+    Look beside[2];                 // next to the step's ends, once they are asked for
+    bool has_beside[2];
+} Shown;
+
+static Shown shown_start(const Sketch *sketch, int parts, const Look *looks)
+{
+    Shown shown = {.looker = sketch->cluster.looker};
+    shown.points[shown.count++] = sketch->cluster.looks[0];
+    if (parts == 1) {
+        shown.points[shown.count++] = sketch->look;
+    }
+    for (int k = 0; k < parts; k++) {
+        shown.points[shown.count++] = looks[k];
+    }
+    return shown;
+}
+
+static const Look *look_beside_end(Shown *shown, bool is_last)
+{
+    const double start_s = shown->points[0].time_s;
+    const double end_s = shown->points[shown->count - 1].time_s;
+    const double by_s = NEXT_TO_END * (end_s - start_s);
+    Look *beside = &shown->beside[is_last ? 1 : 0];
+    if (!shown->has_beside[is_last ? 1 : 0]) {
+        *beside = look_inside(shown->looker, is_last ? end_s - by_s : start_s + by_s);
+        shown->has_beside[is_last ? 1 : 0] = true;
+    }
+    return beside;
+}
+
+// Climbs to the top of a signal if there may be one.
+static bool find_shown_top(Shown *shown, const Aim *aim, Look *found)
+{
+    const Look *points = shown->points;
+    const size_t last = shown->count - 1;
+    size_t top = 0;
+    for (size_t i = 1; i <= last; i++) {
+        top = aim_value(aim, &points[i]) > aim_value(aim, &points[top]) ? i : top;
+    }
+    if (top > 0 && top < last) {
+        return step_extremes_find_top(aim, shown->count, points, found);
+    }
+    const Look three[] = {points[top == 0 ? 0 : last - 1], *look_beside_end(shown, top != 0),
+                          points[top == 0 ? 1 : last]};
+    return step_extremes_find_top(aim, 3, three, found);
+}
+
+// Climbs to the tops of signals whose sketch does not show them.
+static int look_at_others(const Sketch *sketch, int parts, Look looks[LOOK_MAX])
+{
+    Looker *looker = sketch->cluster.looker;
+    Shown shown = shown_start(sketch, parts, looks);
+    int count = parts;
+    for (size_t i = 0; i < sketch->top_count; i++) {
+        Aim aim = sketch->tops[i].aim;
+        Look top;
+        aim.extreme = extreme_so_far(looker, aim.signal, aim.sign);
+        if (isnan(sketch->tops[i].share) && find_shown_top(&shown, &aim, &top)) {
+            count = insert(looks, count, &top);
         }
     }
     return count;
 }
 
-size_t look_path(const Looker *looker, RecorderSignal signal, size_t number, double before_s,
-                 int count, const Look *looks, LookPoint path[LOOK_PATH_MAX])
+// Looks for what is likely in a step.
+static int look_at_likely(Sketch *sketch, int parts, Look looks[LOOK_MAX])
 {
-    const bool is_force = signal == RECORDER_FORCE;
-    size_t points = 0;
-    for (int k = 0; k < count; k++) {
-        const Look *look = &looks[k];
-        if (looker->has_peaks) {
-            const double from_s = k > 0 ? looks[k - 1].time_s : before_s;
-            points =
-                add_peaks(peaks_of(looker, signal, number), from_s, look->time_s, path, points);
+    const Cluster *cluster = &sketch->cluster;
+    Looker *looker = cluster->looker;
+    const double end_s = cluster->start_s + cluster->width_s;
+    for (size_t i = 0; i < sketch->turn_count; i++) {
+        const LikelyTurn *likely = &sketch->turns[i];
+        Turn turn = {looker, likely->body};
+        const double time_s = cluster->start_s + likely->share * cluster->width_s;
+        const double reach_s = SKETCH_REACH * cluster->width_s;
+        const double from_s = fmax(time_s - reach_s, cluster->start_s);
+        if (isnan(likely->share) ||
+            !look_for_turn(&turn, from_s, fmin(time_s + reach_s, end_s), cluster->width_s)) {
+            look_for_turn(&turn, cluster->start_s, end_s, cluster->width_s);
         }
-        path[points++] =
-            (LookPoint){look->time_s, is_force ? look->force[number] : look->alpha[number],
-                        is_force ? 0.0 : look->omega[number]};
     }
-    return points;
+    Look found[SOUGHT_MOST];
+    size_t found_count = 0;
+    for (size_t i = 0; i < sketch->top_count; i++) {
+        found_count +=
+            !isnan(sketch->tops[i].share) &&
+                    find_likely_top(looker, sketch, &sketch->tops[i], &found[found_count])
+                ? 1
+                : 0;
+    }
+    int count = look_at_others(sketch, parts, looks);
+    for (size_t i = 0; i < found_count; i++) {
+        count = insert(looks, count, &found[i]);
+    }
+    return count;
+}
+
+int look_into_step(Looker *looker, const Look *before, int parts, bool is_smooth,
+                   Look looks[LOOK_MAX])
+{
+    const Look *end = &looks[parts - 1];
+    if (looker->solver->sketch == NULL) {
+        if (is_smooth && look_is_cluster(looker, before, parts, looks)) {
+            look_at_cluster(looker, before, end);
+            return parts;
+        }
+        return look_for_extremes(looker, before, parts, looks);
+    }
+    if (!(end->time_s > before->time_s)) {
+        return parts;
+    }
+    const double bulge = largest_bulge(looker, before, parts, looks);
+    if (!may_have_any(looker, before, parts, looks, bulge)) {
+        return parts;
+    }
+    Sketch sketch;
+    sketch_step(looker, before, parts, looks, bulge, &sketch);
+    const size_t count = sketch.top_count + sketch.turn_count;
+    if (is_smooth && count > LIKELY_MOST && is_large(looker)) {
+        look_at_cluster(looker, before, end);
+        return parts;
+    }
+    sketch.top_count = sketch.top_count < SOUGHT_MOST ? sketch.top_count : SOUGHT_MOST;
+    return look_at_likely(&sketch, parts, looks);
 }

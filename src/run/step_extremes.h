@@ -1,90 +1,16 @@
 // The extremes of signals inside a step, from a solver's states there.
 #pragma once
 
-#include "run/recorder.h"
-
-// A solver's state at instants inside its last step, where it provides them.
-
-// of a step; a chord of a quarter of a swing is then off by 1e-3 of its height
-enum { LOOK_PARTS_MAX = 16, LOOK_TOPS_MAX = 8, LOOK_MAX = LOOK_PARTS_MAX + LOOK_TOPS_MAX };
-
-// The signals at one instant.
-typedef struct Look {
-    double time_s;
-    double *omega; // by body; in the looker's room, like the next two
-    double *alpha;
-    double *force; // by joint
-} Look;
-
-// The largest and the smallest value of a signal in a step.
-enum { LOOK_SIGNS = 2 };
-
-// Where a signal in a step has one of them.
-typedef struct LookPeak {
-    double time_s;
-    double value;
-    double omega; // rad/s, of a body
-    bool is_known;
-} LookPeak;
-
-// Whom to ask. What it says the recorder sees, too. Looks are in its room until that is emptied.
-typedef struct Looker {
-    const Scenario *scenario;
-    const Solver *solver;
-    const void *state; // of the solver
-    Recorder *recorder;
-    const SolverPart *part; // of the last record: looks hold its bodies and joints; NULL: all
-    const SolverSome *some; // of the record, where the part is what the solver is asked for of it
-    Sample sample;          // owned, as the room
-    size_t look_count;      // looks that are in the room
-    size_t block_count;     // of them there is room for
-    double **blocks;        // of one look each
-    bool has_peaks;         // whether the last step was one in which a cluster was looked at
-    LookPeak (*alpha_peaks)[LOOK_SIGNS]; // of it, by body; owned, like the next
-    LookPeak (*force_peaks)[LOOK_SIGNS]; // by joint
-} Looker;
-
-Looker looker_start(const Scenario *scenario, const Solver *solver, const void *state,
-                    Recorder *recorder);
-void looker_finish(Looker *looker);
-
-// A first look in the room, with nothing in it.
-Look looker_first(Looker *looker);
-
-// Empties the room but for the first look in it, which takes on what the look has of the part.
-void looker_keep(Looker *looker, Look *first, const Look *look);
-
-Look look_inside(Looker *looker, double time_s);
-
-// The end of a step as its record has it.
-Look look_at_end(Looker *looker, const StepRecord *step);
-
-// Whether so many signals of a step may come near the run's extremes that these are found together
-// for less than one by one. Arguments as below.
-bool look_is_cluster(Looker *looker, const Look *before, int parts, const Look *looks);
+#include "run/looker.h"
 
 // Looks in a step for maxima and minima of the signals that come near the run's extremes, down to
-// rounding; of many signals some are, and the others are seen at the looks that these take.
-// `before` is the start of the step, the looks the ends of its parts, LOOK_PARTS_MAX at most. Those
-// at maxima are put in between; returns how many looks there are then.
+// rounding, one by one; of many signals some are, and the others are seen at the looks that these
+// take. `before` is the start of the step, the looks the ends of its parts, LOOK_PARTS_MAX at most.
+// Those at maxima are put in between; returns how many looks there are then.
 int look_for_extremes(Looker *looker, const Look *before, int parts, Look looks[LOOK_MAX]);
 
-// The extremes of many signals in one step, found together.
-
-// Tells the recorder what the signals of the part reach between two looks at a step's ends, where
-// that may be beyond the run's extremes so far, and lets the looker have the peaks.
-void look_at_cluster(Looker *looker, const Look *before, const Look *end);
-
-// A signal at one instant.
-typedef struct LookPoint {
-    double time_s;
-    double value;
-    double omega; // rad/s, of a body
-} LookPoint;
-
-enum { LOOK_PATH_MAX = LOOK_MAX + LOOK_SIGNS };
-
-// Alpha of a body or force of a joint at looks, and at its peaks between them where a cluster was
-// looked at since the room was emptied. `before` is when the looks begin.
-size_t look_path(const Looker *looker, RecorderSignal signal, size_t number, double before_s,
-                 int count, const Look *looks, LookPoint path[LOOK_PATH_MAX]);
+// The same. Where the solver can sketch the step, only at maxima that are likely to be beyond the
+// run's extremes; where so many signals of a smooth step may have one that all are found together
+// for less, together: the looker then has their peaks.
+int look_into_step(Looker *looker, const Look *before, int parts, bool is_smooth,
+                   Look looks[LOOK_MAX]);

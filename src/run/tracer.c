@@ -275,12 +275,7 @@ static void add_signals(Tracer *tracer, const StepRecord *step)
         looks[k] = look_inside(&tracer->looker, step->start_s + (k + 1) * part_s);
     }
     looks[parts - 1] = look_at_end(&tracer->looker, step);
-    int count = parts;
-    if (step->is_smooth && look_is_cluster(&tracer->looker, &tracer->last, parts, looks)) {
-        look_at_cluster(&tracer->looker, &tracer->last, &looks[parts - 1]);
-    } else {
-        count = look_for_extremes(&tracer->looker, &tracer->last, parts, looks);
-    }
+    const int count = look_into_step(&tracer->looker, &tracer->last, parts, step->is_smooth, looks);
     tracer_add_bodies(tracer, step->part, count, looks);
     const size_t joint_count = solver_joint_count(step->part, &tracer->scenario->linkage);
     for (size_t k = 0; k < joint_count; k++) {

@@ -166,7 +166,6 @@ enum {
 typedef struct Mark {
     const char *opening;
     const char *further; // NULL: nothing more is asked
-    size_t at;           // where that stands, in bytes; 0: anywhere
 } Mark;
 
 typedef struct Kind {
@@ -204,12 +203,11 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
                    {{"{\"run\":", "\"outcome\":"},
                     {"{\"time_s\":", NULL},
                     {"{\"joint\":", "\"onset_s\":"}}},
-    [FILE_DATABASE] = {"a table of jointplay (SQLite)",
-                       {{"SQLite format 3", "JPSR", APPLICATION_AT}}},
+    [FILE_DATABASE] = {"a table of jointplay (SQLite)", {{"SQLite format 3", "JPSR"}}},
     [FILE_CASE] = {"a case of jointplay new (YAML)", {{"# Written by 'jointplay new", NULL}}},
     [FILE_SCRIPT] = {"a script of jointplay study slurm",
                      {{"#!/bin/bash", "Written by 'jointplay study slurm'"}}},
-    [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST", APPLICATION_AT}}},
+    [FILE_STORE] = {"a store of a study", {{"SQLite format 3", "JPST"}}},
     [FILE_JOURNAL] = {"a store of a comparison", {{"{\"compare\":", NULL}}},
 };
 
@@ -231,20 +229,25 @@ static bool begins_with(const char *head, size_t size, const char *opening)
     return true;
 }
 
-static bool goes_on_with(const char *head, size_t size, const Mark *mark)
+// Where what stands further down in a file of a kind does, in bytes; 0: anywhere.
+static const size_t FURTHER_AT[FILE_KIND_COUNT] = {
+    [FILE_DATABASE] = APPLICATION_AT, [FILE_STORE] = APPLICATION_AT};
+
+static bool goes_on_with(const char *head, size_t size, const char *further, size_t at)
 {
-    const size_t length = mark->further != NULL ? strlen(mark->further) : 0;
-    if (mark->at > 0) {
-        return size >= mark->at + length && memcmp(head + mark->at, mark->further, length) == 0;
+    const size_t length = further != NULL ? strlen(further) : 0;
+    if (at > 0) {
+        return size >= at + length && memcmp(head + at, further, length) == 0;
     }
-    return length == 0 || memmem(head, size, mark->further, length) != NULL;
+    return length == 0 || memmem(head, size, further, length) != NULL;
 }
 
-static bool is_of_kind(const Kind *kind, const char *head, size_t size)
+static bool is_of_kind(FileKind kind, const char *head, size_t size)
 {
-    for (size_t i = 0; i < MARK_MAX && kind->marks[i].opening != NULL; i++) {
-        if (begins_with(head, size, kind->marks[i].opening) &&
-            goes_on_with(head, size, &kind->marks[i])) {
+    const Mark *marks = KINDS[kind].marks;
+    for (size_t i = 0; i < MARK_MAX && marks[i].opening != NULL; i++) {
+        if (begins_with(head, size, marks[i].opening) &&
+            goes_on_with(head, size, marks[i].further, FURTHER_AT[kind])) {
             return true;
         }
     }
@@ -283,7 +286,7 @@ static bool refuse_head(const char *user, const char *path, const char *head, si
 {
     char what[2 * SHOWN_SIZE + 64];
     for (size_t i = 0; i < FILE_KIND_COUNT; i++) {
-        if (is_of_kind(&KINDS[i], head, size)) {
+        if (is_of_kind((FileKind)i, head, size)) {
             snprintf(what, sizeof what, "is %s", KINDS[i].name);
             return file_refuse(user, path, what, kind, err);
         }
@@ -324,8 +327,8 @@ static bool file_kind_check(FileKind kind, const char *user, const char *path, E
         snprintf(what, sizeof what, "cannot be read (%s)", strerror(errno));
         file_refuse(user, path, what, &KINDS[kind], err);
     } else {
-        is_own = is_of_kind(&KINDS[kind], head, size) ||
-                 refuse_head(user, path, head, size, &KINDS[kind], err);
+        is_own =
+            is_of_kind(kind, head, size) || refuse_head(user, path, head, size, &KINDS[kind], err);
     }
     free(head);
     return is_own;

@@ -61,6 +61,10 @@ static const double AXIS_FAR = 1.0;
 
 void axis_fit(double *low, double *high)
 {
+    if (!(*low <= *high)) {
+        *low = 0.0;
+        *high = 0.0;
+    }
     const double nearest = *low > 0.0 ? *low : *high < 0.0 ? -*high : 0.0;
     const bool has_zero = nearest <= AXIS_FAR * (*high - *low);
     const bool is_size = has_zero && *low >= 0.0;

@@ -32,7 +32,7 @@ double axis_step(double span, int wanted);
 void axis_round(double *low, double *high);
 
 // Widens a range to 0 and then to whole ticks; not to 0 where that would leave most of the axis
-// empty.
+// empty. An empty range, of which low is above high, becomes one about 0.
 void axis_fit(double *low, double *high);
 
 // Widens a range of a logarithmic axis to 1, 2 or 5 times powers of ten, and so far that at least

@@ -258,12 +258,9 @@ void settled_sentences(const Scenario *scenario, Text *text)
 
 void settled_lines(const Scenario *scenario, Text *text)
 {
-    Text sentences;
-    text_init(&sentences);
-    settled_sentences(scenario, &sentences);
-    text_fold(&sentences, STYLE_WIDTH);
-    text_append(text, "%s", sentences.data);
-    text_finish(&sentences);
+    const size_t start = text->length;
+    settled_sentences(scenario, text);
+    text_fold_behind(text, start, STYLE_WIDTH);
 }
 
 static void set_force(json_t *of, const Joint *joint, const char *name, double value)

@@ -30,9 +30,9 @@ KINDS = re.findall(r"^([a-z-]+): ", call("new", "--help")[1].split("Kinds:")[1],
 def errors_of(words):
     status, output, errors = call("run", *words, "--json")
     assert status == 0, errors
-    # settling may take a moment; everything else that is said is a complaint
-    said = [line for line in errors.splitlines() if not line.startswith(("settling", "reference"))]
-    assert not said, errors
+    # besides progress, and how long settling may take, whatever is said is a complaint
+    said = [line for line in errors.splitlines() if line.startswith("jointplay:")]
+    assert all("at its present pace" in line for line in said), errors
     runs = json.loads(output)["runs"]
     assert {"reference", "ode"} <= {run["backend"] for run in runs}
     return [run["error"]["max"] for run in runs if run["backend"] == "ode"]
@@ -58,7 +58,7 @@ def the_comments_of_a_case_are_true_where_they_are_uncommented():
 
 
 def the_control_a_mistake_and_a_coarse_step_are_seen():
-    write("mistake.yaml", read("four-bar.yaml").replace("length: 60 mm", "length: 60"))
+    write("mistake.yaml", read("four-bar.yaml").replace("length: 45 mm", "length: 45"))
     status, _, errors = call("run", "mistake.yaml")
     assert status == 3 and "mistake.yaml:10:" in errors, errors
     coarse = ["servo.yaml", "--step", "5 ms", "--set", "ode.stepping=plain", "--set", "ode.map=textbook"]

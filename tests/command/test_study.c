@@ -1,6 +1,8 @@
 // Does `jointplay study` say, write and refuse what it should?
 #include "program.h"
 
+#include <math.h>
+
 // Two speeds, and the steps; a revolution takes 120 and 40 ms, which no step may be longer than.
 static void write_study(const Program *program, const char *name, const char *steps,
                         const char *truth)
@@ -90,6 +92,64 @@ static void what_came_of_it_is_printed(void **state)
     json_decref(root);
     run_well(program, "study s.yaml --retry-failed");
     assert_says(program->errors, "making 0 failed or damaged runs again");
+}
+
+// Reads a file of the program's folder.
+static void read_file(const Program *program, const char *name, char *content, size_t size)
+{
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, name, path);
+    FILE *stream = fopen(path, "r");
+    assert_non_null(stream);
+    content[fread(content, 1, size - 1, stream)] = '\0';
+    fclose(stream);
+}
+
+// Where the dots of the three runs of a study of steps stand in its picture.
+static void draw_steps(Program *program, const char *steps, const char *store, double places[3],
+                       char *svg, size_t size)
+{
+    char path[PROGRAM_PATH_SIZE];
+    char words[PROGRAM_PATH_SIZE];
+    program_path(program, "steps.yaml", path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    fprintf(stream,
+            "title: Steps\ncase: %s/paper/ideal-nominal.yaml\nset: {run.samples: 36}\n"
+            "vary: {run.step: %s}\ntruth: false\n",
+            getenv("JOINTPLAY_CASES"), steps);
+    fclose(stream);
+    run_well(program, "study steps.yaml --fresh -q");
+    snprintf(words, sizeof words, "study plot %s --x run_step_s --y steps p.svg -q", store);
+    run_well(program, words);
+    read_file(program, "p.svg", svg, size);
+    size_t count = 0;
+    for (const char *c = svg; (c = strstr(c, "<circle cx=\"")) != NULL; c++) {
+        assert_true(count < 3);
+        places[count++] = strtod(c + strlen("<circle cx=\""), NULL);
+    }
+    assert_int_equal(count, 3);
+}
+
+static void a_picture_has_the_units_and_scales_of_its_study(void **state)
+{
+    Program *program = *state;
+    static char svg[1 << 16];
+    double at[3];
+    // half a decade apart each, a span that no axis would be logarithmic for by itself
+    draw_steps(program, "{from: 20 us, to: 80 us, count: 3, scale: log}", "steps.yaml", at, svg,
+               sizeof svg);
+    assert_says(svg, ">step, us<");
+    assert_says(svg, ">steps of the solver<");
+    assert_says(svg, ">Steps<");
+    assert_true(fabs((at[2] - at[1]) - (at[1] - at[0])) < 0.2);
+    // the controls: an even scale, on which 20, 40 and 80 are not evenly apart, and a store alone
+    draw_steps(program, "[20 us, 40 us, 80 us]", "steps.yaml", at, svg, sizeof svg);
+    assert_true(fabs((at[2] - at[1]) - 2.0 * (at[1] - at[0])) < 0.2);
+    draw_steps(program, "{from: 20 us, to: 80 us, count: 3, scale: log}", "steps.sqlite", at, svg,
+               sizeof svg);
+    assert_says(svg, ">run step, s<");
+    assert_true(fabs((at[2] - at[1]) - 2.0 * (at[1] - at[0])) < 0.2);
 }
 
 static void rows_are_exported_and_drawn(void **state)
@@ -248,6 +308,7 @@ int main(void)
         STUDY_TEST(a_dry_run_tells_all_and_writes_nothing),
         STUDY_TEST(a_key_that_no_run_uses_is_said),
         STUDY_TEST(what_came_of_it_is_printed),
+        STUDY_TEST(a_picture_has_the_units_and_scales_of_its_study),
         STUDY_TEST(rows_are_exported_and_drawn),
         STUDY_TEST(a_study_of_which_every_run_fails_ends_with_status_4),
         STUDY_TEST(a_study_that_follows_a_key_has_the_same_rows_in_parts),

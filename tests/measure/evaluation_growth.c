@@ -142,7 +142,7 @@ typedef struct Made {
 static void make(const Kind *kind, int count, Made *made)
 {
     const size_t most = 4 * (size_t)count + 4;
-    *made = (Made){.scenario = {.contact = contact_options_default(), .gravity = 9.81}};
+    *made = (Made){.scenario = {.contact = contact_options_default(), .gravity = {.y = -9.81}}};
     Linkage *linkage = &made->scenario.linkage;
     *linkage = linkage_create((LinkageRoom){.bodies = most, .joints = most});
     made->scenario.contact.stiffness = 1e9;

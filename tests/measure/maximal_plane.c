@@ -38,7 +38,7 @@ typedef struct Plane {
     const Linkage *linkage;
     Touch *places;
     int driven;
-    double gravity;
+    Vec2 gravity;
     double *masses;
     double *inertias;
 } Plane;
@@ -552,8 +552,8 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
     }
     view.along = along;
     for (size_t i = 0; i < linkage->body_count; i++) {
-        accelerations[3 * i] = 0.0L;
-        accelerations[3 * i + 1] = -plane->gravity;
+        accelerations[3 * i] = plane->gravity.x;
+        accelerations[3 * i + 1] = plane->gravity.y;
         accelerations[3 * i + 2] = 0.0L;
     }
     for (size_t i = 0; i < n; i++) {
@@ -691,7 +691,7 @@ Maximal *maximal_plane_create(const Scenario *scenario, const MaximalFlaw *flaw,
     plane->linkage = linkage;
     plane->places = places;
     plane->driven = linkage_driven_body(linkage);
-    plane->gravity = flaw->gravity * scenario->gravity;
+    plane->gravity = vec2_scale(flaw->gravity, scenario_gravity(scenario));
     maximal_init(&plane->shared, 6 * linkage->body_count, count);
     plane->shared.kind = &PLANE;
     plane->shared.scenario = scenario;

@@ -75,7 +75,7 @@ typedef struct Space {
     PinSpace *pins;
     StopSpace *stops;
     int driven;
-    double gravity;
+    Vec3 gravity;
     double *masses;
     Matrix *inertias; // in the bodies' frames
     Matrix *inverses;
@@ -657,7 +657,7 @@ static void begin_accelerations(const Space *space, const Stand *stands, Real *a
 {
     for (int i = 0; i < (int)space->linkage->body_count; i++) {
         const Stand *stand = &stands[i + 1];
-        Wrench by = {{0.0L, -space->gravity, 0.0L}, {0.0L, 0.0L, 0.0L}};
+        Wrench by = {{space->gravity.x, space->gravity.y, space->gravity.z}, {0.0L, 0.0L, 0.0L}};
         if (i == space->driven) {
             by.linear = real3_cross(stand->omega, stand->velocity);
         } else {
@@ -852,7 +852,7 @@ Maximal *maximal_space_create(const Scenario *scenario, const MaximalFlaw *flaw,
     space->pins = pins;
     space->stops = stops;
     space->driven = linkage_driven_body(linkage);
-    space->gravity = flaw->gravity * scenario->gravity;
+    space->gravity = vec3_scale(flaw->gravity, scenario->gravity);
     maximal_init(&space->shared, (PLACED + MOVED) * linkage->body_count + stop_count,
                  pin_count + stop_count);
     space->shared.kind = &SPACE;

@@ -82,7 +82,8 @@ static void write_setting(Draw *draw, FILE *file)
         fprintf(file, "%s", row->words[draw_below(draw, count)]);
     } else if (row->zero_word != NULL && draw_chance(draw, 0.3)) {
         fprintf(file, "%s", row->zero_word);
-    } else if (row->type == SCHEMA_VECTOR || row->type == SCHEMA_ANCHOR) {
+    } else if (row->type == SCHEMA_VECTOR || row->type == SCHEMA_ANCHOR ||
+               (row->type == SCHEMA_GRAVITY && draw_chance(draw, 0.5))) {
         fputc('[', file);
         write_number(draw, row->low, row->high, file);
         write_unit(draw, row->dimension, file);

@@ -106,9 +106,9 @@ fault "another map" src/contact/law_row.c \
 fault "clearance off by 1 %" src/model/linkage.c \
     's/return joint->clearance.hole_radius - joint->clearance.pin_radius;/return 1.01 * (joint->clearance.hole_radius - joint->clearance.pin_radius);/'
 fault "gravity off by 1 in 1000" src/ode/plane/world.c \
-    's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, -1.001 * scenario->gravity, 0.0);/'
+    's/dWorldSetGravity(id, scenario->gravity.x, scenario->gravity.y,/dWorldSetGravity(id, scenario->gravity.x, 1.001 * scenario->gravity.y,/'
 fault "gravity left out" src/ode/plane/world.c \
-    's/dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);/dWorldSetGravity(id, 0.0, 0.0, 0.0);/'
+    's/dWorldSetGravity(id, scenario->gravity.x, scenario->gravity.y,/dWorldSetGravity(id, 0.0 * scenario->gravity.x, 0.0 * scenario->gravity.y,/'
 fault "contact normal turned by 0.1 degree" src/ode/plane/contact_rows.c \
     's/geom\.normal\[0\] = -row->normal\.x;/geom.normal[0] = -row->normal.x + 1.7453e-3 * row->normal.y;/
      s/geom\.normal\[1\] = -row->normal\.y;/geom.normal[1] = -row->normal.y - 1.7453e-3 * row->normal.x;/'

@@ -147,7 +147,7 @@ enum { PERIODS = 12 };
 static Scenario scenario_of(const Lever *start)
 {
     Scenario scenario = kept_default();
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;
     scenario.run.duration = (double)(PERIOD * (Real)PERIODS);

@@ -61,7 +61,7 @@ static Scenario pendulum(void)
     linkage->bodies[0].inertia = 1e-4;
     linkage->bodies[0].start.position = (Vec2){0.05, 0.0};
     linkage->joints[0].anchor_b = (Vec2){-0.05, 0.0};
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 6.6e10;
     scenario.run.duration = 0.03;
     scenario.run.samples = 60;

@@ -210,7 +210,7 @@ static void a_pendulums_pivot_force_is_the_closed_forms_from_time_zero_on(void *
     Trajectory *ode = complete_run(&scenario, BACKEND_ODE);
     const double arm = 0.25;
     const double about_pivot = 0.02 + arm * arm;
-    const double g = scenario.gravity;
+    const double g = -scenario.gravity.y;
     for (size_t k = 0; k < ode->sample_count; k++) {
         const double s = -trajectory_motion(ode, k, 0)->angle;
         const double along = arm * 2.0 * g * arm * sin(s) / about_pivot + g * sin(s);

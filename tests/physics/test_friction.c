@@ -30,7 +30,7 @@ static Scenario block(double friction, double angle, double speed)
     body->start.position = (Vec2){radius * sin(angle), -radius * cos(angle)};
     body->start.velocity = (Vec2){speed * cos(angle), speed * sin(angle)};
     scenario.linkage.joints[0].clearance.start = body->start.position;
-    scenario.gravity = GRAVITY;
+    scenario.gravity = scenario_downward(GRAVITY);
     scenario.contact.stiffness = STIFFNESS;
     scenario.contact.exponent = 1.5;
     scenario.contact.damping = DAMPING_VISCOUS;

@@ -204,7 +204,7 @@ static Growth grow_pins(bool with_first, bool with_second, size_t *runs)
         linkage->joints[linkage->joint_count++].body_b = (int)linkage->body_count;
         linkage->bodies[linkage->body_count++] = bodies[i];
     }
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 6.6e10;
     scenario.run.duration = 0.03;
     Bench bench = {.scenario = scenario};

@@ -333,7 +333,7 @@ static void a_bouncing_ball_keeps_the_share_of_its_speed_that_is_asked_for(void 
     Scenario scenario = ball();
     // hard, so that its weight has no part in a contact
     scenario.contact.stiffness = 1e9;
-    const double first = sqrt(2.0 * scenario.gravity * 0.05);
+    const double first = sqrt(-2.0 * scenario.gravity.y * 0.05);
     for (size_t i = 0; i < SCHEME_COUNT; i++) {
         Trajectory *run = ode_run(scenario, &SCHEMES[i], 5e-6);
         const JointExtremes *stop = &run->joints[0];
@@ -353,7 +353,7 @@ static void a_bouncing_ball_keeps_the_share_of_its_speed_that_is_asked_for(void 
 static Scenario flat_block(double inertia, double restitution)
 {
     Scenario scenario = free_run(8e-3, 100);
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     scenario.contact.stiffness = 1e6;
     scenario.contact.exponent = 1.0;
     scenario.contact.damping = DAMPING_EXACT;

@@ -21,7 +21,7 @@ static const double GRAVITY = 9.81; // m/s^2
 static Scenario scene(double step_s)
 {
     Scenario scenario = kept_default();
-    scenario.gravity = GRAVITY;
+    scenario.gravity = scenario_downward(GRAVITY);
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_ODE;
     scenario.run.step = step_s;
@@ -113,7 +113,7 @@ static void a_ball_on_a_floor_keeps_its_restitution(void **state)
 static Scenario row(double gap)
 {
     Scenario scenario = scene(1e-4);
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     scenario.run.duration = gap > 0.0 ? 6e-3 : 2e-3;
     scenario.run.samples = 10;
     for (int i = 0; i < DISCS; i++) {

@@ -9,7 +9,7 @@ static const double INERTIA = 0.01; // kg m^2
 static Scenario empty(double duration_s)
 {
     Scenario scenario = kept_default();
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;
     scenario.run.duration = duration_s;
@@ -309,7 +309,7 @@ static void the_stops_of_a_slider_are_walls_across_its_line(void **state)
     Trajectory *runs[2];
     for (int way = 0; way < 2; way++) {
         Scenario scenario = empty(0.4);
-        scenario.gravity = 1.0;
+        scenario.gravity = scenario_downward(1.0);
         scenario.contact.damping = DAMPING_EXACT;
         scenario.contact.restitution = 0.7;
         scenario.contact.stiffness = 1e6;

@@ -275,7 +275,7 @@ static Scenario carried_gears(size_t others)
     scenario.ode.stepping = ODE_STAGGERED;
     scenario.ode.map = ODE_MAP_IMPULSE;
     scenario.run.step = 2e-5;
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.run.duration = 0.01;
     scenario.run.samples = 300;
     return scenario;

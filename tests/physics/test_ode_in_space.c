@@ -143,7 +143,7 @@ static double crank_is_off(const Trajectory *run, const Scenario *scenario, doub
     for (size_t i = 0; i < run->sample_count; i++) {
         const Vec2 drive = trajectory_state(run, i, 0)->force_on_b;
         const Vec2 taken = vec2_scale(share, trajectory_state(run, i, 1)->force_on_b);
-        const Vec2 weight = {0.0, -mass * scenario->gravity};
+        const Vec2 weight = vec2_scale(mass, scenario_gravity(scenario));
         const Vec2 sum = vec2_add(vec2_sub(drive, taken), weight);
         const Vec2 moved = vec2_scale(mass, trajectory_motion(run, i, 0)->acceleration);
         worst = fmax(worst, vec2_length(vec2_sub(moved, sum)));

@@ -136,7 +136,7 @@ static void each_end_carries_its_share_by_the_levers(void **state)
     const double along = 30e-3;
     for (OdeMap map = ODE_MAP_MIDPOINT; map <= ODE_MAP_IMPULSE; map += 2) {
         Scenario scenario = space_pin(50e-6, 100e-6, along, 1e7);
-        scenario.gravity = GRAVITY;
+        scenario.gravity = scenario_downward(GRAVITY);
         space_pin_damp(&scenario, 0.6 * sqrt(1e7));
         scenario.run.duration = 1.0;
         scenario.run.samples = 50;
@@ -195,7 +195,7 @@ static void a_dragged_pin_is_braked_as_coulomb_has_it(void **state)
     for (OdeMap map = ODE_MAP_MIDPOINT; map <= ODE_MAP_IMPULSE; map += 2) {
         for (int spinning = 0; spinning < 2; spinning++) {
             Scenario scenario = space_pin(50e-6, 0.0, 0.0, stiffness);
-            scenario.gravity = GRAVITY;
+            scenario.gravity = scenario_downward(GRAVITY);
             space_pin_damp(&scenario, 5e3);
             scenario.contact.friction = friction;
             scenario.contact.friction_speed = 1e-4;

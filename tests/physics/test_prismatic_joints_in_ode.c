@@ -136,7 +136,7 @@ static double imbalance(const Sliders *sliders, const Trajectory *run, size_t sa
     for (int i = 0; i < (int)linkage->body_count; i++) {
         const Body *body = &linkage->bodies[i];
         const Vec2 needed = vec2_scale(
-            body->mass, vec2_add(motions[i].acceleration, (Vec2){0.0, sliders->scenario.gravity}));
+            body->mass, vec2_add(motions[i].acceleration, scenario_upward(&sliders->scenario)));
         most = larger(most, vec2_sub(needed, forces[i]));
         // the driven body's moment is the drive's
         const bool is_driven = i == linkage_driven_body(linkage);

@@ -23,7 +23,7 @@ static void a_pendulum_let_go_at_rest_keeps_its_energy(void **state)
     linkage->bodies[0].start.position = (Vec2){0.1, 0.0};
     linkage->joints[0].kind = JOINT_REVOLUTE;
     linkage->joints[0].anchor_b = (Vec2){-0.1, 0.0};
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.run.duration = 2.0;
     scenario.run.samples = 1000;
     Trajectory *trajectory = complete_run(&scenario, BACKEND_REFERENCE);
@@ -52,7 +52,7 @@ static void a_grazing_touch_between_two_looks_is_seen(void **state)
     const double speeds[] = {0.0444, 0.0446, 0.0460, 0.06};
     for (size_t i = 0; i < sizeof speeds / sizeof *speeds; i++) {
         Scenario scenario = mechanism_pin(0.1, play);
-        scenario.gravity = gravity;
+        scenario.gravity = scenario_downward(gravity);
         scenario.contact.stiffness = 6.6e10;
         scenario.linkage.bodies[0].start.velocity.y = speeds[i];
         scenario.run.duration = 0.02;
@@ -80,7 +80,7 @@ static void a_pin_too_slow_for_the_wall_does_not_touch_it(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_pin(0.1, 1e-4);
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 6.6e10;
     scenario.linkage.bodies[0].start.velocity.y = 0.0442;
     scenario.run.duration = 8e-3;
@@ -97,7 +97,7 @@ static void a_pin_that_starts_at_the_wall_stays_in_its_hole(void **state)
     const Vec2 places[] = {{0.6e-4, -0.8e-4}, {0.0, -1e-4}, {-0.8e-4, -0.6e-4}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         Scenario scenario = mechanism_pin(0.1, 1e-4);
-        scenario.gravity = 9.80665;
+        scenario.gravity = scenario_downward(9.80665);
         scenario.contact.stiffness = 6.6e10;
         scenario.linkage.bodies[0].start.position = places[i];
         scenario.run.duration = 0.05;
@@ -140,7 +140,7 @@ static void many_contacts_may_begin_at_once(void **state)
     }
     linkage->body_count = KINEMATICS_BODY_MAX;
     linkage->joint_count = KINEMATICS_BODY_MAX;
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 6.6e10;
     scenario.run.duration = 0.02;
     scenario.run.samples = 10;

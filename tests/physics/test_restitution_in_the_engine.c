@@ -67,7 +67,7 @@ static void each_damping_law_delivers_its_own_restitution(void **state)
 // Penetration of a pin that lies still on the wall under its weight.
 static double static_depth(Scenario scenario, double weight_n, double guess_m)
 {
-    scenario.gravity = weight_n / ONE_IMPACT_MASS;
+    scenario.gravity = scenario_downward(weight_n / ONE_IMPACT_MASS);
     scenario.linkage.bodies[0].start.position.y = -(ONE_IMPACT_CLEARANCE + guess_m);
     scenario.run.step = 1e-6;
     scenario.run.samples = 1;

@@ -178,7 +178,7 @@ static Balance balance_of(const Scenario *scenario, const Series *series, Fault 
             const Body *body = &linkage->bodies[i];
             const double mass = body->mass * (1.0 + fault.mass);
             const Vec2 wants =
-                vec2_scale(mass, vec2_add(motions[i].acceleration, (Vec2){0.0, scenario->gravity}));
+                vec2_scale(mass, vec2_add(motions[i].acceleration, scenario_upward(scenario)));
             balance.force = fmax(balance.force, vec2_length(vec2_sub(wants, loads[i].force)));
             balance.force_scale = fmax(balance.force_scale, vec2_length(wants));
             const double turning = body->inertia * (1.0 + fault.mass) * motions[i].alpha;

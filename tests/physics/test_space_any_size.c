@@ -29,7 +29,7 @@ static Scenario make_chain(size_t count, Vec3 odd_axis)
         }
     }
     space_complete(&scenario.linkage);
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     scenario.run.duration = 0.02;
     scenario.run.samples = 20;
     scenario.run.step = 1e-4;

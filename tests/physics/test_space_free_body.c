@@ -80,7 +80,7 @@ static Scenario free_body(void)
     body->start.omega = SPIN.z;
     body->space.omega_x = SPIN.x;
     body->space.omega_y = SPIN.y;
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     double period_s = 0.0;
     euler(INERTIAS, 0.0, &period_s);
     scenario.run.duration = 5.0 * period_s;

@@ -18,7 +18,7 @@ static const double STIFFNESS = 1e8; // N/m: the pin stands 1e-7 m in the wall
 static Scenario pressed(double angle, double friction, double speed)
 {
     Scenario scenario = space_pin(CLEARANCE, 0.0, 0.0, STIFFNESS);
-    scenario.gravity = GRAVITY;
+    scenario.gravity = scenario_downward(GRAVITY);
     space_pin_damp(&scenario, 5e3);
     scenario.contact.friction = friction;
     scenario.contact.friction_speed = 1e-6;
@@ -103,7 +103,7 @@ static void a_dragged_pin_stops(void **state)
     assert_near(run->energy.residual, 0.0, 1e-9 * energy);
     // control: a pin that is not pressed goes on
     Scenario other = pressed(0.0, friction, speed);
-    other.gravity = 0.0;
+    other.gravity = scenario_downward(0.0);
     other.linkage.bodies[0].start.position.y = -0.5 * CLEARANCE;
     Trajectory *free = complete_run(&other, BACKEND_REFERENCE);
     assert_near(speed_along(free, free->sample_count - 1, 0.0), speed, 1e-12);

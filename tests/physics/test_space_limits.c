@@ -41,7 +41,7 @@ static Scenario make_pendulum(double tilt)
                     .has_restitution = true,
                     .restitution = 1.0},
     };
-    scenario.gravity = G;
+    scenario.gravity = scenario_downward(G);
     scenario.contact.restitution = 1.0;
     scenario.run.duration = 0.7;
     scenario.run.samples = 700;
@@ -152,7 +152,7 @@ static void backlash_on_a_body_that_turns_keeps_the_momentum(void **state)
     Linkage *linkage = &scenario.linkage;
     const Vec3 axis = linkage->joints[0].space.axis;
     const double gap = 0.02;
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     linkage->body_count = linkage->joint_count = 2;
     linkage->bodies[1] = linkage->bodies[0];
     snprintf(linkage->bodies[1].name, sizeof linkage->bodies[1].name, "rotor");

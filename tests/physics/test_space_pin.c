@@ -22,7 +22,7 @@ static const SpaceJointState *joint_at_end(const Trajectory *run)
 static Trajectory *hang(double along, double stiffness)
 {
     Scenario scenario = space_pin(CLEARANCE, AXIAL, along, stiffness);
-    scenario.gravity = GRAVITY;
+    scenario.gravity = scenario_downward(GRAVITY);
     space_pin_damp(&scenario, 0.6 * sqrt(stiffness));
     scenario.run.duration = 1.0;
     scenario.run.samples = 50;

@@ -24,7 +24,7 @@ static const Vec3 SPIN = {8.0, -6.0, 20.0};
 static Scenario tumbling(double friction)
 {
     Scenario scenario = space_pin(CLEARANCE, AXIAL, OFFSET.z, STIFFNESS);
-    scenario.gravity = GRAVITY;
+    scenario.gravity = scenario_downward(GRAVITY);
     scenario.contact.exponent = 1.5;
     scenario.contact.friction = friction;
     scenario.contact.friction_speed = SLIDING_SPEED;

@@ -16,7 +16,7 @@ static Scenario arm(void)
     linkage->bodies[0].start.position = (Vec2){0.5, 0.0};
     linkage->joints[0] =
         (Joint){.name = "pivot", .body_a = LINKAGE_GROUND, .body_b = 0, .anchor_b = {-0.5, 0.0}};
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     scenario.run.samples = 200;
     scenario.run.duration = 2.0;
     scenario.run.step = 1e-3;
@@ -36,7 +36,7 @@ static const double SWUNG_COS = 0.96141920509912504;
 static Scenario pendulum(double inertia)
 {
     Scenario scenario = arm();
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     scenario.linkage.bodies[0].inertia = inertia;
     // the arm's angle is from the horizontal: 90 deg less than from the vertical
     scenario.run.duration = 10.0;

@@ -224,7 +224,7 @@ static void a_sliding_pin_is_right_at_any_step(void **state)
     scenario.ode.map = ODE_MAP_IMPULSE;
     scenario.contact.damping = DAMPING_FLORES;
     scenario.contact.restitution = 1e-9;
-    scenario.gravity = WEIGHT;
+    scenario.gravity = scenario_downward(WEIGHT);
     scenario.linkage.bodies[0].start.position = (Vec2){-1e-4, 0.0};
     scenario.linkage.bodies[0].start.velocity.y = 0.03;
     scenario.run.duration = 0.05;

@@ -9,7 +9,7 @@ static const double GRAVITY = 9.81;
 static Scenario empty(void)
 {
     Scenario scenario = kept_default();
-    scenario.gravity = GRAVITY;
+    scenario.gravity = scenario_downward(GRAVITY);
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;
     scenario.contact.exponent = 1.0;
@@ -365,7 +365,7 @@ static void a_ball_gives_its_momentum_to_one_like_it(void **state)
     (void)state;
     Scenario scenario = cradle(0.0, 2e-3);
     Linkage *linkage = &scenario.linkage;
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     linkage->body_count = 2;
     linkage->joint_count = 0;
     linkage->joints[linkage->joint_count++] = linkage->joints[BALLS];
@@ -389,7 +389,7 @@ static void what_rubs_and_stops_keeps_energy_and_momentum(void **state)
     (void)state;
     Scenario scenario = cradle(0.0, 0.02);
     Linkage *linkage = &scenario.linkage;
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     scenario.contact.stiffness = 1e9;
     scenario.contact.friction = 0.3;
     scenario.contact.damping = DAMPING_EXACT;

@@ -45,7 +45,7 @@ void four_bars_fill(Scenario *scenario, size_t count, double duration_s)
             add_joint(linkage, upright, half, upright + 1, -half);
         }
     }
-    scenario->gravity = GRAVITY;
+    scenario->gravity = scenario_downward(GRAVITY);
     scenario->run.duration = duration_s;
     scenario->run.samples = 100;
 }

@@ -147,7 +147,7 @@ Scenario limited_impact_scenario(const LimitedImpact *impact, OdeStepping steppi
         .has_restitution = true,
         .restitution = impact->restitution,
     };
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     scenario.contact.damping = DAMPING_EXACT;
     scenario.contact.impact_speed_floor = 1e-6;
     scenario.ode.stepping = stepping;

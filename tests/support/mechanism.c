@@ -104,7 +104,7 @@ Scenario mechanism_loose(size_t joints)
 Scenario mechanism_pin(double mass, double radial_clearance)
 {
     Scenario scenario = mechanism_default();
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     Linkage *linkage = &scenario.linkage;
     add_body(linkage, "pin", mass, 1e-6, (Vec2){0.0, 0.0}, 0.0);
     add_joint(linkage, "hole", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){0.0, 0.0});

@@ -48,7 +48,7 @@ static JointEnd at(int body_number, double x, double y)
 Scenario slider_crank(const SliderSizes *sizes, double crank_omega)
 {
     Scenario scenario = kept_default();
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;
     Linkage *linkage = &scenario.linkage;
@@ -118,7 +118,7 @@ void slider_loosen_wrist(Scenario *scenario, double hole_radius, double play)
 Scenario slider_lever(double speed)
 {
     Scenario scenario = kept_default();
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     scenario.run.backend_count = 1;
     scenario.run.backends[0] = BACKEND_REFERENCE;
     Linkage *linkage = &scenario.linkage;
@@ -151,7 +151,7 @@ double slider_unbalanced(const Scenario *scenario, const Motion *motions, const 
     double worst = 0.0;
     for (int i = 0; i < (int)linkage->body_count; i++) {
         const Body *of = &linkage->bodies[i];
-        Vec2 force = {0.0, -of->mass * scenario->gravity};
+        Vec2 force = vec2_scale(of->mass, scenario_gravity(scenario));
         double moment = 0.0;
         for (size_t j = 0; j < linkage->joint_count; j++) {
             const Joint *held = &linkage->joints[j];

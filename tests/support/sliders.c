@@ -128,15 +128,15 @@ void sliders_crank_guide(const Scenario *scenario, double time_s, double *force,
     crank_motion(scenario, time_s, motions);
     const Motion *rod = &motions[1];
     const Vec2 along = vec2_rotate(rod->angle, (Vec2){1.0, 0.0});
-    const Vec2 weighed = vec2_scale(linkage->bodies[1].mass,
-                                    vec2_add(rod->acceleration, (Vec2){0.0, scenario->gravity}));
+    const Vec2 weighed =
+        vec2_scale(linkage->bodies[1].mass, vec2_add(rod->acceleration, scenario_upward(scenario)));
     // F on the slider from the rod: its x by Newton, its y by the rod's moments about the middle,
     // I alpha = -(L / 2) along x (m (a + g) + 2 F)
     const double x = linkage->bodies[2].mass * motions[2].acceleration.x;
     const double across =
         -0.5 * (2.0 * linkage->bodies[1].inertia * rod->alpha / ROD + vec2_cross(along, weighed));
     const double y = (across + along.y * x) / along.x;
-    *force = linkage->bodies[2].mass * scenario->gravity - y;
+    *force = linkage->bodies[2].mass * scenario_upward(scenario).y - y;
     // the slider does not turn: what acts on it has no moment about its centre
     const double lever = linkage->joints[3].body_b == 2 ? CORNER.x : 0.03 - motions[2].position.x;
     *couple = -lever * *force;
@@ -215,7 +215,7 @@ Sliders sliders_bead(void)
 {
     Sliders made = begin(10.0, 0.3);
     Scenario *scenario = &made.scenario;
-    scenario->gravity = 0.0;
+    scenario->gravity = scenario_downward(0.0);
     scenario->run.revolutions = 0.25;
     add_body(scenario, "arm", 0.3, 1.0e-2);
     add_body(scenario, "bead", 0.05, 1.0e-5);
@@ -255,7 +255,7 @@ Sliders sliders_trammel(void)
 {
     Sliders made = begin(0.0, 0.0);
     Scenario *scenario = &made.scenario;
-    scenario->gravity = 0.0;
+    scenario->gravity = scenario_downward(0.0);
     scenario->run.duration = 0.5;
     // equal sliders keep the sum of their energies at any angle as the rod turns steadily
     add_body(scenario, "rod", 0.2, 1.0e-4);

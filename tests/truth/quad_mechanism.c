@@ -128,8 +128,8 @@ void quad_problem_accelerate(const QuadProblem *problem, const QuadContacts *con
 {
     // without the ideal joints
     for (size_t i = 0; i < problem->body_count; i++) {
-        acceleration[3 * i] = 0;
-        acceleration[3 * i + 1] = -problem->gravity;
+        acceleration[3 * i] = problem->gravity.x;
+        acceleration[3 * i + 1] = problem->gravity.y;
         acceleration[3 * i + 2] = 0;
     }
     if (problem->driver_joint >= 0) {
@@ -169,7 +169,8 @@ Quad quad_problem_energy(const QuadProblem *problem, const QuadContacts *contact
         if ((int)i != problem->driven_body) {
             const Quad *v = velocity + 3 * i;
             energy += problem->bodies[i].mass *
-                      ((v[0] * v[0] + v[1] * v[1]) / 2 + problem->gravity * position[3 * i + 1]);
+                      ((v[0] * v[0] + v[1] * v[1]) / 2 - problem->gravity.x * position[3 * i] -
+                       problem->gravity.y * position[3 * i + 1]);
             energy += problem->bodies[i].inertia * v[2] * v[2] / 2;
         }
     }
@@ -258,7 +259,7 @@ QuadProblem quad_problem(const Scenario *scenario)
         .driven_body = linkage_driven_body(linkage),
         .drive_speed = linkage->driver.speed,
         .drive_start = linkage->driver.start,
-        .gravity = scenario->gravity,
+        .gravity = {scenario->gravity.x, scenario->gravity.y},
         .hysteresis = quad_law_hysteresis(contact),
         .impact_speed_floor = contact->impact_speed_floor,
         .impact_speed_share = 1,

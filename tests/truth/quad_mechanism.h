@@ -65,7 +65,7 @@ typedef struct QuadProblem {
     int driven_body;                          // moves as prescribed, or LINKAGE_GROUND
     Quad drive_speed;                         // rad/s
     Quad drive_start;                         // rad
-    Quad gravity;                             // m/s^2, along -y
+    QuadVec gravity;                          // m/s^2
     Quad hysteresis;                          // chi, 1
     Quad impact_speed_floor;                  // m/s
     Quad impact_speed_share;                  // 1; anything else is a control that must be seen

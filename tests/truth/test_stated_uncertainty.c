@@ -26,7 +26,7 @@ static const RunWatch NOBODY = {NULL, NULL};
 static Scenario slow_case(double rpm, double turns, double tolerance)
 {
     Scenario scenario = problem_scenario(&PROBLEMS[0]);
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.linkage.driver.speed = rpm * M_PI / 30.0;
     const double slower = rpm / 1000.0;
     for (size_t i = 0; i < scenario.linkage.body_count; i++) {
@@ -94,7 +94,7 @@ static void at_the_default_tolerance_it_is_as_well(void **state)
 static Scenario dropped_pin(size_t samples)
 {
     Scenario scenario = mechanism_pin(0.1, 1e-4);
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 6.6e10;
     scenario.contact.damping = DAMPING_LANKARANI_NIKRAVESH;
     scenario.contact.restitution = 0.9;

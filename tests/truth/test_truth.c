@@ -112,14 +112,14 @@ static void a_pin_falls_freely_to_its_wall(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_pin(0.1, CLEARANCE);
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 6.6e10;
     const QuadProblem problem = quad_problem(&scenario);
     const double time = 4e-3; // it falls for 3.53 ms
     TruthSample pin;
     TruthFigures figures;
     run_until(&problem, 1e-20, time, &pin, &figures);
-    const Quad g = problem.gravity;
+    const Quad g = -problem.gravity.y;
     assert_quad(figures.onset_s, sqrtq(2 * (Quad)CLEARANCE / g), 1e-28);
     assert_quad(figures.onset_speed, sqrtq(2 * g * (Quad)CLEARANCE), 1e-28);
     // on its way back it is a stone thrown upwards
@@ -134,7 +134,7 @@ static Scenario hanging_links(void)
 {
     Scenario scenario = mechanism_pin(0.3, 1e-4);
     Linkage *linkage = &scenario.linkage;
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 1e9;
     scenario.contact.damping = DAMPING_NONE;
     linkage->bodies[0].inertia = 1e-3;
@@ -179,7 +179,7 @@ static void a_pendulum_on_an_ideal_joint_swings_as_the_elliptic_integral_says(vo
 {
     (void)state;
     Scenario scenario = mechanism_pin(0.3, 1e-4);
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = 1e9;
     scenario.linkage.bodies[0].inertia = 1e-3;
     scenario.linkage.bodies[0].start.position = (Vec2){0.125, 0.0};
@@ -189,7 +189,7 @@ static void a_pendulum_on_an_ideal_joint_swings_as_the_elliptic_integral_says(vo
     const Quad mass = problem.bodies[0].mass;
     const Quad arm = (Quad)1 / 8;
     const Quad omega_squared =
-        mass * problem.gravity * arm / (problem.bodies[0].inertia + mass * arm * arm);
+        mass * -problem.gravity.y * arm / (problem.bodies[0].inertia + mass * arm * arm);
     Quad a = 1;
     Quad b = sqrtq((Quad)1 / 2);
     for (int i = 0; i < 10; i++) {
@@ -311,7 +311,7 @@ static void a_force_that_would_pull_is_clamped(void **state)
 {
     (void)state;
     Scenario scenario = mechanism_pin(0.1, CLEARANCE);
-    scenario.gravity = 500.0;
+    scenario.gravity = scenario_downward(500.0);
     scenario.contact.stiffness = 1e7;
     scenario.linkage.bodies[0].start.velocity = (Vec2){0.0, 0.26};
     QuadProblem problem = quad_problem(&scenario);

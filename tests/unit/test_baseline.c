@@ -661,7 +661,7 @@ static Scenario many_pendulums(size_t count)
         joint->anchor_a.x = (double)i;
         snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
     }
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     scenario.run.duration = 2e-3;
     scenario.run.samples = 4;
     scenario.run.step = 1e-3;

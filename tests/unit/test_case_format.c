@@ -48,7 +48,7 @@ static void both_descriptions_name_every_key(void **state)
         assert_non_null(strstr(page.data, last));
         assert_non_null(strstr(words.data, last));
     }
-    assert_non_null(strstr(page.data, "| `material.youngs-modulus` |"));
+    assert_non_null(strstr(page.data, "- `material.youngs-modulus` ("));
     assert_non_null(strstr(page.data, "2.07e+11 Pa"));
     text_finish(&page);
     text_finish(&words);

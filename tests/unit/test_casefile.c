@@ -252,7 +252,7 @@ static void defaults_are_those_of_the_options(void **state)
                         sizeof defaults.ode - offsetof(OdeOptions, facets));
     assert_near(scenario.contact.restitution, defaults.contact.restitution, 0.0);
     assert_near(scenario.run.step, defaults.run.step, 0.0);
-    assert_near(scenario.gravity, 9.80665, 0.0);
+    assert_near(scenario.gravity.y, -9.80665, 0.0);
     assert_string_equal(scenario.title, "");
     scenario_free(&scenario);
 }
@@ -341,6 +341,45 @@ static void a_huge_file_is_refused_unread(void **state)
     unlink(path);
 }
 
+static void gravity_is_one_number_downward_or_a_vector(void **state)
+{
+    (void)state;
+    static const char SPACE[] = "cases/space/overhung-pin.yaml";
+    const struct {
+        const char *path;
+        const char *override;
+        Vec3 gravity;
+        size_t count; // numbers of the setting: one again where it is along -y
+        double numbers[3];
+    } rows[] = {
+        {NOMINAL, "gravity=9.81 m/s^2", {0.0, -9.81, 0.0}, 1, {9.81}},
+        {NOMINAL, "gravity=0", {0.0, 0.0, 0.0}, 1, {0.0}},
+        {NOMINAL, "gravity=-5 m/s^2", {0.0, 5.0, 0.0}, 1, {-5.0}},
+        {NOMINAL, "gravity=[0, -9.81 m/s^2]", {0.0, -9.81, 0.0}, 1, {9.81}},
+        {NOMINAL, "gravity=[1 m/s^2, -9800 mm/s^2]", {1.0, -9.8, 0.0}, 2, {1.0, -9.8}},
+        {SPACE, "gravity=1.6 m/s^2", {0.0, -1.6, 0.0}, 1, {1.6}},
+        {SPACE, "gravity=[1 m/s^2, 2 m/s^2]", {1.0, 2.0, 0.0}, 3, {1.0, 2.0, 0.0}},
+        {SPACE, "gravity=[0, 0, -3 m/s^2]", {0.0, 0.0, -3.0}, 3, {0.0, 0.0, -3.0}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const Scenario scenario = load_with(rows[i].path, rows[i].override);
+        assert_near(scenario.gravity.x, rows[i].gravity.x, 0.0);
+        assert_near(scenario.gravity.y, rows[i].gravity.y, 1e-15); // of mm
+        assert_near(scenario.gravity.z, rows[i].gravity.z, 0.0);
+        CasefileSetting setting;
+        assert_true(find_setting(&scenario, "gravity", &setting));
+        assert_int_equal(setting.number_count, rows[i].count);
+        assert_string_equal(setting.unit, "m/s^2");
+        for (size_t k = 0; k < setting.number_count; k++) {
+            assert_near(setting.numbers[k], rows[i].numbers[k], 1e-15);
+            assert_true(setting.numbers[k] != 0.0 || !signbit(setting.numbers[k]));
+        }
+    }
+    // of two the later holds, whichever way each is written
+    const char *const both[] = {"gravity=[1 m/s^2, 2 m/s^2]", "gravity=3 m/s^2"};
+    assert_near(load(NOMINAL, both, 2).gravity.x, 0.0, 0.0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -353,6 +392,7 @@ int main(void)
         cmocka_unit_test(settings_tell_what_the_case_said),
         cmocka_unit_test(settings_say_whether_they_matter),
         cmocka_unit_test(defaults_are_those_of_the_options),
+        cmocka_unit_test(gravity_is_one_number_downward_or_a_vector),
         cmocka_unit_test(a_collider_brings_the_map_and_the_step_it_needs),
         cmocka_unit_test(marks_tabs_and_returns_are_no_mistakes),
         cmocka_unit_test(what_is_no_readable_file_says_so),

@@ -13,7 +13,7 @@ enum { PLACES = 8, ROWS = 2 * PLACES };
 static Scenario geared(void)
 {
     Scenario scenario = kept_default();
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     scenario.run.duration = 2e-4;
     scenario.run.samples = 2;
     scenario.contact.exponent = 1.0;
@@ -87,7 +87,7 @@ static void ends_go_as_their_rows_say(void **state)
         at[k] = trajectory_motion(run, k, 0);
     }
     assert_true(response_place(&response, at[1]));
-    response_free(&response, at[1], scenario.gravity, NULL, now);
+    response_free(&response, at[1], scenario_gravity(&scenario), NULL, now);
     const double step_s = run->times[1];
     for (size_t i = 0; i < count; i++) {
         const double rate = -touch_pose(linkage, &places[i], at[1]).approach_speed;

@@ -26,7 +26,7 @@ static void press(Pressed *pressed, const Scenario *mechanism)
 {
     *pressed = (Pressed){.scenario = *mechanism};
     Scenario *scenario = &pressed->scenario;
-    scenario->gravity = 0.0;
+    scenario->gravity = scenario_downward(0.0);
     scenario->contact.stiffness = 6.6e10;
     scenario->contact.exponent = 1.5;
     scenario->contact.friction = 0.2;

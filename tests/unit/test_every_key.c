@@ -119,6 +119,25 @@ static void every_physical_number_is_shaken(void **state)
     assert_true(checked > 20);
 }
 
+// Gravity's numbers are three.
+static void gravity_is_shaken_in_every_direction(void **state)
+{
+    (void)state;
+    Scenario still = load("cases/paper/impact-k66.yaml", NULL, 0);
+    still.gravity = (Vec3){1.1, -2.2, 3.3};
+    bool has_moved[3] = {false, false, false};
+    for (unsigned seed = 1; seed <= 20; seed++) {
+        Scenario scenario = kept_copy(&still);
+        shake_inputs(&scenario, seed);
+        has_moved[0] = has_moved[0] || scenario.gravity.x != still.gravity.x;
+        has_moved[1] = has_moved[1] || scenario.gravity.y != still.gravity.y;
+        has_moved[2] = has_moved[2] || scenario.gravity.z != still.gravity.z;
+        // by a unit in the last place
+        assert_true(vec3_length(vec3_sub(scenario.gravity, still.gravity)) < 1e-15);
+    }
+    assert_true(has_moved[0] && has_moved[1] && has_moved[2]);
+}
+
 static void write_code(const Scenario *scenario, Text *text)
 {
     const TuneCode code = {
@@ -140,6 +159,8 @@ static bool change(const SchemaRow *row, Scenario *scenario)
     } else if (is_own(row, SCHEMA_CHOICE)) {
         unsigned *choice = schema_field(row, scenario, 0);
         *choice = row->words[*choice + 1] != NULL ? *choice + 1 : 0;
+    } else if (is_own(row, SCHEMA_GRAVITY)) {
+        scenario->gravity.x += 1.0;
     } else {
         return false;
     }
@@ -184,6 +205,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_physical_number_is_shaken),
+        cmocka_unit_test(gravity_is_shaken_in_every_direction),
         cmocka_unit_test(every_setting_of_the_library_is_in_the_program),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

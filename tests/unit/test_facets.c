@@ -66,15 +66,15 @@ static void the_depth_is_that_of_a_fall_through_the_play(void **state)
     const double play = 40e-6;
     const double stiffness = 6.6e10;
     Scenario scenario = mechanism_pin(mass, play);
-    scenario.gravity = 9.80665;
+    scenario.gravity = scenario_downward(9.80665);
     scenario.contact.stiffness = stiffness;
     scenario.contact.exponent = 1.5;
-    const double square = 4.0 * scenario.gravity * play;
+    const double square = -4.0 * scenario.gravity.y * play;
     const double depth = pow(1.25 * mass * square / stiffness, 0.4);
     const int joint = joint_of(&scenario);
     assert_near(facets_expected_depth(&scenario, joint) / depth, 1.0, 1e-4);
     // nothing falls: the play alone counts
-    scenario.gravity = 0.0;
+    scenario.gravity = scenario_downward(0.0);
     assert_near(facets_expected_depth(&scenario, joint), 0.0, 0.0);
     assert_int_equal(
         facets_of_joint(&scenario, joint).count,

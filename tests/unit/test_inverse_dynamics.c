@@ -14,7 +14,7 @@ static AnalyticSummary summary_at(double rpm, double gravity)
 {
     Scenario scenario = mechanism_paper();
     scenario.linkage.driver.speed = rpm * 2.0 * M_PI / 60.0;
-    scenario.gravity = gravity;
+    scenario.gravity = scenario_downward(gravity);
     AnalyticSummary summary;
     Err err = {ERR_NONE, ""};
     assert_true(summary_compute(&scenario, &summary, &err));
@@ -67,10 +67,10 @@ static void drive_power_is_the_change_of_energy(void **state)
     Err err = {ERR_NONE, ""};
     const double speed = scenario.linkage.driver.speed;
     assert_true(fourbar_motion_bodies(&lengths, speed, 1.0, motions));
-    assert_true(inverse_dynamics_solve(&scenario.linkage, motions, scenario.gravity,
+    assert_true(inverse_dynamics_solve(&scenario.linkage, motions, scenario_gravity(&scenario),
                                        (InverseTime){0.0, 0.0}, &reactions, &err));
     const double power = reactions.drive_torques[0] * speed;
-    assert_true(fabs(power - inverse_dynamics_power(&scenario.linkage, motions, 0.0,
+    assert_true(fabs(power - inverse_dynamics_power(&scenario.linkage, motions, (Vec2){0.0, 0.0},
                                                     (InverseTime){0.0, 0.0})) > 1e-6 * fabs(power));
 }
 
@@ -89,8 +89,8 @@ static void a_crank_alone_obeys_the_textbook(void **state)
                            .acceleration = {0.0, -0.054 * omega * omega}};
     Reactions reactions;
     Err err = {ERR_NONE, ""};
-    assert_true(inverse_dynamics_solve(&scenario.linkage, &motion, 10.0, (InverseTime){0.0, 0.0},
-                                       &reactions, &err));
+    assert_true(inverse_dynamics_solve(&scenario.linkage, &motion, (Vec2){0.0, -10.0},
+                                       (InverseTime){0.0, 0.0}, &reactions, &err));
     assert_near(reactions.force_on_b[0].x, 0.0, 1e-12);
     assert_near(reactions.force_on_b[0].y, 0.12 * (10.0 - 0.054 * omega * omega), 1e-9);
     assert_near(reactions.drive_torques[0], 0.0, 1e-12);
@@ -119,8 +119,8 @@ static void a_spring_and_a_damper_pull_at_the_crank(void **state)
                            .acceleration = {0.0, -0.054 * omega * omega}};
     Reactions reactions;
     Err err = {ERR_NONE, ""};
-    assert_true(inverse_dynamics_solve(&scenario.linkage, &motion, 10.0, (InverseTime){0.0, 0.0},
-                                       &reactions, &err));
+    assert_true(inverse_dynamics_solve(&scenario.linkage, &motion, (Vec2){0.0, -10.0},
+                                       (InverseTime){0.0, 0.0}, &reactions, &err));
     const double pull = 1000.0 * 0.2 + 10.0 * 0.054 * omega;
     assert_near(reactions.force_on_b[0].x, -pull, 1e-9);
     assert_near(reactions.force_on_b[0].y, 0.12 * (10.0 - 0.054 * omega * omega), 1e-9);
@@ -135,8 +135,8 @@ static void reactions_that_are_not_determined_are_refused(void **state)
     linkage_start(&redundant.linkage, motions);
     Reactions reactions;
     Err err = {ERR_NONE, ""};
-    assert_false(inverse_dynamics_solve(&redundant.linkage, motions, 0.0, (InverseTime){0.0, 0.0},
-                                        &reactions, &err));
+    assert_false(inverse_dynamics_solve(&redundant.linkage, motions, (Vec2){0.0, 0.0},
+                                        (InverseTime){0.0, 0.0}, &reactions, &err));
     assert_int_equal(err.kind, ERR_SOLVER);
 }
 

@@ -106,8 +106,12 @@ static void a_run_has_a_step_and_samples(void **state)
     scenario.run.samples = 0;
     expect_refused(&scenario, "no sample");
     scenario = mechanism_paper();
-    scenario.gravity = INFINITY;
+    scenario.gravity = scenario_downward(INFINITY);
     expect_refused(&scenario, "gravity");
+    scenario.gravity = (Vec3){NAN, 0.0, 0.0};
+    expect_refused(&scenario, "gravity");
+    scenario.gravity = (Vec3){0.0, -9.8, 1e-3};
+    expect_refused(&scenario, "along z, allowed in the plane: 0");
 }
 
 static void samples_stand_at_exact_multiples_of_the_interval(void **state)

@@ -97,7 +97,7 @@ static Scenario make_two_pins(void)
     }
     linkage_free(&one.linkage);
     scenario.run.duration = 1e-3;
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     return scenario;
 }
 

@@ -131,7 +131,7 @@ static void the_mobility_is_what_unit_impulses_do_to_the_rows(void **state)
 static void the_free_acceleration_is_that_of_the_whole_equations(void **state)
 {
     (void)state;
-    const double gravity = 9.81;
+    const Vec2 gravity = {-3.1, -9.3};
     for (size_t number = 0; number < CASES; number++) {
         Case here;
         make_case(number, &here);
@@ -141,7 +141,8 @@ static void the_free_acceleration_is_that_of_the_whole_equations(void **state)
         for (size_t i = 0; i < linkage->body_count; i++) {
             // bodies turn as they like: the joints with play let them
             here.motions[i].omega += i == driven ? 0.0 : 20.0 * some_number(i);
-            loads[3 * i + 1] = i == driven ? 0.0 : -gravity * linkage->bodies[i].mass;
+            loads[3 * i] = i == driven ? 0.0 : gravity.x * linkage->bodies[i].mass;
+            loads[3 * i + 1] = i == driven ? 0.0 : gravity.y * linkage->bodies[i].mass;
         }
         double given[RESPONSE_ROW_MAX];
         double needed[RESPONSE_ROW_MAX];
@@ -158,7 +159,7 @@ static void the_free_acceleration_is_that_of_the_whole_equations(void **state)
         double weightless[RESPONSE_ROW_MAX];
         double difference = 0.0;
         response_free(&here.response, here.motions, gravity, NULL, now);
-        response_free(&here.response, here.motions, 0.0, NULL, weightless);
+        response_free(&here.response, here.motions, (Vec2){0.0, 0.0}, NULL, weightless);
         for (size_t i = 0; i < width; i++) {
             const size_t row = here.whole.ideal_rows + i;
             truth[i] = whole_rate(&here.whole, row, accelerations) + given[row];
@@ -166,7 +167,7 @@ static void the_free_acceleration_is_that_of_the_whole_equations(void **state)
         }
         assert_all_near(now, truth, width, 1e-7);
         // control: without gravity it is another one
-        assert_true(difference > 0.05 * gravity);
+        assert_true(difference > 0.05 * vec2_length(gravity));
         response_finish(&here.response);
     }
 }

@@ -183,7 +183,7 @@ static void free_after(const Case *here, size_t row, double share, double *rates
         motions[i].velocity.y += share * change[1];
         motions[i].omega += share * change[2];
     }
-    response_free(&here->response, motions, here->scenario.gravity, NULL, rates);
+    response_free(&here->response, motions, scenario_gravity(&here->scenario), NULL, rates);
 }
 
 // But for the sliding along a line, which is the rate of nothing.

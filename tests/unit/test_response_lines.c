@@ -45,13 +45,12 @@ static Linkage flying_pair(Motion motions[2])
 }
 
 // How both bodies move after a time of free flight under gravity and loads.
-static void fly(const Linkage *linkage, const Motion *motions, double gravity,
-                const BodyLoad *loads, double time_s, Motion *later)
+static void fly(const Linkage *linkage, const Motion *motions, Vec2 gravity, const BodyLoad *loads,
+                double time_s, Motion *later)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Body *body = &linkage->bodies[i];
-        const Vec2 push =
-            vec2_add(vec2_scale(1.0 / body->mass, loads[i].force), (Vec2){0.0, -gravity});
+        const Vec2 push = vec2_add(vec2_scale(1.0 / body->mass, loads[i].force), gravity);
         const double spin = loads[i].moment / body->inertia;
         later[i] = motions[i];
         later[i].velocity = vec2_add(motions[i].velocity, vec2_scale(time_s, push));
@@ -108,7 +107,7 @@ static void begin_flight(Flight *flight)
 static void lines_open_and_slide_as_their_rows_say(void **state)
 {
     (void)state;
-    const double gravity = 9.81;
+    const Vec2 gravity = {2.5, -9.81};
     Flight here;
     begin_flight(&here);
     Motion moved[3][2];

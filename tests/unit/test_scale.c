@@ -59,7 +59,7 @@ static void gravity_counts_for_as_long_as_it_pulls(void **state)
     (void)state;
     Scenario scenario = rocker_make((RockerView){.length = 1000.0});
     SpeedScale light = scale_speeds(&scenario);
-    scenario.gravity = 9.81;
+    scenario.gravity = scenario_downward(9.81);
     SpeedScale heavy = scale_speeds(&scenario);
     assert_close(heavy.moving, light.moving, 1e-12);
     scenario.linkage.driver.is_present = false;

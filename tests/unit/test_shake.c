@@ -22,7 +22,7 @@ static void each_number_moves_by_a_unit_in_the_last_place_at_most(void **state)
         const double *const pairs[][2] = {
             {&still.contact.stiffness, &shaken.contact.stiffness},
             {&still.contact.restitution, &shaken.contact.restitution},
-            {&still.gravity, &shaken.gravity},
+            {&still.gravity.y, &shaken.gravity.y},
             {&still.run.step, &shaken.run.step},
             {&still.linkage.bodies[1].mass, &shaken.linkage.bodies[1].mass},
             {&still.linkage.joints[1].clearance.hole_radius,

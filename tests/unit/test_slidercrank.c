@@ -125,10 +125,10 @@ typedef struct Textbook {
     double torque;  // N m, of the drive
 } Textbook;
 
-// m (a + g), which is what all forces but the weight must give.
+// m (a - g), which is what all forces but the weight must give.
 static Vec2 inertia_force(const Scenario *scenario, const Motion *motions, int body)
 {
-    const Vec2 lifted = vec2_add(motions[body].acceleration, (Vec2){0.0, scenario->gravity});
+    const Vec2 lifted = vec2_add(motions[body].acceleration, scenario_upward(scenario));
     return vec2_scale(scenario->linkage.bodies[body].mass, lifted);
 }
 
@@ -160,14 +160,14 @@ static Textbook solve_by_hand(const Scenario *scenario, const Motion *motions)
 static double reaction_error(const Scenario *scenario, double gravity_of_book)
 {
     Scenario lighter = kept_copy(scenario);
-    lighter.gravity = gravity_of_book;
+    lighter.gravity = scenario_downward(gravity_of_book);
     double worst = 0.0;
     for (int degree = 0; degree < 360; degree += 7) {
         Motion motions[3];
         Reactions reactions;
         Err err = {ERR_NONE, ""};
         assert_true(closed_form_bodies(scenario, degree * DEGREE, motions));
-        assert_true(inverse_dynamics_solve(&scenario->linkage, motions, scenario->gravity,
+        assert_true(inverse_dynamics_solve(&scenario->linkage, motions, scenario_gravity(scenario),
                                            (InverseTime){0.0, 0.0}, &reactions, &err));
         const Textbook book = solve_by_hand(&lighter, motions);
         const double scale = vec2_length(book.on_rod);
@@ -184,7 +184,7 @@ static void reactions_are_those_of_newtons_laws_body_by_body(void **state)
 {
     (void)state;
     const Scenario scenario = mechanism_slidercrank(0.02, 0.4, SLIDER_RIGHT);
-    assert_true(reaction_error(&scenario, scenario.gravity) <= 1e-12);
+    assert_true(reaction_error(&scenario, -scenario.gravity.y) <= 1e-12);
     // the control: without weight they are others
     assert_true(reaction_error(&scenario, 0.0) > 1e-5);
 }
@@ -201,10 +201,10 @@ static void a_guide_away_from_the_pin_takes_a_couple(void **state)
     Reactions shifted;
     Err err = {ERR_NONE, ""};
     assert_true(closed_form_bodies(&scenario, 1.0, motions));
-    assert_true(inverse_dynamics_solve(&scenario.linkage, motions, 9.8, (InverseTime){0.0, 0.0},
-                                       &plain, &err));
-    assert_true(inverse_dynamics_solve(&ahead.linkage, motions, 9.8, (InverseTime){0.0, 0.0},
-                                       &shifted, &err));
+    assert_true(inverse_dynamics_solve(&scenario.linkage, motions, (Vec2){0.0, -9.8},
+                                       (InverseTime){0.0, 0.0}, &plain, &err));
+    assert_true(inverse_dynamics_solve(&ahead.linkage, motions, (Vec2){0.0, -9.8},
+                                       (InverseTime){0.0, 0.0}, &shifted, &err));
     const double force = plain.force_on_b[3].y;
     assert_true(fabs(force) > 100.0);
     assert_near(shifted.force_on_b[3].y, force, 1e-9 * fabs(force));

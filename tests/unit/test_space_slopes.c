@@ -29,7 +29,7 @@ static Pressed *press(size_t joints)
     Pressed *pressed = test_calloc(1, sizeof *pressed);
     Scenario *scenario = &pressed->scenario;
     *scenario = mechanism_loose(joints);
-    scenario->gravity = 0.0;
+    scenario->gravity = scenario_downward(0.0);
     scenario->contact.friction = 0.2;
     scenario->linkage.driver.speed = 1e-9;
     scenario->linkage.is_spatial = true;

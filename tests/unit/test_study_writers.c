@@ -231,7 +231,7 @@ static Text draw(const char *x, const char *y, const char *by)
     text_init(&svg);
     Store *store = view();
     const StudyPlot plot = {.x = x, .y = y, .by = by};
-    assert_true(study_plot_write(store, &plot, &svg, &err));
+    assert_true(study_plot_write(store, &plot, NULL, &svg, &err));
     store_close(store, &err);
     assert_has(svg, "</svg>");
     return svg;
@@ -292,7 +292,7 @@ static void what_cannot_be_drawn_is_told(void **state)
     Store *store = view();
     for (int i = 0; i < 4; i++) {
         Err err = {0};
-        assert_false(study_plot_write(store, &PLOTS[i], &svg, &err));
+        assert_false(study_plot_write(store, &PLOTS[i], NULL, &svg, &err));
         assert_int_equal(err.kind, ERR_USAGE);
         assert_non_null(strstr(err.text, WORDS[i]));
         assert_string_equal(svg.data, "");

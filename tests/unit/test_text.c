@@ -8,6 +8,11 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void text_grows_as_it_must(void **state)
@@ -128,6 +133,57 @@ static void tables_code_and_colours_are_no_words(void **state)
     expect_folded("\x1b[1mone two\x1b[0m\n", 6, "\x1b[1mone\ntwo\x1b[0m\n");
 }
 
+// The fewest of 15 to 17 digits that read back, found by trying each.
+static void expect_number(double value)
+{
+    char words[40];
+    Text text;
+    text_init(&text);
+    text_append_number(&text, value);
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(words, sizeof words, "%.*g", digits, value);
+        if (strtod(words, NULL) == value) {
+            break;
+        }
+    }
+    if (strcmp(text.data, words) != 0) {
+        fail_msg("%a is %s and not %s", value, words, text.data);
+    }
+    text_finish(&text);
+}
+
+static void a_number_has_the_fewest_digits_that_read_back(void **state)
+{
+    (void)state;
+    static const double HARD[] = {
+        0.0,     -0.0,    1.0,      0.1,    100000.0, 1e15,
+        1e16,    1e17,    5e-324,   1e22,   1e23,     9007199254740993.0,
+        DBL_MAX, DBL_MIN, 0x1p-537, 0x1p60, 1e-5,     123456789012345678.0};
+    for (size_t i = 0; i < sizeof HARD / sizeof *HARD; i++) {
+        for (int k = 0; k < 2; k++) {
+            const double value = k == 0 ? HARD[i] : -HARD[i];
+            expect_number(value);
+            expect_number(nextafter(value, INFINITY));
+            expect_number(nextafter(value, -INFINITY) > -DBL_MAX ? nextafter(value, -INFINITY) : 0);
+        }
+    }
+    // any bits, and decimals of 14 to 17 digits of any size
+    uint64_t seed = 1;
+    for (int i = 0; i < 200000; i++) {
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        const uint64_t bits = seed ^ (seed >> 29);
+        double value;
+        memcpy(&value, &bits, sizeof value);
+        char words[48];
+        snprintf(words, sizeof words, "%" PRIu64 "e%d", bits % 100000000000000000u,
+                 (int)(bits >> 57) - 64);
+        expect_number(isfinite(value) ? value : 1.5);
+        expect_number(strtod(words, NULL));
+        words[15] = 'e';
+        expect_number(isfinite(strtod(words, NULL)) ? strtod(words, NULL) : 2.5);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +197,7 @@ int main(void)
         cmocka_unit_test(what_has_a_name_is_broken_under_its_words),
         cmocka_unit_test(a_number_stays_with_its_unit),
         cmocka_unit_test(tables_code_and_colours_are_no_words),
+        cmocka_unit_test(a_number_has_the_fewest_digits_that_read_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,6 +45,22 @@ static void what_has_no_other_blank_is_broken_before_a_unit(void **state)
           "  aaaaaaaaaaaaaaaa1 kg\n  bbbbbbbbbbbbbbbbbbbbbbbbbbbbb\n");
 }
 
+static void what_stands_in_front_is_not_folded(void **state)
+{
+    (void)state;
+    Text text;
+    text_init(&text);
+    text_append(&text, "one two three four five\n");
+    const size_t start = text.length;
+    text_append(&text, "one two three four five\n");
+    text_fold_behind(&text, start, 14);
+    assert_string_equal(text.data, "one two three four five\none two three\nfour five\n");
+    // the control: all of it
+    text_fold(&text, 14);
+    assert_string_equal(text.data, "one two three\nfour five\none two three\nfour five\n");
+    text_finish(&text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -52,6 +68,7 @@ int main(void)
         cmocka_unit_test(a_number_at_the_beginning_of_a_line_is_no_place_to_break),
         cmocka_unit_test(words_stand_under_the_words_of_their_entry),
         cmocka_unit_test(what_has_no_other_blank_is_broken_before_a_unit),
+        cmocka_unit_test(what_stands_in_front_is_not_folded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,9 +76,12 @@ const Arguments COMPARE_ARGUMENTS = {
     .program = "jointplay compare",
     .usage = "CASE",
     .doc = "Runs every scheme of ODE over a ladder of steps and prints speed against error, "
-           "the frontier, the order observed and the cheapest setting."
+           "the frontier, the order observed and the cheapest setting; with --backends those of "
+           "other engines, too."
            "\vFinished runs are kept in a store under $XDG_CACHE_HOME or ~/.cache; a "
-           "comparison that is stopped at any moment resumes from there.",
+           "comparison that is stopped at any moment resumes from there. Drivers of other engines "
+           "are programs jointplay-NAME in libexec/jointplay, or in the folder that "
+           "JOINTPLAY_DRIVERS names.",
     .argument = COMMON_PATH("compare takes one case"),
     OPTION_ROWS(OPTIONS),
     .check = cmd_compare_check,
@@ -348,8 +351,9 @@ static bool check_points(const Ladder *ladder, Err *err)
         }
         failed = point->step_s > 0.0 && failed == NULL ? point : failed;
     }
-    return failed == NULL || err_set(err, ERR_SOLVER, "every run failed: %s at %.4g us: %s",
-                                     failed->name, 1e6 * failed->step_s, failed->reason);
+    return failed == NULL || err_set(err, ERR_SOLVER, "every run%s failed: %s at %.4g us: %s",
+                                     compare_engines_are_any(ladder) ? "" : " of ODE", failed->name,
+                                     1e6 * failed->step_s, failed->reason);
 }
 
 static bool compare_ladder(const CompareOptions *options, const Scenario *scenario, Ladder *ladder,

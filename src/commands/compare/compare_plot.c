@@ -38,23 +38,32 @@ static bool is_drawn(const LadderPoint *point)
     return !point->is_failed && isfinite(point->wall_median_s) && point->error > 0.0;
 }
 
+// The colour of another engine, which does not depend on what else is compared.
+static const char *engine_colour(const char *name)
+{
+    static const char *const COLOURS[][2] = {{"mujoco", "#d9541e"},
+                                             {"chipmunk", "#8e44ad"},
+                                             {"bullet", "#8a6d3b"},
+                                             {"simbody", "#c2185b"}};
+    for (size_t i = 0; i < sizeof COLOURS / sizeof *COLOURS; i++) {
+        if (strcmp(COLOURS[i][0], name) == 0) {
+            return COLOURS[i][1];
+        }
+    }
+    return "#5b6b1f";
+}
+
 // Of another engine: its colour, and a line for each of its ways.
 static PlotStyle engine_style_of(const Scheme *scheme)
 {
-    static const char *const COLOURS[] = {"#d9541e", "#1b9e77", "#8e44ad", "#b8860b", "#0096a8"};
-    static const char *const DASHES[] = {"2 4", "8 4", "8 3 2 3", NULL};
+    static const char *const DASHES[] = {"2 4", "8 4", "8 3 2 3"};
     const EngineDriver *driver = scheme->driver;
-    // the colour is that of the name, so that it does not depend on what else is compared
-    unsigned sum = 0;
-    for (const char *letter = driver->name; *letter != '\0'; letter++) {
-        sum = 31 * sum + (unsigned char)*letter;
-    }
     size_t way = 0;
     while (way + 1 < driver->way_count && driver->ways[way] != scheme->way) {
         way++;
     }
     const bool is_last = way + 1 == driver->way_count;
-    return (PlotStyle){.colour = COLOURS[sum % (sizeof COLOURS / sizeof *COLOURS)],
+    return (PlotStyle){.colour = engine_colour(driver->name),
                        .width = is_last ? 2.6 : 1.4,
                        .opacity = 1.0,
                        .dash = is_last ? NULL : DASHES[way % 3]};

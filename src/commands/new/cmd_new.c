@@ -63,15 +63,15 @@ static const OptionRow NEW_OPTIONS[] = {
      .letter = 'q'},
 };
 
+// The text of a kind, which is one of the list.
 static const char *new_text(const char *kind)
 {
-    for (size_t i = 0; i < sizeof NEW_KINDS / sizeof *NEW_KINDS; i++) {
-        if (strcmp(NEW_KINDS[i].word, kind) == 0) {
-            return NEW_KINDS[i].text;
-        }
+    size_t i = 0;
+    while (strcmp(NEW_KINDS[i].word, kind) != 0) {
+        i++;
+        assert(i < sizeof NEW_KINDS / sizeof *NEW_KINDS);
     }
-    assert(!"a kind that was read is one of the list");
-    return NULL;
+    return NEW_KINDS[i].text;
 }
 
 // Whether nothing is in the way, be it only a link that leads nowhere.

@@ -308,9 +308,10 @@ static bool split_forces(const Scenario *fourbar, double angle, ForceParts parts
     if (!fourbar_motion_bodies(&lengths, BASE_RPM * RAD_PER_S_PER_RPM, angle, motions)) {
         return err_set(err, ERR_SOLVER, "the crank of the paper's four-bar does not turn fully");
     }
-    if (!inverse_dynamics_solve(linkage, motions, 0.0, (InverseTime){0.0, 0.0}, &weightless, err) ||
-        !inverse_dynamics_solve(linkage, motions, fourbar->gravity, (InverseTime){0.0, 0.0}, &whole,
-                                err)) {
+    if (!inverse_dynamics_solve(linkage, motions, (Vec2){0.0, 0.0}, (InverseTime){0.0, 0.0},
+                                &weightless, err) ||
+        !inverse_dynamics_solve(linkage, motions, scenario_gravity(fourbar),
+                                (InverseTime){0.0, 0.0}, &whole, err)) {
         return false;
     }
     for (int pin = 0; pin < PRINTED_PIN_COUNT; pin++) {

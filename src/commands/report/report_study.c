@@ -219,7 +219,7 @@ static bool append_plot(Store *store, const char *x, const char *y, const char *
     text_init(&svg);
     const StudyPlot plot = {.x = x, .y = y, .by = by};
     Err own = {ERR_NONE, ""};
-    const bool is_drawn = study_plot_write(store, &plot, &svg, &own);
+    const bool is_drawn = study_plot_write(store, &plot, NULL, &svg, &own);
     if (is_drawn) {
         char label[3 * RECORD_NAME_SIZE];
         snprintf(label, sizeof label, "%s%s%s", y != NULL ? y : x, y != NULL ? " over " : "",

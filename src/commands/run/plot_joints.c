@@ -703,7 +703,7 @@ void plot_limits_loop(const PlotView *view, PlotPanel panel)
     const size_t joint = (size_t)report->scenario->linkage.torque.joint;
     const bool is_angle = linkage_is_torsional(plot_limits_joint_of(report, joint));
     const LimitPanel limits = panel_of(is_angle, plot_limits_joint_of(report, joint)->limits.kind);
-    const PlotPath path = {.joint = joint, .at = loop_at};
+    const PlotPath path = {.joint = joint, .at = loop_at, .is_straight = true};
     panel.title = is_angle ? "Angle over torque; dashed: flanks and stops"
                            : "Travel over force; dashed: flanks and stops";
     panel.x = torque_axis(report, is_angle);
@@ -886,10 +886,6 @@ static void plot_slides_widen(const SlidePanel *slide, const PlotView *view, Plo
                 panel->y.low = fmin(panel->y.low, value);
             }
         }
-    }
-    if (!(panel->y.low <= panel->y.high)) {
-        panel->y.low = 0.0;
-        panel->y.high = 0.0;
     }
     axis_fit(&panel->y.low, &panel->y.high);
 }

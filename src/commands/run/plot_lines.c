@@ -501,24 +501,46 @@ static double between(const PathCurve *curve, const double *values, const double
     return hermite_at(&hermite, time_s).value;
 }
 
-static void draw_curve(const PlotPanel *panel, const PathCurve *curve, PlotStyle style)
+static const double PATH_NEAR = 0.5; // pixels; what moves less than that from a point is left out
+
+// A line that is drawn through some of its points.
+typedef struct PathLine {
+    const PlotPanel *panel;
+    size_t count;
+    double *x; // owned, with y
+    double *y;
+} PathLine;
+
+static void add_point(PathLine *line, double x, double y, bool is_last)
 {
-    double *x = zeroed(2 * (curve->count * PATH_PIECES_MOST + 1), sizeof *x);
-    double *y = x + curve->count * PATH_PIECES_MOST + 1;
-    size_t count = 0;
+    const size_t before = line->count > 0 ? line->count - 1 : 0;
+    const double far_x = fabs(plot_x(line->panel, x) - plot_x(line->panel, line->x[before]));
+    const double far_y = fabs(plot_y(line->panel, y) - plot_y(line->panel, line->y[before]));
+    if (line->count == 0 || is_last || far_x > PATH_NEAR || far_y > PATH_NEAR) {
+        line->x[line->count] = x;
+        line->y[line->count++] = y;
+    }
+}
+
+static void draw_curve(const PlotPanel *panel, const PathCurve *curve, bool is_straight,
+                       PlotStyle style)
+{
+    const size_t room = curve->count * PATH_PIECES_MOST + 1;
+    double *all = zeroed(2 * room, sizeof *all);
+    PathLine line = {panel, 0, all, all + room};
     for (size_t i = 0; i < curve->count; i++) {
-        x[count] = curve->x[i];
-        y[count++] = curve->y[i];
-        const size_t pieces = i + 1 < curve->count ? count_pieces(panel, curve, i) : 1;
+        const bool is_last = i + 1 == curve->count;
+        add_point(&line, curve->x[i], curve->y[i], is_last);
+        const size_t pieces = is_last || is_straight ? 1 : count_pieces(panel, curve, i);
         for (size_t k = 1; k < pieces; k++) {
             const double share = (double)k / (double)pieces;
             const double time_s = curve->times[i] + share * (curve->times[i + 1] - curve->times[i]);
-            x[count] = between(curve, curve->x, curve->x_rate, i, time_s);
-            y[count++] = between(curve, curve->y, curve->y_rate, i, time_s);
+            add_point(&line, between(curve, curve->x, curve->x_rate, i, time_s),
+                      between(curve, curve->y, curve->y_rate, i, time_s), false);
         }
     }
-    plot_line(panel, count, x, y, style);
-    free(x);
+    plot_line(panel, line.count, line.x, line.y, style);
+    free(all);
 }
 
 void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, const PlotPath *path)
@@ -529,6 +551,6 @@ void plot_look_path(const PlotView *view, const PlotPanel *panel, size_t run, co
     style.opacity = fmax(style.opacity, 0.8);
     style.dash = path->end == 0 ? NULL : "3 2";
     const PathCurve curve = path_take(view->report, view->report->runs[run], path);
-    draw_curve(panel, &curve, style);
+    draw_curve(panel, &curve, path->is_straight, style);
     free(curve.x);
 }

@@ -109,6 +109,7 @@ typedef struct PlotPath {
     double per_metre; // the panel's unit, of a pin in its hole
     Vec2 (*at)(const RunReport *report, const Trajectory *run, size_t sample,
                const struct PlotPath *path);
+    bool is_straight; // between the samples: nothing is known of it there
     // How it moves there, per second; NULL: not known.
     Vec2 (*rate)(const RunReport *report, const Trajectory *run, size_t sample,
                  const struct PlotPath *path);

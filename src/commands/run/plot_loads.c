@@ -51,10 +51,6 @@ void plot_loads_torque(const PlotView *view, PlotPanel panel)
     for (size_t n = 0; n < count * report->run_count; n++) {
         show_torques(report, report->runs[n / count], joints[n % count], &panel.y);
     }
-    if (!(panel.y.low <= panel.y.high)) {
-        panel.y.low = 0.0;
-        panel.y.high = 0.0;
-    }
     axis_fit(&panel.y.low, &panel.y.high);
     plot_enter(&panel);
     plot_look_shade(view, &panel);
@@ -130,6 +126,8 @@ static void fit_window(const LoadWindow *window, PlotPanel *panel)
 enum { SPOKES = 12 };
 static const double SPOKE_LABEL = 18.0; // from the frame to the middle of an angle's label, pixels
 
+static const double CIRCLE_LABEL = 32.0; // from the frame to the middle of a force's label, pixels
+
 static Vec2 spoke_direction(int spoke)
 {
     return vec2_rotate(2.0 * acos(-1.0) * spoke / SPOKES, (Vec2){1.0, 0.0});
@@ -202,7 +200,9 @@ static void draw_circles(const PlotPanel *panel, const LoadWindow *window)
     for (double force = step; window->most > 0.0 && force < far; force += step) {
         const Vec2 at = vec2_scale(force, spoke_direction(spoke));
         plot_circle(panel, force, CIRCLE);
-        if (force < 0.9 * spoke_length(panel, spoke)) {
+        const double room = panel->left + panel->width - plot_x(panel, at.x);
+        if (force < 0.9 * spoke_length(panel, spoke) && room > CIRCLE_LABEL &&
+            plot_x(panel, at.x) - panel->left > CIRCLE_LABEL) {
             char words[32];
             snprintf(words, sizeof words, "%g N", force);
             plot_text(panel->svg, plot_x(panel, at.x), plot_y(panel, at.y) + 4.0, "middle", "halo",

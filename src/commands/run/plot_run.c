@@ -114,10 +114,6 @@ static void choose_scale(const PlotView *view, PlotQuantity quantity, Axis *axis
         axis->low = fmin(axis->low, reach.low);
         axis->high = fmax(axis->high, reach.high);
     }
-    if (!(axis->low <= axis->high)) {
-        axis->low = 0.0;
-        axis->high = 0.0;
-    }
     const double most = fmax(-axis->low, axis->high);
     if (most > SPIKY * least) {
         const bool is_size = axis->low >= 0.0;

@@ -335,7 +335,7 @@ static void run_fields_take_samples(const Scenario *scenario, const Trajectory *
 static Largest run_fields_find_largest(const Scenario *scenario, const Trajectory *run)
 {
     const Linkage *linkage = &scenario->linkage;
-    const double gravity = fabs(scenario->gravity);
+    const double gravity = vec3_length(scenario->gravity);
     Largest largest = {.distance = 0.0};
     run_fields_take_samples(scenario, run, &largest);
     double mass = 0.0;

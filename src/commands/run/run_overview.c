@@ -418,12 +418,9 @@ static void write_all(const RunReport *report, const Overview *overview, Overvie
 {
     text_append(text, "\n");
     write_table(overview, report->scenario, rows, text);
-    Text sentences;
-    text_init(&sentences);
-    run_overview_sentences(report, &sentences);
-    text_fold(&sentences, STYLE_WIDTH);
-    text_append(text, "%s", sentences.data);
-    text_finish(&sentences);
+    const size_t start = text->length;
+    run_overview_sentences(report, text);
+    text_fold_behind(text, start, STYLE_WIDTH);
     if (is_alone) {
         text_append(text, "  --full: all tables\n");
     }

@@ -77,6 +77,16 @@ static bool write_motor(const Linkage *linkage, Text *text)
     return true;
 }
 
+// From the smallest to the largest of some numbers.
+static Range range_of(const double *values, size_t count)
+{
+    Range range = RANGE_EMPTY;
+    for (size_t i = 0; i < count; i++) {
+        range_add(&range, values[i]);
+    }
+    return range;
+}
+
 static void run_text_write_torque(const Linkage *linkage, Text *text)
 {
     const TimeTable *table = &linkage->torque.table;
@@ -86,17 +96,13 @@ static void run_text_write_torque(const Linkage *linkage, Text *text)
     const Joint *joint = &linkage->joints[linkage->torque.joint];
     const bool is_force = joint->kind == JOINT_PRISMATIC;
     const char *unit = is_force ? "N" : "N m";
-    double low = table->values[0];
-    double high = low;
-    for (size_t i = 1; i < table->count; i++) {
-        low = fmin(low, table->values[i]);
-        high = fmax(high, table->values[i]);
-    }
+    const Range values = range_of(table->values, table->count);
     text_append(text, "  drive       %s ", is_force ? "force" : "torque");
-    if (low == high) {
-        text_append(text, "%.6g %s", low, unit);
+    if (values.least == values.most) {
+        text_append(text, "%.6g %s", values.least, unit);
     } else {
-        text_append(text, "%.6g to %.6g %s by %zu points over time", low, high, unit, table->count);
+        text_append(text, "%.6g to %.6g %s by %zu points over time", values.least, values.most,
+                    unit, table->count);
     }
     text_append(text, " at %s\n", joint->name);
 }
@@ -109,17 +115,12 @@ static void write_loads(const Linkage *linkage, size_t width, Text *text)
         const Load *load = &linkage->loads[i];
         const LoadTable *table = &load->table;
         const char *unit = load_is_force(linkage, load) ? "N" : "N m";
-        double low = table->values[0];
-        double high = low;
-        for (size_t k = 1; k < table->count; k++) {
-            low = fmin(low, table->values[k]);
-            high = fmax(high, table->values[k]);
-        }
+        const Range values = range_of(table->values, table->count);
         Text said;
         text_init(&said);
-        text_append(&said, "%.6g", low);
+        text_append(&said, "%.6g", values.least);
         if (table->count > 1) {
-            text_append(&said, " to %.6g %s by %zu points over %s", high, unit, table->count,
+            text_append(&said, " to %.6g %s by %zu points over %s", values.most, unit, table->count,
                         OVERS[load->over]);
         } else {
             text_append(&said, " %s", unit);

@@ -504,17 +504,24 @@ static bool cmd_study_draw(void *target, Err *err)
 {
     const DrawOptions *options = target;
     char path[FILE_PATH_SIZE];
-    Store *store = study_path_find(options->store, path, err) ? store_view(path, err) : NULL;
+    // a study file has the units that its user thinks in
+    const bool is_study = study_path_is_study(options->store);
+    Spec *spec = is_study ? spec_open(options->store, err) : NULL;
+    Store *store = (spec != NULL || !is_study) && study_path_find(options->store, path, err)
+                       ? store_view(path, err)
+                       : NULL;
     if (store == NULL) {
+        spec_close(spec);
         return false;
     }
     Text svg;
     text_init(&svg);
     bool is_drawn = file_claim("the picture", FILE_PICTURE, options->file, err) &&
-                    study_plot_write(store, &options->plot, &svg, err);
+                    study_plot_write(store, &options->plot, spec, &svg, err);
     is_drawn = store_close(store, err) && is_drawn &&
                written_text(FILE_PICTURE, options->file, svg.data, options->is_quiet, err);
     text_finish(&svg);
+    spec_close(spec);
     return is_drawn;
 }
 
@@ -523,7 +530,8 @@ static const Arguments STUDY_DRAW_ARGUMENTS = {
     .usage = "FILE-or-STORE FILE.svg",
     .doc = "Draws one column of a study over another, as SVG: one dot per run, or, if many "
            "runs share each x, their median and a band from 5 to 95 %."
-           "\vThe first line of 'jointplay study export' names the columns.",
+           "\vThe first line of 'jointplay study export' names the columns. With a study file the "
+           "axes have its units and scales, with a store SI.",
     .argument = {.type = OPTION_READ, .read = cmd_study_read_word},
     OPTION_ROWS(STUDY_DRAW_OPTIONS),
     .check = study_draw_check,

@@ -54,7 +54,7 @@ typedef struct Metric {
     Need need;
     size_t offset; // in its owner: of a size_t for COLUMN_WHOLE, of a double for COLUMN_REAL
     double (*find)(const Measured *measured, size_t member); // NULL: the value at the offset
-    const char *meaning;
+    const char *words[2]; // what it is; the same on an axis, NULL where it is short enough for one
 } Metric;
 
 // In all joints; NAN where the solver let no play happen.
@@ -131,23 +131,26 @@ static double find_section_change(const Measured *measured, size_t unused)
 }
 
 // clang-format off
-#define ROW(owner, of, name, kind, need, field, meaning) \
-    {owner, name, COLUMN_##kind, need, offsetof(of, field), NULL, meaning}
+// behind the meaning may stand the title
+#define ROW(owner, of, name, kind, need, field, ...) \
+    {owner, name, COLUMN_##kind, need, offsetof(of, field), NULL, {__VA_ARGS__}}
 #define BODY(...) ROW(OF_BODY, BodyExtremes, __VA_ARGS__)
 #define RUN(...) ROW(OF_RUN, Trajectory, __VA_ARGS__)
 #define SETTLED(...) ROW(OF_SETTLED, SettledStart, __VA_ARGS__)
 #define ERROR(...) ROW(OF_ERROR, TrajectoryError, __VA_ARGS__)
 #define TRUTH(...) ROW(OF_TRUTH, Truth, __VA_ARGS__)
-#define FOUND(owner, name, kind, need, find, meaning) \
-    {owner, name, COLUMN_##kind, need, 0, find, meaning}
+#define FOUND(owner, name, kind, need, find, ...) \
+    {owner, name, COLUMN_##kind, need, 0, find, {__VA_ARGS__}}
 #define SECTION(number) \
     FOUND(OF_BODY, "section_" #number "_rad_s", REAL, TURNS, find_section_##number, \
           (number) == 1 ? "angular velocity at the end of the last whole revolution" \
-                        : "the same of the revolution before"),
+                        : "the same of the revolution before", \
+          "angular velocity at the end of revolution -" #number),
 #define SLIDE(number) \
     FOUND(OF_BODY, "section_" #number "_m_s", REAL, SLIDES, find_slide_##number, \
           (number) == 1 ? "of a body that slides on the ground its velocity there, along its line" \
-                        : "the same of the revolution before"),
+                        : "the same of the revolution before", \
+          "velocity of the slider at the end of revolution -" #number),
 
 static const Metric METRICS[] = {
     BODY("omega_max_rad_s", REAL, NOTHING, omega_max.value, "largest angular velocity"),
@@ -155,66 +158,70 @@ static const Metric METRICS[] = {
     BODY("alpha_max_rad_s2", REAL, NOTHING, alpha_max.value, "largest angular acceleration"),
     BODY("alpha_min_rad_s2", REAL, NOTHING, alpha_min.value, "smallest angular acceleration"),
     FOUND(OF_BODY, "omega_order_1_rad_s", REAL, NOTHING, find_order_1,
-          "amplitude of the angular velocity at once the crank's speed"),
-    FOUND(OF_BODY, "omega_order_2_rad_s", REAL, NOTHING, find_order_2, "the same at twice its speed"),
+          "amplitude of the angular velocity at once the crank's speed",
+          "amplitude of omega at the crank's speed"),
+    FOUND(OF_BODY, "omega_order_2_rad_s", REAL, NOTHING, find_order_2, "the same at twice its speed",
+          "amplitude of omega at twice the crank's speed"),
     FOUND(OF_BODY, "omega_between_orders_rad_s", REAL, NOTHING, find_between_orders,
-          "its largest amplitude between whole multiples of the crank's speed"),
+          "its largest amplitude between whole multiples of the crank's speed",
+          "largest amplitude of omega between orders"),
     SECTION_LIST(SECTION)
     SECTION_LIST(SLIDE)
     FOUND(OF_RUN, "impacts", WHOLE, NOTHING, find_impacts, "contacts begun in all joints"),
     FOUND(OF_RUN, "alpha_peak_rad_s2", REAL, NOTHING, find_alpha_peak,
-          "largest magnitude of any body's angular acceleration"),
+          "largest magnitude of any body's angular acceleration", "largest angular acceleration of any body"),
     RUN("energy_drive_work_J", REAL, NOTHING, energy.drive_work, "work of the drive"),
-    RUN("energy_dissipated_J", REAL, NOTHING, energy.dissipated, "lost in the damping of contacts and dampers"),
-    RUN("energy_residual_J", REAL, NOTHING, energy.residual, "unexplained by the balance: the solver's error"),
+    RUN("energy_dissipated_J", REAL, NOTHING, energy.dissipated, "lost in the damping of contacts and dampers", "energy lost in damping"),
+    RUN("energy_residual_J", REAL, NOTHING, energy.residual, "unexplained by the balance: the solver's error", "residual of the energy balance"),
     RUN("step_s", REAL, FIXED_STEP, step_s, "step of ODE"),
     RUN("steps", WHOLE, NOTHING, steps, "steps of the solver"),
     RUN("evaluations", WHOLE, NOTHING, evaluations, "evaluations of the equations of motion"),
     RUN("fallback_rows", WHOLE, NOTHING, fallback_rows,
-        "contact rows for which the requested map would have been unstable"),
+        "contact rows for which the requested map would have been unstable", "contact rows with the textbook map"),
     RUN("error_estimate", REAL, TRIALS, error_estimate,
-        "upper bound of the error, for a step chosen for a tolerance"),
-    RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds"),
+        "upper bound of the error, for a step chosen for a tolerance", "upper bound of the error"),
+    RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds", "time up to which the bound of the error holds"),
     FOUND(OF_RUN, "section_period", WHOLE, NOTHING, find_section_period,
-          "revolutions after which the run repeats; 0: it has not"),
+          "revolutions after which the run repeats; 0: it has not", "period of the run, revolutions"),
     FOUND(OF_RUN, "section_change", REAL, NOTHING, find_section_change,
-          "by how much its last sections differ from those a period before"),
+          "by how much its last sections differ from those a period before", "change of the sections over a period"),
     FOUND(OF_SETTLED, "settled_period", WHOLE, NOTHING, find_period,
-          "revolutions after which the settled motion repeats; 0: it does not"),
+          "revolutions after which the settled motion repeats; 0: it does not", "period of the settled motion, revolutions"),
     SETTLED("settled_revolutions", WHOLE, NOTHING, revolutions,
-            "revolutions that it took to settle"),
+            "revolutions that it took to settle", "revolutions until settled"),
     SETTLED("settled_motions", WHOLE, NOTHING, motion_count,
-            "different motions that its starts came to"),
+            "different motions that its starts came to", "number of settled motions"),
     SETTLED("settled_growth", REAL, GROWTH, growth.factor,
-            "growth of a small change of its motion in a revolution, or its bound"),
+            "growth of a small change of its motion in a revolution, or its bound",
+            "growth of a small change in a revolution"),
     SETTLED("followed_from", REAL, FOLLOWED, followed_from,
-            "value of the followed key at the run whose motion it started in"),
+            "value of the followed key at the run whose motion it started in", "value that the motion was followed from"),
     ERROR("error_max", REAL, NOTHING, max,
-          "largest error of any velocity of bodies and pins, over its own largest"),
+          "largest error of any velocity of bodies and pins, over its own largest", "largest error of the velocities"),
     ERROR("error_max_in_horizon", REAL, NOTHING, max_in_horizon,
-          "the same up to the predictability horizon"),
+          "the same up to the predictability horizon", "largest error of the velocities up to the horizon"),
     ERROR("error_omega_max", REAL, NOTHING, omega_max,
-          "the part of angular velocities in it"),
+          "the part of angular velocities in it", "largest error of omega"),
     ERROR("error_omega_max_in_horizon", REAL, NOTHING, omega_max_in_horizon,
-          "the same up to the predictability horizon"),
-    ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the errors of omega"),
+          "the same up to the predictability horizon", "largest error of omega up to the horizon"),
+    ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the errors of omega", "rms error of omega"),
     ERROR("error_alpha_max", REAL, NOTHING, alpha_max,
-          "largest error of alpha, relative to each body's largest alpha"),
+          "largest error of alpha, relative to each body's largest alpha", "largest error of alpha"),
     ERROR("error_force_max", REAL, NOTHING, force_max,
-          "largest error of a contact force at samples, over the joint's largest"),
+          "largest error of a contact force at samples, over the joint's largest", "largest error of contact forces"),
     ERROR("error_force_max_in_horizon", REAL, NOTHING, force_max_in_horizon,
-          "the same up to the predictability horizon"),
+          "the same up to the predictability horizon", "largest error of contact forces up to the horizon"),
     ERROR("error_peak_force_max", REAL, NOTHING, peak_force_max,
-          "largest error of the peak force of a contact, over the joint's largest"),
+          "largest error of the peak force of a contact, over the joint's largest", "largest error of peak forces"),
     ERROR("error_peak_force_max_in_horizon", REAL, NOTHING, peak_force_max_in_horizon,
-          "the same of contacts that end within the predictability horizon"),
+          "the same of contacts that end within the predictability horizon", "largest error of peak forces up to the horizon"),
     ERROR("error_peak_alpha_max", REAL, NOTHING, peak_alpha_max,
-          "largest error of a body's extremes of alpha, over the larger of them"),
+          "largest error of a body's extremes of alpha, over the larger of them", "largest error of the extremes of alpha"),
     ERROR("error_peak_alpha_max_in_horizon", REAL, NOTHING, peak_alpha_max_in_horizon,
-          "the same up to the predictability horizon"),
+          "the same up to the predictability horizon", "largest error of the extremes of alpha up to the horizon"),
     TRUTH("error_horizon_s", REAL, CERTIFICATE, horizon_s, "predictability horizon"),
     TRUTH("error_reference_uncertainty", REAL, CERTIFICATE, uncertainty,
-          "uncertainty of the reference, relative in the same way"),
+          "uncertainty of the reference, relative in the same way", "uncertainty of the reference"),
 };
 // clang-format on
 enum { METRIC_COUNT = sizeof METRICS / sizeof *METRICS };
@@ -409,6 +416,40 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
     }
 }
 
+// Whether a column is of a number with that key: its whole name, or with the name of a body or
+// joint before it, whose length is then told.
+static bool has_key(const char *column, const char *key, bool has_owner, size_t *owner_length)
+{
+    const size_t length = strlen(column);
+    const size_t size = strlen(key);
+    *owner_length = has_owner && length > size + 1 ? length - size - 1 : 0;
+    return has_owner ? *owner_length > 0 && column[*owner_length] == '_' &&
+                           strcmp(column + *owner_length + 1, key) == 0
+                     : strcmp(column, key) == 0;
+}
+
+bool metrics_title(const char *column, const char **title, const char **key, size_t *owner_length)
+{
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        const Metric *metric = &METRICS[i];
+        if (has_key(column, metric->name, metric->owner == OF_BODY, owner_length)) {
+            *title = metric->words[metric->words[1] != NULL ? 1 : 0];
+            *key = metric->name;
+            return true;
+        }
+    }
+    for (size_t i = 0; i < 2 * JOINT_NUMBER_COUNT; i++) {
+        const JointNumber *number = &JOINT_NUMBERS[i / 2];
+        if (has_key(column, number->keys[i % 2], true, owner_length)) {
+            const bool is_torque = number->kind == JOINT_NUMBER_OF_FORCE && i % 2 == 1;
+            *title = is_torque ? "largest torque" : number->meaning;
+            *key = number->keys[i % 2];
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool is_there(const Metric *metric, const Measured *measured)
 {
     if ((metric->owner >= OF_ERROR && !measured->error.is_known) ||
@@ -500,7 +541,7 @@ bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *tr
 static void describe_one(bool is_markdown, const char *owner, const char *name, const char *meaning,
                          Text *text)
 {
-    text_append(text, is_markdown ? "| `%s%s` | %s |\n" : "    %s%s\n        %s\n", owner, name,
+    text_append(text, is_markdown ? "- `%s%s`: %s\n" : "    %s%s\n        %s\n", owner, name,
                 meaning);
 }
 
@@ -514,7 +555,7 @@ void metrics_describe(bool is_markdown, Text *text)
         for (size_t i = 0; i < METRIC_COUNT; i++) {
             if (METRICS[i].owner == owner) {
                 describe_one(is_markdown, owner == OF_BODY ? "<body>_" : "", METRICS[i].name,
-                             METRICS[i].meaning, text);
+                             METRICS[i].words[0], text);
             }
         }
     }

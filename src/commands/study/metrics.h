@@ -16,5 +16,10 @@ bool metrics_fit(const Scenario *scenario, Err *err);
 bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *trajectory,
                   const Truth *truth, double results[RECORD_RESULT_MAX]);
 
+// What a column of the results is, for the axis of a picture, and its key, with the unit; of a
+// number of a body or joint how many letters its name takes in front of the key, else 0. False
+// where the column is no result.
+bool metrics_title(const char *column, const char **title, const char **key, size_t *owner_length);
+
 // Appends what each result is, for people: a line or more each, or the rows of a Markdown table.
 void metrics_describe(bool is_markdown, Text *text);

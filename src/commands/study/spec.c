@@ -130,6 +130,7 @@ bool spec_read_number(Reading *reading, const Node *node, bool is_checked, doubl
     if (has_own_unit) {
         text_copy(variable->column_unit, sizeof variable->column_unit, read.unit);
     }
+    variable->given = variable->given != NULL ? variable->given : read.given;
     *number = read.value;
     return true;
 }

@@ -36,6 +36,7 @@ typedef struct Variable {
     char key[CASEFILE_KEY_SIZE];          // of the case file, or `scheme`
     char unit[CASEFILE_UNIT_SIZE];        // SI unit that a number is handed to the case file with
     char column_unit[CASEFILE_UNIT_SIZE]; // SI unit as a column names it: of a plain number, too
+    const Unit *given;                    // that its first value is written with; NULL: none
     VariableKind kind;
     bool is_drawn;
     bool is_word;

@@ -226,9 +226,14 @@ static void describe_key(const SpecKey *key, bool is_markdown, Text *text)
     text_init(&words);
     if (is_markdown) {
         spec_key_allowed(key, &words);
-        text_append(&words, " | ");
-        spec_table_describe_default(key, &words);
-        text_append(text, "| `%s%s%s` | %s | %s |\n", group, dot, key->name, words.data, key->doc);
+        Text usual;
+        text_init(&usual);
+        spec_table_describe_default(key, &usual);
+        if (strcmp(usual.data, "none") != 0) {
+            text_append(&words, key->is_required ? "; %s" : "; default %s", usual.data);
+        }
+        text_finish(&usual);
+        text_append(text, "- `%s%s%s` (%s): %s\n", group, dot, key->name, words.data, key->doc);
     } else {
         text_append(&words, "%s: ", key->doc);
         spec_key_allowed(key, &words);
@@ -247,7 +252,6 @@ void spec_describe(bool is_markdown, Text *text)
                               "program's own table of keys; a test compares it with the "
                               "program. [Studies](studies.md) explains what they are for and "
                               "how to run them.\n\n%s\n\n```yaml\n%s```\n\n"
-                              "| key | value | default | meaning |\n|---|---|---|---|\n"
                             : "A study file\n\n%s\n\n%s\n",
                 RULES, EXAMPLE);
     if (!is_markdown) {
@@ -257,7 +261,7 @@ void spec_describe(bool is_markdown, Text *text)
         describe_key(&SPEC_KEYS[i], is_markdown, text);
     }
     text_append(text, is_markdown ? "\n## The columns of its runs\n\nA column for each key under "
-                                    "vary and draw, then:\n\n| column | meaning |\n|---|---|\n"
+                                    "vary and draw, then:\n\n"
                                   : "\nThe columns of its runs: one for each key under vary and "
                                     "draw, then\n\n");
     metrics_describe(is_markdown, text);

@@ -5,10 +5,12 @@
 #include "commands/study/study_plot.h"
 #include "base/sorted.h"
 #include "base/text.h"
+#include "commands/study/study_label.h"
 #include "write/plot.h"
 #include "write/units.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -196,14 +198,16 @@ static size_t study_points_pile(const StudyPoints *points, size_t first)
     return end;
 }
 
-// The value that a group has in its column, in words.
-static void study_points_group_name(const StudyPoints *points, const Layout *layout, size_t group,
+// The value that a group has in its column, with its unit.
+static void study_points_group_name(const StudyPoints *points, const Layout *layout,
+                                    const StudyLabel *label, size_t group,
                                     char words[RECORD_WORD_SIZE])
 {
     if (layout->settings[points->by].kind == COLUMN_WORD) {
         text_copy(words, RECORD_WORD_SIZE, points->groups[group].word);
     } else {
-        snprintf(words, RECORD_WORD_SIZE, "%.4g", points->groups[group].number);
+        snprintf(words, RECORD_WORD_SIZE, "%.4g%s%s", label->per_si * points->groups[group].number,
+                 label->unit[0] != '\0' ? " " : "", label->unit);
     }
 }
 
@@ -344,6 +348,7 @@ static const double PANEL_WIDTH_ALONE = 880.0; // without a legend
 static const double PANEL_HEIGHT = 500.0;
 static const double LEGEND_LEFT = 748.0;
 static const double LEGEND_ROW = 36.0;
+enum { LEGEND_LETTERS = 28 };       // of its title that fit on a line
 static const double DOT_CELL = 1.0; // dots nearer than that to each other are one
 
 static const double LOG_SPAN = 30.0; // from that ratio on an axis is logarithmic
@@ -363,10 +368,52 @@ static PlotStyle study_plot_style_of(size_t group)
     return style;
 }
 
-static void study_plot_choose_axis(const char *title, double low, double high, Axis *axis)
+// What the picture says of its columns, and the words on its axes.
+typedef struct StudyWords {
+    StudyLabel x;
+    StudyLabel y;
+    StudyLabel by;
+    char x_title[STUDY_LABEL_SIZE + CASEFILE_UNIT_SIZE + 4];
+    char y_title[STUDY_LABEL_SIZE + CASEFILE_UNIT_SIZE + 4];
+} StudyWords;
+
+static StudyLabel find_label(const Layout *layout, const Spec *spec, const char *name)
+{
+    return name != NULL ? study_label(layout, spec, store_column(layout, name))
+                        : (StudyLabel){.per_si = 1.0};
+}
+
+static void write_title(const StudyLabel *label, char *title, size_t size)
+{
+    snprintf(title, size, "%s%s%s", label->words, label->unit[0] != '\0' ? ", " : "", label->unit);
+}
+
+// Of a plot whose columns are there.
+static void find_words(const Layout *layout, const Spec *spec, const StudyPlot *plot,
+                       StudyWords *words)
+{
+    words->x = find_label(layout, spec, plot->x);
+    words->y = find_label(layout, spec, plot->y);
+    words->by = find_label(layout, spec, plot->by);
+    write_title(&words->x, words->x_title, sizeof words->x_title);
+    write_title(&words->y, words->y_title, sizeof words->y_title);
+}
+
+// From SI to the units that are shown.
+static void convert(const StudyWords *words, StudyPoints *points)
+{
+    for (size_t i = 0; i < points->count; i++) {
+        points->points[i].x *= words->x.per_si;
+        points->points[i].y *= words->y.per_si;
+    }
+}
+
+static void study_plot_choose_axis(const StudyLabel *label, const char *title, double low,
+                                   double high, Axis *axis)
 {
     *axis = (Axis){.title = title, .low = low, .high = high};
-    if (low > 0.0 && high > LOG_SPAN * low) {
+    const bool is_wide = high > LOG_SPAN * low;
+    if (low > 0.0 && (label->is_log || (is_wide && !label->is_linear))) {
         axis->scale = AXIS_LOG;
         axis_round_log(&axis->low, &axis->high);
     } else {
@@ -374,7 +421,7 @@ static void study_plot_choose_axis(const char *title, double low, double high, A
     }
 }
 
-static void study_plot_choose_axes(const StudyPoints *points, const StudyPlot *plot,
+static void study_plot_choose_axes(const StudyPoints *points, const StudyWords *words, bool has_y,
                                    PlotPanel *panel)
 {
     double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
@@ -384,9 +431,9 @@ static void study_plot_choose_axes(const StudyPoints *points, const StudyPlot *p
         low_y = fmin(low_y, points->points[i].y);
         high_y = fmax(high_y, points->points[i].y);
     }
-    study_plot_choose_axis(plot->x, low_x, high_x, &panel->x);
-    if (plot->y != NULL) {
-        study_plot_choose_axis(plot->y, low_y, high_y, &panel->y);
+    study_plot_choose_axis(&words->x, words->x_title, low_x, high_x, &panel->x);
+    if (has_y) {
+        study_plot_choose_axis(&words->y, words->y_title, low_y, high_y, &panel->y);
     }
 }
 
@@ -472,18 +519,32 @@ static void study_plot_draw_dots(const PlotPanel *panel, const StudyPoints *poin
     free(is_taken);
 }
 
-static void study_plot_draw_legend(const PlotPanel *panel, const StudyPoints *points,
-                                   const StudyPlot *plot, const Layout *layout)
+// What the groups are of, in two lines where one is too short for it; returns where the last
+// stands.
+static double draw_legend_title(const PlotPanel *panel, const char *words)
 {
+    const char *rest = strstr(words, " of ");
     double y = PANEL_TOP + 6.0;
-    if (plot->by == NULL) {
-        return;
+    if (strlen(words) <= LEGEND_LETTERS || rest == NULL) {
+        plot_text(panel->svg, LEGEND_LEFT, y, "start", "panel", words);
+        return y;
     }
-    plot_text(panel->svg, LEGEND_LEFT, y, "start", "panel", plot->by);
+    char first[STUDY_LABEL_SIZE];
+    snprintf(first, sizeof first, "%.*s", (int)(rest - words), words);
+    plot_text(panel->svg, LEGEND_LEFT, y, "start", "panel", first);
+    y += 18.0;
+    plot_text(panel->svg, LEGEND_LEFT, y, "start", "panel", rest + 1);
+    return y;
+}
+
+static void study_plot_draw_legend(const PlotPanel *panel, const StudyPoints *points,
+                                   const StudyLabel *label, const Layout *layout)
+{
+    double y = draw_legend_title(panel, label->words);
     for (size_t group = 0; group < points->group_count; group++) {
         char words[RECORD_WORD_SIZE];
         y += group == 0 ? 26.0 : LEGEND_ROW;
-        study_points_group_name(points, layout, group, words);
+        study_points_group_name(points, layout, label, group, words);
         plot_sample(panel->svg, LEGEND_LEFT, y - 4.0, study_plot_style_of(group));
         study_plot_draw_dot(panel, LEGEND_LEFT + 15.0, y - 4.0, 3.4, 1.0,
                             study_plot_style_of(group).colour);
@@ -504,17 +565,36 @@ static bool has_band(const StudyPoints *points)
     return false;
 }
 
-static void study_plot_draw_head(const StudyPoints *points, const StudyPlot *plot, const char *what,
+enum { HEAD_LETTERS = 84 }; // that fit on its line
+
+// The title that is given, or that of the study, or what is drawn: in words, or where these are too
+// many by the names of the columns.
+static void find_head(const StudyPlot *plot, const StudyWords *words, const Spec *spec, char *head,
+                      size_t size)
+{
+    const char *title = plot->title != NULL                      ? plot->title
+                        : spec != NULL && spec->title[0] != '\0' ? spec->title
+                                                                 : NULL;
+    const size_t letters = strlen(words->x.words) + strlen(words->y.words) + strlen(" over ");
+    const bool is_long = letters > HEAD_LETTERS;
+    const char *x = is_long ? plot->x : words->x.words;
+    const char *y = is_long ? plot->y : words->y.words;
+    if (title != NULL || plot->y == NULL) {
+        snprintf(head, size, "%s", title != NULL ? title : x);
+    } else {
+        snprintf(head, size, "%s over %s", y, x);
+    }
+    if (title == NULL && !is_long) {
+        head[0] = (char)toupper((unsigned char)head[0]);
+    }
+}
+
+static void study_plot_draw_head(const StudyPoints *points, const char *head, const char *what,
                                  Text *svg)
 {
     char words[3 * RECORD_NAME_SIZE];
-    if (plot->y == NULL) {
-        snprintf(words, sizeof words, "%s", plot->x);
-    } else {
-        snprintf(words, sizeof words, "%s over %s", plot->y, plot->x);
-    }
-    plot_text(svg, PANEL_LEFT, 34.0, "start", "title", plot->title != NULL ? plot->title : words);
-    int length = snprintf(words, sizeof words, "%zu runs%s", points->count, what);
+    plot_text(svg, PANEL_LEFT, 34.0, "start", "title", head);
+    const int length = snprintf(words, sizeof words, "%zu runs%s", points->count, what);
     if (points->left_out > 0) {
         snprintf(words + length, sizeof words - (size_t)length,
                  "; %" PRIu64 " without a result left out", points->left_out);
@@ -539,36 +619,47 @@ static void draw_points(const PlotPanel *panel, const StudyPoints *points, bool 
     plot_leave(panel);
 }
 
-bool study_plot_write(Store *store, const StudyPlot *plot, Text *svg, Err *err)
+// What the points of a picture are, as its head says.
+static const char *describe_points(const StudyPoints *points, const StudyPlot *plot, bool is_line)
+{
+    return plot->y == NULL    ? ""
+           : !is_line         ? ", a dot each"
+           : has_band(points) ? ": median, and the band that nine of ten lie in"
+                              : ": median";
+}
+
+bool study_plot_write(Store *store, const StudyPlot *plot, const Spec *spec, Text *svg, Err *err)
 {
     StudyPoints points;
     if (!study_points_read(store, plot->x, plot->y, plot->by, &points, err)) {
         return false;
     }
+    const Layout *layout = store_layout(store);
     const bool is_line =
         points.x_count <= LINE_X_MAX && points.count >= LINE_SHARE * points.x_count;
-    const char *const what = plot->y == NULL     ? ""
-                             : !is_line          ? ", a dot each"
-                             : has_band(&points) ? ": median, and the band that nine of ten lie in"
-                                                 : ": median";
-    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, plot->title != NULL ? plot->title : plot->x);
-    study_plot_draw_head(&points, plot, what, svg);
+    StudyWords words;
+    find_words(layout, spec, plot, &words);
+    convert(&words, &points);
+    char head[2 * STUDY_LABEL_SIZE + SPEC_TEXT_SIZE];
+    find_head(plot, &words, spec, head, sizeof head);
+    plot_begin(svg, PICTURE_WIDTH, PICTURE_HEIGHT, head);
+    study_plot_draw_head(&points, head, describe_points(&points, plot, is_line), svg);
     PlotPanel panel = {.svg = svg,
                        .title = "",
                        .left = PANEL_LEFT,
                        .top = PANEL_TOP,
                        .width = plot->by == NULL ? PANEL_WIDTH_ALONE : PANEL_WIDTH,
                        .height = PANEL_HEIGHT};
-    study_plot_choose_axes(&points, plot, &panel);
+    study_plot_choose_axes(&points, &words, plot->y != NULL, &panel);
     if (plot->y == NULL) {
-        study_histogram_draw(
-            &points,
-            store_column_at(store_layout(store), store_column(store_layout(store), plot->x)),
-            &panel, study_plot_style_of);
+        study_histogram_draw(&points, store_column_at(layout, store_column(layout, plot->x)),
+                             &panel, study_plot_style_of);
     } else {
         draw_points(&panel, &points, is_line);
     }
-    study_plot_draw_legend(&panel, &points, plot, store_layout(store));
+    if (plot->by != NULL) {
+        study_plot_draw_legend(&panel, &points, &words.by, layout);
+    }
     plot_end(svg);
     study_points_finish(&points);
     return true;

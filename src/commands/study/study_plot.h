@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/text.h"
+#include "commands/study/spec.h"
 #include "commands/study/store.h"
 #include "write/plot.h"
 
@@ -13,10 +14,12 @@ typedef struct StudyPlot {
 } StudyPlot;
 
 // Appends the picture as SVG, 1000 pixels wide: where many runs share each x, their median as a
-// line with a band from 5 to 95 %, else a dot a run. An axis is logarithmic where its values are
-// positive and spread over more than a decade and a half. Runs without a result are left out and
-// counted. Fails with ERR_FILE, or with ERR_USAGE where there is no such column or nothing to draw.
-bool study_plot_write(Store *store, const StudyPlot *plot, Text *svg, Err *err);
+// line with a band from 5 to 95 %, else a dot a run. Columns have the words, units and scales of
+// study_label.h, with the study or, where it is NULL, without. An axis that the study does not
+// decide about is logarithmic where its values are positive and spread over more than a decade and
+// a half. Runs without a result are left out and counted. Fails with ERR_FILE, or with ERR_USAGE
+// where there is no such column or nothing to draw.
+bool study_plot_write(Store *store, const StudyPlot *plot, const Spec *spec, Text *svg, Err *err);
 
 // What a picture of a study shows of its runs: two numbers of each, and the group it belongs to.
 

@@ -386,7 +386,7 @@ static bool library_world_open(const Scenario *scenario, LibraryWorld *world, Er
         .joints = zeroed(linkage->joint_count, sizeof(dJointID)),
         .dampers = zeroed(linkage->spring_count, sizeof(dJointID)),
     };
-    dWorldSetGravity(world->world, 0, 0.0 - scenario->gravity, 0);
+    dWorldSetGravity(world->world, 0.0 + scenario->gravity.x, 0.0 + scenario->gravity.y, 0);
     dWorldSetERP(world->world,
                  scenario->ode.stepping == ODE_PLAIN ? scenario->ode.erp : TUNE_WORLD_ERP);
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);

@@ -844,9 +844,10 @@ static void write_world(const Scenario *scenario, Text *text)
     const bool is_plain = scenario->ode.stepping == ODE_PLAIN;
     text_append(text,
                 "\nint main(void)\n{\n    dInitODE2(0);\n    world = dWorldCreate();\n"
-                "    dWorldSetGravity(world, 0, %s, 0);\n"
+                "    dWorldSetGravity(world, %s, %s, 0);\n"
                 "    dWorldSetERP(world, %s); // of ODE's joints\n",
-                number_shortest(0.0 - scenario->gravity).text,
+                number_shortest(0.0 + scenario->gravity.x).text,
+                number_shortest(0.0 + scenario->gravity.y).text,
                 number_shortest(is_plain ? scenario->ode.erp : TUNE_WORLD_ERP).text);
     for (int i = 0; i < (int)linkage->body_count; i++) {
         tune_world_write_body(linkage, i, text);

@@ -11,7 +11,7 @@
 // as is usual, acts where the bodies no longer are: then the law fails at steps above 1 us. The
 // driven body is kinematic, about its pivot. Errors of joints are corrected in the next step, all
 // of them.
-#include "drivers/common/driver.h"
+#include "drivers/common/tree.h"
 
 #include <chipmunk/chipmunk.h>
 #include <math.h>
@@ -19,12 +19,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-// iterations of the solver: with fewer than some 30 the joints of a four-bar give way, more than
-// these change nothing in the first four digits
-enum { ITERATIONS = 100 };
+// Iterations of the solver. Of the ideal four-bar at 20 us 10 leave an error of 2.7e-4, 30
+// of 1.8e-5, 100 and 300 of 1.2e-5. Where no loop is closed, and the law is a force, 10 are as good
+// as 300; with a slide joint in its place 10 change the largest force by a tenth, and 30 by a
+// thousandth.
+enum { ITERATIONS_OPEN = 10, ITERATIONS_SLIDING = 30, ITERATIONS_CLOSED = 100 };
 
 typedef struct ChipmunkRun {
     const DriverCase *of;
+    int iterations;
     cpSpace *space;
     cpBody **bodies;         // by body; owned, as all arrays
     Vec2 *centres;           // of each body's frame, where the centre of mass is
@@ -272,7 +275,10 @@ static void make(const DriverCase *of, ChipmunkRun *run)
                          .before = room(of->body_count, sizeof *run->before),
                          .forces = room(of->joint_count, sizeof *run->forces),
                          .run = driver_run_start(of)};
-    cpSpaceSetIterations(run->space, ITERATIONS);
+    const bool is_open = tree_make(of).left_count == 0;
+    const int open = is_native ? ITERATIONS_SLIDING : ITERATIONS_OPEN;
+    run->iterations = is_open ? open : ITERATIONS_CLOSED;
+    cpSpaceSetIterations(run->space, run->iterations);
     cpSpaceSetGravity(run->space, cpv(0.0, -of->gravity));
     cpSpaceSetUserData(run->space, run);
     for (size_t i = 0; i < of->body_count; i++) {
@@ -320,12 +326,12 @@ int main(void)
     run.lag_s = driver_is_way(of, "staggered") ? 0.5 * of->step_s : 0.0;
     run.run.is_linear = is_native;
     snprintf(run.run.settings, sizeof run.run.settings,
-             "%d iterations, errorBias 0 of all constraints, driven body kinematic", ITERATIONS);
+             "%d iterations, errorBias 0 of all constraints, driven body kinematic",
+             run.iterations);
     driver_run_begin(&run.run);
     stamp(&run, 0.0);
     while (!driver_run_is_full(&run.run)) {
         take_step(&run, is_native);
     }
     driver_run_write(&run.run);
-    return 0;
 }

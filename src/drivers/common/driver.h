@@ -133,8 +133,8 @@ DriverStamp *driver_run_stamp(DriverRun *run);
 // Takes in the stamp that has been filled in: makes the samples that lie between stamps.
 void driver_run_stamped(DriverRun *run);
 
-// Ends the clock, and writes the answer.
-void driver_run_write(DriverRun *run);
+// Ends the clock, writes the answer, and ends the program: what it has is given back by that.
+void driver_run_write(DriverRun *run) __attribute__((noreturn));
 
 // A pin in its hole whose law acts as a force.
 

@@ -237,5 +237,4 @@ int main(void)
         mujoco_run_kernel(&run);
     }
     driver_run_write(&run.run);
-    return 0;
 }

@@ -277,7 +277,7 @@ static void linearise_force(const System *system, size_t number, FrictionRow *ro
     }
 }
 
-void contact_friction_find(const Response *response, const Motion *motions, double gravity,
+void contact_friction_find(const Response *response, const Motion *motions, Vec2 gravity,
                            const BodyLoad *loads, double step_s, FrictionWork *work,
                            FrictionRow *rows, size_t count)
 {

@@ -31,8 +31,8 @@ FrictionWork *contact_friction_work(const Response *response);
 void contact_friction_free(FrictionWork *work);
 
 // Finds the friction of all places that touch, for a step of ODE's direct solver. The response is
-// placed, has turns, and has the motions before the step; gravity in m/s^2 along -y; loads on the
+// placed, has turns, and has the motions before the step; gravity in m/s^2; loads on the
 // bodies, NULL where there are none.
-void contact_friction_find(const Response *response, const Motion *motions, double gravity,
+void contact_friction_find(const Response *response, const Motion *motions, Vec2 gravity,
                            const BodyLoad *loads, double step_s, FrictionWork *work,
                            FrictionRow *rows, size_t count);

@@ -429,7 +429,7 @@ static void find_friction(ContactRows *rows, double step_s)
     const Motion *motions = is_solved ? contact_mass_place(&rows->mass) : NULL;
     if (motions != NULL) {
         const Applied *applied = &rows->world->applied;
-        contact_friction_find(&rows->mass.response, motions, rows->scenario->gravity,
+        contact_friction_find(&rows->mass.response, motions, scenario_gravity(rows->scenario),
                               applied->is_any ? applied->loads : NULL, step_s, rows->work, found,
                               count);
     }

@@ -36,7 +36,7 @@
 
 // One row of J (a - g - M^-1 f).
 static double row_acceleration(const ResponseRow *row, const Linkage *linkage,
-                               const Motion *motions, double gravity, const BodyLoad *loads)
+                               const Motion *motions, Vec2 gravity, const BodyLoad *loads)
 {
     double sum = 0.0;
     for (int end = 0; end < 2; end++) {
@@ -44,8 +44,8 @@ static double row_acceleration(const ResponseRow *row, const Linkage *linkage,
             const Motion *motion = &motions[row->body[end]];
             const Body *body = &linkage->bodies[row->body[end]];
             const BodyLoad *load = &loads[row->body[end]];
-            sum += row->x[end] * (motion->acceleration.x - load->force.x / body->mass) +
-                   row->y[end] * (motion->acceleration.y + gravity - load->force.y / body->mass) +
+            sum += row->x[end] * (motion->acceleration.x - gravity.x - load->force.x / body->mass) +
+                   row->y[end] * (motion->acceleration.y - gravity.y - load->force.y / body->mass) +
                    row->turn[end] * (motion->alpha - load->moment / body->inertia);
         }
     }
@@ -79,7 +79,7 @@ static bool ideal_forces_solve(const Scenario *scenario, const Motion *motions,
     const size_t count = response->ideal_rows;
     for (size_t i = 0; i < count; i++) {
         lambda[i] = row_acceleration(&response->rows[i], &scenario->linkage, motions,
-                                     scenario->gravity, loads);
+                                     scenario_gravity(scenario), loads);
     }
     response_solve(response, lambda);
     for (size_t i = 0; i < count; i += JOINT_ROWS) {

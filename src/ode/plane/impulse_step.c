@@ -459,7 +459,7 @@ static void impulse_step_find_free(ImpulseStep *step, const Motion *middle)
         motions[i].velocity.y += half_s * ahead[1];
         motions[i].omega += half_s * ahead[2];
     }
-    response_free(&step->response, motions, step->scenario->gravity,
+    response_free(&step->response, motions, scenario_gravity(step->scenario),
                   applied->is_any ? applied->loads : NULL, step->kernel.free);
 }
 

@@ -657,7 +657,7 @@ void world_start(const Scenario *scenario, World *world)
     world->id = id;
     world->jobs = jobs_make(id);
     world->linkage = linkage;
-    dWorldSetGravity(id, 0.0, -scenario->gravity, 0.0);
+    dWorldSetGravity(id, scenario->gravity.x, scenario->gravity.y, scenario->gravity.z);
     dWorldSetERP(id, world_hold_erp(options));
     dWorldSetCFM(id, options->cfm);
     dWorldSetAutoDisableFlag(id, 0);

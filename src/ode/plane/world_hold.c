@@ -17,7 +17,7 @@
 struct WorldHold {
     const Linkage *linkage;
     Response response;
-    double gravity;
+    Vec2 gravity; // m/s^2
     double erp;
     double step_s;    // of the last step
     Motion *motions;  // before it, by body
@@ -50,7 +50,7 @@ WorldHold *world_hold_make(const Scenario *scenario)
     WorldHold *hold = zeroed(1, sizeof *hold);
     response_init_places(linkage, NULL, 0, &hold->response);
     hold->linkage = linkage;
-    hold->gravity = scenario->gravity;
+    hold->gravity = scenario_gravity(scenario);
     hold->erp = world_hold_erp(&scenario->ode);
     hold->motions = zeroed(linkage->body_count, sizeof *hold->motions);
     hold->loose = zeroed(linkage->body_count, sizeof *hold->loose);
@@ -94,8 +94,8 @@ static void loosen(WorldHold *hold, const dBodyID *bodies, double step_s)
         }
         const dReal *force = dBodyGetForce(bodies[i]);
         const dReal *torque = dBodyGetTorque(bodies[i]);
-        motion->velocity.x += step_s * force[0] / body->mass;
-        motion->velocity.y += step_s * (force[1] / body->mass - hold->gravity);
+        motion->velocity.x += step_s * force[0] / body->mass + step_s * hold->gravity.x;
+        motion->velocity.y += step_s * (force[1] / body->mass + hold->gravity.y);
         motion->omega += step_s * torque[2] / body->inertia;
     }
 }

@@ -118,9 +118,8 @@ double space_joints_drive(const Scenario *scenario, const SpaceMotion *driven,
                           const SpaceChange *others, Vec3 *force)
 {
     const Linkage *linkage = &scenario->linkage;
-    const Vec3 needed =
-        vec3_scale(linkage->bodies[linkage_driven_body(linkage)].mass,
-                   vec3_add(driven->acceleration, (Vec3){0.0, scenario->gravity, 0.0}));
+    const Vec3 needed = vec3_scale(linkage->bodies[linkage_driven_body(linkage)].mass,
+                                   vec3_sub(driven->acceleration, scenario->gravity));
     *force = vec3_sub(needed, others->move);
     return vec3_dot(*force, driven->velocity) - vec3_dot(others->turn, driven->omega);
 }

@@ -308,7 +308,7 @@ static void look_ahead(const SpaceRows *rows, const SpaceStride *stride, const V
     const Linkage *linkage = &rows->scenario->linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
         seen[i] = stride->first[i];
-        seen[i].acceleration = (Vec3){0.0, -rows->scenario->gravity, 0.0};
+        seen[i].acceleration = rows->scenario->gravity;
         seen[i].alpha = gyration[i];
     }
     if (rows->driven >= 0) {

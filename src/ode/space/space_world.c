@@ -34,7 +34,7 @@
 // as ODE's step.cpp has it.
 
 struct SpaceHold {
-    double gravity;
+    Vec3 gravity; // m/s^2
     double erp;
     bool is_plain;
     SpaceMotion *loose; // with the speeds behind the step if nothing held the joints
@@ -96,8 +96,8 @@ static void loosen(SpaceHold *hold, const SpaceResponse *response, const SpaceMo
         if ((int)i != driven) {
             const Vec3 force = vector(dBodyGetForce(world->bodies[i]));
             const Vec3 torque = vector(dBodyGetTorque(world->bodies[i]));
-            Vec3 gained = vec3_scale(1.0 / linkage->bodies[i].mass, force);
-            gained.y -= hold->gravity;
+            const Vec3 pushed = vec3_scale(1.0 / linkage->bodies[i].mass, force);
+            const Vec3 gained = vec3_add(pushed, hold->gravity);
             const Vec3 spun = mat3_apply(&response->inverse[i], torque);
             motion->velocity = vec3_add(motion->velocity, vec3_scale(step_s, gained));
             motion->omega = vec3_add(motion->omega, vec3_scale(step_s, spun));

@@ -414,7 +414,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
     dynamics_make_room(dynamics);
     linkage_reaches(linkage, dynamics->reach);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        dynamics->weights[i] = linkage->bodies[i].mass * scenario->gravity;
+        dynamics->weights[i] = vec2_scale(linkage->bodies[i].mass, scenario_gravity(scenario));
     }
     dynamics_list_coordinates(dynamics);
     dynamics->may_branch = tree->loop_count > 0 && tree->coordinate_count > 2 * tree->loop_count;
@@ -500,7 +500,7 @@ static void dynamics_start_loads(const Dynamics *dynamics, Loads *loads)
     const Tree *tree = &dynamics->tree;
     for (size_t i = 0; i < tree->node_count; i++) {
         const int body = tree->nodes[i].body;
-        loads->pushes[body] = (ArticulatedPush){{0.0, -dynamics->weights[body]}, 0.0};
+        loads->pushes[body] = (ArticulatedPush){dynamics->weights[body], 0.0};
     }
     loads->driven_power = 0.0;
     for (size_t i = 0; i < tree->drive_count; i++) {
@@ -571,7 +571,7 @@ static inline void dynamics_find_drives(const Dynamics *dynamics, const Loads *l
                                         DynamicsState *state)
 {
     const Tree *tree = &dynamics->tree;
-    const Vec2 upward = {0.0, dynamics->system.scenario->gravity};
+    const Vec2 upward = scenario_upward(dynamics->system.scenario);
     if (tree->drive_count > 0) {
         state->drive_power = -loads->driven_power;
     }

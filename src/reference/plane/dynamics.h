@@ -72,7 +72,7 @@ typedef struct Dynamics {
     void *memory;             // owned; where all arrays are
     PlaneSite *sites;         // by contact
     double *reach;            // m, of each body's points
-    double *weights;          // N, of each body
+    Vec2 *weights;            // N, of each body
     bool has_forces;          // whether springs, dampers or a torque act
     bool may_branch;          // whether loops move freely, and may come to a change point
     double start_energy;      // J, of such a linkage: what it has, less what it was given

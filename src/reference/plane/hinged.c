@@ -132,7 +132,7 @@ static inline void hinged_accelerate(const double *rates, HingedBody *body)
 static inline Vec2 hinged_needed(const Hinged *hinged)
 {
     const HingedBody *driven = hinged->driven;
-    const Vec2 upward = {0.0, hinged->dynamics->system.scenario->gravity};
+    const Vec2 upward = scenario_upward(hinged->dynamics->system.scenario);
     return vec2_scale(driven->mass, vec2_add(driven->bias, upward));
 }
 
@@ -149,7 +149,7 @@ static inline void hinged_move(const Hinged *hinged, double since_s, const doubl
         } else {
             hinged_move_hinged(body, q, u);
         }
-        body->force = (Vec2){0.0, -body->weight};
+        body->force = body->weight;
         body->moment = 0.0;
     }
 }

@@ -16,7 +16,7 @@ struct HingedBody {
     const Vec2 *outer_base; // from the parent's centre to that
     double mass;
     double inertia; // kg m^2, about the hinge, or the centre
-    double weight;  // N
+    Vec2 weight;    // N
     // at an instant
     TurnedBy turn; // since the base
     double omega;

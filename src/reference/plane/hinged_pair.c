@@ -118,8 +118,8 @@ static inline bool hinged_pair_solve(const HingedBody *bodies, const Moving *inn
 {
     // the outer body, whose turning about its hinge is eliminated
     const double mass = bodies[1].mass;
-    const Vec2 weight = {0.0, -bodies[1].weight};
-    const Vec2 force = vec2_sub(vec2_add(weight, pressed->force), vec2_scale(mass, outer->bias));
+    const Vec2 force =
+        vec2_sub(vec2_add(bodies[1].weight, pressed->force), vec2_scale(mass, outer->bias));
     const Vec2 centre = {outer->arm.y, -outer->arm.x};
     const double moment = pressed->moment + vec2_dot(centre, force);
     const Vec2 b = vec2_scale(mass, centre);
@@ -132,8 +132,7 @@ static inline bool hinged_pair_solve(const HingedBody *bodies, const Moving *inn
     const Vec2 lever = vec2_perp(vec2_sub(lever_arm, inner->arm));
     const Vec2 moved = {xx * lever.x + xy * lever.y, xy * lever.x + yy * lever.y};
     // the inner one with what hangs on it
-    const Vec2 own_force =
-        vec2_sub((Vec2){0.0, -bodies[0].weight}, vec2_scale(bodies[0].mass, inner->bias));
+    const Vec2 own_force = vec2_sub(bodies[0].weight, vec2_scale(bodies[0].mass, inner->bias));
     const Vec2 own_centre = {inner->arm.y, -inner->arm.x};
     const double own_moment = 0.0 + vec2_dot(own_centre, own_force) + vec2_dot(lever, left);
     const double inertia = bodies[0].inertia + vec2_dot(lever, moved);
@@ -173,7 +172,7 @@ bool hinged_pair_rates(const Hinged *hinged, double since_s, const double *y, do
     const PairPress pressed = hinged_pair_press(&hinged->pins[0], &driven, &outer);
     double spins[2];
     const bool is_solved = hinged_pair_solve(bodies, &inner, &outer, lever_arm, &pressed, spins);
-    const Vec2 upward = {0.0, hinged->dynamics->system.scenario->gravity};
+    const Vec2 upward = scenario_upward(hinged->dynamics->system.scenario);
     const Vec2 needed = vec2_scale(hinged->driven->mass, vec2_add(driven.bias, upward));
     const double drive_power = vec2_dot(needed, driven.velocity) - pressed.power;
     hinged_pair_fill_rates(columns, y, spins, &pressed, drive_power, rates);
@@ -257,9 +256,9 @@ static inline void write_bodies(const Hinged *hinged, const Moving *inner, const
                state->tree.motions);
     write_body(tree, tree->nodes[1].body, outer, y[bodies[1].column], outer_acceleration, spins[1],
                state->tree.motions);
-    const Vec2 outer_force = vec2_add((Vec2){0.0, -bodies[1].weight}, pressed->force);
+    const Vec2 outer_force = vec2_add(bodies[1].weight, pressed->force);
     const Vec2 outer_held = vec2_sub(vec2_scale(bodies[1].mass, outer_acceleration), outer_force);
-    const Vec2 inner_force = vec2_add((Vec2){0.0, -bodies[0].weight}, vec2_scale(-1.0, outer_held));
+    const Vec2 inner_force = vec2_add(bodies[0].weight, vec2_scale(-1.0, outer_held));
     const Vec2 inner_held = vec2_sub(vec2_scale(bodies[0].mass, inner_acceleration), inner_force);
     write_reaction(&tree->nodes[1], outer_held, state->reactions);
     write_reaction(&tree->nodes[0], inner_held, state->reactions);
@@ -274,7 +273,7 @@ static inline void write_driven(const Hinged *hinged, const Moving *driven, doub
 {
     const Tree *tree = &hinged->dynamics->tree;
     const int joint = tree->linkage->driver.joint;
-    const Vec2 upward = {0.0, hinged->dynamics->system.scenario->gravity};
+    const Vec2 upward = scenario_upward(hinged->dynamics->system.scenario);
     const Vec2 needed = vec2_scale(hinged->driven->mass, vec2_add(driven->bias, upward));
     write_body(tree, tree->driven, driven, driven->omega * since_s, driven->bias, 0.0,
                state->tree.motions);
@@ -372,7 +371,7 @@ bool hinged_single_rates(const Hinged *hinged, double since_s, const double *y, 
     const HingedBody *body = &hinged->bodies[0];
     const double *u = y + COORDINATES;
     const SinglePress pressed = hinged_single_press(&hinged->pins[0], body->column, y, u);
-    const Vec2 force = vec2_add((Vec2){0.0, -body->weight}, pressed.force);
+    const Vec2 force = vec2_add(body->weight, pressed.force);
     for (size_t i = 0; i < COORDINATES; i++) {
         rates[i] = u[i];
     }

@@ -30,8 +30,9 @@ static double energy_balance(const Dynamics *dynamics, const double *y, double *
     tree_evaluate(&dynamics->tree, 0.0, y, y + system->coordinate_count,
                   &dynamics->room.state->tree);
     *kinetic = linkage_kinetic_energy(linkage, state->motions);
-    double energy = *kinetic + forces_energy(linkage, state->motions) +
-                    linkage_potential_energy(linkage, state->motions, system->scenario->gravity);
+    double energy =
+        *kinetic + forces_energy(linkage, state->motions) +
+        linkage_potential_energy(linkage, state->motions, scenario_gravity(system->scenario));
     for (size_t i = 0; i < system->contact_count; i++) {
         if (system->contacts[i].mode != CONTACT_APART) {
             ContactForce force;

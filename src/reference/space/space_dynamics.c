@@ -280,8 +280,8 @@ static void space_dynamics_start_loads(const SpaceDynamics *dynamics)
     const Vec3 none = {0.0, 0.0, 0.0};
     dynamics->loads[0] = (SpacePush){none, none};
     for (size_t i = 0; i < linkage->body_count; i++) {
-        const double weight = linkage->bodies[i].mass * dynamics->system.scenario->gravity;
-        dynamics->loads[i + 1] = (SpacePush){{0.0, -weight, 0.0}, none};
+        const Vec3 gravity = dynamics->system.scenario->gravity;
+        dynamics->loads[i + 1] = (SpacePush){vec3_scale(linkage->bodies[i].mass, gravity), none};
     }
 }
 

@@ -1,0 +1,285 @@
+// Runs a case in Simbody, with the contact's law as a force.
+//
+//     force      RungeKuttaMerson, of order 4, at steps of the length given
+//     adaptive   the same with steps of its own, for an accuracy of .01 (h / 100 us)^2, where h is
+//                the step given
+//
+// Coordinates are those of the joints: the tree has no constraints, the drive is prescribed
+// (Motion::Steady), and loops of ideal joints that are left over are points held in two planes.
+// Simbody has no joint that is limited to a circle.
+#include <cmath>
+extern "C" {
+#include "drivers/common/tree.h"
+}
+
+#include <Simbody.h>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+using namespace SimTK;
+
+namespace
+{
+
+// 1, for a step of 100 us; and the tightest that still ends
+const double ACCURACY = 1e-2;
+const double ACCURACY_LEAST = 1e-13;
+const double ACCURACY_STEP = 1e-4; // s
+
+// 1: errors that a step of a given length may have: the loosest that there is
+const double ACCURACY_NONE = 0.999;
+
+class World
+{
+  public:
+    explicit World(const DriverCase *of);
+    void run();
+    void push(const State &state, Vector_<SpatialVec> &on_bodies);
+
+  private:
+    void add_body(size_t i);
+    void add_loops();
+    void set_start(State &state);
+    void read(const State &state, DriverMotion *motions);
+    void stamp(const State &state);
+    MobilizedBody &body(int number)
+    {
+        return number == DRIVER_GROUND ? matter.updGround() : bodies[number];
+    }
+
+    const DriverCase *of;
+    Tree tree;
+    MultibodySystem system;
+    SimbodyMatterSubsystem matter{system};
+    GeneralForceSubsystem forces{system};
+    std::vector<MobilizedBody> bodies;
+    std::vector<DriverContact> contacts;
+    std::vector<DriverMotion> motions;
+    std::vector<double> coordinates;
+    std::vector<double> rates;
+    DriverRun answer;
+};
+
+class Law : public Force::Custom::Implementation
+{
+  public:
+    explicit Law(World *world) : world(world)
+    {
+    }
+    void calcForce(const State &state, Vector_<SpatialVec> &on_bodies, Vector_<Vec3> &,
+                   Vector &) const override
+    {
+        world->push(state, on_bodies);
+    }
+    Real calcPotentialEnergy(const State &) const override
+    {
+        return 0.0;
+    }
+
+  private:
+    World *world;
+};
+
+Vec3 to_vec(::Vec2 a)
+{
+    return Vec3(a.x, a.y, 0.0);
+}
+
+Transform to_transform(double angle, ::Vec2 place)
+{
+    return Transform(Rotation(angle, ZAxis), to_vec(place));
+}
+
+World::World(const DriverCase *given)
+    : of(given), tree(tree_make(given)), bodies(given->body_count), contacts(given->joint_count),
+      motions(given->body_count), coordinates(tree.coordinates), rates(tree.coordinates),
+      answer(driver_run_start(given))
+{
+    Force::UniformGravity(forces, matter, Vec3(0.0, -of->gravity, 0.0));
+    Force::Custom(forces, new Law(this)); // which it owns
+    for (size_t i = 0; i < of->body_count; i++) {
+        add_body(tree.order[i]);
+    }
+    add_loops();
+    for (size_t i = 0; i < of->joint_count; i++) {
+        contacts[i].state = of->joints[i].contact;
+    }
+    if (of->has_drive) {
+        if (tree.bodies[of->driven_body].joint != of->drive_joint) {
+            driver_refuse("a driven body that another joint holds");
+        }
+        Motion::Steady(bodies[of->driven_body], of->drive_speed);
+    }
+}
+
+void World::add_body(size_t i)
+{
+    const DriverBody &given = of->bodies[i];
+    const TreeBody &hung = tree.bodies[i];
+    const Inertia inertia(given.inertia, given.inertia, given.inertia);
+    const Body::Rigid rigid(MassProperties(given.mass, Vec3(0.0), inertia));
+    MobilizedBody &parent = body(hung.parent);
+    if (hung.kind == TREE_TURNS) {
+        bodies[i] = MobilizedBody::Pin(parent, to_transform(hung.turn, hung.offset), rigid,
+                                       to_transform(0.0, hung.anchor));
+    } else if (hung.kind == TREE_SLIDES) {
+        const double along = std::atan2(hung.axis.y, hung.axis.x);
+        bodies[i] = MobilizedBody::Slider(parent, to_transform(hung.turn + along, hung.offset),
+                                          rigid, to_transform(along, ::Vec2{0.0, 0.0}));
+    } else {
+        bodies[i] = MobilizedBody::Planar(parent, Transform(), rigid, Transform());
+    }
+}
+
+void World::add_loops()
+{
+    for (size_t i = 0; i < of->joint_count; i++) {
+        if (!tree.is_left[i]) {
+            continue;
+        }
+        const DriverJoint &joint = of->joints[i];
+        const ::Vec2 at = joint.anchors[0];
+        Constraint::PointInPlane(body(joint.bodies[0]), UnitVec3(XAxis), at.x,
+                                 body(joint.bodies[1]), to_vec(joint.anchors[1]));
+        Constraint::PointInPlane(body(joint.bodies[0]), UnitVec3(YAxis), at.y,
+                                 body(joint.bodies[1]), to_vec(joint.anchors[1]));
+    }
+}
+
+// The coordinates of the tree are 0 at the start, as Simbody's are but of free bodies.
+void World::set_start(State &state)
+{
+    tree_start(&tree, rates.data());
+    for (size_t i = 0; i < of->body_count; i++) {
+        const double *rate = rates.data() + tree.bodies[i].first;
+        if (tree.bodies[i].kind == TREE_FREE) {
+            const DriverMotion &start = of->bodies[i].start;
+            bodies[i].setQFromVector(state,
+                                     Vector(Vec3(start.angle, start.position.x, start.position.y)));
+            bodies[i].setUFromVector(state, Vector(Vec3(rate[2], rate[0], rate[1])));
+        } else {
+            bodies[i].setOneU(state, 0, rate[0]);
+        }
+    }
+}
+
+void World::read(const State &state, DriverMotion *to)
+{
+    for (size_t i = 0; i < of->body_count; i++) {
+        double *at = coordinates.data() + tree.bodies[i].first;
+        double *going = rates.data() + tree.bodies[i].first;
+        if (tree.bodies[i].kind == TREE_FREE) {
+            const DriverMotion &start = of->bodies[i].start;
+            at[0] = bodies[i].getOneQ(state, 1) - start.position.x;
+            at[1] = bodies[i].getOneQ(state, 2) - start.position.y;
+            at[2] = bodies[i].getOneQ(state, 0) - start.angle;
+            for (int k = 0; k < 3; k++) {
+                going[k] = bodies[i].getOneU(state, (k + 1) % 3);
+            }
+        } else {
+            at[0] = bodies[i].getOneQ(state, 0);
+            going[0] = bodies[i].getOneU(state, 0);
+        }
+    }
+    tree_motions(&tree, coordinates.data(), rates.data(), to);
+}
+
+void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
+{
+    read(state, motions.data());
+    for (size_t i = 0; i < of->joint_count; i++) {
+        const DriverJoint &joint = of->joints[i];
+        if (joint.kind != DRIVER_PIN_IN_HOLE) {
+            continue;
+        }
+        const PinHole pose = driver_pose(&joint, motions.data());
+        const ::Vec2 force = driver_force(&joint, &contacts[i], &pose);
+        for (int side = 0; side < 2 && pose.penetration > 0.0; side++) {
+            body(joint.bodies[side])
+                .applyForceToBodyPoint(state, to_vec(joint.anchors[side]),
+                                       (side == 0 ? -1.0 : 1.0) * to_vec(force), on_bodies);
+        }
+    }
+}
+
+void World::stamp(const State &state)
+{
+    DriverStamp *now = driver_run_stamp(&answer);
+    now->position_s = now->velocity_s = state.getTime();
+    read(state, now->motions);
+    for (size_t i = 0; i < of->joint_count; i++) {
+        const DriverJoint &joint = of->joints[i];
+        now->forces[i] = ::Vec2{0.0, 0.0};
+        if (joint.kind == DRIVER_PIN_IN_HOLE) {
+            const PinHole pose = driver_pose(&joint, now->motions);
+            DriverTotals &totals = answer.totals[i];
+            driver_follow(&joint, &pose, &contacts[i], &totals);
+            now->forces[i] = driver_force(&joint, &contacts[i], &pose);
+            totals.force_max = std::max(totals.force_max, vec2_length(now->forces[i]));
+        }
+    }
+    driver_run_stamped(&answer);
+}
+
+void World::run()
+{
+    const bool is_adaptive = driver_is_way(of, "adaptive");
+    const double share = of->step_s / ACCURACY_STEP;
+    const double accuracy = std::max(ACCURACY * share * share, ACCURACY_LEAST);
+    State state = system.realizeTopology();
+    set_start(state);
+    system.realize(state, Stage::Velocity);
+    RungeKuttaMersonIntegrator integrator(system);
+    integrator.setConstraintTolerance(std::min(1e-8, accuracy));
+    integrator.setReturnEveryInternalStep(true);
+    if (is_adaptive) {
+        integrator.setAccuracy(accuracy);
+        std::snprintf(answer.settings, sizeof answer.settings, "RungeKuttaMerson, accuracy %.3g",
+                      accuracy);
+    } else {
+        integrator.setAccuracy(ACCURACY_NONE);
+        integrator.setFixedStepSize(of->step_s);
+        std::snprintf(answer.settings, sizeof answer.settings,
+                      "RungeKuttaMerson with setFixedStepSize");
+    }
+    const double end_s = 2.0 * of->duration_s;
+    integrator.setFinalTime(end_s);
+    integrator.initialize(state);
+    driver_run_begin(&answer);
+    stamp(integrator.getAdvancedState());
+    while (!driver_run_is_full(&answer)) {
+        const double before_s = integrator.getAdvancedTime();
+        integrator.stepTo(end_s);
+        if (integrator.getAdvancedTime() > before_s) {
+            answer.steps++;
+            stamp(integrator.getAdvancedState());
+        }
+    }
+    driver_run_write(&answer);
+}
+
+} // namespace
+
+int main()
+{
+    static const char *const WAYS[] = {"force", "adaptive", nullptr};
+    int major, minor, build;
+    SimTK_version_simbody(&major, &minor, &build);
+    char version[32];
+    std::snprintf(version, sizeof version, "%d.%d.%d", major, minor, build);
+    const DriverIdentity identity = {"Simbody", version, "double", WAYS};
+    int status;
+    const DriverCase *of = driver_read(&identity, &status);
+    if (of == nullptr) {
+        return status;
+    }
+    try {
+        World world(of);
+        world.run();
+    } catch (const std::exception &problem) {
+        driver_fail("Simbody: %s", problem.what());
+    }
+    return 0;
+}

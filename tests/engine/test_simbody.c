@@ -1,0 +1,79 @@
+// Does Simbody, by its driver, move ideal joints and one impact as it must?
+//
+// Truths: the closed form of the ideal four-bar, and the reference's run of the paper's mechanism with
+// play. The control of each way is a coarser step, whose error is far larger.
+#include "engine_outcome.h"
+
+static const char SIMBODY[] = "simbody";
+
+static void every_number_is_named(void **state)
+{
+    (void)state;
+    const EngineDriver driver = engine_named(SIMBODY);
+    assert_string_equal(driver.engine, "Simbody");
+    assert_string_equal(driver.precision, "double");
+    assert_true(driver.version[0] >= '3');
+    assert_int_equal(driver.way_count, 2);
+}
+
+// Merson's method is of order 4, and the joints are held to 1e-8.
+static void ideal_joints_are_of_order_four(void **state)
+{
+    (void)state;
+    double errors[2];
+    for (int i = 0; i < 2; i++) {
+        Scenario scenario = load("cases/paper/ideal-nominal.yaml", NULL, 0);
+        scenario.run.step = i == 0 ? 500e-6 : 250e-6;
+        // at samples that are ends of steps: between them the driver interpolates
+        scenario.run.samples = 120;
+        const Outcome outcome = outcome_of(SIMBODY, "force", &scenario, BACKEND_ANALYTIC);
+        errors[i] = outcome.error.omega_max;
+        assert_true(outcome.said.opening_m < 1e-7);
+    }
+    assert_true(errors[0] < 1e-4);
+    assert_true(log(errors[0] / errors[1]) / log(2.0) > 3.5);
+}
+
+static void the_law_as_a_force_converges(void **state)
+{
+    (void)state;
+    Scenario scenario = impact(20e-6);
+    const Outcome coarse = outcome_of(SIMBODY, "force", &scenario, BACKEND_REFERENCE);
+    scenario.run.step = 5e-6;
+    const Outcome fine = outcome_of(SIMBODY, "force", &scenario, BACKEND_REFERENCE);
+    assert_true(fine.error.omega_max < 1e-4);
+    assert_true(coarse.error.omega_max > 5.0 * fine.error.omega_max);
+    assert_close(fine.force_ratio, 1.0, 1e-3);
+}
+
+static void its_own_steps_reach_an_accuracy(void **state)
+{
+    (void)state;
+    Scenario scenario = impact(100e-6);
+    const Outcome loose = outcome_of(SIMBODY, "adaptive", &scenario, BACKEND_REFERENCE);
+    scenario.run.step = 1e-6;
+    const Outcome tight = outcome_of(SIMBODY, "adaptive", &scenario, BACKEND_REFERENCE);
+    assert_true(tight.error.omega_max < 1e-4);
+    assert_true(loose.error.omega_max > 5.0 * tight.error.omega_max);
+}
+
+static void a_slider_crank_can_be_told(void **state)
+{
+    (void)state;
+    Scenario slider = load("cases/mechanisms/slider-crank.yaml", NULL, 0);
+    slider.run.step = 50e-6;
+    const Outcome ideal = outcome_of(SIMBODY, "force", &slider, BACKEND_ANALYTIC);
+    assert_true(ideal.error.max < 1e-5);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_number_is_named),
+        cmocka_unit_test(ideal_joints_are_of_order_four),
+        cmocka_unit_test(the_law_as_a_force_converges),
+        cmocka_unit_test(its_own_steps_reach_an_accuracy),
+        cmocka_unit_test(a_slider_crank_can_be_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
