@@ -32,6 +32,7 @@ typedef enum Need {
     TRIALS,      // the step was chosen for a tolerance
     CERTIFICATE, // the reference is certified
     FOLLOWED,    // the run started in the motion of its neighbour
+    GROWTH,      // the growth of small changes was looked for
     TURNS,       // the body does not slide on the ground
     SLIDES,      // it does
 } Need;
@@ -201,6 +202,9 @@ static const Metric METRICS[] = {
             "revolutions that it took to settle", "revolutions until settled"),
     SETTLED("settled_motions", WHOLE, NOTHING, motion_count,
             "different motions that its starts came to", "number of settled motions"),
+    SETTLED("settled_growth", REAL, GROWTH, growth.factor,
+            "growth of a small change of its motion in a revolution, or its bound",
+            "growth of a small change in a revolution"),
     SETTLED("followed_from", REAL, FOLLOWED, followed_from,
             "value of the followed key at the run whose motion it started in",
           "value that the motion was followed from"),
@@ -344,7 +348,16 @@ static bool metrics_moves(const Linkage *linkage, const Metric *metric, size_t b
 typedef struct Lists {
     bool has_settled;
     bool is_following;
+    bool has_growth;
 } Lists;
+
+// Whether a study of these lists has a number.
+static bool metrics_is_listed(const Metric *metric, Lists lists)
+{
+    return metric->need == FOLLOWED ? lists.is_following
+           : metric->need == GROWTH ? lists.has_growth
+                                    : true;
+}
 
 // The results of one body, joint or whole.
 static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Lists lists,
@@ -359,7 +372,7 @@ static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Li
         results[count++] = (Result){.number = number_at(k), .member = member, .of = name};
     }
     for (size_t k = 0; k < METRIC_COUNT; k++) {
-        if (METRICS[k].owner == owner && (lists.is_following || METRICS[k].need != FOLLOWED) &&
+        if (METRICS[k].owner == owner && metrics_is_listed(&METRICS[k], lists) &&
             metrics_moves(linkage, &METRICS[k], member)) {
             results[count++] = (Result){.metric = &METRICS[k], .member = member, .of = name};
         }
@@ -404,7 +417,7 @@ bool metrics_fit(const Scenario *scenario, Err *err)
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
 {
     Result results[RECORD_RESULT_MAX];
-    const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0'};
+    const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0', spec->has_growth};
     const size_t count = list_results(&scenario->linkage, lists, results);
     *layout = (Layout){0};
     metrics_add_settings(spec, layout);
@@ -474,6 +487,8 @@ static bool is_there(const Metric *metric, const Measured *measured)
         return measured->truth->message[0] == '\0';
     case FOLLOWED:
         return measured->settled->is_followed;
+    case GROWTH:
+        return measured->settled->has_growth;
     default:
         return true;
     }
@@ -535,7 +550,8 @@ bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *tr
     }
     Result list[RECORD_RESULT_MAX];
     const Lists lists = {metrics_has(layout, "settled_period"),
-                         metrics_has(layout, "followed_from")};
+                         metrics_has(layout, "followed_from"),
+                         metrics_has(layout, "settled_growth")};
     const size_t count = list_results(measured.linkage, lists, list);
     for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
         const double value = i < count ? metrics_read_result(&list[i], &measured) : NAN;
