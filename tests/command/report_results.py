@@ -9,6 +9,7 @@ program, case = sys.argv[1:3]
 HOSTILE = "</script></title><img src=x onerror=\"document.title='x'\">&lt;b&gt; \u9023 'q'"
 SETS = ["--set", "run.revolutions=0.1", "--set", "run.start=centred"]
 STUDY = """case: ball.yaml
+growth: true
 vary:
   drive.speed: {from: 63.5 rad/s, to: 65.5 rad/s, count: 9}
   contact.restitution: [0.45, 0.5]
@@ -211,9 +212,24 @@ def quantiles_of_a_study_are_those_of_its_rows(work):
     doubled = [row for row in rows if row["section_period"] == "2"]
     single = [row for row in rows if row["section_period"] == "1"]
     assert doubled and single
+    # a change dies out, slowest where the period is about to double
+    growths = [float(row["settled_growth"]) for row in rows]
+    assert 0.4 < min(growths) and max(growths) < 1.02, growths
+    for at in [sorted(growths)[8], max(growths)]:
+        assert f"{at:.4g}" in page.texts["td"], at
     bifurcation = text[text.index("<h2>Bifurcation") : text.index("<h2>All results")]
     assert bifurcation.count("<circle") == sum(
         row[f"ball_section_{k}_m_s"] != "" for row in rows for k in range(1, 7))
+
+
+def a_case_may_come_from_a_pipe(work):
+    # nothing of it is read before the case is
+    text = open(case).read()
+    words = [program, "report", "/dev/stdin", *SETS, "--backend", "analytic", "--quiet", "--out"]
+    done = subprocess.run([*words, work + "/pipe.html"], input=text, text=True, capture_output=True)
+    assert done.returncode == 0, done.stderr
+    done = subprocess.run([*words, work + "/pipe.html"], input="{}", text=True, capture_output=True)
+    assert done.returncode == 3, done.stderr
 
 
 def what_is_no_result_is_refused(work):
@@ -254,5 +270,6 @@ check_claims([
     texts_of_a_result_are_shown_as_text,
     members_that_lack_or_are_of_another_kind_do_no_harm,
     quantiles_of_a_study_are_those_of_its_rows,
+    a_case_may_come_from_a_pipe,
     what_is_no_result_is_refused,
 ])

@@ -55,7 +55,7 @@ static void append_answer(const json_t *result, Text *html)
 
 static const double STRIP_WIDTH = 1000.0; // pixels, as the others
 static const double STRIP_LEFT = 90.0;
-static const double STRIP_HEIGHT = 150.0;
+static const double STRIP_HEIGHT = 230.0;
 static const double SHOWN_MOST = 3.0; // bands; what is further out stands at the edge
 
 static bool is_out(const json_t *metric)

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const ResultKind *const KINDS[] = {&REPORT_COMPARE, &REPORT_MAP, &REPORT_TUNE, &REPORT_CHECK,
                                           &REPORT_PAPER};
@@ -34,15 +35,25 @@ static bool begins_so(const char *head, size_t size, const char *opening)
     return true;
 }
 
+size_t result_read_head(const char *path, char *head, size_t size)
+{
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) {
+        return 0;
+    }
+    FILE *stream = fopen(path, "rb");
+    if (stream == NULL) {
+        return 0;
+    }
+    const size_t got = fread(head, 1, size, stream);
+    fclose(stream);
+    return got;
+}
+
 bool result_is_one(const char *path)
 {
     char head[64];
-    FILE *stream = fopen(path, "rb");
-    if (stream == NULL) {
-        return false;
-    }
-    const size_t size = fread(head, 1, sizeof head, stream);
-    fclose(stream);
+    const size_t size = result_read_head(path, head, sizeof head);
     return begins_so(head, size, OPENINGS[0]) || begins_so(head, size, OPENINGS[1]);
 }
 

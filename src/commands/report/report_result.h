@@ -30,6 +30,10 @@ typedef struct ResultPage {
     const char *command; // that makes it again, as a shell takes it
 } ResultPage;
 
+// Reads how a file begins, and returns how many bytes it has read: none of what is no regular file,
+// because a pipe would not have them again.
+size_t result_read_head(const char *path, char *head, size_t size);
+
 // Whether a file that jointplay report is given is a result, by how it begins; false of what cannot
 // be read, which its own reader refuses.
 bool result_is_one(const char *path);

@@ -32,13 +32,8 @@ enum {
 bool study_page_is_store(const char *path)
 {
     static const char OPENING[] = "SQLite format 3";
-    char head[sizeof OPENING] = "";
-    FILE *stream = fopen(path, "rb");
-    if (stream == NULL) {
-        return false;
-    }
-    const size_t size = fread(head, 1, sizeof head, stream);
-    fclose(stream);
+    char head[sizeof OPENING];
+    const size_t size = result_read_head(path, head, sizeof head);
     return size == sizeof head && memcmp(head, OPENING, sizeof head) == 0;
 }
 
@@ -91,11 +86,8 @@ static bool choose_results(Store *store, Choice *choice, Err *err)
     static const struct {
         const char *ending;
         double least;
-    } WANTED[] = {{"_force_max_N", 0.0},
-                  {"alpha_peak_rad_s2", 1e-6},
-                  {"error_max", 0.0},
-                  {"_penetration_max_m", 0.0},
-                  {"_omega_max_rad_s", 1e-6}};
+    } WANTED[] = {{"_force_max_N", 0.0}, {"settled_growth", 0.0},     {"alpha_peak_rad_s2", 1e-6},
+                  {"error_max", 0.0},    {"_penetration_max_m", 0.0}, {"_omega_max_rad_s", 1e-6}};
     const size_t first = choice->layout->setting_count;
     for (size_t k = 0; k < sizeof WANTED / sizeof *WANTED; k++) {
         for (size_t i = 0; i < choice->layout->result_count; i++) {

@@ -18,6 +18,7 @@ static const ClassAttributes CLASSES[] = {
     {"zero", "stroke=\"#b0b0b0\""},
     {"frame", "stroke=\"#444\" fill=\"none\""},
     {"line", "fill=\"none\" stroke-linejoin=\"round\""},
+    {"halo", "fill=\"#555\" paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"3\""},
 };
 
 static void append_class(const char *name, size_t length, Text *html)

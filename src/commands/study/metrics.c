@@ -32,6 +32,7 @@ typedef enum Need {
     TRIALS,      // the step was chosen for a tolerance
     CERTIFICATE, // the reference is certified
     FOLLOWED,    // the run started in the motion of its neighbour
+    GROWTH,      // the growth of small changes was looked for
     TURNS,       // the body does not slide on the ground
     SLIDES,      // it does
 } Need;
@@ -159,7 +160,8 @@ static const Metric METRICS[] = {
     FOUND(OF_BODY, "omega_order_1_rad_s", REAL, NOTHING, find_order_1,
           "amplitude of the angular velocity at once the crank's speed",
           "amplitude of omega at the crank's speed"),
-    FOUND(OF_BODY, "omega_order_2_rad_s", REAL, NOTHING, find_order_2, "the same at twice its speed",
+    FOUND(OF_BODY, "omega_order_2_rad_s", REAL, NOTHING, find_order_2,
+          "the same at twice its speed",
           "amplitude of omega at twice the crank's speed"),
     FOUND(OF_BODY, "omega_between_orders_rad_s", REAL, NOTHING, find_between_orders,
           "its largest amplitude between whole multiples of the crank's speed",
@@ -168,53 +170,77 @@ static const Metric METRICS[] = {
     SECTION_LIST(SLIDE)
     FOUND(OF_RUN, "impacts", WHOLE, NOTHING, find_impacts, "contacts begun in all joints"),
     FOUND(OF_RUN, "alpha_peak_rad_s2", REAL, NOTHING, find_alpha_peak,
-          "largest magnitude of any body's angular acceleration", "largest angular acceleration of any body"),
+          "largest magnitude of any body's angular acceleration",
+          "largest angular acceleration of any body"),
     RUN("energy_drive_work_J", REAL, NOTHING, energy.drive_work, "work of the drive"),
-    RUN("energy_dissipated_J", REAL, NOTHING, energy.dissipated, "lost in the damping of contacts and dampers", "energy lost in damping"),
-    RUN("energy_residual_J", REAL, NOTHING, energy.residual, "unexplained by the balance: the solver's error", "residual of the energy balance"),
+    RUN("energy_dissipated_J", REAL, NOTHING, energy.dissipated,
+        "lost in the damping of contacts and dampers",
+        "energy lost in damping"),
+    RUN("energy_residual_J", REAL, NOTHING, energy.residual,
+        "unexplained by the balance: the solver's error",
+        "residual of the energy balance"),
     RUN("step_s", REAL, FIXED_STEP, step_s, "step of ODE"),
     RUN("steps", WHOLE, NOTHING, steps, "steps of the solver"),
     RUN("evaluations", WHOLE, NOTHING, evaluations, "evaluations of the equations of motion"),
     RUN("fallback_rows", WHOLE, NOTHING, fallback_rows,
-        "contact rows for which the requested map would have been unstable", "contact rows with the textbook map"),
+        "contact rows for which the requested map would have been unstable",
+        "contact rows with the textbook map"),
     RUN("error_estimate", REAL, TRIALS, error_estimate,
         "upper bound of the error, for a step chosen for a tolerance", "upper bound of the error"),
-    RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds", "time up to which the bound of the error holds"),
+    RUN("error_estimate_until_s", REAL, TRIALS, estimate_s, "time up to which that bound holds",
+        "time up to which the bound of the error holds"),
     FOUND(OF_RUN, "section_period", WHOLE, NOTHING, find_section_period,
-          "revolutions after which the run repeats; 0: it has not", "period of the run, revolutions"),
+          "revolutions after which the run repeats; 0: it has not",
+          "period of the run, revolutions"),
     FOUND(OF_RUN, "section_change", REAL, NOTHING, find_section_change,
-          "by how much its last sections differ from those a period before", "change of the sections over a period"),
+          "by how much its last sections differ from those a period before",
+          "change of the sections over a period"),
     FOUND(OF_SETTLED, "settled_period", WHOLE, NOTHING, find_period,
-          "revolutions after which the settled motion repeats; 0: it does not", "period of the settled motion, revolutions"),
+          "revolutions after which the settled motion repeats; 0: it does not",
+          "period of the settled motion, revolutions"),
     SETTLED("settled_revolutions", WHOLE, NOTHING, revolutions,
             "revolutions that it took to settle", "revolutions until settled"),
     SETTLED("settled_motions", WHOLE, NOTHING, motion_count,
             "different motions that its starts came to", "number of settled motions"),
+    SETTLED("settled_growth", REAL, GROWTH, growth.factor,
+            "growth of a small change of its motion in a revolution, or its bound",
+            "growth of a small change in a revolution"),
     SETTLED("followed_from", REAL, FOLLOWED, followed_from,
-            "value of the followed key at the run whose motion it started in", "value that the motion was followed from"),
+            "value of the followed key at the run whose motion it started in",
+          "value that the motion was followed from"),
     ERROR("error_max", REAL, NOTHING, max,
-          "largest error of any velocity of bodies and pins, over its own largest", "largest error of the velocities"),
+          "largest error of any velocity of bodies and pins, over its own largest",
+          "largest error of the velocities"),
     ERROR("error_max_in_horizon", REAL, NOTHING, max_in_horizon,
-          "the same up to the predictability horizon", "largest error of the velocities up to the horizon"),
+          "the same up to the predictability horizon",
+          "largest error of the velocities up to the horizon"),
     ERROR("error_omega_max", REAL, NOTHING, omega_max,
           "the part of angular velocities in it", "largest error of omega"),
     ERROR("error_omega_max_in_horizon", REAL, NOTHING, omega_max_in_horizon,
           "the same up to the predictability horizon", "largest error of omega up to the horizon"),
-    ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the errors of omega", "rms error of omega"),
+    ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the errors of omega",
+        "rms error of omega"),
     ERROR("error_alpha_max", REAL, NOTHING, alpha_max,
-          "largest error of alpha, relative to each body's largest alpha", "largest error of alpha"),
+          "largest error of alpha, relative to each body's largest alpha",
+          "largest error of alpha"),
     ERROR("error_force_max", REAL, NOTHING, force_max,
-          "largest error of a contact force at samples, over the joint's largest", "largest error of contact forces"),
+          "largest error of a contact force at samples, over the joint's largest",
+          "largest error of contact forces"),
     ERROR("error_force_max_in_horizon", REAL, NOTHING, force_max_in_horizon,
-          "the same up to the predictability horizon", "largest error of contact forces up to the horizon"),
+          "the same up to the predictability horizon",
+          "largest error of contact forces up to the horizon"),
     ERROR("error_peak_force_max", REAL, NOTHING, peak_force_max,
-          "largest error of the peak force of a contact, over the joint's largest", "largest error of peak forces"),
+          "largest error of the peak force of a contact, over the joint's largest",
+          "largest error of peak forces"),
     ERROR("error_peak_force_max_in_horizon", REAL, NOTHING, peak_force_max_in_horizon,
-          "the same of contacts that end within the predictability horizon", "largest error of peak forces up to the horizon"),
+          "the same of contacts that end within the predictability horizon",
+          "largest error of peak forces up to the horizon"),
     ERROR("error_peak_alpha_max", REAL, NOTHING, peak_alpha_max,
-          "largest error of a body's extremes of alpha, over the larger of them", "largest error of the extremes of alpha"),
+          "largest error of a body's extremes of alpha, over the larger of them",
+          "largest error of the extremes of alpha"),
     ERROR("error_peak_alpha_max_in_horizon", REAL, NOTHING, peak_alpha_max_in_horizon,
-          "the same up to the predictability horizon", "largest error of the extremes of alpha up to the horizon"),
+          "the same up to the predictability horizon",
+          "largest error of the extremes of alpha up to the horizon"),
     TRUTH("error_horizon_s", REAL, CERTIFICATE, horizon_s, "predictability horizon"),
     TRUTH("error_reference_uncertainty", REAL, CERTIFICATE, uncertainty,
           "uncertainty of the reference, relative in the same way", "uncertainty of the reference"),
@@ -322,7 +348,16 @@ static bool metrics_moves(const Linkage *linkage, const Metric *metric, size_t b
 typedef struct Lists {
     bool has_settled;
     bool is_following;
+    bool has_growth;
 } Lists;
+
+// Whether a study of these lists has a number.
+static bool metrics_is_listed(const Metric *metric, Lists lists)
+{
+    return metric->need == FOLLOWED ? lists.is_following
+           : metric->need == GROWTH ? lists.has_growth
+                                    : true;
+}
 
 // The results of one body, joint or whole.
 static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Lists lists,
@@ -337,7 +372,7 @@ static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Li
         results[count++] = (Result){.number = number_at(k), .member = member, .of = name};
     }
     for (size_t k = 0; k < METRIC_COUNT; k++) {
-        if (METRICS[k].owner == owner && (lists.is_following || METRICS[k].need != FOLLOWED) &&
+        if (METRICS[k].owner == owner && metrics_is_listed(&METRICS[k], lists) &&
             metrics_moves(linkage, &METRICS[k], member)) {
             results[count++] = (Result){.metric = &METRICS[k], .member = member, .of = name};
         }
@@ -382,7 +417,7 @@ bool metrics_fit(const Scenario *scenario, Err *err)
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
 {
     Result results[RECORD_RESULT_MAX];
-    const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0'};
+    const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0', spec->has_growth};
     const size_t count = list_results(&scenario->linkage, lists, results);
     *layout = (Layout){0};
     metrics_add_settings(spec, layout);
@@ -452,6 +487,8 @@ static bool is_there(const Metric *metric, const Measured *measured)
         return measured->truth->message[0] == '\0';
     case FOLLOWED:
         return measured->settled->is_followed;
+    case GROWTH:
+        return measured->settled->has_growth;
     default:
         return true;
     }
@@ -513,7 +550,8 @@ bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *tr
     }
     Result list[RECORD_RESULT_MAX];
     const Lists lists = {metrics_has(layout, "settled_period"),
-                         metrics_has(layout, "followed_from")};
+                         metrics_has(layout, "followed_from"),
+                         metrics_has(layout, "settled_growth")};
     const size_t count = list_results(measured.linkage, lists, list);
     for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
         const double value = i < count ? metrics_read_result(&list[i], &measured) : NAN;

@@ -520,6 +520,9 @@ static uint64_t spec_print(const Spec *spec)
     if (spec->follow[0] != '\0') {
         print = hash_number(add_text(print, spec->follow), spec->direction);
     }
+    if (spec->has_growth) {
+        print = add_text(print, "growth");
+    }
     return hash_number(print, spec->has_truth ? 1.0 : 0.0);
 }
 

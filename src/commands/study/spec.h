@@ -78,6 +78,7 @@ typedef struct Spec {
                                     // before; empty: each finds its own
     FollowDirection direction;
     bool has_truth;     // each run is held against the certified reference
+    bool has_growth;    // each row says how small changes of its settled motion grow
     ChildLimits limits; // of one run; a truth may take the time of several
     uint64_t print;     // fingerprint of all that decides what the runs are: not of the limits,
                         // the title, or how the file is laid out

@@ -45,6 +45,9 @@ const SpecKey SPEC_KEYS[] = {
     {SPEC_TOP, "limits", SPEC_KEY_MAP, .of = SPEC_LIMITS, .doc = "Limits of one run"},
     {SPEC_TOP, "truth", SPEC_KEY_FLAG, AT(has_truth), .words = FLAGS, .what = "truth",
      .doc = "Whether each run is compared with the certified reference for its values"},
+    {SPEC_TOP, "growth", SPEC_KEY_FLAG, AT(has_growth), .words = FLAGS, .what = "growth",
+     .doc = "Whether each row says by what factor a small change of its settled motion grows in a "
+            "revolution, which takes the reference some 30 revolutions more"},
 
     // a run of four months is a slip of the pen, and a process takes 1 ms to start
     {SPEC_LIMITS, "time", SPEC_KEY_LIMIT, AT(limits.time_s), .low = 1e-3, .high = 1e7,
@@ -266,7 +269,7 @@ void spec_describe(bool is_markdown, Text *text)
 
 // Reads a mapping by the rows of its keys.
 
-enum { KEY_MAX = 8 }; // of one group
+enum { KEY_MAX = 10 }; // of one group
 
 static bool refuse_range(const Reading *reading, const SpecKey *key, const Node *value,
                          const char *allowed)

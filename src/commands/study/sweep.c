@@ -7,6 +7,7 @@
 #include "commands/study/worker.h"
 #include "measure/chosen_run.h"
 #include "run/registry.h"
+#include "run/settle.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -129,6 +130,9 @@ static void sweep_run(const SweepRun *task, Record *record)
     Err err = {0};
     if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
         follow_settle(task->spec, task->run, scenario);
+        if (task->spec->has_growth) {
+            settle_growth(scenario, (RunWatch){.progress = NULL});
+        }
         sweep_measure(task, scenario, backend, record);
     } else {
         give_reason(record, RUN_OUTCOME_REFUSED, err.text);
