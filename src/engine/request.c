@@ -59,6 +59,9 @@ bool engine_check(const Scenario *scenario, Err *err)
     if (linkage->further_count > 0) {
         return refuse(err, "several drives");
     }
+    if (linkage->further_count > 0) {
+        return refuse(err, "several drives");
+    }
     if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
         return refuse(err, "a drive whose speed is over time");
     }

@@ -218,6 +218,7 @@ static void what_cannot_be_told_is_refused_by_name(void **state)
         {"cases/mechanisms/gear-pair.yaml", "cannot express"},
         {"cases/mechanisms/bouncing-ball.yaml", "cannot express the stop"},
         {"cases/mechanisms/start-and-stop.yaml", "cannot express a drive whose speed is over time"},
+        {"cases/mechanisms/five-bar.yaml", "cannot express several drives"},
         {"cases/paper/stackup-poisson.yaml", "cannot express contact.model: poisson"},
         {"cases/paper/impact-k66.yaml", ""},
         {"cases/mechanisms/slider-crank.yaml", ""},
