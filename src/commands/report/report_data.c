@@ -13,7 +13,7 @@ enum {
     FORMAT = 1,
     // Values of all signals together, so that a page stays below 1 MB and its plots are drawn
     // within a second; and samples of a run, of which some 2,000 columns of pixels see each.
-    VALUES_MOST = 450000,
+    VALUES_MOST = 380000,
     SAMPLES_MOST = 24000,
 };
 
