@@ -192,11 +192,12 @@ char *engine_request(const Scenario *scenario, const char *way, Err *err)
             json_array_append_new(joints, joint);
         }
     }
-    json_t *request = json_pack(
-        "{s:i, s:s, s:s, s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "jointplay-driver", ENGINE_PROTOCOL,
-        "ask", "run", "way", way, "step_s", scenario->run.step, "duration_s",
-        scenario_duration(scenario), "gravity_m_s2", scenario->gravity, "bodies", bodies, "joints",
-        joints, "drive", drive_object(linkage), "sample_times_s", times_array(scenario));
+    json_t *request =
+        json_pack("{s:i, s:s, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "jointplay-driver",
+                  ENGINE_PROTOCOL, "ask", "run", "way", way, "step_s", scenario->run.step,
+                  "duration_s", scenario_duration(scenario), "gravity_m_s2",
+                  pair(scenario_gravity(scenario)), "bodies", bodies, "joints", joints, "drive",
+                  drive_object(linkage), "sample_times_s", times_array(scenario));
     assert(request != NULL);
     char *text = is_whole ? json_dumps(request, REQUEST_FLAGS) : NULL;
     json_decref(request);

@@ -52,7 +52,7 @@ typedef struct LadderRun {
     size_t round;                      // of LADDER_TIMING, from 0
     bool is_complete;                  // false: the message says why
     bool is_lost;                      // it died or hung: another try may end otherwise
-    char message[LADDER_MESSAGE_SIZE]; //
+    char message[LADDER_MESSAGE_SIZE]; // of a complete run what another engine says of its settings
     TrajectoryError error;             // of LADDER_ERROR; `against` is NULL
     size_t steps;
     size_t evaluations;

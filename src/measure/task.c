@@ -36,11 +36,11 @@ Task task_make(const Ladder *ladder, const Scenario *scenario, LadderRun run, co
     return task;
 }
 
-// The trajectory of a task, and whether its spikes are known.
-static Trajectory *task_trajectory(const Task *task, const Truth *truth)
+// The trajectory of a task, and what another engine says beside it.
+static Trajectory *task_trajectory(const Task *task, const Truth *truth, EngineSaid *said)
 {
     if (task->driver != NULL) {
-        return engine_run(task->driver, task->way, &task->scenario, 0.0, NULL);
+        return engine_run(task->driver, task->way, &task->scenario, 0.0, said);
     }
     return backend_run(&task->scenario, task->backend, truth, (ChosenWatch){.begin = NULL},
                        task->run.kind == LADDER_ERROR ? backend_run_probe(&task->scenario) : NULL);
@@ -70,10 +70,12 @@ void task_measure(const void *context, void *result)
         truth = &own;
     }
     const double started_s = clock_processor_s();
-    Trajectory *trajectory = task_trajectory(task, truth);
+    EngineSaid said = {.settings = ""};
+    Trajectory *trajectory = task_trajectory(task, truth, &said);
     run->processor_s = clock_processor_s() - started_s;
     run->is_complete = trajectory->is_complete;
-    shorten_copy(run->message, sizeof run->message, trajectory->message);
+    shorten_copy(run->message, sizeof run->message,
+                 trajectory->is_complete ? said.settings : trajectory->message);
     run->steps = trajectory->steps;
     run->evaluations = trajectory->evaluations;
     run->wall_s = trajectory->wall_s;

@@ -46,6 +46,11 @@ void run_state_take(const Solver *solver, void *of, double end_s, RunState *stat
         solver->contacts(of, state->contacts);
     }
     carry_begin(&state->carry, false);
+}
+
+void run_state_save(const Solver *solver, void *of, double end_s, RunState *state)
+{
+    run_state_take(solver, of, end_s, state);
     if (solver->carry == NULL || !solver->carry(of, &state->carry)) {
         carry_begin(&state->carry, false);
     }

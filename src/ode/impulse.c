@@ -48,6 +48,16 @@ void impulse_scope_finish(ImpulseScope *scope)
     *scope = (ImpulseScope){.body_count = 0};
 }
 
+void impulse_carry_contacts(KernelIslands *islands, Kernel *kernel, size_t *tick, Carry *carry)
+{
+    if (islands != NULL) {
+        kernel_islands_carry(islands, carry);
+    } else {
+        kernel_carry(kernel, carry);
+    }
+    CARRY(carry, *tick);
+}
+
 KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands, size_t place,
                               ImpulseTime at, const KernelSums *sums)
 {

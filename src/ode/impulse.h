@@ -44,6 +44,10 @@ void impulse_scope_finish(ImpulseScope *scope);
 KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands, size_t place,
                               ImpulseTime at, const KernelSums *sums);
 
+// Carries the contacts of a step, of its islands or where these are NULL of the kernel of all, and
+// the tick at its end.
+void impulse_carry_contacts(KernelIslands *islands, Kernel *kernel, size_t *tick, Carry *carry);
+
 // The instants within a step at which something stands out: contacts begin or end, forces and
 // depths have their maxima, the step ends.
 typedef struct Mark {

@@ -95,8 +95,9 @@ IdealSizes ideal_sizes(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     IdealSizes sizes = {
-        .is_known =
-            linkage->driver.is_present && space_has_plane(linkage) && kinematics_is_small(linkage),
+        // the joints' forces are those in the plane
+        .is_known = linkage->driver.is_present && space_has_plane(linkage) &&
+                    scenario->gravity.z == 0.0 && kinematics_is_small(linkage),
         .alpha_max = zeroed(linkage->body_count, sizeof *sizes.alpha_max),
         .alpha_range = zeroed(linkage->body_count, sizeof *sizes.alpha_range),
         .force_max = zeroed(linkage->joint_count, sizeof *sizes.force_max),

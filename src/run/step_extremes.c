@@ -643,11 +643,23 @@ static bool has_likely_turn(const Looker *looker, const Sketch *sketch, const Lo
     return omega + room > extremes->omega_max.value || omega - room < extremes->omega_min.value;
 }
 
-// How far the mean of an acceleration between two looks lies above the middle of its chord.
-static double mean_above(const Look *first, const Look *last, size_t body)
+// How far the mean of an acceleration between two looks lies above the middle of its chord, times
+// the time between them.
+static double area_above(const Look *first, const Look *last, size_t body)
 {
-    const double mean = (last->omega[body] - first->omega[body]) / (last->time_s - first->time_s);
-    return mean - 0.5 * (first->alpha[body] + last->alpha[body]);
+    const double width_s = last->time_s - first->time_s;
+    return last->omega[body] - first->omega[body] -
+           0.5 * width_s * (first->alpha[body] + last->alpha[body]);
+}
+
+// Whether an acceleration has no top between two looks, as far as these and their mean tell: a
+// parabola that rises from the first to the last by r, and whose mean lies b above the middle of
+// its chord, has none between them where 6 b <= r: half of that is asked for.
+static bool is_steady(const Look *first, const Look *last, size_t body)
+{
+    const double width_s = last->time_s - first->time_s;
+    return 12.0 * fabs(area_above(first, last, body)) <=
+           width_s * fabs(last->alpha[body] - first->alpha[body]);
 }
 
 // How far signals may rise above the ends of a step's parts, where the mean says that they bulge by
@@ -663,19 +675,20 @@ static double largest_bulge(const Looker *looker, const Look *before, int parts,
     double largest = 0.0;
     for (size_t n = 0; n < body_count; n++) {
         const size_t i = solver_body(looker->part, n);
-        const double most = fmax(extreme_so_far(looker, i, 1.0), extreme_so_far(looker, i, -1.0));
-        for (int k = 0; k < parts && (int)i != linkage_driven_body(linkage); k++) {
-            const double above = fabs(mean_above(k > 0 ? &looks[k - 1] : before, &looks[k], i));
-            largest = above > largest * most ? above / most : largest;
+        const BodyExtremes *extremes = &looker->recorder->trajectory->bodies[i];
+        const double most = fmax(extremes->alpha_max.value, -extremes->alpha_min.value);
+        for (int k = 0; k < parts && !linkage_is_driven(linkage, (int)i); k++) {
+            const Look *first = k > 0 ? &looks[k - 1] : before;
+            const double width_s = looks[k].time_s - first->time_s;
+            const double above = fabs(area_above(first, &looks[k], i));
+            largest = above > largest * most * width_s ? above / (most * width_s) : largest;
         }
     }
     return BULGE_MOST * largest;
 }
 
 // Whether a signal may have a top between two looks that comes near the run's extreme, as far as
-// these and their means tell. A parabola that rises from the first to the last by r, and whose mean
-// lies b above the middle of its chord, has none between them where 6 b <= r: half of that is asked
-// for. Forces may bulge by a share of their largest so far.
+// these and their means tell. Forces may bulge by a share of their largest so far.
 static bool may_have_top_between(const Aim *aim, const Look *first, const Look *last, double bulge)
 {
     const double start = aim_value(aim, first);
@@ -684,11 +697,11 @@ static bool may_have_top_between(const Aim *aim, const Look *first, const Look *
     const double change = fabs(end - start);
     double rise = bulge * fabs(aim->extreme);
     if (aim->signal < aim->looker->scenario->linkage.body_count) {
-        const double above = fabs(mean_above(first, last, aim->signal));
-        if (12.0 * above <= change) {
+        if (is_steady(first, last, aim->signal)) {
             return false;
         }
-        rise = BULGE_MOST * above;
+        rise = BULGE_MOST * fabs(area_above(first, last, aim->signal)) /
+               (last->time_s - first->time_s);
     }
     return rise + change > ALIKE * fabs(higher) &&
            step_extremes_is_near(aim, higher + rise, STEP_EXTREMES_RISE_MAX);
@@ -725,6 +738,12 @@ static bool may_have_any(Looker *looker, const Look *before, int parts, const Lo
     }
     Aim aim;
     for (size_t number = 0; next_aim(looker, &number, &aim);) {
+        // what is steady needs no second look for its other sign
+        const bool is_body = number <= 2 * body_count;
+        if (is_body && parts == 1 && is_steady(before, looks, aim.signal)) {
+            number += number % 2;
+            continue;
+        }
         if (may_have_top_inside(&aim, before, parts, looks, bulge)) {
             return true;
         }

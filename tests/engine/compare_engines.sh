@@ -49,7 +49,8 @@ report "what was run is kept, and is not run again" $?
 compare "$@" --driver "$toy" --backends toy/euler --full --plot "$work/picture.svg"
 report "--backends names some of its ways alone" $?
 grep -q '^  toy  .*Toy 1.0, in double precision' "$work/out" && ! grep -q 'direct/' "$work/out" &&
-    grep -q 'Cheapest way of each backend' "$work/out"
+    grep -q 'Cheapest way of each backend' "$work/out" &&
+    grep -q '^  toy/euler: none' "$work/out"
 report "the text names the engine, and no scheme of ODE" $?
 grep -q 'toy/euler' "$work/picture.svg"
 report "the picture has it" $?

@@ -244,7 +244,7 @@ static void go_on_exactly(const Scenario *scenario, const Solver *solver, const 
     double end_s = 0.0;
     do {
         stride_to(solver, one, nextafter(end_s, INFINITY), &end_s);
-        run_state_take(solver, one, end_s, &from);
+        run_state_save(solver, one, end_s, &from);
     } while (from.carry.size == 0 || (!has_contact(&from, 1e-5) && end_s < last_s));
     if (!run_state_resume(&from, solver, scenario, &other, &err)) {
         fail_msg("%s: %s", what, err.text);

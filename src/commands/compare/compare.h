@@ -90,6 +90,10 @@ json_t *compare_engines_key(const Ladder *ladder);
 json_t *compare_engines_json(const Ladder *ladder);
 json_t *compare_engines_cheapest(const Ladder *ladder);
 
+// What the engine of a scheme says of its settings at its finest step that did not fail; empty
+// where there is none.
+const char *compare_engines_settings(const Ladder *ladder, size_t scheme);
+
 // A line of the head for each engine; the table of the least times, and that of the ways.
 void compare_engines_write(const Ladder *ladder, Text *text);
 void compare_engines_write_times(const Ladder *ladder, const Style *style, Text *text);

@@ -290,6 +290,14 @@ static void write_cheapest(const Ladder *ladder, const LadderPoint *point, Table
     table_cell(table, "%.4g", point->wall_median_s * UNITS_MS);
 }
 
+const char *compare_engines_settings(const Ladder *ladder, size_t scheme)
+{
+    const size_t point = ladder_finest(ladder, scheme);
+    return ladder->schemes[scheme].driver != NULL && point < ladder->point_count
+               ? ladder->points[point].run.message
+               : "";
+}
+
 void compare_engines_write_ways(const Ladder *ladder, const Style *style, Text *text)
 {
     static const SectionHead HEADS[] = {
@@ -310,6 +318,16 @@ void compare_engines_write_ways(const Ladder *ladder, const Style *style, Text *
         table_rule(table);
     }
     section_end(table, text);
+    for (size_t i = 0; i < ladder->scheme_count; i++) {
+        const char *settings = compare_engines_settings(ladder, i);
+        if (settings[0] != '\0') {
+            Text words;
+            text_init(&words);
+            text_append(&words, "  %s: ", ladder->schemes[i].name);
+            text_append_shown(&words, settings);
+            screen_line(&words, text);
+        }
+    }
 }
 
 json_t *compare_engines_cheapest(const Ladder *ladder)

@@ -441,16 +441,19 @@ void compare_screen_write(const void *of, const Style *style, Text *text)
     const CompareReport *report = of;
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
-    compare_rows_write_cheapest(report->ladder, style, text);
     if (compare_engines_are_any(report->ladder)) {
         compare_engines_write_times(report->ladder, style, text);
+    } else {
+        compare_rows_write_cheapest(report->ladder, style, text);
     }
     write_others(report->ladder, text);
     compare_screen_orders(report->ladder, text);
     screen_truth(&report->ladder->truth, text);
     settled_lines(scenario, text);
     compare_report_left(report, text);
-    text_append(text, "  --full: every scheme at every step\n");
+    text_append(text, "  --full: every scheme at every step%s\n",
+                compare_engines_are_any(report->ladder) ? ", and the way and step of these times"
+                                                        : "");
 }
 
 // The JSON.
@@ -497,6 +500,8 @@ static json_t *compare_report_scheme_object(const CompareReport *report, size_t 
         json_pack("{s:s, s:s}", "scheme", scheme->name, "backend", scheme_backend(scheme));
     if (scheme->driver != NULL) {
         json_object_set_new(object, "way", json_string(scheme->way));
+        json_object_set_new(object, "engine_settings",
+                            json_value_text(compare_engines_settings(ladder, index)));
     } else if (scheme_has_step(scheme)) {
         json_object_set_new(object, "solver", json_string(OPTIONS_ODE_SOLVERS[scheme->solver]));
         json_object_set_new(object, "stepping",

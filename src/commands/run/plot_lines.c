@@ -475,7 +475,7 @@ static PathCurve path_take(const RunReport *report, const Trajectory *run, const
     return curve;
 }
 
-static const double PATH_STEP = 3.0; // pixels that a piece of a path may go straight
+static const double PATH_STEP = 4.0; // pixels that a piece of a path may go straight
 enum { PATH_PIECES_MOST = 24 };      // between two samples
 
 // Into how many straight pieces the path from a sample to the next is divided.
@@ -501,7 +501,7 @@ static double between(const PathCurve *curve, const double *values, const double
     return hermite_at(&hermite, time_s).value;
 }
 
-static const double PATH_NEAR = 0.5; // pixels; what moves less than that from a point is left out
+static const double PATH_NEAR = 1.0; // pixels; what moves less than that from a point is left out
 
 // A line that is drawn through some of its points.
 typedef struct PathLine {

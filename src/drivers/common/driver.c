@@ -195,7 +195,7 @@ static DriverCase *read_case(const json_t *request)
     copy_text(request, "way", of->way);
     of->step_s = number(request, "step_s");
     of->duration_s = number(request, "duration_s");
-    of->gravity = number(request, "gravity_m_s2");
+    of->gravity = pair(request, "gravity_m_s2");
     const json_t *bodies = member(request, "bodies");
     const json_t *joints = member(request, "joints");
     const json_t *times = member(request, "sample_times_s");

@@ -141,9 +141,9 @@ static void add_model(const MujocoRun *run, const MujocoModel *how, Xml *xml)
 {
     add(xml,
         "<mujoco><compiler angle='radian'/>\n"
-        "<option timestep='%.17g' integrator='%s' gravity='0 %.17g 0' tolerance='1e-14' "
+        "<option timestep='%.17g' integrator='%s' gravity='%.17g %.17g 0' tolerance='1e-14' "
         "iterations='200'><flag contact='disable'/></option>\n<worldbody>\n",
-        run->of->step_s, how->integrator, -run->of->gravity);
+        run->of->step_s, how->integrator, run->of->gravity.x, run->of->gravity.y);
     add_sites(run, xml, DRIVER_GROUND);
     for (size_t i = 0; i < run->of->body_count; i++) {
         if (run->tree.bodies[i].parent == DRIVER_GROUND) {

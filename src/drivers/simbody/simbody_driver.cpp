@@ -43,7 +43,10 @@ class World
     void add_loops();
     void set_start(State &state);
     void read(const State &state, DriverMotion *motions);
+    void follow(const DriverMotion *now, ::Vec2 *on_joints);
     void stamp(const State &state);
+    void sample(const State &state);
+    void run_adaptive(RungeKuttaMersonIntegrator &integrator);
     MobilizedBody &body(int number)
     {
         return number == DRIVER_GROUND ? matter.updGround() : bodies[number];
@@ -59,6 +62,7 @@ class World
     std::vector<DriverMotion> motions;
     std::vector<double> coordinates;
     std::vector<double> rates;
+    std::vector<::Vec2> forces_now; // by joint
     DriverRun answer;
 };
 
@@ -95,9 +99,9 @@ Transform to_transform(double angle, ::Vec2 place)
 World::World(const DriverCase *given)
     : of(given), tree(tree_make(given)), bodies(given->body_count), contacts(given->joint_count),
       motions(given->body_count), coordinates(tree.coordinates), rates(tree.coordinates),
-      answer(driver_run_start(given))
+      forces_now(given->joint_count), answer(driver_run_start(given))
 {
-    Force::UniformGravity(forces, matter, Vec3(0.0, -of->gravity, 0.0));
+    Force::UniformGravity(forces, matter, Vec3(of->gravity.x, of->gravity.y, 0.0));
     Force::Custom(forces, new Law(this)); // which it owns
     for (size_t i = 0; i < of->body_count; i++) {
         add_body(tree.order[i]);
@@ -204,23 +208,62 @@ void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
     }
 }
 
+// Follows the contacts to the end of a step, and finds their forces.
+void World::follow(const DriverMotion *now, ::Vec2 *on_joints)
+{
+    for (size_t i = 0; i < of->joint_count; i++) {
+        const DriverJoint &joint = of->joints[i];
+        on_joints[i] = ::Vec2{0.0, 0.0};
+        if (joint.kind == DRIVER_PIN_IN_HOLE) {
+            const PinHole pose = driver_pose(&joint, now);
+            DriverTotals &totals = answer.totals[i];
+            driver_follow(&joint, &pose, &contacts[i], &totals);
+            on_joints[i] = driver_force(&joint, &contacts[i], &pose);
+            totals.force_max = std::max(totals.force_max, vec2_length(on_joints[i]));
+        }
+    }
+}
+
 void World::stamp(const State &state)
 {
     DriverStamp *now = driver_run_stamp(&answer);
     now->position_s = now->velocity_s = state.getTime();
     read(state, now->motions);
+    follow(now->motions, now->forces);
+    driver_run_stamped(&answer);
+}
+
+// A sample within a step, which Simbody has interpolated.
+void World::sample(const State &state)
+{
+    DriverMotion *at = driver_run_motions(&answer);
+    read(state, at);
     for (size_t i = 0; i < of->joint_count; i++) {
         const DriverJoint &joint = of->joints[i];
-        now->forces[i] = ::Vec2{0.0, 0.0};
         if (joint.kind == DRIVER_PIN_IN_HOLE) {
-            const PinHole pose = driver_pose(&joint, now->motions);
-            DriverTotals &totals = answer.totals[i];
-            driver_follow(&joint, &pose, &contacts[i], &totals);
-            now->forces[i] = driver_force(&joint, &contacts[i], &pose);
-            totals.force_max = std::max(totals.force_max, vec2_length(now->forces[i]));
+            const PinHole pose = driver_pose(&joint, at);
+            driver_run_forces(&answer)[i] = driver_force(&joint, &contacts[i], &pose);
         }
     }
-    driver_run_stamped(&answer);
+    driver_run_sampled(&answer);
+}
+
+// Long steps: what is between them only Simbody knows.
+void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
+{
+    std::vector<DriverMotion> now(of->body_count);
+    double followed_s = -1.0;
+    while (!driver_run_is_full(&answer)) {
+        // all samples within a step come before its end is said to be reached
+        if (integrator.stepTo(driver_run_next(&answer)) == Integrator::ReachedReportTime) {
+            sample(integrator.getState());
+        } else if (integrator.getAdvancedTime() > followed_s) {
+            followed_s = integrator.getAdvancedTime();
+            read(integrator.getAdvancedState(), now.data());
+            follow(now.data(), forces_now.data());
+        }
+    }
+    answer.steps = static_cast<size_t>(integrator.getNumStepsTaken());
 }
 
 void World::run()
@@ -248,6 +291,10 @@ void World::run()
     integrator.setFinalTime(end_s);
     integrator.initialize(state);
     driver_run_begin(&answer);
+    if (is_adaptive) {
+        run_adaptive(integrator);
+        driver_run_write(&answer);
+    }
     stamp(integrator.getAdvancedState());
     while (!driver_run_is_full(&answer)) {
         const double before_s = integrator.getAdvancedTime();

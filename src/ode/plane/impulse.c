@@ -113,12 +113,7 @@ static void impulse_step_carry(ImpulseStep *step, Carry *carry)
 {
     const size_t bodies = step->scenario->linkage.body_count;
     world_carry(&step->world, carry);
-    if (step->islands != NULL) {
-        kernel_islands_carry(step->islands, carry);
-    } else {
-        kernel_carry(&step->kernel, carry);
-    }
-    CARRY(carry, step->tick);
+    impulse_carry_contacts(step->islands, &step->kernel, &step->tick, carry);
     CARRY(carry, step->is_kink);
     CARRY(carry, step->end_s);
     CARRY(carry, step->count);

@@ -130,12 +130,7 @@ static void space_impulse_step_carry(SpaceImpulseStep *step, Carry *carry)
 {
     const Linkage *linkage = &step->scenario->linkage;
     world_carry(&step->world, carry);
-    if (step->islands != NULL) {
-        kernel_islands_carry(step->islands, carry);
-    } else {
-        kernel_carry(&step->kernel, carry);
-    }
-    CARRY(carry, step->tick);
+    impulse_carry_contacts(step->islands, &step->kernel, &step->tick, carry);
     CARRY(carry, step->end_s);
     CARRY(carry, step->count);
     CARRY(carry, step->start_s);
