@@ -88,7 +88,7 @@ World::World(const DriverCase *given)
       contacts(given->joint_count), now(given->body_count), before(given->body_count),
       forces(given->joint_count), answer(driver_run_start(given))
 {
-    world.setGravity(btVector3(of->gravity.x, of->gravity.y, 0.0));
+    world.setGravity(to_vector(of->gravity));
     // joints that have opened are closed within the next step
     world.getSolverInfo().m_erp = 1.0;
     world.getSolverInfo().m_globalCfm = 0.0;

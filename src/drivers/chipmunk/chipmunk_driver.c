@@ -279,7 +279,7 @@ static void make(const DriverCase *of, ChipmunkRun *run)
     const int open = is_native ? ITERATIONS_SLIDING : ITERATIONS_OPEN;
     run->iterations = is_open ? open : ITERATIONS_CLOSED;
     cpSpaceSetIterations(run->space, run->iterations);
-    cpSpaceSetGravity(run->space, cpv(of->gravity.x, of->gravity.y));
+    cpSpaceSetGravity(run->space, to_vect(of->gravity));
     cpSpaceSetUserData(run->space, run);
     for (size_t i = 0; i < of->body_count; i++) {
         make_body(run, i);

@@ -47,7 +47,7 @@ typedef struct DriverCase {
     char way[DRIVER_NAME_SIZE];
     double step_s;
     double duration_s;
-    Vec2 gravity; // m/s^2
+    Vec2 gravity; // acceleration of free fall, m/s^2
     size_t body_count;
     DriverBody *bodies; // owned, as all arrays
     size_t joint_count;

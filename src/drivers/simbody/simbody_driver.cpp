@@ -101,7 +101,7 @@ World::World(const DriverCase *given)
       motions(given->body_count), coordinates(tree.coordinates), rates(tree.coordinates),
       forces_now(given->joint_count), answer(driver_run_start(given))
 {
-    Force::UniformGravity(forces, matter, Vec3(of->gravity.x, of->gravity.y, 0.0));
+    Force::UniformGravity(forces, matter, to_vec(of->gravity));
     Force::Custom(forces, new Law(this)); // which it owns
     for (size_t i = 0; i < of->body_count; i++) {
         add_body(tree.order[i]);
