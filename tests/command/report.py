@@ -2,7 +2,7 @@
 # asks another place, texts of a user's shown as text, and data that decode to what 'jointplay run'
 # writes.
 # Usage: report.py PROGRAM CASE. Prints TAP.
-import csv, json, math, os, subprocess, sys
+import csv, json, math, os, re, subprocess, sys
 
 from report_reading import Page, check_claims, check_policy, check_requests, unpack
 
@@ -68,6 +68,38 @@ def the_picture_needs_no_style_sheet(work):
     text = make(work + "/c.html")
     picture = text[text.index("<svg") : text.index("</svg>")]
     assert "<path" in picture and "<style" not in picture and "class=" not in picture
+
+
+def extent(values):
+    numbers = [float(one) for one in values]
+    return min(numbers), max(numbers), numbers[-1]
+
+
+def strokes(svg):
+    """Each path's steps, with steps up and down in one column as their least, most and last."""
+    found = []
+    for data in re.findall(r' d="([^"]*)"', svg):
+        steps = []
+        for letter, numbers in re.findall(r"([A-Za-z])([^A-Za-z]*)", data):
+            if letter == "V" and steps and steps[-1][0] == "V":
+                steps[-1][1].append(float(numbers))
+            else:
+                steps.append((letter, re.findall(r"[-.0-9]+", numbers)))
+        found.append([(letter, *extent(of)) if letter == "V" else (letter, of)
+                      for letter, of in steps])
+    return found
+
+
+def the_picture_has_the_strokes_of_run(work):
+    words = ["--set", "run.samples=400", "--backend", "reference", "--uncertified"]
+    text = make(work + "/k.html", *words)
+    status, _, errors = run("run", case, "--quiet", "--plot", work + "/k.svg", *words)
+    assert status == 0, errors
+    ours = strokes(text[text.index("<svg") : text.index("</svg>")])
+    theirs = strokes(open(work + "/k.svg", encoding="utf-8").read())
+    assert len(ours) > 10 and ours == theirs
+    # the control: a stroke that goes further is another
+    assert strokes(" d=\"M0 0V1V3V2\"") != strokes(" d=\"M0 0V1V4V2\"")
 
 
 def a_title_is_shown_as_text(work):
@@ -231,6 +263,7 @@ CLAIMS = [
     the_policy_allows_one_script_and_one_style_sheet,
     nothing_in_it_asks_another_place,
     the_picture_needs_no_style_sheet,
+    the_picture_has_the_strokes_of_run,
     a_title_is_shown_as_text,
     the_answer_is_that_of_run,
     energy_and_orders_need_no_script,

@@ -13,7 +13,8 @@ enum {
     FORMAT = 1,
     // Values of all signals together, so that a page stays below 1 MB and its plots are drawn
     // within a second; and samples of a run, of which some 2,000 columns of pixels see each.
-    VALUES_MOST = 450000,
+    VALUES_MOST = 380000,
+    VALUES_LEAST = 60000, // where the picture leaves no room
     SAMPLES_MOST = 24000,
 };
 
@@ -511,13 +512,13 @@ static json_t *run_json(const Kept *kept, const Trajectory *truth, Pack *pack)
     return object;
 }
 
-static json_t *runs_json(const RunReport *report, Pack *pack)
+static json_t *runs_json(const RunReport *report, size_t values_most, Pack *pack)
 {
     const Trajectory *truth = run_report_has_truth(report) ? report->truth->trajectory : NULL;
     SeriesColumns columns =
         series_columns_create(report->scenario, report->scenario->run.keeps_ranges);
     const size_t signal_count = count_signals(report, &columns);
-    size_t room = signal_count > 0 ? VALUES_MOST / signal_count : SAMPLES_MOST;
+    size_t room = signal_count > 0 ? values_most / signal_count : SAMPLES_MOST;
     room = room > SAMPLES_MOST ? SAMPLES_MOST : room;
     json_t *runs = json_array();
     for (size_t i = 0; i < report->run_count; i++) {
@@ -543,7 +544,20 @@ static json_t *crank_json(const Driver *driver)
                : json_null();
 }
 
-void report_data_write(const RunReport *report, const char *command, Text *text)
+// Of a page of so many bytes, those of its script, tables, results and peaks; and of each value.
+static const double PAGE_SIZE = 960e3;
+static const double OTHER_SIZE = 200e3;
+static const double VALUE_SIZE = 0.9;
+
+// How many values a page has room for beside its picture.
+static size_t values_for(size_t picture_size)
+{
+    const double room = (PAGE_SIZE - OTHER_SIZE - (double)picture_size) / VALUE_SIZE;
+    return (size_t)fmax(VALUES_LEAST, fmin(VALUES_MOST, room));
+}
+
+void report_data_write(const RunReport *report, const char *command, size_t picture_size,
+                       Text *text)
 {
     const Scenario *scenario = report->scenario;
     const Linkage *linkage = &scenario->linkage;
@@ -564,7 +578,7 @@ void report_data_write(const RunReport *report, const char *command, Text *text)
     json_object_set_new(data, "joints", joints_json(linkage));
     json_object_set_new(data, "springs", springs_json(linkage));
     json_object_set_new(data, "points", points_json(scenario));
-    json_object_set_new(data, "runs", runs_json(report, &pack));
+    json_object_set_new(data, "runs", runs_json(report, values_for(picture_size), &pack));
     json_object_set_new(data, "results", run_json_build(report));
     Text json;
     text_init(&json);

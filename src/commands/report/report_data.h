@@ -12,4 +12,6 @@
 // with a signal's name as that of a column of `jointplay run --series`. Of a run with more samples
 // than there is room for, every stride-th is kept; columns of smallest and largest values between
 // samples then hold those of all that were left out.
-void report_data_write(const RunReport *report, const char *command, Text *text);
+// The size of the page's picture, in bytes, leaves less or more room for samples.
+void report_data_write(const RunReport *report, const char *command, size_t picture_size,
+                       Text *text);

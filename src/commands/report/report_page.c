@@ -201,15 +201,18 @@ void report_page_write(const ReportPage *page, Text *html)
     Shell shell = shell_create(SHELL_RUN, title[0] != '\0' ? title : path, path);
     Text data;
     text_init(&data);
-    report_data_write(report, page->command, &data);
+    Text picture;
+    text_init(&picture);
+    append_picture(report, &picture);
+    report_data_write(report, page->command, picture.length, &data);
     shell_begin(&shell, html);
     append_answer(report, html);
-    text_append(html, "<div id=\"live\" hidden></div>\n");
-    append_picture(report, html);
+    text_append(html, "<div id=\"live\" hidden></div>\n%s", picture.data);
     report_numbers_write(report, html);
     append_making(page, html);
     append_tables(report, html);
     shell_end(&shell, data.data, html);
+    text_finish(&picture);
     text_finish(&data);
     shell_finish(&shell);
 }
