@@ -64,8 +64,8 @@ static bool runner_take_run(void *owner, size_t number, const void *result, cons
     return runner->listener.keep_run(&run, runner->listener.context, err);
 }
 
-// Ensembles belong to the reference and to ODE's schemes that have a point. Other engines have none:
-// what happens between samples is not known of them.
+// Ensembles belong to the reference and to ODE's schemes that have a point. Other engines have
+// none: what happens between samples is not known of them.
 static bool next_ensemble(void *owner, size_t *number, const void **context)
 {
     Stage *stage = owner;

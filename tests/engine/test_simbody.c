@@ -1,7 +1,7 @@
 // Does Simbody, by its driver, move ideal joints and one impact as it must?
 //
-// Truths: the closed form of the ideal four-bar, and the reference's run of the paper's mechanism with
-// play. The control of each way is a coarser step, whose error is far larger.
+// Truths: the closed form of the ideal four-bar, and the reference's run of the paper's mechanism
+// with play. The control of each way is a coarser step, whose error is far larger.
 #include "engine_outcome.h"
 
 static const char SIMBODY[] = "simbody";

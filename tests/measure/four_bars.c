@@ -39,7 +39,8 @@ static Made make(const Scenario *scenario, BackendKind backend)
 static Scenario four_bars(size_t count, double duration_s)
 {
     Scenario scenario = scenario_default();
-    scenario.linkage = linkage_create((LinkageRoom){.bodies = 2 * count + 1, .joints = 3 * count + 1});
+    scenario.linkage =
+        linkage_create((LinkageRoom){.bodies = 2 * count + 1, .joints = 3 * count + 1});
     four_bars_fill(&scenario, count, duration_s);
     return scenario;
 }

@@ -354,7 +354,8 @@ static bool run_copy(const Task *task, const Solver *solver, Scenario *scenario,
     Build build = {
         .is_loose = is_meeting || is_damped || strstr(task->play, "loose") != NULL,
         .is_damped = is_damped,
-        .linkage = linkage_create((LinkageRoom){.bodies = 3 * task->count + 1, .joints = 4 * task->count + 1}),
+        .linkage = linkage_create(
+            (LinkageRoom){.bodies = 3 * task->count + 1, .joints = 4 * task->count + 1}),
         .first = *first,
     };
     task->kind->build(&build, task->count);

@@ -21,7 +21,8 @@ static Scenario chain(size_t count, size_t every)
 {
     Scenario scenario = kept_default();
     Linkage ideal = mechanism_chain(count, LENGTH, 1.0);
-    scenario.linkage = linkage_create((LinkageRoom){.bodies = count, .joints = count, .springs = 1});
+    scenario.linkage =
+        linkage_create((LinkageRoom){.bodies = count, .joints = count, .springs = 1});
     scenario.linkage.body_count = scenario.linkage.joint_count = count;
     memcpy(scenario.linkage.bodies, ideal.bodies, count * sizeof *ideal.bodies);
     memcpy(scenario.linkage.joints, ideal.joints, count * sizeof *ideal.joints);

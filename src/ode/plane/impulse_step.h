@@ -119,8 +119,8 @@ static inline bool impulse_step_has_curves(const ImpulseStep *step)
     return step->has_few_rows && step->count >= IMPULSE_COLUMNS;
 }
 
-// Finds the mean forces of the joints with play and the works of the drives, of loads and of dampers
-// in the step that has just been taken, from the bodies at mid-step (impulse_work.c).
+// Finds the mean forces of the joints with play and the works of the drives, of loads and of
+// dampers in the step that has just been taken, from the bodies at mid-step (impulse_work.c).
 void impulse_step_find_work(ImpulseStep *step, const Motion *middle);
 
 // Takes the next step.
