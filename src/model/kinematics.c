@@ -308,8 +308,11 @@ static bool solve_all(const Linkage *linkage, const DriveState *drives, Motion *
 
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)
 {
-    const DriveState drive = {.angle = crank_angle, .omega = linkage->driver.speed};
-    return kinematics_solve_driven(linkage, &drive, motions, err);
+    DriveState drives[LINKAGE_DRIVE_MAX] = {{.angle = crank_angle, .omega = linkage->driver.speed}};
+    for (size_t i = 1; i < linkage_drive_count(linkage); i++) {
+        drives[i] = drive_at(linkage_drive(linkage, i), 0.0);
+    }
+    return kinematics_solve_driven(linkage, drives, motions, err);
 }
 
 bool kinematics_is_determined(const Linkage *linkage)

@@ -50,7 +50,7 @@ size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool i
 // Moves the bodies so that every joint closes and the driver stands at the angle given, starting
 // from the motions given; then sets velocities and accelerations for the driver's constant speed.
 // Fails with ERR_SOLVER where the linkage does not close, is at a dead centre, or has not exactly
-// one freedom; the motions are then untouched. With one drive.
+// one freedom; the motions are then untouched. Further drives stand where they start.
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err);
 
 // The same for the states of all drives at a time, as many as there are; their messages have the

@@ -270,7 +270,9 @@ static bool start_level(Nodes *nodes, NodesLevel *level, Err *err)
     Motion *motions = nodes->motions;
     linkage_start(linkage, motions);
     Err unused = {ERR_NONE, ""};
-    if (kinematics_solve(linkage, linkage_crank_angle(linkage, 0.0), motions, &unused)) {
+    DriveState drives[LINKAGE_DRIVE_MAX];
+    linkage_drives_since(linkage, 0.0, 0.0, drives);
+    if (kinematics_solve_driven(linkage, drives, motions, &unused)) {
         level->index = -stepping_start(nodes->scenario, level->step_s, steps, motions);
     } else if (!run_back(nodes, level, steps, motions, err)) {
         return false;
