@@ -222,13 +222,9 @@ static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *
 
 // The first of the further drives that prescribes what others do already; their number where there
 // is none.
-static size_t excess_drive(const Linkage *linkage, const Motion *motions)
+static size_t excess_drive(const Linkage *linkage, const Motion *motions, const bool *is_ideal)
 {
     const size_t count = linkage_drive_count(linkage);
-    bool *is_ideal = zeroed(linkage->joint_count, sizeof *is_ideal);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        is_ideal[i] = linkage_kind_is_ideal(linkage->joints[i].kind);
-    }
     size_t before = 0;
     size_t excess = count;
     for (size_t used = 1; count > 1 && excess == count && used <= count; used++) {
@@ -239,7 +235,6 @@ static size_t excess_drive(const Linkage *linkage, const Motion *motions)
         excess = used > 1 && rank == before ? used - 1 : excess;
         before = rank;
     }
-    free(is_ideal);
     return excess;
 }
 
@@ -252,10 +247,11 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
     }
     size_t rows;
     const size_t rank = kinematics_rank(linkage, motions, is_ideal, true, INDEPENDENT, &rows);
+    const size_t drives = linkage_drive_count(linkage);
+    const size_t excess = rank < rows ? excess_drive(linkage, motions, is_ideal) : drives;
     free(is_ideal);
     const EntryGroup *joints = entries_group(entries, "joints", 0);
-    const size_t excess = excess_drive(linkage, motions);
-    if (rank < rows && excess < linkage_drive_count(linkage)) {
+    if (excess < drives) {
         return drives_refuse_redundant(entries, linkage, excess, err);
     }
     return rank == rows ||

@@ -1,8 +1,6 @@
 // Reads and checks what prescribes the motion of bodies.
 #include "casefile/drives.h"
 
-#include "casefile/over_time.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

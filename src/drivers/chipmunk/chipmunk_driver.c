@@ -160,20 +160,29 @@ static void read_felt(ChipmunkRun *run)
     }
 }
 
-// Follows the contacts and finds the forces of their laws, with the bodies as they are.
+// Follows the contact of a joint, with the bodies as they are. False where it is no pin in a hole.
+static bool follow(ChipmunkRun *run, size_t joint, PinHole *pose)
+{
+    const DriverJoint *of = &run->of->joints[joint];
+    if (of->kind != DRIVER_PIN_IN_HOLE) {
+        return false;
+    }
+    *pose = driver_pose(of, run->motions);
+    driver_follow(of, pose, &run->contacts[joint], &run->run.totals[joint]);
+    return true;
+}
+
+// Follows the contacts and finds the forces of their laws.
 static void find_forces(ChipmunkRun *run)
 {
     read_felt(run);
     for (size_t i = 0; i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
-        if (joint->kind != DRIVER_PIN_IN_HOLE) {
-            continue;
+        PinHole pose;
+        if (follow(run, i, &pose)) {
+            DriverTotals *totals = &run->run.totals[i];
+            run->forces[i] = driver_force(&run->of->joints[i], &run->contacts[i], &pose);
+            totals->force_max = fmax(totals->force_max, vec2_length(run->forces[i]));
         }
-        const PinHole pose = driver_pose(joint, run->motions);
-        DriverTotals *totals = &run->run.totals[i];
-        driver_follow(joint, &pose, &run->contacts[i], totals);
-        run->forces[i] = driver_force(joint, &run->contacts[i], &pose);
-        totals->force_max = fmax(totals->force_max, vec2_length(run->forces[i]));
     }
 }
 
@@ -232,16 +241,13 @@ static void read_slides(ChipmunkRun *run)
 {
     read_motions(run, run->motions);
     for (size_t i = 0; i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
-        if (joint->kind != DRIVER_PIN_IN_HOLE) {
-            continue;
+        PinHole pose;
+        if (follow(run, i, &pose)) {
+            DriverTotals *totals = &run->run.totals[i];
+            const double force = cpConstraintGetImpulse(run->holds[i]) / run->of->step_s;
+            run->forces[i] = vec2_scale(force, pose.normal);
+            totals->force_max = fmax(totals->force_max, force);
         }
-        const PinHole pose = driver_pose(joint, run->motions);
-        DriverTotals *totals = &run->run.totals[i];
-        driver_follow(joint, &pose, &run->contacts[i], totals);
-        const double force = cpConstraintGetImpulse(run->holds[i]) / run->of->step_s;
-        run->forces[i] = vec2_scale(force, pose.normal);
-        totals->force_max = fmax(totals->force_max, force);
     }
 }
 

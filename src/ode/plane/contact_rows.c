@@ -682,7 +682,10 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
     }
 }
 
-void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets)
+// By joint, from the anchor on a body to where the joint's force is said to act, m: of a pin or
+// stop at the contact, of a block or a prismatic joint at the anchor on body b. Zero for a joint
+// with play that has no row in this step.
+static void find_offsets(const ContactRows *rows, int body, Vec2 *offsets)
 {
     memset(offsets, 0, rows->scenario->linkage.joint_count * sizeof *offsets);
     world_offsets(rows->world, body, offsets);
@@ -694,6 +697,21 @@ void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets)
             offsets[number] = row->arms[joint->body_a == body ? 0 : 1];
         }
     }
+}
+
+double contact_rows_drive_power(const ContactRows *rows, double time_s, Vec2 *offsets,
+                                JointState *joints)
+{
+    const Linkage *linkage = &rows->scenario->linkage;
+    double power = 0.0;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const int body = linkage_drive_body(linkage, i);
+        const Motion driven = stepping_driven(linkage, i, time_s);
+        const BodyLoad load = applied_on(&rows->world->applied, body);
+        find_offsets(rows, body, offsets);
+        power += stepping_drive(rows->scenario, i, &driven, &load, offsets, joints);
+    }
+    return power;
 }
 
 ContactEnergy contact_rows_energy(const ContactRows *rows)

@@ -56,10 +56,10 @@ void contact_rows_carry(ContactRows *rows, Carry *carry);
 bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, double *approach,
                        Err *err);
 
-// By joint, from the anchor on a body to where the joint's force is said to act, m: of a pin or
-// stop at the contact, of a block or a prismatic joint at the anchor on body b. Zero for a joint
-// with play that has no row in this step.
-void contact_rows_offsets(const ContactRows *rows, int body, Vec2 *offsets);
+// The power of all drives at a time, W, from the joints' forces, among which it puts those of the
+// driven joints. Offsets are room, by joint.
+double contact_rows_drive_power(const ContactRows *rows, double time_s, Vec2 *offsets,
+                                JointState *joints);
 
 ContactEnergy contact_rows_energy(const ContactRows *rows);
 

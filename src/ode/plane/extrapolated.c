@@ -208,19 +208,6 @@ static void negate_speeds(size_t body_count, Motion *motions)
     }
 }
 
-// Puts the driven bodies to a time with their speeds at another, in the direction of the steps.
-static void place_driven(const Linkage *linkage, double middle_s, double speed_s, long direction,
-                         World *world)
-{
-    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
-        Motion motion = stepping_driven(linkage, i, middle_s);
-        const Motion moving = stepping_driven(linkage, i, speed_s);
-        motion.velocity = vec2_scale((double)direction, moving.velocity);
-        motion.omega = (double)direction * moving.omega;
-        world_place(world, (size_t)linkage_drive_body(linkage, i), &motion);
-    }
-}
-
 // One step of one world, forwards (1) or backwards (-1) in time.
 static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err)
 {
@@ -229,10 +216,10 @@ static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err
     const double start_s = (double)level->index * level->step_s;
     const double step_s = (double)direction * level->step_s;
     if (forces_damp(linkage)) {
-        place_driven(linkage, start_s + 0.5 * step_s, start_s, direction, &level->world);
+        world_place_driven(&level->world, start_s + 0.5 * step_s, start_s, direction);
     }
     applied_push(&level->world.applied, start_s, level->step_s, APPLIED_AT_MEAN, (int)direction);
-    place_driven(linkage, start_s + 0.5 * step_s, start_s + step_s, direction, &level->world);
+    world_place_driven(&level->world, start_s + 0.5 * step_s, start_s + step_s, direction);
     const bool is_quick = scenario->ode.solver == ODE_QUICK;
     nodes->steps++;
     if (!world_step(&level->world, level->step_s, is_quick, err) ||

@@ -68,29 +68,11 @@ static void read_velocities(Plain *plain)
     }
 }
 
-// Of all drives. The force of each joint acts at its contact, where it has one.
-static double drive_power(Plain *plain, double start_s)
-{
-    const Linkage *linkage = &plain->scenario->linkage;
-    double power = 0.0;
-    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
-        const int body = linkage_drive_body(linkage, i);
-        const Motion driven = stepping_driven(linkage, i, start_s);
-        const BodyLoad load = applied_on(&plain->world.applied, body);
-        contact_rows_offsets(&plain->contacts, body, plain->offsets);
-        power += stepping_drive(plain->scenario, i, &driven, &load, plain->offsets, plain->joints);
-    }
-    return power;
-}
-
 static bool advance(Plain *plain, Err *err)
 {
     const double start_s = (double)plain->index * plain->step_s;
     const Linkage *linkage = &plain->scenario->linkage;
-    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
-        const Motion driven = stepping_driven(linkage, i, start_s);
-        world_place(&plain->world, (size_t)linkage_drive_body(linkage, i), &driven);
-    }
+    world_place_driven(&plain->world, start_s, start_s, 1);
     for (size_t i = 0; i < linkage->body_count; i++) {
         plain->before[i] = snapshot_of(plain->world.bodies[i]);
     }
@@ -108,8 +90,10 @@ static bool advance(Plain *plain, Err *err)
     read_velocities(plain);
     if (!is_lean) {
         plain->applied = applied_book(&plain->world.applied, plain->step_s);
-        plain->drive_work = drive_power(plain, start_s) * plain->step_s + plain->applied.torque +
-                            plain->applied.slope;
+        plain->drive_work =
+            contact_rows_drive_power(&plain->contacts, start_s, plain->offsets, plain->joints) *
+                plain->step_s +
+            plain->applied.torque + plain->applied.slope;
     }
     for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
         plain->impulse[i] = plain->joints[i].force * plain->step_s;

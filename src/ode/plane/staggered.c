@@ -181,19 +181,6 @@ static bool staggered_open(const Scenario *scenario, void **state, Err *err)
     return true;
 }
 
-// Puts the driven bodies to a time with their speeds at another.
-static void place_driven(Staggered *staggered, double middle_s, double speed_s)
-{
-    const Linkage *linkage = &staggered->scenario->linkage;
-    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
-        const Motion middle = stepping_driven(linkage, i, middle_s);
-        Motion placed = stepping_driven(linkage, i, speed_s);
-        placed.position = middle.position;
-        placed.angle = middle.angle;
-        world_place(&staggered->world, (size_t)linkage_drive_body(linkage, i), &placed);
-    }
-}
-
 static void read_speeds(const Staggered *staggered, Stride *stride)
 {
     for (size_t i = 0; i < staggered->scenario->linkage.body_count; i++) {
@@ -213,15 +200,8 @@ static void book(Staggered *staggered, double middle_s, Stride *stride)
 {
     const Linkage *linkage = &staggered->scenario->linkage;
     const AppliedWork applied = applied_book(&staggered->world.applied, staggered->step_s);
-    double power = 0.0;
-    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
-        const int body = linkage_drive_body(linkage, i);
-        const Motion middle = stepping_driven(linkage, i, middle_s);
-        const BodyLoad load = applied_on(&staggered->world.applied, body);
-        contact_rows_offsets(&staggered->contacts, body, staggered->offsets);
-        power += stepping_drive(staggered->scenario, i, &middle, &load, staggered->offsets,
-                                stride->joints);
-    }
+    const double power = contact_rows_drive_power(&staggered->contacts, middle_s,
+                                                  staggered->offsets, stride->joints);
     stride->drive_work = staggered->step_s * power + applied.torque + applied.slope;
     stride->load_work = applied.loads;
     stride->damped = applied.damping;
@@ -238,7 +218,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
     stride->start_s = (double)staggered->index * step_s;
     const double end_s = (double)(staggered->index + 1) * step_s;
     const double middle_s = stride->start_s + 0.5 * step_s;
-    place_driven(staggered, middle_s, stride->start_s);
+    world_place_driven(&staggered->world, middle_s, stride->start_s, 1);
     for (size_t i = 0; i < staggered->scenario->linkage.body_count; i++) {
         stride->middle[i] = world_snapshot(world, i);
     }
@@ -247,7 +227,7 @@ static bool advance(Staggered *staggered, Stride *stride, Err *err)
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
                              err);
     }
-    place_driven(staggered, middle_s, end_s);
+    world_place_driven(world, middle_s, end_s, 1);
     const bool is_quick = staggered->scenario->ode.solver == ODE_QUICK;
     if (!world_step(world, step_s, is_quick, err) || !world_check(world, err)) {
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,

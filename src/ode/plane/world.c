@@ -16,6 +16,7 @@
 #include "model/joint_rows.h"
 #include "model/scenario.h"
 #include "ode/engine.h"
+#include "ode/stepping.h"
 #include "world/pressing_row.h"
 
 #include <assert.h>
@@ -824,6 +825,17 @@ void world_place(World *world, size_t body, const Motion *motion)
     dBodySetQuaternion(id, turn);
     dBodySetLinearVel(id, motion->velocity.x, motion->velocity.y, 0.0);
     dBodySetAngularVel(id, 0.0, 0.0, motion->omega);
+}
+
+void world_place_driven(World *world, double placed_s, double speed_s, long direction)
+{
+    for (size_t i = 0; i < linkage_drive_count(world->linkage); i++) {
+        Motion motion = stepping_driven(world->linkage, i, placed_s);
+        const Motion moving = stepping_driven(world->linkage, i, speed_s);
+        motion.velocity = vec2_scale((double)direction, moving.velocity);
+        motion.omega = (double)direction * moving.omega;
+        world_place(world, (size_t)linkage_drive_body(world->linkage, i), &motion);
+    }
 }
 
 Snapshot world_snapshot(const World *world, size_t body)

@@ -124,6 +124,10 @@ void world_joint_forces(const World *world, JointState *joints);
 // Puts one body where a motion says, with its velocity.
 void world_place(World *world, size_t body, const Motion *motion);
 
+// Puts the driven bodies to a time with their speeds at another, of steps forwards (1) or backwards
+// (-1) in time.
+void world_place_driven(World *world, double placed_s, double speed_s, long direction);
+
 // The state of one body as the engine holds it.
 Snapshot world_snapshot(const World *world, size_t body);
 
