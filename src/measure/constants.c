@@ -80,6 +80,7 @@ static double square_of_log(double value, double asked)
 typedef struct Patience {
     size_t step_most;   // of one impact; 0 for a prediction that is shown, which is never given up
     double misfit_most; // of a setting that is of any use
+    int first_phase;    // looked at first: the one that ruled out the setting before
 } Patience;
 
 // Of the terms of the misfit one of a phase's three is the penetration's: the depth, m, at which
@@ -89,53 +90,87 @@ static double worst_depth(const MapImpact *asked, double misfit_most)
     return asked->penetration_max * exp(misfit_most * sqrt(3.0 * MAP_IMPACT_PHASES));
 }
 
-// Makes the row and predicts it.
-static ConstantsSetting constants_predict(const MappingContact *contact, double step_s, OdeMap map,
-                                          double stiffness, double damping,
-                                          const Patience *patience)
+// What one phase adds to the sum of the squares of a setting's misfit, over MAP_IMPACT_PHASES.
+static double phase_misfit(const MapImpact *phase, const MapImpact *asked)
+{
+    const double off =
+        (phase->restitution - asked->restitution) / fmax(asked->restitution, MAPPING_VALID_SHARE);
+    return (off * off + square_of_log(phase->force_max, asked->force_max) +
+            square_of_log(phase->penetration_max, asked->penetration_max)) /
+           3.0;
+}
+
+static bool phase_meets_restitution(const MapImpact *phase, const MapImpact *asked)
+{
+    const double off =
+        (phase->restitution - asked->restitution) / fmax(asked->restitution, MAPPING_VALID_SHARE);
+    return phase->is_ended && phase->fallbacks == 0 && fabs(off) <= MAPPING_VALID_SHARE;
+}
+
+// Predicts a setting with a row, phase by phase. A search ends with the phase that rules the
+// setting out, and begins with it the next time: settings beside each other fail in the same phase.
+static void predict_phases(const MappingContact *contact, const MapImpactCase *impact,
+                           Patience *patience, ConstantsSetting *setting)
 {
     const MapImpact *asked = &contact->asked;
+    const bool is_search = patience->step_most > 0;
+    const double sum_most =
+        patience->misfit_most * patience->misfit_most * MAP_IMPACT_PHASES * SUM_ROUNDING;
+    MapImpact phases[MAP_IMPACT_PHASES];
+    double sum = 0.0;
+    bool is_ruled_out = false;
+    int seen = 0;
+    setting->is_restitution_met = true;
+    while (seen < MAP_IMPACT_PHASES && !is_ruled_out) {
+        const int number = (patience->first_phase + seen++) % MAP_IMPACT_PHASES;
+        const MapImpact *phase = &phases[number];
+        phases[number] = map_impact(impact, map_impact_phase(number));
+        sum += phase_misfit(phase, asked);
+        setting->is_restitution_met =
+            setting->is_restitution_met && phase_meets_restitution(phase, asked);
+        is_ruled_out =
+            !phase->is_ended || (is_search && (!setting->is_restitution_met || sum > sum_most));
+        patience->first_phase = is_search && is_ruled_out ? number : patience->first_phase;
+    }
+    setting->misfit = INFINITY;
+    if (is_search && is_ruled_out) {
+        return;
+    }
+    // in the order of the phases, so that no bit of it depends on which came first
+    sum = 0.0;
+    for (int i = 0; i < seen; i++) {
+        impact_add_phase(&setting->predicted, i, &phases[i]);
+        sum += phase_misfit(&phases[i], asked);
+    }
+    setting->misfit = is_ruled_out ? INFINITY : sqrt(sum / MAP_IMPACT_PHASES);
+}
+
+// Makes the row and predicts it.
+static ConstantsSetting constants_predict(const MappingContact *contact, double step_s, OdeMap map,
+                                          double stiffness, double damping, Patience *patience)
+{
     ConstantsSetting setting = {.map = map, .stiffness = stiffness, .damping = damping};
     const MapContact at = {
         .stiffness = stiffness,
         .damping = damping,
         .step = step_s,
         .mass = contact->impact.mass,
-        .depth = asked->penetration_max,
+        .depth = contact->asked.penetration_max,
     };
     setting.row = map_get(map)->convert(&at);
     MapImpactCase impact = impact_of(contact, step_s, &setting);
-    const bool is_search = patience->step_most > 0;
-    impact.step_most = patience->step_most;
-    impact.end = is_search ? worst_depth(asked, patience->misfit_most) : 0.0;
-    const double sum_most =
-        patience->misfit_most * patience->misfit_most * MAP_IMPACT_PHASES * SUM_ROUNDING;
-    const double restitution_unit = fmax(asked->restitution, MAPPING_VALID_SHARE);
-    setting.is_restitution_met = true;
-    setting.misfit = 0.0;
-    for (int i = 0; i < MAP_IMPACT_PHASES; i++) {
-        const MapImpact phase = map_impact(&impact, map_impact_phase(i));
-        impact_add_phase(&setting.predicted, i, &phase);
-        const double off = (phase.restitution - asked->restitution) / restitution_unit;
-        setting.is_restitution_met = setting.is_restitution_met && phase.is_ended &&
-                                     phase.fallbacks == 0 && fabs(off) <= MAPPING_VALID_SHARE;
-        setting.misfit += (off * off + square_of_log(phase.force_max, asked->force_max) +
-                           square_of_log(phase.penetration_max, asked->penetration_max)) /
-                          3.0;
-        if (!phase.is_ended ||
-            (is_search && (!setting.is_restitution_met || setting.misfit > sum_most))) {
-            setting.misfit = INFINITY;
-            break; // neither would the others do
-        }
+    if (patience->step_most > 0) {
+        impact.step_most = patience->step_most;
+        impact.end = worst_depth(&contact->asked, patience->misfit_most);
     }
-    setting.misfit = sqrt(setting.misfit / MAP_IMPACT_PHASES);
+    predict_phases(contact, &impact, patience, &setting);
     return setting;
 }
 
 ConstantsSetting constants_setting(const MappingContact *contact, double step_s, OdeMap map,
                                    double stiffness, double damping)
 {
-    const Patience endless = {.misfit_most = INFINITY};
+    Patience endless = {.misfit_most = INFINITY};
     ConstantsSetting setting =
         constants_predict(contact, step_s, map, stiffness, damping, &endless);
     setting.verdict = verdict_judge(contact, map, step_s, &setting.predicted);
@@ -154,7 +189,7 @@ typedef struct Search {
     const MappingContact *contact;
     OdeMap map;
     double step_s;
-    size_t step_most;
+    Patience patience;
 } Search;
 
 typedef struct Point {
@@ -164,13 +199,13 @@ typedef struct Point {
 } Point;
 
 // A setting whose misfit is larger than is of any use is given up.
-static Point constants_look(const Search *search, double log_stiffness, double log_damping,
+static Point constants_look(Search *search, double log_stiffness, double log_damping,
                             double misfit_most)
 {
-    const Patience patience = {search->step_most, misfit_most};
+    search->patience.misfit_most = misfit_most;
     return (Point){log_stiffness, log_damping,
                    constants_predict(search->contact, search->step_s, search->map,
-                                     exp(log_stiffness), exp(log_damping), &patience)};
+                                     exp(log_stiffness), exp(log_damping), &search->patience)};
 }
 
 // Keeps a point among the best, the best first.
@@ -205,7 +240,7 @@ static bool is_local_best(const Point *grid, int number)
 }
 
 // Looks at finer and finer grids about a point and moves to the best.
-static void look_closer(const Search *search, double across_k, double across_c, Point *point)
+static void look_closer(Search *search, double across_k, double across_c, Point *point)
 {
     double share = 2.0; // of the first grid's distances
     for (int round = 0; round < CLOSER_ROUNDS && share > CLOSEST; round++) {
@@ -229,7 +264,7 @@ static void look_closer(const Search *search, double across_k, double across_c, 
 
 // Springs from the law's own, or the stiffest that a step sees, to those of a contact of very many
 // steps; dampers from next to none to those that let nothing back.
-static void find_constants(const Search *search, double *stiffness, double *damping)
+static void find_constants(Search *search, double *stiffness, double *damping)
 {
     const MappingContact *contact = search->contact;
     const double mass = contact->impact.mass;
@@ -322,11 +357,12 @@ ImpactDelivered constants_deliver(const MappingContact *contact, double step_s, 
 
 static ConstantsSetting search_setting(const MappingContact *contact, double step_s, OdeMap map)
 {
-    const Search search = {
+    Search search = {
         .contact = contact,
         .map = map,
         .step_s = step_s,
-        .step_most = (size_t)(LONGEST_SHARE * contact->asked.duration / step_s + LONGEST_STEPS),
+        .patience.step_most =
+            (size_t)(LONGEST_SHARE * contact->asked.duration / step_s + LONGEST_STEPS),
     };
     double stiffness;
     double damping;
@@ -335,18 +371,17 @@ static ConstantsSetting search_setting(const MappingContact *contact, double ste
 }
 
 // With many steps in a contact the corrected map's constants are good at any step, and the
-// textbook's, which adds a damper h k, takes that off.
+// textbook's, which adds a damper h k, takes that off. Those of the corrected map at that many
+// steps are given where the step is a finer one.
 static ConstantsSetting constants_find_setting(const MappingContact *contact, double step_s,
-                                               OdeMap map)
+                                               OdeMap map, const ConstantsSetting *fine)
 {
-    const double searched_s = contact->asked.duration / STEPS_ENOUGH;
-    if (step_s >= searched_s) {
+    if (fine == NULL) {
         return search_setting(contact, step_s, map);
     }
-    const ConstantsSetting fine = search_setting(contact, searched_s, ODE_MAP_CORRECTED);
-    const double added = map == ODE_MAP_TEXTBOOK ? step_s * fine.stiffness : 0.0;
-    return fine.damping > added
-               ? constants_setting(contact, step_s, map, fine.stiffness, fine.damping - added)
+    const double added = map == ODE_MAP_TEXTBOOK ? step_s * fine->stiffness : 0.0;
+    return fine->damping > added
+               ? constants_setting(contact, step_s, map, fine->stiffness, fine->damping - added)
                : search_setting(contact, step_s, map);
 }
 
@@ -359,9 +394,15 @@ void constants_find(const MappingContact *contact, double step_s, Constants *hel
         .play = 2.0 * (joint->limits.kind != LIMIT_NONE ? coordinate_play(joint)
                                                         : linkage_radial_clearance(joint)),
     };
+    const double searched_s = contact->asked.duration / STEPS_ENOUGH;
+    ConstantsSetting fine;
+    if (step_s < searched_s) {
+        fine = search_setting(contact, searched_s, ODE_MAP_CORRECTED);
+    }
     for (int i = 0; i < CONSTANTS_MAP_COUNT; i++) {
         ConstantsSetting *setting = &held->settings[i];
-        *setting = constants_find_setting(contact, step_s, CONSTANTS_MAPS[i]);
+        *setting = constants_find_setting(contact, step_s, CONSTANTS_MAPS[i],
+                                          step_s < searched_s ? &fine : NULL);
         setting->delivered = deliver(contact, step_s, setting);
     }
 }
