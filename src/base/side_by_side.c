@@ -131,3 +131,55 @@ void side_by_side_run(size_t count, size_t threads, SideBySidePiece piece, void 
     };
     side_by_side_tasks(&tasks, threads);
 }
+
+// Several lists as one: the number of a piece is that in its list, times the number of lists, and
+// the list's.
+typedef struct Lists {
+    const SideBySideTasks *lists;
+    size_t count;
+} Lists;
+
+static SideBySideNext next_of_lists(size_t *index, void *context)
+{
+    const Lists *all = context;
+    SideBySideNext next = SIDE_BY_SIDE_NONE;
+    for (size_t i = 0; i < all->count && next != SIDE_BY_SIDE_PIECE; i++) {
+        const SideBySideNext of = all->lists[i].next(index, all->lists[i].context);
+        if (of == SIDE_BY_SIDE_PIECE) {
+            *index = *index * all->count + i;
+        }
+        next = of == SIDE_BY_SIDE_NONE ? next : of;
+    }
+    return next;
+}
+
+static void do_one_of_lists(size_t index, bool is_callers, void *context)
+{
+    const Lists *all = context;
+    const SideBySideTasks *list = &all->lists[index % all->count];
+    list->work(index / all->count, is_callers, list->context);
+}
+
+static void end_one_of_lists(size_t index, void *context)
+{
+    const Lists *all = context;
+    const SideBySideTasks *list = &all->lists[index % all->count];
+    if (list->end != NULL) {
+        list->end(index / all->count, list->context);
+    }
+}
+
+void side_by_side_lists(const SideBySideTasks *lists, size_t count, size_t threads)
+{
+    Lists all = {lists, count};
+    SideBySideTasks tasks = {
+        .next = next_of_lists,
+        .work = do_one_of_lists,
+        .end = end_one_of_lists,
+        .context = &all,
+    };
+    for (size_t i = 0; i < count; i++) {
+        tasks.most += lists[i].most;
+    }
+    side_by_side_tasks(&tasks, threads);
+}

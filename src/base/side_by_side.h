@@ -33,3 +33,6 @@ typedef struct SideBySideTasks {
 
 // Does pieces until there are none, by at most so many threads, as above.
 void side_by_side_tasks(const SideBySideTasks *tasks, size_t threads);
+
+// Does the pieces of several such lists, those of the earlier ones first, likewise.
+void side_by_side_lists(const SideBySideTasks *lists, size_t count, size_t threads);

@@ -18,6 +18,7 @@ typedef struct Revolution {
     double *force_max; // N, by joint, of those with play; owned
     size_t *impacts;   // by joint: contacts begun; owned
     double *section;   // velocities at its end, SETTLE_RATES of each body; owned
+    bool is_loose;     // it was turned at a looser tolerance than that of the result
 } Revolution;
 
 typedef struct Settling {
@@ -31,8 +32,12 @@ typedef struct Settling {
     size_t period;  // revolutions after which it repeats; 0: it has not yet
     double change;  // 1: over the last period, of sections and largest forces
     double left;    // 1: what is estimated to be still to come of it
-    void (*turned)(void *context); // called after each revolution; NULL: nobody wants to know
-    void *context;
+    // That another start has come to and that repeats: once it has come to the same its period is
+    // found. NULL: none is known.
+    const struct Settling *known;
+    bool is_quick; // its first revolutions are not shown, and as loose as its motion allows
+    struct TurnWatch *watch; // told of each revolution; NULL: nobody wants to know
+    bool is_callers;         // it is turned in the thread of who asked for it
 } Settling;
 
 // Prepares a scenario whose drive has a period; it starts as the scenario does.
@@ -57,12 +62,18 @@ void settle_scenario(Scenario *scenario, RunWatch watch);
 // of this one; it is then settled as above.
 bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch);
 
-// Finds how the largest forces of a settled scenario move when its damping is halved and doubled.
+// What lies beside the settled motion of a scenario: nothing of one that has none.
+
+// Finds how the largest forces move when its damping is halved and doubled, to the four digits that
+// are shown of them. A motion that does not repeat within 32 revolutions has the median of half of
+// them.
 void settle_damping(Scenario *scenario, RunWatch watch);
 
-// Finds by what factor a small change of the state grows in a revolution of the settled motion of a
-// scenario. Nothing of one that has none.
+// Finds by what factor a small change of the state grows in a revolution.
 void settle_growth(Scenario *scenario, RunWatch watch);
+
+// Finds both at the same time, with the same numbers.
+void settle_beside(Scenario *scenario, RunWatch watch);
 
 // Goes on until the motion repeats to within a tolerance, relative, until what it does in a
 // revolution no longer drifts though nothing repeats, or so many revolutions are over. Fails with

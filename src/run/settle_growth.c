@@ -8,14 +8,10 @@
 // |x_k|; the growth a revolution is |z|^(1/p) of the larger root of z^2 = a z + b. Where the motion
 // does not repeat, or too few differences can be told, the growth is that of |x| alone: its mean
 // over the revolutions.
-#include "run/settle.h"
-
-#include "base/clock.h"
-#include "base/side_by_side.h"
 #include "base/zeroed.h"
+#include "run/settle_parts.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 
 enum {
@@ -41,14 +37,11 @@ static const double START_SHARE = 10.0;
 // 1: the squared sine of the angle between x_k and x_(k+p), below which there is one mode alone
 static const double ONE_MODE = 1e-4;
 
-typedef struct BesideWatch BesideWatch;
-
 // The settled motion, and those beside it.
 typedef struct Beside {
     Settling settling;
     bool is_made; // whether there is such a start
     bool is_run;  // whether it came through all its revolutions
-    BesideWatch *watch;
 } Beside;
 
 static double difference_at(const Beside *starts, size_t start, size_t number, size_t rate)
@@ -199,65 +192,119 @@ static SettledGrowth find_growth(const Beside *starts, size_t period, double siz
     return mean_growth(starts, size);
 }
 
-// How far all of them have come.
-struct BesideWatch {
-    RunWatch watch;
-    double started_s;     // by the clock
-    atomic_size_t turned; // revolutions of all
-    size_t each;          // of each
+// The runs, revolution by revolution, all of them at the same time.
+
+struct BesideRuns {
+    Beside starts[1 + GROWTH_STARTS];
+    size_t period;
+    double size;
+    size_t most;   // revolutions of each
+    size_t turned; // that all have had
+    size_t begun;  // starts, of the next
+    size_t going;  // that are being turned
+    bool is_over;  // there will be no further one
 };
 
-static void growth_run(size_t index, bool is_callers, void *context)
+BesideRuns *beside_runs_begin(const Scenario *scenario, TurnWatch *watch)
 {
-    Beside *beside = (Beside *)context + index;
-    BesideWatch *watch = beside->watch;
-    Err err = {ERR_NONE, ""};
-    beside->is_run = beside->is_made;
-    while (beside->is_run && beside->settling.count < watch->each) {
-        beside->is_run = settling_turn(&beside->settling, &err);
-        atomic_fetch_add(&watch->turned, 1);
-        // only the caller's thread may show anything
-        if (is_callers && watch->watch.progress != NULL) {
-            const double most = (double)((1 + GROWTH_STARTS) * watch->each);
-            watch->watch.progress((double)atomic_load(&watch->turned) / most,
-                                  clock_now_s() - watch->started_s, watch->watch.context);
-        }
+    if (scenario->settled.motion_count == 0) {
+        return NULL;
     }
+    BesideRuns *runs = zeroed(1, sizeof *runs);
+    const size_t period = scenario->settled.motions[0].period;
+    const size_t more = period > 1 && period <= GROWTH_PERIOD_MOST ? 2 * (period - 1) : 0;
+    runs->period = period;
+    runs->size = period > 0 ? GROWTH_REPEATING : GROWTH_RANDOM;
+    runs->most = GROWTH_MOST + more;
+    for (size_t i = 0; i <= GROWTH_STARTS; i++) {
+        Beside *beside = &runs->starts[i];
+        beside->settling = settling_start(scenario);
+        beside->settling.watch = watch;
+        beside->is_made =
+            i == 0 || settle_change_start(&beside->settling.scenario, runs->size, (unsigned)i);
+        beside->is_run = beside->is_made;
+    }
+    watch->most += (1 + GROWTH_STARTS) * runs->most;
+    return runs;
 }
 
-static void growth_start(const Scenario *scenario, size_t number, double size, Beside *beside)
+// Whether nothing more can be told of a start that has turned: over a whole period it was nearer to
+// the settled motion than differences can be told, or, where that does not repeat, farther than
+// they are in proportion.
+static bool is_over(const BesideRuns *runs, size_t start)
 {
-    beside->settling = settling_start(scenario);
-    beside->is_made = true;
-    if (number > 0 && !settle_change_start(&beside->settling.scenario, size, (unsigned)number)) {
-        settling_finish(&beside->settling);
-        beside->is_made = false;
+    const size_t count = runs->starts[start].settling.count;
+    const size_t period = runs->period > 0 ? runs->period : 1;
+    bool is_over = count >= period;
+    for (size_t k = 1; is_over && k <= period; k++) {
+        const double apart = sections_apart(runs->starts, start, count - k);
+        is_over = runs->period > 0 ? apart < GROWTH_LEAST : apart > GROWTH_LARGEST;
     }
+    return is_over;
 }
 
-void settle_growth(Scenario *scenario, RunWatch watch)
+static bool are_over(const BesideRuns *runs)
+{
+    bool are_over = runs->turned == runs->most || !runs->starts[0].is_run;
+    bool are_beside = false;
+    for (size_t i = 1; !are_over && i <= GROWTH_STARTS; i++) {
+        are_beside = are_beside || (runs->starts[i].is_run && !is_over(runs, i));
+    }
+    return are_over || !are_beside;
+}
+
+static SideBySideNext beside_runs_next(size_t *index, void *context)
+{
+    BesideRuns *runs = context;
+    if (runs->begun > GROWTH_STARTS && runs->going > 0) {
+        return SIDE_BY_SIDE_LATER;
+    }
+    if (runs->begun > GROWTH_STARTS && !runs->is_over) {
+        runs->turned++;
+        runs->is_over = are_over(runs);
+        runs->begun = 0;
+    }
+    if (runs->is_over) {
+        return SIDE_BY_SIDE_NONE;
+    }
+    *index = runs->begun++;
+    runs->going++;
+    return SIDE_BY_SIDE_PIECE;
+}
+
+static void beside_runs_work(size_t index, bool is_callers, void *context)
+{
+    Beside *beside = &((BesideRuns *)context)->starts[index];
+    Err unused = {ERR_NONE, ""};
+    beside->settling.is_callers = is_callers;
+    beside->is_run = beside->is_run && settling_turn(&beside->settling, &unused);
+}
+
+static void beside_runs_ended(size_t index, void *context)
+{
+    (void)index;
+    ((BesideRuns *)context)->going--;
+}
+
+SideBySideTasks beside_runs_tasks(BesideRuns *runs)
+{
+    return (SideBySideTasks){
+        .most = 1 + GROWTH_STARTS,
+        .next = beside_runs_next,
+        .work = beside_runs_work,
+        .end = beside_runs_ended,
+        .context = runs,
+    };
+}
+
+void beside_runs_end(BesideRuns *runs, Scenario *scenario)
 {
     SettledStart *settled = &scenario->settled;
-    if (settled->motion_count == 0) {
-        return;
-    }
-    const size_t period = settled->motions[0].period;
-    const double size = period > 0 ? GROWTH_REPEATING : GROWTH_RANDOM;
-    const size_t more = period > 1 && period <= GROWTH_PERIOD_MOST ? 2 * (period - 1) : 0;
-    BesideWatch all = {.watch = watch, .started_s = clock_now_s(), .each = GROWTH_MOST + more};
-    Beside *starts = zeroed(1 + GROWTH_STARTS, sizeof *starts);
-    for (size_t i = 0; i <= GROWTH_STARTS; i++) {
-        growth_start(scenario, i, size, &starts[i]);
-        starts[i].watch = &all;
-    }
-    side_by_side_run(1 + GROWTH_STARTS, side_by_side_processors(), growth_run, starts);
     settled->has_growth = true;
-    settled->growth =
-        starts[0].is_run ? find_growth(starts, period, size) : (SettledGrowth){.factor = NAN};
+    settled->growth = runs->starts[0].is_run ? find_growth(runs->starts, runs->period, runs->size)
+                                             : (SettledGrowth){.factor = NAN};
     for (size_t i = 0; i <= GROWTH_STARTS; i++) {
-        if (starts[i].is_made) {
-            settling_finish(&starts[i].settling);
-        }
+        settling_finish(&runs->starts[i].settling);
     }
-    free(starts);
+    free(runs);
 }

@@ -15,6 +15,17 @@ static const char *turn_word(const Scenario *scenario)
     return drive_is_steady(&scenario->linkage.driver) ? "revolution" : "period";
 }
 
+// Around the force of a motion that does not repeat.
+static const char *some_word(const SettledMotion *motion)
+{
+    return motion->period == 0 ? "some " : "";
+}
+
+static const char *median_word(const SettledMotion *motion)
+{
+    return motion->period == 0 ? " in the median" : "";
+}
+
 static void append_joint(const Scenario *scenario, size_t number, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
@@ -31,9 +42,12 @@ static void append_joint(const Scenario *scenario, size_t number, Text *text)
     }
     text_append(text, "\n");
     if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
-        text_append(
-            text, "                with half the damping %.4g %s, with twice as much %.4g\n",
-            settled->halved.joints[number].force, unit, settled->doubled.joints[number].force);
+        const SettledMotion *half = &settled->halved;
+        const SettledMotion *twice = &settled->doubled;
+        text_append(text, "                with half the damping %s%.4g %s%s, ", some_word(half),
+                    half->joints[number].force, unit, median_word(half));
+        text_append(text, "with twice as much %s%.4g%s\n", some_word(twice),
+                    twice->joints[number].force, median_word(twice));
     }
     text_append(text, "                from the assumed start %.5g %s, not counted\n",
                 settled->first[number], unit);
@@ -198,9 +212,9 @@ static void append_motion(const Scenario *scenario, Text *text)
 static void append_damped(const Scenario *scenario, size_t number, const SettledMotion *motion,
                           Text *text)
 {
-    text_append(text, "%s", motion->period == 0 ? "some " : "");
+    text_append(text, "%s", some_word(motion));
     append_force(scenario, number, motion->joints[number].force, text);
-    text_append(text, "%s", motion->period == 0 ? " in the median" : "");
+    text_append(text, "%s", median_word(motion));
 }
 
 // What the case as it is written says of its first revolution, and other damping of the settled

@@ -147,8 +147,7 @@ void case_run_execute(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
     settle_scenario(&run->scenario, progress_watch(progress, SETTLING));
-    settle_damping(&run->scenario, progress_watch(progress, SETTLING));
-    settle_growth(&run->scenario, progress_watch(progress, SETTLING));
+    settle_beside(&run->scenario, progress_watch(progress, SETTLING));
     run->report = (RunReport){
         .scenario = &run->scenario,
         .run_count = options->backend_count,
