@@ -4,34 +4,6 @@
 #include "base/side_by_side.h"
 #include "run/settle.h"
 
-#include <stdatomic.h>
-
-// 1: sections and forces of one motion, from two starts, differ by less: a peak's five digits
-extern const double SETTLE_SAME_MOTION;
-
-// How far all revolutions of a search have come, by several threads.
-typedef struct TurnWatch {
-    RunWatch watch;
-    double started_s;     // by the clock
-    atomic_size_t turned; // revolutions so far
-    size_t most;          // that there may be
-} TurnWatch;
-
-TurnWatch turn_watch_begin(RunWatch watch);
-
-// One more; the listener is told in the caller's thread alone.
-void turn_watch_count(TurnWatch *watch, bool is_callers);
-
-// The number of the last revolutions that count: of a motion that does not repeat the later half.
-size_t settling_counted(const Settling *settling);
-
-// The largest forces of a joint in them, N; returns how many.
-size_t settling_forces(const Settling *settling, size_t joint, double *forces);
-
-// How far the last so many revolutions of two are apart, relative, from whichever of the second's
-// they are nearest; the second has as many.
-double settling_apart(const Settling *a, const Settling *b, size_t period);
-
 // What one has come to, as a motion of one start.
 SettledMotion settling_motion(const Settling *settling);
 

@@ -126,6 +126,31 @@ static void what_needs_others_waits_for_them(void **state)
     }
 }
 
+// Two such chains are done as each by itself, and their pieces at the same time.
+static void lists_do_not_wait_for_each_other(void **state)
+{
+    (void)state;
+    for (size_t threads = 1; threads <= 4; threads++) {
+        Stages stages[2] = {{.begun = 0}, {.begun = 0}};
+        SideBySideTasks lists[2];
+        for (int i = 0; i < 2; i++) {
+            lists[i] = (SideBySideTasks){
+                .most = WIDTH,
+                .next = next_of_stages,
+                .work = do_one_of_stages,
+                .end = end_one_of_stages,
+                .context = &stages[i],
+            };
+        }
+        side_by_side_lists(lists, 2, threads);
+        for (int i = 0; i < 2; i++) {
+            assert_int_equal(stages[i].ended, STAGES * WIDTH);
+            assert_false(atomic_load(&stages[i].is_mixed));
+        }
+    }
+    side_by_side_lists(NULL, 0, 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -133,6 +158,7 @@ int main(void)
         cmocka_unit_test(pieces_are_done_at_the_same_time),
         cmocka_unit_test(no_piece_is_no_work),
         cmocka_unit_test(what_needs_others_waits_for_them),
+        cmocka_unit_test(lists_do_not_wait_for_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

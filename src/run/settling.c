@@ -12,12 +12,10 @@
 //
 // A start that is not the first may turn at a tolerance of the reference that follows how near its
 // motion is to repeating, or to that of the first.
-#include "run/settle.h"
+#include "run/settling.h"
 
-#include "base/clock.h"
 #include "base/memory.h"
 #include "base/zeroed.h"
-#include "run/settle_parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -53,21 +51,6 @@ static const double NEAR_SHARE = 1e-5;
 
 // Of a rank test: in standard deviations, what one in a hundred samples exceeds by chance.
 static const double DRIFT_LEAST = 2.6;
-
-TurnWatch turn_watch_begin(RunWatch watch)
-{
-    return (TurnWatch){.watch = watch, .started_s = clock_now_s()};
-}
-
-void turn_watch_count(TurnWatch *watch, bool is_callers)
-{
-    const size_t turned = atomic_fetch_add(&watch->turned, 1) + 1;
-    // only the caller's thread may show anything
-    if (is_callers && watch->watch.progress != NULL) {
-        watch->watch.progress((double)turned / (double)watch->most,
-                              clock_now_s() - watch->started_s, watch->watch.context);
-    }
-}
 
 Settling settling_start(const Scenario *scenario)
 {
