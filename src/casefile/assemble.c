@@ -23,7 +23,7 @@ static void note_given(const Entries *entries, size_t number, Joint *joint)
     for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
         const SchemaRow *row = &SCHEMA_ROWS[i];
         if (row->flag > 0) {
-            *(bool *)((char *)joint + row->flag) = entries_find(entries, row->path, number) != NULL;
+            *(bool *)((char *)joint + row->flag) = entries_at(entries, row, number) != NULL;
         }
     }
 }
@@ -178,7 +178,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         const SchemaRow *row = &SCHEMA_ROWS[i];
         const size_t members = entries_family_size(entries, row);
         for (size_t index = 0; index < members; index++) {
-            const Entry *entry = entries_find(entries, row->path, index);
+            const Entry *entry = entries_at(entries, row, index);
             if (entry != NULL && !store_value(entries, entry, scenario, err)) {
                 return false;
             }

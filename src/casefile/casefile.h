@@ -22,6 +22,17 @@ bool casefile_load_text(const char *name, const char *text, size_t size,
                         const char *const *overrides, size_t override_count, Scenario *scenario,
                         Err *err);
 
+// A case that is read once for many scenarios, whose overrides differ in nothing but their values.
+typedef struct CasefileRepeat CasefileRepeat;
+
+// The text must outlive it. Reads nothing yet. Closing accepts NULL.
+CasefileRepeat *casefile_repeat_open(const char *name, const char *text, size_t size);
+void casefile_repeat_close(CasefileRepeat *repeat);
+
+// The scenario of the case with these overrides, or the error, that casefile_load_text would give.
+bool casefile_repeat(CasefileRepeat *repeat, const char *const *overrides, size_t override_count,
+                     Scenario *scenario, Err *err);
+
 // What a case file that casefile_load refuses expects: whether it says `refused with` of all its
 // runs, which holds for the file itself, and its title, empty where it has none. Settings of the
 // command line are left aside.

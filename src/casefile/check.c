@@ -83,7 +83,6 @@ static bool check_members(const Entries *entries, const JointKind *kinds, Err *e
         for (size_t index = 0; index < members; index++) {
             // most keys that are required are given
             if (entries_at(entries, row, index) == NULL && is_wanted(entries, kinds, row, index) &&
-                entries_find(entries, row->path, index) == NULL &&
                 !entries_have_rival(entries, row, index)) {
                 return refuse_missing(entries, row, index, err);
             }

@@ -31,24 +31,9 @@ size_t entries_family_size(const Entries *entries, const SchemaRow *row)
     return row->family == SCHEMA_SINGLE ? 1 : entries->names[row->family].count;
 }
 
-// The entry of a path of so many bytes.
-static const Entry *find_entry(const Entries *entries, const char *path, size_t length,
-                               size_t index)
-{
-    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-        // few rows have an entry: to ask for it costs less than to compare the paths
-        const char *own = SCHEMA_ROWS[i].path;
-        const Entry *entry = entries_at(entries, &SCHEMA_ROWS[i], index);
-        if (entry != NULL && strncmp(own, path, length) == 0 && own[length] == '\0') {
-            return entry;
-        }
-    }
-    return NULL;
-}
-
 const Entry *entries_find(const Entries *entries, const char *path, size_t index)
 {
-    return find_entry(entries, path, strlen(path), index);
+    return entries_find_part(entries, path, strlen(path), index);
 }
 
 bool entries_have_rival(const Entries *entries, const SchemaRow *row, size_t index)
@@ -67,7 +52,7 @@ const Entry *entries_blame(const Entries *entries, const char *paths, size_t ind
     const Entry *blamed = NULL;
     for (const char *path = paths; *path != '\0'; path += strspn(path, " ")) {
         const size_t length = strcspn(path, " ");
-        const Entry *entry = find_entry(entries, path, length, index);
+        const Entry *entry = entries_find_part(entries, path, length, index);
         const bool is_new = entry != NULL && entry->source->is_override;
         if (entry != NULL && (blamed == NULL || (is_new && !blamed->source->is_override))) {
             blamed = entry;

@@ -43,6 +43,7 @@ typedef struct Entries {
     size_t room;
     Entry *entries;    // owned, as the next two
     EntrySlots *slots; // by row of the schema; NULL while there is no entry
+    Lookup rows;       // with an entry, now or once, by path
     size_t group_count;
     size_t group_room;
     EntryGroup *groups;
@@ -55,6 +56,10 @@ void entries_finish(Entries *entries);
 
 // The entry of a row and member, or NULL where the key was not given.
 const Entry *entries_at(const Entries *entries, const SchemaRow *row, size_t index);
+
+// The entry of a row's path (with `*`), of so many bytes, or NULL where the key was not given.
+const Entry *entries_find_part(const Entries *entries, const char *path, size_t length,
+                               size_t index);
 
 // Puts an entry in the place of that of the same row and member, or behind the others.
 void entries_put(Entries *entries, const Entry *entry);

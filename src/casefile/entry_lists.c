@@ -29,6 +29,9 @@ static void note_slot(Entries *entries, size_t slot)
     }
     const Entry *entry = &entries->entries[slot];
     EntrySlots *slots = &entries->slots[row_number(entry->row)];
+    if (slots->room == 0) {
+        lookup_add(&entries->rows, lookup_hash(entry->row->path), row_number(entry->row));
+    }
     slots->slots = room_grow(slots->slots, &slots->room, entry->index + 1, sizeof *slots->slots);
     slots->slots[entry->index] = slot + 1;
 }
@@ -52,6 +55,28 @@ void entries_take_away(Entries *entries, size_t slot)
         note_slot(entries, i - 1);
     }
     entries->count--;
+}
+
+// A path of so many bytes, which another may follow.
+typedef struct SoughtPath {
+    const char *path;
+    size_t length;
+} SoughtPath;
+
+static bool is_row(size_t number, const void *of)
+{
+    const SoughtPath *sought = of;
+    const char *own = SCHEMA_ROWS[number].path;
+    return strncmp(own, sought->path, sought->length) == 0 && own[sought->length] == '\0';
+}
+
+const Entry *entries_find_part(const Entries *entries, const char *path, size_t length,
+                               size_t index)
+{
+    const SoughtPath sought = {path, length};
+    const int row =
+        lookup_find(&entries->rows, hash_bytes(HASH_START, path, length), is_row, &sought);
+    return row == LOOKUP_NONE ? NULL : entries_at(entries, &SCHEMA_ROWS[row], index);
 }
 
 // What is looked for among groups or names.
@@ -126,6 +151,7 @@ Entries entries_copy(const Entries *entries)
         names->numbers = lookup_copy(&names->numbers);
     }
     copy.slots = NULL;
+    copy.rows = (Lookup){.count = 0};
     for (size_t i = 0; i < copy.count; i++) {
         note_slot(&copy, i);
     }
@@ -145,5 +171,6 @@ void entries_finish(Entries *entries)
     free(entries->entries);
     free(entries->groups);
     lookup_finish(&entries->group_numbers);
+    lookup_finish(&entries->rows);
     *entries = (Entries){.count = 0};
 }

@@ -29,14 +29,28 @@ static Choice scheme_choose(const char *const *words, bool matters, int as_it_is
     return matters ? (Choice){0, word_count(words) - 1} : (Choice){as_it_is, as_it_is};
 }
 
-// The exact collider goes without saying.
+// The exact collider goes without saying. A study lists the schemes of every run: to print each
+// name would take longer than a short run's steps.
 static void name_scheme(Scheme *scheme, bool has_map)
 {
     const bool has_collider = scheme->collider != ODE_COLLIDER_PIN_HOLE;
-    snprintf(scheme->name, sizeof scheme->name, "%s/%s%s%s%s%s",
-             OPTIONS_ODE_SOLVERS[scheme->solver], OPTIONS_ODE_STEPPINGS[scheme->stepping],
-             has_map ? "/" : "", has_map ? OPTIONS_ODE_MAPS[scheme->map] : "",
-             has_collider ? "/" : "", has_collider ? OPTIONS_ODE_COLLIDERS[scheme->collider] : "");
+    const char *const parts[] = {
+        OPTIONS_ODE_SOLVERS[scheme->solver],
+        "/",
+        OPTIONS_ODE_STEPPINGS[scheme->stepping],
+        has_map ? "/" : "",
+        has_map ? OPTIONS_ODE_MAPS[scheme->map] : "",
+        has_collider ? "/" : "",
+        has_collider ? OPTIONS_ODE_COLLIDERS[scheme->collider] : "",
+    };
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        const size_t size = strlen(parts[i]);
+        assert(length + size < sizeof scheme->name);
+        memcpy(scheme->name + length, parts[i], size);
+        length += size;
+    }
+    scheme->name[length] = '\0';
 }
 
 // Whether two choices go together in a scenario.

@@ -353,16 +353,12 @@ static void keep_sentence(const Err *own, Err *err)
 bool design_scenario(const Spec *spec, const Cell *values, Scenario *scenario, BackendKind *backend,
                      Err *err)
 {
-    // the name of the case without its folder: rows are the same wherever a study is run from
-    const char *slash = strrchr(spec->case_path, '/');
-    const char *name = slash != NULL ? slash + 1 : spec->case_path;
     Overrides overrides;
     overrides_make(spec, values, &overrides);
     Err own = {0};
     Scenario built = {.point_count = 0};
     BackendKind chosen = BACKEND_ODE;
-    bool is_good = casefile_load_text(name, spec->case_text, spec->case_size, overrides.all,
-                                      overrides.count, &built, &own);
+    bool is_good = casefile_repeat(spec->repeat, overrides.all, overrides.count, &built, &own);
     for (size_t i = 0; is_good && i < spec->variable_count; i++) {
         if (strcmp(spec->variables[i].key, SPEC_SCHEME_KEY) == 0) {
             is_good = design_apply_scheme(values[i].word, &built, &chosen, &own);

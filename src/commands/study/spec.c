@@ -372,6 +372,10 @@ bool spec_read_case(Reading *reading, const Node *node)
         return spec_read_refuse(reading, node, ALLOWED, "%.*s", (int)strcspn(own.text, "\n"),
                                 own.text);
     }
+    // the name of the case without its folder: rows are the same wherever a study is run from
+    const char *folder_end = strrchr(spec->case_path, '/');
+    spec->repeat = casefile_repeat_open(folder_end != NULL ? folder_end + 1 : spec->case_path,
+                                        spec->case_text, spec->case_size);
     reading->probe = probe_open(spec->case_path, spec->case_text, spec->case_size, reading->err);
     return reading->probe != NULL;
 }
@@ -552,6 +556,7 @@ void spec_finish(Spec *spec)
     free(spec->path);
     free(spec->case_path);
     free(spec->case_text);
+    casefile_repeat_close(spec->repeat);
     scenario_destroy(spec->base);
     for (size_t i = 0; i < spec->set_count; i++) {
         free(spec->set[i]);

@@ -64,6 +64,7 @@ typedef struct Spec {
     char *case_path; // owned: relative to the working folder, or absolute
     char *case_text; // owned: its text when the study was read
     size_t case_size;
+    CasefileRepeat *repeat; // owned: it as runs have it, under its name without the folder
     size_t set_count;
     char *set[SPEC_SETTING_MAX]; // owned: KEY=VALUE for every run
     Scenario *base;              // owned: the case with what is set, and with play in the joints
