@@ -7,7 +7,7 @@ static const double SINGULAR = 1e-14; // a hundred roundings below the largest e
 
 static void swap_rows(double *a, size_t columns, size_t first, size_t second)
 {
-    for (size_t j = 0; j < columns; j++) {
+    for (size_t j = 0; j < columns && first != second; j++) {
         const double kept = a[first * columns + j];
         a[first * columns + j] = a[second * columns + j];
         a[second * columns + j] = kept;
@@ -26,7 +26,10 @@ static double largest_of_column(size_t n, const double *a, size_t column)
     return largest;
 }
 
-bool dense_solve(size_t n, double *a, double *b)
+// Makes A triangular, with the factors of its rows in the places of the zeros, and does to b, where
+// it is not NULL, what is done to the rows. Row k is exchanged with row pivots[k], where that is
+// not NULL.
+static bool eliminate(size_t n, double *a, size_t *pivots, double *b)
 {
     for (size_t k = 0; k < n; k++) {
         // the largest entry left in the column becomes the pivot
@@ -40,19 +43,33 @@ bool dense_solve(size_t n, double *a, double *b)
             return false;
         }
         swap_rows(a, n, k, pivot);
-        swap_rows(b, 1, k, pivot);
+        if (pivots != NULL) {
+            pivots[k] = pivot;
+        }
+        if (b != NULL) {
+            swap_rows(b, 1, k, pivot);
+        }
         for (size_t i = k + 1; i < n; i++) {
             // bodies that have nothing to do with one another leave zeros
             if (a[i * n + k] == 0.0) {
                 continue;
             }
             const double factor = a[i * n + k] / a[k * n + k];
-            for (size_t j = k; j < n; j++) {
+            a[i * n + k] = factor;
+            for (size_t j = k + 1; j < n; j++) {
                 a[i * n + j] -= factor * a[k * n + j];
             }
-            b[i] -= factor * b[k];
+            if (b != NULL) {
+                b[i] -= factor * b[k];
+            }
         }
     }
+    return true;
+}
+
+// Overwrites b by the solution of the triangle.
+static void solve_triangle(size_t n, const double *a, double *b)
+{
     for (size_t k = n; k-- > 0;) {
         double left = b[k];
         for (size_t j = k + 1; j < n; j++) {
@@ -62,7 +79,35 @@ bool dense_solve(size_t n, double *a, double *b)
         }
         b[k] = left / a[k * n + k];
     }
-    return true;
+}
+
+bool dense_solve(size_t n, double *a, double *b)
+{
+    const bool is_regular = eliminate(n, a, NULL, b);
+    if (is_regular) {
+        solve_triangle(n, a, b);
+    }
+    return is_regular;
+}
+
+bool dense_split(size_t n, double *a, size_t *pivots)
+{
+    return eliminate(n, a, pivots, NULL);
+}
+
+void dense_solve_split(size_t n, const double *split, const size_t *pivots, double *b)
+{
+    for (size_t k = 0; k < n; k++) {
+        swap_rows(b, 1, k, pivots[k]);
+    }
+    for (size_t k = 0; k < n; k++) {
+        for (size_t i = k + 1; i < n; i++) {
+            if (split[i * n + k] != 0.0) {
+                b[i] -= split[i * n + k] * b[k];
+            }
+        }
+    }
+    solve_triangle(n, split, b);
 }
 
 bool dense_factor(size_t n, double *a, size_t *pivots)

@@ -9,11 +9,16 @@
 // from its column: the matrix is then singular to working precision, and b is not to be used.
 bool dense_solve(size_t n, double *a, double *b);
 
+// The same to the last bit in two parts, for several right-hand sides of one A: row k of it is
+// exchanged with row pivots[k].
+bool dense_split(size_t n, double *a, size_t *pivots);
+void dense_solve_split(size_t n, const double *split, const size_t *pivots, double *b);
+
 // The number of independent rows of A (rows by columns, overwritten): elimination with complete
 // pivoting, a pivot counting when it is above tolerance times the first.
 size_t dense_rank(size_t rows, size_t columns, double *a, double tolerance);
 
-// The same in two parts, for many right-hand sides: factors A in place by row pivoting, row k
+// For many right-hand sides, most of them short: factors A in place by row pivoting, row k
 // exchanged with row pivots[k]; false where a column has no pivot that is not zero.
 bool dense_factor(size_t n, double *a, size_t *pivots);
 // Overwrites b by x.

@@ -26,9 +26,27 @@ static const double CLOSED = 1e-13;
 // pivots of a linkage that moves freely are above 1e-3 of the largest; below this it is stuck
 static const double LOOP_INDEPENDENT = 1e-9;
 
+// Finds cosine and sine of the angle of each body, once for all its anchors.
+static void find_turns(const Linkage *linkage, const Motion *motions, Vec2 *turns)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        turns[i] = (Vec2){cos(motions[i].angle), sin(motions[i].angle)};
+    }
+}
+
+// An arm of a body in the world, as vec2_rotate has it; turns that are NULL are not known.
+static Vec2 turn_arm(const Motion *motions, const Vec2 *turns, int body, Vec2 arm)
+{
+    if (turns == NULL) {
+        return vec2_rotate(motions[body].angle, arm);
+    }
+    const Vec2 by = turns[body];
+    return (Vec2){by.x * arm.x - by.y * arm.y, by.y * arm.x + by.x * arm.y};
+}
+
 // The rows of a pivot, two from the first: x and y of its second anchor against its first.
-static void add_pivot(const Linkage *linkage, const Motion *motions, size_t joint, double *first,
-                      size_t columns)
+static void add_pivot(const Linkage *linkage, const Motion *motions, const Vec2 *turns,
+                      size_t joint, double *first, size_t columns)
 {
     for (int side = 0; side < 2; side++) {
         const JointEnd end = linkage_end(&linkage->joints[joint], side);
@@ -36,7 +54,7 @@ static void add_pivot(const Linkage *linkage, const Motion *motions, size_t join
             continue;
         }
         const double sign = side == 0 ? -1.0 : 1.0;
-        const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
+        const Vec2 arm = turn_arm(motions, turns, end.body, end.anchor);
         double *x_row = first + 3 * end.body;
         double *y_row = x_row + columns;
         x_row[0] = sign;
@@ -65,8 +83,8 @@ static void add_joint(const Linkage *linkage, const Motion *motions, size_t join
     }
 }
 
-void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
-                         bool with_driver, Jacobian *jacobian)
+static void find_jacobian(const Linkage *linkage, const Motion *motions, const Vec2 *turns,
+                          const bool *include, bool with_driver, Jacobian *jacobian)
 {
     jacobian->rows = 0;
     jacobian->columns = 3 * linkage->body_count;
@@ -81,7 +99,7 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
         if (joint_rows_is_angle(kind, 1)) {
             add_joint(linkage, motions, i, first, jacobian->columns);
         } else {
-            add_pivot(linkage, motions, i, first, jacobian->columns);
+            add_pivot(linkage, motions, turns, i, first, jacobian->columns);
         }
         jacobian->rows += 2;
     }
@@ -90,6 +108,12 @@ void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bo
         jacobian->entries[jacobian->rows * jacobian->columns + column] = 1.0;
         jacobian->rows++;
     }
+}
+
+void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
+                         bool with_driver, Jacobian *jacobian)
+{
+    find_jacobian(linkage, motions, NULL, include, with_driver, jacobian);
 }
 
 void kinematics_move(const Linkage *linkage, const double *change, Motion *motions)
@@ -128,6 +152,22 @@ size_t kinematics_rank(const Linkage *linkage, const Motion *motions, const bool
     const size_t rank = joint_system_rank(&system);
     joint_system_finish(&system);
     return rank;
+}
+
+// The opening of a pivot, as linkage_joint_gap has it.
+static Vec2 pivot_opening(const Linkage *linkage, const Motion *motions, const Vec2 *turns,
+                          size_t joint)
+{
+    Vec2 opening = {0.0, 0.0};
+    for (int side = 1; side >= 0; side--) {
+        const JointEnd end = linkage_end(&linkage->joints[joint], side);
+        const Vec2 at = end.body == LINKAGE_GROUND
+                            ? end.anchor
+                            : vec2_add(motions[end.body].position,
+                                       turn_arm(motions, turns, end.body, end.anchor));
+        opening = vec2_add(opening, vec2_scale(side == 1 ? 1.0 : -1.0, at));
+    }
+    return opening;
 }
 
 Vec2 kinematics_opening(const Linkage *linkage, const Motion *motions, int joint)
@@ -171,16 +211,80 @@ static bool solve_large(const Linkage *linkage, const Motion *motions, double *r
     return is_determined;
 }
 
-// Solves J u = right hand side for every joint and the driver; u has three entries a body.
-static bool solve_rows(const Linkage *linkage, const Motion *motions, double *right)
+// Of each iteration and of what follows: the rows of one state of the bodies.
+typedef struct Solving {
+    const Linkage *linkage;
+    Motion *motions;
+    double *right;
+    Vec2 *turns;
+    void *memory;      // of the three above, of a large mechanism; owned, NULL of a small one
+    Jacobian jacobian; // of a small mechanism, as all below
+    size_t pivots[KINEMATICS_COLUMN_MAX];
+    double small_right[KINEMATICS_ROW_MAX];
+    Vec2 small_turns[KINEMATICS_BODY_MAX];
+    Motion small_motions[KINEMATICS_BODY_MAX];
+} Solving;
+
+// Begins where the bodies are; for solving_finish. It stays where it is.
+static void solving_start(Solving *solving, const Linkage *linkage, const Motion *motions)
 {
+    const size_t bodies = linkage->body_count;
+    const size_t rows = joint_rows_total(linkage) + linkage_drive_count(linkage);
+    solving->linkage = linkage;
+    solving->right = solving->small_right;
+    solving->turns = solving->small_turns;
+    solving->motions = solving->small_motions;
+    solving->memory = NULL;
     if (!kinematics_is_small(linkage)) {
-        return solve_large(linkage, motions, right);
+        solving->memory =
+            zeroed(1, bodies * (sizeof(Motion) + sizeof(Vec2)) + rows * sizeof *solving->right);
+        solving->motions = solving->memory;
+        solving->turns = (Vec2 *)(solving->motions + bodies);
+        solving->right = (double *)(solving->turns + bodies);
     }
-    Jacobian jacobian;
-    kinematics_jacobian(linkage, motions, NULL, true, &jacobian);
-    return jacobian.rows == jacobian.columns &&
-           dense_solve(jacobian.columns, jacobian.entries, right);
+    memcpy(solving->motions, motions, bodies * sizeof *motions);
+}
+
+static void solving_finish(Solving *solving)
+{
+    free(solving->memory);
+}
+
+// Solves J u = right hand side for every joint and the driver; u has three entries a body.
+static bool solve_rows(Solving *solving)
+{
+    const Linkage *linkage = solving->linkage;
+    if (!kinematics_is_small(linkage)) {
+        return solve_large(linkage, solving->motions, solving->right);
+    }
+    Jacobian *jacobian = &solving->jacobian;
+    find_jacobian(linkage, solving->motions, solving->turns, NULL, true, jacobian);
+    return jacobian->rows == jacobian->columns &&
+           dense_solve(jacobian->columns, jacobian->entries, solving->right);
+}
+
+// The same where more than one right hand side follows for one place of the bodies. Of a large
+// mechanism each is solved by itself, and nothing is found out here.
+static bool split_rows(Solving *solving)
+{
+    const Linkage *linkage = solving->linkage;
+    if (!kinematics_is_small(linkage)) {
+        return true;
+    }
+    Jacobian *jacobian = &solving->jacobian;
+    find_jacobian(linkage, solving->motions, solving->turns, NULL, true, jacobian);
+    return jacobian->rows == jacobian->columns &&
+           dense_split(jacobian->columns, jacobian->entries, solving->pivots);
+}
+
+static bool solve_split(Solving *solving)
+{
+    if (!kinematics_is_small(solving->linkage)) {
+        return solve_large(solving->linkage, solving->motions, solving->right);
+    }
+    dense_solve_split(solving->jacobian.columns, solving->jacobian.entries, solving->pivots,
+                      solving->right);
+    return true;
 }
 
 // The largest distance of an anchor from its body's centre, or from the world's origin, m.
@@ -193,86 +297,100 @@ static double linkage_size(const Linkage *linkage)
     return size;
 }
 
-// Room for what the rows of the joints and the drive say, and for what the bodies do.
-static double *create_rows(const Linkage *linkage)
+// Writes what the joints lack to be closed; returns the largest, m.
+static double find_residual(Solving *solving)
 {
-    return zeroed(joint_rows_total(linkage) + linkage_drive_count(linkage), sizeof(double));
+    const Linkage *linkage = solving->linkage;
+    double *row = solving->right;
+    double largest = 0.0;
+    find_turns(linkage, solving->motions, solving->turns);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const JointKind kind = linkage->joints[i].kind;
+        if (joint_rows_count(kind) == 0) {
+            continue;
+        }
+        const Vec2 opening = joint_rows_is_angle(kind, 1)
+                                 ? kinematics_opening(linkage, solving->motions, (int)i)
+                                 : pivot_opening(linkage, solving->motions, solving->turns, i);
+        largest = fmax(largest, joint_rows_size(linkage, (int)i, opening));
+        *row++ = -opening.x;
+        *row++ = -opening.y;
+    }
+    return largest;
 }
 
-static bool newton(const Linkage *linkage, const DriveState *drives, double *residual,
-                   Motion *motions)
+static bool newton(Solving *solving, const DriveState *drives)
 {
+    const Linkage *linkage = solving->linkage;
     const size_t drive_count = linkage_drive_count(linkage);
     const double size = linkage_size(linkage);
+    double *rows = solving->right + joint_rows_total(linkage); // of the drives
     for (int iteration = 0; iteration < ITERATION_MAX; iteration++) {
-        double *row = residual;
-        for (size_t i = 0; i < linkage->joint_count; i++) {
-            if (joint_rows_count(linkage->joints[i].kind) > 0) {
-                const Vec2 opening = kinematics_opening(linkage, motions, (int)i);
-                *row++ = -opening.x;
-                *row++ = -opening.y;
-            }
-        }
+        const double opening = find_residual(solving);
         double turn = 0.0; // the largest that a drive misses
         for (size_t i = 0; i < drive_count; i++) {
-            row[i] = drives[i].angle - motions[linkage_drive_body(linkage, i)].angle;
-            turn = fmax(turn, fabs(row[i]));
+            rows[i] = drives[i].angle - solving->motions[linkage_drive_body(linkage, i)].angle;
+            turn = fmax(turn, fabs(rows[i]));
         }
-        if (turn <= CLOSED && kinematics_closure_error(linkage, motions) <= CLOSED * size) {
+        if (turn <= CLOSED && opening <= CLOSED * size) {
             return true;
         }
-        if (!solve_rows(linkage, motions, residual)) {
+        if (!solve_rows(solving)) {
             return false;
         }
-        kinematics_move(linkage, residual, motions);
+        kinematics_move(linkage, solving->right, solving->motions);
     }
     return false;
 }
 
-static bool solve_velocities(const Linkage *linkage, const DriveState *drives, Motion *motions)
+static bool solve_velocities(Solving *solving, const DriveState *drives)
 {
-    double *rates = create_rows(linkage);
+    const Linkage *linkage = solving->linkage;
+    const size_t total = joint_rows_total(linkage);
+    double *rates = solving->right;
+    memset(rates, 0, total * sizeof *rates);
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
-        rates[joint_rows_total(linkage) + i] = drives[i].omega;
+        rates[total + i] = drives[i].omega;
     }
-    const bool is_solved = solve_rows(linkage, motions, rates);
+    const bool is_solved = solve_split(solving);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
-        motions[i].velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
-        motions[i].omega = rates[3 * i + 2];
+        Motion *motion = &solving->motions[i];
+        motion->velocity = (Vec2){rates[3 * i], rates[3 * i + 1]};
+        motion->omega = rates[3 * i + 2];
     }
-    free(rates);
     return is_solved;
 }
 
-static Vec2 centripetal(const Motion *motions, int body, Vec2 local)
+static Vec2 centripetal(const Solving *solving, int body, Vec2 local)
 {
     if (body == LINKAGE_GROUND) {
         return (Vec2){0.0, 0.0};
     }
-    const double omega = motions[body].omega;
-    return vec2_scale(omega * omega, vec2_rotate(motions[body].angle, local));
+    const double omega = solving->motions[body].omega;
+    return vec2_scale(omega * omega, turn_arm(solving->motions, solving->turns, body, local));
 }
 
 // What the accelerations of a joint's bodies have to make up for.
-static Vec2 joint_gamma(const Linkage *linkage, const Motion *motions, int number)
+static Vec2 joint_gamma(const Solving *solving, int number)
 {
-    const Joint *joint = &linkage->joints[number];
+    const Joint *joint = &solving->linkage->joints[number];
     if (joint_rows_is_angle(joint->kind, 1)) {
         JointRows rows;
-        joint_rows_find(linkage, motions, number, &rows);
+        joint_rows_find(solving->linkage, solving->motions, number, &rows);
         return (Vec2){-rows.bias[0], -rows.bias[1]};
     }
-    return vec2_sub(centripetal(motions, joint->body_b, joint->anchor_b),
-                    centripetal(motions, joint->body_a, joint->anchor_a));
+    return vec2_sub(centripetal(solving, joint->body_b, joint->anchor_b),
+                    centripetal(solving, joint->body_a, joint->anchor_a));
 }
 
-static bool solve_accelerations(const Linkage *linkage, const DriveState *drives, Motion *motions)
+static bool solve_accelerations(Solving *solving, const DriveState *drives)
 {
-    double *rates = create_rows(linkage);
+    const Linkage *linkage = solving->linkage;
+    double *rates = solving->right;
     double *row = rates;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (joint_rows_count(linkage->joints[i].kind) > 0) {
-            const Vec2 gamma = joint_gamma(linkage, motions, (int)i);
+            const Vec2 gamma = joint_gamma(solving, (int)i);
             *row++ = gamma.x;
             *row++ = gamma.y;
         }
@@ -280,30 +398,29 @@ static bool solve_accelerations(const Linkage *linkage, const DriveState *drives
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
         *row++ = drives[i].alpha;
     }
-    const bool is_solved = solve_rows(linkage, motions, rates);
+    const bool is_solved = solve_split(solving);
     for (size_t i = 0; is_solved && i < linkage->body_count; i++) {
-        motions[i].acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
-        motions[i].alpha = rates[3 * i + 2];
+        Motion *motion = &solving->motions[i];
+        motion->acceleration = (Vec2){rates[3 * i], rates[3 * i + 1]};
+        motion->alpha = rates[3 * i + 2];
     }
-    free(rates);
     return is_solved;
 }
 
-static bool solve_all(const Linkage *linkage, const DriveState *drives, Motion *motions, Err *err)
+// The angle is that of the first drive.
+static bool solve_all(Solving *solving, const DriveState *drives, bool is_motion, Err *err)
 {
-    double *residual = create_rows(linkage);
-    const bool is_closed = newton(linkage, drives, residual, motions);
-    free(residual);
-    if (!is_closed) {
+    const double degrees = drives[0].angle * 180.0 / M_PI;
+    if (!newton(solving, drives)) {
         return err_set(err, ERR_SOLVER, "the linkage does not close at a crank angle of %.6g deg",
-                       drives[0].angle * 180.0 / M_PI);
+                       degrees);
     }
-    return (solve_velocities(linkage, drives, motions) &&
-            solve_accelerations(linkage, drives, motions)) ||
+    return (split_rows(solving) && (!is_motion || (solve_velocities(solving, drives) &&
+                                                   solve_accelerations(solving, drives)))) ||
            err_set(err, ERR_SOLVER,
                    "the linkage is at a dead centre at a crank angle of %.6g deg: its "
                    "velocities are not determined",
-                   drives[0].angle * 180.0 / M_PI);
+                   degrees);
 }
 
 bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motions, Err *err)
@@ -321,8 +438,9 @@ bool kinematics_is_determined(const Linkage *linkage)
            joint_rows_total(linkage) + linkage_drive_count(linkage) == 3 * linkage->body_count;
 }
 
-bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drives, Motion *motions,
-                             Err *err)
+// Without a motion asked for, positions alone change.
+static bool solve_driven(const Linkage *linkage, const DriveState *drives, bool is_motion,
+                         Motion *motions, Err *err)
 {
     if (!kinematics_is_determined(linkage)) {
         return err_set(err, ERR_SOLVER,
@@ -330,12 +448,24 @@ bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drives, M
                        "bodies, %zu joints, %zu drives",
                        linkage->body_count, linkage->joint_count, linkage_drive_count(linkage));
     }
-    Motion *solved = zeroed(linkage->body_count, sizeof *solved);
-    memcpy(solved, motions, linkage->body_count * sizeof *motions);
-    const bool is_solved = solve_all(linkage, drives, solved, err);
+    Solving solving;
+    solving_start(&solving, linkage, motions);
+    const bool is_solved = solve_all(&solving, drives, is_motion, err);
     if (is_solved) {
-        memcpy(motions, solved, linkage->body_count * sizeof *motions);
+        memcpy(motions, solving.motions, linkage->body_count * sizeof *motions);
     }
-    free(solved);
+    solving_finish(&solving);
     return is_solved;
+}
+
+bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drives, Motion *motions,
+                             Err *err)
+{
+    return solve_driven(linkage, drives, true, motions, err);
+}
+
+bool kinematics_place_driven(const Linkage *linkage, const DriveState *drives, Motion *motions,
+                             Err *err)
+{
+    return solve_driven(linkage, drives, false, motions, err);
 }

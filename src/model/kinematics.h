@@ -58,6 +58,11 @@ bool kinematics_solve(const Linkage *linkage, double crank_angle, Motion *motion
 bool kinematics_solve_driven(const Linkage *linkage, const DriveState *drives, Motion *motions,
                              Err *err);
 
+// The same for the bodies' positions alone; the rest of the motions stays as it is. It fails where
+// the other does, but for a large mechanism at a dead centre.
+bool kinematics_place_driven(const Linkage *linkage, const DriveState *drives, Motion *motions,
+                             Err *err);
+
 // What a joint misses of being closed, in its rows: x and y of the second anchor against the first,
 // m; of a prismatic joint or a guide the distance from its line, m, and its tilt, rad; 0 of a stop.
 Vec2 kinematics_opening(const Linkage *linkage, const Motion *motions, int joint);

@@ -75,13 +75,21 @@ long stepping_start(const Scenario *scenario, double step_s, long steps_back, Mo
     if (!linkage->driver.is_present || scenario_has_clearance(scenario)) {
         return 0;
     }
-    // step by step backwards, so that the loop stays closed the same way round
+    // step by step backwards, so that the loop stays closed the same way round; on the way there a
+    // small mechanism is but placed
+    const bool is_small = kinematics_is_small(linkage);
+    DriveState drives[2][LINKAGE_DRIVE_MAX]; // of the steps back that are odd, or even
+    Err unused = {ERR_NONE, ""};
     for (long back = 1; back <= steps_back; back++) {
-        Err unused = {ERR_NONE, ""};
         const double time_s = -(double)back * step_s;
-        DriveState drives[LINKAGE_DRIVE_MAX];
-        linkage_drives_since(linkage, time_s, time_s, drives);
-        if (!kinematics_solve_driven(linkage, drives, motions, &unused)) {
+        linkage_drives_since(linkage, time_s, time_s, drives[back % 2]);
+        const bool is_last = back == steps_back || !is_small;
+        if (!(is_last ? kinematics_solve_driven
+                      : kinematics_place_driven)(linkage, drives[back % 2], motions, &unused)) {
+            // it stays where it was closed last, with the speeds that it has there
+            if (back > 1) {
+                kinematics_solve_driven(linkage, drives[(back - 1) % 2], motions, &unused);
+            }
             return back - 1;
         }
     }

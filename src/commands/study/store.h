@@ -99,6 +99,9 @@ typedef struct StoreSpread {
 
 bool store_spread(Store *store, size_t column, StoreSpread *spread, Err *err);
 
+// The same of so many columns in a row, in fewer passes through the store.
+bool store_spreads(Store *store, size_t column, size_t count, StoreSpread *spreads, Err *err);
+
 // Deletes the rows of failed runs and damaged rows, so that the runs are made again, and in a study
 // with a truth those of runs without one. `forgotten` is their number.
 bool store_forget_failed(Store *store, uint64_t *forgotten, Err *err);

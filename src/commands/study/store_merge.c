@@ -6,6 +6,8 @@
 //
 // A merge is one transaction, so that one that is interrupted leaves nothing behind. A target that
 // it created is deleted again.
+#include "base/sorted.h"
+#include "base/zeroed.h"
 #include "commands/study/store_inside.h"
 
 #include <assert.h>
@@ -114,18 +116,21 @@ bool store_values(Store *store, size_t column, size_t most, Cell *values, size_t
     return is_read;
 }
 
-// The statement that counts the values, or that brings them in ascending order.
-static bool prepare_values(Store *store, const Column *column, bool is_count,
-                           sqlite3_stmt **statement, Err *err)
+// Numbers that are held at a time: 32 MB. Of one column all are, 8 bytes a run.
+enum { HELD_MAX = 1 << 22 };
+
+// The statement that brings the values of so many columns, of the runs that are complete.
+static bool prepare_values(Store *store, size_t column, size_t count, sqlite3_stmt **statement,
+                           Err *err)
 {
     Text sql;
     text_init(&sql);
-    text_append(&sql, is_count ? "SELECT count(*) FROM run WHERE outcome = 0 AND "
-                               : "SELECT * FROM (SELECT ");
-    store_shape_quote(&sql, column->name);
-    text_append(&sql, is_count ? " IS NOT NULL"
-                               : " AS value FROM run WHERE outcome = 0) WHERE value IS NOT NULL "
-                                 "ORDER BY value");
+    text_append(&sql, "SELECT ");
+    for (size_t i = 0; i < count; i++) {
+        text_append(&sql, i > 0 ? ", " : "");
+        store_shape_quote(&sql, store_column_at(store->layout, column + i)->name);
+    }
+    text_append(&sql, " FROM run WHERE outcome = 0");
     const bool is_ready = store_prepare(store, sql.data, statement, err);
     text_finish(&sql);
     return is_ready;
@@ -138,28 +143,66 @@ static uint64_t store_merge_rank_of(double share, uint64_t count)
     return rank < 1.0 ? 1 : (uint64_t)rank;
 }
 
-bool store_spread(Store *store, size_t column, StoreSpread *spread, Err *err)
+static StoreSpread spread_of(double *values, uint64_t count)
 {
-    static const double SHARES[] = {0.0, 0.05, 0.5, 0.95, 1.0};
-    double *const targets[] = {&spread->least, &spread->low, &spread->median, &spread->high,
-                               &spread->most};
-    enum { SHARE_COUNT = sizeof SHARES / sizeof *SHARES };
-    *spread = (StoreSpread){0, NAN, NAN, NAN, NAN, NAN};
-    const Column *wanted = store_column_at(store->layout, column);
-    sqlite3_stmt *row = NULL;
-    bool is_read = verify(store, err) && prepare_values(store, wanted, true, &row, err);
-    while (store_step(store, &row, &is_read, err)) {
-        spread->count = (uint64_t)sqlite3_column_int64(row, 0);
+    StoreSpread spread = {count, NAN, NAN, NAN, NAN, NAN};
+    if (count > 0) {
+        sorted_make(values, count);
+        spread.least = values[0];
+        spread.low = values[store_merge_rank_of(0.05, count) - 1];
+        spread.median = values[store_merge_rank_of(0.5, count) - 1];
+        spread.high = values[store_merge_rank_of(0.95, count) - 1];
+        spread.most = values[count - 1];
     }
-    is_read = is_read && prepare_values(store, wanted, false, &row, err);
-    size_t next = 0;
-    for (uint64_t rank = 1; store_step(store, &row, &is_read, err); rank++) {
-        for (; next < SHARE_COUNT && store_merge_rank_of(SHARES[next], spread->count) == rank;
-             next++) {
-            *targets[next] = sqlite3_column_double(row, 0);
+    return spread;
+}
+
+// Goes through the rows once for as many columns as can be held, which have room for all rows.
+static bool find_spreads(Store *store, size_t column, size_t count, size_t room, double *values,
+                         StoreSpread *spreads, Err *err)
+{
+    sqlite3_stmt *row = NULL;
+    bool is_read = prepare_values(store, column, count, &row, err);
+    for (size_t i = 0; i < count; i++) {
+        spreads[i].count = 0;
+    }
+    for (uint64_t rows = 0; rows < room && store_step(store, &row, &is_read, err); rows++) {
+        for (size_t i = 0; i < count; i++) {
+            if (sqlite3_column_type(row, (int)i) != SQLITE_NULL) {
+                values[i * room + spreads[i].count++] = sqlite3_column_double(row, (int)i);
+            }
         }
     }
+    sqlite3_finalize(row);
+    for (size_t i = 0; i < count; i++) {
+        spreads[i] = spread_of(values + i * room, spreads[i].count);
+    }
     return is_read;
+}
+
+bool store_spreads(Store *store, size_t column, size_t count, StoreSpread *spreads, Err *err)
+{
+    StoreCount known;
+    if (!store_count(store, &known, err)) {
+        return false;
+    }
+    const size_t room = (size_t)known.rows + 1;
+    const size_t most = room < HELD_MAX ? HELD_MAX / room : 1;
+    const size_t width = count < most ? count : most;
+    double *values = zeroed(width * room, sizeof *values);
+    bool is_read = true;
+    for (size_t i = 0; i < count && is_read; i += width) {
+        const size_t left = count - i;
+        is_read = find_spreads(store, column + i, left < width ? left : width, room, values,
+                               &spreads[i], err);
+    }
+    free(values);
+    return is_read;
+}
+
+bool store_spread(Store *store, size_t column, StoreSpread *spread, Err *err)
+{
+    return store_spreads(store, column, 1, spread, err);
 }
 
 enum { SPARE_FILES = 64 }; // beside one a source

@@ -264,20 +264,15 @@ bool study_text_status(const StudyPart *parts, size_t part_count, const Style *s
     return is_read;
 }
 
-static bool study_report_spread_row(Store *store, Table *table, size_t result, Err *err)
+static void study_report_spread_row(Table *table, const char *name, const StoreSpread *spread)
 {
-    const Layout *layout = store_layout(store);
-    StoreSpread spread;
-    if (!store_spread(store, layout->setting_count + result, &spread, err)) {
-        return false;
-    }
-    table_cell(table, "%s", layout->results[result].name);
-    table_cell(table, "%" PRIu64, spread.count);
-    const double values[] = {spread.least, spread.low, spread.median, spread.high, spread.most};
+    table_cell(table, "%s", name);
+    table_cell(table, "%" PRIu64, spread->count);
+    const double values[] = {spread->least, spread->low, spread->median, spread->high,
+                             spread->most};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-        section_number_or_dash(table, spread.count > 0, values[i]);
+        section_number_or_dash(table, spread->count > 0, values[i]);
     }
-    return true;
 }
 
 bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
@@ -290,9 +285,12 @@ bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
     text_init(&section);
     Table *table = section_begin("Results of the complete runs", sizeof HEADS / sizeof *HEADS,
                                  HEADS, style, &section);
-    bool is_read = true;
-    for (size_t i = 0; i < store_layout(store)->result_count && is_read; i++) {
-        is_read = study_report_spread_row(store, table, i, err);
+    const Layout *layout = store_layout(store);
+    StoreSpread spreads[RECORD_RESULT_MAX];
+    const bool is_read =
+        store_spreads(store, layout->setting_count, layout->result_count, spreads, err);
+    for (size_t i = 0; i < layout->result_count && is_read; i++) {
+        study_report_spread_row(table, layout->results[i].name, &spreads[i]);
     }
     section_end(table, &section);
     text_append(text, "%s", is_read ? section.data : "");
