@@ -15,15 +15,31 @@ static void swap_rows(double *a, size_t columns, size_t first, size_t second)
 }
 
 // Cancellation in a column leaves a large entry in the rows above, for no factor exceeds 1: what is
-// left is judged by its own column, so that the units of the unknowns may differ.
-static double largest_of_column(size_t n, const double *a, size_t column)
+// left is judged by its own column, so that the units of the unknowns may differ. Returns whether
+// enough is left in the column for a pivot, its largest entry.
+static bool find_pivot(size_t n, const double *a, size_t column, size_t *pivot)
 {
     double largest = 0.0;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < column; i++) {
         const double size = fabs(a[i * n + column]);
         largest = size > largest ? size : largest;
     }
-    return largest;
+    double left = fabs(a[column * n + column]);
+    *pivot = column;
+    for (size_t i = column + 1; i < n; i++) {
+        const double size = fabs(a[i * n + column]);
+        *pivot = size > left ? i : *pivot;
+        left = size > left ? size : left;
+    }
+    return left > SINGULAR * (left > largest ? left : largest);
+}
+
+static inline void subtract_row(size_t count, double factor, const double *restrict from,
+                                double *restrict row)
+{
+    for (size_t j = 0; j < count; j++) {
+        row[j] -= factor * from[j];
+    }
 }
 
 // Makes A triangular, with the factors of its rows in the places of the zeros, and does to b, where
@@ -32,14 +48,8 @@ static double largest_of_column(size_t n, const double *a, size_t column)
 static bool eliminate(size_t n, double *a, size_t *pivots, double *b)
 {
     for (size_t k = 0; k < n; k++) {
-        // the largest entry left in the column becomes the pivot
-        size_t pivot = k;
-        for (size_t i = k + 1; i < n; i++) {
-            if (fabs(a[i * n + k]) > fabs(a[pivot * n + k])) {
-                pivot = i;
-            }
-        }
-        if (!(fabs(a[pivot * n + k]) > SINGULAR * largest_of_column(n, a, k))) {
+        size_t pivot;
+        if (!find_pivot(n, a, k, &pivot)) {
             return false;
         }
         swap_rows(a, n, k, pivot);
@@ -56,9 +66,7 @@ static bool eliminate(size_t n, double *a, size_t *pivots, double *b)
             }
             const double factor = a[i * n + k] / a[k * n + k];
             a[i * n + k] = factor;
-            for (size_t j = k + 1; j < n; j++) {
-                a[i * n + j] -= factor * a[k * n + j];
-            }
+            subtract_row(n - k - 1, factor, &a[k * n + k + 1], &a[i * n + k + 1]);
             if (b != NULL) {
                 b[i] -= factor * b[k];
             }

@@ -34,12 +34,9 @@ static void find_turns(const Linkage *linkage, const Motion *motions, Vec2 *turn
     }
 }
 
-// An arm of a body in the world, as vec2_rotate has it; turns that are NULL are not known.
-static Vec2 turn_arm(const Motion *motions, const Vec2 *turns, int body, Vec2 arm)
+// An arm of a body in the world, as vec2_rotate has it.
+static Vec2 turn_arm(const Vec2 *turns, int body, Vec2 arm)
 {
-    if (turns == NULL) {
-        return vec2_rotate(motions[body].angle, arm);
-    }
     const Vec2 by = turns[body];
     return (Vec2){by.x * arm.x - by.y * arm.y, by.y * arm.x + by.x * arm.y};
 }
@@ -54,7 +51,7 @@ static void add_pivot(const Linkage *linkage, const Motion *motions, const Vec2 
             continue;
         }
         const double sign = side == 0 ? -1.0 : 1.0;
-        const Vec2 arm = turn_arm(motions, turns, end.body, end.anchor);
+        const Vec2 arm = turn_arm(turns, end.body, end.anchor);
         double *x_row = first + 3 * end.body;
         double *y_row = x_row + columns;
         x_row[0] = sign;
@@ -113,7 +110,10 @@ static void find_jacobian(const Linkage *linkage, const Motion *motions, const V
 void kinematics_jacobian(const Linkage *linkage, const Motion *motions, const bool *include,
                          bool with_driver, Jacobian *jacobian)
 {
-    find_jacobian(linkage, motions, NULL, include, with_driver, jacobian);
+    Vec2 turns[KINEMATICS_BODY_MAX];
+    assert(kinematics_is_small(linkage));
+    find_turns(linkage, motions, turns);
+    find_jacobian(linkage, motions, turns, include, with_driver, jacobian);
 }
 
 void kinematics_move(const Linkage *linkage, const double *change, Motion *motions)
@@ -161,10 +161,10 @@ static Vec2 pivot_opening(const Linkage *linkage, const Motion *motions, const V
     Vec2 opening = {0.0, 0.0};
     for (int side = 1; side >= 0; side--) {
         const JointEnd end = linkage_end(&linkage->joints[joint], side);
-        const Vec2 at = end.body == LINKAGE_GROUND
-                            ? end.anchor
-                            : vec2_add(motions[end.body].position,
-                                       turn_arm(motions, turns, end.body, end.anchor));
+        const Vec2 at =
+            end.body == LINKAGE_GROUND
+                ? end.anchor
+                : vec2_add(motions[end.body].position, turn_arm(turns, end.body, end.anchor));
         opening = vec2_add(opening, vec2_scale(side == 1 ? 1.0 : -1.0, at));
     }
     return opening;
@@ -367,7 +367,7 @@ static Vec2 centripetal(const Solving *solving, int body, Vec2 local)
         return (Vec2){0.0, 0.0};
     }
     const double omega = solving->motions[body].omega;
-    return vec2_scale(omega * omega, turn_arm(solving->motions, solving->turns, body, local));
+    return vec2_scale(omega * omega, turn_arm(solving->turns, body, local));
 }
 
 // What the accelerations of a joint's bodies have to make up for.

@@ -300,8 +300,9 @@ static void mechanism_observe(const void *state, double time_s, Sample *sample)
     const System *system = mechanism->stepper->system;
     SystemState *at = mechanism->scratch;
     const double since_s = system->kind->since(system, time_s);
+    // what is added up shows in no sample
     double *y = mechanism->observed;
-    dop853_dense_all(&mechanism->stepper->integrator, since_s, y);
+    dop853_dense_motion(&mechanism->stepper->integrator, since_s, y);
     system->kind->project(system, since_s, y);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);

@@ -144,41 +144,41 @@ static void recorder_ranges_add(RecorderRanges *own, const StepRecord *step)
     add_to_stretch(own, step, own->now);
 }
 
-// Takes a state of a part or of all (NULL) into a stretch.
-static void see_in_stretch(const RecorderRanges *own, const SolverPart *part, const Sample *sample,
-                           Range *values)
+// Takes in a state of a part or of all (NULL) at any time: into one stretch or, at a border, into
+// two that follow one another.
+static inline void recorder_ranges_see(const RecorderRanges *own, const SolverPart *part,
+                                       const Sample *sample)
 {
     const Linkage *linkage = &own->scenario->linkage;
-    const Ranges *ranges = &own->trajectory->ranges;
-    const size_t body_count = solver_body_count(part, linkage);
-    const size_t joint_count = solver_joint_count(part, linkage);
-    for (size_t k = 0; k < body_count; k++) {
-        const size_t i = solver_body(part, k);
-        const Motion *motion = &sample->bodies[i];
-        Range *range = values + ranges_of_body(i, 0);
-        range_add(&range[RANGES_OMEGA], motion->omega);
-        range_add(&range[RANGES_ALPHA], motion->alpha);
-        range_add(&range[RANGES_ACCELERATION], vec2_length(motion->acceleration));
-    }
-    for (size_t k = 0; k < joint_count; k++) {
-        const size_t i = solver_joint(part, k);
-        Range *range = values + ranges_of_joint(ranges, i, 0);
-        range_add(&range[RANGES_FORCE], sample->joints[i].force);
-        range_add(&range[RANGES_GAP], sample->joints[i].gap);
-    }
-}
-
-// Takes in a state of a part or of all (NULL) at any time.
-static void recorder_ranges_see(RecorderRanges *own, const SolverPart *part, const Sample *sample)
-{
     const Ranges *ranges = &own->trajectory->ranges;
     if (ranges->count == 0) {
         return;
     }
     size_t first;
     const size_t last = ranges_find_all(ranges, sample->time_s, &first);
-    for (size_t i = first; i <= last; i++) {
-        see_in_stretch(own, part, sample, ranges->values + i * ranges->signal_count);
+    Range *before = ranges->values + first * ranges->signal_count;
+    Range *behind = ranges->values + last * ranges->signal_count;
+    const size_t body_count = solver_body_count(part, linkage);
+    const size_t joint_count = solver_joint_count(part, linkage);
+    for (size_t k = 0; k < body_count; k++) {
+        const size_t i = solver_body(part, k);
+        const Motion *motion = &sample->bodies[i];
+        const double acceleration = vec2_length(motion->acceleration);
+        const size_t at = ranges_of_body(i, 0);
+        for (Range *range = before + at; range <= behind + at; range += ranges->signal_count) {
+            range_add(&range[RANGES_OMEGA], motion->omega);
+            range_add(&range[RANGES_ALPHA], motion->alpha);
+            range_add(&range[RANGES_ACCELERATION], acceleration);
+        }
+    }
+    for (size_t k = 0; k < joint_count; k++) {
+        const size_t i = solver_joint(part, k);
+        const JointState *joint = &sample->joints[i];
+        const size_t at = ranges_of_joint(ranges, i, 0);
+        for (Range *range = before + at; range <= behind + at; range += ranges->signal_count) {
+            range_add(&range[RANGES_FORCE], joint->force);
+            range_add(&range[RANGES_GAP], joint->gap);
+        }
     }
 }
 
@@ -413,17 +413,14 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
     trajectory->energy.friction += step->friction;
 }
 
-void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *sample)
+// Raises the extremes to those of a sample of a part or of all (NULL).
+static inline void see_extremes(Recorder *recorder, const SolverPart *part, const Sample *sample)
 {
     Trajectory *trajectory = recorder->trajectory;
     const Linkage *linkage = &recorder->scenario->linkage;
     const size_t body_count = solver_body_count(part, linkage);
     const size_t joint_count = solver_joint_count(part, linkage);
     const double time_s = sample->time_s;
-    recorder_ranges_see(&recorder->ranges, part, sample);
-    if (time_s < trajectory->report_from_s) {
-        return;
-    }
     for (size_t k = 0; k < body_count; k++) {
         const size_t i = solver_body(part, k);
         if (recorder->has_body[i]) {
@@ -442,6 +439,24 @@ void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *samp
         if (linkage->is_spatial) {
             raise_joint_space(&trajectory->joints[i], false, &sample->space_joints[i], time_s);
         }
+    }
+}
+
+static inline void see(Recorder *recorder, const SolverPart *part, const Sample *sample)
+{
+    recorder_ranges_see(&recorder->ranges, part, sample);
+    if (!(sample->time_s < recorder->trajectory->report_from_s)) {
+        see_extremes(recorder, part, sample);
+    }
+}
+
+// Every sample comes here. Mostly it is one of all bodies, which then are those from the first on.
+void recorder_see(Recorder *recorder, const SolverPart *part, const Sample *sample)
+{
+    if (part == NULL) {
+        see(recorder, NULL, sample);
+    } else {
+        see(recorder, part, sample);
     }
 }
 

@@ -108,14 +108,11 @@ static void turning_unwrap(const Turning *turning, const SolverPart *part, Sampl
     const size_t count = solver_body_count(part, turning->linkage);
     for (size_t k = 0; k < count; k++) {
         const size_t i = solver_body(part, k);
-        if (linkage_is_driven(turning->linkage, (int)i)) {
-            continue;
-        }
         const double ahead = turning->omega[i] * (turning->reported_s[i] - sample->time_s);
         double *angle = &sample->bodies[i].angle;
         const double apart = turning->angle[i] - ahead - *angle;
-        // hardly ever is it another turn than that of the solver
-        if (!(fabs(apart) < SAME_TURN)) {
+        // hardly ever is it another turn than that of the solver, and never a driven body's
+        if (!(fabs(apart) < SAME_TURN) && !linkage_is_driven(turning->linkage, (int)i)) {
             *angle += 2.0 * M_PI * round(apart / (2.0 * M_PI));
         }
     }
@@ -364,10 +361,10 @@ static void note_start(Loop *loop)
 }
 
 // Takes one sample of all bodies, to which all have been stepped.
-static bool take_sample(Loop *loop, Trajectory *trajectory, size_t k, Err *err)
+static bool take_sample(Loop *loop, Trajectory *trajectory, size_t k, double time_s, Err *err)
 {
     Sample sample = loop->sample;
-    loop->solver->observe(loop->state, scenario_sample_time(loop->scenario, k), &sample);
+    loop->solver->observe(loop->state, time_s, &sample);
     if (!run_check_sample(&loop->scenario->linkage, NULL, &sample, err)) {
         return false;
     }
@@ -399,8 +396,8 @@ static bool take_ahead(Loop *loop, Trajectory *trajectory, Err *err)
 static bool run_take_samples(Loop *loop, Trajectory *trajectory, Err *err)
 {
     for (size_t k = 0; k < trajectory->sample_count; k++) {
-        if (!reach(loop, scenario_sample_time(loop->scenario, k), err) ||
-            !take_sample(loop, trajectory, k, err)) {
+        const double time_s = scenario_sample_time(loop->scenario, k);
+        if (!reach(loop, time_s, err) || !take_sample(loop, trajectory, k, time_s, err)) {
             return false;
         }
     }

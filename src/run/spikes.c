@@ -15,6 +15,7 @@
 // Source: prominence is the persistence of a maximum, H. Edelsbrunner and J. Harer, Computational
 // Topology, 2010, VII.1; knees: V. Satopaa and others, Finding a Kneedle in a Haystack, 2011.
 #include "run/spikes.h"
+#include "base/memory.h"
 #include "run/ideal.h"
 
 #include <assert.h>
@@ -58,8 +59,7 @@ static TracePoint cross(const TracePoint *a, const TracePoint *b, double value)
 
 static Part spikes_take_part(const Trace *trace, double sign)
 {
-    Part part = {.sign = sign, .points = calloc(2 * trace->count + 1, sizeof *part.points)};
-    assert(part.points != NULL);
+    Part part = {.sign = sign, .points = memory_plain(2 * trace->count + 1, sizeof *part.points)};
     for (size_t i = 0; i < trace->count; i++) {
         const TracePoint *point = &trace->points[i];
         const TracePoint *before = &trace->points[i > 0 ? i - 1 : 0];
@@ -129,8 +129,7 @@ static void spread_lows(const Part *part, size_t count, Peak *peaks, size_t *sta
 // Keeps the maxima that stand out.
 static size_t select_peaks(const Part *part, double threshold, Peak *peaks)
 {
-    size_t *stack = calloc(part->count, sizeof *stack);
-    assert(stack != NULL);
+    size_t *stack = memory_plain(part->count, sizeof *stack);
     const size_t count = list_peaks(part, peaks);
     spread_lows(part, count, peaks, stack);
     free(stack);
@@ -227,8 +226,7 @@ static size_t spikes_add_part(const Trace *trace, double sign, double threshold,
                               SignalSpike *spikes)
 {
     Part part = spikes_take_part(trace, sign);
-    Peak *peaks = calloc(part.count, sizeof *peaks);
-    assert(peaks != NULL);
+    Peak *peaks = memory_plain(part.count, sizeof *peaks);
     const size_t count = select_peaks(&part, threshold, peaks);
     for (size_t i = 0; i < count; i++) {
         const size_t before = i > 0 ? peaks[i - 1].point : 0;
@@ -254,8 +252,7 @@ size_t spikes_find(const Trace *trace, double threshold, SignalSpike **spikes)
     if (trace->count < 3 || !(trace->largest >= threshold)) {
         return 0;
     }
-    SignalSpike *found = calloc(trace->count, sizeof *found);
-    assert(found != NULL);
+    SignalSpike *found = memory_plain(trace->count, sizeof *found);
     size_t count = spikes_add_part(trace, 1.0, threshold, found);
     count += spikes_add_part(trace, -1.0, threshold, found + count);
     qsort(found, count, sizeof *found, by_time);
