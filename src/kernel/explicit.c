@@ -45,16 +45,21 @@ static const double IMPACT_FORCE_SHARE = 1.0;
 static const double EXPLICIT_SAFETY = 0.85;
 
 // The integrals of the moments a time after a point.
-static void add_second(const Kernel *kernel, const KernelPoint *from, double since_s,
-                       double *moment)
+static void add_second(const Kernel *kernel, const KernelPoint *from, KernelSpan span,
+                       double since_s, double *moment)
 {
     const size_t rows = kernel->row_count;
-    for (size_t i = 0; i < rows; i++) {
+    for (size_t i = span.first; i < span.end; i++) {
         const double bend = from->force[i] / 6.0 + since_s / 24.0 * from->rate[i];
         moment[rows + i] =
             from->moment[rows + i] +
             since_s * (from->moment[i] + since_s * (0.5 * from->impulse[i] + since_s * bend));
     }
+}
+
+static KernelSpan all_rows(const Kernel *kernel)
+{
+    return (KernelSpan){0, kernel->row_count};
 }
 
 // The point at a share c of a step, by the rates at its start.
@@ -69,7 +74,7 @@ static void find_middle_point(const Kernel *kernel, const KernelPoint *from, dou
             from->moment[i] +
             since_s * (from->impulse[i] + since_s * (0.5 * from->force[i] + half / 3.0));
     }
-    add_second(kernel, from, since_s, point->moment);
+    add_second(kernel, from, all_rows(kernel), since_s, point->moment);
 }
 
 static void finish_order_4(const Kernel *kernel, const KernelPoint *from, double h,
@@ -100,7 +105,7 @@ static void finish_order_5(Kernel *kernel, const KernelPoint *from, double h,
         last->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         last->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
-    add_second(kernel, from, h, last->moment);
+    add_second(kernel, from, all_rows(kernel), h, last->moment);
     // what others do may jump at the end of the step, not inside it
     kernel_input_look(kernel, true);
     kernel_rates_find(kernel, last);
@@ -131,7 +136,7 @@ void kernel_explicit_step(Kernel *kernel, const KernelPoint *from, int order, do
     find_middle_point(kernel, from, step->middle * width_s, step->inside);
     kernel_rates_find(kernel, step->inside);
     kernel_point_begin(kernel, to, from->time_s + width_s);
-    add_second(kernel, from, width_s, to->moment);
+    add_second(kernel, from, all_rows(kernel), width_s, to->moment);
     if (order == 4) {
         finish_order_4(kernel, from, width_s, step->inside, to);
     } else {
@@ -150,11 +155,11 @@ static void find_cubic(double c, double f, double slope, double at_c, double slo
 }
 
 void kernel_explicit_inside(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
-                            double share, double *impulse, double *moment)
+                            KernelSpan span, double share, double *impulse, double *moment)
 {
     const double h = step->width_s;
     const double s = share;
-    for (size_t i = 0; i < kernel->row_count; i++) {
+    for (size_t i = span.first; i < span.end; i++) {
         double a;
         double b;
         const double slope = h * from->rate[i];
@@ -166,7 +171,7 @@ void kernel_explicit_inside(const Kernel *kernel, const ExplicitStep *step, cons
                     h * h * s * s *
                         (from->force[i] / 2.0 + s * (slope / 6.0 + s * (a / 12.0 + s * b / 20.0)));
     }
-    add_second(kernel, from, h * s, moment);
+    add_second(kernel, from, span, h * s, moment);
 }
 
 void kernel_explicit_extend(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,

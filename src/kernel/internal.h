@@ -246,6 +246,13 @@ static inline KernelSpan kernel_span(const Kernel *kernel, size_t row)
     };
 }
 
+// The rows whose impulses move the first two of a contact, which are where it is.
+static inline KernelSpan kernel_contact_span(const Kernel *kernel, size_t contact)
+{
+    const size_t row = kernel->contacts[contact].first_row;
+    return (KernelSpan){kernel_span(kernel, row).first, kernel_span(kernel, row + 1).end};
+}
+
 // The motion of a row beside what acts in the kernel's own rows.
 static inline double kernel_free_speed(const Kernel *kernel, size_t row, double time_s)
 {
@@ -386,10 +393,10 @@ typedef struct ExplicitStep {
 void kernel_explicit_step(Kernel *kernel, const KernelPoint *from, int order, double width_s,
                           ExplicitStep *step, KernelPoint *to);
 
-// Impulses and moments at a share of the step, 0 to 1, without any further evaluation: from the
-// cubic through the forces and rates at the start and inside.
+// Impulses and moments of some rows at a share of the step, 0 to 1, without any further evaluation:
+// from the cubic through the forces and rates at the start and inside.
 void kernel_explicit_inside(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
-                            double share, double *impulse, double *moment);
+                            KernelSpan span, double share, double *impulse, double *moment);
 
 // Writes the forces and powers at the end of a step by the same cubic.
 void kernel_explicit_extend(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,

@@ -791,6 +791,13 @@ void kernel_island_look(KernelIsland *island, size_t node, double time_s)
     kernel_at(&island->kernel, node, time_s, &island->sums);
 }
 
+void kernel_island_look_around(KernelIsland *island, size_t number, size_t node, double time_s)
+{
+    island->node = node;
+    island->look_s = time_s;
+    kernel_around(&island->kernel, number, node, time_s, &island->sums);
+}
+
 void kernel_islands_look(KernelIslands *islands, double time_s, KernelSums *sums)
 {
     const Kernel *all = islands->all;

@@ -201,6 +201,10 @@ static inline const double *kernel_node_forces(const Kernel *kernel, size_t node
 // The sums at a time between two neighbouring nodes, of which `node` is the first.
 void kernel_at(const Kernel *kernel, size_t node, double time_s, KernelSums *sums);
 
+// The same of no more rows than where one contact is depends on, and without losses.
+void kernel_around(const Kernel *kernel, size_t contact, size_t node, double time_s,
+                   KernelSums *sums);
+
 // The same of the rows of one contact alone: impulses, their moments and forces, by row of it.
 void kernel_contact_at(const Kernel *kernel, size_t contact, size_t node, double time_s,
                        double *impulse, double *moment, double *force);
@@ -316,6 +320,11 @@ bool kernel_islands_run(KernelIslands *islands, double duration);
 
 // Looks at one island at a time in the step, s, behind one of its nodes.
 void kernel_island_look(KernelIsland *island, size_t node, double time_s);
+
+// The same of no more of the island than where one of its contacts is depends on, by its number in
+// it: until the next look kernel_islands_pose may be asked for that one alone, or for others at the
+// same time.
+void kernel_island_look_around(KernelIsland *island, size_t number, size_t node, double time_s);
 
 // Looks at all of them, and writes the sums of all rows.
 void kernel_islands_look(KernelIslands *islands, double time_s, KernelSums *sums);

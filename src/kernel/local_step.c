@@ -193,8 +193,11 @@ static double depth_after(Kernel *kernel, LocalStep *step, size_t contact, doubl
     if (step->method != LOCAL_STEP_EXPLICIT) {
         try_local_step(kernel, step, width_s, at);
     } else {
-        kernel_point_begin(kernel, at, step->from->time_s + width_s);
+        // of a large island only what moves this contact
+        at->time_s = step->from->time_s + width_s;
+        at->known[contact].is_known = false;
         kernel_explicit_inside(kernel, &step->explicit, step->from,
+                               kernel_contact_span(kernel, contact),
                                width_s / step->explicit.width_s, at->impulse, at->moment);
     }
     return kernel_point_pose(kernel, at, contact)->penetration;

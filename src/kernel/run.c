@@ -352,23 +352,34 @@ static inline KernelNodeRow row_between(const Between *of, size_t rows, size_t r
                           of->width_s, of->share, of->is_short);
 }
 
-void kernel_at(const Kernel *kernel, size_t node, double time_s, KernelSums *sums)
+static void find_sums(const Between *between, size_t rows, KernelSpan span, KernelSums *sums)
 {
-    const size_t rows = kernel_rows(kernel);
-    const size_t next = node + 1 < kernel->node_count ? node + 1 : node;
-    const Between between = find_between(kernel, node, time_s);
-    for (size_t i = 0; i < rows; i++) {
-        const KernelNodeRow at = row_between(&between, rows, i);
+    for (size_t i = span.first; i < span.end; i++) {
+        const KernelNodeRow at = row_between(between, rows, i);
         sums->impulse[i] = at.impulse;
         sums->moment[i] = at.moment;
         sums->moment[rows + i] = at.second;
         sums->force[i] = at.force;
     }
+}
+
+void kernel_at(const Kernel *kernel, size_t node, double time_s, KernelSums *sums)
+{
+    const size_t next = node + 1 < kernel->node_count ? node + 1 : node;
+    const Between between = find_between(kernel, node, time_s);
+    find_sums(&between, kernel_rows(kernel), (KernelSpan){0, kernel_rows(kernel)}, sums);
     const double *before = kernel->losses + 2 * node;
     const double *after = kernel->losses + 2 * next;
     const double s = between.share;
     sums->dissipated = before[0] + s * (after[0] - before[0]);
     sums->friction = before[1] + s * (after[1] - before[1]);
+}
+
+void kernel_around(const Kernel *kernel, size_t contact, size_t node, double time_s,
+                   KernelSums *sums)
+{
+    const Between between = find_between(kernel, node, time_s);
+    find_sums(&between, kernel_rows(kernel), kernel_contact_span(kernel, contact), sums);
 }
 
 void kernel_contact_at(const Kernel *kernel, size_t contact, size_t node, double time_s,

@@ -324,11 +324,11 @@ static void scatter(const Kernel *all, const KernelIsland *island, KernelSums *s
     }
 }
 
-// Looks at the islands of a scope's places from a number on, but for one, and writes their sums.
-static void look_at_places(const KernelIslands *all, const ImpulseScope *scope, size_t first,
-                           size_t looked, double since_s, KernelSums *sums)
+// Looks at the islands of a scope's neighbours, but for its own, and writes their sums.
+static void look_at_neighbours(const KernelIslands *all, const ImpulseScope *scope, size_t looked,
+                               double since_s, KernelSums *sums)
 {
-    for (size_t i = first; i < scope->part.place_count; i++) {
+    for (size_t i = scope->place_count; i < scope->part.place_count; i++) {
         const size_t number = all->island_of[scope->part.places[i]];
         if (all->is_active[scope->part.places[i]] && number != looked) {
             KernelIsland *island = all->islands[number];
@@ -346,7 +346,7 @@ static void look_at_scope(ImpulseIslands *islands, const IslandMark *mark)
     const ImpulseScope *scope = &islands->scope.scope;
     kernel_island_look(all->islands[mark->island], mark->node, mark->time_s);
     scatter(all->all, all->islands[mark->island], &islands->sums);
-    look_at_places(all, scope, scope->place_count, mark->island, mark->time_s, &islands->sums);
+    look_at_neighbours(all, scope, mark->island, mark->time_s, &islands->sums);
 }
 
 // Adds the contacts of a scope's places to the record.
@@ -574,6 +574,19 @@ static void look_at_rows(const KernelIslands *all, const ImpulseScope *scope, do
     }
 }
 
+// Looks at the own places of a scope, so that kernel_islands_pose may be asked for them.
+static void look_around_places(const KernelIslands *all, const ImpulseScope *scope, double since_s)
+{
+    for (size_t i = 0; i < scope->place_count; i++) {
+        const size_t place = scope->part.places[i];
+        if (all->is_active[place]) {
+            KernelIsland *island = all->islands[all->island_of[place]];
+            kernel_island_look_around(island, all->number_in[place],
+                                      kernel_node(&island->kernel, since_s), since_s);
+        }
+    }
+}
+
 bool impulse_islands_observe(ImpulseIslands *islands, double since_s, const SolverSome *some,
                              Sample *sample)
 {
@@ -592,11 +605,8 @@ bool impulse_islands_observe(ImpulseIslands *islands, double since_s, const Solv
     }
     const KernelIslands *all = islands->view->islands;
     clear_flying(all, &room->scope, &islands->some_sums);
-    if (is_body) {
-        look_at_rows(all, &room->scope, since_s, &islands->some_sums);
-    } else {
-        look_at_places(all, &room->scope, 0, all->count, since_s, &islands->some_sums);
-    }
+    look_at_rows(all, &room->scope, since_s, &islands->some_sums);
+    look_around_places(all, &room->scope, since_s);
     const ImpulseTime at = {since_s, 0, true};
     islands->kind->observe_some(islands->own, &room->scope, at, &islands->some_sums, !is_body,
                                 sample);
