@@ -360,30 +360,56 @@ static void raise_joint_space(JointExtremes *joint, bool is_first, const SpaceJo
     raise_to(&joint->axial_max, is_first, fabs(state->axial), time_s);
 }
 
+// Those of one body, by its number in the step's record.
+static void recorder_raise_body(Recorder *recorder, const StepRecord *step, size_t k)
+{
+    const size_t i = solver_body(step->part, k);
+    raise_body(&recorder->trajectory->bodies[i], !recorder->has_body[i], step->omega[k],
+               step->alpha[k], step->end_s);
+    recorder->has_body[i] = true;
+}
+
+static void recorder_raise_joint(Recorder *recorder, const StepRecord *step, size_t k)
+{
+    const size_t i = solver_joint(step->part, k);
+    const JointPeak top = top_of(step, k);
+    const bool is_first = !recorder->has_joint[i];
+    JointExtremes *joint = &recorder->trajectory->joints[i];
+    if (step->space_joints != NULL) {
+        raise_joint_space(joint, is_first, &step->space_joints[k], step->joint_s);
+    }
+    raise_joint(joint, is_first, &recorder->scenario->linkage.joints[i], &top, step->joints[k].tilt,
+                step->joint_s);
+    recorder->has_joint[i] = true;
+}
+
+// Of what is as it was in the record before nothing rises.
+static void raise_changed(Recorder *recorder, const StepRecord *step)
+{
+    for (size_t n = 0; n < step->changed->body_count; n++) {
+        recorder_raise_body(recorder, step, step->changed->bodies[n]);
+    }
+    for (size_t n = 0; n < step->changed->joint_count; n++) {
+        recorder_raise_joint(recorder, step, step->changed->joints[n]);
+    }
+}
+
 static void recorder_raise_all(Recorder *recorder, const StepRecord *step)
 {
-    Trajectory *trajectory = recorder->trajectory;
     const Linkage *linkage = &recorder->scenario->linkage;
     const size_t body_count = solver_body_count(step->part, linkage);
     const size_t joint_count = solver_joint_count(step->part, linkage);
+    if (step->changed != NULL && recorder->has_all) {
+        raise_changed(recorder, step);
+        return;
+    }
     for (size_t k = 0; k < body_count; k++) {
-        const size_t i = solver_body(step->part, k);
-        raise_body(&trajectory->bodies[i], !recorder->has_body[i], step->omega[k], step->alpha[k],
-                   step->end_s);
-        recorder->has_body[i] = true;
+        recorder_raise_body(recorder, step, k);
     }
     for (size_t k = 0; k < joint_count; k++) {
-        const size_t i = solver_joint(step->part, k);
-        const JointPeak top = top_of(step, k);
-        const bool is_first = !recorder->has_joint[i];
-        JointExtremes *joint = &trajectory->joints[i];
-        if (step->space_joints != NULL) {
-            raise_joint_space(joint, is_first, &step->space_joints[k], step->joint_s);
-        }
-        raise_joint(joint, is_first, &linkage->joints[i], &top, step->joints[k].tilt,
-                    step->joint_s);
-        recorder->has_joint[i] = true;
+        recorder_raise_joint(recorder, step, k);
     }
+    recorder->has_all = step->part == NULL;
 }
 
 void recorder_add(Recorder *recorder, const StepRecord *step)

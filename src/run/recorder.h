@@ -19,6 +19,7 @@ typedef struct Recorder {
     Trajectory *trajectory; // receives extremes, contacts, ranges and hash
     bool *has_body;         // whether it has been in a step that is reported; owned, as all arrays
     bool *has_joint;
+    bool has_all;       // whether all of them have been in one
     bool *was_touching; // by joint, in the step before
     Spike *open;        // the contact under way, by joint
     RecorderRanges ranges;
