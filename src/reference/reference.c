@@ -332,7 +332,7 @@ static void mechanism_sketch(const void *state, double time_s, double *omega, do
     for (size_t i = 0; i < linkage->joint_count; i++) {
         force[i] = NAN;
     }
-    if (linkage->is_spatial || integrator->tried == 0.0) {
+    if ((linkage->is_spatial && system->flat == NULL) || integrator->tried == 0.0) {
         return;
     }
     dop853_fill(integrator);
@@ -391,6 +391,13 @@ static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_P
             contact_state_rest(changed, contact->law.resting_speed);
         } else {
             changed->is_slack = event->mode == CONTACT_SLACK;
+        }
+    }
+    for (size_t i = 0; system->flat != NULL && i < system->contact_count; i++) {
+        const Contact *contact = &system->contacts[i];
+        if (system->scenario->linkage.joints[contact->joint].kind == JOINT_CLEARANCE) {
+            // both ends of a pin touch alike
+            states[contact->joint][1] = states[contact->joint][0];
         }
     }
 }

@@ -8,6 +8,7 @@
 
 #include "model/forces.h"
 #include "model/loads.h"
+#include "model/space_flat.h"
 #include "reference/system.h"
 
 #include <assert.h>
@@ -552,8 +553,9 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     memset(stepper, 0, sizeof *stepper);
     stepper->scenario = scenario;
     stepper->duration_s = scenario_duration(scenario);
-    stepper->system = scenario->linkage.is_spatial ? space_system_create(scenario, err)
-                                                   : plane_system_create(scenario, err);
+    stepper->system = !scenario->linkage.is_spatial ? plane_system_create(scenario, err)
+                      : space_flat_is(scenario)     ? flat_system_create(scenario, err)
+                                                    : space_system_create(scenario, err);
     if (stepper->system == NULL) {
         return false;
     }

@@ -129,6 +129,9 @@ typedef struct SystemCoordinate {
 
 typedef struct System System;
 
+// What shows equations of the plane as those of a linkage in space (reference/space/flat_system.c).
+typedef struct SystemFlat SystemFlat;
+
 // Everything at one instant, in one piece of memory. What the equations have beyond it lies behind
 // it.
 typedef struct SystemState {
@@ -188,6 +191,7 @@ typedef struct SystemKind {
 struct System {
     const SystemKind *kind;
     const Scenario *scenario;
+    SystemFlat *flat; // of a linkage in space that never leaves the plane; NULL of others
     size_t coordinate_count;
     SystemCoordinate *coordinates;
     Coupling *coupling; // owned by the equations
@@ -249,3 +253,6 @@ System *plane_system_create(const Scenario *scenario, Err *err);
 // Makes the equations of motion of a scenario in space. Returns NULL with ERR_CASE where a contact
 // law does not fit a joint. The caller frees them by their kind.
 System *space_system_create(const Scenario *scenario, Err *err);
+
+// The same of one that never leaves the plane: by the plane's equations.
+System *flat_system_create(const Scenario *scenario, Err *err);
