@@ -95,6 +95,11 @@ typedef enum SchemaRivalry {
 // The bit of a kind of joint.
 #define SCHEMA_OF(kind) (1U << (kind))
 
+// The bit of a backend, and those of all that take steps of run.step.
+#define SCHEMA_WITH(backend) (1U << (backend))
+#define SCHEMA_WITH_ENGINE(id, ...) | SCHEMA_WITH(id)
+#define SCHEMA_STEPPED       (SCHEMA_WITH(BACKEND_ODE) OPTIONS_ENGINE_LIST(SCHEMA_WITH_ENGINE))
+
 typedef struct SchemaRow {
     const char *path;
     SchemaType type;
@@ -118,6 +123,7 @@ typedef struct SchemaRow {
     const char *default_words; // in place of the default's number; NULL: the number says it
     unsigned kinds;            // of joints: SCHEMA_OF each kind that has the key; 0: all
     unsigned needs;            // what a scenario must have for the key to be among its settings
+    unsigned backends;         // of which one must run, SCHEMA_WITH each; 0: any
     unsigned wants;            // and, besides, for its value to change anything
     const char *doc;
 } SchemaRow;

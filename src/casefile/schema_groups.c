@@ -41,6 +41,8 @@ const SchemaGroup SCHEMA_GROUPS[] = {
     {"run", "Duration, samples, step and solvers."},
     {"reference", "Accuracy of the reference."},
     {"ode", "How the Open Dynamics Engine is used."},
+    {"engines", "How other engines run the case, where they are among run.backends; driver is the "
+                "one that --driver names."},
     {"points", "Points of bodies whose paths are written, at most 4, with names of letters, "
                "digits, - and _."},
 };

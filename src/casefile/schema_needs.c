@@ -74,6 +74,30 @@ enum { WANT_COUNT = sizeof WANTS / sizeof *WANTS };
 
 enum { CONDITION_COUNT = sizeof CONDITIONS / sizeof *CONDITIONS };
 
+// What a key lacks whose backends do not run: a word for each, and one for all with steps.
+static const SchemaLack BACKEND_LACKS[] = {
+#define LACKS_BACKEND(id, word, ...) [id] = {word " among run.backends", "run.backends", false},
+    OPTIONS_BACKEND_LIST(LACKS_BACKEND)};
+static const SchemaLack STEPPED_LACK = {"ode or another engine among run.backends", "run.backends",
+                                        false};
+
+// Whether one of the backends that a key is of runs; where not, what is lacking.
+static bool has_backend(const SchemaRow *row, const Scenario *scenario, SchemaLack *lack)
+{
+    bool runs = row->backends == 0;
+    for (size_t i = 0; i < scenario->run.backend_count; i++) {
+        runs = runs || (row->backends & SCHEMA_WITH(scenario->run.backends[i])) != 0;
+    }
+    if (!runs && lack != NULL) {
+        int backend = 0;
+        while (row->backends != SCHEMA_WITH(backend) && backend + 1 < BACKEND_COUNT) {
+            backend++;
+        }
+        *lack = row->backends == SCHEMA_STEPPED ? STEPPED_LACK : BACKEND_LACKS[backend];
+    }
+    return runs;
+}
+
 // The bits of a row, and those without which they cannot be met.
 static unsigned needs_of(const SchemaRow *row)
 {
@@ -81,7 +105,8 @@ static unsigned needs_of(const SchemaRow *row)
     for (size_t i = CONDITION_COUNT; i-- > 0;) {
         needs |= needs & CONDITIONS[i].bit ? CONDITIONS[i].within : 0;
     }
-    return needs;
+    // one that names its backends is not of ODE alone
+    return row->backends != 0 ? needs & ~(unsigned)ODE : needs;
 }
 
 static unsigned bit(unsigned need, bool is_met)
@@ -228,7 +253,7 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         !loads_apply(row, &scenario->linkage, &scenario->linkage.loads[index])) {
         return false;
     }
-    return (row->needs & ~met) == 0;
+    return (row->needs & ~met) == 0 && has_backend(row, scenario, NULL);
 }
 
 static bool is_restored(DampingKind damping)
@@ -326,7 +351,7 @@ static bool lacks_angles(const SchemaRow *row, const Scenario *scenario, size_t 
 // Settings of how a run is computed and reported.
 static bool is_of_computing(const SchemaRow *row)
 {
-    static const char *const GROUPS[] = {"run.", "reference.", "ode."};
+    static const char *const GROUPS[] = {"run.", "reference.", "ode.", "engines."};
     for (size_t i = 0; i < sizeof GROUPS / sizeof *GROUPS; i++) {
         if (strncmp(row->path, GROUPS[i], strlen(GROUPS[i])) == 0) {
             return true;
@@ -340,6 +365,9 @@ bool schema_lacks(const SchemaRow *row, const Scenario *scenario, size_t index, 
 {
     const unsigned missing = needs_of(row) & ~met;
     const bool applies = schema_applies(row, scenario, index, met);
+    if (!has_backend(row, scenario, lack)) {
+        return true;
+    }
     for (size_t i = 0; !applies && i < CONDITION_COUNT; i++) {
         if (missing & CONDITIONS[i].bit) {
             *lack = CONDITIONS[i].lack;
@@ -365,6 +393,14 @@ void schema_list_needs(const SchemaRow *row, Text *text)
     unsigned implied = 0;
     for (size_t i = 0; i < CONDITION_COUNT; i++) {
         implied |= row->needs & CONDITIONS[i].bit ? CONDITIONS[i].within : 0;
+    }
+    if (row->backends == SCHEMA_STEPPED) {
+        text_append(text, "%s%s", count++ > 0 ? "; " : "", STEPPED_LACK.words);
+    }
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        if (row->backends == SCHEMA_WITH(i)) {
+            text_append(text, "%s%s", count++ > 0 ? "; " : "", BACKEND_LACKS[i].words);
+        }
     }
     for (size_t i = 0; i < CONDITION_COUNT; i++) {
         if (row->needs & ~implied & CONDITIONS[i].bit) {

@@ -123,6 +123,11 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define PROFILE_DOC \
     "from one angle to the next: cycloid, polynomial (3-4-5) and trapezoid (of the speed, in " \
     "thirds) rest at each; a cubic spline goes through all"
+#define ENGINE(id, word, ...) \
+    {.path = "engines." word, .type = SCHEMA_CHOICE, AT(engines[id].way), \
+     .words = OPTIONS_ENGINE_WAYS, .backends = SCHEMA_WITH(id), \
+     .doc = "the way in which " word " runs the case, of those that its driver has; best " \
+            "takes the first of the others that it has"},
 #define POINT(field) \
     .family = SCHEMA_POINT, .holder = SCHEMA_POINT, .offset = offsetof(TracedPoint, field), .needs = MEMBER
 #define DAMPING_DOC(name, word, words, factor) "; " word ": " words
@@ -409,23 +414,23 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "samples written per revolution of the drive, or in the whole run where run.duration says "
      "how long it is"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
-     .low_is_open = true, .zero_word = "auto", .needs = ODE,
+     .low_is_open = true, .zero_word = "auto", .backends = SCHEMA_STEPPED,
      .default_words = "auto; 1 us where ode.stepping, ode.map or a collider but pin-hole is given, "
                       "or the model is poisson",
-     .doc = "step of ode; auto: chosen so that the error is within the tolerance, with stepping "
+     .doc = "step of ode and of other engines; auto: chosen so that the error is within the tolerance, with stepping "
             "staggered and map impulse, or stepping extrapolated if all joints are ideal"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
-     .needs = ODE | CHOSEN_STEP,
+     .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
      .doc = "with step auto: the largest allowed error of any body's angular velocity or velocity, "
             "and of any pin's in its hole, each relative to its own largest value, up to the "
             "predictability horizon"},
     {.path = "run.tolerance-of", .type = SCHEMA_CHOICE, AT(run.tolerance_of),
-     .words = OPTIONS_TOLERANCES_OF, .needs = ODE | CHOSEN_STEP,
+     .words = OPTIONS_TOLERANCES_OF, .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
      .doc = "which error run.tolerance limits: of the motion; of the contact forces in joints with "
             "play, each relative to its own largest; or of the peaks of these contacts and of the "
             "bodies' angular accelerations"},
     {.path = "run.most-steps", .type = SCHEMA_INTEGER, AT(run.most_steps), .low = 1e3, .high = 1e12,
-     .needs = ODE | CHOSEN_STEP,
+     .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
      .doc = "with step auto: the limit for the world steps of all trials together; if it is too "
             "low, the run reports up to when the tolerance is met"},
     {.path = "run.spike-threshold", AT(run.spike_threshold), .low = 1e-3, .high = 1e3,
@@ -520,6 +525,8 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "with map impulse: 0, and a contact's own steps are as long as the accuracy of the "
             "step allows; or their error is that of a classical step of this many rad of the "
             "contact's oscillation, written without a unit"},
+
+    OPTIONS_ENGINE_LIST(ENGINE)
 
     {.path = "points.*.body", .type = SCHEMA_BODY_NAME, POINT(body), .is_required = true,
      .doc = "the body to which the point belongs"},

@@ -45,6 +45,54 @@ bool common_options_check_step(const CommonOptions *options, double step_s, Err 
     return is_right;
 }
 
+bool common_options_driver(const char *driver, BackendKind *backend, Err *err)
+{
+    const size_t length = strcspn(driver, "=");
+    *backend = BACKEND_DRIVER;
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        const char *word = OPTIONS_BACKENDS[i];
+        if (strlen(word) == length && strncmp(word, driver, length) == 0) {
+            *backend = (BackendKind)i;
+        }
+    }
+    char name[ENGINE_NAME_SIZE] = "";
+    if (length < sizeof name) {
+        snprintf(name, sizeof name, "%.*s", (int)length, driver);
+    }
+    return (engine_is_name(name) && options_is_engine(*backend) && driver[length] == '=' &&
+            driver[length + 1] != '\0') ||
+           err_set(err, ERR_USAGE,
+                   "--driver takes NAME=PROGRAM, with a name of lower-case letters, digits and "
+                   "'-' that is none of our own backends, not '%s'",
+                   driver);
+}
+
+bool common_options_take_drivers(const char *const *drivers, size_t count, Scenario *scenario,
+                                 Err *err)
+{
+    for (size_t i = 0; i < count; i++) {
+        BackendKind backend;
+        if (!common_options_driver(drivers[i], &backend, err)) {
+            return false;
+        }
+        if (scenario->engines[backend].driver != NULL) {
+            return err_set(err, ERR_USAGE, "--driver names two programs for the backend '%s'",
+                           OPTIONS_BACKENDS[backend]);
+        }
+        bool is_used = false;
+        for (size_t k = 0; k < scenario->run.backend_count; k++) {
+            is_used = is_used || scenario->run.backends[k] == backend;
+        }
+        if (!is_used) {
+            return err_set(err, ERR_USAGE,
+                           "--driver %s is not used: '%.*s' is not among the backends", drivers[i],
+                           (int)strcspn(drivers[i], "="), drivers[i]);
+        }
+        scenario->engines[backend].driver = drivers[i];
+    }
+    return true;
+}
+
 bool common_options_list_schemes(const CommonOptions *options, const Scenario *scenario,
                                  Scheme schemes[SCHEME_MAX], size_t *count, Err *err)
 {

@@ -16,7 +16,9 @@ typedef struct CommonOptions {
     const char *path; // of the case or study; NULL until it is given
     const char *overrides[OPTION_SETTING_MAX];
     size_t override_count;
-    const char *schemes; // as given, or NULL
+    const char *schemes;                    // as given, or NULL
+    const char *drivers[ENGINE_DRIVER_MAX]; // NAME=PROGRAM each
+    size_t driver_count;
     size_t jobs;
     double time_limit_s; // of one run
     const char *folder;  // of --out, or NULL
@@ -37,6 +39,10 @@ typedef struct CommonOptions {
 #define COMMON_SCHEMES(help_group) \
     {"schemes", "LIST", "Only these schemes of ODE: 'direct/corrected' selects those with both words, 'all' every scheme", \
      help_group, OPTION_TEXT, COMMON_AT(schemes)}
+#define COMMON_DRIVERS(help_group) \
+    {"driver", "NAME=PROGRAM", "A program that runs cases on the engine NAME; may be given often", \
+     help_group, OPTION_LIST, COMMON_AT(drivers), .what = "drivers", \
+     .count_offset = offsetof(CommonOptions, driver_count), .high = ENGINE_DRIVER_MAX}
 #define COMMON_JOBS(help_group, words) \
     {"jobs", "N", words, help_group, OPTION_COUNT, COMMON_AT(jobs), .low = 1, .high = OPTION_JOB_MAX}
 #define COMMON_TIME_LIMIT(help_group, words) \
@@ -62,6 +68,15 @@ bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *
 // Whether the case can be run at a step, s: it is read once more with it, so that the checks and
 // their words are those of the case file. Fails as casefile_load does.
 bool common_options_check_step(const CommonOptions *options, double step_s, Err *err);
+
+// The backend that a driver of NAME=PROGRAM is of: that of its name, or `driver`. Fails with
+// ERR_USAGE where it has another form.
+bool common_options_driver(const char *driver, BackendKind *backend, Err *err);
+
+// Lets the engines of a scenario be run by the drivers that --driver names, which must outlive it.
+// Fails with ERR_USAGE where one has another form, or where two are of the same backend.
+bool common_options_take_drivers(const char *const *drivers, size_t count, Scenario *scenario,
+                                 Err *err);
 
 // The schemes of a scenario that --schemes names, or the usual ones. Fails with ERR_USAGE for a
 // word that none of them has.

@@ -3,6 +3,7 @@
 #include "cli/arguments.h"
 #include "cli/output.h"
 #include "commands/commands.h"
+#include "engine/driver.h"
 #include "version.h"
 
 #include <argp.h>
@@ -25,6 +26,9 @@ static bool print_versions(const char *value, void *options, Err *err)
     (void)err;
     printf("jointplay %s\nODE %s, libccd %s\n", JOINTPLAY_VERSION, JOINTPLAY_ODE_VERSION,
            JOINTPLAY_CCD_VERSION);
+    char drivers[ENGINE_DRIVER_MAX * ENGINE_NAME_SIZE];
+    engine_list(drivers, sizeof drivers);
+    printf("drivers of other engines: %s\n", drivers[0] != '\0' ? drivers : "none");
     return true;
 }
 

@@ -4,6 +4,7 @@
 // one JSON object a line. A driver is asked once what it is, and then for runs.
 #pragma once
 
+#include "engine/engine_records.h"
 #include "model/trajectory.h"
 
 enum {
@@ -52,6 +53,12 @@ typedef struct EngineSaid {
 // destroys it. `said` may be NULL.
 Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenario *scenario,
                        double time_limit_s, EngineSaid *said);
+
+// The same with records of what the engine did between the samples, of at least the length that
+// they ask for: none where the driver tells nothing of it.
+Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
+                                const Scenario *scenario, double time_limit_s, EngineSaid *said,
+                                EngineRecords *records);
 
 // Whether a scenario can be expressed in the protocol; ERR_CASE, naming what cannot, where not.
 bool engine_check(const Scenario *scenario, Err *err);

@@ -56,7 +56,8 @@ static bool is_own(const char *name)
 {
     bool is_any = false;
     for (int i = 0; i < BACKEND_COUNT; i++) {
-        is_any = is_any || strcmp(OPTIONS_BACKENDS[i], name) == 0;
+        is_any = is_any ||
+                 (!options_is_engine((BackendKind)i) && strcmp(OPTIONS_BACKENDS[i], name) == 0);
     }
     return is_any;
 }
@@ -170,14 +171,16 @@ bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err)
 
 // Runs the scenario and fills the trajectory.
 static bool fill(const EngineDriver *driver, const char *way, const Scenario *scenario,
-                 double time_limit_s, Trajectory *trajectory, EngineSaid *said, Err *err)
+                 double time_limit_s, Trajectory *trajectory, EngineSaid *said,
+                 EngineRecords *records, Err *err)
 {
     EngineDriver again = *driver; // what it says of itself in this run
-    char *request = engine_request(scenario, way, err);
+    char *request = engine_request(scenario, way, records != NULL ? records->record_s : 0.0, err);
     if (request == NULL) {
         return false;
     }
     EngineReply reply = engine_reply_start(scenario, &again, trajectory, said);
+    reply.records = records;
     const Converse with = {
         .program = driver->program,
         .input = request,
@@ -196,6 +199,13 @@ static bool fill(const EngineDriver *driver, const char *way, const Scenario *sc
 Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenario *scenario,
                        double time_limit_s, EngineSaid *said)
 {
+    return engine_run_recorded(driver, way, scenario, time_limit_s, said, NULL);
+}
+
+Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
+                                const Scenario *scenario, double time_limit_s, EngineSaid *said,
+                                EngineRecords *records)
+{
     EngineSaid own;
     Err err = {0};
     said = said != NULL ? said : &own;
@@ -207,7 +217,8 @@ Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenar
     snprintf(trajectory->label, sizeof trajectory->label, "%s %s", driver->name, way);
     trajectory->step_s = scenario->run.step;
     trajectory->duration_s = scenario_duration(scenario);
-    trajectory->is_complete = fill(driver, way, scenario, time_limit_s, trajectory, said, &err);
+    trajectory->is_complete =
+        fill(driver, way, scenario, time_limit_s, trajectory, said, records, &err);
     if (!trajectory->is_complete) {
         err_prefix(&err, trajectory->label);
         text_copy(trajectory->message, sizeof trajectory->message, err.text);

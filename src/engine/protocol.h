@@ -4,8 +4,8 @@
 #include "engine/driver.h"
 
 // The request for a run, as one line of JSON; the caller frees it. NULL, with ERR_CASE, where the
-// scenario cannot be expressed.
-char *engine_request(const Scenario *scenario, const char *way, Err *err);
+// scenario cannot be expressed. Records of at least that length are asked for, none where it is 0.
+char *engine_request(const Scenario *scenario, const char *way, double record_s, Err *err);
 
 // The request that asks a driver what it is.
 extern const char ENGINE_HELLO[];
@@ -16,9 +16,10 @@ typedef struct EngineReply {
     EngineDriver *driver;
     Trajectory *trajectory; // of a run
     EngineSaid *said;
-    Sample sample;  // room; owned, as are the arrays
-    double *bodies; // numbers of a line: by body
-    double *joints; // by joint, and its totals
+    EngineRecords *records; // NULL: none are wanted
+    Sample sample;          // room; owned, as are the arrays
+    double *bodies;         // numbers of a line: by body
+    double *joints;         // by joint, and its totals
     size_t samples;
     bool is_introduced; // the first line is there
     bool is_done;       // the last one is there

@@ -324,6 +324,9 @@ static bool take_line(EngineReply *reply, const json_t *line, Err *err)
     if (reply->scenario != NULL && json_object_get(line, "sample") != NULL) {
         return take_sample(reply, line, err);
     }
+    if (reply->records != NULL && json_object_get(line, "step") != NULL) {
+        return engine_records_take(reply->records, line, err);
+    }
     if (reply->scenario != NULL && (value = json_object_get(line, "done")) != NULL) {
         return take_done(reply, value, err);
     }

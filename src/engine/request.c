@@ -59,9 +59,6 @@ bool engine_check(const Scenario *scenario, Err *err)
     if (linkage->further_count > 0) {
         return refuse(err, "several drives");
     }
-    if (linkage->further_count > 0) {
-        return refuse(err, "several drives");
-    }
     if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
         return refuse(err, "a drive whose speed is over time");
     }
@@ -176,7 +173,7 @@ static json_t *drive_object(const Linkage *linkage)
                               : json_null();
 }
 
-char *engine_request(const Scenario *scenario, const char *way, Err *err)
+char *engine_request(const Scenario *scenario, const char *way, double record_s, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     if (!engine_check(scenario, err)) {
@@ -202,6 +199,9 @@ char *engine_request(const Scenario *scenario, const char *way, Err *err)
                   pair(scenario_gravity(scenario)), "bodies", bodies, "joints", joints, "drive",
                   drive_object(linkage), "sample_times_s", times_array(scenario));
     assert(request != NULL);
+    if (record_s > 0.0) {
+        json_object_set_new(request, "record_s", json_real(record_s));
+    }
     char *text = is_whole ? json_dumps(request, REQUEST_FLAGS) : NULL;
     json_decref(request);
     assert(text != NULL || !is_whole);

@@ -1,4 +1,4 @@
-// Chooses the step of ODE that gives the error asked for, and runs it.
+// Chooses the step of ODE, or of another engine, that gives the error asked for, and runs it.
 //
 // No error is extrapolated: trials at falling steps are held against the truth at every sample, and
 // the first that holds the tolerance up to the horizon is the run. See docs/stepping.md.
@@ -320,8 +320,8 @@ static bool trial_judge_peaks(const TrialRule *rule, Trial *trial)
     return false;
 }
 
-static Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatch watch,
-                        const RunProbe *probe)
+static Trial trial_make(const Scenario *scenario, BackendKind backend, const TrialRule *rule,
+                        RunWatch watch, const RunProbe *probe)
 {
     Trial trial = {.step_s = scenario->run.step};
     Watcher watcher = {
@@ -332,8 +332,8 @@ static Trial trial_make(const Scenario *scenario, const TrialRule *rule, RunWatc
     };
     const RunGuard guard = {chosen_run_look, &watcher};
     const bool is_of_peaks = rule->kind == TOLERANCE_OF_PEAKS;
-    trial.run = run_guarded(scenario, registry_solver(BACKEND_ODE), watch, probe,
-                            is_of_peaks ? NULL : &guard);
+    trial.run =
+        run_guarded(scenario, registry_solver(backend), watch, probe, is_of_peaks ? NULL : &guard);
     trial.holds = trial.run->is_complete && !watcher.is_over &&
                   (!is_of_peaks || trial_judge_peaks(rule, &trial));
     error_forces_finish(&watcher.forces);
@@ -415,6 +415,7 @@ static const double NEAR_STEP = 1.2;
 
 typedef struct Chosen {
     const Scenario *scenario;
+    BackendKind backend;
     const Truth *truth;
     const RunProbe *probe;
     ChosenWatch watch;
@@ -441,7 +442,7 @@ Scenario chosen_run_scenario(const Scenario *scenario, double step_s)
 // A failed run.
 static Trajectory *chosen_run_fail(const Chosen *chosen, const char *message)
 {
-    Trajectory *none = trajectory_create(chosen->scenario, OPTIONS_BACKENDS[BACKEND_ODE]);
+    Trajectory *none = trajectory_create(chosen->scenario, OPTIONS_BACKENDS[chosen->backend]);
     snprintf(none->message, sizeof none->message, "%s", message);
     none->trials = chosen->trials;
     none->steps = chosen->steps;
@@ -574,8 +575,9 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
         .is_last = is_last,
         .is_smooth = chosen->choice.is_smooth,
     };
-    const Trial trial = trial_make(
-        &scenario, &rule, chosen_run_begin(chosen, ++chosen->trials, step_s), chosen->probe);
+    const Trial trial =
+        trial_make(&scenario, chosen->backend, &rule,
+                   chosen_run_begin(chosen, ++chosen->trials, step_s), chosen->probe);
     chosen_run_count(chosen, &trial);
     return trial;
 }
@@ -661,8 +663,15 @@ static void take_uncertainty(Chosen *chosen)
 Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, ChosenWatch watch,
                             const RunProbe *probe)
 {
+    return chosen_run_make_on(BACKEND_ODE, scenario, truth, watch, probe);
+}
+
+Trajectory *chosen_run_make_on(BackendKind backend, const Scenario *scenario, const Truth *truth,
+                               ChosenWatch watch, const RunProbe *probe)
+{
     Chosen chosen = {
         .scenario = scenario,
+        .backend = backend,
         .truth = truth,
         .probe = probe,
         .watch = watch,
@@ -697,14 +706,14 @@ const RunProbe *backend_run_probe(const Scenario *scenario)
 
 bool backend_run_is_chosen(const Scenario *scenario, BackendKind backend)
 {
-    return backend == BACKEND_ODE && scenario->run.step == 0.0;
+    return options_is_stepped(backend) && scenario->run.step == 0.0;
 }
 
 Trajectory *backend_run(const Scenario *scenario, BackendKind backend, const Truth *truth,
                         ChosenWatch watch, const RunProbe *probe)
 {
     if (backend_run_is_chosen(scenario, backend)) {
-        return chosen_run_make(scenario, truth, watch, probe);
+        return chosen_run_make_on(backend, scenario, truth, watch, probe);
     }
     return run_guarded(scenario, registry_solver(backend), watch.run, probe, NULL);
 }

@@ -173,7 +173,7 @@ double error_energy(const Trajectory *run)
 static double energy_lost(const Trajectory *trajectory, const Trajectory *reference)
 {
     const double lost = fabs(trajectory->energy.residual);
-    return lost > 0.0 ? lost / error_energy(reference) : 0.0;
+    return lost > 0.0 || isnan(lost) ? lost / error_energy(reference) : 0.0;
 }
 
 // The forces of contacts.

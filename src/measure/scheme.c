@@ -225,6 +225,24 @@ bool scheme_add_engine(const EngineDriver *driver, const char *ways,
     return is_done;
 }
 
+bool scheme_is_engine(const char *name, BackendKind *backend, EngineWay *way)
+{
+    const size_t length = strcspn(name, "/");
+    bool is_engine = false;
+    bool is_way = name[length] == '\0';
+    *way = ENGINE_WAY_BEST;
+    for (int i = 0; i < BACKEND_COUNT && !is_engine; i++) {
+        *backend = (BackendKind)i;
+        is_engine = options_is_engine(*backend) && strlen(OPTIONS_BACKENDS[i]) == length &&
+                    strncmp(OPTIONS_BACKENDS[i], name, length) == 0;
+    }
+    for (int i = 0; i < ENGINE_WAY_COUNT && !is_way; i++) {
+        *way = (EngineWay)i;
+        is_way = strcmp(OPTIONS_ENGINE_WAYS[i], name + length + 1) == 0;
+    }
+    return is_engine && is_way;
+}
+
 const char *scheme_backend(const Scheme *scheme)
 {
     return scheme->driver != NULL ? scheme->driver->name : OPTIONS_BACKENDS[scheme->backend];

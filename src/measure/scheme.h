@@ -45,6 +45,9 @@ size_t scheme_list(const Scenario *scenario, Scheme schemes[SCHEME_MAX]);
 bool scheme_add_engine(const EngineDriver *driver, const char *ways,
                        Scheme schemes[SCHEME_ENGINE_MAX], size_t *count, Err *err);
 
+// Whether a name is of another engine, NAME or NAME/WAY, as a scheme of a study has it.
+bool scheme_is_engine(const char *name, BackendKind *backend, EngineWay *way);
+
 // The backend that a scheme runs on: of ours, or another engine's driver.
 const char *scheme_backend(const Scheme *scheme);
 

@@ -19,6 +19,7 @@ const char *const OPTIONS_ODE_MAPS[] = {OPTIONS_ODE_ROW_MAP_LIST(MEMBER_WORD) "i
 const char *const OPTIONS_ODE_COLLIDERS[] = {OPTIONS_ODE_COLLIDER_LIST(MEMBER_WORD) NULL};
 const char *const OPTIONS_ODE_POLYGONS[] = {OPTIONS_ODE_POLYGON_LIST(WORD) NULL};
 const char *const OPTIONS_BACKENDS[] = {OPTIONS_BACKEND_LIST(MEMBER_WORD) NULL};
+const char *const OPTIONS_ENGINE_WAYS[] = {OPTIONS_ENGINE_WAY_LIST(WORD) NULL};
 const bool OPTIONS_ODE_STEPPING_IS_GENERAL[] = {OPTIONS_ODE_STEPPING_LIST(MEMBER_IS_GENERAL)};
 const bool OPTIONS_BACKEND_HAS_PLAY[] = {OPTIONS_BACKEND_LIST(MEMBER_HAS_PLAY)};
 
@@ -30,6 +31,26 @@ bool options_backend_has_play(const char *backend)
             has_play && (OPTIONS_BACKEND_HAS_PLAY[i] || strcmp(OPTIONS_BACKENDS[i], backend) != 0);
     }
     return has_play;
+}
+
+bool options_is_engine(BackendKind backend)
+{
+    switch (backend) {
+#define IS_ENGINE(id, ...) case id:
+        OPTIONS_ENGINE_LIST(IS_ENGINE)
+        return true;
+    case BACKEND_ANALYTIC:
+    case BACKEND_REFERENCE:
+    case BACKEND_ODE:
+    case BACKEND_COUNT:
+        break;
+    }
+    return false;
+}
+
+bool options_is_stepped(BackendKind backend)
+{
+    return backend == BACKEND_ODE || options_is_engine(backend);
 }
 
 MaterialOptions material_options_default(void)

@@ -76,11 +76,31 @@
     member(START_CENTRED, "centred") \
     member(START_PRESSED, "pressed")
 
+// Other engines, each run by a driver of that name (engine/engine_solver.c); the last one stands for
+// any other driver, which --driver names.
+#define OPTIONS_ENGINE_LIST(member) \
+    member(BACKEND_MUJOCO, "mujoco", ENGINE_MUJOCO, true) \
+    member(BACKEND_CHIPMUNK, "chipmunk", ENGINE_CHIPMUNK, true) \
+    member(BACKEND_BULLET, "bullet", ENGINE_BULLET, true) \
+    member(BACKEND_SIMBODY, "simbody", ENGINE_SIMBODY, true) \
+    member(BACKEND_DRIVER, "driver", ENGINE_DRIVER, true)
+
 // The solvers, see model/solver.h, and whether they model play: others take every joint as ideal.
 #define OPTIONS_BACKEND_LIST(member) \
     member(BACKEND_ANALYTIC, "analytic", ANALYTIC_SOLVER, false) \
     member(BACKEND_REFERENCE, "reference", REFERENCE_SOLVER, true) \
-    member(BACKEND_ODE, "ode", ODE_SOLVER, true)
+    member(BACKEND_ODE, "ode", ODE_SOLVER, true) \
+    OPTIONS_ENGINE_LIST(member)
+
+// The way in which an engine runs a case, of those that its driver has; the first is whichever of
+// these it has, in this order.
+#define OPTIONS_ENGINE_WAY_LIST(member) \
+    member(ENGINE_WAY_BEST, "best") \
+    member(ENGINE_WAY_KERNEL, "kernel") \
+    member(ENGINE_WAY_ADAPTIVE, "adaptive") \
+    member(ENGINE_WAY_STAGGERED, "staggered") \
+    member(ENGINE_WAY_FORCE, "force") \
+    member(ENGINE_WAY_NATIVE, "native")
 
 // The model of what happens where pin and hole overlap: spring and damper, force from penetration
 // and its rate; or velocity-level penalty with restitution, force from closing speed.
@@ -124,6 +144,7 @@ typedef enum ToleranceOf {
     OPTIONS_TOLERANCE_OF_LIST(OPTIONS_ENUMERATOR) TOLERANCE_OF_COUNT
 } ToleranceOf;
 typedef enum BackendKind { OPTIONS_BACKEND_LIST(OPTIONS_ENUMERATOR) BACKEND_COUNT } BackendKind;
+typedef enum EngineWay { OPTIONS_ENGINE_WAY_LIST(OPTIONS_ENUMERATOR) ENGINE_WAY_COUNT } EngineWay;
 typedef enum ContactModel {
     OPTIONS_CONTACT_MODEL_LIST(OPTIONS_ENUMERATOR) CONTACT_MODEL_COUNT
 } ContactModel;
@@ -144,6 +165,7 @@ extern const char *const OPTIONS_ODE_MAPS[];
 extern const char *const OPTIONS_ODE_COLLIDERS[];
 extern const char *const OPTIONS_ODE_POLYGONS[];
 extern const char *const OPTIONS_BACKENDS[];
+extern const char *const OPTIONS_ENGINE_WAYS[];
 
 // By OdeStepping: whether it is for every case.
 extern const bool OPTIONS_ODE_STEPPING_IS_GENERAL[];
@@ -151,6 +173,10 @@ extern const bool OPTIONS_ODE_STEPPING_IS_GENERAL[];
 // By BackendKind, and by the backend's name.
 extern const bool OPTIONS_BACKEND_HAS_PLAY[];
 bool options_backend_has_play(const char *backend);
+
+// Whether a backend is another engine; whether it takes steps of run.step, as ODE and engines do.
+bool options_is_engine(BackendKind backend);
+bool options_is_stepped(BackendKind backend);
 
 typedef struct MaterialOptions {
     double youngs_modulus; // Pa, of pin and hole alike
@@ -236,6 +262,13 @@ typedef struct OdeOptions {
     double contact_phase; // rad, of ODE_MAP_IMPULSE: how accurate local steps of contacts are, as
                           // classical steps of that phase; 0: as the step of the world allows
 } OdeOptions;
+
+// How another engine runs a case.
+typedef struct EngineOptions {
+    EngineWay way;
+    const char *driver; // no key: NAME=PROGRAM, as --driver has it, in place of the driver that
+                        // came with the program; NULL: none. Not owned
+} EngineOptions;
 
 // s, the step where a case names a way of stepping but no step: one that is chosen has its own way.
 extern const double OPTIONS_GIVEN_STEP;

@@ -97,6 +97,7 @@ typedef struct Scenario {
     RunOptions run;
     ReferenceOptions reference;
     OdeOptions ode;
+    EngineOptions engines[BACKEND_COUNT]; // by backend, of other engines
     size_t expectation_count;
     Expectation *expectations; // for the checks of runs; no solver reads them; owned
     size_t outcome_count;

@@ -75,6 +75,8 @@ typedef struct SolverModel {
     size_t evaluations;   // of the equations of motion so far, or of the forces of contacts that it
                           // integrates by itself; 0 where it does not count them
     size_t fallback_rows; // of contacts, to which a map was applied that the case does not ask for
+    double wall_s;        // s, of the steps by a clock of the solver's own; 0: by that of the run
+    const TrajectoryEngine *engine; // another one than ours; NULL: none
 } SolverModel;
 
 typedef struct Solver {
@@ -118,6 +120,8 @@ typedef struct Solver {
     // Optional: extremes from a time on known better than from steps (a closed form), which return
     // every turn. NULL: taken from records.
     void (*extremes)(const void *state, double from_s, BodyExtremes *bodies);
+    // Optional: corrects what was taken of the joints from records where those do not tell all.
+    void (*totals)(const void *state, JointExtremes *joints);
     void (*close)(void *state);
 } Solver;
 

@@ -121,6 +121,17 @@ typedef struct Energy {
     double residual;   // works less all of the others: zero but for the solver's error
 } Energy;
 
+enum { TRAJECTORY_TEXT_SIZE = 64, TRAJECTORY_SETTINGS_SIZE = 512 };
+
+// What another engine said of itself in a run; empty of a solver of our own.
+typedef struct TrajectoryEngine {
+    char name[TRAJECTORY_TEXT_SIZE]; // "MuJoCo"
+    char version[TRAJECTORY_TEXT_SIZE];
+    char precision[TRAJECTORY_TEXT_SIZE];    // "double"
+    char way[TRAJECTORY_TEXT_SIZE];          // in which it ran the case
+    char settings[TRAJECTORY_SETTINGS_SIZE]; // of the engine, that are not its defaults
+} TrajectoryEngine;
+
 typedef struct Trajectory {
     char backend[LINKAGE_NAME_SIZE];
     char label[TRAJECTORY_LABEL_SIZE]; // backend and scheme, e.g. "ode direct/plain/textbook"
@@ -149,6 +160,7 @@ typedef struct Trajectory {
     double duration_s;    // simulated
     double report_from_s; // extremes, contacts and spikes are those from this time on
     Energy energy;
+    TrajectoryEngine engine;
     double step_s;          // 0 where the solver has no fixed step
     size_t steps;           // every step taken, settling and rejected ones included
     size_t evaluations;     // of the equations of motion, where the solver counts them

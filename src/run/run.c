@@ -441,6 +441,10 @@ static void fill_model(const Loop *loop, Trajectory *trajectory)
     trajectory->constraint_rows = model.constraint_rows;
     trajectory->contact_rows = model.contact_rows;
     trajectory->fallback_rows = model.fallback_rows;
+    trajectory->wall_s = model.wall_s > 0.0 ? model.wall_s : trajectory->wall_s;
+    if (model.engine != NULL) {
+        trajectory->engine = *model.engine;
+    }
 }
 
 // Puts an extreme into the ranges wherever it returns, turn by turn.
@@ -523,6 +527,9 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     if (is_done && solver->extremes != NULL) {
         solver->extremes(loop.state, trajectory->report_from_s, trajectory->bodies);
         show_extremes(scenario, trajectory);
+    }
+    if (is_done && solver->totals != NULL) {
+        solver->totals(loop.state, trajectory->joints);
     }
     if (is_done) {
         close_energy(&loop, trajectory);

@@ -12,6 +12,7 @@ import sys
 import time
 
 FAULT = os.environ.get("JOINTPLAY_TOY_FAULT", "")
+RECORDS = os.environ.get("JOINTPLAY_TOY_RECORDS", "")
 
 
 def say(**line):
@@ -131,6 +132,8 @@ def run(case):
     nothing = [[0.0, 0.0] for _ in case["joints"]]
     for at, bodies in samples:
         say(sample=at, bodies=bodies, joints=nothing)
+    if "record_s" in case and RECORDS:
+        tell_steps(samples)
     if FAULT == "no-end":
         return
     say(done={"steps": steps, "wall_s": wall, "joints": [[0.0, 0.0, 0] for _ in nothing],
@@ -140,6 +143,17 @@ def run(case):
     if FAULT == "lingers":
         os.close(1)
         time.sleep(600)
+
+
+def tell_steps(samples):
+    """What happened between the samples: of these joints nothing is known."""
+    for (start, _), (end, bodies) in zip(samples, samples[1:]):
+        if RECORDS == "gap" and start > 0.03:
+            start += 0.5 * (end - start)
+        rows = [motion[3:] for motion in bodies]
+        say(step=[start, end], bodies=rows[:2] if RECORDS == "few" else rows, joints=[None] * 4)
+        if RECORDS == "cut":
+            break
 
 
 def spoil(body, number, value):

@@ -4,7 +4,8 @@
 set -u
 root=$1
 library="base kernel model contact world casefile analytic reference ode run"
-layers="$library engine measure write cli commands drivers"
+# beside these engine, whose child processes exit
+layers="${library% run} engine run measure write cli commands drivers"
 
 # Lines 'file included' for every include of one source tree.
 includes() {

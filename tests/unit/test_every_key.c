@@ -33,6 +33,12 @@ static const char *const UNWRITTEN[] = {
     "run.settle-most",
     "run.settle-starts",
     "run.samples",
+    // of other engines
+    "engines.mujoco",
+    "engines.chipmunk",
+    "engines.bullet",
+    "engines.simbody",
+    "engines.driver",
     "run.tolerance",
     "run.tolerance-of",
     "reference.tolerance",

@@ -104,7 +104,9 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
     }
     if (item->err.kind != ERR_NONE ||
         !casefile_load(item->path, options->common.overrides, options->common.override_count,
-                       item->scenario, &item->err)) {
+                       item->scenario, &item->err) ||
+        !common_options_take_drivers(options->common.drivers, options->common.driver_count,
+                                     item->scenario, &item->err)) {
         scenario_destroy(item->scenario);
         item->scenario = NULL;
         note_refusal(item, options);
@@ -344,6 +346,7 @@ static const OptionRow OPTIONS[] = {
     {"expect-only", NULL, "Judge cases by their own limits (expect:), not by baselines", 1,
      OPTION_FLAG, AT(is_expect_only)},
     COMMON_SET(1),
+    COMMON_DRIVERS(1),
     {"shake", "SEED",
      "Change every input by rounding first, as another machine might: a way to test the bands", 1,
      OPTION_COUNT, AT(shake), .low = 1, .high = SHAKE_MAX},

@@ -42,13 +42,42 @@ void run_choices_begin(RunChoices *choices)
     text_init(&choices->backends);
 }
 
+// What stands in a case for a backend of the command line: a driver that is no engine's has any
+// name there, and is `driver` in the case.
+static const char *backend_word(const CommonOptions *common, const char *name)
+{
+    for (size_t i = 0; i < common->driver_count; i++) {
+        BackendKind backend;
+        Err unused;
+        const size_t length = strcspn(common->drivers[i], "=");
+        if (strlen(name) == length && strncmp(common->drivers[i], name, length) == 0 &&
+            common_options_driver(common->drivers[i], &backend, &unused)) {
+            return OPTIONS_BACKENDS[backend];
+        }
+    }
+    return name;
+}
+
+// The setting of the backends that were named.
+static bool set_backends(RunChoices *choices, Err *err)
+{
+    Text words;
+    text_init(&words);
+    char *rest = NULL;
+    for (const char *name = strtok_r(choices->backends.data, ", \t", &rest); name != NULL;
+         name = strtok_r(NULL, ", \t", &rest)) {
+        text_append(&words, "%s%s", words.length > 0 ? ", " : "",
+                    backend_word(&choices->common, name));
+    }
+    text_append(&words, "]");
+    const bool is_added = add_override(choices, "run.backends=[", words.data, err);
+    text_finish(&words);
+    return is_added;
+}
+
 bool run_choices_end(RunChoices *choices, Err *err)
 {
-    if (choices->backends.length > 0) {
-        text_append(&choices->backends, "]");
-        return add_override(choices, "run.backends=[", choices->backends.data, err);
-    }
-    return true;
+    return choices->backends.length == 0 || set_backends(choices, err);
 }
 
 void run_choices_finish(RunChoices *choices)
@@ -76,8 +105,10 @@ static bool check_uncertified(const Scenario *scenario, Err *err)
 
 bool run_choices_load(const RunChoices *choices, const char *path, CaseRun *run, Err *err)
 {
+    const CommonOptions *common = &choices->common;
     run->is_uncertified = choices->is_uncertified;
-    return casefile_load(path, choices->common.overrides, choices->common.override_count,
-                         &run->scenario, err) &&
+    return casefile_load(path, common->overrides, common->override_count, &run->scenario, err) &&
+           common_options_take_drivers(common->drivers, common->driver_count, &run->scenario,
+                                       err) &&
            (!run->is_uncertified || check_uncertified(&run->scenario, err));
 }

@@ -21,6 +21,7 @@ typedef struct RunChoices {
     {"step", "TIME", "The step, such as '2 us': short for --set run.step=TIME", help_group, \
      OPTION_READ, .read = run_choices_read_step}, \
     COMMON_SET(help_group), \
+    COMMON_DRIVERS(help_group), \
     {"uncertified", NULL, \
      "Run the reference alone, in a fifth of the time: its uncertainty and horizon are not known", \
      help_group, OPTION_FLAG, .offset = offsetof(RunChoices, is_uncertified)}

@@ -383,6 +383,18 @@ static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
     return joints;
 }
 
+// What another engine said of itself; null of a solver of our own.
+static json_t *engine_object(const TrajectoryEngine *engine)
+{
+    if (engine->name[0] == '\0') {
+        return json_null();
+    }
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "name", json_value_text(engine->name), "version",
+                     json_value_text(engine->version), "precision",
+                     json_value_text(engine->precision), "way", json_value_text(engine->way),
+                     "settings", json_value_text(engine->settings));
+}
+
 static json_t *run_object(const RunReport *report, size_t index)
 {
     const Trajectory *run = report->runs[index];
@@ -391,6 +403,7 @@ static json_t *run_object(const RunReport *report, size_t index)
     if (!run->is_complete) {
         return object;
     }
+    json_object_set_new(object, "engine", engine_object(&run->engine));
     json_object_set_new(object, "bodies", bodies_object(linkage, run));
     json_object_set_new(object, "joints", joints_object(linkage, run));
     json_object_set_new(object, "error", run_truth_json_error(report, index));

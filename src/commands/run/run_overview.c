@@ -300,7 +300,8 @@ static void write_certainty(const RunReport *report, Text *text)
         text_init(&words);
         if (!run->is_complete) {
             text_append(&words, "%s FAILED: %.120s", run->backend, run->message);
-        } else if (strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0) {
+        } else if (strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0 ||
+                   run->engine.name[0] != '\0') {
             append_error(report, i, &words);
         }
         if (words.length > 0) {

@@ -679,7 +679,8 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text)
         const Energy shown = run_floor_energy(energy, &floors[i]);
         fields_table_row(RUN_ENERGY_FIELDS, places, &shown, table);
         const double scale = error_energy(report->runs[i]);
-        section_number_or_dash(table, scale > 0.0, fabs(shown.residual / scale));
+        section_number_or_dash(table, scale > 0.0 && isfinite(shown.residual),
+                               fabs(shown.residual / scale));
     }
     free(floors);
     if (table != NULL) {

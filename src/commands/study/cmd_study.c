@@ -595,6 +595,7 @@ static const OptionRow CMD_STUDY_OPTIONS[] = {
     {"store", "FILE", "Keep the runs there (default: <study>.sqlite in the working folder)", 1,
      OPTION_READ, .read = read_store},
     {"fresh", NULL, "Discard the contents of the store", 1, OPTION_FLAG, CMD_STUDY_AT(is_fresh)},
+    COMMON_DRIVERS(1),
     {"retry-failed", NULL, "Repeat the runs that failed or whose rows are damaged", 1, OPTION_FLAG,
      CMD_STUDY_AT(is_retrying)},
     {"dry-run", NULL, "Print what would be run, and run nothing", 2, OPTION_FLAG,

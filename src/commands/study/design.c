@@ -5,8 +5,10 @@
 // differ in the last ones only (and in the draw, where nothing that is drawn changes the truth) are
 // a group.
 #include "commands/study/design.h"
+
 #include "base/hash.h"
 #include "base/text.h"
+#include "cli/common_options.h"
 #include "commands/study/normal.h"
 
 #include <assert.h>
@@ -325,6 +327,11 @@ static bool design_apply_scheme(const char *name, Scenario *scenario, BackendKin
                                 Err *err)
 {
     Scheme schemes[SCHEME_MAX];
+    EngineWay way;
+    if (scheme_is_engine(name, backend, &way)) {
+        scenario->engines[*backend].way = way;
+        return true;
+    }
     const size_t count = scheme_list(scenario, schemes);
     for (size_t i = 0; i < count; i++) {
         if (strcmp(schemes[i].name, name) != 0) {
@@ -363,6 +370,11 @@ bool design_scenario(const Spec *spec, const Cell *values, Scenario *scenario, B
         if (strcmp(spec->variables[i].key, SPEC_SCHEME_KEY) == 0) {
             is_good = design_apply_scheme(values[i].word, &built, &chosen, &own);
         }
+    }
+    for (size_t i = 0; is_good && i < spec->driver_count; i++) {
+        BackendKind of;
+        is_good = common_options_driver(spec->drivers[i], &of, &own);
+        built.engines[of].driver = spec->drivers[i];
     }
     overrides_finish(spec, &overrides);
     if (!is_good) {

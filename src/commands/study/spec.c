@@ -189,6 +189,11 @@ static bool check_scheme(const Reading *reading, const Node *node, const Scheme 
     if (!spec_read_single(reading, node, "a scheme", "its name, such as direct/plain/corrected")) {
         return false;
     }
+    BackendKind backend;
+    EngineWay way;
+    if (scheme_is_engine(node->text, &backend, &way)) {
+        return true;
+    }
     const Scheme *found = NULL;
     for (size_t i = 0; i < count; i++) {
         found = strcmp(schemes[i].name, node->text) == 0 ? &schemes[i] : found;

@@ -80,6 +80,8 @@ typedef struct Spec {
     FollowDirection direction;
     bool has_truth;     // each run is held against the certified reference
     bool has_growth;    // each row says how small changes of its settled motion grow
+    const char *const *drivers; // of --driver, by which other engines are run; not owned
+    size_t driver_count;
     ChildLimits limits; // of one run; a truth may take the time of several
     uint64_t print;     // fingerprint of all that decides what the runs are: not of the limits,
                         // the title, or how the file is laid out

@@ -304,10 +304,21 @@ static void study_run_say_unused(const Spec *spec)
 bool study_run(void *target, Err *err)
 {
     const StudyOptions *options = target;
-    Spec *spec = spec_open(options->common.path, err);
+    const CommonOptions *common = &options->common;
+    for (size_t i = 0; i < common->driver_count; i++) {
+        BackendKind backend;
+        if (!common_options_driver(common->drivers[i], &backend, err)) {
+            return false;
+        }
+    }
+    Spec *spec = spec_open(common->path, err);
+    if (spec != NULL) {
+        spec->drivers = common->drivers;
+        spec->driver_count = common->driver_count;
+    }
     Layout *layout = calloc(1, sizeof *layout);
     assert(layout != NULL);
-    if (spec != NULL && !options->common.is_quiet) {
+    if (spec != NULL && !common->is_quiet) {
         study_run_say_unused(spec);
     }
     const bool is_done = spec != NULL && find_layout(spec, layout, err) &&

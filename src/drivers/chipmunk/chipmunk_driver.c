@@ -186,6 +186,19 @@ static void find_forces(ChipmunkRun *run)
     }
 }
 
+// The forces of contacts that are under way at the start.
+static void find_first_forces(ChipmunkRun *run)
+{
+    read_motions(run, run->motions);
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        if (joint->kind == DRIVER_PIN_IN_HOLE) {
+            const PinHole pose = driver_pose(joint, run->motions);
+            run->forces[i] = driver_force(joint, &run->contacts[i], &pose);
+        }
+    }
+}
+
 // Pushes the bodies by the laws' forces until the end of the step under way.
 static void push(const ChipmunkRun *run)
 {
@@ -328,6 +341,7 @@ int main(void)
     cpSpaceSetUserData(run.space, &run);
     if (!is_native) {
         set_law(&run);
+        find_first_forces(&run);
     }
     run.lag_s = driver_is_way(of, "staggered") ? 0.5 * of->step_s : 0.0;
     run.run.is_linear = is_native;

@@ -195,6 +195,7 @@ static DriverCase *read_case(const json_t *request)
     copy_text(request, "way", of->way);
     of->step_s = number(request, "step_s");
     of->duration_s = number(request, "duration_s");
+    of->record_s = json_number_value(json_object_get(request, "record_s"));
     of->gravity = pair(request, "gravity_m_s2");
     const json_t *bodies = member(request, "bodies");
     const json_t *joints = member(request, "joints");
@@ -278,6 +279,7 @@ DriverRun driver_run_start(const DriverCase *of)
         .motions = memory(of->sample_count * of->body_count, sizeof *run.motions),
         .forces = memory(of->sample_count * of->joint_count, sizeof *run.forces),
         .totals = memory(of->joint_count, sizeof *run.totals),
+        .touches = memory(of->joint_count, sizeof *run.touches),
     };
     for (size_t i = 0; i < DRIVER_STAMPS; i++) {
         run.stamps[i].motions = memory(of->body_count, sizeof(DriverMotion));
@@ -367,9 +369,99 @@ static void make_sample(DriverRun *run, double time_s)
     driver_run_sampled(run);
 }
 
+// Records of steps.
+
+enum { RECORD_TIMES = 2, RECORD_BODY = 3, RECORD_JOINT = 8 };
+
+static size_t record_size(const DriverRun *run)
+{
+    return RECORD_TIMES + RECORD_BODY * run->of->body_count + RECORD_JOINT * run->of->joint_count;
+}
+
+// The record that a step goes into: the last one as long as that is too short, or a new one.
+static double *record_for(DriverRun *run, double start_s)
+{
+    const size_t size = record_size(run);
+    double *last = run->record_count > 0 ? run->records + (run->record_count - 1) * size : NULL;
+    if (last != NULL && last[1] - last[0] < run->of->record_s) {
+        return last;
+    }
+    if (run->record_count == run->record_room) {
+        run->record_room = run->record_room > 0 ? 2 * run->record_room : 1024;
+        run->records = realloc(run->records, run->record_room * size * sizeof *run->records);
+        if (run->records == NULL) {
+            driver_fail("there is no memory");
+        }
+    }
+    double *record = run->records + run->record_count++ * size;
+    memset(record, 0, size * sizeof *record);
+    record[0] = record[1] = start_s;
+    return record;
+}
+
+// Adds what a joint did in a step to what it did before in the same record.
+static void record_touch(const DriverTouch *touch, double before_s, double length_s, double *joint)
+{
+    const double share = length_s / (before_s + length_s);
+    joint[0] = touch->eccentricity.x;
+    joint[1] = touch->eccentricity.y;
+    joint[2] += share * (touch->force.x - joint[2]);
+    joint[3] += share * (touch->force.y - joint[3]);
+    joint[4] = fmax(joint[4], touch->force_max);
+    joint[5] = fmax(joint[5], touch->depth_max);
+    joint[6] += length_s * vec2_length(touch->force);
+    joint[7] = touch->approach;
+}
+
+void driver_run_record(DriverRun *run, double start_s, double end_s, const DriverMotion *motions,
+                       const DriverTouch *touches)
+{
+    if (!(run->of->record_s > 0.0) || start_s >= run->of->duration_s || !(end_s > start_s)) {
+        return;
+    }
+    double *record = record_for(run, start_s);
+    const double before_s = record[1] - record[0];
+    record[1] = end_s;
+    double *body = record + RECORD_TIMES;
+    for (size_t i = 0; i < run->of->body_count; i++, body += RECORD_BODY) {
+        body[0] = motions[i].velocity.x;
+        body[1] = motions[i].velocity.y;
+        body[2] = motions[i].omega;
+    }
+    for (size_t i = 0; i < run->of->joint_count; i++, body += RECORD_JOINT) {
+        if (run->of->joints[i].kind == DRIVER_PIN_IN_HOLE) {
+            record_touch(&touches[i], before_s, end_s - start_s, body);
+        }
+    }
+}
+
+// The step between the velocities of the last two stamps, with the forces that act between them:
+// those at the positions of the first.
+static void record_stamps(DriverRun *run)
+{
+    if (!(run->of->record_s > 0.0) || run->stamp_count < 2) {
+        return;
+    }
+    const DriverStamp *last = &run->stamps[run->stamp_count - 2];
+    const DriverStamp *now = last + 1;
+    for (size_t i = 0; i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        if (joint->kind == DRIVER_PIN_IN_HOLE) {
+            const PinHole pose = driver_pose(joint, last->motions);
+            run->touches[i] = (DriverTouch){.eccentricity = pose.eccentricity,
+                                            .force = last->forces[i],
+                                            .force_max = vec2_length(last->forces[i]),
+                                            .depth_max = pose.penetration,
+                                            .approach = run->totals[i].approach};
+        }
+    }
+    driver_run_record(run, last->velocity_s, now->velocity_s, now->motions, run->touches);
+}
+
 void driver_run_stamped(DriverRun *run)
 {
     run->stamp_count++;
+    record_stamps(run);
     if (run->stamp_count < DRIVER_STAMPS) {
         return;
     }
@@ -407,6 +499,41 @@ static void write_rows(const DriverRun *run, size_t sample)
     fprintf(answers, "]}\n");
 }
 
+// null, and numbers that are not finite.
+static void write_number(double number, const char *before)
+{
+    if (isfinite(number)) {
+        fprintf(answers, "%s%.13g", before, number);
+    } else {
+        fprintf(answers, "%snull", before);
+    }
+}
+
+static void write_record(const DriverRun *run, const double *record)
+{
+    fprintf(answers, "{\"step\":[%.17g,%.17g],\"bodies\":[", record[0], record[1]);
+    const double *at = record + RECORD_TIMES;
+    for (size_t i = 0; i < run->of->body_count; i++, at += RECORD_BODY) {
+        write_number(at[0], i > 0 ? ",[" : "[");
+        write_number(at[1], ",");
+        write_number(at[2], ",");
+        fputc(']', answers);
+    }
+    fprintf(answers, "],\"joints\":[");
+    for (size_t i = 0; i < run->of->joint_count; i++, at += RECORD_JOINT) {
+        fprintf(answers, "%s", i > 0 ? "," : "");
+        if (run->of->joints[i].kind != DRIVER_PIN_IN_HOLE) {
+            fprintf(answers, "null");
+            continue;
+        }
+        for (size_t k = 0; k < RECORD_JOINT; k++) {
+            write_number(at[k], k > 0 ? "," : "[");
+        }
+        fputc(']', answers);
+    }
+    fprintf(answers, "]}\n");
+}
+
 static void write_done(const DriverRun *run)
 {
     json_t *joints = json_array();
@@ -430,6 +557,9 @@ void driver_run_write(DriverRun *run)
     run->wall_s = clock_s() - run->began_s;
     for (size_t i = 0; i < run->of->sample_count; i++) {
         write_rows(run, i);
+    }
+    for (size_t i = 0; i < run->record_count; i++) {
+        write_record(run, run->records + i * record_size(run));
     }
     write_done(run);
     fflush(answers);
@@ -487,6 +617,7 @@ void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact 
             *state = contact_state_begun((1.0 - share) * contact->approach_before +
                                          share * pose->approach_speed);
             totals->begun++;
+            totals->approach = state->impact_speed;
         }
         contact_state_follow(state, pose->approach_speed, joint->law.resting_speed);
         totals->depth_max = fmax(totals->depth_max, pose->penetration);

@@ -47,7 +47,8 @@ typedef struct DriverCase {
     char way[DRIVER_NAME_SIZE];
     double step_s;
     double duration_s;
-    Vec2 gravity; // acceleration of free fall, m/s^2
+    double record_s; // least length of records of steps; 0: none are wanted
+    Vec2 gravity;    // acceleration of free fall, m/s^2
     size_t body_count;
     DriverBody *bodies; // owned, as all arrays
     size_t joint_count;
@@ -80,8 +81,18 @@ typedef struct DriverStamp {
 typedef struct DriverTotals {
     double force_max;
     double depth_max;
-    size_t begun; // contacts
+    size_t begun;    // contacts
+    double approach; // m/s, closing speed at which the last of them began
 } DriverTotals;
+
+// What a joint with play did in a step.
+typedef struct DriverTouch {
+    Vec2 eccentricity; // m, pin centre less hole centre
+    Vec2 force;        // N, on body b, its mean
+    double force_max;  // N
+    double depth_max;  // m
+    double approach;   // m/s, closing speed at which its last contact began
+} DriverTouch;
 
 // A run under way.
 typedef struct DriverRun {
@@ -93,6 +104,10 @@ typedef struct DriverRun {
     size_t stamp_count;
     bool is_linear;       // between two stamps; else a cubic through four
     DriverTotals *totals; // by joint
+    DriverTouch *touches; // room, by joint
+    double *records;      // of steps: times, velocities of bodies, joints
+    size_t record_count;
+    size_t record_room;
     size_t steps;
     double began_s;
     double wall_s;
@@ -130,8 +145,14 @@ Vec2 *driver_run_forces(DriverRun *run);
 void driver_run_sampled(DriverRun *run);
 DriverStamp *driver_run_stamp(DriverRun *run);
 
-// Takes in the stamp that has been filled in: makes the samples that lie between stamps.
+// Takes in the stamp that has been filled in: makes the samples that lie between stamps, and the
+// record of the step between the last two.
 void driver_run_stamped(DriverRun *run);
+
+// Records a step, or a part of one, that goes on from the last: how the bodies move at its end, and
+// what the joints did, those without play passed over. Of ways that do not stamp.
+void driver_run_record(DriverRun *run, double start_s, double end_s, const DriverMotion *motions,
+                       const DriverTouch *touches);
 
 // Ends the clock, writes the answer, and ends the program: what it has is given back by that.
 void driver_run_write(DriverRun *run) __attribute__((noreturn));

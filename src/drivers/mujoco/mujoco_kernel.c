@@ -13,8 +13,8 @@
 // The accelerations without contacts are quadratic in v. Those of the rows, F(v), an impulse P
 // changes by 2 S P, those of the coordinates, G(v), by B P:
 //     2 S = (F(v + e A) - F(v)) / e,   B = (G(v + e A) - G(v)) / e,   e small;   W' = S + S'
+#include "drivers/common/within.h"
 #include "drivers/mujoco/mujoco_driver.h"
-#include "kernel/kernel.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -292,32 +292,15 @@ static void make(MujocoRun *run, Within *in)
     for (int side = 0; side < 2; side++) {
         in->sites[side] = calloc(of->joint_count + 1, sizeof *in->sites[side]);
     }
-    size_t contacts = 0;
-    for (size_t i = 0; i < of->joint_count; i++) {
-        const DriverJoint *joint = &of->joints[i];
-        if (joint->kind != DRIVER_PIN_IN_HOLE) {
-            continue;
-        }
+    within_add_contacts(of, &in->kernel, in->joints);
+    for (size_t i = 0; i < in->kernel.contact_count; i++) {
         char name[DRIVER_NAME_SIZE];
         for (int side = 0; side < 2; side++) {
-            snprintf(name, sizeof name, "%s%zu", side == 0 ? "hole" : "pin", i);
-            in->sites[side][contacts] = mj_name2id(run->model, mjOBJ_SITE, name);
+            snprintf(name, sizeof name, "%s%zu", side == 0 ? "hole" : "pin", in->joints[i]);
+            in->sites[side][i] = mj_name2id(run->model, mjOBJ_SITE, name);
         }
-        in->joints[contacts++] = i;
-        const KernelContact contact = {.law = joint->law,
-                                       .shape = KERNEL_HOLE,
-                                       .radial_clearance = joint->clearance,
-                                       .hole_radius = joint->clearance,
-                                       .joint = (int)i,
-                                       .state = joint->contact};
-        kernel_add(&in->kernel, &contact, KERNEL_ROWS_PLAIN);
-    }
-    if (contacts == 0) {
-        driver_refuse("contacts within the step without a pin that has play");
     }
     in->rows = kernel_rows(&in->kernel);
-    kernel_make_room(&in->kernel, in->rows);
-    kernel_make_drift(&in->kernel);
     in->sums = kernel_sums(in->rows);
 }
 
@@ -342,34 +325,13 @@ static void make_numbers(Within *in)
     in->work = numbers(in->rows);
 }
 
-// Samples in the step that has been taken, and what its contacts did.
-static void look_inside(Within *in, double start_s, double step_s, KernelSums *sums)
+// The bodies at a time in the step that has been taken.
+static void read_inside(void *adapter, double since_s, const KernelSums *sums,
+                        DriverMotion *motions)
 {
-    MujocoRun *run = in->run;
-    const Kernel *kernel = &in->kernel;
-    while (!driver_run_is_full(&run->run) && driver_run_next(&run->run) <= start_s + step_s) {
-        const double since_s = driver_run_next(&run->run) - start_s;
-        kernel_at(kernel, kernel_node(kernel, since_s), since_s, sums);
-        find_inside(in, since_s, step_s, sums, in->nudged, in->data->qvel);
-        mujoco_read(run, in->nudged, in->data->qvel, driver_run_motions(&run->run));
-        for (size_t i = 0; i < kernel->contact_count; i++) {
-            driver_run_forces(&run->run)[in->joints[i]] =
-                (Vec2){sums->force[2 * i], sums->force[2 * i + 1]};
-        }
-        driver_run_sampled(&run->run);
-    }
-    for (size_t i = 0; i < kernel->contact_count; i++) {
-        DriverTotals *totals = &run->run.totals[in->joints[i]];
-        bool was_touching = run->contacts[in->joints[i]].state.is_touching;
-        for (size_t node = 0; node < kernel->node_count; node++) {
-            const double *force = kernel_node_forces(kernel, node) + 2 * i;
-            const bool touches = kernel_touches(kernel, node, i);
-            totals->begun += touches && !was_touching ? 1 : 0;
-            totals->force_max = fmax(totals->force_max, hypot(force[0], force[1]));
-            was_touching = touches;
-        }
-        run->contacts[in->joints[i]].state.is_touching = was_touching;
-    }
+    const Within *in = adapter;
+    find_inside(in, since_s, in->run->of->step_s, sums, in->nudged, in->data->qvel);
+    mujoco_read(in->run, in->nudged, in->data->qvel, motions);
 }
 
 void mujoco_run_kernel(MujocoRun *run)
@@ -380,17 +342,25 @@ void mujoco_run_kernel(MujocoRun *run)
     make_numbers(&in);
     KernelSums sums = kernel_sums(in.rows);
     const int nv = (int)in.count;
+    WithinStep step = {.kernel = &in.kernel,
+                       .joints = in.joints,
+                       .states = run->contacts,
+                       .step_s = step_s,
+                       .motions = read_inside,
+                       .adapter = &in,
+                       .room = run->motions,
+                       .sums = &sums};
     mju_copy(in.q, run->data->qpos, nv);
     mju_copy(in.v, run->data->qvel, nv);
     driver_run_begin(&run->run);
     mj_forward(run->model, run->data);
     mju_copy(in.a, run->data->qacc, nv);
     while (!driver_run_is_full(&run->run)) {
-        const double start_s = step_s * (double)run->run.steps;
+        step.start_s = step_s * (double)run->run.steps;
         mujoco_read(run, in.q, in.v, run->motions);
         take_step(&in, step_s, run->motions);
         in.steps = ++run->run.steps;
-        look_inside(&in, start_s, step_s, &sums);
+        within_look(&step, &run->run);
         mju_copy(in.q, in.q_next, nv);
         mju_copy(in.v, in.v_next, nv);
         mujoco_check(run);

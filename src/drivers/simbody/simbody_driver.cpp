@@ -46,6 +46,7 @@ class World
     void follow(const DriverMotion *now, ::Vec2 *on_joints);
     void stamp(const State &state);
     void sample(const State &state);
+    void record(double start_s, double end_s, const DriverMotion *now);
     void run_adaptive(RungeKuttaMersonIntegrator &integrator);
     MobilizedBody &body(int number)
     {
@@ -248,6 +249,21 @@ void World::sample(const State &state)
     driver_run_sampled(&answer);
 }
 
+// What the joints do at a step's end stands for all of it.
+void World::record(double start_s, double end_s, const DriverMotion *now)
+{
+    std::vector<DriverTouch> touches(of->joint_count);
+    for (size_t i = 0; i < of->joint_count; i++) {
+        const DriverJoint &joint = of->joints[i];
+        if (joint.kind == DRIVER_PIN_IN_HOLE) {
+            const PinHole pose = driver_pose(&joint, now);
+            touches[i] = DriverTouch{pose.eccentricity, forces_now[i], vec2_length(forces_now[i]),
+                                     pose.penetration, answer.totals[i].approach};
+        }
+    }
+    driver_run_record(&answer, start_s, end_s, now, touches.data());
+}
+
 // Long steps: what is between them only Simbody knows.
 void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
 {
@@ -258,10 +274,17 @@ void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
         if (integrator.stepTo(driver_run_next(&answer)) == Integrator::ReachedReportTime) {
             sample(integrator.getState());
         } else if (integrator.getAdvancedTime() > followed_s) {
+            const double before_s = std::max(followed_s, 0.0);
             followed_s = integrator.getAdvancedTime();
             read(integrator.getAdvancedState(), now.data());
             follow(now.data(), forces_now.data());
+            record(before_s, followed_s, now.data());
         }
+    }
+    const double sampled_s = of->sample_times[of->sample_count - 1];
+    if (sampled_s > followed_s) {
+        record(std::max(followed_s, 0.0), sampled_s,
+               &answer.motions[(of->sample_count - 1) * of->body_count]);
     }
     answer.steps = static_cast<size_t>(integrator.getNumStepsTaken());
 }

@@ -1,0 +1,108 @@
+#!/bin/sh
+# Do run, study and check take another engine as a backend like ODE, and is one that is missing or
+# misbehaves a failed run with its reason? The engine is tests/engine/toy_driver.py, whose order and
+# faults are known; the truth is the closed form. Prints TAP.
+#     engines_as_backends.sh PROGRAM PYTHON
+set -u
+program=$1
+python=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+log=$work/log
+. "$(dirname "$0")/../support/tap.sh"
+toy=toy=$JOINTPLAY_TOY_DRIVER
+case=$work/case.yaml
+cp "$JOINTPLAY_CASES/paper/ideal-nominal.yaml" "$case"
+cd "$work" || exit 1
+export JOINTPLAY_DRIVERS="$work/none"
+
+run() {
+    "$program" run "$case" --set run.samples=30 -q "$@" >out 2>"$log"
+}
+
+# Whether Python finds an expression over the result true.
+holds() {
+    "$python" -c "
+import json, sys
+r = json.load(open('out'))
+runs = {x['backend']: x for x in r['runs']}
+sys.exit(0 if $1 else 1)" 2>>"$log"
+}
+
+run --driver "$toy" --backend analytic,toy --step 200us --json &&
+    holds "runs['driver']['status'] == 'ok' and 0 < runs['driver']['error']['omega_max'] < .1"
+report "a driver's run is held against the closed form" $?
+holds "runs['driver']['engine'] == {'name': 'Toy', 'version': '1.0', 'precision': 'double', 'way': 'euler', 'settings': 'none'} and runs['analytic']['engine'] is None"
+report "its result names engine, version, precision and way" $?
+coarse=$("$python" -c "import json; print(json.load(open('out'))['runs'][1]['error']['omega_max'])")
+run --driver "$toy" --backend analytic,toy --step 40us --json &&
+    holds "4.5 < $coarse / runs['driver']['error']['omega_max'] < 5.5"
+report "at a fifth of the step its error is a fifth" $?
+holds "runs['driver']['joints']['ground-crank']['force_max_N'] is None and runs['driver']['energy']['drive_work_J'] is None"
+report "what it does not tell is null, and no number" $?
+
+# means over a degree differ from the closed form's by (pi/180)^2/24 of the fourth derivative, and
+# Euler's angles by a thousandth
+JOINTPLAY_TOY_RECORDS=whole run --driver "$toy" --backend analytic,toy --step 40us --json \
+    --set run.samples=360 &&
+    holds "abs(runs['driver']['bodies']['follower']['alpha_max_rad_s2'] / runs['analytic']['bodies']['follower']['alpha_max_rad_s2'] - 1) < .01"
+report "accelerations are those of the steps that it tells of" $?
+for fault in gap few cut; do
+    JOINTPLAY_TOY_RECORDS=$fault run --driver "$toy" --backend analytic,toy --step 200us
+    [ $? = 4 ] && grep -q 'driver: toy euler.*its\|driver: its step' "$log"
+    report "steps that do not follow each other ($fault) are a failed run" $?
+done
+
+run --driver "$toy" --backend analytic,toy --set run.step=auto --set run.tolerance=5e-2 --json &&
+    holds "runs['driver']['error']['max'] <= 5e-2 and runs['driver']['step_s'] > 1e-5"
+report "its step can be chosen for an error" $?
+
+for fault in abort starts-over failed nan; do
+    JOINTPLAY_TOY_FAULT=$fault run --driver "$toy" --backend analytic,toy --step 200us
+    [ $? = 4 ] && grep -q 'on driver: toy euler: ' "$log" && grep -q 'driver FAILED' out
+    report "a driver with the fault '$fault' is a failed run: exit status 4" $?
+done
+run --backend analytic,mujoco --step 200us
+[ $? = 4 ] && grep -q "there is no driver for 'mujoco' here" "$log"
+report "so is one that is missing" $?
+run --driver "mujoco=$JOINTPLAY_TOY_DRIVER" --backend analytic,mujoco --step 200us --json &&
+    holds "runs['mujoco']['engine']['name'] == 'Toy'"
+report "--driver names another program for an engine" $?
+run --driver "mujoco=$JOINTPLAY_TOY_DRIVER" --backend mujoco --step 200us --set engines.mujoco=kernel
+[ $? = 4 ] && grep -q "the driver 'mujoco' has no way 'kernel'" "$log"
+report "a way that it has not is a failed run" $?
+run --driver "$toy"
+[ $? = 2 ] && grep -q "is not used: 'toy' is not among the backends" "$log"
+report "a driver that nothing asks for is refused" $?
+run --driver "ode=$JOINTPLAY_TOY_DRIVER"
+[ $? = 2 ] && grep -q "none of our own backends" "$log"
+report "so is one in the place of our own" $?
+
+cat >study.yaml <<STUDY
+case: case.yaml
+set: {run.samples: 30, run.step: 200 us}
+vary:
+  scheme: [driver, driver/kernel]
+STUDY
+"$program" study study.yaml --driver "$toy" -q --store s.sqlite >out 2>"$log"
+"$program" study export s.sqlite >rows 2>>"$log"
+grep -q '^0,driver,ok,' rows && grep -q "^1,driver/kernel,failed,the driver 'toy' has no way 'kernel'" rows
+report "a study has an engine's runs, and those that fail with their reasons" $?
+
+sed -i 's|^run:.*|run: {revolutions: 1, samples: 30, step: 200 us, backends: [analytic, driver]}|' case.yaml
+sed -i '/^ode:/d' case.yaml
+cat >>case.yaml <<EXPECT
+expect:
+  driver.error.omega_max: below 1.8e-2
+EXPECT
+"$program" check case.yaml --driver "$toy" -q >out 2>"$log"
+report "check judges an engine's run by the case's limits" $?
+JOINTPLAY_TOY_FAULT=drive "$program" check case.yaml --driver "$toy" -q >out 2>"$log"
+[ $? = 4 ]
+report "and fails where the run does" $?
+"$program" check case.yaml --driver "$toy" -q --set run.step=400us >out 2>"$log"
+[ $? = 1 ] && grep -q 'driver.error.omega_max is' "$log"
+report "a coarser step is outside of them" $?
+"$program" --version | grep -q 'drivers of other engines: none'
+report "--version says what there is" $?
+echo 1..$number
