@@ -45,6 +45,7 @@ void engine_list(char *text, size_t size);
 typedef struct EngineSaid {
     char settings[4 * ENGINE_TEXT_SIZE]; // of the engine, that are not its defaults
     double opening_m;                    // largest, of an ideal joint at a sample
+    bool is_refused;                     // the driver cannot express the case in that way
 } EngineSaid;
 
 // Runs a scenario by a driver in one of its ways, at the scenario's step, within so many seconds.

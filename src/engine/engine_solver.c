@@ -57,18 +57,38 @@ static bool find_driver(const Scenario *scenario, BackendKind backend, EngineDri
                : err_set(err, ERR_USAGE, "--driver NAME=PROGRAM says which driver is meant");
 }
 
-// The way that is asked for; NULL where the driver has none such.
-static const char *find_way(const EngineDriver *driver, EngineWay wanted)
+// The ways to try, in their order: that which is asked for, or of the best all that are known, and
+// the driver's first. Returns how many there are.
+static size_t list_ways(const EngineDriver *driver, EngineWay wanted,
+                        const char *ways[ENGINE_WAY_COUNT])
 {
+    size_t count = 0;
     for (int way = ENGINE_WAY_BEST + 1; way < ENGINE_WAY_COUNT; way++) {
         for (size_t i = 0; i < driver->way_count; i++) {
             if ((wanted == ENGINE_WAY_BEST || (int)wanted == way) &&
                 strcmp(driver->ways[i], OPTIONS_ENGINE_WAYS[way]) == 0) {
-                return driver->ways[i];
+                ways[count++] = driver->ways[i];
             }
         }
     }
-    return wanted == ENGINE_WAY_BEST ? driver->ways[0] : NULL;
+    if (wanted == ENGINE_WAY_BEST && count == 0) {
+        ways[count++] = driver->ways[0];
+    }
+    return count;
+}
+
+// Runs the case in one way.
+static bool run_way(EngineState *state, const char *way, Err *err)
+{
+    const Scenario *scenario = state->scenario;
+    trajectory_destroy(state->answer);
+    engine_records_finish(&state->records);
+    state->records =
+        engine_records_start(scenario->linkage.body_count, scenario->linkage.joint_count,
+                             scenario_duration(scenario) / RECORDS_WANTED);
+    state->answer = engine_run_recorded(&state->driver, way, scenario, RUN_LIMIT_S, &state->said,
+                                        &state->records);
+    return state->answer->is_complete || err_set(err, ERR_SOLVER, "%s", state->answer->message);
 }
 
 static void note_engine(EngineState *state, const char *way)
@@ -122,25 +142,30 @@ static bool engine_open(const Scenario *scenario, BackendKind backend, void **op
     const EngineWay wanted = scenario->engines[backend].way;
     EngineState *state = zeroed(1, sizeof *state);
     state->scenario = scenario;
-    const bool is_there = find_driver(scenario, backend, &state->driver, err);
-    const char *way = is_there ? find_way(&state->driver, wanted) : NULL;
-    if (way == NULL) {
-        const bool is_set = !is_there || err_set(err, ERR_SOLVER, "the driver '%s' has no way '%s'",
-                                                 state->driver.name, OPTIONS_ENGINE_WAYS[wanted]);
-        engine_close(state);
-        return is_set && is_there;
-    }
-    state->records =
-        engine_records_start(scenario->linkage.body_count, scenario->linkage.joint_count,
-                             scenario_duration(scenario) / RECORDS_WANTED);
-    state->answer = engine_run_recorded(&state->driver, way, scenario, RUN_LIMIT_S, &state->said,
-                                        &state->records);
-    if (!state->answer->is_complete) {
-        err_set(err, ERR_SOLVER, "%s", state->answer->message);
+    const char *ways[ENGINE_WAY_COUNT];
+    if (!find_driver(scenario, backend, &state->driver, err)) {
         engine_close(state);
         return false;
     }
-    note_engine(state, way);
+    const size_t count = list_ways(&state->driver, wanted, ways);
+    bool is_run = count > 0 || err_set(err, ERR_SOLVER, "the driver '%s' has no way '%s'",
+                                       state->driver.name, OPTIONS_ENGINE_WAYS[wanted]);
+    size_t way = 0;
+    if (is_run) {
+        Err own = {0};
+        is_run = run_way(state, ways[way], &own);
+        // what it cannot express in its best way it may in another
+        while (!is_run && state->said.is_refused && way + 1 < count) {
+            own = (Err){0};
+            is_run = run_way(state, ways[++way], &own);
+        }
+        is_run = is_run || err_set(err, ERR_SOLVER, "%s", own.text);
+    }
+    if (!is_run) {
+        engine_close(state);
+        return false;
+    }
+    note_engine(state, ways[way]);
     begin_steps(state);
     *opened = state;
     return true;

@@ -319,6 +319,9 @@ static bool take_line(EngineReply *reply, const json_t *line, Err *err)
     }
     if ((value = json_object_get(line, "refused")) != NULL) {
         const char *what = json_string_value(value);
+        if (reply->said != NULL) {
+            reply->said->is_refused = true;
+        }
         return err_set(err, ERR_SOLVER, "cannot express %s", what != NULL ? what : "this case");
     }
     if (reply->scenario != NULL && json_object_get(line, "sample") != NULL) {

@@ -10,6 +10,7 @@
 #include "measure/ladder.h"
 #include "run/registry.h"
 #include "run/run.h"
+#include "run/tracer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -80,4 +81,77 @@ static inline Scenario impact(double step_s)
     Scenario scenario = load("cases/paper/impact-k66.yaml", OVERRIDES, 4);
     scenario.run.step = step_s;
     return scenario;
+}
+
+// Contacts within the step, as good as ODE's own up to a factor of 3: the rest of both is the same
+// equations in other coordinates.
+static inline void hold_kernel_against_ode(const char *engine)
+{
+    static const double STEPS[] = {100e-6, 50e-6, 25e-6, 10e-6, 5e-6};
+    enum { COUNT = sizeof STEPS / sizeof *STEPS };
+    double errors[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        Scenario scenario = impact(STEPS[i]);
+        const Outcome kernel = outcome_of(engine, "kernel", &scenario, BACKEND_REFERENCE);
+        const Outcome ode =
+            hold_against(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY),
+                         BACKEND_REFERENCE);
+        errors[i] = kernel.error.omega_max;
+        if (!(errors[i] <= 3.0 * ode.error.omega_max)) {
+            fail_msg("at %g us %g against ODE's %g", 1e6 * STEPS[i], errors[i],
+                     ode.error.omega_max);
+        }
+        assert_close(kernel.force_ratio, 1.0, STEPS[i] < 11e-6 ? 1e-3 : 0.05);
+    }
+    // from end to end, for where samples fall in the steps changes single errors by two
+    const double order = log(errors[0] / errors[COUNT - 1]) / log(STEPS[0] / STEPS[COUNT - 1]);
+    assert_true(order > 2.0);
+    // the control: the law as a force
+    Scenario scenario = impact(10e-6);
+    const Outcome force = outcome_of(engine, "force", &scenario, BACKEND_REFERENCE);
+    assert_true(force.error.omega_max > 10.0 * errors[3]);
+}
+
+// As a backend, whose steps are those that the driver tells of: the contacts within them, their
+// peaks and onsets, and the spikes of the accelerations are the reference's.
+static inline void hold_contacts(BackendKind backend)
+{
+    Scenario scenario = impact(10e-6);
+    Trajectory *truth =
+        run_guarded(&scenario, registry_solver(BACKEND_REFERENCE), NOBODY, &TRACER_PROBE, NULL);
+    scenario.engines[backend].way = ENGINE_WAY_KERNEL;
+    Trajectory *run = run_guarded(&scenario, registry_solver(backend), NOBODY, &TRACER_PROBE, NULL);
+    if (!run->is_complete) {
+        fail_msg("%s", run->message);
+    }
+    const size_t joint = joint_with_play(&scenario);
+    const JointExtremes *known = &truth->joints[joint];
+    const JointExtremes *found = &run->joints[joint];
+    assert_int_equal(found->impacts, known->impacts);
+    assert_close(found->force_max.value, known->force_max.value, 1e-3);
+    assert_close(found->penetration_max.value, known->penetration_max.value, 1e-3);
+    assert_close(found->impulse, known->impulse, 1e-3);
+    assert_int_equal(found->spike_count, known->spike_count);
+    for (size_t i = 0; i < known->spike_count; i++) {
+        assert_near(found->spikes[i].onset_s, known->spikes[i].onset_s, 10e-6);
+        assert_near(found->spikes[i].approach_speed, known->spikes[i].approach_speed, 2e-3);
+    }
+    for (size_t i = 0; i < truth->body_count; i++) {
+        assert_int_equal(run->alpha_spikes[i].count, truth->alpha_spikes[i].count);
+        // means over local steps of some microseconds, of pulses of 100 us: (h/T)^2
+        assert_close(run->bodies[i].alpha_max.value + 1.0, truth->bodies[i].alpha_max.value + 1.0,
+                     2e-2);
+    }
+    assert_true(isnan(run->energy.drive_work) && run->engine.name[0] != '\0');
+    trajectory_destroy(run);
+    // the control: the law as a force, at a coarser step, misses the contact by more than that
+    scenario.run.step = 50e-6;
+    scenario.engines[backend].way = ENGINE_WAY_FORCE;
+    run = run_guarded(&scenario, registry_solver(backend), NOBODY, &TRACER_PROBE, NULL);
+    assert_true(!run->is_complete ||
+                fabs(run->joints[joint].spikes[0].approach_speed -
+                     known->spikes[0].approach_speed) > 2e-3 ||
+                fabs(run->joints[joint].force_max.value / known->force_max.value - 1.0) > 1e-3);
+    trajectory_destroy(run);
+    trajectory_destroy(truth);
 }

@@ -57,6 +57,10 @@ run --driver "$toy" --backend analytic,toy --set run.step=auto --set run.toleran
     holds "runs['driver']['error']['max'] <= 5e-2 and runs['driver']['step_s'] > 1e-5"
 report "its step can be chosen for an error" $?
 
+run --driver "$toy" --backend reference,toy --step 200us --json &&
+    holds "runs['driver']['error']['against'] == 'analytic'"
+report "the truth of a run need not be among its backends" $?
+
 for fault in abort starts-over failed nan; do
     JOINTPLAY_TOY_FAULT=$fault run --driver "$toy" --backend analytic,toy --step 200us
     [ $? = 4 ] && grep -q 'on driver: toy euler: ' "$log" && grep -q 'driver FAILED' out

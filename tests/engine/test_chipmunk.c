@@ -13,7 +13,7 @@ static void every_number_is_named(void **state)
     assert_string_equal(driver.engine, "Chipmunk");
     assert_string_equal(driver.precision, "double");
     assert_true(driver.version[0] >= '7');
-    assert_int_equal(driver.way_count, 3);
+    assert_int_equal(driver.way_count, 4);
 }
 
 // The order of the error of the angular velocities of ideal joints, and that at the coarsest step.
@@ -81,9 +81,23 @@ static void a_slider_crank_can_be_told(void **state)
     assert_true(ideal.error.max < 1e-2);
 }
 
+static void contacts_in_the_step_are_as_good_as_those_of_ode(void **state)
+{
+    (void)state;
+    hold_kernel_against_ode(CHIPMUNK);
+}
+
+static void steps_tell_of_every_contact(void **state)
+{
+    (void)state;
+    hold_contacts(BACKEND_CHIPMUNK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
+        cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(half_a_step_makes_the_order),
         cmocka_unit_test(the_law_as_a_force_converges),

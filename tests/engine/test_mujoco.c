@@ -40,34 +40,16 @@ static void ideal_joints_are_of_first_order(void **state)
     assert_true(openings[0] > 0.0 && openings[0] < 1e-4 && openings[2] < openings[0]);
 }
 
-// As good as ODE's own contacts within the step, up to a factor of 3: the rest of both is the same
-// equations in other coordinates.
 static void contacts_in_the_step_are_as_good_as_those_of_ode(void **state)
 {
     (void)state;
-    static const double STEPS[] = {100e-6, 50e-6, 25e-6, 10e-6, 5e-6};
-    enum { COUNT = sizeof STEPS / sizeof *STEPS };
-    double errors[COUNT];
-    for (int i = 0; i < COUNT; i++) {
-        Scenario scenario = impact(STEPS[i]);
-        const Outcome kernel = outcome_of(MUJOCO, "kernel", &scenario, BACKEND_REFERENCE);
-        const Outcome ode =
-            hold_against(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY),
-                         BACKEND_REFERENCE);
-        errors[i] = kernel.error.omega_max;
-        if (!(errors[i] <= 3.0 * ode.error.omega_max)) {
-            fail_msg("at %g us %g against ODE's %g", 1e6 * STEPS[i], errors[i],
-                     ode.error.omega_max);
-        }
-        assert_close(kernel.force_ratio, 1.0, STEPS[i] < 11e-6 ? 1e-3 : 0.05);
-    }
-    // from end to end, for where samples fall in the steps changes single errors by two
-    const double order = log(errors[0] / errors[COUNT - 1]) / log(STEPS[0] / STEPS[COUNT - 1]);
-    assert_true(order > 2.0);
-    // the control: the law as a force, with MuJoCo's best integrator
-    Scenario scenario = impact(10e-6);
-    const Outcome force = outcome_of(MUJOCO, "force", &scenario, BACKEND_REFERENCE);
-    assert_true(force.error.omega_max > 10.0 * errors[3]);
+    hold_kernel_against_ode(MUJOCO);
+}
+
+static void steps_tell_of_every_contact(void **state)
+{
+    (void)state;
+    hold_contacts(BACKEND_MUJOCO);
 }
 
 // A force that is stiff in the step needs a finer one; then its error is of order 2.
@@ -137,6 +119,7 @@ int main(void)
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(ideal_joints_are_of_first_order),
         cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
+        cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(the_law_as_a_force_converges),
         cmocka_unit_test(a_limited_tendon_holds_the_pin),
         cmocka_unit_test(a_warning_is_a_failed_run),

@@ -13,7 +13,7 @@ static void every_number_is_named(void **state)
     assert_string_equal(driver.engine, "Simbody");
     assert_string_equal(driver.precision, "double");
     assert_true(driver.version[0] >= '3');
-    assert_int_equal(driver.way_count, 2);
+    assert_int_equal(driver.way_count, 3);
 }
 
 // Merson's method is of order 4, and the joints are held to 1e-8.
@@ -66,9 +66,23 @@ static void a_slider_crank_can_be_told(void **state)
     assert_true(ideal.error.max < 1e-5);
 }
 
+static void contacts_in_the_step_are_as_good_as_those_of_ode(void **state)
+{
+    (void)state;
+    hold_kernel_against_ode(SIMBODY);
+}
+
+static void steps_tell_of_every_contact(void **state)
+{
+    (void)state;
+    hold_contacts(BACKEND_SIMBODY);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
+        cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(ideal_joints_are_of_order_four),
         cmocka_unit_test(the_law_as_a_force_converges),

@@ -47,10 +47,11 @@ static inline double run_report_horizon(const RunReport *report)
     return run_report_has_truth(report) ? report->truth->horizon_s : INFINITY;
 }
 
-// The run that a run with a known error was held against.
+// The run that a run with a known error was held against; the truth of a case need not be among
+// its runs.
 static inline const Trajectory *run_report_against(const RunReport *report, size_t index)
 {
-    const Trajectory *against = NULL;
+    const Trajectory *against = report->truth != NULL ? report->truth->trajectory : NULL;
     for (size_t i = 0; i < report->run_count; i++) {
         const bool is_it = strcmp(report->runs[i]->backend, report->errors[index].against) == 0;
         against = is_it ? report->runs[i] : against;

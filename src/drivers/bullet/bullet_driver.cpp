@@ -2,6 +2,7 @@
 //
 //     force      the contact's law is a force on the bodies, set before each step
 //     staggered  the same, with the velocities read as what they are in that order
+//     kernel     the contacts integrated within the step, by trial steps (drivers/common/trial.c)
 //
 // A step of Bullet changes the velocities by the forces and constraints at x(n), then moves the
 // bodies, x(n+1) = x(n) + h v: so v is the mean velocity of [n, n+1]. Read as that at n + 1/2, and
@@ -9,7 +10,7 @@
 // pivot. Bullet has no joint that is limited to a circle: those of its 6-dof joints are a box.
 #include <cmath> // before what is in C
 extern "C" {
-#include "drivers/common/driver.h"
+#include "drivers/common/trial.h"
 }
 
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
@@ -36,6 +37,9 @@ class World
     explicit World(const DriverCase *of);
     ~World();
     void run();
+    void run_trials();
+    void accelerate(const double *q, const double *v, const TrialPush *pushes, size_t count,
+                    double *a);
 
   private:
     void add_body(size_t i);
@@ -46,7 +50,8 @@ class World
         return number == DRIVER_GROUND ? ground : *bodies[number];
     }
     void read(std::vector<DriverMotion> &motions);
-    void place_driven();
+    void place_driven(double time_s, double step_s);
+    void place(size_t i, const DriverMotion &motion);
     void push();
     void stamp(double velocity_s);
     void start_staggered();
@@ -71,6 +76,11 @@ class World
     double now_s = 0.0;
     double lag_s = 0.0; // of velocities behind positions
     DriverRun answer;
+    // of trials
+    Tree tree{};
+    double trial_s = 0.0;
+    std::vector<DriverMotion> tried;
+    std::vector<Vec2> bends;
 };
 
 btVector3 to_vector(Vec2 a)
@@ -212,18 +222,17 @@ void World::read(std::vector<DriverMotion> &motions)
 }
 
 // The driven body where the others are, with what Bullet makes its speed of.
-void World::place_driven()
+void World::place_driven(double time_s, double step_s)
 {
     if (!of->has_drive) {
         return;
     }
     btRigidBody &driven = *bodies[of->driven_body];
-    const double angle = of->bodies[of->driven_body].start.angle + of->drive_speed * now_s;
+    const double angle = of->bodies[of->driven_body].start.angle + of->drive_speed * time_s;
     const btVector3 &place = driven.getWorldTransform().getOrigin();
     const Vec2 pivot = {place.x(), place.y()};
     driven.setWorldTransform(to_transform(pivot, angle));
-    driven.setInterpolationWorldTransform(
-        to_transform(pivot, angle - of->drive_speed * of->step_s));
+    driven.setInterpolationWorldTransform(to_transform(pivot, angle - of->drive_speed * step_s));
 }
 
 // Follows the contacts, and pushes the bodies by the laws' forces in the step to come.
@@ -279,7 +288,7 @@ void World::stamp(double velocity_s)
 void World::start_staggered()
 {
     const std::vector<DriverMotion> start(now);
-    place_driven();
+    place_driven(now_s, of->step_s);
     world.stepSimulation(of->step_s, 0);
     lag_s = 0.5 * of->step_s;
     for (size_t i = 0; i < bodies.size(); i++) {
@@ -311,6 +320,63 @@ void World::start_staggered()
     }
 }
 
+// Puts a body where a trial has it; the driven one stands about its pivot.
+void World::place(size_t i, const DriverMotion &motion)
+{
+    btRigidBody &made = *bodies[i];
+    if (of->has_drive && of->driven_body == static_cast<int>(i)) {
+        place_driven((motion.angle - of->bodies[i].start.angle) / of->drive_speed, trial_s);
+        return;
+    }
+    made.setWorldTransform(to_transform(motion.position, motion.angle));
+    made.setInterpolationWorldTransform(made.getWorldTransform());
+    made.setLinearVelocity(to_vector(motion.velocity));
+    made.setAngularVelocity(btVector3(0.0, 0.0, motion.omega));
+}
+
+// The contacts within the step: the world is asked for accelerations, and moves nothing itself.
+void World::accelerate(const double *q, const double *v, const TrialPush *pushes, size_t count,
+                       double *a)
+{
+    trial_place(&tree, q, v, trial_s, tried.data(), bends.data());
+    for (size_t i = 0; i < bodies.size(); i++) {
+        place(i, tried[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const Vec2 at = driver_point(tried.data(), pushes[i].body, pushes[i].local);
+        btRigidBody &pushed = body(pushes[i].body);
+        pushed.applyForce(to_vector(pushes[i].force),
+                          to_vector(at) - pushed.getCenterOfMassPosition());
+    }
+    world.stepSimulation(trial_s, 0);
+    for (size_t i = 0; i < bodies.size(); i++) {
+        now[i] = tried[i];
+        if (!of->has_drive || of->driven_body != static_cast<int>(i)) {
+            const btVector3 &velocity = bodies[i]->getLinearVelocity();
+            now[i].velocity = Vec2{velocity.x(), velocity.y()};
+            now[i].omega = bodies[i]->getAngularVelocity().z();
+        }
+    }
+    trial_read(&tree, tried.data(), now.data(), bends.data(), trial_s, a);
+}
+
+void World::run_trials()
+{
+    tree = tree_make(of);
+    trial_s = trial_step(of);
+    tried.resize(bodies.size());
+    bends.resize(bodies.size());
+    std::snprintf(answer.settings, sizeof answer.settings,
+                  "btMLCPSolver with btDantzigSolver, ERP 1, CFM 0, driven body kinematic, bodies "
+                  "kept in the plane, trials of %.3g s",
+                  trial_s);
+    trial_run(
+        &tree,
+        [](void *engine, const double *q, const double *v, const TrialPush *pushes, size_t count,
+           double *a) { static_cast<World *>(engine)->accelerate(q, v, pushes, count, a); },
+        this, &answer);
+}
+
 void World::run()
 {
     std::snprintf(answer.settings, sizeof answer.settings,
@@ -324,7 +390,7 @@ void World::run()
         push();
     }
     while (!driver_run_is_full(&answer)) {
-        place_driven();
+        place_driven(now_s, of->step_s);
         world.stepSimulation(of->step_s, 0);
         now_s = of->step_s * static_cast<double>(++answer.steps);
         read(now);
@@ -341,7 +407,7 @@ void World::run()
 
 int main()
 {
-    static const char *const WAYS[] = {"force", "staggered", nullptr};
+    static const char *const WAYS[] = {"force", "staggered", "kernel", nullptr};
     char version[32];
     std::snprintf(version, sizeof version, "%d.%02d", btGetVersion() / 100, btGetVersion() % 100);
     const DriverIdentity identity = {"Bullet", version, "double", WAYS};
@@ -351,6 +417,9 @@ int main()
         return status;
     }
     World world(of);
+    if (driver_is_way(of, "kernel")) {
+        world.run_trials();
+    }
     world.run();
     return 0;
 }

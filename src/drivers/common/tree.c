@@ -204,3 +204,31 @@ void tree_push(const Tree *tree, const DriverMotion *motions, int body, Vec2 loc
         body = at->parent;
     }
 }
+
+void tree_bends(const Tree *tree, const DriverMotion *motions, const double *rates, Vec2 *bends)
+{
+    const DriverMotion still = {.omega = 0.0};
+    for (size_t i = 0; i < tree->of->body_count; i++) {
+        const size_t number = tree->order[i];
+        const TreeBody *body = &tree->bodies[number];
+        const DriverMotion *own = &motions[number];
+        const bool has_parent = body->parent != DRIVER_GROUND;
+        const DriverMotion *parent = has_parent ? &motions[body->parent] : &still;
+        const Vec2 carried = has_parent ? bends[body->parent] : (Vec2){0.0, 0.0};
+        const double spin = parent->omega * parent->omega;
+        if (body->kind == TREE_FREE) {
+            bends[number] = (Vec2){0.0, 0.0};
+        } else if (body->kind == TREE_TURNS) {
+            const Vec2 pivot = vec2_rotate(parent->angle, body->offset);
+            const Vec2 arm = vec2_rotate(own->angle, body->anchor);
+            bends[number] = vec2_add(vec2_sub(carried, vec2_scale(spin, pivot)),
+                                     vec2_scale(own->omega * own->omega, arm));
+        } else {
+            const Vec2 arm = vec2_sub(own->position, parent->position);
+            const Vec2 axis = vec2_rotate(own->angle, body->axis);
+            bends[number] =
+                vec2_add(vec2_sub(carried, vec2_scale(spin, arm)),
+                         vec2_scale(2.0 * parent->omega * rates[body->first], vec2_perp(axis)));
+        }
+    }
+}

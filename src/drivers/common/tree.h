@@ -43,6 +43,9 @@ void tree_start(const Tree *tree, double *rates);
 void tree_motions(const Tree *tree, const double *coordinates, const double *rates,
                   DriverMotion *motions);
 
+// What the centres of all bodies are accelerated by where no rate changes, m/s^2.
+void tree_bends(const Tree *tree, const DriverMotion *motions, const double *rates, Vec2 *bends);
+
 // Adds what a force on a point of a body does to the forces along the coordinates.
 void tree_push(const Tree *tree, const DriverMotion *motions, int body, Vec2 local, Vec2 force,
                double *pushes);

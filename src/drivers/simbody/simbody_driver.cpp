@@ -3,13 +3,14 @@
 //     force      RungeKuttaMerson, of order 4, at steps of the length given
 //     adaptive   the same with steps of its own, for an accuracy of .01 (h / 100 us)^2, where h is
 //                the step given
+//     kernel     the contacts integrated within the step, by trials (drivers/common/trial.c)
 //
 // Coordinates are those of the joints: the tree has no constraints, the drive is prescribed
 // (Motion::Steady), and loops of ideal joints that are left over are points held in two planes.
 // Simbody has no joint that is limited to a circle.
 #include <cmath>
 extern "C" {
-#include "drivers/common/tree.h"
+#include "drivers/common/trial.h"
 }
 
 #include <Simbody.h>
@@ -36,6 +37,9 @@ class World
   public:
     explicit World(const DriverCase *of);
     void run();
+    void run_trials();
+    void accelerate(const double *q, const double *v, const TrialPush *pushes, size_t count,
+                    double *a);
     void push(const State &state, Vector_<SpatialVec> &on_bodies);
 
   private:
@@ -65,6 +69,11 @@ class World
     std::vector<double> rates;
     std::vector<::Vec2> forces_now; // by joint
     DriverRun answer;
+    // of trials
+    State trial;
+    bool is_trial = false;
+    const TrialPush *pushes = nullptr;
+    size_t push_count = 0;
 };
 
 class Law : public Force::Custom::Implementation
@@ -193,6 +202,14 @@ void World::read(const State &state, DriverMotion *to)
 
 void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
 {
+    for (size_t i = 0; is_trial && i < push_count; i++) {
+        body(pushes[i].body)
+            .applyForceToBodyPoint(state, to_vec(pushes[i].local), to_vec(pushes[i].force),
+                                   on_bodies);
+    }
+    if (is_trial) {
+        return;
+    }
     read(state, motions.data());
     for (size_t i = 0; i < of->joint_count; i++) {
         const DriverJoint &joint = of->joints[i];
@@ -289,6 +306,47 @@ void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
     answer.steps = static_cast<size_t>(integrator.getNumStepsTaken());
 }
 
+// The contacts within the step: Simbody tells accelerations at any state.
+void World::accelerate(const double *q, const double *v, const TrialPush *given, size_t count,
+                       double *a)
+{
+    pushes = given;
+    push_count = count;
+    for (size_t i = 0; i < of->body_count; i++) {
+        const double *at = q + tree.bodies[i].first;
+        const double *going = v + tree.bodies[i].first;
+        if (tree.bodies[i].kind == TREE_FREE) {
+            const DriverMotion &start = of->bodies[i].start;
+            bodies[i].setQFromVector(trial,
+                                     Vector(Vec3(start.angle + at[2], start.position.x + at[0],
+                                                 start.position.y + at[1])));
+            bodies[i].setUFromVector(trial, Vector(Vec3(going[2], going[0], going[1])));
+        } else {
+            bodies[i].setOneQ(trial, 0, at[0]);
+            bodies[i].setOneU(trial, 0, going[0]);
+        }
+    }
+    system.realize(trial, Stage::Acceleration);
+    for (size_t i = 0; i < of->body_count; i++) {
+        double *own = a + tree.bodies[i].first;
+        for (size_t k = 0; k < tree.bodies[i].count; k++) {
+            own[k] = bodies[i].getOneUDot(trial, tree.bodies[i].count == 1 ? 0 : (k + 1) % 3);
+        }
+    }
+}
+
+void World::run_trials()
+{
+    is_trial = true;
+    trial = system.realizeTopology();
+    std::snprintf(answer.settings, sizeof answer.settings, "none: no integrator of Simbody's");
+    trial_run(
+        &tree,
+        [](void *engine, const double *q, const double *v, const TrialPush *given, size_t count,
+           double *a) { static_cast<World *>(engine)->accelerate(q, v, given, count, a); },
+        this, &answer);
+}
+
 void World::run()
 {
     const bool is_adaptive = driver_is_way(of, "adaptive");
@@ -334,7 +392,7 @@ void World::run()
 
 int main()
 {
-    static const char *const WAYS[] = {"force", "adaptive", nullptr};
+    static const char *const WAYS[] = {"force", "adaptive", "kernel", nullptr};
     int major, minor, build;
     SimTK_version_simbody(&major, &minor, &build);
     char version[32];
@@ -347,6 +405,9 @@ int main()
     }
     try {
         World world(of);
+        if (driver_is_way(of, "kernel")) {
+            world.run_trials();
+        }
         world.run();
     } catch (const std::exception &problem) {
         driver_fail("Simbody: %s", problem.what());

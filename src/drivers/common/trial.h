@@ -1,0 +1,45 @@
+// Contacts integrated within the steps of an engine that tells no response: trial steps show it.
+//
+// The engine is asked for accelerations at states of the driver's choosing, by itself and with a
+// force between pin and hole; from the differences come the responses that the contact kernel
+// wants. It needs an engine that solves exactly, or nearly so. Coordinates are those of a tree
+// without loops.
+#pragma once
+
+#include "drivers/common/tree.h"
+#include "drivers/common/within.h"
+
+// A force on a point of a body.
+typedef struct TrialPush {
+    int body;
+    Vec2 local;
+    Vec2 force; // N
+} TrialPush;
+
+// The accelerations of the coordinates at positions and rates under gravity, the drive and so many
+// pushes besides.
+typedef void (*TrialAccelerate)(void *engine, const double *q, const double *v,
+                                const TrialPush *pushes, size_t count, double *a);
+
+// Runs a case to its end, and counts every trial as a step. Refuses one with loops of ideal joints,
+// or without play.
+void trial_run(const Tree *tree, TrialAccelerate accelerate, void *engine, DriverRun *run)
+    __attribute__((noreturn));
+
+// For engines whose coordinates are those of bodies, and whose joints are held by velocities at
+// the end of a step:
+//     J v' = -C/dt      C how far the joints are open, J their Jacobian
+// v' = v + dt a is right where J a = -J' v, so that C has to be dt^2 J' v: the bodies are moved
+// apart by -dt^2 times the accelerations that their velocities alone give them.
+
+// Such a short step for evaluations, s.
+double trial_step(const DriverCase *of);
+
+// The bodies for it: velocities those of the coordinates, positions moved apart. `bends` has room
+// by body: the accelerations that come of velocities alone, m/s^2.
+void trial_place(const Tree *tree, const double *q, const double *v, double step_s,
+                 DriverMotion *motions, Vec2 *bends);
+
+// The coordinates' accelerations from the bodies' velocities before and after such a step.
+void trial_read(const Tree *tree, const DriverMotion *before, const DriverMotion *after,
+                const Vec2 *bends, double step_s, double *a);
