@@ -3,6 +3,7 @@
 #include "casefile/expect.h"
 #include "casefile/expect_outcome.h"
 #include "casefile/schema.h"
+#include "casefile/schema_needs.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -55,12 +56,10 @@ static const char EXPECT_EXAMPLE[] = "expect:\n"
 static const char *const RULES[] = {
     "A case is one YAML document of at most 16 MiB. Every quantity but 0 has its unit; the "
     "decimal separator is a point.",
-    "A case has either four-bar or slider-crank, for a mechanism of that kind, or bodies, for "
-    "any planar linkage.",
+    "A case has four-bar, slider-crank, or, for any linkage, bodies.",
     "Unknown and doubled keys are errors, as are anchors, aliases and tags.",
     "A key that the case makes no use of is an error where another key was forgotten, such as "
-    "space: spatial beside inertia-x; otherwise run, map, compare and tune name it in a warning, "
-    "with what would use it, unless --quiet.",
+    "space: spatial beside inertia-x; otherwise a warning says what would use it.",
     "On the command line, --set KEY=VALUE takes a key's whole path: --set run.step=2us. It "
     "replaces what the file says about the key, and about a key that excludes it.",
 };
@@ -100,7 +99,8 @@ static void append_kinds(const SchemaRow *row, Text *text)
                       : is_of_hinges                            ? " but of a stop"
                       : is_of_stops                             ? " of a stop"
                       : schema_is_of_kind(row, JOINT_PRISMATIC) ? " of a prismatic joint or guide"
-                                                                : " of a guide");
+                      : schema_is_of_kind(row, JOINT_GUIDE)     ? " of a guide"
+                                                                : "");
 }
 
 // The default, as the program's own default scenario has it.
@@ -167,13 +167,36 @@ static void append_wrapped(const char *words, int indent, Text *text)
     text_append(text, "\n");
 }
 
-// The row's meaning, and what a case needs besides for it to matter.
-static void describe_meaning(const SchemaRow *row, Text *text)
+static bool is_of_group(const SchemaRow *row, const char *group)
 {
+    return strncmp(row->path, group, strlen(group)) == 0;
+}
+
+// The row's meaning, and what a case needs besides for it to matter. The page leaves out what it
+// says of whole groups: of ODE, of mechanisms in space, and that contacts are those of joints with
+// play that have no values of their own.
+static void describe_meaning(const SchemaRow *row, bool is_page, Text *text)
+{
+    SchemaRow shown = *row;
+    if (is_page) {
+        shown.needs &= ~SPATIAL & ~(is_of_group(row, "ode.") ? ODE : 0U) &
+                       ~(is_of_group(row, "contact.") ? PLAY : 0U);
+        shown.wants &= ~(COMMON_STIFFNESS | COMMON_DAMPING | COMMON_FRICTION) &
+                       ~((row->wants & REMEMBERED) != 0 ? REBOUND : 0U);
+        shown.needs &= ~((row->wants & SETTLED) != 0 ? PLAY | REPEATING | IMPACT : 0U) &
+                       ~((row->wants & PIN) != 0 ? PLAY : 0U);
+        // an engine is its own backend, and a chosen step is that of a backend with steps
+        const bool is_said = is_of_group(row, "engines.") || (row->needs & CHOSEN_STEP) != 0;
+        shown.backends = is_said ? 0 : row->backends;
+    }
     Text needs;
     text_init(&needs);
-    schema_list_needs(row, &needs);
-    text_append(text, needs.length > 0 ? "%s. Used with: %s" : "%s", row->doc, needs.data);
+    schema_list_needs(&shown, &needs);
+    text_append(text,
+                needs.length == 0 ? "%s"
+                : is_page         ? "%s. Needs %s"
+                                  : "%s. Used with: %s",
+                row->doc, needs.data);
     text_finish(&needs);
 }
 
@@ -200,6 +223,20 @@ static size_t count_alike(const SchemaRow *row, size_t first, size_t end)
     return count;
 }
 
+// Whether two keys of one body mean the same, such as its products of inertia.
+static bool means_the_same(size_t row_number, size_t other_number)
+{
+    if (row_number >= SCHEMA_ROW_COUNT || other_number >= SCHEMA_ROW_COUNT) {
+        return false;
+    }
+    const SchemaRow *row = &SCHEMA_ROWS[row_number];
+    const SchemaRow *other = &SCHEMA_ROWS[other_number];
+    const char *dot = strrchr(row->path, '.');
+    return dot != NULL && strcmp(row->doc, other->doc) == 0 &&
+           strncmp(row->path, other->path, (size_t)(dot - row->path) + 1) == 0 &&
+           row->low == other->low && row->high == other->high;
+}
+
 // What a value is, without the units, which the page lists once.
 static void describe_value(const SchemaRow *row, Text *text)
 {
@@ -217,7 +254,8 @@ static void describe_value(const SchemaRow *row, Text *text)
     if (row->dimension != DIMENSION_NONE && listed != NULL) {
         text_append(text, "%.*s%s", (int)(listed - name), name, listed + units.length);
     } else {
-        text_append(text, "%s", name);
+        const size_t plain = strncmp(name, "plain ", 6) == 0 ? 6 : 0;
+        text_append(text, "%s", name + plain);
     }
     text_finish(&units);
     text_finish(&words);
@@ -227,17 +265,21 @@ static void describe_value(const SchemaRow *row, Text *text)
 static void describe_line(size_t row_number, const char *path, Text *text)
 {
     const SchemaRow *row = &SCHEMA_ROWS[row_number];
-    if (count_alike(row, 0, row_number) > 0) {
+    if (count_alike(row, 0, row_number) > 0 || means_the_same(row_number, row_number - 1)) {
         return;
     }
     Text words;
     text_init(&words);
     if (count_alike(row, row_number, SCHEMA_ROW_COUNT) > 0) {
         const int length = (int)(strchr(path, '.') - path);
-        text_append(text, "- `%.*s.<link>%s` (", length, path, strrchr(path, '.'));
+        text_append(text, "- `%.*s.<link>%s`", length, path, strrchr(path, '.'));
     } else {
-        text_append(text, "- `%s` (", path);
+        text_append(text, "- `%s`", path);
     }
+    for (size_t i = row_number + 1; means_the_same(i, row_number); i++) {
+        text_append(text, ", `%s`", strrchr(SCHEMA_ROWS[i].path, '.') + 1);
+    }
+    text_append(text, " (");
     describe_value(row, text);
     describe_default(row_number, &words);
     if (strcmp(words.data, "none") != 0) {
@@ -245,7 +287,7 @@ static void describe_line(size_t row_number, const char *path, Text *text)
     }
     text_finish(&words);
     text_append(text, "): ");
-    describe_meaning(row, text);
+    describe_meaning(row, true, text);
     text_append(text, "\n");
 }
 
@@ -263,7 +305,7 @@ static void describe_row(size_t row_number, bool is_page, Text *text)
     }
     Text words;
     text_init(&words);
-    describe_meaning(row, &words);
+    describe_meaning(row, false, &words);
     text_append(&words, ". ");
     schema_describe(row, false, &words);
     text_append(&words, "; ");
@@ -275,6 +317,23 @@ static void describe_row(size_t row_number, bool is_page, Text *text)
     text_append(text, "    %s\n", path);
     append_wrapped(words.data, DESCRIBE_INDENT, text);
     text_finish(&words);
+}
+
+// The keys of a group that are for mechanisms in space, or the others.
+static void describe_keys(const SchemaGroup *group, bool is_of_space, bool is_page, Text *text)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
+        const SchemaRow *row = &SCHEMA_ROWS[i];
+        if (!is_in_group(row, group->path) || ((row->needs & SPATIAL) != 0) != is_of_space) {
+            continue;
+        }
+        if (is_page && is_of_space && count == 0) {
+            text_append(text, "\nWith `space: spatial`:\n\n");
+        }
+        describe_row(i, is_page, text);
+        count++;
+    }
 }
 
 static void describe_groups(bool is_page, Text *text)
@@ -289,19 +348,15 @@ static void describe_groups(bool is_page, Text *text)
             text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
             append_wrapped(group->doc, 2, text);
         }
-        for (size_t i = 0; i < SCHEMA_ROW_COUNT; i++) {
-            if (is_in_group(&SCHEMA_ROWS[i], group->path)) {
-                describe_row(i, is_page, text);
-            }
-        }
+        describe_keys(group, false, is_page, text);
+        describe_keys(group, true, is_page, text);
     }
 }
 
 // The units of every quantity, once.
 static void describe_units(Text *text)
 {
-    text_append(text, "\n## Units\n\nA quantity is given in one of these units; `jointplay help "
-                      "case` has the range of each key, too:\n\n");
+    text_append(text, "\n## Units\n\nThe range of each key is in `jointplay help case`.\n\n");
     for (int i = 0; i < DIMENSION_COUNT; i++) {
         Text units;
         text_init(&units);
@@ -350,25 +405,24 @@ static void describe_outcomes(bool is_page, Text *text)
 {
     static const char WORDS[] =
         "`outcome` is how runs end. Without a path in front it applies to every backend of the "
-        "case that models the play; behind a backend, to that one; behind the words of a scheme of "
-        "ODE, as `compare --schemes` takes them, to every scheme that has these words, at the "
-        "case's step (run.step). `jointplay check` makes these runs itself: one that is expected "
-        "to "
-        "fail is no error.";
+        "case that models the play; behind a backend, to that one; behind words of a scheme of "
+        "ODE, as `compare --schemes` takes them, to every scheme with these words, at run.step. "
+        "`jointplay check` makes these runs itself: one that is expected to fail is no error.";
     static const char KINDS[] =
-        "agrees: it ends, and its error up to the predictability horizon and the "
-        "reference's uncertainty are together within X. reported: it ends, and the error, which "
-        "`jointplay run` prints, is above X. detected: it stops after its first step with a "
-        "message, or ends short of its tolerance, and says so in these words. refused: the case "
-        "file or the solver says so in these words before the first step.";
+        "agrees: it ends, and its error up to the horizon and the reference's uncertainty are "
+        "together within X. reported: it ends, and the error, which `jointplay run` prints, is "
+        "above X. detected: it stops after its first step, or ends short of its tolerance, with "
+        "a message that has these words. refused: it does not begin, with such a message.";
     static const char EXAMPLE_OF_OUTCOMES[] = "expect:\n"
                                               "  outcome: agrees within 1e-3\n"
                                               "  direct/staggered/impulse.outcome: agrees within "
                                               "1e-5\n"
                                               "  plain/textbook.outcome: reported above 0.1\n";
     if (is_page) {
-        text_append(text, "\n%s\n\nAn outcome is one of: `%s`.\n\n```yaml\n%s```\n\n%s\n", WORDS,
-                    EXPECT_OUTCOME_FORMS, EXAMPLE_OF_OUTCOMES, KINDS);
+        text_append(text,
+                    "\n%s\n\nAn outcome is one of: `%s` ([meanings and an example]"
+                    "(checking.md#how-runs-end)).\n",
+                    WORDS, EXPECT_OUTCOME_FORMS);
         return;
     }
     text_append(text, "\n");
@@ -382,17 +436,16 @@ static void describe_outcomes(bool is_page, Text *text)
 static void describe_expect(bool is_page, Text *text)
 {
     static const char WORDS[] =
-        "Your own limits for numbers of the runs, each a path and a limit. `jointplay check` "
-        "judges them, with or without a baseline. A path may begin with a backend, as in "
-        "ode.joints.pin.force_max; without one the limit applies to every backend of the case that "
-        "models the play, and for an error to every one except the reference itself. Extremes are "
-        "taken over every step of the whole run, errors up to the predictability horizon.";
+        "Your own limits for numbers of the runs, which `jointplay check` judges, with or without "
+        "a baseline. A path may begin with a backend, as in ode.joints.pin.force_max; without one "
+        "the limit applies to every backend of the case that models the play, and for an error to "
+        "every one except the reference itself. Extremes are taken over every step of the whole "
+        "run, errors up to the predictability horizon.";
     text_append(text,
-                is_page ? "\n## `expect`\n\n%s\n\nA limit is one of: `%s`. The ends are "
-                          "included in between and within, and excluded from below and above.\n\n"
-                          "```yaml\n%s```\n\n"
+                is_page ? "\n## `expect`\n\n%s\n\nA limit is one of: `%s`. Only between and within "
+                          "include their ends ([an example](checking.md#limits-of-your-own)).\n\n"
                         : "\nexpect\n",
-                WORDS, EXPECT_FORMS, EXPECT_EXAMPLE);
+                WORDS, EXPECT_FORMS);
     if (!is_page) {
         append_wrapped(WORDS, 2, text);
         text_append(text, "  A limit is one of:\n");
@@ -420,8 +473,7 @@ void casefile_describe(Text *text)
 void casefile_describe_markdown(Text *text)
 {
     text_append(text, "# The case file\n\n"
-                      "This page is generated from the program's own schema; a test compares it "
-                      "with the program.\n\n");
+                      "This page is generated from the program's own schema.\n\n");
     for (size_t i = 0; i < RULE_COUNT; i++) {
         text_append(text, "- %s\n", RULES[i]);
     }

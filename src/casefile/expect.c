@@ -68,7 +68,7 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
     NUMBER(EXPECTED_ERROR_MAX, EXPECT_ERROR, "max", DIMENSION_NONE,
            "largest error of any velocity of bodies and pins, over its own largest"),
     NUMBER(EXPECTED_ERROR_OMEGA_MAX, EXPECT_ERROR, "omega_max", DIMENSION_NONE,
-           "its part of angular velocities, relative to each body's largest omega"),
+           "largest error of omega, over each body's largest omega"),
     NUMBER(EXPECTED_ERROR_OMEGA_RMS, EXPECT_ERROR, "omega_rms", DIMENSION_NONE,
            "root mean square of the errors of omega"),
     NUMBER(EXPECTED_ERROR_ALPHA_MAX, EXPECT_ERROR, "alpha_max", DIMENSION_NONE,

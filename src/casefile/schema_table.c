@@ -56,12 +56,12 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     .low = 1e-18, .high = 1e9, .is_required = true
 #define MOMENT(axis, member, own) \
     .dimension = DIMENSION_INERTIA, AT_BODY(member, space.inertia_##axis), \
-    .low = 1e-18, .high = 1e9, .default_words = own, .doc = "moment of " \
-    "inertia about the body's " #axis " axis"
+    .low = 1e-18, .high = 1e9, .default_words = own, .doc = "about the body's " #axis \
+    " axis"
 #define PRODUCT(axes, member) \
     .dimension = DIMENSION_INERTIA, AT_BODY(member, space.product_##axes), \
     .low = -1e9, .high = 1e9, .doc = "product of inertia: sum of mass times " \
-    "both distances from the centre of mass"
+    "both coordinates from the centre of mass"
 #define OFFSET(member) \
     .dimension = DIMENSION_LENGTH, AT_BODY(member, space.height), .low = -1e3, \
     .high = 1e3, .doc = "z of the centre of mass at time zero"
@@ -74,9 +74,9 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define LINK(link, body, words) \
     LENGTH(link, words), \
     {.path = "four-bar." #link ".mass", .form = SCHEMA_FOUR_BAR, MASS(body), \
-     .doc = "mass of the " #link}, \
+     .doc = "mass of the link"}, \
     {.path = "four-bar." #link ".inertia", .form = SCHEMA_FOUR_BAR, INERTIA(body), \
-     .doc = "moment of inertia about the centre of mass, which is at mid-link"}, \
+     .doc = "about the centre of mass, at mid-link"}, \
     {.path = "four-bar." #link ".inertia-x", SPACE_LINK, MOMENT(x, body, X_OWN)}, \
     {.path = "four-bar." #link ".inertia-y", SPACE_LINK, MOMENT(y, body, Y_OWN)}, \
     {.path = "four-bar." #link ".product-xy", SPACE_LINK, PRODUCT(xy, body)}, \
@@ -87,9 +87,9 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define SLIDER_CRANK(field) .form = SCHEMA_SLIDER_CRANK, AT(slidercrank.field)
 #define SLIDER_LINK(link, body, where) \
     {.path = "slider-crank." #link ".mass", .form = SCHEMA_SLIDER_CRANK, MASS(body), \
-     .doc = "mass of the " #link}, \
+     .doc = "mass of the link"}, \
     {.path = "slider-crank." #link ".inertia", .form = SCHEMA_SLIDER_CRANK, INERTIA(body), \
-     .doc = "moment of inertia about the centre of mass, which is at " where}
+     .doc = "about the centre of mass, " where}
 #define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
 #define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
 #define JOINT(field) .family = SCHEMA_JOINT, AT_JOINT(field)
@@ -126,8 +126,8 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define ENGINE(id, word, ...) \
     {.path = "engines." word, .type = SCHEMA_CHOICE, AT(engines[id].way), \
      .words = OPTIONS_ENGINE_WAYS, .backends = SCHEMA_WITH(id), \
-     .doc = "the way in which " word " runs the case, of those that its driver has; best " \
-            "takes the first of the others that it has"},
+     .doc = "the way in which it runs the case, of those that its driver has; best takes the " \
+            "first of the others that it has"},
 #define POINT(field) \
     .family = SCHEMA_POINT, .holder = SCHEMA_POINT, .offset = offsetof(TracedPoint, field), .needs = MEMBER
 #define DAMPING_DOC(name, word, words, factor) "; " word ": " words
@@ -136,8 +136,7 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "title", .type = SCHEMA_TEXT, AT(title), .default_words = "none",
      .doc = "one line that names the case in reports"},
     {.path = "space", .type = SCHEMA_CHOICE, AT(space), .words = SCENARIO_SPACES,
-     .doc = "planar: bodies stay in the plane; spatial: they move in space, and pins with play "
-            "tilt and slide in holes of a width"},
+     .doc = "spatial: bodies move in space, and pins with play tilt and slide in holes of a width"},
 
     LENGTH(ground, "from the crank's ground pivot, the origin, to the follower's, along +x"),
     LINK(crank, 0, "from its ground pivot to the crank pin"),
@@ -145,33 +144,31 @@ const SchemaRow SCHEMA_ROWS[] = {
     LINK(follower, 2, "from its ground pivot to the follower pin"),
     {.path = "four-bar.assembly", .type = SCHEMA_CHOICE, .form = SCHEMA_FOUR_BAR, AT(fourbar.assembly),
      .words = ASSEMBLIES,
-     .doc = "open: the follower pin lies to the left of the line from crank pin to the follower's "
-            "ground pivot; crossed: to the right"},
+     .doc = "open: the follower pin is left of the line from crank pin to the follower's ground "
+            "pivot; crossed: right of it"},
 
     {.path = "slider-crank.crank.length", SLIDER_CRANK(crank), .dimension = DIMENSION_LENGTH,
      .low = 1e-6, .high = 1e3, .is_required = true,
      .doc = "from the ground pivot, the origin, to the crank pin"},
-    SLIDER_LINK(crank, 0, "mid-crank"),
+    SLIDER_LINK(crank, 0, "at mid-crank"),
     {.path = "slider-crank.rod.length", SLIDER_CRANK(rod), .dimension = DIMENSION_LENGTH,
      .low = 1e-6, .high = 1e3, .is_required = true,
      .doc = "from the crank pin to the pin in the slider"},
-    SLIDER_LINK(rod, 1, "mid-rod"),
-    SLIDER_LINK(slider, 2, "the pin in the slider, where the middle of its block is as well"),
+    SLIDER_LINK(rod, 1, "at mid-rod"),
+    SLIDER_LINK(slider, 2, "at the pin, in the middle of a block"),
     {.path = "slider-crank.offset", SLIDER_CRANK(offset), .dimension = DIMENSION_LENGTH,
      .low = -1e3, .high = 1e3,
-     .doc = "distance of the slider's line from the crank's ground pivot, to the left of the "
-            "line's direction"},
+     .doc = "of the slider's line from the crank's ground pivot, to the left of its direction"},
     {.path = "slider-crank.angle", SLIDER_CRANK(line), .dimension = DIMENSION_ANGLE,
      .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "direction of the slider's line, counter-clockwise from the world's x axis"},
     {.path = "slider-crank.assembly", .type = SCHEMA_CHOICE, SLIDER_CRANK(side),
      .words = SLIDER_SIDES,
-     .doc = "right: the slider is ahead of the crank pin in the line's direction; left: behind "
-            "it"},
+     .doc = "right: the slider is ahead of the crank pin in the line's direction; left: behind it"},
 
     {.path = "bodies.*.mass", BODY, MASS(0), .needs = MEMBER, .doc = "mass of the body"},
     {.path = "bodies.*.inertia", BODY, INERTIA(0), .needs = MEMBER,
-     .doc = "moment of inertia about the centre of mass"},
+     .doc = "about the centre of mass"},
     {.path = "bodies.*.at", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_LENGTH,
      AT_BODY(0, start.position), .low = -1e3, .high = 1e3, .is_required = true,
      .needs = MEMBER, .doc = "position [x, y] of the centre of mass at time zero"},
@@ -187,12 +184,10 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "bodies.*.offset", SPACE_BODY, OFFSET(0)},
     {.path = "bodies.*.velocity", BODY, .type = SCHEMA_VECTOR, .dimension = DIMENSION_SPEED,
      AT_BODY(0, start.velocity), .low = -1e4, .high = 1e4, .needs = MEMBER | FREE,
-     .doc = "velocity [x, y] of the centre of mass at time zero; not allowed if the drive "
-            "determines it"},
+     .doc = "velocity of the centre of mass at time zero, where the drive does not determine it"},
     {.path = "bodies.*.spin", BODY, .dimension = DIMENSION_ANGULAR_SPEED,
      AT_BODY(0, start.omega), .low = -1e6, .high = 1e6, .needs = MEMBER | FREE,
-     .doc = "angular velocity at time zero, counter-clockwise positive; not allowed if the drive "
-            "determines it"},
+     .doc = "angular velocity at time zero, likewise; counter-clockwise positive"},
 
     {.path = "bodies.*.velocity-z", BODY, .dimension = DIMENSION_SPEED,
      AT_BODY(0, space.velocity_z), .low = -1e4, .high = 1e4,
@@ -222,63 +217,62 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "springs.*.length", SPRING(length), .dimension = DIMENSION_LENGTH, .low = 0.0,
      .high = 1e3, .default_words = "that at time zero", .doc = "length of the relaxed spring"},
     {.path = "springs.*.damping", SPRING(damping), .dimension = DIMENSION_DAMPING, .low = 0.0,
-     .high = 1e12, .doc = "force over the rate of the length, both of spring and damper along "
-     "the line between the points"},
+     .high = 1e12, .doc = "force over the rate of the length"},
     {.path = "torsion-springs.*.joint", .type = SCHEMA_JOINT_NAME, TORSION(joint),
      .is_required = true, .doc = "the joint whose two bodies it turns against each other"},
     {.path = "torsion-springs.*.stiffness", TORSION(stiffness),
      .dimension = DIMENSION_TORSION_SPRING, .low = 0.0, .high = 1e12, .doc = "torque over angle"},
     {.path = "torsion-springs.*.angle", TORSION(angle), .dimension = DIMENSION_ANGLE,
      .low = -1e4, .high = 1e4, .default_words = "that at time zero",
-     .doc = "where it is relaxed: angle of the joint's second body less that of its first, the "
-            "ground counting as the first"},
+     .doc = "where it is relaxed: angle of the second body less that of the first (the ground "
+            "counts as the first)"},
     {.path = "torsion-springs.*.damping", TORSION(damping),
      .dimension = DIMENSION_TORSION_DAMPING, .low = 0.0, .high = 1e12,
      .doc = "torque over angular velocity"},
 
     {.path = "loads.*.joint", .type = SCHEMA_JOINT_NAME, LOAD(joint),
-     .doc = "the joint along whose coordinate it acts: a force along a slider's line on its second "
-            "body, a torque at a pivot on its second body (the first, where the second is the "
-            "ground), and the other way on the other; instead of body"},
+     .doc = "the joint along whose coordinate it acts, instead of body: a force along a slider's "
+            "line or a torque at a pivot, on the second body (the first, where that is the "
+            "ground), and the other way on the other"},
     {.path = "loads.*.body", .type = SCHEMA_BODY_NAME, LOAD(body),
-     .doc = "the body that it acts on; instead of joint"},
+     .doc = "the body that it acts on, instead of joint"},
     {.path = "loads.*.at", .type = SCHEMA_ANCHOR, LOAD(anchor), .dimension = DIMENSION_LENGTH,
      .low = -1e3, .high = 1e3, .default_words = "centred",
-     .doc = "where a force acts on a body: position [x, y] in the world at time zero; centred: at "
-            "the centre of mass"},
+     .doc = "where a force acts on a body, in the world at time zero; centred: at the centre of "
+            "mass"},
     {.path = "loads.*.direction", LOAD(direction), .dimension = DIMENSION_ANGLE,
      .low = -FULL_TURN, .high = FULL_TURN,
      .doc = "of a force on a body, counter-clockwise from the x axis of its frame"},
     {.path = "loads.*.frame", .type = SCHEMA_CHOICE, LOAD(frame), .words = LOAD_FRAMES,
-     .doc = "world: the direction stays; body: it turns with the body, whose own x axis it counts "
-            "from"},
+     .doc = "world: the direction stays; body: it turns with the body, from whose x axis it "
+            "counts"},
     {.path = "loads.*.over", .type = SCHEMA_CHOICE, LOAD(over), .words = LOAD_OVERS,
-     .doc = "what points are over: time, the crank's angle (of a mechanism that a torque drives "
-            "that of the drive's joint), or the position of the joint along which it acts"},
+     .doc = "what points are over: time, the crank's angle (with drive.torque that of its joint), "
+            "or the position of the load's joint"},
     {.path = "loads.*.interpolation", .type = SCHEMA_CHOICE, LOAD(table.shape),
      .words = LOAD_SHAPES,
-     .doc = "between points: linear; smooth: a cubic that keeps to their range; steps: the value of "
-            "the point before"},
+     .doc = "between points; smooth: a cubic that keeps to their range; steps: the value of the "
+            "point before"},
     {.path = "loads.*.period", .type = SCHEMA_LOAD_PERIOD, LOAD(table.period), .low = 0.0,
      .high = 1e6, .default_words = "a turn over crank-angle, else none",
      .doc = "after which points repeat; such as 720 deg for a four-stroke engine"},
     {.path = "loads.*.force", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_FORCE,
      .low = -1e9, .high = 1e9,
-     .doc = "constant, or points of what it is over, at most 400, constant beyond the ends; a CSV "
-            "file beside the case has heads with units, as `crank angle [deg], force [kN]`"},
+     .doc = "constant, or up to 400 points, constant beyond the ends; a CSV file beside the case "
+            "has heads with units, such as `crank angle [deg], force [kN]`"},
     {.path = "loads.*.torque", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_TORQUE,
      .low = -1e9, .high = 1e9, .doc = "likewise; counter-clockwise positive"},
 
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
      AT(linkage.driver.joint), .is_required = true, .needs = DRIVEN,
      .doc = "the ideal joint with the ground about which the drive turns a body; of a torque any "
-            "ideal pivot: it acts on the second body, and against it on the first; of a force an "
-            "ideal prismatic joint"},
+            "ideal pivot, on whose second body it acts, and the other way on the first; of a "
+            "force an ideal prismatic joint"},
     {.path = "drive.speed", .type = SCHEMA_SPEED, .dimension = DIMENSION_ANGULAR_SPEED,
      AT(linkage.driver), .low = -1e6, .high = 1e6, .is_required = true,
      .rivalry = SCHEMA_DRIVING, .side = 0, .needs = DRIVE,
      .doc = "angular velocity of the driven body, counter-clockwise positive: constant and not 0, "
-            "or linear in time between points with constant ends, at most 32, not all 0"},
+            "or linear in time between up to 32 points, not all 0, with constant ends"},
     {.path = "drive.angle", .type = SCHEMA_ANGLES, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver), .low = -1e6, .high = 1e6, .default_words = "none",
      .rivalry = SCHEMA_DRIVING, .side = 4, .needs = DRIVE, .doc = "instead of speed: " ANGLES_DOC},
@@ -287,44 +281,42 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "drive.period", .dimension = DIMENSION_TIME, AT(linkage.driver.table.period_s),
      .low = 0.0, .high = 1e6, .low_is_open = true, .default_words = "none", .needs = DRIVE | VALUED,
      .wants = UNSTEADY,
-     .doc = "time after which a speed over time repeats, for ever: it is linear from its last point "
-            "to the first of the next period, and turns the drive by whole turns in each; an angle "
-            "over time likewise, from 0 s to the end of the period"},
+     .doc = "time after which a speed over time repeats: linear from its last point to the first "
+            "of the next period, with whole turns in each; an angle over time likewise, from 0 s "
+            "to the end of the period"},
     {.path = "drive.torque", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
      .dimension = DIMENSION_TORQUE, AT(linkage.torque.table), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 1, .default_words = "none", .needs = TORQUE,
-     .doc = "instead of speed: a torque, constant, or linear in time between points with constant "
-            "ends, at most 32; counter-clockwise positive"},
+     .doc = "instead of speed: a torque, constant or over time as a speed"},
     {.path = "drive.force", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
      .dimension = DIMENSION_FORCE, AT(linkage.torque.table), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 2, .default_words = "none", .needs = FORCE,
      .doc = "instead of speed, at an ideal prismatic joint: a force along its line on the second "
-            "body, and the other way on the first, constant or over time as a torque"},
+            "body, and the other way on the first, likewise"},
     {.path = "drive.stall-torque", .form = SCHEMA_LONG, .dimension = DIMENSION_TORQUE,
      AT(linkage.torque.table.values[0]), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 3, .default_words = "none", .needs = TORQUE,
-     .doc = "instead of speed: a motor whose torque falls in a straight line from this at rest to 0 "
-            "at no-load-speed, and below 0 beyond it; counter-clockwise positive"},
+     .doc = "instead of speed: a motor whose torque falls in a straight line from this at rest to "
+            "0 at no-load-speed, and on beyond it"},
     {.path = "drive.no-load-speed", .form = SCHEMA_LONG, .dimension = DIMENSION_ANGULAR_SPEED,
      AT(linkage.torque.no_load), .low = -1e6, .high = 1e6, .default_words = "none",
      .needs = TORQUE,
-     .doc = "of a motor: the speed at which it gives no torque, of the sign of stall-torque"},
+     .doc = "of a motor: the speed without torque, of the sign of stall-torque"},
     {.path = "drive.rotor-inertia", .form = SCHEMA_LONG, .dimension = DIMENSION_INERTIA,
      AT(linkage.torque.inertia), .low = 0.0, .high = 1e9, .needs = TORQUE,
-     .doc = "of a motor at a pivot with the ground: inertia of its rotor, as it counts at the shaft"},
+     .doc = "of a motor at a pivot with the ground: its rotor's, reduced to the shaft"},
     {.path = "drive.stiffness", .form = SCHEMA_LONG, .dimension = DIMENSION_TORSION_SPRING,
      AT(linkage.torque.stiffness), .low = 0.0, .high = 1e12, .default_words = "none",
      .needs = TORQUE,
-     .doc = "of a soft drive, beside speed: torque over the angle by which the body is behind the "
-            "angle that the speed prescribes, as of a belt or a controller"},
+     .doc = "of a soft drive, beside speed: torque over the angle by which the body is behind "
+            "what the speed prescribes, as of a belt or controller"},
     {.path = "drive.damping", .form = SCHEMA_LONG, .dimension = DIMENSION_TORSION_DAMPING,
      AT(linkage.torque.slope), .low = 0.0, .high = 1e12, .default_words = "none",
      .needs = TORQUE,
      .doc = "likewise, torque over the difference of the speeds"},
     {.path = "drives.*.speed", .type = SCHEMA_SPEED, .dimension = DIMENSION_ANGULAR_SPEED,
      FURTHER(0), .low = -1e6, .high = 1e6, .is_required = true, .rivalry = SCHEMA_DRIVING,
-     .side = 0, .doc = "angular velocity of the body that turns about that joint, as drive.speed; "
-                       "0 rpm holds it"},
+     .side = 0, .doc = "of the body that turns about that joint, as drive.speed; 0 rpm holds it"},
     {.path = "drives.*.angle", .type = SCHEMA_ANGLES, .dimension = DIMENSION_ANGLE, FURTHER(0),
      .low = -1e6, .high = 1e6, .default_words = "none", .rivalry = SCHEMA_DRIVING, .side = 4,
      .doc = "instead of speed, as drive.angle"},
@@ -335,13 +327,12 @@ const SchemaRow SCHEMA_ROWS[] = {
      .low_is_open = true, .default_words = "none", .doc = "as drive.period"},
     {.path = "drive.start", .form = SCHEMA_SHORT, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver.start), .low = -FULL_TURN, .high = FULL_TURN,
-     .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is the "
-            "world's x axis; with bodies, their angles define it"},
+     .doc = "angle of the crank at time zero, counter-clockwise from the ground link, which is "
+            "the world's x axis; bodies have their own"},
     {.path = "gravity", .type = SCHEMA_GRAVITY, .dimension = DIMENSION_ACCELERATION, AT(gravity),
      .low = -1e3, .high = 1e3,
-     .doc = "acceleration of gravity: one number is downward, along -y, and 0 m/s^2 none; [x, y], "
-            "or with space: spatial [x, y, z], is the acceleration of free fall in the world's "
-            "axes, so that 9.81 m/s^2 is [0 m/s^2, -9.81 m/s^2]"},
+     .doc = "acceleration of gravity: one number is downward, along -y; [x, y], or with space: "
+            "spatial [x, y, z], in the world's axes: 9.81 m/s^2 is [0 m/s^2, -9.81 m/s^2]"},
 
     {.path = "material.youngs-modulus", .dimension = DIMENSION_PRESSURE,
      AT(material.youngs_modulus), .low = 1e3, .high = 1e13, .needs = MATERIAL,
@@ -351,8 +342,8 @@ const SchemaRow SCHEMA_ROWS[] = {
 
     {.path = "contact.model", .type = SCHEMA_CHOICE, AT(contact.model),
      .words = OPTIONS_CONTACT_MODELS, .needs = PLAY,
-     .doc = "impact: a force from penetration and its rate; poisson: a velocity-level penalty "
-            "with restitution"},
+     .doc = "impact: a force from penetration and its rate; poisson: velocity-level penalty with "
+            "restitution"},
     {.path = "contact.law", .type = SCHEMA_CHOICE, AT(contact.law), .words = OPTIONS_LAWS,
      .rivalry = SCHEMA_ELASTICITY, .side = 0, .needs = LAW,
      .doc = "elastic law of the impact model; instead of stiffness"},
@@ -366,24 +357,23 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "damping law of the impact model, by its hysteresis factor chi for a restitution e"
             OPTIONS_DAMPING_LIST(DAMPING_DOC)},
     {.path = "contact.restitution", AT(contact.restitution), .low = 0.0, .high = 1.0,
-     .needs = PLAY, .wants = REBOUND | DERIVED, .doc = "desired ratio of the speeds after and before an impact"},
+     .needs = PLAY, .wants = REBOUND | DERIVED, .doc = "ratio of the speeds after and before an impact"},
     {.path = "contact.viscous-coefficient", .dimension = DIMENSION_DAMPING,
      AT(contact.viscous_coefficient), .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "none", .needs = VISCOUS,
-     .doc = "force over penetration rate; required by damping: viscous"},
+     .doc = "force over penetration rate"},
     {.path = "contact.friction", AT(contact.friction), .low = 0.0, .high = 1.0,
-     .needs = PLAY, .wants = COMMON_FRICTION, .doc = "Coulomb's friction coefficient; 0 for none"},
+     .needs = PLAY, .wants = COMMON_FRICTION, .doc = "Coulomb's friction coefficient"},
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION, .wants = SMOOTHED,
-     .doc = "sliding speed over which friction sets in; ODE's quick solver and the poisson model "
-            "do without"},
+     .doc = "sliding speed over which friction sets in"},
     {.path = "contact.penalty", .dimension = DIMENSION_DAMPING, AT(contact.penalty),
      .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "the paper's Eq. (9) at the drive's speed", .needs = POISSON,
-     .doc = "force over closing speed in the poisson model"},
+     .doc = "force over closing speed"},
     {.path = "contact.bounce-speed", .dimension = DIMENSION_SPEED, AT(contact.bounce_speed),
      .low = 0.0, .high = 1e3, .needs = POISSON,
-     .doc = "in the poisson model, impacts below this speed do not bounce"},
+     .doc = "impacts below this speed do not bounce"},
     {.path = "contact.impact-speed-floor", .dimension = DIMENSION_SPEED,
      AT(contact.impact_speed_floor), .low = 0.0, .high = 1e3, .low_is_open = true,
      .needs = IMPACT, .wants = REBOUND | REMEMBERED,
@@ -391,83 +381,77 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "contact.resting-speed", .dimension = DIMENSION_SPEED, AT(contact.resting_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .zero_word = "none",
      .needs = IMPACT, .wants = REBOUND | REMEMBERED,
-     .doc = "speed by which the damping laws divide once a contact has outlasted its impact: it was "
+     .doc = "speed by which they divide once a contact has outlasted its impact: it was "
             "compressed, released, and is compressed again"},
     {.path = "contact.dissipation", .dimension = DIMENSION_DISSIPATION, AT(contact.dissipation),
      .low = 0.0, .high = 1e6, .low_is_open = true,
      .default_words = "that which gives back restitution at restitution-speed",
      .needs = DISSIPATING, .wants = COMMON_DAMPING,
-     .doc = "c of damping: dissipation, F = F_el (1 + c d'), a constant of the material: at small "
-            "speeds v it gives back a restitution of 1 - 2 c v / 3"},
+     .doc = "c in F = F_el (1 + c d'), a constant of the material; at small speeds v the "
+            "restitution is 1 - 2 c v / 3"},
     {.path = "contact.restitution-speed", .dimension = DIMENSION_SPEED,
      AT(contact.restitution_speed), .low = 0.0, .high = 1e3, .low_is_open = true,
      .needs = DISSIPATING, .wants = COMMON_DAMPING | DERIVED,
-     .doc = "impact speed at which damping: dissipation gives back the restitution"},
+     .doc = "impact speed with that restitution"},
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
      .low_is_open = true, .needs = TURNING,
-     .doc = "revolutions of a drive of constant speed in the run; may be a fraction"},
+     .doc = "length of the run; may be a fraction"},
     {.path = "run.duration", .dimension = DIMENSION_TIME, AT(run.duration),
      .low = 0.0, .high = 1e6, .low_is_open = true, .needs = TIMED,
-     .doc = "duration of a run without a constant speed of the drive, instead of revolutions"},
+     .doc = "length of a run without a drive of constant speed"},
     {.path = "run.samples", .type = SCHEMA_INTEGER, AT(run.samples), .low = 1.0, .high = 1e7,
-     .doc = "samples written per revolution of the drive, or in the whole run where run.duration says "
-     "how long it is"},
+     .doc = "samples per revolution, or in the run where it has a duration"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,
      .low_is_open = true, .zero_word = "auto", .backends = SCHEMA_STEPPED,
      .default_words = "auto; 1 us where ode.stepping, ode.map or a collider but pin-hole is given, "
                       "or the model is poisson",
-     .doc = "step of ode and of other engines; auto: chosen so that the error is within the tolerance, with stepping "
-            "staggered and map impulse, or stepping extrapolated if all joints are ideal"},
+     .doc = "step of ODE and other engines; auto: chosen for an error within the tolerance, of ODE with "
+            "stepping staggered and map impulse, or extrapolated if all joints are ideal"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
      .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
-     .doc = "with step auto: the largest allowed error of any body's angular velocity or velocity, "
-            "and of any pin's in its hole, each relative to its own largest value, up to the "
-            "predictability horizon"},
+     .doc = "largest error of any velocity of bodies and of pins in their holes, over its own "
+            "largest, up to the predictability horizon"},
     {.path = "run.tolerance-of", .type = SCHEMA_CHOICE, AT(run.tolerance_of),
      .words = OPTIONS_TOLERANCES_OF, .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
-     .doc = "which error run.tolerance limits: of the motion; of the contact forces in joints with "
-            "play, each relative to its own largest; or of the peaks of these contacts and of the "
-            "bodies' angular accelerations"},
+     .doc = "the error that is limited: of the motion, of contact forces, or of the peaks of "
+            "contacts and angular accelerations"},
     {.path = "run.most-steps", .type = SCHEMA_INTEGER, AT(run.most_steps), .low = 1e3, .high = 1e12,
      .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
-     .doc = "with step auto: the limit for the world steps of all trials together; if it is too "
-            "low, the run reports up to when the tolerance is met"},
+     .doc = "limit for the world steps of all trials together; if it is too low, the run reports "
+            "up to when the tolerance is met"},
     {.path = "run.spike-threshold", AT(run.spike_threshold), .low = 1e-3, .high = 1e3,
      .needs = PLAY,
-     .doc = "smallest height of a spike, relative to what ideal joints show: the range of the "
-            "angular acceleration, the largest force; without a drive, relative to a tenth of "
-            "the signal's range"},
+     .doc = "smallest height of a spike, over what ideal joints show: the range of the angular "
+            "acceleration, the largest force; without a drive, over a tenth of the signal's range"},
     {.path = "run.report-from", .type = SCHEMA_SPAN, .dimension = DIMENSION_TIME,
      AT(run.report_from), .low = 0.0, .high = 1e6, .needs = VALUED,
-     .doc = "extremes, contacts and spikes are reported from this time on, such as 1 revolution, "
-            "to exclude an assumed start; errors, energy, series and picture cover the whole run"},
+     .doc = "extremes, contacts and spikes are reported from this time on, such as 1 revolution; "
+            "errors, energy, series and picture cover the whole run"},
     {.path = "run.start", .type = SCHEMA_CHOICE, AT(run.start), .words = OPTIONS_RUN_STARTS,
      .needs = PLAY | REPEATING | IMPACT,
      .default_words = "settled; centred of a case that gives a joint's start or runs for less than "
                       "a revolution or a period of its drive",
-     .doc = "settled: in the motion that the reference comes to from several starts, where every "
-            "backend starts, with what its contacts carry; centred: pins in the middle of their "
-            "holes, or where the case puts them; pressed: each pin on the wall of its hole where "
-            "the reaction of an ideal joint would hold it"},
+     .doc = "settled: in the motion that the reference comes to from several starts; centred: "
+            "pins in the middle of their holes, or where the case puts them; pressed: on the wall "
+            "of the hole where the reaction of an ideal joint would hold the pin"},
     {.path = "run.settle-most", .type = SCHEMA_INTEGER, AT(run.settle_most), .low = 2.0,
      .high = 1e6, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
      .doc = "revolutions, or periods of the drive, after which a motion that does not repeat is "
             "taken as it is"},
     {.path = "run.settle-starts", .type = SCHEMA_INTEGER, AT(run.settle_starts), .low = 1.0,
      .high = 64.0, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
-     .doc = "starts from which the settled motion is looked for: as written, pressed, and with "
-            "other velocities; the run is in the motion that most of them come to"},
+     .doc = "starts from which it is looked for: as written, pressed, and with other velocities; "
+            "the run is in the motion that most come to"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
-     .doc = "the solvers to run, in this order: a word or a list; the default of a case with "
-            "bodies is reference, ode, because analytic supports four-bars and slider-cranks "
-            "only"},
+     .doc = "the solvers to run, in this order; analytic, by default too, is for four-bars and "
+            "slider-cranks only"},
 
     {.path = "reference.tolerance", AT(reference.tolerance), .low = 1e-14, .high = 1e-3,
      .needs = REFERENCE,
-     .doc = "limit for each step's error, relative to the size of each coordinate and velocity; "
-            "above 3e-5, which costs least, it is 3e-5"},
+     .doc = "limit for each step's error, relative to each coordinate and velocity; above 3e-5, "
+            "which costs least, it is 3e-5"},
 
     {.path = "ode.solver", .type = SCHEMA_CHOICE, AT(ode.solver), .words = OPTIONS_ODE_SOLVERS,
      .needs = ODE, .wants = ANY_ROWS, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},
@@ -475,8 +459,8 @@ const SchemaRow SCHEMA_ROWS[] = {
      .words = OPTIONS_ODE_STEPPINGS, .needs = ODE | GIVEN_STEP,
      .default_words = "staggered; plain with map textbook, corrected or exact, or model poisson",
      .doc = "plain: read at the end of each step; staggered: positions half a step behind the "
-            "velocities, second order; extrapolated: several steps side by side, for ideal "
-            "joints only"},
+            "velocities, second order; extrapolated: several steps combined, for ideal joints "
+            "only"},
     {.path = "ode.map", .type = SCHEMA_CHOICE, AT(ode.map), .words = OPTIONS_ODE_MAPS,
      .needs = ODE | IMPACT | GIVEN_STEP,
      .default_words = "impulse; textbook with stepping plain or model poisson; midpoint with any "
@@ -485,26 +469,24 @@ const SchemaRow SCHEMA_ROWS[] = {
             "integrated within the step, with staggered stepping only"},
     {.path = "ode.collider", .type = SCHEMA_CHOICE, AT(ode.collider),
      .words = OPTIONS_ODE_COLLIDERS, .needs = ODE | PLAY, .wants = PIN,
-     .doc = "how the contact of pin and hole is found: pin-hole: exactly; staves: a ring of convex "
-            "staves, by libccd's portal refinement; staves-gjk: the same by its GJK and EPA; "
-            "ode-convex: the same through ODE; trimesh: a mesh of triangles. Only pin-hole goes "
-            "with map impulse"},
+     .doc = "the hole is, pin-hole: a circle; staves: a ring of convex staves, by libccd's MPR; "
+            "staves-gjk: the same by its GJK and EPA; ode-convex: the same through ODE; trimesh: "
+            "a mesh of triangles. Only pin-hole goes with map impulse"},
     {.path = "ode.facets", .type = SCHEMA_INTEGER, AT(ode.facets), .low = FACETS_LEAST,
      .high = FACETS_MOST, .zero_word = "auto", .needs = ODE | PLAY | FACETED,
      .default_words = "auto",
-     .doc = "with any collider but pin-hole: the sides of the polygon that stands for a hole; auto: "
-            "so many that the sagitta is a hundredth of the play or of the depth to be expected"},
+     .doc = "sides of the polygon that stands for a hole; auto: the sagitta is a hundredth of the "
+            "play or the depth to be expected"},
     {.path = "ode.polygon", .type = SCHEMA_CHOICE, AT(ode.polygon), .words = OPTIONS_ODE_POLYGONS,
      .needs = ODE | PLAY | FACETED,
      .doc = "circumscribed: sides touch the wall at their middles; inscribed: corners lie on the "
-            "wall, as those of a CAD mesh do, and the sagitta is taken from the play"},
+            "wall, as in a CAD mesh, and the sagitta is taken from the play"},
     {.path = "ode.erp", AT(ode.erp), .low = 0.0, .high = 1.0, .needs = ODE | PLAIN, .wants = HELD_ROWS,
-     .doc = "error reduction of the ideal joints per step, with plain stepping; otherwise it is 1"},
+     .doc = "error reduction of the ideal joints per step; with other stepping it is 1"},
     {.path = "ode.cfm", .plain_unit = "s/kg", AT(ode.cfm), .low = 0.0, .high = 1e6, .needs = ODE, .wants = HELD_ROWS,
-     .doc = "constraint force mixing of the ideal joints, in s/kg = m/(N s), written without a "
-            "unit"},
+     .doc = "constraint force mixing of the ideal joints, in s/kg = m/(N s), without the unit"},
     {.path = "ode.push-out", AT(ode.push_out), .low = 0.0, .high = 1.0,
-     .needs = ODE | POISSON, .doc = "ERP of the contact in the poisson model"},
+     .needs = ODE | POISSON, .doc = "ERP of the contact"},
     {.path = "ode.iterations", .type = SCHEMA_INTEGER, AT(ode.iterations), .low = 1.0,
      .high = 1e6, .needs = ODE | QUICK, .doc = "iterations of the quick solver per step"},
     {.path = "ode.over-relaxation", AT(ode.over_relaxation), .low = 0.0, .high = 2.0,
@@ -513,18 +495,18 @@ const SchemaRow SCHEMA_ROWS[] = {
      .needs = ODE | QUICK, .wants = SHUFFLED, .doc = "seed for the order in which the quick solver visits rows"},
     {.path = "ode.settle-steps", .type = SCHEMA_INTEGER, AT(ode.settle_steps), .low = 0.0,
      .high = 1e7, .needs = ODE | IDEAL | PLAIN, .wants = MOVED,
-     .doc = "with plain stepping and ideal joints only: steps run before time zero"},
+     .doc = "steps before time zero"},
     {.path = "ode.levels", .type = SCHEMA_INTEGER, AT(ode.levels), .low = 2.0, .high = 6.0,
      .needs = ODE | EXTRAPOLATED,
-     .doc = "with extrapolated stepping: worlds side by side; the order is one more"},
+     .doc = "worlds side by side; the order is one more"},
     {.path = "ode.gear", .type = SCHEMA_INTEGER, AT(ode.gear), .low = 1.0, .high = 64.0,
      .needs = ODE | LOCAL | GIVEN_STEP,
-     .doc = "with map impulse: steps are this many times finer while a pin touches or is about to"},
+     .doc = "steps are this many times finer while a pin touches or is about to"},
     {.path = "ode.contact-phase", AT(ode.contact_phase), .low = 0.0, .high = 0.5,
      .needs = ODE | LOCAL | GIVEN_STEP, .plain_unit = "rad",
-     .doc = "with map impulse: 0, and a contact's own steps are as long as the accuracy of the "
-            "step allows; or their error is that of a classical step of this many rad of the "
-            "contact's oscillation, written without a unit"},
+     .doc = "0: a contact's own steps are as long as the accuracy of the step allows; else their "
+            "error is that of a classical step of this many rad of its oscillation, without the "
+            "unit"},
 
     OPTIONS_ENGINE_LIST(ENGINE)
 
@@ -532,13 +514,13 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "the body to which the point belongs"},
     {.path = "points.*.along", .type = SCHEMA_ALONG, .dimension = DIMENSION_LENGTH,
      POINT(local.x), .low = -1e3, .high = 1e3, .is_required = true,
-     .doc = "distance from the link's first joint towards its second; with bodies, and of a "
-            "slider, from the centre of mass along the body's x axis"},
+     .doc = "distance from the link's first joint towards its second; of bodies and sliders from "
+            "the centre of mass along the x axis"},
     {.path = "points.*.offset", .dimension = DIMENSION_LENGTH, POINT(local.y), .low = -1e3,
      .high = 1e3, .doc = "distance to the left of that direction"},
 
     {.path = "expect", .type = SCHEMA_EXPECT, AT(expectations), .default_words = "none",
-     .doc = "limits for numbers of the runs, which `jointplay check` judges: see below"},
+     .doc = "limits for the runs' numbers: below"},
 };
 // clang-format on
 
