@@ -4,6 +4,7 @@
 // follower_omega_max_rad_s. What was not measured, or is not finite, is NAN.
 #include "commands/study/metrics.h"
 #include "base/text.h"
+#include "casefile/expect.h"
 #include "measure/section.h"
 #include "measure/spectrum.h"
 #include "model/joint_numbers.h"
@@ -144,12 +145,12 @@ static double find_section_change(const Measured *measured, size_t unused)
 #define SECTION(number) \
     FOUND(OF_BODY, "section_" #number "_rad_s", REAL, TURNS, find_section_##number, \
           (number) == 1 ? "angular velocity at the end of the last whole revolution" \
-                        : "the same of the revolution before", \
+                        : "angular velocity at the ends of the revolutions before that", \
           "angular velocity at the end of revolution -" #number),
 #define SLIDE(number) \
     FOUND(OF_BODY, "section_" #number "_m_s", REAL, SLIDES, find_slide_##number, \
           (number) == 1 ? "of a body that slides on the ground its velocity there, along its line" \
-                        : "the same of the revolution before", \
+                        : "the same at the ends of the revolutions before that", \
           "velocity of the slider at the end of revolution -" #number),
 
 static const Metric METRICS[] = {
@@ -212,12 +213,13 @@ static const Metric METRICS[] = {
           "largest error of any velocity of bodies and pins, over its own largest",
           "largest error of the velocities"),
     ERROR("error_max_in_horizon", REAL, NOTHING, max_in_horizon,
-          "the same up to the predictability horizon",
+          "error_max up to the horizon",
           "largest error of the velocities up to the horizon"),
     ERROR("error_omega_max", REAL, NOTHING, omega_max,
-          "the part of angular velocities in it", "largest error of omega"),
+          "largest error of omega, over each body's largest omega",
+          "largest error of omega"),
     ERROR("error_omega_max_in_horizon", REAL, NOTHING, omega_max_in_horizon,
-          "the same up to the predictability horizon", "largest error of omega up to the horizon"),
+          "error_omega_max up to the horizon", "largest error of omega up to the horizon"),
     ERROR("error_omega_rms", REAL, NOTHING, omega_rms, "root mean square of the errors of omega",
         "rms error of omega"),
     ERROR("error_alpha_max", REAL, NOTHING, alpha_max,
@@ -227,19 +229,19 @@ static const Metric METRICS[] = {
           "largest error of a contact force at samples, over the joint's largest",
           "largest error of contact forces"),
     ERROR("error_force_max_in_horizon", REAL, NOTHING, force_max_in_horizon,
-          "the same up to the predictability horizon",
+          "error_force_max up to the horizon",
           "largest error of contact forces up to the horizon"),
     ERROR("error_peak_force_max", REAL, NOTHING, peak_force_max,
           "largest error of the peak force of a contact, over the joint's largest",
           "largest error of peak forces"),
     ERROR("error_peak_force_max_in_horizon", REAL, NOTHING, peak_force_max_in_horizon,
-          "the same of contacts that end within the predictability horizon",
+          "error_peak_force_max of contacts that end within the horizon",
           "largest error of peak forces up to the horizon"),
     ERROR("error_peak_alpha_max", REAL, NOTHING, peak_alpha_max,
           "largest error of a body's extremes of alpha, over the larger of them",
           "largest error of the extremes of alpha"),
     ERROR("error_peak_alpha_max_in_horizon", REAL, NOTHING, peak_alpha_max_in_horizon,
-          "the same up to the predictability horizon",
+          "error_peak_alpha_max up to the horizon",
           "largest error of the extremes of alpha up to the horizon"),
     TRUTH("error_horizon_s", REAL, CERTIFICATE, horizon_s, "predictability horizon"),
     TRUTH("error_reference_uncertainty", REAL, CERTIFICATE, uncertainty,
@@ -567,18 +569,72 @@ static void describe_one(bool is_markdown, const char *owner, const char *name, 
                 meaning);
 }
 
+// Whether a limit of a case has the same meaning.
+static bool is_expectable(const char *meaning)
+{
+    for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {
+        if (strcmp(EXPECT_ROWS[i].doc, meaning) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static const char *before_name(Owner owner)
+{
+    return owner == OF_BODY ? "<body>_" : "";
+}
+
+// The columns whose meanings the page of a case has.
+static void list_expectable(Text *text)
+{
+    text_append(text, "- with the meanings in [`expect`](case-format.md#expect)");
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        if (is_expectable(METRICS[i].words[0])) {
+            text_append(text, ", `%s%s`", before_name(METRICS[i].owner), METRICS[i].name);
+        }
+    }
+    for (size_t k = 0; k < JOINT_NUMBER_COUNT; k++) {
+        text_append(text, ", `<joint>_%s`", JOINT_NUMBERS[number_at(k)].keys[false]);
+    }
+    text_append(text, "\n");
+}
+
+// The numbers of an owner; on the page those of one meaning are a range, and those of `expect`
+// stand before.
+static void describe_owner(Owner owner, bool is_markdown, Text *text)
+{
+    const char *before = before_name(owner);
+    for (size_t i = 0; i < METRIC_COUNT; i++) {
+        const char *meaning = METRICS[i].words[0];
+        if (METRICS[i].owner != owner || (is_markdown && is_expectable(meaning))) {
+            continue;
+        }
+        size_t last = i;
+        while (is_markdown && last + 1 < METRIC_COUNT && METRICS[last + 1].owner == owner &&
+               strcmp(METRICS[last + 1].words[0], meaning) == 0) {
+            last++;
+        }
+        if (last == i) {
+            describe_one(is_markdown, before, METRICS[i].name, meaning, text);
+            continue;
+        }
+        text_append(text, "- `%s%s` to `%s%s`: %s\n", before, METRICS[i].name, before,
+                    METRICS[last].name, meaning);
+        i = last;
+    }
+}
+
 void metrics_describe(bool is_markdown, Text *text)
 {
+    if (is_markdown) {
+        list_expectable(text);
+    }
     for (Owner owner = 0; owner < OWNER_COUNT; owner++) {
-        for (size_t k = 0; owner == OF_JOINT && k < JOINT_NUMBER_COUNT; k++) {
+        for (size_t k = 0; owner == OF_JOINT && !is_markdown && k < JOINT_NUMBER_COUNT; k++) {
             const JointNumber *number = &JOINT_NUMBERS[number_at(k)];
             describe_one(is_markdown, "<joint>_", number->keys[false], number->meaning, text);
         }
-        for (size_t i = 0; i < METRIC_COUNT; i++) {
-            if (METRICS[i].owner == owner) {
-                describe_one(is_markdown, owner == OF_BODY ? "<body>_" : "", METRICS[i].name,
-                             METRICS[i].words[0], text);
-            }
-        }
+        describe_owner(owner, is_markdown, text);
     }
 }

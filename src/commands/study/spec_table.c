@@ -39,15 +39,14 @@ const SpecKey SPEC_KEYS[] = {
             "the way to run it by the names of 'jointplay compare'"},
     {SPEC_TOP, "follow", SPEC_KEY_PART, .read = spec_read_follow,
      .value = "KEY under vary, or {key: KEY, direction: both}",
-     .doc = "Each run starts in the settled motion of the run before it along this key, and not in "
-            "one that it finds from several starts"},
+     .doc = "Each run starts in the settled motion of the run before it along this key"},
     {SPEC_TOP, "draw", SPEC_KEY_MAP, .of = SPEC_DRAW, .doc = "Random values"},
     {SPEC_TOP, "limits", SPEC_KEY_MAP, .of = SPEC_LIMITS, .doc = "Limits of one run"},
     {SPEC_TOP, "truth", SPEC_KEY_FLAG, AT(has_truth), .words = FLAGS, .what = "truth",
      .doc = "Whether each run is compared with the certified reference for its values"},
     {SPEC_TOP, "growth", SPEC_KEY_FLAG, AT(has_growth), .words = FLAGS, .what = "growth",
-     .doc = "Whether each row says by what factor a small change of its settled motion grows in a "
-            "revolution, which takes the reference some 30 revolutions more"},
+     .doc = "Whether each row has the growth of a small change in a revolution, which takes the "
+            "reference some 30 revolutions more"},
 
     // a run of four months is a slip of the pen, and a process takes 1 ms to start
     {SPEC_LIMITS, "time", SPEC_KEY_LIMIT, AT(limits.time_s), .low = 1e-3, .high = 1e7,
@@ -70,8 +69,8 @@ const SpecKey SPEC_KEYS[] = {
      .value = "a key under vary that takes numbers", .doc = "Whose values follow one another"},
     {SPEC_FOLLOW, "direction", SPEC_KEY_CHOICE, AT(direction), .words = DIRECTIONS,
      .what = "the direction",
-     .doc = "In the order of the values, against it, or each of both, which shows hysteresis: "
-            "there is a column direction then"},
+     .doc = "In the order of the values, against it, or both, with a column direction, which shows "
+            "hysteresis"},
 
     {SPEC_RANGE, "from", SPEC_KEY_VALUE, true, IN(low), .doc = "The first number"},
     {SPEC_RANGE, "to", SPEC_KEY_VALUE, true, IN(high), .doc = "The last number, above the first"},
@@ -247,13 +246,15 @@ static void describe_key(const SpecKey *key, bool is_markdown, Text *text)
 
 void spec_describe(bool is_markdown, Text *text)
 {
-    text_append(text,
-                is_markdown ? "# The study file\n\nThis page is generated from the "
-                              "program's own table of keys; a test compares it with the "
-                              "program. [Studies](studies.md) explains what they are for and "
-                              "how to run them.\n\n%s\n\n```yaml\n%s```\n\n"
-                            : "A study file\n\n%s\n\n%s\n",
-                RULES, EXAMPLE);
+    if (is_markdown) {
+        text_append(text,
+                    "# The study file\n\nThis page is generated from the program's own table of "
+                    "keys. [Studies](studies.md) has an example and explains how to use them.\n\n"
+                    "%s\n\n",
+                    RULES);
+    } else {
+        text_append(text, "A study file\n\n%s\n\n%s\n", RULES, EXAMPLE);
+    }
     if (!is_markdown) {
         text_fold(text, PAGE_WIDTH);
     }
