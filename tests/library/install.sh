@@ -24,8 +24,13 @@ LD_LIBRARY_PATH=$work/dest${folder#"$work/dest"}
 export LD_LIBRARY_PATH
 warnings='-Wall -Wextra -Wpedantic -Werror'
 
-# Every example of the page: NAME.c or NAME.cpp, and what it prints: NAME.txt.
+# Every example: NAME.c or NAME.cpp, on the page or a file that it links, and what the page says that
+# it prints: NAME.txt.
+cp "$root"/docs/examples/* "$work"
 awk -v folder="$work" '
+    match($0, /\(examples\/[a-z]+\.(c|cpp)\)/) {
+        name = substr($0, RSTART + 10, RLENGTH - 11); sub(/\..*/, "", name); is_shown = 1
+    }
     /^```/ {
         if (output != "") { close(output); output = "" }
         else if (is_shown) { output = folder "/" name ".txt"; printf "" >output; is_shown = 0 }
@@ -75,7 +80,7 @@ for file in "$work"/*.c "$work"/*.cpp; do
         report "$compiler builds $name, which prints what the page says" $?
     done
 done
-[ "$examples" -ge 2 ]
+[ "$examples" -ge 6 ]
 report "the page has examples" $?
 
 # the header alone, in both languages
