@@ -381,7 +381,7 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "contact.resting-speed", .dimension = DIMENSION_SPEED, AT(contact.resting_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .zero_word = "none",
      .needs = IMPACT, .wants = REBOUND | REMEMBERED,
-     .doc = "speed by which they divide once a contact has outlasted its impact: it was "
+     .doc = "speed by which damping laws divide once a contact has outlasted its impact: it was "
             "compressed, released, and is compressed again"},
     {.path = "contact.dissipation", .dimension = DIMENSION_DISSIPATION, AT(contact.dissipation),
      .low = 0.0, .high = 1e6, .low_is_open = true,
