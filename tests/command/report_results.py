@@ -1,7 +1,7 @@
 # Do pages of 'jointplay report' of a comparison, a map, a tune, a check and a study show the numbers
 # of what they are made of, as text whatever that holds, without asking another place?
 # Usage: report_results.py PROGRAM CASE. Prints TAP.
-import csv, html, io, json, os, re, subprocess, sys
+import cmath, csv, html, io, json, math, os, re, subprocess, sys
 
 from report_reading import Page, check_claims, check_policy, check_requests, unpack
 
@@ -136,6 +136,58 @@ def figures_of_the_paper_go_with_the_powers_that_its_text_has(work):
     assert "-78.6973" in page.texts["td"] or "78.6973" in page.texts["td"], page.texts["td"]
 
 
+def linkage(crank_deg, ground, crank, coupler, follower):
+    """omega and alpha of coupler and follower of the open four-bar at 1000 rpm clockwise: the links
+    as complex numbers, r2 + r3 = r1 + r4, once and twice differentiated."""
+    speed = -1000 * math.pi / 30
+    r2 = crank * cmath.exp(-1j * math.radians(crank_deg))
+    gap = ground - r2  # coupler - follower
+    reach = abs(gap)
+    angle = math.acos((coupler**2 + reach**2 - follower**2) / (2 * coupler * reach))
+    r3 = coupler * gap / reach * cmath.exp(1j * angle)
+    r4 = r3 - gap
+
+    def solve(right):  # x i r3 - y i r4 = right
+        det = (r3 * r4.conjugate()).imag
+        return ((-1j * right * r4.conjugate()).imag / det, (-1j * right * r3.conjugate()).imag / det)
+
+    w3, w4 = solve(-1j * speed * r2)
+    a3, a4 = solve(speed**2 * r2 + w3**2 * r3 - w4**2 * r4)
+    return w3, w4, a3, a4
+
+
+def curves_of_the_paper_are_those_of_the_loop(work):
+    lengths = {"Ideal Nominal": (254, 108, 279.4, 270.5), "Ideal Stack-up": (254.5, 108, 279.9, 271)}
+    rows = {row["row"]: row for row in result(work, "paper")[1]["extremes"]}
+
+    def furthest(name, of):
+        curve = dict(rows[name]["curve"])
+        degrees = curve.pop("crank_deg")
+        assert degrees == list(range(361))
+        off = 0.0
+        for k, values in enumerate(curve.values()):
+            size = max(map(abs, values))
+            off = max(off, *(abs(value - linkage(degree, *lengths[of])[k]) / size
+                             for degree, value in zip(degrees, values)))
+        return off
+
+    for name in lengths:
+        # printed to six digits
+        assert furthest(name, name) <= 5e-6, (name, furthest(name, name))
+    # the control: the other lengths give another curve
+    assert furthest("Ideal Nominal", "Ideal Stack-up") > 1e-3
+    page = Page(make(work + "/curves.html", result(work, "paper")[0]))
+    for number in range(2, 9):
+        assert f"Figure {number}: " in page.text("h2"), number
+    # how far play moves the velocity in the paper's first band
+    for name in ["Stack-up, POISSON", "Stack-up, IMPACT"]:
+        off = [max(abs(rows[name]["curve"][key][k] - rows["Ideal Nominal"]["curve"][key][k])
+                   for k in range(120, 131))
+               for key in ["coupler_omega_rad_s", "follower_omega_rad_s"]]
+        words = f"at most {off[0]:.3g} rad/s (coupler) and {off[1]:.3g} rad/s (follower) from 120"
+        assert words in page.text("li"), words
+
+
 def a_number_that_left_its_band_stands_first(work):
     path, check = result(work, "check")
     check = json.loads(json.dumps(check))
@@ -265,6 +317,7 @@ check_claims([
     pictures_need_no_style_sheet,
     answers_are_those_of_the_results,
     figures_of_the_paper_go_with_the_powers_that_its_text_has,
+    curves_of_the_paper_are_those_of_the_loop,
     a_number_that_left_its_band_stands_first,
     what_is_saved_is_what_was_given,
     texts_of_a_result_are_shown_as_text,

@@ -117,6 +117,28 @@ static void take_bodies(const Scenario *scenario, const Trajectory *run, Extreme
     finish_row(row);
 }
 
+// Takes every so many samples of the first revolution, so that they are a degree apart.
+static void take_curve(const Scenario *scenario, const Trajectory *run, PaperCurve *curve)
+{
+    const int bodies[2] = {linkage_find_body(&scenario->linkage, BODY_NAMES[0]),
+                           linkage_find_body(&scenario->linkage, BODY_NAMES[1])};
+    const double turn = 2.0 * M_PI * (1.0 + 1e-9);
+    for (size_t i = 0; i < run->sample_count && curve->count < PAPER_CURVE_POINTS; i++) {
+        const double turned = fabs(run->crank_angles[i] - run->crank_angles[0]);
+        const double next = 2.0 * M_PI * (double)curve->count / (PAPER_CURVE_POINTS - 1);
+        if (turned < next * (1.0 - 1e-9) || turned > turn) {
+            continue;
+        }
+        const Motion *motions = &run->motions[i * run->body_count];
+        curve->crank_deg[curve->count] = turned * 180.0 / M_PI;
+        for (int k = 0; k < 2; k++) {
+            curve->values[k][curve->count] = motions[bodies[k]].omega;
+            curve->values[2 + k][curve->count] = motions[bodies[k]].alpha;
+        }
+        curve->count++;
+    }
+}
+
 // Takes a run, which it destroys, into a row.
 static void fill_by_run(const Scenario *scenario, Trajectory *run, ExtremesRow *row)
 {
@@ -125,6 +147,9 @@ static void fill_by_run(const Scenario *scenario, Trajectory *run, ExtremesRow *
     if (run->is_complete) {
         take_joint(scenario, run, row);
         take_bodies(scenario, run, row);
+        if (row->is_known) {
+            take_curve(scenario, run, &row->curve);
+        }
     } else {
         text_copy(row->message, sizeof row->message, run->message);
     }
@@ -164,9 +189,8 @@ static bool fill_poisson(RunWatch watch, ExtremesRow *row, Err *err)
     if (!embedded_load(EMBEDDED_STACKUP_POISSON, &scenario, err)) {
         return false;
     }
-    // nothing else of it is read
+    // nothing else of it is read than extremes and curve
     scenario.run.is_lean = true;
-    scenario.run.samples = 1;
     fill_by_run(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), watch), row);
     scenario_free(&scenario);
     return true;

@@ -7,6 +7,17 @@
 #include "run/run.h"
 #include "write/fields.h"
 
+enum { PAPER_CURVE_COUNT = 4, PAPER_CURVE_POINTS = 361 };
+
+// Coupler and follower over the first revolution, one point every degree: what Figures 5 to 8
+// show.
+typedef struct PaperCurve {
+    size_t count;                                         // 0: none
+    double crank_deg[PAPER_CURVE_POINTS];                 // turned since the start, either way
+    double values[PAPER_CURVE_COUNT][PAPER_CURVE_POINTS]; // coupler omega, follower omega, rad/s,
+                                                          // coupler alpha, follower alpha, rad/s^2
+} PaperCurve;
+
 // Tables VII and VIII: a row of the paper beside ours (extremes.c).
 typedef struct ExtremesRow {
     const char *name;
@@ -22,6 +33,7 @@ typedef struct ExtremesRow {
     double step_s;    // 0 for a closed form
     size_t impacts;   // contacts begun in the joint with play
     double force_max; // N, largest in it
+    PaperCurve curve; // of the rows that are runs
 } ExtremesRow;
 
 // Over the target rows: the largest relative difference, and how many of their cells are as

@@ -10,6 +10,8 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 // The keys of Tables VII and VIII, in the order of printed.h.
 static const char *const EXTREMES_KEYS[PRINTED_QUANTITY_COUNT] = {
@@ -106,6 +108,31 @@ static json_t *values_object(const double values[PRINTED_QUANTITY_COUNT])
     return object;
 }
 
+// Six digits say more than a picture shows.
+static json_t *curve_numbers(const double *values, size_t count)
+{
+    json_t *numbers = json_array();
+    for (size_t i = 0; i < count; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.6g", values[i]);
+        json_array_append_new(numbers, packed(json_real(strtod(text, NULL))));
+    }
+    return numbers;
+}
+
+static json_t *curve_object(const PaperCurve *curve)
+{
+    static const char *const KEYS[PAPER_CURVE_COUNT] = {
+        "coupler_omega_rad_s", "follower_omega_rad_s", "coupler_alpha_rad_s2",
+        "follower_alpha_rad_s2"};
+    json_t *object = json_object();
+    json_object_set_new(object, "crank_deg", curve_numbers(curve->crank_deg, curve->count));
+    for (int i = 0; i < PAPER_CURVE_COUNT; i++) {
+        json_object_set_new(object, KEYS[i], curve_numbers(curve->values[i], curve->count));
+    }
+    return object;
+}
+
 static json_t *extremes_object(const ExtremesRow *row)
 {
     json_t *object = packed(json_pack("{s:s, s:s, s:s, s:b, s:s, s:o}", "row", row->name, "status",
@@ -118,6 +145,8 @@ static json_t *extremes_object(const ExtremesRow *row)
     json_object_set_new(object, "recomputed", values_object(row->ours));
     json_object_set_new(object, "difference_max", packed(json_real(row->difference_max)));
     json_object_set_new(object, "cells_as_printed", json_integer(row->as_printed));
+    json_object_set_new(object, "curve",
+                        row->curve.count > 0 ? curve_object(&row->curve) : json_null());
     if (!row->is_target) {
         json_object_set_new(object, "step_s", packed(json_real(row->step_s)));
         json_object_set_new(object, "impacts", json_integer((json_int_t)row->impacts));

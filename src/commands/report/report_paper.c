@@ -102,7 +102,160 @@ static void append_figure(const Figure *figure, const json_t *table, const json_
     text_finish(&words);
 }
 
-// The extremes of Figures 5 to 8, which are Tables VII and VIII.
+// Figures 5 to 8, which show coupler and follower over the angle of the crank.
+
+typedef struct CurveFigure {
+    const char *title;
+    const char *row; // of Tables VII and VIII
+    const char *says;
+    const char *keys[2]; // of coupler and follower
+    const char *y_title;
+    bool has_play; // the paper speaks of a beginning and of bands
+} CurveFigure;
+
+#define OMEGA_KEYS                                                                                 \
+    {                                                                                              \
+        "coupler_omega_rad_s", "follower_omega_rad_s"                                              \
+    }
+static const CurveFigure CURVES[] = {
+    {"Figure 5: velocity without play", "Ideal Stack-up",
+     "0.33 % and 0.15 % variation in angular velocity of coupler and follower, due to the change "
+     "in "
+     "the link dimensions.",
+     OMEGA_KEYS, "angular velocity, rad/s", false},
+    {"Figure 6: velocity with play, restitution model", "Stack-up, POISSON",
+     "Increase in angular velocity of coupler and follower is observed at the initial stage of "
+     "motion. Small spikes are observed between the crank angle 120 to 130 deg and 290 to 300 deg.",
+     OMEGA_KEYS, "angular velocity, rad/s", true},
+    {"Figure 7: velocity with play, impact model", "Stack-up, IMPACT",
+     "The angular velocity of coupler and follower with the impact model.", OMEGA_KEYS,
+     "angular velocity, rad/s", true},
+    {"Figure 8: acceleration without play",
+     "Ideal Stack-up",
+     "Angular acceleration of coupler and follower for the ideal stack-up mechanism.",
+     {"coupler_alpha_rad_s2", "follower_alpha_rad_s2"},
+     "angular acceleration, rad/s^2",
+     false},
+};
+enum { CURVE_COUNT = sizeof CURVES / sizeof *CURVES };
+
+// The paper's bands and its beginning, degrees of the crank.
+typedef struct Band {
+    const char *name;
+    double from;
+    double to;
+} Band;
+static const Band BANDS[] = {
+    {"in the first 10 deg", 0.0, 10.0},
+    {"from 120 to 130 deg", 120.0, 130.0},
+    {"from 290 to 300 deg", 290.0, 300.0},
+    {"anywhere", 0.0, 360.0},
+};
+static const char *const CURVE_BODIES[] = {"coupler", "follower"};
+
+static const json_t *row_named(const json_t *result, const char *name)
+{
+    size_t i;
+    json_t *row;
+    json_array_foreach(json_object_get(result, "extremes"), i, row)
+    {
+        if (strcmp(html_text_of(row, "row"), name) == 0) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
+static double number_at(const json_t *curve, const char *key, size_t index)
+{
+    return json_number_value(json_array_get(json_object_get(curve, key), index));
+}
+
+// The largest difference of two curves between two angles of the crank.
+static double band_difference(const json_t *curve, const json_t *ideal, const char *key,
+                              const Band *band)
+{
+    double largest = 0.0;
+    const size_t count = json_array_size(json_object_get(curve, key));
+    for (size_t i = 0; i < count && i < json_array_size(json_object_get(ideal, key)); i++) {
+        const double at = number_at(curve, "crank_deg", i);
+        const double off = fabs(number_at(curve, key, i) - number_at(ideal, key, i));
+        largest = at >= band->from && at <= band->to ? fmax(largest, off) : largest;
+    }
+    return largest;
+}
+
+// How far both bodies are from the same linkage without play, band by band.
+static void say_bands(const CurveFigure *figure, const json_t *result, const json_t *curve,
+                      Text *words)
+{
+    const json_t *ideal = json_object_get(row_named(result, "Ideal Nominal"), "curve");
+    for (size_t i = 0; json_is_object(ideal) && i < sizeof BANDS / sizeof *BANDS; i++) {
+        text_append(words,
+                    "Off the ideal velocity by at most %.3g rad/s (coupler) and %.3g rad/s "
+                    "(follower) %s.\n",
+                    band_difference(curve, ideal, figure->keys[0], &BANDS[i]),
+                    band_difference(curve, ideal, figure->keys[1], &BANDS[i]), BANDS[i].name);
+    }
+}
+
+// How far the extremes are from those of the linkage at its nominal lengths, in percent.
+static void say_variation(const CurveFigure *figure, const json_t *result, const json_t *row,
+                          Text *words)
+{
+    const json_t *nominal = json_object_get(row_named(result, "Ideal Nominal"), "recomputed");
+    for (int i = 0; json_is_object(nominal) && i < 2; i++) {
+        char key[64];
+        snprintf(key, sizeof key, "%s_%s", CURVE_BODIES[i],
+                 strstr(figure->keys[i], "omega") != NULL ? "omega_max_rad_s" : "alpha_max_rad_s2");
+        const double ours = html_number_of(json_object_get(row, "recomputed"), key);
+        const double printed = html_number_of(json_object_get(row, "printed"), key);
+        text_append(words,
+                    "Largest of the %s: %.6g, printed %.6g; %.2g %% from that of the nominal "
+                    "lengths.\n",
+                    CURVE_BODIES[i], ours, printed,
+                    100.0 * fabs(ours / html_number_of(nominal, key) - 1.0));
+    }
+}
+
+static void append_curves(const CurveFigure *figure, const json_t *result, Text *html)
+{
+    const json_t *row = row_named(result, figure->row);
+    const json_t *curve = json_object_get(row, "curve");
+    if (!json_is_object(curve)) {
+        return; // of a run that failed, as the table below says
+    }
+    Drawing drawing = {.title = figure->title,
+                       .x_title = "crank turned, deg",
+                       .y_title = figure->y_title,
+                       .level = NAN};
+    for (size_t i = 0; i < 2; i++) {
+        DrawLine *line = draw_add(&drawing, CURVE_BODIES[i], plot_style(1, i));
+        line->is_bare = true;
+        for (size_t k = 0; k < json_array_size(json_object_get(curve, "crank_deg")); k++) {
+            draw_point(&drawing, line, number_at(curve, "crank_deg", k),
+                       number_at(curve, figure->keys[i], k));
+        }
+    }
+    Text words;
+    text_init(&words);
+    if (figure->has_play) {
+        say_bands(figure, result, curve, &words);
+    } else {
+        say_variation(figure, result, row, &words);
+    }
+    text_append(html, "<section>\n");
+    html_words("h2", figure->title, html);
+    text_append(html, "<p>The paper says: <i>%s</i> Made here by ", figure->says);
+    html_words("code", html_text_of(row, "label"), html);
+    text_append(html, "</p>\n");
+    html_list(words.data, html);
+    draw_end(&drawing, html);
+    text_append(html, "</section>\n");
+    text_finish(&words);
+}
+
+// Tables VII and VIII, the extremes of these curves.
 
 static void extreme_row(const json_t *row, const char *which, const char *key, Text *html)
 {
@@ -132,15 +285,10 @@ static void append_extremes(const json_t *result, Text *html)
                                         "follower alpha max",
                                         "min"};
     text_append(html,
-                "<section>\n<h2>Figures 5 to 8: velocity and acceleration over the crank's angle"
-                "</h2>\n<p>Figure 5 (without play), 6 (restitution model) and 7 (impact model) "
-                "show the angular velocity of coupler and follower, 8 their acceleration. The "
-                "paper says: <i>the variation of angular velocity is due to the change in the link "
-                "dimensions</i> (5), <i>an increase is observed at the initial stage of motion, "
-                "and small spikes between 120 and 130 and 290 and 300 deg</i> (6). The curves on "
-                "these axes, with those bands, stand in the pages of <code>jointplay report "
-                "cases/paper/ideal-stackup.yaml</code>, <code>stackup-poisson.yaml</code> and "
-                "<code>stackup-impact.yaml</code>; their extremes are these:</p>\n");
+                "<section>\n<h2>Tables VII and VIII: the extremes</h2>\n<p>The curves with the "
+                "paper's bands and the forces beside them are in the pages of <code>jointplay "
+                "report cases/paper/stackup-poisson.yaml</code> and "
+                "<code>stackup-impact.yaml</code>.</p>\n");
     html_table_begin("Tables VII and VIII, rad/s and rad/s^2", 10, HEADS, html);
     size_t i;
     json_t *row;
@@ -197,6 +345,9 @@ static void report_paper_write(const json_t *result, Text *html)
     for (size_t i = 0; i < FIGURE_COUNT; i++) {
         append_figure(&FIGURES[i], json_array_get(json_object_get(result, "tables"), i),
                       json_object_get(result, "physics"), html);
+    }
+    for (size_t i = 0; i < CURVE_COUNT; i++) {
+        append_curves(&CURVES[i], result, html);
     }
     append_extremes(result, html);
     append_typos(result, html);
