@@ -43,6 +43,8 @@ typedef struct TrialWindow {
 // What a trial is held against, and when it is not worth running on.
 typedef struct TrialRule {
     const Truth *truth;
+    const DistanceMeasure *measure; // of the truth, as the next
+    const ForceMeasure *forces;
     TrialWindow window; // in which errors count
     double tolerance;   // 1
     ToleranceOf kind;   // of which error it is
@@ -236,8 +238,6 @@ static const double TRUTH_MARGIN = 3.0;
 
 typedef struct Watcher {
     const TrialRule *rule;
-    DistanceMeasure measure; // of the truth, as the next
-    ForceMeasure forces;
     Trial *trial;
     bool is_over; // the tolerance was exceeded
 } Watcher;
@@ -246,8 +246,8 @@ static double apart_at(const Watcher *watcher, const Trajectory *run, size_t sam
 {
     const Trajectory *truth = watcher->rule->truth->trajectory;
     return watcher->rule->kind == TOLERANCE_OF_FORCES
-               ? error_forces_apart(&watcher->forces, run, truth, sample)
-               : distance_apart(&watcher->measure, distance_motion_at(run, sample),
+               ? error_forces_apart(watcher->rule->forces, run, truth, sample)
+               : distance_apart(watcher->rule->measure, distance_motion_at(run, sample),
                                 distance_motion_at(truth, sample), NULL);
 }
 
@@ -324,20 +324,13 @@ static Trial trial_make(const Scenario *scenario, BackendKind backend, const Tri
                         RunWatch watch, const RunProbe *probe)
 {
     Trial trial = {.step_s = scenario->run.step};
-    Watcher watcher = {
-        .rule = rule,
-        .trial = &trial,
-        .measure = distance_measure(rule->truth->trajectory),
-        .forces = error_forces(rule->truth->trajectory),
-    };
+    Watcher watcher = {.rule = rule, .trial = &trial};
     const RunGuard guard = {chosen_run_look, &watcher};
     const bool is_of_peaks = rule->kind == TOLERANCE_OF_PEAKS;
     trial.run =
         run_guarded(scenario, registry_solver(backend), watch, probe, is_of_peaks ? NULL : &guard);
     trial.holds = trial.run->is_complete && !watcher.is_over &&
                   (!is_of_peaks || trial_judge_peaks(rule, &trial));
-    error_forces_finish(&watcher.forces);
-    distance_finish(&watcher.measure);
     return trial;
 }
 
@@ -420,6 +413,8 @@ typedef struct Chosen {
     const RunProbe *probe;
     ChosenWatch watch;
     StepChoice choice;
+    DistanceMeasure measure; // of the truth, as the next
+    ForceMeasure forces;
     double started_s; // by the clock
     TrialWindow window;
     double cost; // world steps to a step
@@ -569,6 +564,8 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
     const Scenario scenario = step_choice_scenario(&chosen->choice, step_s);
     const TrialRule rule = {
         .truth = chosen->truth,
+        .measure = &chosen->measure,
+        .forces = &chosen->forces,
         .window = chosen->window,
         .tolerance = tolerance,
         .kind = chosen->scenario->run.tolerance_of,
@@ -629,7 +626,7 @@ static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
     return none;
 }
 
-static Trajectory *chosen_run_choose(Chosen *chosen)
+static Trajectory *walk_to_step(Chosen *chosen)
 {
     const double duration_s = scenario_duration(chosen->scenario);
     double step_s = chosen->choice.first_step_s;
@@ -647,6 +644,28 @@ static Trajectory *chosen_run_choose(Chosen *chosen)
                                      : step_choice_after_failure(step_s);
         trial_finish(&trial);
     }
+}
+
+// With what is the same in all trials found once.
+static Trajectory *chosen_run_choose(Chosen *chosen)
+{
+    const RunProbe *given = chosen->probe;
+    RunProbe probe;
+    void *shared = NULL;
+    if (given != NULL && given->share != NULL) {
+        shared = given->share(chosen->scenario);
+        probe = *given;
+        probe.shared = shared;
+        chosen->probe = &probe;
+    }
+    chosen->measure = distance_measure(chosen->truth->trajectory);
+    chosen->forces = error_forces(chosen->truth->trajectory);
+    Trajectory *run = walk_to_step(chosen);
+    error_forces_finish(&chosen->forces);
+    distance_finish(&chosen->measure);
+    free(shared);
+    chosen->probe = given;
+    return run;
 }
 
 // Of what the tolerance is of, in the window.

@@ -517,7 +517,8 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     loop.recorder = recorder_start(scenario, trajectory);
     loop.ahead = part_samples_start(&loop.recorder, &loop.turning, solver, loop.state);
     loop.probe_own =
-        probe == NULL ? NULL : probe->begin(scenario, solver, loop.state, &loop.recorder);
+        probe == NULL ? NULL
+                      : probe->begin(scenario, solver, loop.state, &loop.recorder, probe->shared);
     loop.started_s = clock_now_s();
     const bool is_done = run_samples(&loop, trajectory, &err);
     trajectory->wall_s = clock_now_s() - loop.started_s;

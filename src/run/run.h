@@ -17,10 +17,14 @@ typedef struct RunProbe {
     // Once the solver is open; what the probe asks the solver for it shows to the recorder. NULL:
     // there is nothing to look at in this run.
     void *(*begin)(const Scenario *scenario, const Solver *solver, const void *state,
-                   Recorder *recorder);
+                   Recorder *recorder, const void *shared);
     void (*look)(void *own, const StepRecord *step);
     // Fills in what it found, where the trajectory is complete, and frees its own.
     void (*end)(void *own, Trajectory *trajectory);
+    // What is the same in all runs of a scenario, whatever their step: for `shared`, and free.
+    // NULL: nothing is.
+    void *(*share)(const Scenario *scenario);
+    const void *shared; // NULL: each run finds it itself
 } RunProbe;
 
 // Asked at every sample whether the run is to go on: it ends where the answer is no, which is then

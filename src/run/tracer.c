@@ -117,7 +117,7 @@ static bool is_traced(const Tracer *tracer, size_t body)
 }
 
 static void *tracer_begin(const Scenario *scenario, const Solver *solver, const void *state,
-                          Recorder *recorder)
+                          Recorder *recorder, const void *shared)
 {
     if (!scenario_has_clearance(scenario) || solver->is_ideal) {
         return NULL;
@@ -133,7 +133,7 @@ static void *tracer_begin(const Scenario *scenario, const Solver *solver, const 
     tracer->body_s = zeroed(scenario->linkage.body_count, sizeof *tracer->body_s);
     tracer->joint_s = zeroed(scenario->linkage.joint_count, sizeof *tracer->joint_s);
     tracer->causes = causes_find(&scenario->linkage);
-    tracer->scale = spike_scale(scenario);
+    tracer->scale = shared != NULL ? *(const SpikeScale *)shared : spike_scale(scenario);
     const double fine = tracer->scale.is_known ? FINENESS * scenario->run.spike_threshold : 0.0;
     for (size_t i = 0; i < scenario->linkage.body_count; i++) {
         tracer->alpha[i] = trace_start(fine * tracer->scale.alpha, POINTS_MOST);
@@ -495,7 +495,14 @@ static void tracer_end(void *own, Trajectory *trajectory)
     free(tracer);
 }
 
-const RunProbe TRACER_PROBE = {tracer_begin, tracer_look, tracer_end};
+static void *tracer_share(const Scenario *scenario)
+{
+    SpikeScale *scale = zeroed(1, sizeof *scale);
+    *scale = spike_scale(scenario);
+    return scale;
+}
+
+const RunProbe TRACER_PROBE = {tracer_begin, tracer_look, tracer_end, tracer_share, NULL};
 
 Trajectory *tracer_run(const Scenario *scenario, const Solver *solver, RunWatch watch)
 {

@@ -37,14 +37,15 @@ static Dense dense; // of the run under way: probes have no context
 static bool looks_inside;
 
 static void *dense_begin(const Scenario *scenario, const Solver *solver, const void *state,
-                         Recorder *recorder)
+                         Recorder *recorder, const void *shared)
 {
     const Linkage *linkage = &scenario->linkage;
     dense = (Dense){
         .solver = solver,
         .state = state,
         .linkage = linkage,
-        .tracer = looks_inside ? TRACER_PROBE.begin(scenario, solver, state, recorder) : NULL,
+        .tracer =
+            looks_inside ? TRACER_PROBE.begin(scenario, solver, state, recorder, shared) : NULL,
         .all = sample_create(linkage),
         .one = sample_create(linkage),
         .omega = zeroed(linkage->body_count, sizeof *dense.omega),
@@ -128,7 +129,7 @@ static void dense_end(void *own, Trajectory *trajectory)
     sample_free(&dense.one);
 }
 
-static const RunProbe DENSE_PROBE = {dense_begin, dense_look, dense_end};
+static const RunProbe DENSE_PROBE = {dense_begin, dense_look, dense_end, NULL, NULL};
 
 // How far the two are apart, of a signal's own range.
 typedef struct Missed {
