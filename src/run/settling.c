@@ -49,6 +49,9 @@ enum { LOOSE_FROM = 6 }; // revolutions, before which a motion has not had the t
 // tolerance on its way there: a peak is then wrong by less than a hundredth of it
 static const double NEAR_SHARE = 1e-5;
 
+// Of the reference on that way at the loosest: a peak is off by less than a thousandth.
+static const double QUICK_LOOSE = 1e-6;
+
 // Of a rank test: in standard deviations, what one in a hundred samples exceeds by chance.
 static const double DRIFT_LEAST = 2.6;
 
@@ -358,7 +361,7 @@ static double next_tolerance(const Settling *settling, double tight)
     const double nearest = count > 0 ? nearest_return(settling, count - 1) : INFINITY;
     if (settling->is_quick) {
         const double near = fmin(nearest, known_apart(settling));
-        return fmax(tight, fmin(NEAR_SHARE * near, SETTLE_LOOSE));
+        return fmax(tight, fmin(NEAR_SHARE * near, QUICK_LOOSE));
     }
     return count >= LOOSE_FROM && nearest >= NEAR_RETURN ? fmax(tight, SETTLE_LOOSE) : tight;
 }
