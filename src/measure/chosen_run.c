@@ -76,6 +76,12 @@ typedef struct Trial {
 static const double FINER_EARLY = 0.8;
 static const double FINER_LATE = 0.7;
 
+// Where it missed at the very first sample, no impact lies before, and errors there fall with the
+// step or faster: the next one is shorter by a root of how many times the tolerance that error was.
+// So the coarsest steps, each of which may hold many impacts, are passed over.
+static const double FIRST_SAMPLE_POWER = 0.5;
+static const double FIRST_SAMPLE_LEAST = 0.1;
+
 // a failed trial gives no hint of the step that succeeds
 static const double AFTER_FAILURE = 0.5;
 
@@ -202,6 +208,12 @@ static Scenario step_choice_scenario(const StepChoice *choice, double step_s)
 static double step_choice_finer(double step_s, double share)
 {
     return step_s * (FINER_EARLY + (FINER_LATE - FINER_EARLY) * fmin(1.0, share));
+}
+
+static double step_choice_after_first_sample(double step_s, double excess)
+{
+    const double share = pow(excess, -FIRST_SAMPLE_POWER);
+    return step_s * fmin(fmax(share, FIRST_SAMPLE_LEAST), FINER_EARLY);
 }
 
 // The step after one whose largest error in the whole run was that many times the tolerance, where
@@ -626,9 +638,26 @@ static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
     return none;
 }
 
+// The step after a trial that does not hold.
+static double step_after(const Chosen *chosen, const Trial *trial)
+{
+    const RunOptions *options = &chosen->scenario->run;
+    const double excess = trial->error / options->tolerance;
+    if (chosen->choice.is_smooth && trial->run->is_complete) {
+        return step_choice_by_order(&chosen->choice, trial->step_s,
+                                    trial->worst / options->tolerance);
+    }
+    if (!trial->is_given_up) {
+        return step_choice_after_failure(trial->step_s);
+    }
+    if (trial->held_s == 0.0 && options->tolerance_of == TOLERANCE_OF_MOTION) {
+        return step_choice_after_first_sample(trial->step_s, excess);
+    }
+    return step_choice_finer(trial->step_s, trial->held_s / scenario_duration(chosen->scenario));
+}
+
 static Trajectory *walk_to_step(Chosen *chosen)
 {
-    const double duration_s = scenario_duration(chosen->scenario);
     double step_s = chosen->choice.first_step_s;
     for (;;) {
         const bool is_last = 2.0 * cost_of(chosen, step_s) > steps_left(chosen);
@@ -637,11 +666,7 @@ static Trajectory *walk_to_step(Chosen *chosen)
         if (trial.holds || is_last || chosen->failures == FAILURES_ALIKE) {
             return end_trials(chosen, &trial);
         }
-        step_s = chosen->choice.is_smooth && trial.run->is_complete
-                     ? step_choice_by_order(&chosen->choice, step_s,
-                                            trial.worst / chosen->scenario->run.tolerance)
-                 : trial.is_given_up ? step_choice_finer(step_s, trial.held_s / duration_s)
-                                     : step_choice_after_failure(step_s);
+        step_s = step_after(chosen, &trial);
         trial_finish(&trial);
     }
 }
