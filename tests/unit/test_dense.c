@@ -131,6 +131,46 @@ static void a_factored_matrix_serves_many_right_hand_sides(void **state)
     }
 }
 
+// Random rows that need exchanges, with zeros as a linkage's have them.
+static void a_split_matrix_solves_as_a_whole_one_does_to_the_last_bit(void **state)
+{
+    (void)state;
+    enum { N = 9, ROUNDS = 200, SIDES = 3 };
+    uint64_t seed = 5;
+    for (int round = 0; round < ROUNDS; round++) {
+        double a[N * N], b[SIDES][N], split[N * N];
+        size_t pivots[N];
+        for (int i = 0; i < N * N; i++) {
+            const double draw = lcg_draw(&seed);
+            a[i] = lcg_draw(&seed) < 0.0 ? 0.0 : draw;
+        }
+        for (int i = 0; i < SIDES * N; i++) {
+            b[i / N][i % N] = lcg_draw(&seed);
+        }
+        memcpy(split, a, sizeof split);
+        const bool is_regular = dense_split(N, split, pivots);
+        for (int side = 0; side < SIDES; side++) {
+            double whole[N * N], x[N];
+            memcpy(whole, a, sizeof whole);
+            memcpy(x, b[side], sizeof x);
+            assert_int_equal(dense_solve(N, whole, x), is_regular);
+            if (is_regular) {
+                dense_solve_split(N, split, pivots, b[side]);
+                assert_memory_equal(b[side], x, sizeof x);
+            }
+        }
+    }
+    // the control: rows that stay where they are give another answer
+    double a[] = {1.0, 2.0, 3.0, 4.0}, b[] = {1.0, 2.0}, straight[] = {1.0, 2.0};
+    size_t pivots[2];
+    assert_true(dense_split(2, a, pivots));
+    dense_solve_split(2, a, pivots, b);
+    dense_solve_split(2, a, (const size_t[]){0, 1}, straight);
+    assert_true(fabs(b[0]) < 1e-15);
+    assert_true(fabs(b[1] - 0.5) < 1e-15);
+    assert_true(fabs(straight[0] - b[0]) > 0.1);
+}
+
 static void a_column_of_zeros_is_not_factored(void **state)
 {
     (void)state;
@@ -184,6 +224,7 @@ int main(void)
         cmocka_unit_test(a_system_that_needs_a_swap_is_solved),
         cmocka_unit_test(the_answer_fits_the_system),
         cmocka_unit_test(a_factored_matrix_serves_many_right_hand_sides),
+        cmocka_unit_test(a_split_matrix_solves_as_a_whole_one_does_to_the_last_bit),
         cmocka_unit_test(a_column_of_zeros_is_not_factored),
         cmocka_unit_test(a_banded_system_is_solved_as_a_dense_one),
         cmocka_unit_test(a_singular_system_is_refused),

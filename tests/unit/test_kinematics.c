@@ -106,9 +106,39 @@ static void without_a_driver_there_is_no_motion_to_solve(void **state)
     assert_non_null(strstr(err.text, "0 drives"));
 }
 
+// Place by place round a turn, as a start a hundred steps back is found: at each the motion that
+// follows is that of a mechanism which had its motion all the way.
+static void a_placed_mechanism_moves_as_one_that_was_solved(void **state)
+{
+    (void)state;
+    enum { PLACES = 36, BODIES = 3 };
+    const Scenario scenario = mechanism_paper();
+    const Linkage *linkage = &scenario.linkage;
+    Motion placed[BODIES], solved[BODIES];
+    Err err = {0};
+    assert_int_equal(linkage->body_count, BODIES);
+    linkage_start(linkage, placed);
+    linkage_start(linkage, solved);
+    for (int k = 1; k <= PLACES; k++) {
+        const DriveState drive = {.angle = linkage->driver.start + 2.0 * M_PI * k / PLACES,
+                                  .omega = linkage->driver.speed};
+        const Vec2 before = placed[1].velocity;
+        assert_true(kinematics_place_driven(linkage, &drive, placed, &err));
+        // the control: placing alone leaves the velocities behind
+        assert_memory_equal(&placed[1].velocity, &before, sizeof before);
+        assert_true(kinematics_solve_driven(linkage, &drive, solved, &err));
+        assert_true(vec2_length(vec2_sub(solved[1].velocity, before)) > 0.0);
+        Motion then[BODIES];
+        memcpy(then, placed, sizeof then);
+        assert_true(kinematics_solve_driven(linkage, &drive, then, &err));
+        assert_memory_equal(then, solved, sizeof then);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_placed_mechanism_moves_as_one_that_was_solved),
         cmocka_unit_test(newton_and_the_closed_form_agree_over_a_turn),
         cmocka_unit_test(a_fourbar_has_one_freedom_and_two_more_with_each_loose_joint),
         cmocka_unit_test(a_redundant_bar_leaves_the_freedom_that_counting_denies),

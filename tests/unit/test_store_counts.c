@@ -165,6 +165,26 @@ static void quantiles_are_values_of_their_rank(void **state)
     store_close(store, &err);
 }
 
+static void quantiles_of_many_columns_are_those_of_each(void **state)
+{
+    (void)state;
+    enum { COLUMNS = 20 };
+    Err err = {0};
+    StoreSpread all[COLUMNS];
+    make_store(RUNS);
+    Store *store = store_view(path, &err);
+    assert_true(store_spreads(store, 4 + 3, COLUMNS, all, &err));
+    size_t different = 0; // from the first: the control that columns are not mixed up
+    for (size_t i = 0; i < COLUMNS; i++) {
+        StoreSpread own;
+        assert_true(store_spread(store, 4 + 3 + i, &own, &err));
+        assert_memory_equal(&all[i], &own, sizeof own);
+        different += all[i].median != all[0].median ? 1 : 0;
+    }
+    assert_true(different > 0);
+    store_close(store, &err);
+}
+
 #define STORE_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 int main(void)
@@ -177,6 +197,7 @@ int main(void)
         cmocka_unit_test(columns_are_found_by_name),
         STORE_TEST(values_come_in_order_and_each_once),
         STORE_TEST(quantiles_are_values_of_their_rank),
+        STORE_TEST(quantiles_of_many_columns_are_those_of_each),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
