@@ -42,8 +42,8 @@ static Vec2 turn_arm(const Vec2 *turns, int body, Vec2 arm)
 }
 
 // The rows of a pivot, two from the first: x and y of its second anchor against its first.
-static void add_pivot(const Linkage *linkage, const Motion *motions, const Vec2 *turns,
-                      size_t joint, double *first, size_t columns)
+static void add_pivot(const Linkage *linkage, const Vec2 *turns, size_t joint, double *first,
+                      size_t columns)
 {
     for (int side = 0; side < 2; side++) {
         const JointEnd end = linkage_end(&linkage->joints[joint], side);
@@ -96,7 +96,7 @@ static void find_jacobian(const Linkage *linkage, const Motion *motions, const V
         if (joint_rows_is_angle(kind, 1)) {
             add_joint(linkage, motions, i, first, jacobian->columns);
         } else {
-            add_pivot(linkage, motions, turns, i, first, jacobian->columns);
+            add_pivot(linkage, turns, i, first, jacobian->columns);
         }
         jacobian->rows += 2;
     }
