@@ -46,6 +46,7 @@ typedef struct EngineSaid {
     char settings[4 * ENGINE_TEXT_SIZE]; // of the engine, that are not its defaults
     double opening_m;                    // largest, of an ideal joint at a sample
     bool is_refused;                     // the driver cannot express the case in that way
+    char **model; // where a file of the engine's own goes; NULL: it is not wanted
 } EngineSaid;
 
 // Runs a scenario by a driver in one of its ways, at the scenario's step, within so many seconds.
@@ -60,6 +61,11 @@ Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenar
 Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
                                 const Scenario *scenario, double time_limit_s, EngineSaid *said,
                                 EngineRecords *records);
+
+// The same; *model becomes the file of the engine's own that has the whole model, where the driver
+// writes one, for free(), or NULL.
+Trajectory *engine_run_model(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                             double time_limit_s, EngineSaid *said, char **model);
 
 // Whether a scenario can be expressed in the protocol; ERR_CASE, naming what cannot, where not.
 bool engine_check(const Scenario *scenario, Err *err);

@@ -175,7 +175,8 @@ static bool fill(const EngineDriver *driver, const char *way, const Scenario *sc
                  EngineRecords *records, Err *err)
 {
     EngineDriver again = *driver; // what it says of itself in this run
-    char *request = engine_request(scenario, way, records != NULL ? records->record_s : 0.0, err);
+    char *request = engine_request(scenario, way, records != NULL ? records->record_s : 0.0,
+                                   said->model != NULL, err);
     if (request == NULL) {
         return false;
     }
@@ -196,20 +197,10 @@ static bool fill(const EngineDriver *driver, const char *way, const Scenario *sc
     return is_done;
 }
 
-Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenario *scenario,
-                       double time_limit_s, EngineSaid *said)
+static Trajectory *run_said(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                            double time_limit_s, EngineSaid *said, EngineRecords *records)
 {
-    return engine_run_recorded(driver, way, scenario, time_limit_s, said, NULL);
-}
-
-Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
-                                const Scenario *scenario, double time_limit_s, EngineSaid *said,
-                                EngineRecords *records)
-{
-    EngineSaid own;
     Err err = {0};
-    said = said != NULL ? said : &own;
-    *said = (EngineSaid){.opening_m = 0.0};
     Trajectory *trajectory = trajectory_create(scenario, driver->name);
     if (trajectory->message[0] != '\0') {
         return trajectory; // there is no room for the samples
@@ -224,4 +215,28 @@ Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
         text_copy(trajectory->message, sizeof trajectory->message, err.text);
     }
     return trajectory;
+}
+
+Trajectory *engine_run(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                       double time_limit_s, EngineSaid *said)
+{
+    return engine_run_recorded(driver, way, scenario, time_limit_s, said, NULL);
+}
+
+Trajectory *engine_run_model(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                             double time_limit_s, EngineSaid *said, char **model)
+{
+    *model = NULL;
+    *said = (EngineSaid){.model = model};
+    return run_said(driver, way, scenario, time_limit_s, said, NULL);
+}
+
+Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
+                                const Scenario *scenario, double time_limit_s, EngineSaid *said,
+                                EngineRecords *records)
+{
+    EngineSaid own;
+    said = said != NULL ? said : &own;
+    *said = (EngineSaid){.opening_m = 0.0};
+    return run_said(driver, way, scenario, time_limit_s, said, records);
 }

@@ -5,7 +5,8 @@
 
 // The request for a run, as one line of JSON; the caller frees it. NULL, with ERR_CASE, where the
 // scenario cannot be expressed. Records of at least that length are asked for, none where it is 0.
-char *engine_request(const Scenario *scenario, const char *way, double record_s, Err *err);
+char *engine_request(const Scenario *scenario, const char *way, double record_s, bool wants_model,
+                     Err *err);
 
 // The request that asks a driver what it is.
 extern const char ENGINE_HELLO[];

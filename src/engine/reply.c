@@ -298,6 +298,10 @@ static bool take_done(EngineReply *reply, const json_t *done, Err *err)
     if (json_is_string(settings)) {
         text_copy(reply->said->settings, sizeof reply->said->settings, json_string_value(settings));
     }
+    const json_t *model = json_object_get(done, "model");
+    if (json_is_string(model) && reply->said->model != NULL && *reply->said->model == NULL) {
+        *reply->said->model = strdup(json_string_value(model));
+    }
     run->steps = (size_t)steps;
     reply->is_done = true;
     return true;

@@ -173,7 +173,8 @@ static json_t *drive_object(const Linkage *linkage)
                               : json_null();
 }
 
-char *engine_request(const Scenario *scenario, const char *way, double record_s, Err *err)
+char *engine_request(const Scenario *scenario, const char *way, double record_s, bool wants_model,
+                     Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     if (!engine_check(scenario, err)) {
@@ -199,6 +200,9 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
                   pair(scenario_gravity(scenario)), "bodies", bodies, "joints", joints, "drive",
                   drive_object(linkage), "sample_times_s", times_array(scenario));
     assert(request != NULL);
+    if (wants_model) {
+        json_object_set_new(request, "model", json_true());
+    }
     if (record_s > 0.0) {
         json_object_set_new(request, "record_s", json_real(record_s));
     }

@@ -82,6 +82,25 @@ run --driver "ode=$JOINTPLAY_TOY_DRIVER"
 [ $? = 2 ] && grep -q "none of our own backends" "$log"
 report "so is one in the place of our own" $?
 
+"$program" tune "$case" --driver "$toy" --backend toy --error 1e-5 --json -q --set run.samples=30 \
+    >out 2>"$log"
+"$python" -c "
+import json, sys
+r = json.load(open('out'))
+best = r['cheapest']
+tried = [t for t in r['trials'] if t['scheme'] == best['scheme']]
+# the coarsest that holds, of the method of order 2: the other takes longer for less
+sys.exit(0 if best['scheme'] == 'toy/midpoint' and best['error_max'] <= 1e-5 and
+         best['step_s'] == min(t['step_s'] for t in tried) and
+         all(t['error_max'] > 1e-5 for t in tried if t['step_s'] > best['step_s']) else 1)" 2>>"$log"
+report "tune finds the cheapest way and step of an engine" $?
+"$program" tune "$case" --driver "$toy" --backend toy/leapfrog --error 1e-2 -q >out 2>"$log"
+[ $? = 2 ] && grep -q "cannot run a case the way 'leapfrog'" "$log"
+report "and refuses a way that it has not" $?
+"$program" tune "$case" --driver "$toy" --backend toy --error 1e-2 --code x.c -q >out 2>"$log"
+[ $? = 2 ] && grep -q 'with --backend tune searches' "$log"
+report "and a program of it" $?
+
 cat >study.yaml <<STUDY
 case: case.yaml
 set: {run.samples: 30, run.step: 200 us}

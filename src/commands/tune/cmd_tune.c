@@ -9,6 +9,7 @@
 #include "cli/warnings.h"
 #include "commands/commands.h"
 #include "commands/tune/tune.h"
+#include "commands/tune/tune_engine.h"
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_program.h"
@@ -31,6 +32,7 @@ typedef struct TuneOptions {
     const char *asked_cost; // of --cost, or NULL
     TuneCost cost;
     TuneLimit limit;
+    const char *backend; // another engine, NAME or NAME/WAY+WAY, or NULL
     const char *code;
     const char *sdf;
     const char *mjcf;
@@ -104,6 +106,9 @@ static const OptionRow OPTIONS[] = {
      "of contacts with constants; --error may be omitted",
      1, OPTION_QUANTITY, AT(at_step_s), .dimension = DIMENSION_TIME},
     COMMON_SCHEMES(1),
+    {"backend", "NAME[/WAY]", "Search on this engine instead of ODE: mujoco, chipmunk/kernel+force",
+     1, OPTION_TEXT, AT(backend)},
+    COMMON_DRIVERS(1),
     COMMON_SET(1),
     COMMON_JOBS(2, "Runs at a time while searching (default: one per core); timing runs always go "
                    "one by one"),
@@ -474,6 +479,7 @@ static bool search(const TuneOptions *options, const Scenario *scenario, Tune *t
 {
     const CommonOptions *common = &options->common;
     Watching watching = {tune, status_line_start(common->is_quiet)};
+    tune->model.is_asked = options->mjcf != NULL || common->folder != NULL;
     const TuneSearch work = {
         .tune = tune,
         .scenario = scenario,
@@ -527,10 +533,36 @@ static void warn_of_constants(const TuneOptions *options, const TuneReport *repo
     }
 }
 
+// On another engine, whose settings are its ways and its step.
+static bool tune_on_engine(const TuneOptions *options, Err *err)
+{
+    const CommonOptions *common = &options->common;
+    if (options->code != NULL || options->sdf != NULL || options->mjcf != NULL ||
+        common->folder != NULL || common->schemes != NULL || options->at_step_s > 0.0 ||
+        options->asked_cost != NULL || options->limit.steps > 0 || options->limit.time_s > 0.0) {
+        return err_set(err, ERR_USAGE,
+                       "with --backend tune searches an engine's ways and steps, and prints what "
+                       "it finds: no --schemes, --cost, --max-cost, --at-step, --code, --sdf, "
+                       "--mjcf or --out");
+    }
+    Scenario *scenario = calloc(1, sizeof *scenario);
+    assert(scenario != NULL);
+    const TuneEngineOptions asked = {
+        .common = common, .engine = options->backend, .target = options->error};
+    const bool is_done = common_options_load(common, scenario, err) &&
+                         settle_error(options, scenario, err) &&
+                         tune_engine_run(&asked, scenario, err);
+    scenario_destroy(scenario);
+    return is_done;
+}
+
 static bool tune_case(void *target, Err *err)
 {
     const TuneOptions *options = target;
     const CommonOptions *common = &options->common;
+    if (options->backend != NULL && strcmp(options->backend, "ode") != 0) {
+        return tune_on_engine(options, err);
+    }
     Tune *tune = NULL;
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);

@@ -254,6 +254,7 @@ void tune_destroy(Tune *tune)
 {
     if (tune != NULL) {
         free(tune->trials);
+        free(tune->model.text);
         free(tune);
     }
 }

@@ -125,6 +125,16 @@ typedef struct TuneProgram {
     char reason[LADDER_MESSAGE_SIZE]; // why there is none
 } TuneProgram;
 
+// MuJoCo's whole model with the contact made linear, run there before it is written.
+typedef struct TuneModel {
+    bool is_asked;
+    char *text;    // owned; NULL: there is none
+    double step_s; // of the model
+    double error;  // 1: as of a trial, against the law itself
+    char engine[LADDER_MESSAGE_SIZE]; // name and version
+    char reason[LADDER_MESSAGE_SIZE]; // why there is none
+} TuneModel;
+
 typedef struct Tune {
     double target;  // 1; INFINITY where any error will do
     ToleranceOf of; // which error that is
@@ -150,6 +160,7 @@ typedef struct Tune {
     int row;    // the ERP and CFM, at a step that is held
     TuneReference reference;
     TuneProgram program;
+    TuneModel model;
 } Tune;
 
 // The value of an index of the grid: 1, 0.8, 0.63, 0.5, 0.4, 0.315, 0.25, 0.2, 0.16, 0.125, 0.1,

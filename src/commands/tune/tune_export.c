@@ -2,6 +2,7 @@
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_linear.h"
+#include "commands/tune/tune_model.h"
 #include "commands/tune/tune_world.h"
 #include "contact/law.h"
 #include "contact/map.h"
@@ -238,7 +239,7 @@ static void write_limit(const TuneReport *report, const TuneMujoco *mujoco, Text
 void tune_mujoco_write(const TuneReport *report, Text *text)
 {
     TuneMujoco mujoco;
-    if (!tune_mujoco_find(report, &mujoco)) {
+    if (tune_model_write(report->tune, text) || !tune_mujoco_find(report, &mujoco)) {
         return;
     }
     Text parts;
@@ -718,6 +719,18 @@ static void write_mujoco(const TuneReport *report, const Style *style, Text *tex
         return;
     }
     text_append(text, "\n%sAs MuJoCo MJCF%s\n\n", style->heading, style->end);
+    const TuneModel *model = &report->tune->model;
+    if (model->text != NULL) {
+        text_append(
+            text,
+            "  The whole mechanism, with the same spring and damper: run in %s with steps of "
+            "%.3g us it has an error of %.2g. --mjcf FILE.xml writes it.\n",
+            model->engine, model->step_s * UNITS_US, model->error);
+        return;
+    }
+    if (model->reason[0] != '\0') {
+        text_append(text, "  There is no whole model: %s.\n\n", model->reason);
+    }
     text_append(
         text,
         "  The same spring and damper. Not run here. What does not carry over: the exponent "

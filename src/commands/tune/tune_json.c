@@ -172,6 +172,10 @@ static json_t *mujoco_object(const TuneReport *report)
     json_value_set(object, "damping_N_s_m", mujoco.damping);
     json_value_set(object, "step_s", mujoco.step_s);
     json_object_set_new(object, "mjcf", written_value(tune_mujoco_write, report));
+    const TuneModel *model = &report->tune->model;
+    json_object_set_new(object, "run_in",
+                        model->text != NULL ? json_value_text(model->engine) : json_null());
+    json_value_set(object, "error_max", model->text != NULL ? model->error : NAN);
     return of_contact(report, object);
 }
 

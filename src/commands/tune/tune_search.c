@@ -7,7 +7,9 @@
 #include "base/clock.h"
 #include "base/sorted.h"
 #include "commands/tune/tune.h"
+#include "commands/tune/tune_export.h"
 #include "commands/tune/tune_linear.h"
+#include "commands/tune/tune_model.h"
 #include "commands/tune/tune_runs.h"
 #include "measure/task.h"
 #include "write/json_value.h"
@@ -521,6 +523,12 @@ bool tune_search_execute(const TuneSearch *asked, Err *err)
     is_done = is_done && tune_search_check_target(tune, err) &&
               (tune->held_s > 0.0 ? search_held(&search, err) : search_cheapest(&search, err)) &&
               tune_linear_run(&search, err);
+    const TuneReport report = {.scenario = search.scenario, .tune = tune};
+    TuneMujoco mujoco;
+    if (is_done && tune->model.is_asked && !tune->contact.is_limit &&
+        tune_mujoco_find(&report, &mujoco)) {
+        tune_model_run(&search, mujoco.step_s);
+    }
     truth_finish(&truth);
     return is_done;
 }

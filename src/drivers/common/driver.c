@@ -197,6 +197,7 @@ static DriverCase *read_case(const json_t *request)
     of->duration_s = number(request, "duration_s");
     of->record_s = json_number_value(json_object_get(request, "record_s"));
     of->gravity = pair(request, "gravity_m_s2");
+    of->wants_model = json_is_true(json_object_get(request, "model"));
     const json_t *bodies = member(request, "bodies");
     const json_t *joints = member(request, "joints");
     const json_t *times = member(request, "sample_times_s");
@@ -546,6 +547,9 @@ static void write_done(const DriverRun *run)
                              "wall_s", run->wall_s, "joints", joints, "settings", run->settings);
     if (done == NULL) {
         driver_fail("the totals of the joints are not finite");
+    }
+    if (run->of->wants_model && run->model != NULL) {
+        json_object_set_new(json_object_get(done, "done"), "model", json_string(run->model));
     }
     json_dumpf(done, answers, JSON_COMPACT | JSON_REAL_PRECISION(17));
     fputc('\n', answers);

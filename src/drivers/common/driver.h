@@ -47,8 +47,9 @@ typedef struct DriverCase {
     char way[DRIVER_NAME_SIZE];
     double step_s;
     double duration_s;
-    double record_s; // least length of records of steps; 0: none are wanted
-    Vec2 gravity;    // acceleration of free fall, m/s^2
+    bool wants_model; // as a file of the engine's own
+    double record_s;  // least length of records of steps; 0: none are wanted
+    Vec2 gravity;     // acceleration of free fall, m/s^2
     size_t body_count;
     DriverBody *bodies; // owned, as all arrays
     size_t joint_count;
@@ -112,6 +113,7 @@ typedef struct DriverRun {
     double began_s;
     double wall_s;
     char settings[512]; // of the engine, that are not its defaults
+    const char *model;  // a file of the engine's own that has all of it; NULL: none
 } DriverRun;
 
 // Reads the request and says what the program is. Returns NULL where that was all that was asked

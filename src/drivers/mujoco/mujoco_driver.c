@@ -1,6 +1,8 @@
 // Runs a case in MuJoCo, in the ways that its users have, and with contacts within the step.
 //
-//     native     the hole is a tendon between the two centres, limited to the play
+//     native     the hole is a tendon between the two centres, limited to the play; of a law that
+//     is a
+//                spring with a damper the limit is that, else as hard as it can be
 //     force      the contact's law is a force (mjcb_passive), stepped by RK4
 //     staggered  the same by Euler's method, whose velocities are read as those of half a step
 //                earlier than its positions: v(n+1/2) = v(n-1/2) + h a(x(n), v(n)), v(n) foreseen
@@ -206,6 +208,20 @@ static void complain(const char *words)
     driver_fail("MuJoCo: %s", words);
 }
 
+// Whether every law is a spring with a damper, which a tendon's limit can be.
+static bool are_linear(const DriverCase *of)
+{
+    bool are_all = true;
+    for (size_t i = 0; i < of->joint_count; i++) {
+        const ForceLaw *law = &of->joints[i].law;
+        are_all =
+            are_all &&
+            (of->joints[i].kind != DRIVER_PIN_IN_HOLE ||
+             (law->family == FORCE_LAW_POWER && law->exponent == 1.0 && law->hysteresis == 0.0));
+    }
+    return are_all;
+}
+
 int main(void)
 {
     static const char *const WAYS[] = {"native", "force", "staggered", "kernel", NULL};
@@ -218,8 +234,10 @@ int main(void)
     mju_user_error = complain;
     mju_user_warning = complain;
     const bool is_native = driver_is_way(of, "native");
+    const bool has_springs = is_native && are_linear(of);
     const MujocoModel how = {.integrator = driver_is_way(of, "force") ? "RK4" : "Euler",
                              .has_tendons = is_native,
+                             .has_springs = has_springs,
                              .hardness_s = HARDNESS_STEPS * of->step_s};
     MujocoRun run;
     mujoco_make(of, &how, &run);
@@ -227,6 +245,13 @@ int main(void)
              "integrator %s, contacts off, solref and solreflimit '%.4g 1', solimp '.9999 .9999', "
              "tolerance 1e-14, driven body with an armature of 1e9 kg m^2",
              how.integrator, how.hardness_s);
+    if (has_springs) {
+        snprintf(run.run.settings, sizeof run.run.settings,
+                 "integrator %s, contacts off, solreflimit of spring and damper of the law times "
+                 "tendon_invweight0, solimplimit .0001, of loops solref '%.4g 1', driven body with "
+                 "an armature of 1e9 kg m^2",
+                 how.integrator, how.hardness_s);
+    }
     if (is_native) {
         run_native(&run);
     } else if (driver_is_way(of, "force")) {

@@ -23,6 +23,7 @@ typedef struct MujocoRun {
 typedef struct MujocoModel {
     const char *integrator; // "Euler", "RK4"
     bool has_tendons;       // limited tendons in the place of pins in their holes
+    bool has_springs;       // their limits are the law's spring and damper, all laws being linear
     double hardness_s;      // time constant of limits and of loops that are closed by constraints
 } MujocoModel;
 

@@ -3,6 +3,12 @@
 // A driven body has an armature so large that nothing slows it down: its speed is kept to a
 // rounding. Loops of ideal joints that the tree does not close are MuJoCo's `connect`, which is
 // soft: the hardest that its steps bear is that of a time constant of two steps.
+//
+// A tendon's limit pushes with f = (a_ref - a0) / (W + R), R = A (1 - d) / d, where a0 is the
+// acceleration without it, W the row's inverse mass and A MuJoCo's own estimate of that
+// (documentation, "Computation"). With solref = (-s, -c) and d as small as is allowed, f = -(s r +
+// c v) / A: a spring and a damper, s = A k and c = A b, whatever hangs on it. A is known once
+// MuJoCo has made the model, which is therefore made twice.
 #include "drivers/mujoco/mujoco_driver.h"
 
 #include <stdarg.h>
@@ -122,19 +128,47 @@ static void add_loops(const MujocoRun *run, const MujocoModel *how, Xml *xml)
     add(xml, "</equality>\n");
 }
 
+// The limit of a tendon: as hard as can be, or the law's spring and damper, scaled by MuJoCo's own
+// estimate of its inverse mass where that is known.
+static void add_limit(const MujocoRun *run, const MujocoModel *how, Xml *xml, size_t joint,
+                      size_t tendon)
+{
+    const DriverJoint *of = &run->of->joints[joint];
+    const double weight = run->model != NULL ? run->model->tendon_invweight0[tendon] : 1.0;
+    add(xml, "<spatial limited='true' range='0 %.17g' ", of->clearance);
+    if (how->has_springs) {
+        add(xml, "solreflimit='%.17g %.17g' solimplimit='.0001 .0001 1 .5 1'",
+            -weight * of->law.stiffness, -weight * of->law.viscous);
+    } else {
+        add(xml, "solreflimit='%.17g 1' solimplimit='.9999 .9999 .001 .5 2'", how->hardness_s);
+    }
+    add(xml, "><site site='hole%zu'/><site site='pin%zu'/></spatial>\n", joint, joint);
+}
+
 static void add_tendons(const MujocoRun *run, const MujocoModel *how, Xml *xml)
 {
+    size_t tendon = 0;
     add(xml, "<tendon>\n");
     for (size_t i = 0; how->has_tendons && i < run->of->joint_count; i++) {
         if (run->of->joints[i].kind == DRIVER_PIN_IN_HOLE) {
-            add(xml,
-                "<spatial limited='true' range='0 %.17g' solreflimit='%.17g 1' "
-                "solimplimit='.9999 .9999 .001 .5 2'><site site='hole%zu'/><site site='pin%zu'/>"
-                "</spatial>\n",
-                run->of->joints[i].clearance, how->hardness_s, i, i);
+            add_limit(run, how, xml, i, tendon++);
         }
     }
     add(xml, "</tendon>\n");
+}
+
+// The start, for who runs the file: velocities by MuJoCo's coordinates.
+static void add_start(const MujocoRun *run, Xml *xml)
+{
+    add(xml, "<keyframe><key name='start' qvel='");
+    for (int i = 0; i < run->model->nv; i++) {
+        double rate = 0.0;
+        for (size_t k = 0; k < run->tree.coordinates; k++) {
+            rate = run->addresses[k] == i ? run->rates[k] : rate;
+        }
+        add(xml, "%s%.17g", i > 0 ? " " : "", rate);
+    }
+    add(xml, "'/></keyframe>\n");
 }
 
 static void add_model(const MujocoRun *run, const MujocoModel *how, Xml *xml)
@@ -153,6 +187,9 @@ static void add_model(const MujocoRun *run, const MujocoModel *how, Xml *xml)
     add(xml, "</worldbody>\n");
     add_loops(run, how, xml);
     add_tendons(run, how, xml);
+    if (run->model != NULL) {
+        add_start(run, xml);
+    }
     add(xml, "</mujoco>\n");
 }
 
@@ -197,8 +234,6 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
     Xml xml = {.text = room(XML_SIZE, 1)};
     add_model(run, how, &xml);
     run->model = load(&xml);
-    free(xml.text);
-    run->data = mj_makeData(run->model);
     const size_t count = run->tree.coordinates;
     run->addresses = room(count, sizeof *run->addresses);
     run->coordinates = room(count, sizeof *run->coordinates);
@@ -211,8 +246,15 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
         snprintf(name, sizeof name, "c%zu", i);
         const int joint = mj_name2id(run->model, mjOBJ_JOINT, name);
         run->addresses[i] = run->model->jnt_dofadr[joint];
-        run->data->qvel[run->addresses[i]] = run->rates[i];
     }
+    // once more, with what only the model itself says
+    xml.length = 0;
+    add_model(run, how, &xml);
+    mj_deleteModel(run->model);
+    run->model = load(&xml);
+    run->run.model = xml.text;
+    run->data = mj_makeData(run->model);
+    mj_resetDataKeyframe(run->model, run->data, 0);
     for (size_t i = 0; i < of->joint_count; i++) {
         run->contacts[i].state = of->joints[i].contact;
     }
