@@ -191,7 +191,9 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
                    {{"// A mechanism with play in its joints in the Open Dynamics Engine,",
                      "`jointplay tune`"}}},
     [FILE_SDF] = {"SDF of jointplay tune", {{"<!-- error with these constants, measured:", NULL}}},
-    [FILE_MJCF] = {"MJCF of jointplay tune", {{"<!-- spring ", "not run here; for bodies"}}},
+    [FILE_MJCF] = {"MJCF of jointplay tune",
+                   {{"<!-- spring ", "not run here; for bodies"},
+                    {"<!-- spring ", "limits of the tendons"}}},
     [FILE_JUNIT] = {"JUnit XML of jointplay check",
                     {{"<?xml version=\"1.0\" encoding=\"UTF-8\"?><testsuites name=\"jointplay "
                       "check\"",

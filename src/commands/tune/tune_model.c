@@ -60,13 +60,13 @@ bool tune_model_write(const Tune *tune, Text *text)
         return false;
     }
     const TuneLinear *linear = &tune->linears[tune->linear];
-    text_append(
-        text,
-        "<!-- The whole mechanism, its pins in holes tendons with a limit: spring %.4g N/m,\n"
-        "     damper %.4g N s/m, scaled by tendon_invweight0 of this model. Run in %s\n"
-        "     from the key \"start\"%s%.2g. -->\n",
-        linear->stiffness, linear->damping, model->engine,
-        isfinite(model->error) ? ": its error is " : ", where it failed, error ", model->error);
+    text_append(text,
+                "<!-- spring %.4g N/m, damper %.4g N s/m: limits of the tendons that are the\n"
+                "     pins in their holes, scaled by tendon_invweight0 of this model. The whole\n"
+                "     mechanism, run in %s from the key \"start\"%s%.2g. -->\n",
+                linear->stiffness, linear->damping, model->engine,
+                isfinite(model->error) ? ": its error is " : ", where it failed, error ",
+                model->error);
     text_append(text, "%s", model->text);
     return true;
 }
