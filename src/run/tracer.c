@@ -465,6 +465,10 @@ static void tell_all(Tracer *tracer, Trajectory *trajectory)
                     (int)i, &trajectory->alpha_spikes[i]);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
+        // of forces that a solver does not know nothing can be told
+        if (isnan(trajectory->joints[i].force_max.value)) {
+            continue;
+        }
         tell_signal(tracer, &tracer->force[i],
                     tracer->scale.is_known ? scenario->run.spike_threshold * tracer->scale.force
                                            : own_threshold(tracer, &tracer->force[i], 0.0),
