@@ -118,7 +118,10 @@ void tune_gazebo_write(const TuneReport *report, Text *text)
     } else {
         tune_gazebo_write_surface(report, &gazebo, linear, &parts);
     }
-    text_append(text, "<!-- physics belongs into the world%s -->\n",
+    text_append(text,
+                "<!-- for Gazebo classic with ODE: of a contact DART, the engine of the current\n"
+                "     Gazebo, reads friction and restitution alone, and no kp and kd -->\n"
+                "<!-- physics belongs into the world%s -->\n",
                 report->tune->contact.is_limit ? ", joint into the model" : "");
     xml_append_element("sdf version=\"1.6\"", parts.data, text);
     text_finish(&parts);
