@@ -1,5 +1,5 @@
-// The paper's four-bar by libjointplay: revolutions in steps of 20 us with contacts within the step,
-// for tests/bench/old_and_new.py, which runs it with the library of either build.
+// The paper's four-bar by libjointplay: revolutions in steps of 20 us with contacts within the
+// step, for tests/bench/old_and_new.py, which runs it with the library of either build.
 //
 // library_steps TURNS: processor time of the steps, s, and the error of omega over a first one.
 #include "hand_four_bar.h"

@@ -173,12 +173,52 @@ static void blocks_of_pins_that_stop_at_once_do_what_the_whole_does(void **state
     check_row(single_pin_hertz(damping_factor(DAMPING_EXACT, 0.05)), ONE_IMPACT_SPEED, 1e-4);
 }
 
+// Nothing of the last look at an island is left.
+static void forget_look(KernelIsland *island)
+{
+    for (size_t i = 0; i < 4 * island->kernel.row_count; i++) {
+        island->sums.impulse[i] = NAN; // the four are in one array
+    }
+}
+
+static void a_look_around_a_contact_finds_what_a_look_at_its_island_does(void **state)
+{
+    (void)state;
+    Row row;
+    make_row(&row, single_pin_hertz(0.3), ONE_IMPACT_SPEED);
+    const KernelCoupling coupling = {row.first_partner, row.partners, block_of, &row};
+    row.islands = kernel_islands_create(&row.all, &coupling);
+    row.islands->undivided_most = SIZE_MAX;
+    KernelSums sums = kernel_sums(row.all.row_count);
+    assert_true(kernel_islands_run(row.islands, STEP_S));
+    KernelIsland *island = row.islands->islands[0];
+    assert_int_equal(island->kernel.contact_count, PINS);
+    const double time_s = 0.7 * STEP_S;
+    const size_t node = kernel_node(&island->kernel, time_s);
+    for (size_t i = 0; i < PINS; i++) {
+        kernel_islands_look(row.islands, time_s, &sums);
+        const KernelPose whole = kernel_islands_pose(row.islands, i, time_s, &sums);
+        forget_look(island);
+        kernel_island_look_around(island, i, node, time_s);
+        const KernelPose around = kernel_islands_pose(row.islands, i, time_s, &sums);
+        assert_true(around.pose.gap == whole.pose.gap);
+        assert_true(around.pose.approach_speed == whole.pose.approach_speed);
+        assert_true(around.force.x == whole.force.x && around.force.y == whole.force.y);
+        // control: of one far away nothing is known then
+        const size_t other = (i + PINS / 2) % PINS;
+        assert_true(isnan(kernel_islands_pose(row.islands, other, time_s, &sums).pose.gap));
+    }
+    kernel_sums_free(&sums);
+    finish_row(&row);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks_of_bouncing_pins_do_what_the_whole_does),
         cmocka_unit_test(blocks_of_pins_whose_forces_jump_do_what_the_whole_does),
         cmocka_unit_test(blocks_of_pins_that_stop_at_once_do_what_the_whole_does),
+        cmocka_unit_test(a_look_around_a_contact_finds_what_a_look_at_its_island_does),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
