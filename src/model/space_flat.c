@@ -7,6 +7,7 @@
 #include "model/forces.h"
 #include "model/space.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 // Whether all that acts and all that turns lies in the plane.
@@ -121,4 +122,35 @@ Scenario space_flat_scenario(const Scenario *scenario)
         }
     }
     return flat;
+}
+
+static Vec3 lifted(Vec2 a, double z)
+{
+    return (Vec3){a.x, a.y, z};
+}
+
+SpaceMotion space_flat_motion(const Body *body, const Motion *planar)
+{
+    return (SpaceMotion){
+        .position = lifted(planar->position, body->space.height),
+        .turn = {cos(0.5 * planar->angle), 0.0, 0.0, sin(0.5 * planar->angle)},
+        .velocity = lifted(planar->velocity, 0.0),
+        .omega = {0.0, 0.0, planar->omega},
+        .acceleration = lifted(planar->acceleration, 0.0),
+        .alpha = {0.0, 0.0, planar->alpha},
+    };
+}
+
+SpaceJointState space_flat_joint(const Joint *joint, const JointState *planar)
+{
+    SpaceJointState state = {
+        .force_on_b = lifted(planar->force_on_b, 0.0),
+        .offset = lifted(planar->eccentricity, 0.0),
+    };
+    for (int end = 0; end < 2 && joint->kind == JOINT_CLEARANCE; end++) {
+        state.ends[end] = state.offset;
+        state.end_gaps[end] = planar->gap;
+        state.end_forces[end] = 0.5 * planar->force;
+    }
+    return state;
 }

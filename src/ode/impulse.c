@@ -219,7 +219,12 @@ void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
     const Kernel *kernel = impulse->view.kernel;
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const int place = impulse->kind->place(impulse->own, i);
-        states[kernel->contacts[i].joint][place] = kernel->contacts[i].state;
+        const int joint = kernel->contacts[i].joint;
+        states[joint][place] = kernel->contacts[i].state;
+        if (impulse->view.is_flat &&
+            impulse->view.scenario->linkage.joints[joint].kind == JOINT_CLEARANCE) {
+            states[joint][1] = states[joint][0];
+        }
     }
 }
 

@@ -140,6 +140,7 @@ typedef struct ImpulseView {
     const double *depths;     // m, by place, at the time that was looked at last
     const JointState *joints; // likewise
     const SpaceJointState *space_joints; // NULL in the plane
+    bool is_flat; // a linkage in space that never leaves the plane: a place is both ends of a pin
 } ImpulseView;
 
 // How a mechanism is stepped and looked at, in the plane or in space. All but `open` are given what
@@ -167,6 +168,9 @@ typedef struct ImpulseKind {
     // The number of a place in its joint.
     int (*place)(const void *own, size_t place);
 } ImpulseKind;
+
+// In the plane, and of a linkage in space that never leaves it (model/space_flat.h).
+extern const ImpulseKind IMPULSE_PLANE;
 
 // The parts in which a step is handed on whose contacts were integrated by islands: those of the
 // islands in order of time, and the end of the step of all.

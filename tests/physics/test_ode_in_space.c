@@ -58,8 +58,10 @@ static Apart lifted(Scenario flat, double height)
 {
     Scenario spatial = kept_copy(&flat);
     flat.linkage.is_spatial = false;
-    // in space bodies answer contacts within a step as at its middle
+    // in space bodies answer contacts within a step as at its middle; a pull across the plane,
+    // which moves nothing, keeps those of a linkage in it from its steps (model/space_flat.h)
     flat.ode.is_frozen = true;
+    spatial.gravity.z = 1e-30;
     for (size_t i = 0; i < spatial.linkage.body_count; i++) {
         spatial.linkage.bodies[i].space.height = height;
     }
@@ -94,6 +96,31 @@ static void a_planar_mechanism_moves_in_space_as_in_the_plane(void **state)
                 assert_same(lifted(paper(ODE_PLAIN, map, step_s), 0.0));
             }
         }
+    }
+}
+
+// What never leaves the plane has its steps, within which the response changes. The truth is the
+// reference; the control, the steps in space.
+static void impulse_steps_in_the_plane_are_those_of_the_plane(void **state)
+{
+    (void)state;
+    Scenario flat = paper(ODE_STAGGERED, ODE_MAP_IMPULSE, 10e-6);
+    Scenario spatial = kept_copy(&flat);
+    flat.linkage.is_spatial = false;
+    Trajectory *truth = complete_run(&flat, BACKEND_REFERENCE);
+    Trajectory *plane = complete_run(&flat, BACKEND_ODE);
+    Trajectory *run = complete_run(&spatial, BACKEND_ODE);
+    spatial.gravity.z = 1e-30;
+    Trajectory *other = complete_run(&spatial, BACKEND_ODE);
+    assert_same(apart(plane, run));
+    assert_true(apart(truth, run).omega < 0.2 * apart(truth, other).omega);
+    assert_true(apart(plane, other).omega > 1e-8);
+    for (size_t i = 0; i < run->joint_count; i++) {
+        assert_int_equal(run->joints[i].impacts, plane->joints[i].impacts);
+    }
+    Trajectory *const runs[] = {truth, plane, run, other};
+    for (size_t i = 0; i < sizeof runs / sizeof *runs; i++) {
+        trajectory_destroy(runs[i]);
     }
 }
 
@@ -204,6 +231,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_planar_mechanism_moves_in_space_as_in_the_plane),
+        cmocka_unit_test(impulse_steps_in_the_plane_are_those_of_the_plane),
         cmocka_unit_test(friction_is_that_of_the_plane),
         cmocka_unit_test(a_body_between_two_pins_tilts_only_where_its_mass_is_off_the_plane),
         cmocka_unit_test(the_drive_bears_what_an_ideal_joint_hands_on),

@@ -3,16 +3,22 @@
 #include "ode/impulse.h"
 #include "base/zeroed.h"
 #include "model/independent.h"
+#include "model/space_flat.h"
 #include "ode/plane/impulse_step.h"
 #include "ode/stepping.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 typedef struct PlaneImpulse {
     ImpulseStep step;
-    Motion *motions; // by body; owned, as the next two
+    Motion *motions; // by body; owned, as the arrays below
     JointState *joints;
     double *depths; // m, by place
+    // of a linkage in space that never leaves the plane
+    const Linkage *spatial; // else NULL
+    Scenario flat;          // the same in the plane; owned
+    SpaceJointState *space_joints;
 } PlaneImpulse;
 
 static bool plane_open(const Scenario *scenario, void **own, ImpulseView *view, Err *err)
@@ -21,7 +27,13 @@ static bool plane_open(const Scenario *scenario, void **own, ImpulseView *view, 
     PlaneImpulse *impulse = zeroed(1, sizeof *impulse);
     ImpulseStep *step = &impulse->step;
     *own = impulse;
-    if (!impulse_step_init(scenario, step, err)) {
+    const Scenario *spatial = linkage->is_spatial ? scenario : NULL;
+    if (spatial != NULL) {
+        impulse->spatial = linkage;
+        impulse->flat = space_flat_scenario(scenario);
+        impulse->space_joints = zeroed(linkage->joint_count, sizeof *impulse->space_joints);
+    }
+    if (!impulse_step_init(spatial != NULL ? &impulse->flat : scenario, spatial, step, err)) {
         return false;
     }
     impulse->motions = zeroed(linkage->body_count, sizeof *impulse->motions);
@@ -37,6 +49,8 @@ static bool plane_open(const Scenario *scenario, void **own, ImpulseView *view, 
         .whole = &step->whole,
         .depths = impulse->depths,
         .joints = impulse->joints,
+        .space_joints = impulse->space_joints,
+        .is_flat = spatial != NULL,
     };
     return true;
 }
@@ -48,6 +62,10 @@ static void plane_close(void *own)
     free(impulse->motions);
     free(impulse->joints);
     free(impulse->depths);
+    free(impulse->space_joints);
+    if (impulse->spatial != NULL) {
+        scenario_free(&impulse->flat);
+    }
     free(impulse);
 }
 
@@ -74,6 +92,34 @@ static void plane_look(void *own, const ImpulseScope *scope, ImpulseTime at, con
         omega[i] = impulse->motions[i].omega;
         alpha[i] = impulse->motions[i].alpha;
     }
+    if (impulse->spatial != NULL) {
+        for (size_t n = 0; n < scope->joint_count; n++) {
+            const size_t i = scope->joints[n];
+            impulse->space_joints[i] =
+                space_flat_joint(&impulse->spatial->joints[i], &impulse->joints[i]);
+        }
+    }
+}
+
+// Lifts what a scope has of a sample into space.
+static void lift(const PlaneImpulse *impulse, const ImpulseScope *scope, bool wants_joints,
+                 Sample *sample)
+{
+    if (impulse->spatial == NULL) {
+        return;
+    }
+    for (size_t n = 0; n < scope->body_count; n++) {
+        const size_t i = scope->bodies[n];
+        sample->space_bodies[i] =
+            space_flat_motion(&impulse->spatial->bodies[i], &sample->bodies[i]);
+        // in one turn, as space_planar has it
+        sample->bodies[i].angle = remainder(sample->bodies[i].angle, 2.0 * M_PI);
+    }
+    for (size_t n = 0; n < scope->joint_count && wants_joints; n++) {
+        const size_t i = scope->joints[n];
+        sample->space_joints[i] =
+            space_flat_joint(&impulse->spatial->joints[i], &sample->joints[i]);
+    }
 }
 
 static void plane_observe(const void *own, ImpulseTime at, const KernelSums *sums, Sample *sample)
@@ -81,6 +127,7 @@ static void plane_observe(const void *own, ImpulseTime at, const KernelSums *sum
     const PlaneImpulse *impulse = own;
     impulse_step_inside(&impulse->step, &impulse->step.whole, at, sums, sample->bodies,
                         sample->joints, impulse->depths);
+    lift(impulse, &impulse->step.whole, true, sample);
 }
 
 static void plane_observe_some(const void *own, const ImpulseScope *scope, ImpulseTime at,
@@ -89,6 +136,7 @@ static void plane_observe_some(const void *own, const ImpulseScope *scope, Impul
     const PlaneImpulse *impulse = own;
     impulse_step_inside_some(&impulse->step, scope, at, sums, sample->bodies,
                              wants_joints ? sample->joints : NULL, impulse->depths);
+    lift(impulse, scope, wants_joints, sample);
 }
 
 static double plane_mean(const void *own, size_t joint)
@@ -148,7 +196,7 @@ static int plane_place(const void *own, size_t place)
     return impulse->step.places[place].place;
 }
 
-static const ImpulseKind PLANE_KIND = {
+const ImpulseKind IMPULSE_PLANE = {
     .open = plane_open,
     .close = plane_close,
     .take = plane_take,
@@ -162,7 +210,7 @@ static const ImpulseKind PLANE_KIND = {
 
 static bool open_plane(const Scenario *scenario, void **state, Err *err)
 {
-    return impulse_open(&PLANE_KIND, scenario, state, err);
+    return impulse_open(&IMPULSE_PLANE, scenario, state, err);
 }
 
 const Solver STEPPING_IMPULSE = {

@@ -21,6 +21,7 @@
 #include "contact/law.h"
 #include "model/joint_rows.h"
 #include "model/loads.h"
+#include "ode/space/space_world.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -239,7 +240,8 @@ void impulse_step_place_driven(const ImpulseStep *step, double time_s, Motion *m
     }
 }
 
-bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
+bool impulse_step_init(const Scenario *scenario, const Scenario *spatial, ImpulseStep *step,
+                       Err *err)
 {
     step->scenario = scenario;
     step->tick_s = scenario->run.step / (double)scenario->ode.gear;
@@ -250,7 +252,10 @@ bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err)
     set_arms(step, 0.0);
     step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
     linkage_start(&scenario->linkage, step->after);
-    if (!world_build(scenario, step->after, &step->world, err)) {
+    const bool is_built =
+        spatial != NULL ? space_world_build_flat(spatial, scenario, step->after, &step->world, err)
+                        : world_build(scenario, step->after, &step->world, err);
+    if (!is_built) {
         return false;
     }
     // where a step of the world leaves the bodies is not asked for: the cheapest turn will do

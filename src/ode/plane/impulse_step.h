@@ -77,9 +77,11 @@ static inline bool impulse_step_is_free(const ImpulseStep *step, size_t body)
 // Puts the driven bodies to a time within the step, from where they stand at its middle.
 void impulse_step_place_driven(const ImpulseStep *step, double time_s, Motion *motions);
 
-// Builds the world of a scenario at its start. The step must not be copied, and is to be finished
-// after a failure too.
-bool impulse_step_init(const Scenario *scenario, ImpulseStep *step, Err *err);
+// Builds the world of a scenario at its start, for a linkage in space that never leaves the plane
+// with the scenario in space, else NULL. The step must not be copied, and is to be finished after a
+// failure too.
+bool impulse_step_init(const Scenario *scenario, const Scenario *spatial, ImpulseStep *step,
+                       Err *err);
 void impulse_step_finish(ImpulseStep *step);
 
 // Adds what a prismatic joint does to its body b: the values of its two rows, N and N m; a

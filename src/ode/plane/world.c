@@ -550,10 +550,7 @@ static void add_freedom(Rows *rows, size_t body, size_t freedom)
     }
 }
 
-// Counts the ideal joints' rows and makes sure that none follows from the others; fails with
-// ERR_SOLVER where one does.
-static bool world_rows_check(const Scenario *scenario, const Motion *motions, size_t *row_count,
-                             Err *err)
+bool world_rows_check(const Scenario *scenario, const Motion *motions, size_t *row_count, Err *err)
 {
     Rows rows;
     start_rows(&scenario->linkage, motions, &rows);
@@ -699,7 +696,7 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     world_start(scenario, world);
     world->constraint_rows = rows;
     world->collider = collider_get(scenario->ode.collider);
-    world->hold = world_hold_make(scenario);
+    world->hold = world_hold_make(scenario, WORLD_HOLD_ROWS);
     make_pair_room(&scenario->linkage, world);
     make_bodies(scenario, motions, world);
     world->ends = ends_make(&scenario->linkage, world->bodies, motions);
@@ -788,7 +785,9 @@ bool world_check(const World *world, Err *err)
             return err_set(err, ERR_SOLVER, "the velocity of the %s is no longer finite",
                            linkage->bodies[i].name);
         }
-        if (velocity[2] != 0.0 || omega[0] != 0.0 || omega[1] != 0.0) {
+        const bool is_off = velocity[2] != 0.0 || omega[0] != 0.0 || omega[1] != 0.0;
+        // in space that is rounding, which ends where the body is put back
+        if (is_off && !linkage->is_spatial) {
             return err_set(err, ERR_SOLVER, "the %s has left the plane", linkage->bodies[i].name);
         }
     }
@@ -821,7 +820,9 @@ void world_place(World *world, size_t body, const Motion *motion)
 {
     const dBodyID id = world->bodies[body];
     const dQuaternion turn = {cos(0.5 * motion->angle), 0.0, 0.0, sin(0.5 * motion->angle)};
-    dBodySetPosition(id, motion->position.x, motion->position.y, 0.0);
+    const Linkage *linkage = world->linkage;
+    const double height = linkage->is_spatial ? linkage->bodies[body].space.height : 0.0;
+    dBodySetPosition(id, motion->position.x, motion->position.y, height);
     dBodySetQuaternion(id, turn);
     dBodySetLinearVel(id, motion->velocity.x, motion->velocity.y, 0.0);
     dBodySetAngularVel(id, 0.0, 0.0, motion->omega);

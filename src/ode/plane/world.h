@@ -96,6 +96,10 @@ typedef struct World {
 // too.
 bool world_build(const Scenario *scenario, const Motion *motions, World *world, Err *err);
 
+// Counts the ideal joints' rows in the plane and makes sure that none follows from the others;
+// fails with ERR_SOLVER where one does.
+bool world_rows_check(const Scenario *scenario, const Motion *motions, size_t *row_count, Err *err);
+
 // A world without bodies: engine, gravity and everything that ODE would otherwise take from its own
 // defaults.
 void world_start(const Scenario *scenario, World *world);
@@ -121,7 +125,7 @@ bool world_check(const World *world, Err *err);
 // the driven one apart.
 void world_joint_forces(const World *world, JointState *joints);
 
-// Puts one body where a motion says, with its velocity.
+// Puts one body where a motion says, with its velocity; in space at its height.
 void world_place(World *world, size_t body, const Motion *motion);
 
 // Puts the driven bodies to a time with their speeds at another, of steps forwards (1) or backwards

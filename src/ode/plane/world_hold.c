@@ -41,7 +41,7 @@ bool world_hold_is_alone(const Scenario *scenario)
            !forces_damp(&scenario->linkage);
 }
 
-WorldHold *world_hold_make(const Scenario *scenario)
+WorldHold *world_hold_make(const Scenario *scenario, size_t most_rows)
 {
     const Linkage *linkage = &scenario->linkage;
     if (!world_hold_is_alone(scenario)) {
@@ -57,7 +57,7 @@ WorldHold *world_hold_make(const Scenario *scenario)
     hold->openings = zeroed(hold->response.ideal_rows, sizeof *hold->openings);
     hold->impulses = zeroed(hold->response.ideal_rows, sizeof *hold->impulses);
     hold->loads = zeroed(3 * linkage->body_count, sizeof *hold->loads);
-    if (hold->response.largest_group <= WORLD_HOLD_ROWS) {
+    if (hold->response.largest_group <= most_rows) {
         world_hold_free(hold);
         return NULL;
     }

@@ -9,14 +9,14 @@
 
 typedef struct WorldHold WorldHold;
 
-// What holds the ideal joints of a scenario; NULL where they are rows of ODE. For world_hold_free,
-// which accepts NULL.
-WorldHold *world_hold_make(const Scenario *scenario);
-void world_hold_free(WorldHold *hold);
-
 // Rows of ideal joints that hold one another, from which on the sparse factor is faster than ODE's
 // dense one.
 enum { WORLD_HOLD_ROWS = 32 };
+
+// What holds the ideal joints of a scenario in the plane; NULL where they are rows of ODE, as those
+// of so many or less are that hold one another. For world_hold_free, which accepts NULL.
+WorldHold *world_hold_make(const Scenario *scenario, size_t most_rows);
+void world_hold_free(WorldHold *hold);
 
 // Whether nothing else is a row of ODE, which would have to be solved together with the joints':
 // contacts, dampers, rows that the case makes soft.

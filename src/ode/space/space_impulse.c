@@ -2,6 +2,7 @@
 // steps of ode/space/space_impulse_step.c.
 #include "base/zeroed.h"
 #include "model/independent.h"
+#include "model/space_flat.h"
 #include "ode/impulse.h"
 #include "ode/space/space_impulse_step.h"
 #include "ode/stepping.h"
@@ -168,6 +169,11 @@ static const ImpulseKind SPACE_KIND = {
 
 static bool open_space(const Scenario *scenario, void **state, Err *err)
 {
+    Err redundant = {0};
+    if (space_flat_is(scenario) && impulse_open(&IMPULSE_PLANE, scenario, state, &redundant)) {
+        return true;
+    }
+    // of joints that are redundant in the plane, rows are chosen
     return impulse_open(&SPACE_KIND, scenario, state, err);
 }
 

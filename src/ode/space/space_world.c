@@ -195,6 +195,9 @@ void space_hold_push(SpaceHold *hold, const SpaceResponse *response, const Space
 enum { GYRATION_STEPS = 12 };
 static const double GYRATION_ROUNDING = 1e-15;
 
+// rows of the plane, two a joint, of as many joints as have WORLD_HOLD_ROWS in space
+enum { FLAT_HOLD_ROWS = 2 * WORLD_HOLD_ROWS / SPACE_JOINT_ROWS };
+
 // what the rows of redundant joints give way, as a share of what a body's mass does: less lets
 // forces between them grow that are mere rounding, more is felt by the motion
 static const double REDUNDANT_SHARE = 1e-4;
@@ -246,6 +249,35 @@ static double redundant_cfm(const Scenario *scenario)
     return REDUNDANT_SHARE * scenario->run.step * sum / (double)scenario->linkage.body_count;
 }
 
+static void make_bodies(const Scenario *scenario, const SpaceMotion *motions,
+                        const SpaceResponse *response, World *world)
+{
+    const Linkage *linkage = &scenario->linkage;
+    world_start(scenario, world);
+    world->constraint_rows =
+        response->is_redundant ? SPACE_JOINT_ROWS * response->ideal_count : response->ideal_rows;
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        make_body(scenario, i, &motions[i], world);
+    }
+    const int driven = linkage_driven_body(linkage);
+    if (driven >= 0) {
+        dBodySetKinematic(world->bodies[driven]);
+    }
+    if (response->is_redundant) {
+        dWorldSetCFM(world->id, fmax(dWorldGetCFM(world->id), redundant_cfm(scenario)));
+    }
+}
+
+static void make_hinges(const Scenario *scenario, const SpaceMotion *motions,
+                        const SpaceResponse *response, World *world)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        if (linkage_is_ideal(&scenario->linkage, i)) {
+            make_ideal(scenario, motions, i, response, world);
+        }
+    }
+}
+
 bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
                        const SpaceResponsePlace *places, size_t count, World *world,
                        SpaceResponse *response, SpaceHold **hold, Err *err)
@@ -260,26 +292,43 @@ bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
                        "the ideal joints are redundant at the start: give one joint of the loop "
                        "some play");
     }
-    world_start(scenario, world);
-    world->constraint_rows =
-        response->is_redundant ? SPACE_JOINT_ROWS * response->ideal_count : response->ideal_rows;
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        make_body(scenario, i, &motions[i], world);
-    }
-    const int driven = linkage_driven_body(linkage);
-    if (driven >= 0) {
-        dBodySetKinematic(world->bodies[driven]);
-    }
-    if (response->is_redundant) {
-        dWorldSetCFM(world->id, fmax(dWorldGetCFM(world->id), redundant_cfm(scenario)));
-    }
+    make_bodies(scenario, motions, response, world);
     *hold = space_hold_make(scenario, response);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (*hold == NULL && linkage_is_ideal(linkage, i)) {
-            make_ideal(scenario, motions, i, response, world);
-        }
+    if (*hold == NULL) {
+        make_hinges(scenario, motions, response, world);
     }
     return true;
+}
+
+bool space_world_build_flat(const Scenario *scenario, const Scenario *flat, const Motion *planar,
+                            World *world, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    memset(world, 0, sizeof *world);
+    size_t rows = 0;
+    if (!world_rows_check(flat, planar, &rows, err)) {
+        return false;
+    }
+    SpaceMotion *motions = zeroed(linkage->body_count, sizeof *motions);
+    SpaceResponse response = {.linkage = NULL};
+    space_lift(linkage, planar, motions);
+    const bool is_held = space_response_init(linkage, motions, NULL, 0, &response, err);
+    if (is_held) {
+        make_bodies(scenario, motions, &response, world);
+        applied_make(&flat->linkage, world->id, world->bodies, planar, &world->applied);
+        world->hold =
+            world_hold_make(flat, response.is_redundant ? WORLD_HOLD_ROWS : FLAT_HOLD_ROWS);
+        if (world->hold == NULL) {
+            make_hinges(scenario, motions, &response, world);
+        }
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            // about an axis of its own nothing turns a body, or its hinges hold it
+            dBodySetGyroscopicMode(world->bodies[i], 0);
+        }
+    }
+    space_response_finish(&response);
+    free(motions);
+    return is_held;
 }
 
 void space_world_place(World *world, size_t body, const SpaceMotion *motion)

@@ -18,6 +18,12 @@ bool space_world_build(const Scenario *scenario, const SpaceMotion *motions,
                        const SpaceResponsePlace *places, size_t count, World *world,
                        SpaceResponse *response, SpaceHold **hold, Err *err);
 
+// Builds the same world of a linkage that never leaves the plane (model/space_flat.h), for steps
+// that know the plane alone; `flat` is the same scenario in the plane, which is to outlive the
+// world. Fails likewise, and where the joints are redundant in the plane.
+bool space_world_build_flat(const Scenario *scenario, const Scenario *flat, const Motion *planar,
+                            World *world, Err *err);
+
 // Moves the bodies of motions, and those of the world, half a step on, each ideal joint as far open
 // as it stays: h^2 / 2 of how fast the rates of its rows change as the bodies turn. Fails with
 // ERR_SOLVER where the ideal joints are redundant.

@@ -1,8 +1,5 @@
 // Presents the equations of motion in the plane as those of a linkage in space that never leaves it
 // (model/space_flat.h).
-//
-// The two ends of a pin then have half of what the plane's pin presses with, at the same gap; its
-// tilt and its way along the axis are nothing.
 #include "base/zeroed.h"
 #include "model/space_flat.h"
 #include "reference/system.h"
@@ -18,8 +15,8 @@ struct SystemFlat {
 static void lift_bodies(const System *system, Sample *sample)
 {
     const Linkage *linkage = system->flat->linkage;
-    space_lift(linkage, sample->bodies, sample->space_bodies);
     for (size_t i = 0; i < linkage->body_count; i++) {
+        sample->space_bodies[i] = space_flat_motion(&linkage->bodies[i], &sample->bodies[i]);
         // in one turn, as space_planar has it
         sample->bodies[i].angle = remainder(sample->bodies[i].angle, 2.0 * M_PI);
     }
@@ -40,28 +37,13 @@ static bool flat_motions(const System *system, double since_s, const double *y, 
     return true;
 }
 
-static Vec3 in_plane(Vec2 a)
-{
-    return (Vec3){a.x, a.y, 0.0};
-}
-
 static void flat_joints(const System *system, const SystemState *state, JointState *joints,
                         SpaceJointState *space_joints)
 {
     const Linkage *linkage = system->flat->linkage;
     system->flat->plane->joints(system, state, joints, space_joints);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const JointState *joint = &joints[i];
-        SpaceJointState *to = &space_joints[i];
-        *to = (SpaceJointState){
-            .force_on_b = in_plane(joint->force_on_b),
-            .offset = in_plane(joint->eccentricity),
-        };
-        for (int end = 0; end < 2 && linkage->joints[i].kind == JOINT_CLEARANCE; end++) {
-            to->ends[end] = to->offset;
-            to->end_gaps[end] = joint->gap;
-            to->end_forces[end] = 0.5 * joint->force;
-        }
+        space_joints[i] = space_flat_joint(&linkage->joints[i], &joints[i]);
     }
 }
 
