@@ -20,27 +20,32 @@ static bool acts_in_plane(const Scenario *scenario)
     return scenario->gravity.z == 0.0 && space_is_upright(linkage) && is_steady && !has_more;
 }
 
-// Writes which bodies hang by hinges on the ground or on the driven body: by number.
-static void find_held(const Linkage *linkage, bool *is_held)
+// Writes which bodies hang by hinges on the ground or on the driven body: by number. Returns false
+// where ideal joints close a loop: their rows may be redundant in the plane, and in space are
+// chosen.
+static bool find_held(const Linkage *linkage, bool *is_held)
 {
     const size_t ground = linkage->body_count;
     size_t *sets = zeroed(linkage->body_count + 1, sizeof *sets);
+    bool is_tree = true;
     union_find_start(sets, linkage->body_count + 1);
+    if (linkage->driver.is_present) {
+        union_find_join(sets, ground, (size_t)linkage_driven_body(linkage));
+    }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const size_t a = joint->body_a == LINKAGE_GROUND ? ground : (size_t)joint->body_a;
         const size_t b = joint->body_b == LINKAGE_GROUND ? ground : (size_t)joint->body_b;
         if (linkage_is_ideal(linkage, i)) {
+            is_tree = is_tree && union_find_root(sets, a) != union_find_root(sets, b);
             union_find_join(sets, a, b);
         }
-    }
-    if (linkage->driver.is_present) {
-        union_find_join(sets, ground, (size_t)linkage_driven_body(linkage));
     }
     for (size_t i = 0; i < linkage->body_count; i++) {
         is_held[i] = union_find_root(sets, i) == union_find_root(sets, ground);
     }
     free(sets);
+    return is_tree;
 }
 
 // Whether a body that nothing holds is its own mirror image, and starts so.
@@ -93,8 +98,7 @@ bool space_flat_is(const Scenario *scenario)
     }
     const bool is_elsewhere = space_starts_elsewhere(linkage);
     bool *is_held = zeroed(linkage->body_count, sizeof *is_held);
-    bool is_flat = true;
-    find_held(linkage, is_held);
+    bool is_flat = find_held(linkage, is_held);
     for (size_t i = 0; i < linkage->body_count && is_flat; i++) {
         const Body *body = &linkage->bodies[i];
         is_flat = is_held[i] ? is_turned_in_plane(&body->space) : is_even(body);

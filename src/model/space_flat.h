@@ -9,7 +9,7 @@
 #include "model/trajectory.h"
 
 // Whether the bodies of a linkage in space move in the plane alone, from the start given on, tilted
-// and lifted by nothing: exactly, and not to rounding.
+// and lifted by nothing: exactly, and not to rounding. Not where ideal joints close loops.
 bool space_flat_is(const Scenario *scenario);
 
 // The same scenario in the plane. For scenario_free.

@@ -13,6 +13,7 @@
 #include "model/space_flat.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static const double PULL = 1e-30; // m/s^2
 
@@ -267,12 +268,51 @@ static void other_linkages_are_not_flat(void **state)
     assert_false(space_flat_is(&scenario));
 }
 
+// Three parallel cranks, of which one is redundant, and a link on a pin with play: what ODE cannot
+// solve is refused with the words of space. The control: the reference, which chooses rows.
+static void redundant_joints_are_refused(void **state)
+{
+    (void)state;
+    const Scenario parallelogram = mechanism_parallelogram();
+    Scenario scenario = kept_copy(&parallelogram);
+    Linkage *linkage = &scenario.linkage;
+    linkage->is_spatial = true;
+    Joint *hung = &linkage->joints[linkage->joint_count++];
+    *hung = (Joint){.name = "hung", .kind = JOINT_CLEARANCE, .body_a = LINKAGE_GROUND};
+    hung->body_b = (int)linkage->body_count;
+    hung->clearance = (Clearance){.hole_radius = 5.05e-3, .pin_radius = 5e-3, .width = 0.02};
+    linkage->bodies[linkage->body_count++] =
+        (Body){.name = "link", .mass = 0.1, .inertia = 1e-4, .start.velocity = {0.1, 0.2}};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        linkage->joints[i].space.axis = (Vec3){0.0, 0.0, 1.0};
+    }
+    space_complete(linkage);
+    scenario.contact.stiffness = 6.6e9;
+    scenario.contact.exponent = 1.5;
+    scenario.ode.stepping = ODE_STAGGERED;
+    scenario.ode.map = ODE_MAP_IMPULSE;
+    scenario.run.revolutions = 0.02;
+    scenario.run.samples = 500;
+    scenario.run.step = 1e-5;
+    assert_false(space_flat_is(&scenario));
+    const RunWatch nobody = {NULL, NULL};
+    Trajectory *run = run_scenario(&scenario, registry_solver(BACKEND_ODE), nobody);
+    assert_false(run->is_complete);
+    assert_non_null(strstr(run->message, "the points of the ideal joints depend on each other"));
+    trajectory_destroy(run);
+    // the reference chooses rows
+    Trajectory *control = complete_run(&scenario, BACKEND_REFERENCE);
+    assert_true(run_impacts(control) > 0);
+    trajectory_destroy(control);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_linkages_move_as_the_equations_in_space_say),
         cmocka_unit_test(what_leaves_the_plane_is_left_to_the_equations_in_space),
         cmocka_unit_test(other_linkages_are_not_flat),
+        cmocka_unit_test(redundant_joints_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

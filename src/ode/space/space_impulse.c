@@ -173,7 +173,7 @@ static bool open_space(const Scenario *scenario, void **state, Err *err)
     if (space_flat_is(scenario) && impulse_open(&IMPULSE_PLANE, scenario, state, &redundant)) {
         return true;
     }
-    // of joints that are redundant in the plane, rows are chosen
+    // what cannot be solved is said with the words of space
     return impulse_open(&SPACE_KIND, scenario, state, err);
 }
 
