@@ -417,6 +417,7 @@ static void settings_without_effect_are_said_a_line_each(void **state)
     assert_string_equal(
         program->errors,
         "jointplay: warning: run.step of the command line has no effect here; it would with ode "
+        "or another engine "
         "among run.backends\n"
         "jointplay: warning: contact.law of the command line has no effect here; it would with a "
         "joint with play\n"

@@ -108,9 +108,10 @@ static const char *const OF_OUTPUT[] = {
 // --laws may choose, read the width of a pin that is given with its hole.
 static const char *const OF_PARTS[] = {"width"};
 
-// Of what a motion may do or not: no contact of some of these short runs outlasts its impact. That
-// it counts where one does, test_settled_motion.c shows.
-static const char *const OF_MOTION[] = {"contact.resting-speed"};
+// Of what a motion may do or not: no contact of some of these short runs outlasts its impact, and
+// some of these mechanisms never leave the plane. That it counts where one does,
+// test_settled_motion.c and test_space_flat.c show.
+static const char *const OF_MOTION[] = {"contact.resting-speed", "space"};
 
 // Keys without which the case is none, which are refused or make another mechanism, and which
 // nobody can leave out: their values need not matter, as the inertia of what does not turn.
@@ -139,7 +140,7 @@ static bool is_of_part(const char *key)
 
 static bool is_of_motion(const char *key)
 {
-    return strcmp(key, OF_MOTION[0]) == 0;
+    return strcmp(key, OF_MOTION[0]) == 0 || strcmp(key, OF_MOTION[1]) == 0;
 }
 
 static uint64_t mix(uint64_t print, uint64_t number)

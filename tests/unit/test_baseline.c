@@ -393,6 +393,14 @@ static void a_start_beside_makes_a_band_and_a_wide_one_a_sample(void **state)
     assert_int_equal(made.metrics[exact].band_kind, BAND_EXACT);
     const size_t reference = baseline_find(&bench->run, "reference/energy/residual_J", 0);
     assert_int_equal(made.metrics[reference].band_kind, BAND_ROUNDING);
+    // a member that measured in another order is brought into it
+    CheckMetric *swapped = bench->members[1].metrics;
+    const CheckMetric kept = swapped[place];
+    swapped[place] = swapped[other];
+    swapped[other] = kept;
+    assert_true(baseline_set_metrics(&made, &bench->run, bench->members, 2, &err));
+    assert_string_equal(swapped[place].name, "ode/hole/impulse_N_s");
+    assert_string_equal(made.metrics[place].name, "ode/hole/impulse_N_s");
     // an ensemble that measures something else makes no baseline
     snprintf(bench->members[1].metrics[place].name, CHECK_NAME_SIZE, "other");
     assert_false(baseline_set_metrics(&made, &bench->run, bench->members, 2, &err));

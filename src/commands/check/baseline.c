@@ -191,22 +191,34 @@ size_t baseline_find(const CheckMeasure *measure, const char *name, size_t near)
     return i;
 }
 
-// Checks that an ensemble measured what the run itself did, in the same order.
-static bool check_same(const CheckMeasure *run, const CheckMeasure *members, size_t member_count,
-                       Err *err)
+// Puts a number of an ensemble's member where the run has it. Returns false where there is none.
+static bool take_place(CheckMeasure *member, const char *name, size_t place)
+{
+    const size_t at = baseline_find(member, name, place);
+    if (at >= member->count) {
+        return false;
+    }
+    const CheckMetric taken = member->metrics[place];
+    member->metrics[place] = member->metrics[at];
+    member->metrics[at] = taken;
+    return true;
+}
+
+// Brings what an ensemble measured into the order of what the run itself did. A member may have
+// more: where the run's own errors are rounding it has no order, and a start beside it has one.
+static bool bring_into_order(const CheckMeasure *run, CheckMeasure *members, size_t member_count,
+                             Err *err)
 {
     for (size_t i = 0; i < member_count; i++) {
         for (size_t k = 0; k < run->count; k++) {
-            const bool is_there = k < members[i].count &&
-                                  strcmp(members[i].metrics[k].name, run->metrics[k].name) == 0;
-            if (!is_there || members[i].count != run->count) {
-                return err_set(
-                    err, ERR_SOLVER,
-                    "a perturbed start does not measure the same numbers as the case's own: %s; "
-                    "change the start or the length of the run a little",
-                    run->metrics[k].name);
+            if (!take_place(&members[i], run->metrics[k].name, k)) {
+                return err_set(err, ERR_SOLVER,
+                               "a perturbed start does not measure a number of the case's own: %s; "
+                               "change the start or the length of the run a little",
+                               run->metrics[k].name);
             }
         }
+        members[i].count = run->count;
     }
     return true;
 }
@@ -274,10 +286,10 @@ static void spread_doubt(BaselineMetric *metrics, size_t count)
     }
 }
 
-bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const CheckMeasure *members,
+bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, CheckMeasure *members,
                           size_t member_count, Err *err)
 {
-    if (!check_same(run, members, member_count, err)) {
+    if (!bring_into_order(run, members, member_count, err)) {
         return false;
     }
     free(baseline->metrics);

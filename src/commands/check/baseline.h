@@ -96,9 +96,9 @@ bool baseline_start_scenario(const Baseline *baseline, const Baseline *now, Scen
 CheckStart baseline_rounding_start(unsigned member);
 CheckStart baseline_sample_start(unsigned member);
 
-// Makes the metrics from the unperturbed run and those of the ensemble of rounding. Fails with
-// ERR_SOLVER where two runs did not measure the same metrics.
-bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, const CheckMeasure *members,
+// Makes the metrics from the unperturbed run and those of the ensemble of rounding, which are
+// brought into its order. Fails with ERR_SOLVER where a member lacks one of them.
+bool baseline_set_metrics(Baseline *baseline, const CheckMeasure *run, CheckMeasure *members,
                           size_t member_count, Err *err);
 
 // Makes measured values equal to those of a metric's sample from which only the rounding of the
