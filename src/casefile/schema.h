@@ -96,9 +96,9 @@ typedef enum SchemaRivalry {
 #define SCHEMA_OF(kind) (1U << (kind))
 
 // The bit of a backend, and those of all that take steps of run.step.
-#define SCHEMA_WITH(backend) (1U << (backend))
+#define SCHEMA_WITH(backend)        (1U << (backend))
 #define SCHEMA_WITH_ENGINE(id, ...) | SCHEMA_WITH(id)
-#define SCHEMA_STEPPED       (SCHEMA_WITH(BACKEND_ODE) OPTIONS_ENGINE_LIST(SCHEMA_WITH_ENGINE))
+#define SCHEMA_STEPPED              (SCHEMA_WITH(BACKEND_ODE) OPTIONS_ENGINE_LIST(SCHEMA_WITH_ENGINE))
 
 typedef struct SchemaRow {
     const char *path;

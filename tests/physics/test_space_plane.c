@@ -12,8 +12,8 @@
 
 #include <stdio.h>
 
-// m/s^2, along z: it moves nothing, but bodies that it pulls do not go by the equations of the plane
-// (model/space_flat.h; tests/physics/test_space_flat.c)
+// m/s^2, along z: it moves nothing, but bodies that it pulls do not go by the equations of the
+// plane (model/space_flat.h; tests/physics/test_space_flat.c)
 static const double PULL = 1e-30;
 
 static Scenario four_bar(const char *space, const char *friction, const char *other)

@@ -1,5 +1,5 @@
-// Does docs/study-format.md say what the program does, and can the example of `help study` be read? Runs in the
-// source root; with --write it writes the page to standard output instead.
+// Does docs/study-format.md say what the program does, and can the example of `help study` be read?
+// Runs in the source root; with --write it writes the page to standard output instead.
 #include "study_file.h"
 
 #include <stdio.h>

@@ -78,8 +78,8 @@ typedef struct Spec {
     char follow[CASEFILE_KEY_SIZE]; // the key along which runs start in the motion of the one
                                     // before; empty: each finds its own
     FollowDirection direction;
-    bool has_truth;     // each run is held against the certified reference
-    bool has_growth;    // each row says how small changes of its settled motion grow
+    bool has_truth;             // each run is held against the certified reference
+    bool has_growth;            // each row says how small changes of its settled motion grow
     const char *const *drivers; // of --driver, by which other engines are run; not owned
     size_t driver_count;
     ChildLimits limits; // of one run; a truth may take the time of several

@@ -128,9 +128,9 @@ typedef struct TuneProgram {
 // MuJoCo's whole model with the contact made linear, run there before it is written.
 typedef struct TuneModel {
     bool is_asked;
-    char *text;    // owned; NULL: there is none
-    double step_s; // of the model
-    double error;  // 1: as of a trial, against the law itself
+    char *text;                       // owned; NULL: there is none
+    double step_s;                    // of the model
+    double error;                     // 1: as of a trial, against the law itself
     char engine[LADDER_MESSAGE_SIZE]; // name and version
     char reason[LADDER_MESSAGE_SIZE]; // why there is none
 } TuneModel;
