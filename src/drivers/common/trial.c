@@ -13,64 +13,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BEFORE = 3 }; // A of this step and those before, from which its rate follows
-
 // of the velocities: what they are changed by for S
 static const double NUDGE = 1e-3;
-
-// of the free accelerations, what impulses may change them by in a step for these to say how they
-// change by themselves
-static const double CALM = 0.1;
 
 // rad, that the fastest body turns in a short step: its square is the error of directions, and
 // over it rounding is seen
 static const double TRIAL_PHASE = 4e-4;
 
 typedef struct Trial {
-    const DriverCase *of;
+    Within in;
     const Tree *tree;
     TrialAccelerate accelerate;
     void *engine;
     DriverRun *run;
-    size_t rows;
-    size_t count;   // coordinates
-    size_t *joints; // by contact; owned, as all arrays
-    Kernel kernel;
-    KernelSums sums;
-    double *q; // of the step's start; by coordinate, as the next ones
-    double *v;
-    double *q_next;
-    double *v_next;
-    double *q_middle;
+    double *q_middle; // by coordinate; owned, as all arrays
     double *v_middle;
-    double *a; // beside the contacts'
-    double *a_rate;
-    double *ahead; // a as it is to be expected: that of the step before, after its impulses
-    double *free;  // G, at mid-step
-    double *nudged;
     double *other;
-    double *responses[BEFORE]; // A: row by row
-    double *rate;              // A'
-    double *jacobian;          // row by row
-    double *bend;              // B
-    double *drift;             // S
-    double *free_before;       // by row
-    double *work;
     DriverMotion *motions; // by body
     Vec2 *bends;
     TrialPush *pushes;
-    size_t steps; // of the run
-    bool is_calm;
 } Trial;
-
-static double *numbers(size_t count)
-{
-    double *room = calloc(count + 1, sizeof *room);
-    if (room == NULL) {
-        driver_fail("there is no memory");
-    }
-    return room;
-}
 
 // to += scale from
 static void add(double *to, const double *from, double scale, size_t count)
@@ -89,22 +51,13 @@ static double dot(const double *a, const double *b, size_t count)
     return sum;
 }
 
-// Adds sums over the rows of A, or of A', to something by coordinate.
-static void add_rows(const Trial *trial, const double *columns, const double *by_row, double scale,
-                     double *target)
-{
-    for (size_t k = 0; k < trial->rows; k++) {
-        add(target, columns + k * trial->count, scale * by_row[k], trial->count);
-    }
-}
-
 // The engine's accelerations under forces in the rows; NULL: none.
 static void evaluate(Trial *trial, const double *q, const double *v, const double *forces,
                      double scale, double *a)
 {
     size_t count = 0;
-    for (size_t i = 0; forces != NULL && i < trial->rows; i += 2) {
-        const DriverJoint *joint = &trial->of->joints[trial->joints[i / 2]];
+    for (size_t i = 0; forces != NULL && i < trial->in.rows; i += 2) {
+        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i / 2]];
         const Vec2 force = {scale * forces[i], scale * forces[i + 1]};
         for (int side = 0; side < 2; side++) {
             if (joint->bodies[side] != DRIVER_GROUND) {
@@ -120,11 +73,11 @@ static void evaluate(Trial *trial, const double *q, const double *v, const doubl
 // J at the positions of the motions.
 static void find_jacobian(Trial *trial)
 {
-    memset(trial->jacobian, 0, trial->rows * trial->count * sizeof *trial->jacobian);
-    for (size_t i = 0; i < trial->rows; i++) {
-        const DriverJoint *joint = &trial->of->joints[trial->joints[i / 2]];
+    memset(trial->in.jacobian, 0, trial->in.rows * trial->in.count * sizeof *trial->in.jacobian);
+    for (size_t i = 0; i < trial->in.rows; i++) {
+        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i / 2]];
         const Vec2 unit = {i % 2 == 0 ? 1.0 : 0.0, i % 2 == 0 ? 0.0 : 1.0};
-        double *row = trial->jacobian + i * trial->count;
+        double *row = trial->in.jacobian + i * trial->in.count;
         tree_push(trial->tree, trial->motions, joint->bodies[1], joint->anchors[1], unit, row);
         tree_push(trial->tree, trial->motions, joint->bodies[0], joint->anchors[0],
                   vec2_scale(-1.0, unit), row);
@@ -147,35 +100,35 @@ static void find_row_accelerations(Trial *trial, const double *v, const double *
 {
     tree_motions(trial->tree, trial->q_middle, v, trial->motions);
     tree_bends(trial->tree, trial->motions, v, trial->bends);
-    for (size_t i = 0; i < trial->rows; i += 2) {
-        const DriverJoint *joint = &trial->of->joints[trial->joints[i / 2]];
+    for (size_t i = 0; i < trial->in.rows; i += 2) {
+        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i / 2]];
         const Vec2 bend = vec2_sub(bend_of(trial, joint->bodies[1], joint->anchors[1]),
                                    bend_of(trial, joint->bodies[0], joint->anchors[0]));
-        rows[i] = bend.x + dot(trial->jacobian + i * trial->count, a, trial->count);
-        rows[i + 1] = bend.y + dot(trial->jacobian + (i + 1) * trial->count, a, trial->count);
+        rows[i] = bend.x + dot(trial->in.jacobian + i * trial->in.count, a, trial->in.count);
+        rows[i + 1] =
+            bend.y + dot(trial->in.jacobian + (i + 1) * trial->in.count, a, trial->in.count);
     }
 }
 
 // A and W, from a trial with a force in each row: one that does as much as all that acts.
 static void find_response(Trial *trial)
 {
-    double *oldest = trial->responses[BEFORE - 1];
-    memmove(trial->responses + 1, trial->responses, (BEFORE - 1) * sizeof *trial->responses);
-    trial->responses[0] = oldest;
-    const double size = 1.0 + sqrt(dot(trial->free, trial->free, trial->count));
-    for (size_t k = 0; k < trial->rows; k++) {
-        double *response = oldest + k * trial->count;
-        memset(trial->work, 0, trial->rows * sizeof *trial->work);
-        trial->work[k] = 1.0;
-        evaluate(trial, trial->q_middle, trial->v_middle, trial->work, size, response);
-        for (size_t i = 0; i < trial->count; i++) {
-            response[i] = (response[i] - trial->free[i]) / size;
+    within_age_responses(&trial->in);
+    const double size = 1.0 + sqrt(dot(trial->in.free, trial->in.free, trial->in.count));
+    for (size_t k = 0; k < trial->in.rows; k++) {
+        double *response = trial->in.responses[0] + k * trial->in.count;
+        memset(trial->in.work, 0, trial->in.rows * sizeof *trial->in.work);
+        trial->in.work[k] = 1.0;
+        evaluate(trial, trial->q_middle, trial->v_middle, trial->in.work, size, response);
+        for (size_t i = 0; i < trial->in.count; i++) {
+            response[i] = (response[i] - trial->in.free[i]) / size;
         }
     }
-    for (size_t i = 0; i < trial->rows; i++) {
-        for (size_t k = 0; k < trial->rows; k++) {
-            *kernel_mobility(&trial->kernel, i, k) =
-                dot(trial->jacobian + i * trial->count, oldest + k * trial->count, trial->count);
+    for (size_t i = 0; i < trial->in.rows; i++) {
+        for (size_t k = 0; k < trial->in.rows; k++) {
+            *kernel_mobility(&trial->in.kernel, i, k) =
+                dot(trial->in.jacobian + i * trial->in.count,
+                    trial->in.responses[0] + k * trial->in.count, trial->in.count);
         }
     }
 }
@@ -183,152 +136,70 @@ static void find_response(Trial *trial)
 // S and B, by a velocity that is a little different for each row.
 static void find_drift(Trial *trial)
 {
-    const size_t count = trial->count;
+    const size_t count = trial->in.count;
     const double speed = sqrt(dot(trial->v_middle, trial->v_middle, count));
-    for (size_t k = 0; k < trial->rows; k++) {
-        const double *response = trial->responses[0] + k * count;
+    for (size_t k = 0; k < trial->in.rows; k++) {
+        const double *response = trial->in.responses[0] + k * count;
         const double nudge =
             NUDGE * (speed > 0.0 ? speed : 1.0) / sqrt(dot(response, response, count));
-        memcpy(trial->nudged, trial->v_middle, count * sizeof *trial->nudged);
-        add(trial->nudged, response, nudge, count);
-        evaluate(trial, trial->q_middle, trial->nudged, NULL, 0.0, trial->other);
-        find_row_accelerations(trial, trial->nudged, trial->other, trial->work);
+        memcpy(trial->in.nudged, trial->v_middle, count * sizeof *trial->in.nudged);
+        add(trial->in.nudged, response, nudge, count);
+        evaluate(trial, trial->q_middle, trial->in.nudged, NULL, 0.0, trial->other);
+        find_row_accelerations(trial, trial->in.nudged, trial->other, trial->in.work);
         for (size_t i = 0; i < count; i++) {
-            trial->bend[k * count + i] = (trial->other[i] - trial->free[i]) / nudge;
+            trial->in.bend[k * count + i] = (trial->other[i] - trial->in.free[i]) / nudge;
         }
-        for (size_t i = 0; i < trial->rows; i++) {
-            trial->drift[i * trial->rows + k] =
-                (trial->work[i] - trial->kernel.free[i]) / (2.0 * nudge);
+        for (size_t i = 0; i < trial->in.rows; i++) {
+            trial->in.drift[i * trial->in.rows + k] =
+                (trial->in.work[i] - trial->in.kernel.free[i]) / (2.0 * nudge);
         }
     }
-}
-
-// A' at the middle of the step, from A there and in the steps before.
-static void find_rate(Trial *trial, double step_s)
-{
-    for (size_t i = 0; i < trial->rows * trial->count; i++) {
-        const double now = trial->responses[0][i];
-        const double last = trial->responses[1][i];
-        const double first = trial->responses[2][i];
-        trial->rate[i] = trial->steps == 0   ? 0.0
-                         : trial->steps == 1 ? (now - last) / step_s
-                                             : (1.5 * now - 2.0 * last + 0.5 * first) / step_s;
-    }
-}
-
-// What the free accelerations are behind the step's impulses, to see how they change by themselves.
-static void keep_free(Trial *trial)
-{
-    double size = 0.0;
-    double pushed = 0.0;
-    for (size_t i = 0; i < trial->rows; i++) {
-        const double change =
-            2.0 * dot(trial->drift + i * trial->rows, trial->sums.impulse, trial->rows);
-        trial->free_before[i] = trial->kernel.free[i] + change;
-        size = fmax(size, fabs(trial->kernel.free[i]));
-        pushed = fmax(pushed, fabs(change));
-    }
-    trial->is_calm = pushed <= CALM * size;
-}
-
-static void find_free_rate(Trial *trial, double step_s)
-{
-    for (size_t i = 0; i < trial->rows; i++) {
-        const bool is_known = trial->steps > 1 && trial->is_calm;
-        trial->kernel.free_rate[i] =
-            is_known ? (trial->kernel.free[i] - trial->free_before[i]) / step_s : 0.0;
-    }
-}
-
-// Where the rows are at the step's start, and how fast they go.
-static void find_rows(Trial *trial)
-{
-    tree_motions(trial->tree, trial->q, trial->v, trial->motions);
-    for (size_t i = 0; i < trial->rows; i += 2) {
-        const DriverJoint *joint = &trial->of->joints[trial->joints[i / 2]];
-        const PinHole pose = driver_pose(joint, trial->motions);
-        const Vec2 going =
-            vec2_sub(driver_point_velocity(trial->motions, joint->bodies[1], joint->anchors[1]),
-                     driver_point_velocity(trial->motions, joint->bodies[0], joint->anchors[0]));
-        trial->kernel.position[i] = pose.eccentricity.x;
-        trial->kernel.position[i + 1] = pose.eccentricity.y;
-        trial->kernel.speed[i] = going.x;
-        trial->kernel.speed[i + 1] = going.y;
-    }
-}
-
-// Positions and velocities at a time in the step, from the kernel's sums then.
-static void find_inside(const Trial *trial, double since_s, double step_s, const KernelSums *sums,
-                        double *q, double *v)
-{
-    const size_t count = trial->count;
-    const double off_s = since_s - 0.5 * step_s;
-    memcpy(q, trial->q, count * sizeof *q);
-    memcpy(v, trial->v, count * sizeof *v);
-    add(q, trial->v, since_s, count);
-    add(q, trial->a, 0.5 * since_s * since_s, count);
-    add(q, trial->a_rate, since_s * (since_s / 6.0 - 0.25 * step_s) * since_s, count);
-    add(v, trial->a, since_s, count);
-    add(v, trial->a_rate, 0.5 * since_s * (since_s - step_s), count);
-    add_rows(trial, trial->responses[0], sums->impulse, 1.0, v);
-    add_rows(trial, trial->bend, sums->moment, 1.0, v);
-    add_rows(trial, trial->rate, sums->impulse, off_s, v);
-    add_rows(trial, trial->rate, sums->moment, -1.0, v);
-    add_rows(trial, trial->responses[0], sums->moment, 1.0, q);
-    add_rows(trial, trial->bend, sums->moment + trial->rows, 1.0, q);
-    add_rows(trial, trial->rate, sums->moment, off_s, q);
-    add_rows(trial, trial->rate, sums->moment + trial->rows, -2.0, q);
 }
 
 // Mid-step, with the velocities that are to be expected there.
 static void find_middle(Trial *trial, double step_s)
 {
-    const size_t count = trial->count;
-    memcpy(trial->ahead, trial->a, count * sizeof *trial->ahead);
-    add_rows(trial, trial->bend, trial->sums.impulse, 1.0, trial->ahead);
-    memcpy(trial->q_middle, trial->q, count * sizeof *trial->q);
-    memcpy(trial->v_middle, trial->v, count * sizeof *trial->v);
-    add(trial->q_middle, trial->v, 0.5 * step_s, count);
-    add(trial->q_middle, trial->ahead, 0.125 * step_s * step_s, count);
-    add_rows(trial, trial->responses[0], trial->sums.impulse, 0.125 * step_s, trial->q_middle);
-    add(trial->v_middle, trial->ahead, 0.5 * step_s, count);
+    const size_t count = trial->in.count;
+    memcpy(trial->in.ahead, trial->in.a, count * sizeof *trial->in.ahead);
+    within_add_rows(&trial->in, trial->in.bend, trial->in.sums.impulse, 1.0, trial->in.ahead);
+    memcpy(trial->q_middle, trial->in.q, count * sizeof *trial->in.q);
+    memcpy(trial->v_middle, trial->in.v, count * sizeof *trial->in.v);
+    add(trial->q_middle, trial->in.v, 0.5 * step_s, count);
+    add(trial->q_middle, trial->in.ahead, 0.125 * step_s * step_s, count);
+    within_add_rows(&trial->in, trial->in.responses[0], trial->in.sums.impulse, 0.125 * step_s,
+                    trial->q_middle);
+    add(trial->v_middle, trial->in.ahead, 0.5 * step_s, count);
 }
 
-// The engine at mid-step under the contacts' mean force: `a`, and how it has changed.
+// The engine at mid-step under the contacts' mean force.
 static void find_accelerations(Trial *trial, double step_s)
 {
     const double per_s = 1.0 / step_s;
-    memcpy(trial->nudged, trial->v_middle, trial->count * sizeof *trial->nudged);
-    add_rows(trial, trial->responses[0], trial->sums.moment, per_s, trial->nudged);
-    evaluate(trial, trial->q_middle, trial->nudged, trial->sums.impulse, per_s, trial->a);
-    add_rows(trial, trial->responses[0], trial->sums.impulse, -per_s, trial->a);
-    add_rows(trial, trial->bend, trial->sums.moment, -per_s, trial->a);
-    for (size_t i = 0; i < trial->count; i++) {
-        const bool is_known = trial->steps > 1 && trial->is_calm;
-        trial->a_rate[i] = is_known ? (trial->a[i] - trial->ahead[i]) / step_s : 0.0;
-    }
+    memcpy(trial->in.nudged, trial->v_middle, trial->in.count * sizeof *trial->in.nudged);
+    within_add_rows(&trial->in, trial->in.responses[0], trial->in.sums.moment, per_s,
+                    trial->in.nudged);
+    evaluate(trial, trial->q_middle, trial->in.nudged, trial->in.sums.impulse, per_s, trial->other);
+    within_take_accelerations(&trial->in, trial->other, step_s);
 }
 
 static void take_step(Trial *trial, double step_s)
 {
+    Within *in = &trial->in;
     find_middle(trial, step_s);
-    keep_free(trial);
+    within_keep_free(in);
     tree_motions(trial->tree, trial->q_middle, trial->v_middle, trial->motions);
     find_jacobian(trial);
-    evaluate(trial, trial->q_middle, trial->v_middle, NULL, 0.0, trial->free);
+    evaluate(trial, trial->q_middle, trial->v_middle, NULL, 0.0, trial->in.free);
     find_response(trial);
-    find_rate(trial, step_s);
-    find_row_accelerations(trial, trial->v_middle, trial->free, trial->kernel.free);
+    within_find_rate(in, step_s);
+    find_row_accelerations(trial, trial->v_middle, trial->in.free, trial->in.kernel.free);
     find_drift(trial);
-    find_free_rate(trial, step_s);
-    find_rows(trial);
-    kernel_set_drift(&trial->kernel, trial->drift, step_s);
-    if (!kernel_run(&trial->kernel, step_s)) {
-        driver_fail("the contacts took more than 100000 local steps in one step");
-    }
-    kernel_at(&trial->kernel, trial->kernel.node_count - 1, step_s, &trial->sums);
+    within_find_free_rate(in, step_s);
+    tree_motions(trial->tree, trial->in.q, trial->in.v, trial->motions);
+    within_find_rows(in, trial->motions);
+    within_integrate(in, step_s);
     find_accelerations(trial, step_s);
-    find_inside(trial, step_s, step_s, &trial->sums, trial->q_next, trial->v_next);
+    within_find_end(in, step_s);
 }
 
 // The bodies at a time in the step that has been taken.
@@ -336,28 +207,9 @@ static void read_inside(void *adapter, double since_s, const KernelSums *sums,
                         DriverMotion *motions)
 {
     Trial *trial = adapter;
-    find_inside(trial, since_s, trial->of->step_s, sums, trial->nudged, trial->other);
-    tree_motions(trial->tree, trial->nudged, trial->other, motions);
-}
-
-static void make_numbers(Trial *trial)
-{
-    const size_t block = trial->rows * trial->count;
-    double **by_coordinate[] = {&trial->q,        &trial->v,        &trial->q_next, &trial->v_next,
-                                &trial->q_middle, &trial->v_middle, &trial->a,      &trial->a_rate,
-                                &trial->ahead,    &trial->free,     &trial->nudged, &trial->other};
-    for (size_t i = 0; i < sizeof by_coordinate / sizeof *by_coordinate; i++) {
-        *by_coordinate[i] = numbers(trial->count);
-    }
-    for (size_t i = 0; i < BEFORE; i++) {
-        trial->responses[i] = numbers(block);
-    }
-    trial->rate = numbers(block);
-    trial->jacobian = numbers(block);
-    trial->bend = numbers(block);
-    trial->drift = numbers(trial->rows * trial->rows);
-    trial->free_before = numbers(trial->rows);
-    trial->work = numbers(trial->rows);
+    within_find_inside(&trial->in, since_s, trial->in.of->step_s, sums, trial->in.nudged,
+                       trial->other);
+    tree_motions(trial->tree, trial->in.nudged, trial->other, motions);
 }
 
 static void *room(size_t count, size_t size)
@@ -375,21 +227,17 @@ static Trial make(const Tree *tree, TrialAccelerate accelerate, void *engine, Dr
     if (tree->left_count > 0) {
         driver_refuse("contacts within the step beside a loop of ideal joints");
     }
-    Trial trial = {.of = of,
-                   .tree = tree,
+    Trial trial = {.tree = tree,
                    .accelerate = accelerate,
                    .engine = engine,
                    .run = run,
-                   .count = tree->coordinates,
-                   .joints = room(of->joint_count, sizeof *trial.joints),
-                   .kernel = kernel_start(0.0),
+                   .q_middle = within_numbers(tree->coordinates),
+                   .v_middle = within_numbers(tree->coordinates),
+                   .other = within_numbers(tree->coordinates),
                    .motions = room(of->body_count, sizeof *trial.motions),
                    .bends = room(of->body_count, sizeof *trial.bends),
                    .pushes = room(2 * of->joint_count, sizeof *trial.pushes)};
-    within_add_contacts(of, &trial.kernel, trial.joints);
-    trial.rows = kernel_rows(&trial.kernel);
-    trial.sums = kernel_sums(trial.rows);
-    make_numbers(&trial);
+    within_open(of, tree->coordinates, &trial.in);
     return trial;
 }
 
@@ -398,9 +246,9 @@ void trial_run(const Tree *tree, TrialAccelerate accelerate, void *engine, Drive
     Trial trial = make(tree, accelerate, engine, run);
     const double step_s = tree->of->step_s;
     DriverContact *states = room(tree->of->joint_count, sizeof *states);
-    KernelSums sums = kernel_sums(trial.rows);
-    const WithinStep still = {.kernel = &trial.kernel,
-                              .joints = trial.joints,
+    KernelSums sums = kernel_sums(trial.in.rows);
+    const WithinStep still = {.kernel = &trial.in.kernel,
+                              .joints = trial.in.joints,
                               .states = states,
                               .step_s = step_s,
                               .motions = read_inside,
@@ -411,16 +259,15 @@ void trial_run(const Tree *tree, TrialAccelerate accelerate, void *engine, Drive
         states[i].state = tree->of->joints[i].contact;
     }
     driver_run_begin(run);
-    tree_start(tree, trial.v);
-    evaluate(&trial, trial.q, trial.v, NULL, 0.0, trial.a);
+    tree_start(tree, trial.in.v);
+    evaluate(&trial, trial.in.q, trial.in.v, NULL, 0.0, trial.in.a);
     while (!driver_run_is_full(run)) {
         WithinStep step = still;
-        step.start_s = step_s * (double)trial.steps;
+        step.start_s = step_s * (double)trial.in.steps;
         take_step(&trial, step_s);
-        trial.steps++;
+        trial.in.steps++;
         within_look(&step, run);
-        memcpy(trial.q, trial.q_next, trial.count * sizeof *trial.q);
-        memcpy(trial.v, trial.v_next, trial.count * sizeof *trial.v);
+        within_go_on(&trial.in);
     }
     driver_run_write(run);
 }

@@ -1,9 +1,25 @@
-// Looks into a step whose contacts the kernel has integrated: samples, records and totals.
+// Steps in an engine's coordinates whose contacts the kernel integrates, and what is seen in them:
+// samples, records and totals.
 #include "drivers/common/within.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
-void within_add_contacts(const DriverCase *of, Kernel *kernel, size_t *joints)
+// of the free accelerations, what impulses may change them by in a step for these to say how they
+// change by themselves
+static const double CALM = 0.1;
+
+double *within_numbers(size_t count)
+{
+    double *room = calloc(count + 1, sizeof *room);
+    if (room == NULL) {
+        driver_fail("there is no memory");
+    }
+    return room;
+}
+
+static void add_contacts(const DriverCase *of, Within *in)
 {
     size_t contacts = 0;
     for (size_t i = 0; i < of->joint_count; i++) {
@@ -17,14 +33,167 @@ void within_add_contacts(const DriverCase *of, Kernel *kernel, size_t *joints)
                                        .hole_radius = joint->clearance,
                                        .joint = (int)i,
                                        .state = joint->contact};
-        joints[contacts++] = i;
-        kernel_add(kernel, &contact, KERNEL_ROWS_PLAIN);
+        in->joints[contacts++] = i;
+        kernel_add(&in->kernel, &contact, KERNEL_ROWS_PLAIN);
     }
     if (contacts == 0) {
         driver_refuse("contacts within the step without a pin that has play");
     }
-    kernel_make_room(kernel, kernel_rows(kernel));
-    kernel_make_drift(kernel);
+    in->rows = kernel_rows(&in->kernel);
+    kernel_make_room(&in->kernel, in->rows);
+    kernel_make_drift(&in->kernel);
+    in->sums = kernel_sums(in->rows);
+}
+
+void within_open(const DriverCase *of, size_t count, Within *in)
+{
+    *in = (Within){.of = of, .count = count, .kernel = kernel_start(0.0)};
+    in->joints = calloc(of->joint_count + 1, sizeof *in->joints);
+    if (in->joints == NULL) {
+        driver_fail("there is no memory");
+    }
+    add_contacts(of, in);
+    double **by_coordinate[] = {&in->q,      &in->v,     &in->q_next, &in->v_next, &in->a,
+                                &in->a_rate, &in->ahead, &in->free,   &in->nudged};
+    for (size_t i = 0; i < sizeof by_coordinate / sizeof *by_coordinate; i++) {
+        *by_coordinate[i] = within_numbers(count);
+    }
+    double **by_block[] = {&in->responses[0], &in->responses[1], &in->responses[2],
+                           &in->rate,         &in->jacobian,     &in->bend};
+    for (size_t i = 0; i < sizeof by_block / sizeof *by_block; i++) {
+        *by_block[i] = within_numbers(in->rows * count);
+    }
+    in->drift = within_numbers(in->rows * in->rows);
+    in->free_before = within_numbers(in->rows);
+    in->work = within_numbers(in->rows);
+}
+
+// to += scale from
+static void add(double *to, const double *from, double scale, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        to[i] += scale * from[i];
+    }
+}
+
+void within_add_rows(const Within *in, const double *columns, const double *by_row, double scale,
+                     double *target)
+{
+    for (size_t k = 0; k < in->rows; k++) {
+        add(target, columns + k * in->count, scale * by_row[k], in->count);
+    }
+}
+
+void within_keep_free(Within *in)
+{
+    double size = 0.0;
+    double pushed = 0.0;
+    for (size_t i = 0; i < in->rows; i++) {
+        double change = 0.0;
+        for (size_t k = 0; k < in->rows; k++) {
+            change += 2.0 * in->drift[i * in->rows + k] * in->sums.impulse[k];
+        }
+        in->free_before[i] = in->kernel.free[i] + change;
+        size = fmax(size, fabs(in->kernel.free[i]));
+        pushed = fmax(pushed, fabs(change));
+    }
+    in->is_calm = pushed <= CALM * size;
+}
+
+void within_find_free_rate(Within *in, double step_s)
+{
+    for (size_t i = 0; i < in->rows; i++) {
+        const bool is_known = in->steps > 1 && in->is_calm;
+        in->kernel.free_rate[i] =
+            is_known ? (in->kernel.free[i] - in->free_before[i]) / step_s : 0.0;
+    }
+}
+
+void within_age_responses(Within *in)
+{
+    double *oldest = in->responses[WITHIN_BEFORE - 1];
+    memmove(in->responses + 1, in->responses, (WITHIN_BEFORE - 1) * sizeof *in->responses);
+    in->responses[0] = oldest;
+}
+
+void within_find_rate(Within *in, double step_s)
+{
+    for (size_t i = 0; i < in->rows * in->count; i++) {
+        const double now = in->responses[0][i];
+        const double last = in->responses[1][i];
+        const double first = in->responses[2][i];
+        in->rate[i] = in->steps == 0   ? 0.0
+                      : in->steps == 1 ? (now - last) / step_s
+                                       : (1.5 * now - 2.0 * last + 0.5 * first) / step_s;
+    }
+}
+
+void within_find_rows(Within *in, const DriverMotion *motions)
+{
+    for (size_t i = 0; i < in->rows; i += 2) {
+        const DriverJoint *joint = &in->of->joints[in->joints[i / 2]];
+        const PinHole pose = driver_pose(joint, motions);
+        const Vec2 going =
+            vec2_sub(driver_point_velocity(motions, joint->bodies[1], joint->anchors[1]),
+                     driver_point_velocity(motions, joint->bodies[0], joint->anchors[0]));
+        in->kernel.position[i] = pose.eccentricity.x;
+        in->kernel.position[i + 1] = pose.eccentricity.y;
+        in->kernel.speed[i] = going.x;
+        in->kernel.speed[i + 1] = going.y;
+    }
+}
+
+void within_integrate(Within *in, double step_s)
+{
+    kernel_set_drift(&in->kernel, in->drift, step_s);
+    if (!kernel_run(&in->kernel, step_s)) {
+        driver_fail("the contacts took more than 100000 local steps in one step");
+    }
+    kernel_at(&in->kernel, in->kernel.node_count - 1, step_s, &in->sums);
+}
+
+void within_take_accelerations(Within *in, const double *a, double step_s)
+{
+    memcpy(in->a, a, in->count * sizeof *in->a);
+    within_add_rows(in, in->responses[0], in->sums.impulse, -1.0 / step_s, in->a);
+    within_add_rows(in, in->bend, in->sums.moment, -1.0 / step_s, in->a);
+    for (size_t i = 0; i < in->count; i++) {
+        const bool is_known = in->steps > 1 && in->is_calm;
+        in->a_rate[i] = is_known ? (in->a[i] - in->ahead[i]) / step_s : 0.0;
+    }
+}
+
+void within_find_inside(const Within *in, double since_s, double step_s, const KernelSums *sums,
+                        double *q, double *v)
+{
+    const size_t count = in->count;
+    const double off_s = since_s - 0.5 * step_s;
+    memcpy(q, in->q, count * sizeof *q);
+    memcpy(v, in->v, count * sizeof *v);
+    add(q, in->v, since_s, count);
+    add(q, in->a, 0.5 * since_s * since_s, count);
+    add(q, in->a_rate, since_s * (since_s / 6.0 - 0.25 * step_s) * since_s, count);
+    add(v, in->a, since_s, count);
+    add(v, in->a_rate, 0.5 * since_s * (since_s - step_s), count);
+    within_add_rows(in, in->responses[0], sums->impulse, 1.0, v);
+    within_add_rows(in, in->bend, sums->moment, 1.0, v);
+    within_add_rows(in, in->rate, sums->impulse, off_s, v);
+    within_add_rows(in, in->rate, sums->moment, -1.0, v);
+    within_add_rows(in, in->responses[0], sums->moment, 1.0, q);
+    within_add_rows(in, in->bend, sums->moment + in->rows, 1.0, q);
+    within_add_rows(in, in->rate, sums->moment, off_s, q);
+    within_add_rows(in, in->rate, sums->moment + in->rows, -2.0, q);
+}
+
+void within_find_end(Within *in, double step_s)
+{
+    within_find_inside(in, step_s, step_s, &in->sums, in->q_next, in->v_next);
+}
+
+void within_go_on(Within *in)
+{
+    memcpy(in->q, in->q_next, in->count * sizeof *in->q);
+    memcpy(in->v, in->v_next, in->count * sizeof *in->v);
 }
 
 static void make_samples(const WithinStep *step, DriverRun *run)

@@ -5,9 +5,75 @@
 #include "drivers/common/driver.h"
 #include "kernel/kernel.h"
 
-// Adds the pins in holes of a case to a kernel, as contacts with plain rows, and makes room in it.
-// Writes the number of the joint of each contact. Refuses a case without any.
-void within_add_contacts(const DriverCase *of, Kernel *kernel, size_t *joints);
+enum { WITHIN_BEFORE = 3 }; // A of this step and those before, from which its rate follows
+
+// A step in the coordinates of an engine, in the words of drivers/mujoco/mujoco_kernel.c: what does
+// not depend on how the engine is asked. Rows are two a pin, pin less hole, in the world's x and y.
+typedef struct Within {
+    const DriverCase *of;
+    size_t rows;
+    size_t count;   // coordinates
+    size_t *joints; // by contact: its number in the case; owned, as all arrays
+    Kernel kernel;
+    KernelSums sums;
+    double *q; // of the step's start; by coordinate, as the next ones
+    double *v;
+    double *q_next;
+    double *v_next;
+    double *a; // beside the contacts'
+    double *a_rate;
+    double *ahead; // a as it is to be expected: that of the step before, after its impulses
+    double *free;  // G, at mid-step
+    double *nudged;
+    double *responses[WITHIN_BEFORE]; // A: row by row
+    double *rate;                     // A'
+    double *jacobian;                 // row by row
+    double *bend;                     // B
+    double *drift;                    // S
+    double *free_before;              // by row
+    double *work;
+    size_t steps; // of the run
+    bool is_calm;
+} Within;
+
+// Makes the contacts of the pins in holes of a case, with plain rows, and all room. Refuses a case
+// without any.
+void within_open(const DriverCase *of, size_t count, Within *in);
+
+// Zeroed room for so many numbers; ends the driver where there is none.
+double *within_numbers(size_t count);
+
+// Adds sums over the rows of A, or of A', to something by coordinate.
+void within_add_rows(const Within *in, const double *columns, const double *by_row, double scale,
+                     double *target);
+
+// What the free accelerations are behind the step's impulses, which have changed them by 2 S P; and
+// how they change by themselves, from those.
+void within_keep_free(Within *in);
+void within_find_free_rate(Within *in, double step_s);
+
+// The responses become those of the step before; then A' at mid-step, from A there and before.
+void within_age_responses(Within *in);
+void within_find_rate(Within *in, double step_s);
+
+// Where the rows are at the step's start, and how fast they go.
+void within_find_rows(Within *in, const DriverMotion *motions);
+
+// The contacts over the step, by the kernel; its sums are those of the end.
+void within_integrate(Within *in, double step_s);
+
+// From `a` as the engine gave it at mid-step under the mean force: without what the contacts did,
+// and how it has changed.
+void within_take_accelerations(Within *in, const double *a, double step_s);
+
+// Positions and velocities at a time in the step, from the kernel's sums then; and those of its
+// end.
+void within_find_inside(const Within *in, double since_s, double step_s, const KernelSums *sums,
+                        double *q, double *v);
+void within_find_end(Within *in, double step_s);
+
+// The next step starts where this one has ended.
+void within_go_on(Within *in);
 
 // How all bodies move at a time since the start of the step, s, from the kernel's sums there.
 typedef void (*WithinMotions)(void *adapter, double since_s, const KernelSums *sums,
