@@ -47,24 +47,15 @@ bool common_options_check_step(const CommonOptions *options, double step_s, Err 
 
 bool common_options_driver(const char *driver, BackendKind *backend, Err *err)
 {
-    const size_t length = strcspn(driver, "=");
+    char name[ENGINE_NAME_SIZE];
+    if (!engine_given_name(driver, name, err)) {
+        return false;
+    }
     *backend = BACKEND_DRIVER;
     for (int i = 0; i < BACKEND_COUNT; i++) {
-        const char *word = OPTIONS_BACKENDS[i];
-        if (strlen(word) == length && strncmp(word, driver, length) == 0) {
-            *backend = (BackendKind)i;
-        }
+        *backend = strcmp(OPTIONS_BACKENDS[i], name) == 0 ? (BackendKind)i : *backend;
     }
-    char name[ENGINE_NAME_SIZE] = "";
-    if (length < sizeof name) {
-        snprintf(name, sizeof name, "%.*s", (int)length, driver);
-    }
-    return (engine_is_name(name) && options_is_engine(*backend) && driver[length] == '=' &&
-            driver[length + 1] != '\0') ||
-           err_set(err, ERR_USAGE,
-                   "--driver takes NAME=PROGRAM, with a name of lower-case letters, digits and "
-                   "'-' that is none of our own backends, not '%s'",
-                   driver);
+    return true;
 }
 
 bool common_options_take_drivers(const char *const *drivers, size_t count, Scenario *scenario,

@@ -34,6 +34,10 @@ bool engine_is_name(const char *word);
 // ERR_USAGE where there is none, and says which there are.
 bool engine_find(const char *name, EngineDriver *driver, Err *err);
 
+// The name in NAME=PROGRAM. Fails with ERR_USAGE where that has another form, or a backend of our
+// own.
+bool engine_given_name(const char *name_and_program, char name[ENGINE_NAME_SIZE], Err *err);
+
 // Asks a program that is said to be a driver what it is: NAME=PROGRAM. Fails with ERR_USAGE where
 // that has another form, with ERR_SOLVER where the program is no driver of this protocol.
 bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err);

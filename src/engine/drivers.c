@@ -145,20 +145,28 @@ bool engine_find(const char *name, EngineDriver *driver, Err *err)
                    engine_is_name(name) ? name : "NAME");
 }
 
-bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err)
+bool engine_given_name(const char *name_and_program, char name[ENGINE_NAME_SIZE], Err *err)
 {
     const char *mark = strchr(name_and_program, '=');
-    char name[ENGINE_NAME_SIZE] = "";
-    *driver = (EngineDriver){.way_count = 0};
+    name[0] = '\0';
     if (mark != NULL && mark - name_and_program < ENGINE_NAME_SIZE) {
-        snprintf(name, sizeof name, "%.*s", (int)(mark - name_and_program), name_and_program);
+        snprintf(name, ENGINE_NAME_SIZE, "%.*s", (int)(mark - name_and_program), name_and_program);
     }
-    if (!engine_is_name(name) || is_own(name) || mark[1] == '\0') {
-        return err_set(err, ERR_USAGE,
-                       "--driver takes NAME=PROGRAM, with a name of lower-case letters, digits "
-                       "and '-' that is none of our own backends, not '%s'",
-                       name_and_program);
+    return (engine_is_name(name) && !is_own(name) && mark[1] != '\0') ||
+           err_set(err, ERR_USAGE,
+                   "--driver takes NAME=PROGRAM, with a name of lower-case letters, digits "
+                   "and '-' that is none of our own backends, not '%s'",
+                   name_and_program);
+}
+
+bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err)
+{
+    char name[ENGINE_NAME_SIZE];
+    *driver = (EngineDriver){.way_count = 0};
+    if (!engine_given_name(name_and_program, name, err)) {
+        return false;
     }
+    const char *mark = strchr(name_and_program, '=');
     // a program without a folder is one in this folder: nothing is looked for in PATH
     const int length = snprintf(driver->program, sizeof driver->program, "%s%s",
                                 strchr(mark + 1, '/') == NULL ? "./" : "", mark + 1);

@@ -5,6 +5,7 @@
 // ends. A driver that tells of samples alone is taken at its samples; largest forces and depths and
 // the number of contacts are then its totals, and when they were is not known. What no driver
 // tells, energies and the forces of ideal joints, is no number.
+#include "base/text.h"
 #include "base/zeroed.h"
 #include "engine/driver.h"
 #include "engine/engine_records.h"
@@ -95,13 +96,11 @@ static void note_engine(EngineState *state, const char *way)
 {
     const EngineDriver *driver = &state->driver;
     TrajectoryEngine *engine = &state->engine;
-    snprintf(engine->name, sizeof engine->name, "%.*s", TRAJECTORY_TEXT_SIZE - 1, driver->engine);
-    snprintf(engine->version, sizeof engine->version, "%.*s", TRAJECTORY_TEXT_SIZE - 1,
-             driver->version);
-    snprintf(engine->precision, sizeof engine->precision, "%.*s", TRAJECTORY_TEXT_SIZE - 1,
-             driver->precision);
-    snprintf(engine->way, sizeof engine->way, "%s", way);
-    snprintf(engine->settings, sizeof engine->settings, "%s", state->said.settings);
+    text_copy(engine->name, sizeof engine->name, driver->engine);
+    text_copy(engine->version, sizeof engine->version, driver->version);
+    text_copy(engine->precision, sizeof engine->precision, driver->precision);
+    text_copy(engine->way, sizeof engine->way, way);
+    text_copy(engine->settings, sizeof engine->settings, state->said.settings);
 }
 
 static void engine_close(void *of)

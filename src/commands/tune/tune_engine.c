@@ -1,11 +1,11 @@
 // Searches the cheapest setting of another engine that meets an error.
 //
 // Steps fall by 1, 0.5, 0.2, 0.1, ... from a two-hundredth of a turn until a way meets the error,
-// its run fails for another reason than its step, or takes
-// longer than the cheapest that is known. The coarsest is taken, and
-// timed by the median of three runs.
+// its run fails for another reason than its step, or takes longer than the cheapest that is known.
+// The coarsest is taken, and timed by the median of three runs.
 #include "commands/tune/tune_engine.h"
 
+#include "base/sorted.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "measure/error.h"
@@ -105,7 +105,7 @@ static const EngineTrial *make_trial(EngineTune *tune, size_t way, double step_s
                                                     is_limited ? tune->truth.horizon_s : INFINITY);
         trial->error = error_of_kind(&error, tune->scenario->run.tolerance_of, is_limited);
     } else {
-        snprintf(trial->message, sizeof trial->message, "%s", run->message);
+        text_copy(trial->message, sizeof trial->message, run->message);
     }
     trajectory_destroy(run);
     return trial;
@@ -114,13 +114,6 @@ static const EngineTrial *make_trial(EngineTune *tune, size_t way, double step_s
 static bool meets(const EngineTune *tune, const EngineTrial *trial)
 {
     return trial->error + tune->truth.uncertainty <= tune->options->target;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    const double one = *(const double *)a;
-    const double other = *(const double *)b;
-    return (one > other) - (one < other);
 }
 
 // The time of a setting, the median of runs.
@@ -132,8 +125,8 @@ static double time_of(const EngineTune *tune, const EngineTrial *trial)
         times[i] = run->is_complete ? run->wall_s : INFINITY;
         trajectory_destroy(run);
     }
-    qsort(times, REPEATS, sizeof *times, by_size);
-    return times[REPEATS / 2];
+    sorted_make(times, REPEATS);
+    return sorted_median(times, REPEATS);
 }
 
 static void search_way(EngineTune *tune, size_t way)
