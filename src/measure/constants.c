@@ -90,11 +90,16 @@ static double worst_depth(const MapImpact *asked, double misfit_most)
     return asked->penetration_max * exp(misfit_most * sqrt(3.0 * MAP_IMPACT_PHASES));
 }
 
+static double restitution_off(const MapImpact *phase, const MapImpact *asked)
+{
+    return (phase->restitution - asked->restitution) /
+           fmax(asked->restitution, MAPPING_VALID_SHARE);
+}
+
 // What one phase adds to the sum of the squares of a setting's misfit, over MAP_IMPACT_PHASES.
 static double phase_misfit(const MapImpact *phase, const MapImpact *asked)
 {
-    const double off =
-        (phase->restitution - asked->restitution) / fmax(asked->restitution, MAPPING_VALID_SHARE);
+    const double off = restitution_off(phase, asked);
     return (off * off + square_of_log(phase->force_max, asked->force_max) +
             square_of_log(phase->penetration_max, asked->penetration_max)) /
            3.0;
@@ -102,9 +107,8 @@ static double phase_misfit(const MapImpact *phase, const MapImpact *asked)
 
 static bool phase_meets_restitution(const MapImpact *phase, const MapImpact *asked)
 {
-    const double off =
-        (phase->restitution - asked->restitution) / fmax(asked->restitution, MAPPING_VALID_SHARE);
-    return phase->is_ended && phase->fallbacks == 0 && fabs(off) <= MAPPING_VALID_SHARE;
+    return phase->is_ended && phase->fallbacks == 0 &&
+           fabs(restitution_off(phase, asked)) <= MAPPING_VALID_SHARE;
 }
 
 // Predicts a setting with a row, phase by phase. A search ends with the phase that rules the
@@ -395,14 +399,15 @@ void constants_find(const MappingContact *contact, double step_s, Constants *hel
                                                         : linkage_radial_clearance(joint)),
     };
     const double searched_s = contact->asked.duration / STEPS_ENOUGH;
+    const bool is_fine = step_s < searched_s;
     ConstantsSetting fine;
-    if (step_s < searched_s) {
+    if (is_fine) {
         fine = search_setting(contact, searched_s, ODE_MAP_CORRECTED);
     }
     for (int i = 0; i < CONSTANTS_MAP_COUNT; i++) {
         ConstantsSetting *setting = &held->settings[i];
-        *setting = constants_find_setting(contact, step_s, CONSTANTS_MAPS[i],
-                                          step_s < searched_s ? &fine : NULL);
+        *setting =
+            constants_find_setting(contact, step_s, CONSTANTS_MAPS[i], is_fine ? &fine : NULL);
         setting->delivered = deliver(contact, step_s, setting);
     }
 }

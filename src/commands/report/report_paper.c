@@ -78,6 +78,26 @@ static void figure_lines(const Figure *figure, const json_t *table, const json_t
     }
 }
 
+// A figure: what the paper says of it, how it was made here, sentences about it, and the picture.
+static void write_figure(const char *says, const char *made_by, Text *words, Drawing *drawing,
+                         Text *html)
+{
+    text_append(html, "<section>\n");
+    html_words("h2", drawing->title, html);
+    text_append(html, "<p>The paper says: <i>%s</i> ", says);
+    if (made_by != NULL) {
+        text_append(html, "Made here by ");
+        html_words("code", made_by, html);
+    } else {
+        text_append(html, "Here:");
+    }
+    text_append(html, "</p>\n");
+    html_list(words->data, html);
+    draw_end(drawing, html);
+    text_append(html, "</section>\n");
+    text_finish(words);
+}
+
 static void append_figure(const Figure *figure, const json_t *table, const json_t *physics,
                           Text *html)
 {
@@ -93,13 +113,7 @@ static void append_figure(const Figure *figure, const json_t *table, const json_
     text_append(&words, "%.0f of %.0f cells of %s come out as printed.\n",
                 html_number_of(table, "cells_as_printed"), html_number_of(table, "cell_count"),
                 html_text_of(table, "name"));
-    text_append(html, "<section>\n");
-    html_words("h2", figure->title, html);
-    text_append(html, "<p>The paper says: <i>%s</i> Here:</p>\n", figure->says);
-    html_list(words.data, html);
-    draw_end(&drawing, html);
-    text_append(html, "</section>\n");
-    text_finish(&words);
+    write_figure(figure->says, NULL, &words, &drawing, html);
 }
 
 // Figures 5 to 8, which show coupler and follower over the angle of the crank.
@@ -244,15 +258,7 @@ static void append_curves(const CurveFigure *figure, const json_t *result, Text 
     } else {
         say_variation(figure, result, row, &words);
     }
-    text_append(html, "<section>\n");
-    html_words("h2", figure->title, html);
-    text_append(html, "<p>The paper says: <i>%s</i> Made here by ", figure->says);
-    html_words("code", html_text_of(row, "label"), html);
-    text_append(html, "</p>\n");
-    html_list(words.data, html);
-    draw_end(&drawing, html);
-    text_append(html, "</section>\n");
-    text_finish(&words);
+    write_figure(figure->says, html_text_of(row, "label"), &words, &drawing, html);
 }
 
 // Tables VII and VIII, the extremes of these curves.
