@@ -40,6 +40,12 @@ typedef struct TrialWindow {
     double behind;      // 1: up to there, times the tolerance, what a run may be away
 } TrialWindow;
 
+// What a second of motion costs, in evaluations of the contacts' forces.
+typedef struct Work {
+    double fixed;   // 1/s, at any step
+    double stepped; // 1, times a step's length that of the steps
+} Work;
+
 // What a trial is held against, and when it is not worth running on.
 typedef struct TrialRule {
     const Truth *truth;
@@ -65,22 +71,32 @@ typedef struct Trial {
 
 // The next step to be tried.
 //
-// One that is a little finer. A trial ends at the first sample that is above the tolerance, which
-// is mostly soon: on random mechanisms a walk in small steps comes to the coarsest step that will
-// do at the cost of little more than that one run. To jump ahead as the order says takes fewer
-// trials and more world steps, for errors do not fall as the order says: grazing impacts come and
-// go. Where all joints are ideal they do: a trial is run to its end, and the next step follows from
-// its largest error and the order.
+// One that costs a little more. A trial ends at the first sample that is above the tolerance, which
+// is mostly soon: on random mechanisms a walk in small strides comes to a step that will do at the
+// cost of little more than that one run. To jump ahead as the order says takes fewer trials and
+// more work, for errors do not fall as the order says: grazing impacts come and go. Where all
+// joints are ideal they do: a trial is run to its end, and the next step follows from its largest
+// error and the order.
+//
+// A second of motion costs a + b / h: the samples, and the contacts where they are integrated in
+// steps of their own, cost a at any step, the world steps b / h. Where b / h is little, a much finer
+// step costs little more.
 
-// the next step over the last one, where that missed at once and where it missed at the end
-static const double FINER_EARLY = 0.8;
-static const double FINER_LATE = 0.7;
+// work of a step over that of the next one, where it missed at once and where it missed at the end
+static const double DEARER_EARLY = 0.8;
+static const double DEARER_LATE = 0.7;
+
+// in evaluations of the contacts' forces, as instructions of the paper's case have it
+static const double WORLD_STEP_WORK = 16.0;
+static const double SAMPLE_WORK = 2.0;
 
 // Where it missed at the very first sample, no impact lies before, and errors there fall with the
 // step or faster: the next one is shorter by a root of how many times the tolerance that error was.
 // So the coarsest steps, each of which may hold many impacts, are passed over.
 static const double FIRST_SAMPLE_POWER = 0.5;
-static const double FIRST_SAMPLE_LEAST = 0.1;
+
+// of a step, what the next one has at least: the coarsest say little about what a second costs
+static const double LEAST_SHARE = 0.1;
 
 // a failed trial gives no hint of the step that succeeds
 static const double AFTER_FAILURE = 0.5;
@@ -205,15 +221,18 @@ static Scenario step_choice_scenario(const StepChoice *choice, double step_s)
     return scenario_with_step(choice->scenario, step_s);
 }
 
-static double step_choice_finer(double step_s, double share)
+// After one that missed the tolerance when it had come through a share of the run, 0 to 1.
+static double step_choice_dearer(Work work, double step_s, double share)
 {
-    return step_s * (FINER_EARLY + (FINER_LATE - FINER_EARLY) * fmin(1.0, share));
+    const double dearer = DEARER_EARLY + (DEARER_LATE - DEARER_EARLY) * fmin(1.0, share);
+    const double next_s =
+        work.stepped / ((work.fixed + work.stepped / step_s) / dearer - work.fixed);
+    return fmax(next_s, LEAST_SHARE * step_s);
 }
 
 static double step_choice_after_first_sample(double step_s, double excess)
 {
-    const double share = pow(excess, -FIRST_SAMPLE_POWER);
-    return step_s * fmin(fmax(share, FIRST_SAMPLE_LEAST), FINER_EARLY);
+    return step_s * fmax(pow(excess, -FIRST_SAMPLE_POWER), LEAST_SHARE);
 }
 
 // The step after one whose largest error in the whole run was that many times the tolerance, where
@@ -224,8 +243,7 @@ static double step_choice_by_order(const StepChoice *choice, double step_s, doub
     return step_s * fmin(fmax(share, ORDER_LEAST), ORDER_MOST);
 }
 
-// The step that comes after one that missed the tolerance when it had come through a share of the
-// run, 0 to 1, or after one that the solver failed at.
+// The step after one that the solver failed at.
 static double step_choice_after_failure(double step_s)
 {
     return AFTER_FAILURE * step_s;
@@ -433,6 +451,7 @@ typedef struct Chosen {
     size_t trials;
     size_t steps; // of all trials so far
     size_t evaluations;
+    double moved_s; // of motion
     double wall_s;
     double best_step_s; // of the trial that held longest; 0: none did at all
     double best_held_s;
@@ -527,6 +546,7 @@ static void chosen_run_count(Chosen *chosen, const Trial *trial)
     const Trajectory *run = trial->run;
     chosen->steps += run->steps;
     chosen->evaluations += run->evaluations;
+    chosen->moved_s += run->duration_s;
     chosen->wall_s += run->wall_s;
     const bool is_failed = !run->is_complete && !trial->is_given_up;
     // where one of several mechanisms fails, it may be far ahead of what all have reached
@@ -638,6 +658,17 @@ static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
     return none;
 }
 
+// As the trials so far have shown it.
+static Work work_of(const Chosen *chosen)
+{
+    const double samples =
+        (double)chosen->truth->trajectory->sample_count / scenario_duration(chosen->scenario);
+    return (Work){
+        .fixed = (double)chosen->evaluations / chosen->moved_s + SAMPLE_WORK * samples,
+        .stepped = WORLD_STEP_WORK * chosen->cost,
+    };
+}
+
 // The step after a trial that does not hold.
 static double step_after(const Chosen *chosen, const Trial *trial)
 {
@@ -650,10 +681,11 @@ static double step_after(const Chosen *chosen, const Trial *trial)
     if (!trial->is_given_up) {
         return step_choice_after_failure(trial->step_s);
     }
-    if (trial->held_s == 0.0 && options->tolerance_of == TOLERANCE_OF_MOTION) {
-        return step_choice_after_first_sample(trial->step_s, excess);
-    }
-    return step_choice_finer(trial->step_s, trial->held_s / scenario_duration(chosen->scenario));
+    const double dearer_s = step_choice_dearer(
+        work_of(chosen), trial->step_s, trial->held_s / scenario_duration(chosen->scenario));
+    return trial->held_s == 0.0 && options->tolerance_of == TOLERANCE_OF_MOTION
+               ? fmin(dearer_s, step_choice_after_first_sample(trial->step_s, excess))
+               : dearer_s;
 }
 
 static Trajectory *walk_to_step(Chosen *chosen)

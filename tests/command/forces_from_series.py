@@ -37,5 +37,6 @@ for name, joint in truth["joints"].items():
 until = [max((e for time, e in errors if time <= horizon * (1 + 1e-9)), default=0) for errors in (apart, peak)]
 whole = [max((e for _, e in errors), default=0) for errors in (apart, peak)]
 alpha = max((abs(body[key] - run["bodies"][n][key]) / max(abs(body["alpha_max_rad_s2"]), abs(body["alpha_min_rad_s2"]))
-            for n, body in truth["bodies"].items() for key in ("alpha_max_rad_s2", "alpha_min_rad_s2") if body[key]), default=0)
+            for n, body in truth["bodies"].items() for key in ("alpha_max_rad_s2", "alpha_min_rad_s2")
+            if body["alpha_max_rad_s2"] or body["alpha_min_rad_s2"]), default=0)
 print(whole[0], until[0], whole[1], until[1], alpha)
