@@ -79,8 +79,8 @@ typedef struct Trial {
 // error and the order.
 //
 // A second of motion costs a + b / h: the samples, and the contacts where they are integrated in
-// steps of their own, cost a at any step, the world steps b / h. Where b / h is little, a much finer
-// step costs little more.
+// steps of their own, cost a at any step, the world steps b / h. Where b / h is little, a much
+// finer step costs little more.
 
 // work of a step over that of the next one, where it missed at once and where it missed at the end
 static const double DEARER_EARLY = 0.8;
@@ -681,8 +681,8 @@ static double step_after(const Chosen *chosen, const Trial *trial)
     if (!trial->is_given_up) {
         return step_choice_after_failure(trial->step_s);
     }
-    const double dearer_s = step_choice_dearer(
-        work_of(chosen), trial->step_s, trial->held_s / scenario_duration(chosen->scenario));
+    const double dearer_s = step_choice_dearer(work_of(chosen), trial->step_s,
+                                               trial->held_s / scenario_duration(chosen->scenario));
     return trial->held_s == 0.0 && options->tolerance_of == TOLERANCE_OF_MOTION
                ? fmin(dearer_s, step_choice_after_first_sample(trial->step_s, excess))
                : dearer_s;

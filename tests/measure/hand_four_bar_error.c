@@ -58,10 +58,10 @@ static bool load(const Way *way, const Asked *asked, double step_s, Scenario *sc
     snprintf(words[3], sizeof words[3], "contact.friction=%.17g", asked->friction);
     snprintf(words[1], sizeof words[1], "run.samples=%.0f", TURN_S / SAMPLE_S);
     snprintf(words[2], sizeof words[2], "run.step=%.17g s", step_s);
-    const char *const all[] = {words[0], words[1],          words[2],
-                               words[3], way->overrides[0], way->overrides[1]};
+    const char *const all[] = {"run.start=centred", words[0],         words[1], words[2], words[3],
+                               way->overrides[0],   way->overrides[1]};
     Err err = {ERR_NONE, ""};
-    if (!casefile_load("cases/paper/impact-k66.yaml", all, 6, scenario, &err)) {
+    if (!casefile_load("cases/paper/impact-k66.yaml", all, 7, scenario, &err)) {
         fprintf(stderr, "%s\n", err.text);
         return false;
     }

@@ -441,8 +441,8 @@ static size_t evaluations_of_whole_runs(const Scenario *scenario, const Tried *t
 }
 
 // Steps that hardly cost less than a finer one are passed over, and trials end where they miss: of
-// the paper's case from its centred start, all trials evaluate the contacts less than twice as often
-// as the run that they choose. The control runs each of them to its end.
+// the paper's case from its centred start, all trials evaluate the contacts less than twice as
+// often as the run that they choose. The control runs each of them to its end.
 static void trials_cost_less_than_the_run_that_they_choose(void **state)
 {
     (void)state;

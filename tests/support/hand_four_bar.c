@@ -49,6 +49,7 @@ static JpPinInHole pin_of(const HandOptions *options)
     pin.contact.damping = JP_DAMPING_LANKARANI_NIKRAVESH;
     pin.contact.restitution = 0.9;
     pin.contact.speed_floor = options->speed_floor;
+    pin.contact.resting_speed = options->resting_speed;
     pin.friction = options->friction;
     pin.friction_speed = options->friction_speed;
     return pin;
@@ -89,6 +90,7 @@ HandOptions hand_four_bar_options(const Scenario *scenario, JpStepping stepping,
         .friction = scenario->contact.friction,
         .friction_speed = scenario->contact.friction_speed,
         .speed_floor = scenario->contact.impact_speed_floor,
+        .resting_speed = scenario->contact.resting_speed,
         .erp = erp,
     };
 }

@@ -31,6 +31,7 @@ typedef struct HandOptions {
     double friction;       // of the pin
     double friction_speed; // m/s
     double speed_floor;    // m/s, of the contact
+    double resting_speed;  // m/s, of the contact
     double erp;            // of the hinges
 } HandOptions;
 
