@@ -3,6 +3,9 @@
 // The samples of whole revolutions are equally far apart and the drive's period holds a whole
 // number of them, so that the sums of a discrete Fourier transform at whole lines are exact: no
 // window is needed, and nothing leaks from one order into another of a motion that repeats.
+//
+// Waves of even lines are the same half of all samples later, those of odd lines the opposite:
+// where their number is even, each line is a sum over half as many.
 #include "measure/spectrum.h"
 
 #include "base/zeroed.h"
@@ -43,38 +46,62 @@ static double *turn_of(size_t parts)
     return turn;
 }
 
-static double amplitude_at(size_t line, const double *values, const double *turn, size_t samples)
+Spectrum spectrum_begin(const Orders *orders)
 {
+    return (Spectrum){
+        .orders = *orders,
+        .turn = turn_of(orders->samples),
+        .values = zeroed(orders->samples, sizeof(double)),
+        .folded = zeroed(orders->samples, sizeof(double)),
+    };
+}
+
+void spectrum_finish(Spectrum *spectrum)
+{
+    free(spectrum->turn);
+    free(spectrum->values);
+    free(spectrum->folded);
+}
+
+static void take_signal(Spectrum *spectrum, SpectrumSignal *signal, const void *context)
+{
+    const size_t half = spectrum->orders.samples / 2;
+    double *values = spectrum->values;
+    for (size_t n = 0; n < spectrum->orders.samples; n++) {
+        values[n] = signal(context, spectrum->orders.first + n);
+    }
+    for (size_t n = 0; n < half; n++) {
+        spectrum->folded[n] = values[n] + values[n + half];
+        spectrum->folded[n + half] = values[n] - values[n + half];
+    }
+}
+
+static double amplitude_at(const Spectrum *spectrum, size_t line)
+{
+    const size_t samples = spectrum->orders.samples;
+    const bool is_even = samples % 2 == 0;
+    const size_t count = is_even ? samples / 2 : samples;
+    const double *values = !is_even        ? spectrum->values
+                           : line % 2 == 0 ? spectrum->folded
+                                           : spectrum->folded + count;
     double real = 0.0;
     double imaginary = 0.0;
-    for (size_t n = 0, at = 0; n < samples; n++) {
-        real += values[n] * turn[2 * at];
-        imaginary += values[n] * turn[2 * at + 1];
+    for (size_t n = 0, at = 0; n < count; n++) {
+        real += values[n] * spectrum->turn[2 * at];
+        imaginary += values[n] * spectrum->turn[2 * at + 1];
         at += line;
         at -= at >= samples ? samples : 0;
     }
     return line == 0 ? real / (double)samples : 2.0 * hypot(real, imaginary) / (double)samples;
 }
 
-static double *signal_values(const Orders *orders, SpectrumSignal *signal, const void *context)
-{
-    double *values = zeroed(orders->samples, sizeof *values);
-    for (size_t n = 0; n < orders->samples; n++) {
-        values[n] = signal(context, orders->first + n);
-    }
-    return values;
-}
-
-void spectrum_find(const Orders *orders, SpectrumSignal *signal, const void *context,
+void spectrum_find(Spectrum *spectrum, SpectrumSignal *signal, const void *context,
                    double *amplitudes)
 {
-    double *values = signal_values(orders, signal, context);
-    double *turn = turn_of(orders->samples);
-    for (size_t k = 0; k < orders->count; k++) {
-        amplitudes[k] = amplitude_at(k, values, turn, orders->samples);
+    take_signal(spectrum, signal, context);
+    for (size_t k = 0; k < spectrum->orders.count; k++) {
+        amplitudes[k] = amplitude_at(spectrum, k);
     }
-    free(turn);
-    free(values);
 }
 
 // The angular velocity of one body.
@@ -98,12 +125,10 @@ double spectrum_body_order(const Trajectory *run, size_t body, size_t order)
     if (line >= orders.count) {
         return NAN;
     }
-    const BodySignal signal = {run, body};
-    double *values = signal_values(&orders, omega_of, &signal);
-    double *turn = turn_of(orders.samples);
-    const double amplitude = amplitude_at(line, values, turn, orders.samples);
-    free(turn);
-    free(values);
+    Spectrum spectrum = spectrum_begin(&orders);
+    take_signal(&spectrum, omega_of, &(BodySignal){run, body});
+    const double amplitude = amplitude_at(&spectrum, line);
+    spectrum_finish(&spectrum);
     return amplitude;
 }
 
@@ -115,7 +140,9 @@ double spectrum_body_between(const Trajectory *run, size_t body)
         return orders.count == 0 ? NAN : 0.0;
     }
     double *amplitudes = zeroed(orders.count, sizeof *amplitudes);
-    spectrum_find(&orders, omega_of, &(BodySignal){run, body}, amplitudes);
+    Spectrum spectrum = spectrum_begin(&orders);
+    spectrum_find(&spectrum, omega_of, &(BodySignal){run, body}, amplitudes);
+    spectrum_finish(&spectrum);
     double most = 0.0;
     for (size_t k = 0; k < orders.count; k++) {
         most = k % orders.per_order != 0 ? fmax(most, amplitudes[k]) : most;

@@ -31,11 +31,24 @@ static inline double spectrum_order(const Orders *orders, size_t line)
 // A signal of a run at a sample.
 typedef double SpectrumSignal(const void *context, size_t sample);
 
+// What the spectra of several signals of one run share: waves of all orders, and room.
+typedef struct Spectrum {
+    Orders orders;
+    double
+        *turn; // cosines and sines of a whole turn in as many parts as there are samples, in turn
+    double *values; // of a signal at the samples
+    double *folded; // sums of two values that lie half of all samples apart, then their differences
+} Spectrum;
+
+// For spectrum_finish.
+Spectrum spectrum_begin(const Orders *orders);
+void spectrum_finish(Spectrum *spectrum);
+
 // The amplitudes of a signal, one an order: of order 0 its mean, of any other
 //     a_k = (2 / N) |sum over n of x_n exp(-2 pi i k n / M)|
 // with M samples a revolution and N in all. What the signal has above half the sampling rate is
 // folded into lower orders.
-void spectrum_find(const Orders *orders, SpectrumSignal *signal, const void *context,
+void spectrum_find(Spectrum *spectrum, SpectrumSignal *signal, const void *context,
                    double *amplitudes);
 
 // The amplitude of a body's angular velocity at one whole order, rad/s; NAN where there is none.

@@ -45,9 +45,10 @@ static double between(double turns)
 static void amplitudes_are_those_of_the_sines(void **state)
 {
     (void)state;
-    Scenario scenario = turning(3.0, 720);
-    MadeOmega *const SIGNALS[] = {known, shifted};
-    for (int i = 0; i < 2; i++) {
+    MadeOmega *const SIGNALS[] = {known, shifted, known};
+    const size_t SAMPLES[] = {720, 720, 721}; // an even and an odd number
+    for (int i = 0; i < 3; i++) {
+        Scenario scenario = turning(3.0, SAMPLES[i]);
         Trajectory *run = made_run(&scenario, SIGNALS[i]);
         const double amplitudes[] = {3.0, 5.0, 0.25, 0.0};
         for (size_t order = 0; order < 4; order++) {
@@ -57,8 +58,8 @@ static void amplitudes_are_those_of_the_sines(void **state)
         // it repeats every revolution, of which the spectrum is one
         assert_near(spectrum_body_between(run, 1), 0.0, 0.0);
         trajectory_destroy(run);
+        scenario_free(&scenario);
     }
-    scenario_free(&scenario);
 }
 
 static void what_lies_between_orders_is_found_there(void **state)

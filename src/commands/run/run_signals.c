@@ -158,13 +158,14 @@ static json_t *section_json(const Scenario *scenario, const Trajectory *run,
 
 // Spectra.
 
-static void set_amplitudes(json_t *object, const char *key, const Orders *orders,
-                           SpectrumSignal *of, const Signal *signal)
+static void set_amplitudes(json_t *object, const char *key, Spectrum *spectrum, SpectrumSignal *of,
+                           const Signal *signal)
 {
-    double *amplitudes = zeroed(orders->count, sizeof *amplitudes);
-    spectrum_find(orders, of, signal, amplitudes);
+    const size_t count = spectrum->orders.count;
+    double *amplitudes = zeroed(count, sizeof *amplitudes);
+    spectrum_find(spectrum, of, signal, amplitudes);
     json_t *values = json_array();
-    for (size_t k = 0; k < orders->count; k++) {
+    for (size_t k = 0; k < count; k++) {
         json_array_append_new(values, json_value_real(amplitudes[k]));
     }
     json_object_set_new(object, key, values);
@@ -174,6 +175,7 @@ static void set_amplitudes(json_t *object, const char *key, const Orders *orders
 static json_t *spectrum_json(const Scenario *scenario, const Trajectory *run, const Orders *orders)
 {
     const Linkage *linkage = &scenario->linkage;
+    Spectrum spectrum = spectrum_begin(orders);
     json_t *object = json_object();
     json_t *numbers = json_array();
     for (size_t k = 0; k < orders->count; k++) {
@@ -188,10 +190,10 @@ static json_t *spectrum_json(const Scenario *scenario, const Trajectory *run, co
         }
         const Signal signal = {scenario, run, i};
         json_t *body = json_object();
-        set_amplitudes(body, "omega_rad_s", orders, omega_at, &signal);
-        set_amplitudes(body, "alpha_rad_s2", orders, alpha_at, &signal);
-        set_amplitudes(body, "velocity_x_m_s", orders, velocity_x_at, &signal);
-        set_amplitudes(body, "velocity_y_m_s", orders, velocity_y_at, &signal);
+        set_amplitudes(body, "omega_rad_s", &spectrum, omega_at, &signal);
+        set_amplitudes(body, "alpha_rad_s2", &spectrum, alpha_at, &signal);
+        set_amplitudes(body, "velocity_x_m_s", &spectrum, velocity_x_at, &signal);
+        set_amplitudes(body, "velocity_y_m_s", &spectrum, velocity_y_at, &signal);
         json_object_set_new(bodies, linkage->bodies[i].name, body);
     }
     json_object_set_new(object, "bodies", bodies);
@@ -200,15 +202,17 @@ static json_t *spectrum_json(const Scenario *scenario, const Trajectory *run, co
         const Joint *of = &linkage->joints[i];
         if (trajectory_feels_play(run, of)) {
             json_t *joint = json_object();
-            set_amplitudes(joint, linkage_is_torsional(of) ? "torque_N_m" : "force_N", orders,
+            set_amplitudes(joint, linkage_is_torsional(of) ? "torque_N_m" : "force_N", &spectrum,
                            force_at, &(Signal){scenario, run, i});
             json_object_set_new(joints, of->name, joint);
         }
     }
     json_object_set_new(object, "joints", joints);
     if (drive_torque_exists(linkage)) {
-        set_amplitudes(object, "drive_torque_N_m", orders, torque_at, &(Signal){scenario, run, 0});
+        set_amplitudes(object, "drive_torque_N_m", &spectrum, torque_at,
+                       &(Signal){scenario, run, 0});
     }
+    spectrum_finish(&spectrum);
     return object;
 }
 
