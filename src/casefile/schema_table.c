@@ -450,8 +450,8 @@ const SchemaRow SCHEMA_ROWS[] = {
 
     {.path = "reference.tolerance", AT(reference.tolerance), .low = 1e-14, .high = 1e-3,
      .needs = REFERENCE,
-     .doc = "limit for each step's error, relative to each coordinate and velocity; above 3e-5, "
-            "which costs least, it is 3e-5"},
+     .doc = "limit for each step's error, relative to each coordinate and velocity; a tighter one "
+            "is taken where it costs less: above 3e-5, or of strongly damped contacts"},
 
     {.path = "ode.solver", .type = SCHEMA_CHOICE, AT(ode.solver), .words = OPTIONS_ODE_SOLVERS,
      .needs = ODE, .wants = ANY_ROWS, .doc = "direct: dWorldStep; quick: dWorldQuickStep"},

@@ -1,5 +1,8 @@
 // Makes the force law of a joint of a case.
+#include "contact/damping.h"
 #include "contact/law.h"
+
+#include <math.h>
 
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
 {
@@ -42,6 +45,29 @@ bool law_has_friction(const Scenario *scenario)
         }
     }
     return false;
+}
+
+static const double LOOSEST = 3e-5;
+static const double LOOSEST_AT_1 = 1e-5; // at chi 1
+static const double LOOSEST_POWER = 0.6;
+static const double CHI_MOST = 1e9; // beyond it rounding decides
+
+double law_loosest_tolerance(const Scenario *scenario)
+{
+    double chi = 0.0; // largest
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (linkage_has_play(joint)) {
+            const ContactOptions own = law_options(&scenario->contact, joint);
+            chi = fmax(chi, damping_factor(own.damping, own.restitution));
+        }
+    }
+    return fmin(LOOSEST, LOOSEST_AT_1 * pow(fmin(chi, CHI_MOST), -LOOSEST_POWER));
+}
+
+double law_reference_tolerance(const Scenario *scenario)
+{
+    return fmin(scenario->reference.tolerance, law_loosest_tolerance(scenario));
 }
 
 bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, Err *err)

@@ -17,6 +17,7 @@
 #include "measure/truth.h"
 #include "base/clock.h"
 #include "base/zeroed.h"
+#include "contact/law.h"
 #include "measure/error.h"
 #include "model/distance.h"
 #include "model/growth.h"
@@ -79,7 +80,7 @@ static Scenario with_tolerance(const Scenario *scenario, double tolerance)
 // The tolerance of perturbed runs: theirs is the error of the distance to the second.
 static double perturbed_tolerance(const Scenario *scenario)
 {
-    const double first = options_reference_tolerance(&scenario->reference);
+    const double first = law_reference_tolerance(scenario);
     return fmin(first, fmax(SECOND * first, PERTURBED_SHARE * DISTANCE_PERTURBATION));
 }
 
@@ -180,7 +181,7 @@ static TruthRuns *truth_runs_make(const Scenario *scenario, RunWatch watch, size
 {
     TruthRuns *runs = calloc(1, sizeof *runs);
     assert(runs != NULL);
-    const double tolerance = options_reference_tolerance(&scenario->reference);
+    const double tolerance = law_reference_tolerance(scenario);
     const Scenario fine = distance_grid(scenario);
     runs->watch = watch;
     runs->scenarios[RUN_FIRST] = *scenario;
@@ -451,9 +452,9 @@ static const double OTHER = 1e1;
 
 Scenario truth_at_other_tolerance(const Scenario *scenario)
 {
-    const double own = options_reference_tolerance(&scenario->reference);
-    return with_tolerance(scenario,
-                          own < OPTIONS_REFERENCE_LOOSEST / OTHER ? OTHER * own : own / OTHER);
+    const double own = law_reference_tolerance(scenario);
+    return with_tolerance(scenario, own < law_loosest_tolerance(scenario) / OTHER ? OTHER * own
+                                                                                  : own / OTHER);
 }
 
 double truth_uncertainty_of(const Truth *truth, const Scenario *scenario, ToleranceOf kind,

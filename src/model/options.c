@@ -109,16 +109,6 @@ RunOptions run_options_default(void)
     };
 }
 
-// Measured on twelve cases: looser ones make steps that are refused as often as they are longer, so
-// that runs cost no less or up to three times as much, with errors of up to 1 and more.
-const double OPTIONS_REFERENCE_LOOSEST = 3e-5;
-
-double options_reference_tolerance(const ReferenceOptions *options)
-{
-    return options->tolerance < OPTIONS_REFERENCE_LOOSEST ? options->tolerance
-                                                          : OPTIONS_REFERENCE_LOOSEST;
-}
-
 ReferenceOptions reference_options_default(void)
 {
     return (ReferenceOptions){

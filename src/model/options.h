@@ -236,11 +236,6 @@ typedef struct ReferenceOptions {
     double tolerance; // 1, of each step's error, relative to the size of each coordinate and speed
 } ReferenceOptions;
 
-// The loosest tolerance that the reference works with, and the one that it works with where so much
-// is asked for, 1.
-extern const double OPTIONS_REFERENCE_LOOSEST;
-double options_reference_tolerance(const ReferenceOptions *options);
-
 typedef struct OdeOptions {
     OdeSolver solver;
     OdeStepping stepping;

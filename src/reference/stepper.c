@@ -457,7 +457,7 @@ static void set_tolerances(Stepper *stepper)
 {
     const System *system = stepper->system;
     const size_t n = system->coordinate_count;
-    const double tolerance = options_reference_tolerance(&stepper->scenario->reference);
+    const double tolerance = stepper->system->tolerance;
     const SpeedScale *scale = &stepper->scale;
     const double moving = MOVING_SHARE * tolerance * scale->moving;
     Dop853 *integrator = &stepper->integrator;
@@ -773,7 +773,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
     return err_set(err, ERR_SOLVER,
                    "the step fell below the rounding of time: the motion cannot be integrated at a "
                    "tolerance of %g; raise reference.tolerance",
-                   options_reference_tolerance(&stepper->scenario->reference));
+                   stepper->system->tolerance);
 }
 
 // Tries one step, as long as its error and what it may not pass allow.

@@ -191,6 +191,7 @@ typedef struct SystemKind {
 struct System {
     const SystemKind *kind;
     const Scenario *scenario;
+    double tolerance; // 1, of a step's errors: law_reference_tolerance of the scenario
     SystemFlat *flat; // of a linkage in space that never leaves the plane; NULL of others
     size_t coordinate_count;
     SystemCoordinate *coordinates;

@@ -538,7 +538,7 @@ static double tune_program_measure(const Measuring *measuring, double step_s, Tu
     printed.run.interval = tune_world_every(&printed) * step_s;
     LadderRun run = {.kind = LADDER_ERROR};
     Trajectory *own = run_motion(&printed, &LIBRARY, NOBODY);
-    printed.reference.tolerance = TIGHTER * options_reference_tolerance(&printed.reference);
+    printed.reference.tolerance = TIGHTER * law_reference_tolerance(&printed);
     Trajectory *truth = run_motion(&printed, registry_solver(BACKEND_REFERENCE), NOBODY);
     const Trajectory *failed = !own->is_complete ? own : truth;
     run.is_complete = own->is_complete && truth->is_complete;

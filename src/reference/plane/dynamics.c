@@ -8,6 +8,7 @@
 #include "model/loads.h"
 
 #include "base/zeroed.h"
+#include "contact/law.h"
 #include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "model/forces.h"
@@ -405,7 +406,9 @@ static Coupling *dynamics_couple(const Dynamics *dynamics)
 
 bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 {
-    *dynamics = (Dynamics){.system = {.scenario = scenario, .torn = -1}};
+    *dynamics = (Dynamics){.system = {.scenario = scenario,
+                                      .tolerance = law_reference_tolerance(scenario),
+                                      .torn = -1}};
     const Linkage *linkage = &scenario->linkage;
     Tree *tree = &dynamics->tree;
     dynamics->has_forces = forces_any(linkage);

@@ -49,8 +49,7 @@ static double energy_balance(const Dynamics *dynamics, const double *y, double *
 static bool has_gone_astray(Dynamics *dynamics, const double *y)
 {
     // a thousand times what a turn through change points costs at the default tolerance
-    const double share =
-        fmax(1e-6, 1e4 * options_reference_tolerance(&dynamics->system.scenario->reference));
+    const double share = fmax(1e-6, 1e4 * dynamics->system.tolerance);
     double kinetic = 0.0;
     const double energy = energy_balance(dynamics, y, &kinetic);
     dynamics->greatest_energy = fmax(dynamics->greatest_energy, kinetic);

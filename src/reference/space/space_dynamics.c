@@ -634,7 +634,9 @@ bool space_dynamics_init(const Scenario *scenario, SpaceDynamics *dynamics, Err 
     if (sites == NULL) {
         return false;
     }
-    *dynamics = (SpaceDynamics){.system = {.scenario = scenario, .torn = -1}};
+    *dynamics = (SpaceDynamics){.system = {.scenario = scenario,
+                                           .tolerance = law_reference_tolerance(scenario),
+                                           .torn = -1}};
     System *system = &dynamics->system;
     SpaceTree *tree = &dynamics->tree;
     space_tree_build(linkage, tree);
