@@ -269,6 +269,18 @@ static void append_paragraph(const char *words, Text *text)
     screen_sentence(&own, text);
 }
 
+// Of a run that was not held against the reference here.
+static void append_unknown_error(const RunReport *report, const Trajectory *run, Text *text)
+{
+    if (run->trials > 0 && !run->is_short) {
+        text_append(text, ": off by %.2g at the most.", run->error_estimate);
+    } else if (run_report_has_truth(report)) {
+        text_append(text, ".");
+    } else {
+        text_append(text, ": how far off is not known, for the reference was not run.");
+    }
+}
+
 static void append_error(const RunReport *report, size_t number, Text *text)
 {
     const Trajectory *run = report->runs[number];
@@ -281,7 +293,7 @@ static void append_error(const RunReport *report, size_t number, Text *text)
     }
     text_append(text, "%zu steps", run->steps);
     if (!error->is_known) {
-        text_append(text, ".");
+        append_unknown_error(report, run, text);
         return;
     }
     const double motion = isfinite(error->max_in_horizon) ? error->max_in_horizon : error->max;
