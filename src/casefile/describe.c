@@ -372,9 +372,13 @@ static void describe_units(Text *text)
 static const char *expect_path(ExpectGroup group)
 {
     static const char *const PATHS[EXPECT_GROUP_COUNT] = {
-        [EXPECT_BODIES] = "bodies.<body>.", [EXPECT_JOINTS] = "joints.<joint>.",
-        [EXPECT_ERROR] = "error.",          [EXPECT_ENERGY] = "energy.",
-        [EXPECT_SECTION] = "section.",      [EXPECT_COST] = "cost.",
+        [EXPECT_BODIES] = "bodies.<body>.",
+        [EXPECT_JOINTS] = "joints.<joint>.",
+        [EXPECT_ERROR] = "error.",
+        [EXPECT_ENERGY] = "energy.",
+        [EXPECT_SECTION] = "section.",
+        [EXPECT_SETTLED] = "settled.",
+        [EXPECT_COST] = "cost.",
     };
     return PATHS[group];
 }

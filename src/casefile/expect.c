@@ -2,7 +2,7 @@
 //
 //     path = [backend .] bodies . NAME . number | [backend .] joints . NAME . number
 //          | [backend .] error . number | [backend .] energy . number | [backend .] section .
-//          number | [backend .] cost . number
+//          number | [backend .] cost . number | settled . number
 //
 // How its runs end is read in expect_outcome.c.
 #include "casefile/expect.h"
@@ -19,7 +19,8 @@ enum { SEGMENT_MAX = 4, CHOICE_MAX = EXPECTED_NUMBER_COUNT };
 
 const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
     [EXPECT_BODIES] = "bodies", [EXPECT_JOINTS] = "joints",   [EXPECT_ERROR] = "error",
-    [EXPECT_ENERGY] = "energy", [EXPECT_SECTION] = "section", [EXPECT_COST] = "cost",
+    [EXPECT_ENERGY] = "energy", [EXPECT_SECTION] = "section", [EXPECT_SETTLED] = "settled",
+    [EXPECT_COST] = "cost",
 };
 
 // clang-format off
@@ -92,6 +93,13 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
     NUMBER(EXPECTED_SECTION_CHANGE, EXPECT_SECTION, "change", DIMENSION_NONE,
            "by how much the sections of the last period differ from those before, of the fastest "
            "point"),
+    WHOLE(EXPECTED_SETTLED_PERIOD, EXPECT_SETTLED, "period",
+          "revolutions after which the settled motion repeats; 0: it does not"),
+    WHOLE(EXPECTED_SETTLED_MOTIONS, EXPECT_SETTLED, "motions",
+          "different motions that starts settle in"),
+    NUMBER(EXPECTED_SETTLED_GROWTH, EXPECT_SETTLED, "growth", DIMENSION_NONE,
+           "by what a small change of the settled motion is multiplied in a revolution, or its "
+           "bound where it is gone"),
     WHOLE(EXPECTED_STEPS, EXPECT_COST, "steps", "steps of the solver"),
     WHOLE(EXPECTED_EVALUATIONS, EXPECT_COST, "evaluations",
           "evaluations of the equations of motion"),
@@ -120,7 +128,8 @@ static bool refuse_path(const Path *path, Err *err)
     return source_error(
         path->source, keys_span(path->node),
         "joints.NAME.NUMBER, bodies.NAME.NUMBER, error.NUMBER, energy.NUMBER, "
-        "section.NUMBER, cost.NUMBER, outcome, each with a backend before it or none",
+        "section.NUMBER, cost.NUMBER, outcome, each with a backend before it or none, or "
+        "settled.NUMBER",
         err, "'%.60s' is not the path of a number", path->node->key->text);
 }
 
@@ -180,6 +189,9 @@ static bool find_group(const Path *path, ExpectGroup *group, Err *err)
     }
     *group = (ExpectGroup)found;
     const bool has_member = *group == EXPECT_BODIES || *group == EXPECT_JOINTS;
+    if (*group == EXPECT_SETTLED && path->first > 0) {
+        return refuse_path(path, err);
+    }
     return path->count == path->first + (has_member ? 3 : 2) || refuse_path(path, err);
 }
 

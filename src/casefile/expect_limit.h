@@ -11,6 +11,7 @@ typedef enum ExpectGroup {
     EXPECT_ERROR,
     EXPECT_ENERGY,
     EXPECT_SECTION,
+    EXPECT_SETTLED, // of the case, not of a run
     EXPECT_COST,
     EXPECT_GROUP_COUNT,
 } ExpectGroup;

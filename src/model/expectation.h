@@ -44,6 +44,9 @@ typedef enum ExpectedNumber {
     EXPECTED_RESIDUAL,
     EXPECTED_SECTION_PERIOD, // revolutions
     EXPECTED_SECTION_CHANGE, // 1
+    EXPECTED_SETTLED_PERIOD, // revolutions, as the two below of the case's settled motion
+    EXPECTED_SETTLED_MOTIONS,
+    EXPECTED_SETTLED_GROWTH, // 1
     EXPECTED_STEPS,          // of the cost
     EXPECTED_EVALUATIONS,
     EXPECTED_NUMBER_COUNT,

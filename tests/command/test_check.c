@@ -526,6 +526,36 @@ static void limits_of_orders_and_sections_are_those_of_the_rod(void **state)
     assert_says(program->errors, "section.period is not measured");
 }
 
+// The paper's mechanism settles in one motion, in which a small change dies out by what a run finds
+// of it. The control is a limit below that.
+static void limits_of_the_settled_motion_are_judged_once_a_case(void **state)
+{
+    Program *program = *state;
+    char words[4 * PROGRAM_PATH_SIZE];
+    snprintf(words, sizeof words, "cp '%s/paper/stackup-impact.yaml' '%s/paper.yaml'",
+             getenv("JOINTPLAY_CASES"), program->folder);
+    assert_int_equal(system(words), 0);
+    program_run(program, "run paper.yaml -q --json --backend reference");
+    json_t *root = program_json(program);
+    const json_t *found = json_object_get(root, "settled");
+    const double growth = json_number_value(json_object_get(found, "growth_per_revolution"));
+    json_decref(root);
+    assert_true(growth > 0.0 && growth < 1.0);
+    for (int k = 0; k < 2; k++) {
+        const double share = k == 0 ? 1.0 : 1.2; // of what is found, in the middle of 10 %
+        snprintf(
+            words, sizeof words,
+            "printf 'expect:\n  settled.growth: within 10 %%%% of %.6g\n  settled.motions: equals "
+            "1\n  settled.period: equals 1\n' | cat '%s/paper/stackup-impact.yaml' - > "
+            "'%s/paper.yaml'",
+            share * growth, getenv("JOINTPLAY_CASES"), program->folder);
+        assert_int_equal(system(words), 0);
+        program_run(program, "check paper.yaml --expect-only -q");
+        assert_int_equal(program->status, k);
+        assert_says(program->output, k == 0 ? "3 of 3 limits kept" : "2 of 3 limits kept");
+    }
+}
+
 static void limits_stand_beside_a_baseline_and_are_no_setting_of_it(void **state)
 {
     Program *program = *state;
@@ -609,6 +639,7 @@ int main(void)
         CHECK_TEST(the_class_of_a_case_has_dots_between_folders_alone),
         CHECK_TEST(limits_of_its_own_judge_a_case_without_a_baseline),
         CHECK_TEST(limits_of_orders_and_sections_are_those_of_the_rod),
+        CHECK_TEST(limits_of_the_settled_motion_are_judged_once_a_case),
         CHECK_TEST(limits_stand_beside_a_baseline_and_are_no_setting_of_it),
         CHECK_TEST(a_comment_is_short_and_folds_the_rest),
         CHECK_TEST(a_wrong_command_line_is_answered),

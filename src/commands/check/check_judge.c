@@ -315,6 +315,11 @@ size_t check_limits_judge(const Scenario *scenario, const CheckMeasure *run, Che
     size_t count = 0;
     for (size_t i = 0; i < scenario->expectation_count; i++) {
         const Expectation *expectation = &scenario->expectations[i];
+        if (expect_value_is_settled(expectation)) {
+            const double value = expect_value_of_settled(expectation, scenario);
+            limits[count++] = check_judge_judge(expectation, "", value);
+            continue;
+        }
         const size_t before = count;
         for (size_t k = 0; k < scenario->run.backend_count; k++) {
             const BackendKind backend = scenario->run.backends[k];

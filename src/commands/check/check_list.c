@@ -8,6 +8,7 @@
 #include "casefile/casefile.h"
 #include "cli/warnings.h"
 #include "commands/check/baseline.h"
+#include "commands/check/check_measure.h"
 #include "run/settle.h"
 #include "write/file.h"
 
@@ -118,12 +119,41 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
     return true;
 }
 
-// Finds where the case starts: where the numbers of its baseline did, if there are such.
+// Whether the case limits a number of its settled motion, from one of them on.
+static bool expects_settled(const Scenario *scenario, ExpectedNumber first)
+{
+    bool expects = false;
+    for (size_t i = 0; i < scenario->expectation_count; i++) {
+        const Expectation *expectation = &scenario->expectations[i];
+        expects = expects || (expect_value_is_settled(expectation) && expectation->number >= first);
+    }
+    return expects;
+}
+
+// Gives the scenario the settled motion of another of the same case, whose start it does not have.
+static void take_motion(Scenario *scenario, Scenario *settled)
+{
+    const SettledStart own = scenario->settled;
+    settle_scenario(settled, (RunWatch){.progress = NULL});
+    scenario->settled = settled->settled;
+    scenario->settled.revolutions = own.revolutions;
+    settled->settled = own;
+}
+
+// Finds where the case starts: where the numbers of its baseline did, if there are such. Limits of
+// the settled motion are those of one that is found anew.
 static void settle_item(CheckItem *item, const CheckOptions *options)
 {
-    if (options->is_blessing ||
-        !baseline_start_scenario(&item->baseline, &item->now, item->scenario)) {
-        settle_scenario(item->scenario, (RunWatch){.progress = NULL});
+    Scenario *scenario = item->scenario;
+    Scenario as_written = scenario_copy(scenario);
+    if (options->is_blessing || !baseline_start_scenario(&item->baseline, &item->now, scenario)) {
+        settle_scenario(scenario, (RunWatch){.progress = NULL});
+    } else if (expects_settled(scenario, EXPECTED_SETTLED_PERIOD)) {
+        take_motion(scenario, &as_written);
+    }
+    scenario_free(&as_written);
+    if (expects_settled(scenario, EXPECTED_SETTLED_GROWTH)) {
+        settle_growth(scenario, (RunWatch){.progress = NULL});
     }
 }
 

@@ -60,6 +60,28 @@ bool expect_value_is_error(const Expectation *expectation)
            expectation->number <= EXPECTED_ERROR_PEAK_ALPHA_MAX;
 }
 
+bool expect_value_is_settled(const Expectation *expectation)
+{
+    return expectation->number >= EXPECTED_SETTLED_PERIOD &&
+           expectation->number <= EXPECTED_SETTLED_GROWTH;
+}
+
+double expect_value_of_settled(const Expectation *expectation, const Scenario *scenario)
+{
+    const SettledStart *settled = &scenario->settled;
+    if (settled->motion_count == 0) {
+        return NAN;
+    }
+    switch (expectation->number) {
+    case EXPECTED_SETTLED_PERIOD:
+        return (double)settled->motions[0].period;
+    case EXPECTED_SETTLED_MOTIONS:
+        return (double)settled->motion_count;
+    default:
+        return settled->has_growth ? settled->growth.factor : NAN;
+    }
+}
+
 bool expect_value_concerns(const Expectation *expectation, const Scenario *scenario,
                            BackendKind backend)
 {

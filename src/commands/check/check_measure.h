@@ -98,6 +98,12 @@ bool expect_value_concerns(const Expectation *expectation, const Scenario *scena
 // Whether a limit is one of an error.
 bool expect_value_is_error(const Expectation *expectation);
 
+// Whether its number is of the settled motion of the case, and none of a run.
+bool expect_value_is_settled(const Expectation *expectation);
+
+// That number, SI; NAN where the case does not settle or it was not looked for.
+double expect_value_of_settled(const Expectation *expectation, const Scenario *scenario);
+
 // By how much a number is outside its limit, SI: 0 within it, below 0 under its low end. At an open
 // end, where a number outside may be off by nothing, the least number that is not 0.
 double expect_value_off(const Expectation *expectation, double value);
