@@ -45,9 +45,15 @@ static size_t list_folders(char folders[FOLDER_COUNT][ENGINE_PATH_SIZE])
         return 0;
     }
     program[length] = '\0';
-    *strrchr(program, '/') = '\0';
-    snprintf(folders[0], ENGINE_PATH_SIZE, "%s/../libexec/jointplay", program);
-    snprintf(folders[1], ENGINE_PATH_SIZE, "%s/../drivers", program);
+    // the folder that has the program's own
+    for (int i = 0; i < 2; i++) {
+        char *last = strrchr(program, '/');
+        if (last != NULL) {
+            *last = '\0';
+        }
+    }
+    snprintf(folders[0], ENGINE_PATH_SIZE, "%s/libexec/jointplay", program);
+    snprintf(folders[1], ENGINE_PATH_SIZE, "%s/drivers", program);
     return 2;
 }
 
