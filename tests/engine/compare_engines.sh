@@ -27,7 +27,7 @@ errors = {n: [p.get('error_max') for p in s['points']] for n, s in schemes.items
 sys.exit(0 if $1 else 1)" 2>>"$log"
 }
 
-echo 1..14
+echo 1..15
 compare "$@" --driver "$toy" --json
 report "a driver is compared beside ODE" $?
 holds "schemes['toy/midpoint']['backend'] == 'toy' and schemes['toy/midpoint']['way'] == 'midpoint'"
@@ -42,6 +42,14 @@ holds "len([c for c in r['cheapest_of_backends']]) == 10 and len(schemes['toy/eu
 report "at five errors, from five timing runs" $?
 
 cp "$work/out" "$work/first"
+cp "$work/out" "$work/result.json"
+# the row of the toy has no way to the least errors, and midpoint to the others
+"$program" report "$work/result.json" -o "$work/page.html" -q 2>>"$log" &&
+    grep -q 'The cheapest way of each engine' "$work/page.html" &&
+    grep -A 6 '<th scope="row">toy</th>' "$work/page.html" | grep -q '<td>[0-9.]* [a-z]*: midpoint, ' &&
+    grep -q '<td>none</td>' "$work/page.html" && grep -q '>Error against wall time<' "$work/page.html" &&
+    ! grep -q 'The cheapest setting of ODE' "$work/page.html"
+report "the report has the cheapest way of each engine, and the engine" $?
 JOINTPLAY_TOY_FAULT=exit compare "$@" --driver "$toy" --json; status=$?
 [ "$status" = 4 ] && grep -q "the driver 'toy'" "$log" || [ "$status" = 0 ] && cmp -s "$work/out" "$work/first"
 report "what was run is kept, and is not run again" $?

@@ -6,6 +6,7 @@
 // colour each, and a line for each of their ways. The axes are those of engines: a solver far below
 // their edge is an arrow there.
 #include "commands/compare/compare.h"
+#include "commands/compare/compare_style.h"
 #include "write/plot.h"
 #include "write/units.h"
 
@@ -38,51 +39,20 @@ static bool is_drawn(const LadderPoint *point)
     return !point->is_failed && isfinite(point->wall_median_s) && point->error > 0.0;
 }
 
-// The colour of another engine, which does not depend on what else is compared.
-static const char *engine_colour(const char *name)
-{
-    static const char *const COLOURS[][2] = {{"mujoco", "#d9541e"},
-                                             {"chipmunk", "#8e44ad"},
-                                             {"bullet", "#8a6d3b"},
-                                             {"simbody", "#c2185b"}};
-    for (size_t i = 0; i < sizeof COLOURS / sizeof *COLOURS; i++) {
-        if (strcmp(COLOURS[i][0], name) == 0) {
-            return COLOURS[i][1];
-        }
-    }
-    return "#5b6b1f";
-}
-
-// Of another engine: its colour, and a line for each of its ways.
-static PlotStyle engine_style_of(const Scheme *scheme)
-{
-    static const char *const DASHES[] = {"2 4", "8 4", "8 3 2 3"};
-    const EngineDriver *driver = scheme->driver;
-    size_t way = 0;
-    while (way + 1 < driver->way_count && driver->ways[way] != scheme->way) {
-        way++;
-    }
-    const bool is_last = way + 1 == driver->way_count;
-    return (PlotStyle){.colour = engine_colour(driver->name),
-                       .width = is_last ? 2.6 : 1.4,
-                       .opacity = 1.0,
-                       .dash = is_last ? NULL : DASHES[way % 3]};
-}
-
 static PlotStyle compare_plot_style_of(const Scheme *scheme)
 {
-    if (scheme->driver != NULL) {
-        return engine_style_of(scheme);
+    const EngineDriver *driver = scheme->driver;
+    if (driver != NULL) {
+        size_t way = 0;
+        while (way + 1 < driver->way_count && driver->ways[way] != scheme->way) {
+            way++;
+        }
+        return compare_style_of_engine(driver->name, way, driver->way_count);
     }
-    // with play the map has the colour, else the stepping, which is then all there is
     const bool has_map = strchr(scheme->name, '/') != strrchr(scheme->name, '/');
-    PlotStyle style = plot_style(1, has_map ? (size_t)scheme->map : (size_t)scheme->stepping);
-    style.width = scheme->stepping == ODE_PLAIN ? 1.2 : 2.2;
-    style.dash = scheme->solver == ODE_DIRECT ? NULL : "6 4";
-    if (!scheme_has_step(scheme)) {
-        style.colour = "#333333";
-    }
-    return style;
+    return scheme_has_step(scheme)
+               ? compare_style_of_ode(scheme->solver, scheme->stepping, scheme->map, has_map)
+               : compare_style_of_others();
 }
 
 static void compare_plot_draw_dot(Text *svg, double x, double y, double radius,

@@ -1,5 +1,6 @@
-// Writes what a comparison of ODE's schemes found: the cheapest setting of each error, speed
-// against error, and every point.
+// Writes what a comparison of ODE's schemes, and of other engines, found: the cheapest setting of
+// each error, speed against error, and every point.
+#include "commands/compare/compare_style.h"
 #include "commands/report/report_draw.h"
 #include "commands/report/report_html.h"
 #include "commands/report/report_result.h"
@@ -46,11 +47,16 @@ static void append_truth(const json_t *result, Text *words)
     }
 }
 
-static void append_answer(const json_t *result, Text *html)
+static const json_t *engines_of(const json_t *result)
+{
+    return json_object_get(result, "engines");
+}
+
+// Of each error the cheapest setting of ODE.
+static void append_settings(const json_t *result, Text *html)
 {
     static const char *const HEADS[] = {"error at most", "cheapest scheme", "step", "its error",
                                         "wall time"};
-    text_append(html, "<section>\n<h2>The answer</h2>\n");
     html_table_begin("The cheapest setting of ODE for an error", 5, HEADS, html);
     size_t i;
     json_t *row;
@@ -72,11 +78,103 @@ static void append_answer(const json_t *result, Text *html)
         text_append(html, "</tr>\n");
     }
     html_table_end(html);
+}
+
+// One cell: "26.1 ms: kernel, 25.0 us", "none".
+static void append_way(const json_t *row, Text *html)
+{
+    const char *scheme = html_text_of(row, "scheme");
+    // of ODE's the map or the stepping, of an engine's its way; auto/1e-3 is no path
+    const bool is_path = isfinite(html_number_of(row, "step_s")) && strchr(scheme, '/') != NULL;
+    const char *way = is_path ? strrchr(scheme, '/') + 1 : scheme;
+    Text words;
+    text_init(&words);
+    if (scheme[0] == '\0') {
+        text_append(&words, "none");
+    } else {
+        units_append(&words, html_number_of(row, "wall_median_s"), "s");
+        text_append(&words, ": %s, ", way);
+        append_step(html_number_of(row, "step_s"), &words);
+    }
+    html_words("td", words.data, html);
+    text_finish(&words);
+}
+
+enum { ERROR_MOST = 12, ERROR_WORDS = 32 };
+
+// Begins a table with a column for each error that the first backend has a row of.
+static void begin_ways(const json_t *rows, Text *html)
+{
+    char words[ERROR_MOST][ERROR_WORDS];
+    const char *heads[ERROR_MOST + 1] = {"wall time at an error of"};
+    const char *first = html_text_of(json_array_get(rows, 0), "backend");
+    size_t count = 0;
+    size_t i;
+    json_t *row;
+    json_array_foreach(rows, i, row)
+    {
+        if (count < ERROR_MOST && strcmp(html_text_of(row, "backend"), first) == 0) {
+            snprintf(words[count], ERROR_WORDS, "%.0e", html_number_of(row, "error_at_most"));
+            heads[count + 1] = words[count];
+            count++;
+        }
+    }
+    html_table_begin("The cheapest way of each engine, and its step", count + 1, heads, html);
+}
+
+// Of each engine, ODE among them, the cheapest way to each error.
+static void append_ways(const json_t *result, Text *html)
+{
+    const json_t *rows = json_object_get(result, "cheapest_of_backends");
+    const char *backend = "";
+    begin_ways(rows, html);
+    size_t i;
+    json_t *row;
+    json_array_foreach(rows, i, row)
+    {
+        const char *own = html_text_of(row, "backend");
+        if (strcmp(own, backend) != 0) {
+            text_append(html, backend[0] != '\0' ? "</tr>\n<tr>" : "<tr>");
+            html_words("th scope=\"row\"", own, html);
+        }
+        append_way(row, html);
+        backend = own;
+    }
+    text_append(html, "</tr>\n");
+    html_table_end(html);
+}
+
+static void append_engines(const json_t *result, Text *html)
+{
+    static const char *const HEADS[] = {"backend", "~engine", "version", "precision"};
+    if (json_array_size(engines_of(result)) == 0) {
+        return;
+    }
+    html_table_begin("The other engines", 4, HEADS, html);
+    size_t i;
+    json_t *engine;
+    json_array_foreach(engines_of(result), i, engine)
+    {
+        text_append(html, "<tr>");
+        html_words("th scope=\"row\"", html_text_of(engine, "name"), html);
+        html_words("td class=\"words\"", html_text_of(engine, "engine"), html);
+        html_cell_text_of(engine, "version", html);
+        html_cell_text_of(engine, "precision", html);
+        text_append(html, "</tr>\n");
+    }
+    html_table_end(html);
+}
+
+static void append_answer(const json_t *result, Text *html)
+{
+    text_append(html, "<section>\n<h2>The answer</h2>\n");
+    (json_array_size(engines_of(result)) > 0 ? append_ways : append_settings)(result, html);
     Text words;
     text_init(&words);
     append_truth(result, &words);
     html_list(words.data, html);
     text_finish(&words);
+    append_engines(result, html);
     text_append(html, "</section>\n");
 }
 
@@ -118,9 +216,58 @@ static void draw_frontier(const json_t *schemes, Drawing *drawing)
     }
 }
 
+// The number of a word in a list that ends in NULL; 0 where it is none of them.
+static size_t number_of(const char *word, const char *const *list)
+{
+    size_t i = 0;
+    while (list[i] != NULL && strcmp(list[i], word) != 0) {
+        i++;
+    }
+    return list[i] != NULL ? i : 0;
+}
+
+// The style of a way of another engine, NAME/WAY.
+static PlotStyle style_of_way(const json_t *engine, const char *scheme)
+{
+    const json_t *ways = json_object_get(engine, "ways");
+    const char *slash = strchr(scheme, '/');
+    size_t i;
+    size_t number = 0;
+    json_t *way;
+    json_array_foreach(ways, i, way)
+    {
+        number = slash != NULL && strcmp(json_string_value(way), slash + 1) == 0 ? i : number;
+    }
+    return compare_style_of_engine(html_text_of(engine, "name"), number, json_array_size(ways));
+}
+
+static PlotStyle style_of(const json_t *result, const json_t *scheme)
+{
+    const char *name = html_text_of(scheme, "scheme");
+    size_t i;
+    json_t *engine;
+    json_array_foreach(engines_of(result), i, engine)
+    {
+        if (strcmp(html_text_of(engine, "name"), html_text_of(scheme, "backend")) == 0) {
+            return style_of_way(engine, name);
+        }
+    }
+    const json_t *first = json_array_get(json_object_get(scheme, "points"), 0);
+    if (!isfinite(html_number_of(first, "step_s"))) {
+        return compare_style_of_others();
+    }
+    return compare_style_of_ode(
+        (OdeSolver)number_of(html_text_of(scheme, "solver"), OPTIONS_ODE_SOLVERS),
+        (OdeStepping)number_of(html_text_of(scheme, "stepping"), OPTIONS_ODE_STEPPINGS),
+        (OdeMap)number_of(html_text_of(scheme, "map"), OPTIONS_ODE_MAPS),
+        strchr(name, '/') != strrchr(name, '/'));
+}
+
 static void append_picture(const json_t *result, Text *html)
 {
-    Drawing drawing = {.title = "Error of ODE against wall time",
+    Drawing drawing = {.title = json_array_size(engines_of(result)) > 0
+                                    ? "Error against wall time"
+                                    : "Error of ODE against wall time",
                        .x_title = "wall time of the run, ms",
                        .y_title = "largest error, relative",
                        .is_x_log = true,
@@ -134,13 +281,8 @@ static void append_picture(const json_t *result, Text *html)
     json_t *point;
     json_array_foreach(schemes, i, scheme)
     {
-        PlotStyle style = plot_style(1, i);
-        // what chooses its own steps is black, as in the picture of compare
-        style.colour =
-            isfinite(html_number_of(json_array_get(json_object_get(scheme, "points"), 0), "step_s"))
-                ? style.colour
-                : "#333333";
-        DrawLine *line = draw_add(&drawing, html_text_of(scheme, "scheme"), style);
+        DrawLine *line =
+            draw_add(&drawing, html_text_of(scheme, "scheme"), style_of(result, scheme));
         json_array_foreach(json_object_get(scheme, "points"), k, point)
         {
             if (is_drawn(point)) {

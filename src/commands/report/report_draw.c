@@ -91,11 +91,21 @@ static void draw_line(const PlotPanel *panel, const DrawLine *line)
     free(y);
 }
 
+// As high as the legend is long.
+static double picture_height(const Drawing *drawing)
+{
+    double rows = isfinite(drawing->level) ? 1.0 : 0.0;
+    for (size_t i = 0; i < drawing->count; i++) {
+        rows += drawing->lines[i].count > 0 ? 1.0 : 0.0;
+    }
+    return fmax(HEIGHT, TOP + (rows + 1.0) * LEGEND_ROW);
+}
+
 static void draw_legend(const Drawing *drawing, Text *svg)
 {
     double y = TOP + 8.0;
     for (size_t i = 0; i < drawing->count; i++) {
-        if (drawing->lines[i].count > 0 && y < HEIGHT - LEGEND_ROW) {
+        if (drawing->lines[i].count > 0) {
             plot_sample(svg, LEGEND_LEFT, y - 4.0, drawing->lines[i].style);
             plot_text(svg, LEGEND_LEFT + 38.0, y, "start", "", drawing->lines[i].name);
             y += LEGEND_ROW;
@@ -131,9 +141,9 @@ void draw_end(Drawing *drawing, Text *html)
                        .left = LEFT,
                        .top = TOP,
                        .width = PANEL_WIDTH,
-                       .height = PANEL_HEIGHT};
+                       .height = PANEL_HEIGHT + picture_height(drawing) - HEIGHT};
     if (choose_axes(drawing, &panel)) {
-        plot_begin(&svg, WIDTH, HEIGHT, drawing->title);
+        plot_begin(&svg, WIDTH, picture_height(drawing), drawing->title);
         plot_text(&svg, LEFT, 30.0, "start", "title", drawing->title);
         draw_panel(drawing, &panel);
         draw_legend(drawing, &svg);
