@@ -8,7 +8,7 @@
 #include "model/trajectory.h"
 
 enum {
-    ENGINE_PROTOCOL = 1,
+    ENGINE_PROTOCOL = 2,   // the newest; drivers of older ones get what these have words for
     ENGINE_NAME_SIZE = 32, // of drivers and ways
     ENGINE_TEXT_SIZE = 128,
     ENGINE_WAY_MAX = 8,
@@ -20,6 +20,7 @@ enum {
 typedef struct EngineDriver {
     char name[ENGINE_NAME_SIZE];
     char program[ENGINE_PATH_SIZE];
+    int protocol;                  // the newest that it speaks
     char engine[ENGINE_TEXT_SIZE]; // "MuJoCo"
     char version[ENGINE_TEXT_SIZE];
     char precision[ENGINE_TEXT_SIZE]; // "double"

@@ -194,6 +194,15 @@ static bool fill(const EngineDriver *driver, const char *way, const Scenario *sc
     if (request == NULL) {
         return false;
     }
+    char needed[ENGINE_NEED_SIZE];
+    const int protocol = engine_needs(&scenario->linkage, needed);
+    if (protocol > driver->protocol) {
+        free(request);
+        said->is_refused = true;
+        return err_set(err, ERR_CASE,
+                       "the driver speaks protocol %d, which has no words for %s; protocol %d has",
+                       driver->protocol, needed, protocol);
+    }
     EngineReply reply = engine_reply_start(scenario, &again, trajectory, said);
     reply.records = records;
     const Converse with = {

@@ -3,10 +3,21 @@
 
 #include "engine/driver.h"
 
+#include <jansson.h>
+
 // The request for a run, as one line of JSON; the caller frees it. NULL, with ERR_CASE, where the
 // scenario cannot be expressed. Records of at least that length are asked for, none where it is 0.
 char *engine_request(const Scenario *scenario, const char *way, double record_s, bool wants_model,
                      Err *err);
+
+// The oldest protocol that has words for a scenario, and the first thing in it that no older one
+// has, such as "the spring 'x'"; empty where there is none.
+enum { ENGINE_NEED_SIZE = 96 };
+int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE]);
+
+// Adds what acts on the bodies beside joints and gravity to the request: springs, torsion springs
+// and loads, a drive's torque being one (docs/drivers.md).
+void engine_add_actions(const Scenario *scenario, json_t *request);
 
 // The request that asks a driver what it is.
 extern const char ENGINE_HELLO[];

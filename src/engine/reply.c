@@ -106,9 +106,12 @@ static bool take_hello(EngineReply *reply, const json_t *line, Err *err)
 {
     EngineDriver *driver = reply->driver;
     const json_t *protocol = json_object_get(line, "jointplay-driver");
-    if (json_integer_value(protocol) != ENGINE_PROTOCOL) {
-        return err_set(err, ERR_SOLVER, "its first line is not of protocol %d", ENGINE_PROTOCOL);
+    if (!json_is_integer(protocol) || json_integer_value(protocol) < 1 ||
+        json_integer_value(protocol) > ENGINE_PROTOCOL) {
+        return err_set(err, ERR_SOLVER, "its first line is not of protocol 1 to %d",
+                       ENGINE_PROTOCOL);
     }
+    driver->protocol = (int)json_integer_value(protocol);
     static const char HELLO[] = "jointplay-driver";
     if (!read_text(line, HELLO, "engine", driver->engine, sizeof driver->engine, err) ||
         !read_text(line, HELLO, "version", driver->version, sizeof driver->version, err) ||

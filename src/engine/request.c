@@ -62,17 +62,13 @@ bool engine_check(const Scenario *scenario, Err *err)
     if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
         return refuse(err, "a drive whose speed is over time");
     }
-    if (linkage->torque.table.count > 0) {
-        return refuse(err, "a drive by torque");
+    if (linkage->torque.followed.is_present && !drive_is_steady(&linkage->torque.followed)) {
+        return refuse(err, "a soft drive whose speed is over time");
     }
-    if (linkage->spring_count > 0) {
-        return refuse_named(err, "the spring", linkage->springs[0].name);
-    }
-    if (linkage->torsion_count > 0) {
-        return refuse_named(err, "the torsion spring", linkage->torsions[0].name);
-    }
-    if (linkage->load_count > 0) {
-        return refuse_named(err, "the load", linkage->loads[0].name);
+    const Torque *torque = &linkage->torque;
+    if (torque->table.count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC &&
+        (torque->slope > 0.0 || torque->followed.is_present)) {
+        return refuse(err, "a motor or soft drive along a line");
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (!check_joint(&linkage->joints[i], err)) {
@@ -193,13 +189,17 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
             json_array_append_new(joints, joint);
         }
     }
-    json_t *request =
-        json_pack("{s:i, s:s, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "jointplay-driver",
-                  ENGINE_PROTOCOL, "ask", "run", "way", way, "step_s", scenario->run.step,
-                  "duration_s", scenario_duration(scenario), "gravity_m_s2",
-                  pair(scenario_gravity(scenario)), "bodies", bodies, "joints", joints, "drive",
-                  drive_object(linkage), "sample_times_s", times_array(scenario));
+    char needed[ENGINE_NEED_SIZE];
+    const int protocol = engine_needs(linkage, needed);
+    json_t *request = json_pack(
+        "{s:i, s:s, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "jointplay-driver", protocol, "ask",
+        "run", "way", way, "step_s", scenario->run.step, "duration_s", scenario_duration(scenario),
+        "gravity_m_s2", pair(scenario_gravity(scenario)), "bodies", bodies, "joints", joints,
+        "drive", drive_object(linkage), "sample_times_s", times_array(scenario));
     assert(request != NULL);
+    if (protocol > 1) {
+        engine_add_actions(scenario, request);
+    }
     if (wants_model) {
         json_object_set_new(request, "model", json_true());
     }

@@ -10,7 +10,7 @@
 #include "base/vec3.h"
 #include "kernel/contact_state.h"
 #include "model/drive.h"
-#include "model/load_table.h"
+#include "base/load_table.h"
 
 #include <stdbool.h>
 #include <stddef.h>

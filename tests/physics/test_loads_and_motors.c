@@ -8,7 +8,7 @@
 #include "load_case.h"
 
 #include "base/lcg.h"
-#include "model/load_table.h"
+#include "base/load_table.h"
 #include "run/drive_torque.h"
 
 #include <stdio.h>

@@ -38,8 +38,7 @@ class World
     ~World();
     void run();
     void run_trials();
-    void accelerate(const double *q, const double *v, const TrialPush *pushes, size_t count,
-                    double *a);
+    void accelerate(const double *q, const double *v, const DriverAction *given, double *a);
 
   private:
     void add_body(size_t i);
@@ -53,6 +52,7 @@ class World
     void place_driven(double time_s, double step_s);
     void place(size_t i, const DriverMotion &motion);
     void push();
+    void act(const DriverAction *given);
     void stamp(double velocity_s);
     void start_staggered();
 
@@ -73,6 +73,7 @@ class World
     std::vector<DriverMotion> now;
     std::vector<DriverMotion> before; // velocities of the step before
     std::vector<Vec2> forces;
+    std::vector<DriverAction> actions; // by body
     double now_s = 0.0;
     double lag_s = 0.0; // of velocities behind positions
     DriverRun answer;
@@ -96,7 +97,7 @@ btTransform to_transform(Vec2 place, double angle)
 World::World(const DriverCase *given)
     : of(given), is_staggered(driver_is_way(given, "staggered")), centres(given->body_count),
       contacts(given->joint_count), now(given->body_count), before(given->body_count),
-      forces(given->joint_count), answer(driver_run_start(given))
+      forces(given->joint_count), actions(given->body_count), answer(driver_run_start(given))
 {
     world.setGravity(to_vector(of->gravity));
     // joints that have opened are closed within the next step
@@ -235,7 +236,7 @@ void World::place_driven(double time_s, double step_s)
     driven.setInterpolationWorldTransform(to_transform(pivot, angle - of->drive_speed * step_s));
 }
 
-// Follows the contacts, and pushes the bodies by the laws' forces in the step to come.
+// Follows the contacts, and lets their laws, springs and loads act in the step to come.
 void World::push()
 {
     std::vector<DriverMotion> felt(now);
@@ -249,6 +250,8 @@ void World::push()
         }
     }
     before = now;
+    const double from_s = now_s - lag_s;
+    actions_find(of, felt.data(), from_s, from_s + of->step_s, actions.data());
     for (size_t i = 0; i < of->joint_count; i++) {
         const DriverJoint &joint = of->joints[i];
         if (joint.kind != DRIVER_PIN_IN_HOLE) {
@@ -256,13 +259,19 @@ void World::push()
         }
         const PinHole pose = driver_pose(&joint, felt.data());
         driver_follow(&joint, &pose, &contacts[i], &answer.totals[i]);
-        forces[i] = driver_force(&joint, &contacts[i], &pose);
+        forces[i] = actions_add_contact(&joint, &contacts[i], &pose, felt.data(), actions.data());
         answer.totals[i].force_max = std::max(answer.totals[i].force_max, vec2_length(forces[i]));
-        for (int side = 0; side < 2 && pose.penetration > 0.0; side++) {
-            btRigidBody &pushed = body(joint.bodies[side]);
-            const Vec2 at = driver_point(felt.data(), joint.bodies[side], joint.anchors[side]);
-            pushed.applyForce(to_vector(vec2_scale(side == 0 ? -1.0 : 1.0, forces[i])),
-                              to_vector(at) - pushed.getCenterOfMassPosition());
+    }
+    act(actions.data());
+}
+
+// Lets forces and moments act on the bodies in the step to come.
+void World::act(const DriverAction *given)
+{
+    for (size_t i = 0; i < bodies.size(); i++) {
+        if (!of->has_drive || of->driven_body != static_cast<int>(i)) {
+            bodies[i]->applyCentralForce(to_vector(given[i].force));
+            bodies[i]->applyTorque(btVector3(0.0, 0.0, given[i].moment));
         }
     }
 }
@@ -335,19 +344,13 @@ void World::place(size_t i, const DriverMotion &motion)
 }
 
 // The contacts within the step: the world is asked for accelerations, and moves nothing itself.
-void World::accelerate(const double *q, const double *v, const TrialPush *pushes, size_t count,
-                       double *a)
+void World::accelerate(const double *q, const double *v, const DriverAction *given, double *a)
 {
     trial_place(&tree, q, v, trial_s, tried.data(), bends.data());
     for (size_t i = 0; i < bodies.size(); i++) {
         place(i, tried[i]);
     }
-    for (size_t i = 0; i < count; i++) {
-        const Vec2 at = driver_point(tried.data(), pushes[i].body, pushes[i].local);
-        btRigidBody &pushed = body(pushes[i].body);
-        pushed.applyForce(to_vector(pushes[i].force),
-                          to_vector(at) - pushed.getCenterOfMassPosition());
-    }
+    act(given);
     world.stepSimulation(trial_s, 0);
     for (size_t i = 0; i < bodies.size(); i++) {
         now[i] = tried[i];
@@ -372,8 +375,9 @@ void World::run_trials()
                   trial_s);
     trial_run(
         &tree,
-        [](void *engine, const double *q, const double *v, const TrialPush *pushes, size_t count,
-           double *a) { static_cast<World *>(engine)->accelerate(q, v, pushes, count, a); },
+        [](void *engine, const double *q, const double *v, const DriverAction *given, double *a) {
+            static_cast<World *>(engine)->accelerate(q, v, given, a);
+        },
         this, &answer);
 }
 

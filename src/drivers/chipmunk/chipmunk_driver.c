@@ -40,10 +40,14 @@ typedef struct ChipmunkRun {
     cpConstraint **holds;    // by joint; NULL of a law
     DriverContact *contacts; // by joint
     DriverMotion *motions;
-    DriverMotion *before; // of the step before
-    Vec2 *forces;         // by joint, on body b
-    double lag_s;         // of velocities behind positions, as the law is to know
-    double now_s;         // of the positions
+    DriverMotion *before;  // of the step before
+    Vec2 *forces;          // by joint, on body b
+    DriverAction *actions; // by body
+    double from_s;         // between which loads act as their mean
+    double to_s;
+    bool is_native;
+    double lag_s; // of velocities behind positions, as the law is to know
+    double now_s; // of the positions
     DriverRun run;
 } ChipmunkRun;
 
@@ -179,15 +183,17 @@ static bool follow(ChipmunkRun *run, size_t joint, PinHole *pose)
     return true;
 }
 
-// Follows the contacts and finds the forces of their laws.
+// Follows the contacts and finds the forces of their laws, of springs and of loads.
 static void find_forces(ChipmunkRun *run)
 {
     read_felt(run);
+    actions_find(run->of, run->motions, run->from_s, run->to_s, run->actions);
     for (size_t i = 0; i < run->of->joint_count; i++) {
         PinHole pose;
-        if (follow(run, i, &pose)) {
+        if (!run->is_native && follow(run, i, &pose)) {
             DriverTotals *totals = &run->run.totals[i];
-            run->forces[i] = driver_force(&run->of->joints[i], &run->contacts[i], &pose);
+            run->forces[i] = actions_add_contact(&run->of->joints[i], &run->contacts[i], &pose,
+                                                 run->motions, run->actions);
             totals->force_max = fmax(totals->force_max, vec2_length(run->forces[i]));
         }
     }
@@ -201,28 +207,18 @@ static void find_first_forces(ChipmunkRun *run)
         const DriverJoint *joint = &run->of->joints[i];
         if (joint->kind == DRIVER_PIN_IN_HOLE) {
             const PinHole pose = driver_pose(joint, run->motions);
-            run->forces[i] = driver_force(joint, &run->contacts[i], &pose);
+            run->forces[i] = driver_press(joint, &run->contacts[i], &pose, run->motions).force;
         }
     }
 }
 
-// Pushes the bodies by the laws' forces until the end of the step under way.
-static void push(const ChipmunkRun *run)
+// Lets forces and moments act on the bodies until the end of the step under way.
+static void push(const ChipmunkRun *run, const DriverAction *actions)
 {
-    for (size_t i = 0; i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
-        const Vec2 force = run->forces[i];
-        if (joint->kind != DRIVER_PIN_IN_HOLE || (force.x == 0.0 && force.y == 0.0)) {
-            continue;
-        }
-        for (int side = 0; side < 2; side++) {
-            cpBody *body = body_of(run, joint->bodies[side]);
-            if (cpBodyGetType(body) == CP_BODY_TYPE_DYNAMIC) {
-                const cpVect at =
-                    to_vect(driver_point(run->motions, joint->bodies[side], joint->anchors[side]));
-                cpBodyApplyForceAtWorldPoint(
-                    body, to_vect(vec2_scale(side == 0 ? -1.0 : 1.0, force)), at);
-            }
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        if (cpBodyGetType(run->bodies[i]) == CP_BODY_TYPE_DYNAMIC) {
+            cpBodySetForce(run->bodies[i], to_vect(actions[i].force));
+            cpBodySetTorque(run->bodies[i], actions[i].moment);
         }
     }
 }
@@ -234,7 +230,7 @@ static void change_velocity(cpBody *body, cpVect gravity, cpFloat damping, cpFlo
     // the first body of the step: all positions are new, all velocities old
     if (body == cpBodyGetUserData(run->bodies[0])) {
         find_forces(run);
-        push(run);
+        push(run, run->actions);
     }
     cpBodyUpdateVelocity(body, gravity, damping, step_s);
 }
@@ -271,9 +267,11 @@ static void read_slides(ChipmunkRun *run)
     }
 }
 
-static void take_step(ChipmunkRun *run, bool is_native)
+static void take_step(ChipmunkRun *run)
 {
     const double step_s = run->of->step_s;
+    run->from_s = run->now_s + run->lag_s;
+    run->to_s = run->from_s + step_s;
     if (run->of->has_drive) {
         // to a rounding, however many steps there are
         cpBodySetAngle(run->bodies[run->of->driven_body],
@@ -282,7 +280,7 @@ static void take_step(ChipmunkRun *run, bool is_native)
     }
     cpSpaceStep(run->space, step_s);
     run->now_s = step_s * (double)++run->run.steps;
-    if (is_native) {
+    if (run->is_native) {
         read_slides(run);
     }
     stamp(run, run->now_s + run->lag_s);
@@ -300,6 +298,8 @@ static void make(const DriverCase *of, ChipmunkRun *run)
                          .motions = room(of->body_count, sizeof *run->motions),
                          .before = room(of->body_count, sizeof *run->before),
                          .forces = room(of->joint_count, sizeof *run->forces),
+                         .actions = room(of->body_count, sizeof *run->actions),
+                         .is_native = is_native,
                          .run = driver_run_start(of)};
     const bool is_open = tree_make(of).left_count == 0;
     const int open = driver_is_way(of, "kernel") ? ITERATIONS_TRIAL
@@ -332,6 +332,38 @@ static void set_law(ChipmunkRun *run)
     cpBodySetUserData(run->bodies[0], first);
 }
 
+static void stay(cpBody *body, cpFloat step_s)
+{
+    (void)body;
+    (void)step_s;
+}
+
+static void let_move(ChipmunkRun *run, cpBodyPositionFunc how)
+{
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        cpBodySetPositionUpdateFunc(run->bodies[i], how);
+    }
+}
+
+// Brings the velocities half a step ahead of the positions, by half a step in which nothing moves.
+static void start_staggered(ChipmunkRun *run)
+{
+    run->lag_s = 0.0;
+    run->from_s = 0.0;
+    run->to_s = 0.5 * run->of->step_s;
+    let_move(run, stay);
+    cpSpaceStep(run->space, run->to_s);
+    let_move(run, cpBodyUpdatePosition);
+    run->lag_s = run->to_s;
+    read_motions(run, run->motions);
+    for (size_t i = 0; i < run->of->body_count; i++) {
+        // accelerations that are to be expected are those of the start
+        DriverMotion *before = &run->before[i];
+        before->velocity = vec2_sub(vec2_scale(2.0, before->velocity), run->motions[i].velocity);
+        before->omega = 2.0 * before->omega - run->motions[i].omega;
+    }
+}
+
 // The contacts within the step: the space is asked for accelerations, and moves nothing itself.
 
 typedef struct Trials {
@@ -342,12 +374,6 @@ typedef struct Trials {
     DriverMotion *after;
     Vec2 *bends;
 } Trials;
-
-static void stay(cpBody *body, cpFloat step_s)
-{
-    (void)body;
-    (void)step_s;
-}
 
 // Puts a body where the trial has it, in the frame that Chipmunk has of it.
 static void place(const ChipmunkRun *run, size_t i, const DriverMotion *motion)
@@ -364,8 +390,8 @@ static void place(const ChipmunkRun *run, size_t i, const DriverMotion *motion)
     cpBodySetAngularVelocity(run->bodies[i], motion->omega);
 }
 
-static void accelerate(void *engine, const double *q, const double *v, const TrialPush *pushes,
-                       size_t count, double *a)
+static void accelerate(void *engine, const double *q, const double *v, const DriverAction *actions,
+                       double *a)
 {
     Trials *trials = engine;
     ChipmunkRun *run = trials->run;
@@ -373,13 +399,7 @@ static void accelerate(void *engine, const double *q, const double *v, const Tri
     for (size_t i = 0; i < run->of->body_count; i++) {
         place(run, i, &trials->before[i]);
     }
-    for (size_t i = 0; i < count; i++) {
-        cpBody *body = run->bodies[pushes[i].body];
-        if (cpBodyGetType(body) == CP_BODY_TYPE_DYNAMIC) {
-            const Vec2 at = driver_point(trials->before, pushes[i].body, pushes[i].local);
-            cpBodyApplyForceAtWorldPoint(body, to_vect(pushes[i].force), to_vect(at));
-        }
-    }
+    push(run, actions);
     cpSpaceStep(run->space, trials->step_s);
     read_motions(run, trials->after);
     trial_read(&trials->tree, trials->before, trials->after, trials->bends, trials->step_s, a);
@@ -394,9 +414,7 @@ static _Noreturn void run_trials(ChipmunkRun *run)
                      .before = room(bodies, sizeof *trials.before),
                      .after = room(bodies, sizeof *trials.after),
                      .bends = room(bodies, sizeof *trials.bends)};
-    for (size_t i = 0; i < bodies; i++) {
-        cpBodySetPositionUpdateFunc(run->bodies[i], stay);
-    }
+    let_move(run, stay);
     trial_run(&trials.tree, accelerate, &trials, &run->run);
 }
 
@@ -417,11 +435,12 @@ int main(void)
     make(of, &run);
     cpSpaceSetUserData(run.space, &run);
     const bool is_kernel = driver_is_way(of, "kernel");
-    if (!is_native && !is_kernel) {
+    if (!is_kernel && (!is_native || actions_any(of))) {
         set_law(&run);
+    }
+    if (!is_native && !is_kernel) {
         find_first_forces(&run);
     }
-    run.lag_s = driver_is_way(of, "staggered") ? 0.5 * of->step_s : 0.0;
     run.run.is_linear = is_native;
     snprintf(run.run.settings, sizeof run.run.settings,
              "%d iterations, errorBias 0 of all constraints, driven body kinematic",
@@ -431,8 +450,11 @@ int main(void)
     }
     driver_run_begin(&run.run);
     stamp(&run, 0.0);
+    if (driver_is_way(of, "staggered")) {
+        start_staggered(&run);
+    }
     while (!driver_run_is_full(&run.run)) {
-        take_step(&run, is_native);
+        take_step(&run);
     }
     driver_run_write(&run.run);
 }

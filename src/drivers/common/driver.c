@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { PROTOCOL = 1, REQUEST_MOST = 1 << 28 };
+enum { PROTOCOL = 2, REQUEST_MOST = 1 << 28 };
 
 static void *memory(size_t count, size_t size)
 {
@@ -167,13 +167,11 @@ static DriverJoint read_joint(const json_t *object)
     } else if (strcmp(kind, "pin-in-hole") == 0) {
         joint.kind = DRIVER_PIN_IN_HOLE;
         joint.clearance = number(object, "radial_clearance_m");
+        joint.hole_radius = number(object, "hole_radius_m");
         joint.law = read_law(member(object, "law"));
         joint.contact = read_contact(member(object, "contact"));
     } else if (strcmp(kind, "revolute") != 0) {
         driver_refuse("the %s '%s'", kind, joint.name);
-    }
-    if (joint.law.friction > 0.0) {
-        driver_refuse("friction in '%s'", joint.name);
     }
     return joint;
 }
@@ -186,6 +184,89 @@ static void read_drive(const json_t *drive, DriverCase *of)
         of->driven_body = (int)number(drive, "body");
         of->drive_joint = (int)number(drive, "joint");
         of->drive_speed = number(drive, "speed_rad_s");
+    }
+}
+
+static DriverSpring read_spring(const json_t *object)
+{
+    return (DriverSpring){.bodies = {(int)number(object, "body_a"), (int)number(object, "body_b")},
+                          .anchors = {pair(object, "anchor_a_m"), pair(object, "anchor_b_m")},
+                          .stiffness = number(object, "stiffness_N_m"),
+                          .length = number(object, "length_m"),
+                          .damping = number(object, "damping_N_s_m")};
+}
+
+static DriverTorsion read_torsion(const json_t *object)
+{
+    return (DriverTorsion){.joint = (int)number(object, "joint"),
+                           .stiffness = number(object, "stiffness_N_m_rad"),
+                           .angle = number(object, "angle_rad"),
+                           .damping = number(object, "damping_N_m_s_rad")};
+}
+
+static void read_table(const json_t *object, LoadTable *table)
+{
+    const json_t *points = member(object, "points");
+    const char *shape = json_string_value(member(object, "shape"));
+    table->count = json_array_size(points);
+    table->period = number(object, "period");
+    if (table->count > LOAD_TABLE_MAX) {
+        driver_fail("a load has more than %d points", LOAD_TABLE_MAX);
+    }
+    for (size_t i = 0; i < table->count; i++) {
+        const json_t *point = json_array_get(points, i);
+        table->at[i] = json_number_value(json_array_get(point, 0));
+        table->values[i] = json_number_value(json_array_get(point, 1));
+    }
+    for (int i = 0; i < LOAD_SHAPE_COUNT; i++) {
+        table->shape =
+            shape != NULL && strcmp(shape, LOAD_SHAPES[i]) == 0 ? (LoadShape)i : table->shape;
+    }
+    load_table_settle(table);
+}
+
+static void read_load(const json_t *object, DriverLoad *load)
+{
+    const json_t *over = json_object_get(object, "over_joint");
+    load->over_joint = over != NULL ? (int)json_number_value(over) : -1;
+    load->shift = number(object, "shift");
+    load->rate = over != NULL ? 0.0 : number(object, "rate");
+    read_table(object, &load->table);
+    if (json_object_get(object, "joint") != NULL) {
+        load->kind = DRIVER_ALONG;
+        load->joint = (int)number(object, "joint");
+        return;
+    }
+    load->kind = DRIVER_TORQUE;
+    load->body = (int)number(object, "body");
+    if (json_object_get(object, "direction_rad") != NULL) {
+        load->kind = DRIVER_FORCE;
+        load->anchor = pair(object, "anchor_m");
+        load->direction = number(object, "direction_rad");
+        load->turns_along = json_is_true(member(object, "turns_along"));
+    }
+}
+
+// What acts on the bodies; a request of protocol 1 has nothing of it.
+static void read_actions(const json_t *request, DriverCase *of)
+{
+    const json_t *springs = json_object_get(request, "springs");
+    const json_t *torsions = json_object_get(request, "torsion_springs");
+    const json_t *loads = json_object_get(request, "loads");
+    of->spring_count = json_array_size(springs);
+    of->torsion_count = json_array_size(torsions);
+    of->load_count = json_array_size(loads);
+    of->springs = memory(of->spring_count, sizeof *of->springs);
+    of->torsions = memory(of->torsion_count, sizeof *of->torsions);
+    of->loads = memory(of->load_count, sizeof *of->loads);
+    for (size_t i = 0; i < of->spring_count; i++) {
+        of->springs[i] = read_spring(json_array_get(springs, i));
+    }
+    for (size_t i = 0; i < of->torsion_count; i++) {
+        of->torsions[i] = read_torsion(json_array_get(torsions, i));
+    }
+    for (size_t i = 0; i < of->load_count; i++) {
+        read_load(json_array_get(loads, i), &of->loads[i]);
     }
 }
 
@@ -217,6 +298,7 @@ static DriverCase *read_case(const json_t *request)
         of->sample_times[i] = json_number_value(json_array_get(times, i));
     }
     read_drive(member(request, "drive"), of);
+    read_actions(request, of);
     return of;
 }
 
@@ -240,9 +322,10 @@ DriverCase *driver_read(const DriverIdentity *identity, int *status)
     open_answers();
     json_t *request = json_loadf(stdin, JSON_DISABLE_EOF_CHECK, NULL);
     *status = 0;
-    if (json_integer_value(json_object_get(request, "jointplay-driver")) != PROTOCOL) {
+    const json_int_t protocol = json_integer_value(json_object_get(request, "jointplay-driver"));
+    if (protocol < 1 || protocol > PROTOCOL) {
         fprintf(stderr,
-                "this is a driver of jointplay's protocol %d, and reads a request of it "
+                "this is a driver of jointplay's protocols 1 to %d, and reads a request of them "
                 "from standard input\n",
                 PROTOCOL);
         *status = 2;
@@ -598,16 +681,39 @@ PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions)
     return pin_hole_pose(hole, pin, going, joint->clearance);
 }
 
-Vec2 driver_force(const DriverJoint *joint, const DriverContact *contact, const PinHole *pose)
+static double omega_of(const DriverMotion *motions, int body)
+{
+    return body == DRIVER_GROUND ? 0.0 : motions[body].omega;
+}
+
+// With n the normal, t = perp n, R the hole's radius and r = R - |e|, the pin slides at
+//     v_t = t . (v_b - v_a) + R w_a - r w_b,   friction  mu N tanh(v_t / v_s)  against it
+DriverPress driver_press(const DriverJoint *joint, const DriverContact *contact,
+                         const PinHole *pose, const DriverMotion *motions)
 {
     if (!(pose->penetration > 0.0)) {
-        return (Vec2){0.0, 0.0};
+        return (DriverPress){.force = {0.0, 0.0}};
     }
     const double began = fmax(contact->approach_before, pose->approach_speed);
     const double speed = contact->state.is_touching ? contact->state.damping_speed : began;
     const double force =
         force_law_force(&joint->law, pose->penetration, pose->approach_speed, speed);
-    return vec2_scale(force, pose->normal);
+    DriverPress press = {.force = vec2_scale(force, pose->normal)};
+    if (joint->law.friction > 0.0) {
+        const int *bodies = joint->bodies;
+        const Vec2 tangent = vec2_perp(pose->normal);
+        const double pin_arm = joint->hole_radius - pose->eccentricity_size;
+        const Vec2 going = vec2_sub(driver_point_velocity(motions, bodies[1], joint->anchors[1]),
+                                    driver_point_velocity(motions, bodies[0], joint->anchors[0]));
+        const double sliding = vec2_dot(tangent, going) +
+                               joint->hole_radius * omega_of(motions, bodies[0]) -
+                               pin_arm * omega_of(motions, bodies[1]);
+        const double held = joint->law.friction * force * tanh(sliding / joint->law.friction_speed);
+        press.force = vec2_sub(press.force, vec2_scale(held, tangent));
+        press.moments[0] = -joint->hole_radius * held;
+        press.moments[1] = pin_arm * held;
+    }
+    return press;
 }
 
 void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,

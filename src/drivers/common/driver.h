@@ -2,6 +2,7 @@
 // (docs/drivers.md). Everything is in SI units; bodies move in the plane.
 #pragma once
 
+#include "base/load_table.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 #include "kernel/pin_hole.h"
@@ -39,9 +40,42 @@ typedef struct DriverJoint {
     Vec2 anchors[2];      // in their frames
     double direction;     // of a line, in body a's frame
     double clearance;     // radial, of a pin in its hole
+    double hole_radius;   // likewise
     ForceLaw law;         // likewise
     ContactState contact; // under way at the start
 } DriverJoint;
+
+// A spring with a damper between two points; and one that turns the bodies of a joint.
+typedef struct DriverSpring {
+    int bodies[2];
+    Vec2 anchors[2]; // in their frames
+    double stiffness;
+    double length; // of the relaxed spring
+    double damping;
+} DriverSpring;
+
+typedef struct DriverTorsion {
+    int joint;
+    double stiffness;
+    double angle; // of the relaxed spring
+    double damping;
+} DriverTorsion;
+
+typedef enum DriverLoadKind { DRIVER_FORCE, DRIVER_TORQUE, DRIVER_ALONG } DriverLoadKind;
+
+// A load, whose value is over time, or over the coordinate of a joint.
+typedef struct DriverLoad {
+    DriverLoadKind kind;
+    int body; // of a force or a torque
+    Vec2 anchor;
+    double direction;
+    bool turns_along; // with the body
+    int joint;        // along whose coordinate it acts
+    int over_joint;   // -1: over time
+    double shift;     // the argument is that, and the coordinate or the rate times the time
+    double rate;
+    LoadTable table;
+} DriverLoad;
 
 typedef struct DriverCase {
     char way[DRIVER_NAME_SIZE];
@@ -54,6 +88,12 @@ typedef struct DriverCase {
     DriverBody *bodies; // owned, as all arrays
     size_t joint_count;
     DriverJoint *joints;
+    size_t spring_count;
+    DriverSpring *springs;
+    size_t torsion_count;
+    DriverTorsion *torsions;
+    size_t load_count;
+    DriverLoad *loads;
     bool has_drive;
     int driven_body;
     int drive_joint;
@@ -171,8 +211,15 @@ typedef struct DriverContact {
 // The pin of a joint in its hole, from the motions of all bodies.
 PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions);
 
-// The force on body b, N.
-Vec2 driver_force(const DriverJoint *joint, const DriverContact *contact, const PinHole *pose);
+// What a contact presses with, friction included: the force on body b at the pin's centre, on body
+// a the other way at the hole's, N, and the moments on a and b beside these, N m.
+typedef struct DriverPress {
+    Vec2 force;
+    double moments[2];
+} DriverPress;
+
+DriverPress driver_press(const DriverJoint *joint, const DriverContact *contact,
+                         const PinHole *pose, const DriverMotion *motions);
 
 // Follows a contact to the end of a step. It began where the gap was zero, and its impact speed is
 // that between the speeds at both ends of the step.

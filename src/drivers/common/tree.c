@@ -205,6 +205,26 @@ void tree_push(const Tree *tree, const DriverMotion *motions, int body, Vec2 loc
     }
 }
 
+void tree_turn(const Tree *tree, int body, double moment, double *pushes)
+{
+    while (body != DRIVER_GROUND) {
+        const TreeBody *at = &tree->bodies[body];
+        if (at->kind != TREE_SLIDES) {
+            pushes[at->first + at->count - 1] += moment;
+        }
+        body = at->parent;
+    }
+}
+
+void tree_act(const Tree *tree, const DriverMotion *motions, const DriverAction *actions,
+              double *pushes)
+{
+    for (size_t i = 0; i < tree->of->body_count; i++) {
+        tree_push(tree, motions, (int)i, (Vec2){0.0, 0.0}, actions[i].force, pushes);
+        tree_turn(tree, (int)i, actions[i].moment, pushes);
+    }
+}
+
 void tree_bends(const Tree *tree, const DriverMotion *motions, const double *rates, Vec2 *bends)
 {
     const DriverMotion still = {.omega = 0.0};

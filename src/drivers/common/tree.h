@@ -2,7 +2,7 @@
 // carries each body, which joints are left over to close loops, and how the bodies move.
 #pragma once
 
-#include "drivers/common/driver.h"
+#include "drivers/common/actions.h"
 
 typedef enum TreeKind {
     TREE_TURNS,  // about a point of its parent: one coordinate, the angle
@@ -49,3 +49,10 @@ void tree_bends(const Tree *tree, const DriverMotion *motions, const double *rat
 // Adds what a force on a point of a body does to the forces along the coordinates.
 void tree_push(const Tree *tree, const DriverMotion *motions, int body, Vec2 local, Vec2 force,
                double *pushes);
+
+// Adds what a moment on a body does, N m.
+void tree_turn(const Tree *tree, int body, double moment, double *pushes);
+
+// Adds what forces and moments on all bodies do.
+void tree_act(const Tree *tree, const DriverMotion *motions, const DriverAction *actions,
+              double *pushes);

@@ -30,8 +30,10 @@ typedef struct Trial {
     double *v_middle;
     double *other;
     DriverMotion *motions; // by body
+    DriverMotion *tried;   // of a trial
     Vec2 *bends;
-    TrialPush *pushes;
+    DriverAction *actions; // by body
+    double start_s;        // of the step under way
 } Trial;
 
 // to += scale from
@@ -55,18 +57,25 @@ static double dot(const double *a, const double *b, size_t count)
 static void evaluate(Trial *trial, const double *q, const double *v, const double *forces,
                      double scale, double *a)
 {
-    size_t count = 0;
-    for (size_t i = 0; forces != NULL && i < trial->in.rows; i += 2) {
-        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i / 2]];
-        const Vec2 force = {scale * forces[i], scale * forces[i + 1]};
-        for (int side = 0; side < 2; side++) {
-            if (joint->bodies[side] != DRIVER_GROUND) {
-                trial->pushes[count++] = (TrialPush){joint->bodies[side], joint->anchors[side],
-                                                     vec2_scale(side == 0 ? -1.0 : 1.0, force)};
+    const Within *in = &trial->in;
+    const DriverCase *of = in->of;
+    tree_motions(trial->tree, q, v, trial->tried);
+    actions_find(of, trial->tried, trial->start_s, trial->start_s + of->step_s, trial->actions);
+    for (size_t i = 0; forces != NULL && i < in->kernel.contact_count; i++) {
+        const DriverJoint *joint = &of->joints[in->joints[i]];
+        const KernelContact *contact = &in->kernel.contacts[i];
+        const double *own = forces + contact->first_row;
+        for (size_t side = 0; side < 2; side++) {
+            const int body = joint->bodies[side];
+            const double sign = side == 0 ? -scale : scale;
+            actions_add(trial->tried, body, joint->anchors[side],
+                        (Vec2){sign * own[0], sign * own[1]}, trial->actions);
+            if (contact->row_count > KERNEL_ROWS_PLAIN && body != DRIVER_GROUND) {
+                trial->actions[body].moment += scale * own[KERNEL_ROW_TURN + side];
             }
         }
     }
-    trial->accelerate(trial->engine, q, v, trial->pushes, count, a);
+    trial->accelerate(trial->engine, q, v, trial->actions, a);
     trial->run->steps++;
 }
 
@@ -74,13 +83,19 @@ static void evaluate(Trial *trial, const double *q, const double *v, const doubl
 static void find_jacobian(Trial *trial)
 {
     memset(trial->in.jacobian, 0, trial->in.rows * trial->in.count * sizeof *trial->in.jacobian);
-    for (size_t i = 0; i < trial->in.rows; i++) {
-        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i / 2]];
-        const Vec2 unit = {i % 2 == 0 ? 1.0 : 0.0, i % 2 == 0 ? 0.0 : 1.0};
-        double *row = trial->in.jacobian + i * trial->in.count;
-        tree_push(trial->tree, trial->motions, joint->bodies[1], joint->anchors[1], unit, row);
-        tree_push(trial->tree, trial->motions, joint->bodies[0], joint->anchors[0],
-                  vec2_scale(-1.0, unit), row);
+    for (size_t i = 0; i < trial->in.kernel.contact_count; i++) {
+        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i]];
+        const KernelContact *contact = &trial->in.kernel.contacts[i];
+        double *rows = trial->in.jacobian + contact->first_row * trial->in.count;
+        for (size_t k = 0; k < KERNEL_ROWS_PLAIN; k++, rows += trial->in.count) {
+            const Vec2 unit = {k == 0 ? 1.0 : 0.0, k == 0 ? 0.0 : 1.0};
+            tree_push(trial->tree, trial->motions, joint->bodies[1], joint->anchors[1], unit, rows);
+            tree_push(trial->tree, trial->motions, joint->bodies[0], joint->anchors[0],
+                      vec2_scale(-1.0, unit), rows);
+        }
+        for (size_t side = 0; KERNEL_ROW_TURN + side < contact->row_count; side++) {
+            tree_turn(trial->tree, joint->bodies[side], 1.0, rows + side * trial->in.count);
+        }
     }
 }
 
@@ -100,13 +115,16 @@ static void find_row_accelerations(Trial *trial, const double *v, const double *
 {
     tree_motions(trial->tree, trial->q_middle, v, trial->motions);
     tree_bends(trial->tree, trial->motions, v, trial->bends);
-    for (size_t i = 0; i < trial->in.rows; i += 2) {
-        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i / 2]];
+    for (size_t i = 0; i < trial->in.rows; i++) {
+        rows[i] = dot(trial->in.jacobian + i * trial->in.count, a, trial->in.count);
+    }
+    for (size_t i = 0; i < trial->in.kernel.contact_count; i++) {
+        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i]];
         const Vec2 bend = vec2_sub(bend_of(trial, joint->bodies[1], joint->anchors[1]),
                                    bend_of(trial, joint->bodies[0], joint->anchors[0]));
-        rows[i] = bend.x + dot(trial->in.jacobian + i * trial->in.count, a, trial->in.count);
-        rows[i + 1] =
-            bend.y + dot(trial->in.jacobian + (i + 1) * trial->in.count, a, trial->in.count);
+        double *own = rows + trial->in.kernel.contacts[i].first_row;
+        own[0] = bend.x + own[0];
+        own[1] = bend.y + own[1];
     }
 }
 
@@ -140,8 +158,11 @@ static void find_drift(Trial *trial)
     const double speed = sqrt(dot(trial->v_middle, trial->v_middle, count));
     for (size_t k = 0; k < trial->in.rows; k++) {
         const double *response = trial->in.responses[0] + k * count;
-        const double nudge =
-            NUDGE * (speed > 0.0 ? speed : 1.0) / sqrt(dot(response, response, count));
+        const double size = sqrt(dot(response, response, count));
+        if (!(size > 0.0)) {
+            continue; // a turn of the ground: nothing follows it
+        }
+        const double nudge = NUDGE * (speed > 0.0 ? speed : 1.0) / size;
         memcpy(trial->in.nudged, trial->v_middle, count * sizeof *trial->in.nudged);
         add(trial->in.nudged, response, nudge, count);
         evaluate(trial, trial->q_middle, trial->in.nudged, NULL, 0.0, trial->other);
@@ -236,7 +257,8 @@ static Trial make(const Tree *tree, TrialAccelerate accelerate, void *engine, Dr
                    .other = within_numbers(tree->coordinates),
                    .motions = room(of->body_count, sizeof *trial.motions),
                    .bends = room(of->body_count, sizeof *trial.bends),
-                   .pushes = room(2 * of->joint_count, sizeof *trial.pushes)};
+                   .tried = room(of->body_count, sizeof *trial.tried),
+                   .actions = room(of->body_count, sizeof *trial.actions)};
     within_open(of, tree->coordinates, &trial.in);
     return trial;
 }
@@ -264,6 +286,7 @@ void trial_run(const Tree *tree, TrialAccelerate accelerate, void *engine, Drive
     while (!driver_run_is_full(run)) {
         WithinStep step = still;
         step.start_s = step_s * (double)trial.in.steps;
+        trial.start_s = step.start_s;
         take_step(&trial, step_s);
         trial.in.steps++;
         within_look(&step, run);

@@ -9,17 +9,10 @@
 #include "drivers/common/tree.h"
 #include "drivers/common/within.h"
 
-// A force on a point of a body.
-typedef struct TrialPush {
-    int body;
-    Vec2 local;
-    Vec2 force; // N
-} TrialPush;
-
-// The accelerations of the coordinates at positions and rates under gravity, the drive and so many
-// pushes besides.
+// The accelerations of the coordinates at positions and rates under gravity, the drive and the
+// actions on all bodies besides.
 typedef void (*TrialAccelerate)(void *engine, const double *q, const double *v,
-                                const TrialPush *pushes, size_t count, double *a);
+                                const DriverAction *actions, double *a);
 
 // Runs a case to its end, and counts every trial as a step. Refuses one with loops of ideal joints,
 // or without play.

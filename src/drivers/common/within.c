@@ -30,11 +30,12 @@ static void add_contacts(const DriverCase *of, Within *in)
         const KernelContact contact = {.law = joint->law,
                                        .shape = KERNEL_HOLE,
                                        .radial_clearance = joint->clearance,
-                                       .hole_radius = joint->clearance,
+                                       .hole_radius = joint->hole_radius,
                                        .joint = (int)i,
                                        .state = joint->contact};
         in->joints[contacts++] = i;
-        kernel_add(&in->kernel, &contact, KERNEL_ROWS_PLAIN);
+        kernel_add(&in->kernel, &contact,
+                   joint->law.friction > 0.0 ? KERNEL_ROWS_PLANE : KERNEL_ROWS_PLAIN);
     }
     if (contacts == 0) {
         driver_refuse("contacts within the step without a pin that has play");
@@ -130,16 +131,23 @@ void within_find_rate(Within *in, double step_s)
 
 void within_find_rows(Within *in, const DriverMotion *motions)
 {
-    for (size_t i = 0; i < in->rows; i += 2) {
-        const DriverJoint *joint = &in->of->joints[in->joints[i / 2]];
+    for (size_t i = 0; i < in->kernel.contact_count; i++) {
+        const DriverJoint *joint = &in->of->joints[in->joints[i]];
+        const KernelContact *contact = &in->kernel.contacts[i];
+        double *position = in->kernel.position + contact->first_row;
+        double *speed = in->kernel.speed + contact->first_row;
         const PinHole pose = driver_pose(joint, motions);
         const Vec2 going =
             vec2_sub(driver_point_velocity(motions, joint->bodies[1], joint->anchors[1]),
                      driver_point_velocity(motions, joint->bodies[0], joint->anchors[0]));
-        in->kernel.position[i] = pose.eccentricity.x;
-        in->kernel.position[i + 1] = pose.eccentricity.y;
-        in->kernel.speed[i] = going.x;
-        in->kernel.speed[i + 1] = going.y;
+        position[0] = pose.eccentricity.x;
+        position[1] = pose.eccentricity.y;
+        speed[0] = going.x;
+        speed[1] = going.y;
+        for (size_t side = 0; KERNEL_ROW_TURN + side < contact->row_count; side++) {
+            const int body = joint->bodies[side];
+            speed[KERNEL_ROW_TURN + side] = body == DRIVER_GROUND ? 0.0 : motions[body].omega;
+        }
     }
 }
 
@@ -204,8 +212,8 @@ static void make_samples(const WithinStep *step, DriverRun *run)
         kernel_at(kernel, kernel_node(kernel, since_s), since_s, step->sums);
         step->motions(step->adapter, since_s, step->sums, driver_run_motions(run));
         for (size_t i = 0; i < kernel->contact_count; i++) {
-            driver_run_forces(run)[step->joints[i]] =
-                (Vec2){step->sums->force[2 * i], step->sums->force[2 * i + 1]};
+            const double *force = step->sums->force + kernel->contacts[i].first_row;
+            driver_run_forces(run)[step->joints[i]] = (Vec2){force[0], force[1]};
         }
         driver_run_sampled(run);
     }
@@ -226,7 +234,7 @@ static void look_at(const WithinStep *step, size_t node, double time_s, DriverRu
             totals->approach = pose.approach_speed;
         }
         state->is_touching = touches;
-        const double *force = kernel_node_forces(kernel, node) + 2 * i;
+        const double *force = kernel_node_forces(kernel, node) + kernel->contacts[i].first_row;
         const double size = hypot(force[0], force[1]);
         totals->force_max = fmax(totals->force_max, size);
         totals->depth_max = fmax(totals->depth_max, pose.penetration);
@@ -247,9 +255,9 @@ static void record_part(const WithinStep *step, size_t node, DriverRun *run)
     const double *before = kernel_node_values(kernel, node);
     const double *after = kernel_node_values(kernel, node + 1);
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        run->touches[step->joints[i]].force =
-            vec2_scale(1.0 / (end_s - start_s),
-                       (Vec2){after[2 * i] - before[2 * i], after[2 * i + 1] - before[2 * i + 1]});
+        const size_t row = kernel->contacts[i].first_row;
+        const Vec2 impulse = {after[row] - before[row], after[row + 1] - before[row + 1]};
+        run->touches[step->joints[i]].force = vec2_scale(1.0 / (end_s - start_s), impulse);
     }
     step->motions(step->adapter, end_s, step->sums, step->room);
     driver_run_record(run, step->start_s + start_s, step->start_s + end_s, step->room,

@@ -8,7 +8,9 @@
 enum { WITHIN_BEFORE = 3 }; // A of this step and those before, from which its rate follows
 
 // A step in the coordinates of an engine, in the words of drivers/mujoco/mujoco_kernel.c: what does
-// not depend on how the engine is asked. Rows are two a pin, pin less hole, in the world's x and y.
+// not depend on how the engine is asked. Rows are two a pin, pin less
+// hole, in the world's x and y, and with friction two more, the turns of the hole's and the pin's
+// body.
 typedef struct Within {
     const DriverCase *of;
     size_t rows;
@@ -36,7 +38,7 @@ typedef struct Within {
     bool is_calm;
 } Within;
 
-// Makes the contacts of the pins in holes of a case, with plain rows, and all room. Refuses a case
+// Makes the contacts of the pins in holes of a case, and all room. Refuses a case
 // without any.
 void within_open(const DriverCase *of, size_t count, Within *in);
 

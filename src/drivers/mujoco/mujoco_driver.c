@@ -22,34 +22,43 @@ static const double HARDNESS_STEPS = 2.0;
 
 // MuJoCo's callbacks know nothing but the model and the data
 static MujocoRun *active;
+static bool are_contacts_pushed;
 
 static void push(const mjModel *model, mjData *data)
 {
     MujocoRun *run = active;
     (void)model;
-    mujoco_read(run, data->qpos, data->qvel, run->motions);
-    double *pushes = run->coordinates; // they have been read
-    bool is_any = false;
-    for (size_t i = 0; i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
-        if (joint->kind != DRIVER_PIN_IN_HOLE) {
-            continue;
-        }
-        const PinHole pose = driver_pose(joint, run->motions);
-        if (!(pose.penetration > 0.0)) {
-            continue;
-        }
-        if (!is_any) {
-            memset(pushes, 0, run->tree.coordinates * sizeof *pushes);
-        }
-        is_any = true;
-        const Vec2 force = driver_force(joint, &run->contacts[i], &pose);
-        tree_push(&run->tree, run->motions, joint->bodies[1], joint->anchors[1], force, pushes);
-        tree_push(&run->tree, run->motions, joint->bodies[0], joint->anchors[0],
-                  vec2_scale(-1.0, force), pushes);
+    if (run->is_instant) {
+        run->from_s = run->to_s = data->time;
     }
-    for (size_t i = 0; is_any && i < run->tree.coordinates; i++) {
+    mujoco_read(run, data->qpos, data->qvel, run->acted);
+    double *pushes = run->coordinates; // they have been read
+    bool is_any = actions_any(run->of);
+    actions_find(run->of, run->acted, run->from_s, run->to_s, run->actions);
+    for (size_t i = 0; are_contacts_pushed && i < run->of->joint_count; i++) {
+        const DriverJoint *joint = &run->of->joints[i];
+        if (joint->kind == DRIVER_PIN_IN_HOLE) {
+            const PinHole pose = driver_pose(joint, run->acted);
+            is_any = is_any || pose.penetration > 0.0;
+            actions_add_contact(joint, &run->contacts[i], &pose, run->acted, run->actions);
+        }
+    }
+    if (!is_any) {
+        return;
+    }
+    memset(pushes, 0, run->tree.coordinates * sizeof *pushes);
+    tree_act(&run->tree, run->acted, run->actions, pushes);
+    for (size_t i = 0; i < run->tree.coordinates; i++) {
         data->qfrc_passive[run->addresses[i]] += pushes[i];
+    }
+}
+
+void mujoco_let_act(MujocoRun *run, bool has_contacts)
+{
+    active = run;
+    are_contacts_pushed = has_contacts;
+    if (has_contacts || actions_any(run->of)) {
+        mjcb_passive = push;
     }
 }
 
@@ -85,7 +94,8 @@ static void stamp(MujocoRun *run, double position_s, double velocity_s, const Ve
         }
         const PinHole pose = driver_pose(joint, felt);
         driver_follow(joint, &pose, &run->contacts[i], totals);
-        now->forces[i] = forces != NULL ? forces[i] : driver_force(joint, &run->contacts[i], &pose);
+        now->forces[i] =
+            forces != NULL ? forces[i] : driver_press(joint, &run->contacts[i], &pose, felt).force;
         totals->force_max = fmax(totals->force_max, vec2_length(now->forces[i]));
     }
     driver_run_stamped(&run->run);
@@ -95,8 +105,8 @@ static void stamp(MujocoRun *run, double position_s, double velocity_s, const Ve
 static void run_force(MujocoRun *run)
 {
     const double step_s = run->of->step_s;
-    active = run;
-    mjcb_passive = push;
+    mujoco_let_act(run, true);
+    run->is_instant = true;
     driver_run_begin(&run->run);
     stamp(run, 0.0, 0.0, NULL);
     while (!driver_run_is_full(&run->run)) {
@@ -125,8 +135,7 @@ static void run_staggered(MujocoRun *run)
     if (rates == NULL) {
         driver_fail("there is no memory");
     }
-    active = run;
-    mjcb_passive = push;
+    mujoco_let_act(run, true);
     // a loop's constraint damps what it is told of, and must be told what it has done itself
     const double ahead_s = run->tree.left_count == 0 ? 0.5 * step_s : 0.0;
     driver_run_begin(&run->run);
@@ -137,6 +146,8 @@ static void run_staggered(MujocoRun *run)
     }
     while (!driver_run_is_full(&run->run)) {
         const double now_s = step_s * (double)++run->run.steps;
+        run->from_s = now_s - 1.5 * step_s;
+        run->to_s = now_s - 0.5 * step_s;
         for (int i = 0; i < count; i++) {
             data->qvel[i] = rates[i] + ahead_s * data->qacc[i];
         }
@@ -190,9 +201,12 @@ static void run_native(MujocoRun *run)
         driver_fail("there is no memory");
     }
     run->run.is_linear = true;
+    mujoco_let_act(run, false);
     driver_run_begin(&run->run);
     stamp(run, 0.0, 0.0, forces);
     while (!driver_run_is_full(&run->run)) {
+        run->from_s = step_s * (double)run->run.steps;
+        run->to_s = run->from_s + step_s;
         mj_step(run->model, run->data);
         const double now_s = step_s * (double)++run->run.steps;
         mujoco_read(run, run->data->qpos, run->data->qvel, run->motions);

@@ -17,6 +17,11 @@ typedef struct MujocoRun {
     double *rates;
     DriverMotion *motions;
     DriverContact *contacts; // by joint
+    DriverMotion *acted;     // by body, as is felt where forces are asked for
+    DriverAction *actions;   // by body
+    double from_s;           // between which loads act as their mean
+    double to_s;
+    bool is_instant; // or as at MuJoCo's time
 } MujocoRun;
 
 // How the model differs between the ways.
@@ -35,6 +40,9 @@ void mujoco_read(MujocoRun *run, const double *qpos, const double *qvel, DriverM
 
 // Fails where MuJoCo has warned: it starts over on numbers that are none, and says so nowhere else.
 void mujoco_check(const MujocoRun *run);
+
+// Lets springs and loads act, and contacts by their law where the way is not to do so itself.
+void mujoco_let_act(MujocoRun *run, bool has_contacts);
 
 // The contacts integrated within the step, by jointplay's kernel.
 void mujoco_run_kernel(MujocoRun *run);

@@ -30,7 +30,8 @@ typedef struct Adapter {
     mjModel *model;
     mjData *data;
     int *sites[2];          // by contact: of hole and pin
-    double *sites_jacobian; // of one site: 3 by nv
+    double *sites_jacobian; // of one site: 3 by nv, of its place
+    double *turns_jacobian; // and of its turning
 } Adapter;
 
 // -- what stands between the marks is the adapter that docs/kernel.md shows
@@ -41,12 +42,18 @@ static void find_response(Adapter *by)
     Within *in = &by->in;
     const size_t nv = in->count;
     double *response = in->responses[0];
-    for (size_t i = 0; i < in->rows; i += 2) {
-        for (int side = 0; side < 2; side++) {
-            mj_jacSite(by->model, by->data, by->sites_jacobian, NULL, by->sites[side][i / 2]);
+    for (size_t i = 0; i < in->kernel.contact_count; i++) {
+        const KernelContact *contact = &in->kernel.contacts[i];
+        double *rows = in->jacobian + contact->first_row * nv;
+        for (size_t side = 0; side < 2; side++) {
+            mj_jacSite(by->model, by->data, by->sites_jacobian, by->turns_jacobian,
+                       by->sites[side][i]);
             for (size_t k = 0; k < 2 * nv; k++) {
-                double *entry = &in->jacobian[i * nv + k];
-                *entry = side == 0 ? -by->sites_jacobian[k] : *entry + by->sites_jacobian[k];
+                rows[k] = side == 0 ? -by->sites_jacobian[k] : rows[k] + by->sites_jacobian[k];
+            }
+            if (contact->has_friction) { // about z
+                mju_copy(rows + (KERNEL_ROW_TURN + side) * nv, by->turns_jacobian + 2 * nv,
+                         (int)nv);
             }
         }
     }
@@ -69,13 +76,19 @@ static void find_free(Adapter *by, const double *velocities, double *acceleratio
     mju_sub(data->qacc, data->qfrc_passive, data->qfrc_bias, (int)in->count);
     mj_solveM(by->model, data, data->qacc, data->qacc, 1);
     mj_rnePostConstraint(by->model, data);
-    for (size_t i = 0; i < in->rows; i += 2) {
-        double hole[6];
+    for (size_t i = 0; i < in->kernel.contact_count; i++) {
+        const KernelContact *contact = &in->kernel.contacts[i];
+        double *own = accelerations + contact->first_row;
+        double hole[6]; // turning first
         double pin[6];
-        mj_objectAcceleration(by->model, data, mjOBJ_SITE, by->sites[0][i / 2], hole, 0);
-        mj_objectAcceleration(by->model, data, mjOBJ_SITE, by->sites[1][i / 2], pin, 0);
-        accelerations[i] = pin[3] - hole[3];
-        accelerations[i + 1] = pin[4] - hole[4];
+        mj_objectAcceleration(by->model, data, mjOBJ_SITE, by->sites[0][i], hole, 0);
+        mj_objectAcceleration(by->model, data, mjOBJ_SITE, by->sites[1][i], pin, 0);
+        own[0] = pin[3] - hole[3];
+        own[1] = pin[4] - hole[4];
+        if (contact->has_friction) {
+            own[KERNEL_ROW_TURN] = hole[2];
+            own[KERNEL_ROW_TURN + 1] = pin[2];
+        }
     }
 }
 
@@ -87,7 +100,11 @@ static void find_drift(Adapter *by, const double *velocities)
     const double speed = mju_norm(velocities, (int)nv);
     for (size_t k = 0; k < in->rows; k++) {
         const double *response = in->responses[0] + k * nv;
-        const double nudge = NUDGE * speed / mju_norm(response, (int)nv);
+        const double size = mju_norm(response, (int)nv);
+        if (size == 0.0) {
+            continue; // a turn of the ground
+        }
+        const double nudge = NUDGE * (speed > 0.0 ? speed : 1.0) / size;
         mju_addScl(in->nudged, velocities, response, nudge, (int)nv);
         find_free(by, in->nudged, in->work);
         mju_sub(in->bend + k * nv, by->data->qacc, in->free, (int)nv);
@@ -155,6 +172,7 @@ static void make(MujocoRun *run, Adapter *by)
     }
     within_open(of, (size_t)run->model->nv, &by->in);
     by->sites_jacobian = within_numbers(3 * by->in.count);
+    by->turns_jacobian = within_numbers(3 * by->in.count);
     for (int side = 0; side < 2; side++) {
         by->sites[side] = calloc(of->joint_count + 1, sizeof *by->sites[side]);
         if (by->sites[side] == NULL) {
@@ -198,11 +216,14 @@ void mujoco_run_kernel(MujocoRun *run)
                        .sums = &sums};
     mju_copy(in->q, run->data->qpos, nv);
     mju_copy(in->v, run->data->qvel, nv);
+    mujoco_let_act(run, false);
     driver_run_begin(&run->run);
     mj_forward(run->model, run->data);
     mju_copy(in->a, run->data->qacc, nv);
     while (!driver_run_is_full(&run->run)) {
         step.start_s = step_s * (double)run->run.steps;
+        run->from_s = step.start_s;
+        run->to_s = step.start_s + step_s;
         mujoco_read(run, in->q, in->v, run->motions);
         take_step(&by, step_s, run->motions);
         in->steps = ++run->run.steps;

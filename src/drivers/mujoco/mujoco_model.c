@@ -240,6 +240,8 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
     run->rates = room(count, sizeof *run->rates);
     run->motions = room(of->body_count, sizeof *run->motions);
     run->contacts = room(of->joint_count, sizeof *run->contacts);
+    run->acted = room(of->body_count, sizeof *run->acted);
+    run->actions = room(of->body_count, sizeof *run->actions);
     tree_start(&run->tree, run->rates);
     for (size_t i = 0; i < count; i++) {
         char name[JOINT_NAME_SIZE];

@@ -38,8 +38,7 @@ class World
     explicit World(const DriverCase *of);
     void run();
     void run_trials();
-    void accelerate(const double *q, const double *v, const TrialPush *pushes, size_t count,
-                    double *a);
+    void accelerate(const double *q, const double *v, const DriverAction *given, double *a);
     void push(const State &state, Vector_<SpatialVec> &on_bodies);
 
   private:
@@ -65,6 +64,7 @@ class World
     std::vector<MobilizedBody> bodies;
     std::vector<DriverContact> contacts;
     std::vector<DriverMotion> motions;
+    std::vector<DriverAction> actions; // by body
     std::vector<double> coordinates;
     std::vector<double> rates;
     std::vector<::Vec2> forces_now; // by joint
@@ -72,8 +72,7 @@ class World
     // of trials
     State trial;
     bool is_trial = false;
-    const TrialPush *pushes = nullptr;
-    size_t push_count = 0;
+    const DriverAction *tried = nullptr;
 };
 
 class Law : public Force::Custom::Implementation
@@ -108,8 +107,8 @@ Transform to_transform(double angle, ::Vec2 place)
 
 World::World(const DriverCase *given)
     : of(given), tree(tree_make(given)), bodies(given->body_count), contacts(given->joint_count),
-      motions(given->body_count), coordinates(tree.coordinates), rates(tree.coordinates),
-      forces_now(given->joint_count), answer(driver_run_start(given))
+      motions(given->body_count), actions(given->body_count), coordinates(tree.coordinates),
+      rates(tree.coordinates), forces_now(given->joint_count), answer(driver_run_start(given))
 {
     Force::UniformGravity(forces, matter, to_vec(of->gravity));
     Force::Custom(forces, new Law(this)); // which it owns
@@ -202,27 +201,23 @@ void World::read(const State &state, DriverMotion *to)
 
 void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
 {
-    for (size_t i = 0; is_trial && i < push_count; i++) {
-        body(pushes[i].body)
-            .applyForceToBodyPoint(state, to_vec(pushes[i].local), to_vec(pushes[i].force),
-                                   on_bodies);
-    }
-    if (is_trial) {
-        return;
-    }
-    read(state, motions.data());
-    for (size_t i = 0; i < of->joint_count; i++) {
-        const DriverJoint &joint = of->joints[i];
-        if (joint.kind != DRIVER_PIN_IN_HOLE) {
-            continue;
+    const DriverAction *acting = tried;
+    if (!is_trial) {
+        const double now_s = state.getTime();
+        read(state, motions.data());
+        actions_find(of, motions.data(), now_s, now_s, actions.data());
+        for (size_t i = 0; i < of->joint_count; i++) {
+            const DriverJoint &joint = of->joints[i];
+            if (joint.kind == DRIVER_PIN_IN_HOLE) {
+                const PinHole pose = driver_pose(&joint, motions.data());
+                actions_add_contact(&joint, &contacts[i], &pose, motions.data(), actions.data());
+            }
         }
-        const PinHole pose = driver_pose(&joint, motions.data());
-        const ::Vec2 force = driver_force(&joint, &contacts[i], &pose);
-        for (int side = 0; side < 2 && pose.penetration > 0.0; side++) {
-            body(joint.bodies[side])
-                .applyForceToBodyPoint(state, to_vec(joint.anchors[side]),
-                                       (side == 0 ? -1.0 : 1.0) * to_vec(force), on_bodies);
-        }
+        acting = actions.data();
+    }
+    for (size_t i = 0; acting != nullptr && i < of->body_count; i++) {
+        const SpatialVec all(Vec3(0.0, 0.0, acting[i].moment), to_vec(acting[i].force));
+        bodies[i].applyBodyForce(state, all, on_bodies);
     }
 }
 
@@ -236,7 +231,7 @@ void World::follow(const DriverMotion *now, ::Vec2 *on_joints)
             const PinHole pose = driver_pose(&joint, now);
             DriverTotals &totals = answer.totals[i];
             driver_follow(&joint, &pose, &contacts[i], &totals);
-            on_joints[i] = driver_force(&joint, &contacts[i], &pose);
+            on_joints[i] = driver_press(&joint, &contacts[i], &pose, now).force;
             totals.force_max = std::max(totals.force_max, vec2_length(on_joints[i]));
         }
     }
@@ -260,7 +255,7 @@ void World::sample(const State &state)
         const DriverJoint &joint = of->joints[i];
         if (joint.kind == DRIVER_PIN_IN_HOLE) {
             const PinHole pose = driver_pose(&joint, at);
-            driver_run_forces(&answer)[i] = driver_force(&joint, &contacts[i], &pose);
+            driver_run_forces(&answer)[i] = driver_press(&joint, &contacts[i], &pose, at).force;
         }
     }
     driver_run_sampled(&answer);
@@ -307,11 +302,9 @@ void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
 }
 
 // The contacts within the step: Simbody tells accelerations at any state.
-void World::accelerate(const double *q, const double *v, const TrialPush *given, size_t count,
-                       double *a)
+void World::accelerate(const double *q, const double *v, const DriverAction *given, double *a)
 {
-    pushes = given;
-    push_count = count;
+    tried = given;
     for (size_t i = 0; i < of->body_count; i++) {
         const double *at = q + tree.bodies[i].first;
         const double *going = v + tree.bodies[i].first;
@@ -342,8 +335,9 @@ void World::run_trials()
     std::snprintf(answer.settings, sizeof answer.settings, "none: no integrator of Simbody's");
     trial_run(
         &tree,
-        [](void *engine, const double *q, const double *v, const TrialPush *given, size_t count,
-           double *a) { static_cast<World *>(engine)->accelerate(q, v, given, count, a); },
+        [](void *engine, const double *q, const double *v, const DriverAction *given, double *a) {
+            static_cast<World *>(engine)->accelerate(q, v, given, a);
+        },
         this, &answer);
 }
 

@@ -4,7 +4,7 @@
 //     value = f + m_0 s + (3 d - 2 m_0 - m_1) s^2 / h + (m_0 + m_1 - 2 d) s^3 / h^2
 // and at a point between pieces of widths h_0 and h_1, whose secants have one sign,
 //     m = 3 (h_0 + h_1) / ((2 h_1 + h_0) / d_0 + (h_1 + 2 h_0) / d_1)
-#include "model/load_table.h"
+#include "base/load_table.h"
 
 #include <math.h>
 

@@ -1,0 +1,148 @@
+// Writes what acts on the bodies of a case beside joints and gravity as a part of the request of
+// the driver protocol (docs/drivers.md): springs, torsion springs, and loads.
+//
+// A drive by torque is a load over time along its joint's coordinate; what it takes per speed, of a
+// motor or a soft drive, is a torsion damper. A soft drive that follows phi_0 + w t by a spring k
+// and a damper c is a torsion spring to the angle 0 with a load k (phi_0 + w t) + c w.
+#include "engine/protocol.h"
+
+#include "model/loads.h"
+
+#include <assert.h>
+#include <stdio.h>
+
+static const char TORQUE_NAME[] = "drive";
+
+static bool has_torque(const Linkage *linkage)
+{
+    return linkage->torque.table.count > 0;
+}
+
+int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE])
+{
+    what[0] = '\0';
+    if (linkage->spring_count > 0) {
+        snprintf(what, ENGINE_NEED_SIZE, "the spring '%s'", linkage->springs[0].name);
+    } else if (linkage->torsion_count > 0) {
+        snprintf(what, ENGINE_NEED_SIZE, "the torsion spring '%s'", linkage->torsions[0].name);
+    } else if (linkage->load_count > 0) {
+        snprintf(what, ENGINE_NEED_SIZE, "the load '%s'", linkage->loads[0].name);
+    } else if (has_torque(linkage)) {
+        snprintf(what, ENGINE_NEED_SIZE, "a drive by torque");
+    }
+    return what[0] == '\0' ? 1 : 2;
+}
+
+static json_t *pair(Vec2 value)
+{
+    return json_pack("[f, f]", value.x, value.y);
+}
+
+static json_t *spring_object(const Spring *spring)
+{
+    return json_pack("{s:s, s:i, s:i, s:o, s:o, s:f, s:f, s:f}", "name", spring->name, "body_a",
+                     spring->body_a, "body_b", spring->body_b, "anchor_a_m", pair(spring->anchor_a),
+                     "anchor_b_m", pair(spring->anchor_b), "stiffness_N_m", spring->stiffness,
+                     "length_m", spring->length, "damping_N_s_m", spring->damping);
+}
+
+static json_t *torsion_object(const char *name, int joint, double stiffness, double angle,
+                              double damping)
+{
+    return json_pack("{s:s, s:i, s:f, s:f, s:f}", "name", name, "joint", joint, "stiffness_N_m_rad",
+                     stiffness, "angle_rad", angle, "damping_N_m_s_rad", damping);
+}
+
+static json_t *load_object(const Linkage *linkage, const Load *load)
+{
+    json_t *object = json_pack("{s:s}", "name", load->name);
+    if (load->kind == LOAD_ALONG) {
+        json_object_set_new(object, "joint", json_integer(load->joint));
+    } else {
+        json_object_set_new(object, "body", json_integer(load->body));
+    }
+    if (load->kind == LOAD_FORCE) {
+        json_object_set_new(object, "anchor_m", pair(load->anchor));
+        json_object_set_new(object, "direction_rad", json_real(load->direction));
+        json_object_set_new(object, "turns_along", json_boolean(load->frame == LOAD_IN_BODY));
+    }
+    const bool is_by_crank = load->over == LOAD_OVER_CRANK;
+    if (load_is_timed(linkage, load)) {
+        const Driver *driver = &linkage->driver;
+        json_object_set_new(object, "rate", json_real(is_by_crank ? driver->speed : 1.0));
+        json_object_set_new(object, "shift",
+                            json_real(load->shift + (is_by_crank ? driver->start : 0.0)));
+    } else {
+        json_object_set_new(object, "over_joint",
+                            json_integer(is_by_crank ? linkage->torque.joint : load->joint));
+        json_object_set_new(object, "shift", json_real(is_by_crank ? load->shift : 0.0));
+    }
+    json_t *points = json_array();
+    for (size_t i = 0; i < load->table.count; i++) {
+        json_array_append_new(points, pair((Vec2){load->table.at[i], load->table.values[i]}));
+    }
+    json_object_set_new(object, "points", points);
+    json_object_set_new(object, "shape", json_string(LOAD_SHAPES[load->table.shape]));
+    json_object_set_new(object, "period", json_real(load->table.period));
+    return object;
+}
+
+// A load over time along the coordinate of the torque's joint, whose points are given apart.
+static json_t *torque_object(const Linkage *linkage, json_t *points, double period_s)
+{
+    return json_pack("{s:s, s:i, s:f, s:f, s:o, s:s, s:f}", "name", TORQUE_NAME, "joint",
+                     linkage->torque.joint, "rate", 1.0, "shift", 0.0, "points", points, "shape",
+                     LOAD_SHAPES[LOAD_LINEAR], "period", period_s);
+}
+
+// The drive's torque, and what a motor or soft drive adds to it.
+static void add_torque(const Scenario *scenario, json_t *torsions, json_t *loads)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const Torque *torque = &linkage->torque;
+    json_t *points = json_array();
+    for (size_t i = 0; i < torque->table.count; i++) {
+        json_array_append_new(points,
+                              pair((Vec2){torque->table.times[i], torque->table.values[i]}));
+    }
+    json_array_append_new(loads, torque_object(linkage, points, torque->table.period_s));
+    const Driver *followed = &torque->followed;
+    const double stiffness = followed->is_present ? torque->stiffness : 0.0;
+    if (stiffness > 0.0 || torque->slope > 0.0) {
+        json_array_append_new(
+            torsions, torsion_object(TORQUE_NAME, torque->joint, stiffness, 0.0, torque->slope));
+    }
+    if (followed->is_present) {
+        const double end_s = 2.0 * scenario_duration(scenario); // engines go a step beyond the end
+        const double start = stiffness * followed->start + torque->slope * followed->speed;
+        points = json_pack("[o, o]", pair((Vec2){0.0, start}),
+                           pair((Vec2){end_s, start + stiffness * followed->speed * end_s}));
+        json_array_append_new(loads, torque_object(linkage, points, 0.0));
+    }
+}
+
+void engine_add_actions(const Scenario *scenario, json_t *request)
+{
+    const Linkage *linkage = &scenario->linkage;
+    json_t *springs = json_array();
+    json_t *torsions = json_array();
+    json_t *loads = json_array();
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        json_array_append_new(springs, spring_object(&linkage->springs[i]));
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *of = &linkage->torsions[i];
+        json_array_append_new(
+            torsions, torsion_object(of->name, of->joint, of->stiffness, of->angle, of->damping));
+    }
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        json_array_append_new(loads, load_object(linkage, &linkage->loads[i]));
+    }
+    if (has_torque(linkage)) {
+        add_torque(scenario, torsions, loads);
+    }
+    json_object_set_new(request, "springs", springs);
+    json_object_set_new(request, "torsion_springs", torsions);
+    const int is_added = json_object_set_new(request, "loads", loads);
+    assert(is_added == 0);
+}
