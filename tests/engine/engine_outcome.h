@@ -155,3 +155,121 @@ static inline void hold_contacts(BackendKind backend)
     trajectory_destroy(run);
     trajectory_destroy(truth);
 }
+
+// The run of a case that is changed, against the reference's of the case as it is.
+static inline double omega_error(const char *engine, const char *way, const Scenario *changed,
+                                 const Scenario *scenario)
+{
+    const EngineDriver driver = engine_named(engine);
+    Trajectory *run = engine_run(&driver, way, changed, LIMIT_S, NULL);
+    return hold_against(scenario, run, BACKEND_REFERENCE).error.omega_max;
+}
+
+// A crank-rocker with play from rest, by a torque over time, with a spring and two dampers.
+static inline Scenario sprung(double step_s)
+{
+    static const char *const OVERRIDES[] = {"run.duration=0.03 s", "run.samples=300",
+                                            "ode.stepping=staggered", "ode.map=impulse"};
+    Scenario scenario = load("cases/mechanisms/run-up.yaml", OVERRIDES, 4);
+    scenario.run.step = step_s;
+    return scenario;
+}
+
+// Springs, dampers and a drive's torque beside contacts within the step: as good as ODE's own up to
+// a factor of 3, of its order, and without any one of them wrong.
+static inline void hold_springs(const char *engine)
+{
+    static const double STEPS[] = {40e-6, 10e-6};
+    double errors[2];
+    for (int i = 0; i < 2; i++) {
+        const Scenario scenario = sprung(STEPS[i]);
+        const double ode =
+            hold_against(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY),
+                         BACKEND_REFERENCE)
+                .error.omega_max;
+        errors[i] = omega_error(engine, "kernel", &scenario, &scenario);
+        if (!(errors[i] <= 3.0 * ode)) {
+            fail_msg("at %g us %g against ODE's %g", 1e6 * STEPS[i], errors[i], ode);
+        }
+    }
+    if (!(log(errors[0] / errors[1]) / log(4.0) > 1.8)) {
+        fail_msg("springs: %g at 40 us, %g at 10", errors[0], errors[1]);
+    }
+    const Scenario scenario = sprung(10e-6);
+    Scenario changed = scenario;
+    changed.linkage.spring_count = 0;
+    assert_true(omega_error(engine, "kernel", &changed, &scenario) > 100.0 * errors[1]);
+    changed = scenario;
+    changed.linkage.torsion_count = 0;
+    assert_true(omega_error(engine, "kernel", &changed, &scenario) > 100.0 * errors[1]);
+}
+
+// Springs, dampers and torques of any size: stiffness, damping and torque change by up to 4 times.
+static inline void hold_random_springs(const char *engine, unsigned seed)
+{
+    for (int i = 0; i < 3; i++) {
+        Scenario scenario = sprung(20e-6);
+        double *const numbers[] = {
+            &scenario.linkage.springs[0].stiffness, &scenario.linkage.springs[0].damping,
+            &scenario.linkage.torsions[0].damping, &scenario.linkage.torque.table.values[1]};
+        for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+            seed = seed * 1664525u + 1013904223u;
+            *numbers[k] *= pow(4.0, (double)(seed >> 8) / (double)(1 << 23) - 1.0);
+        }
+        const double ode =
+            hold_against(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY),
+                         BACKEND_REFERENCE)
+                .error.omega_max;
+        const double error = omega_error(engine, "kernel", &scenario, &scenario);
+        if (!(error <= 3.0 * ode)) {
+            fail_msg("random springs %d: %g against ODE's %g", i, error, ode);
+        }
+    }
+}
+
+// A motor and a load over the crank's angle, on ideal joints: the order of a way, whose error at
+// a step is known, and without the load a wrong result.
+static inline void hold_load(const char *engine, const char *way, double step_s, double order,
+                             double error)
+{
+    static const char *const OVERRIDES[] = {"run.duration=0.25 s", "run.samples=300"};
+    Scenario scenario = load("cases/mechanisms/motor-flywheel.yaml", OVERRIDES, 2);
+    scenario.run.step = step_s;
+    const double coarse = omega_error(engine, way, &scenario, &scenario);
+    scenario.run.step = 0.5 * step_s;
+    const double fine = omega_error(engine, way, &scenario, &scenario);
+    const double found = log(coarse / fine) / log(2.0);
+    if (!(fabs(found - order) < 0.3) || !(coarse < error)) {
+        fail_msg("%s %s: order %g, error %g", engine, way, found, coarse);
+    }
+    Scenario changed = scenario;
+    changed.linkage.load_count = 0;
+    assert_true(omega_error(engine, way, &changed, &scenario) > 5.0 * coarse);
+}
+
+// Friction of 1 in the pin, contacts within the step and as a force.
+static inline void hold_friction(const char *engine)
+{
+    Scenario scenario = load_with("cases/hard/friction-1.yaml", "run.revolutions=0.1");
+    scenario.run.step = 50e-6;
+    const double coarse = omega_error(engine, "kernel", &scenario, &scenario);
+    scenario.run.step = 12.5e-6;
+    const double fine = omega_error(engine, "kernel", &scenario, &scenario);
+    if (!(log(coarse / fine) / log(4.0) > 1.5) || !(fine < 1e-5)) {
+        fail_msg("friction: %g at 50 us, %g at 12.5", coarse, fine);
+    }
+    Scenario changed = scenario;
+    changed.contact.friction = 0.0;
+    assert_true(omega_error(engine, "kernel", &changed, &scenario) > 100.0 * fine);
+    // as a force: less of it, for the steps do not resolve how sticking begins
+    static const char *const OVERRIDES[] = {"run.revolutions=0.05", "contact.friction=0.1"};
+    scenario = load("cases/hard/friction-1.yaml", OVERRIDES, 2);
+    scenario.run.step = 1e-6;
+    changed = scenario;
+    changed.contact.friction = 0.0;
+    const double force = omega_error(engine, "force", &scenario, &scenario);
+    const double without = omega_error(engine, "force", &changed, &scenario);
+    if (!(without > 3.0 * force)) {
+        fail_msg("friction as a force: %g, %g without", force, without);
+    }
+}

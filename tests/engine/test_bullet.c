@@ -83,12 +83,34 @@ static void steps_tell_of_every_contact(void **state)
     hold_contacts(BACKEND_BULLET);
 }
 
+static void springs_and_torques_act(void **state)
+{
+    (void)state;
+    hold_springs(BULLET);
+    hold_random_springs(BULLET, 41u);
+}
+
+static void loads_and_motors_act(void **state)
+{
+    (void)state;
+    hold_load(BULLET, "staggered", 100e-6, 2, 0.001);
+}
+
+static void friction_acts(void **state)
+{
+    (void)state;
+    hold_friction(BULLET);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
         cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
+        cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(loads_and_motors_act),
+        cmocka_unit_test(friction_acts),
         cmocka_unit_test(half_a_step_makes_the_order),
         cmocka_unit_test(the_law_as_a_force_converges),
         cmocka_unit_test(a_slider_crank_can_be_told),

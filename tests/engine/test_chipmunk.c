@@ -93,12 +93,34 @@ static void steps_tell_of_every_contact(void **state)
     hold_contacts(BACKEND_CHIPMUNK);
 }
 
+static void springs_and_torques_act(void **state)
+{
+    (void)state;
+    hold_springs(CHIPMUNK);
+    hold_random_springs(CHIPMUNK, 40u);
+}
+
+static void loads_and_motors_act(void **state)
+{
+    (void)state;
+    hold_load(CHIPMUNK, "staggered", 100e-6, 2, 0.001);
+}
+
+static void friction_acts(void **state)
+{
+    (void)state;
+    hold_friction(CHIPMUNK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
         cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
+        cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(loads_and_motors_act),
+        cmocka_unit_test(friction_acts),
         cmocka_unit_test(half_a_step_makes_the_order),
         cmocka_unit_test(the_law_as_a_force_converges),
         cmocka_unit_test(a_slide_joint_holds_the_pin),

@@ -113,10 +113,32 @@ static void a_slider_crank_and_two_pins_can_be_told(void **state)
     trajectory_destroy(run);
 }
 
+static void springs_and_torques_act(void **state)
+{
+    (void)state;
+    hold_springs(MUJOCO);
+    hold_random_springs(MUJOCO, 38u);
+}
+
+static void loads_and_motors_act(void **state)
+{
+    (void)state;
+    hold_load(MUJOCO, "force", 100e-6, 2, 0.001);
+}
+
+static void friction_acts(void **state)
+{
+    (void)state;
+    hold_friction(MUJOCO);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_number_is_named),
+        cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(loads_and_motors_act),
+        cmocka_unit_test(friction_acts),
         cmocka_unit_test(ideal_joints_are_of_first_order),
         cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
         cmocka_unit_test(steps_tell_of_every_contact),

@@ -78,12 +78,34 @@ static void steps_tell_of_every_contact(void **state)
     hold_contacts(BACKEND_SIMBODY);
 }
 
+static void springs_and_torques_act(void **state)
+{
+    (void)state;
+    hold_springs(SIMBODY);
+    hold_random_springs(SIMBODY, 39u);
+}
+
+static void loads_and_motors_act(void **state)
+{
+    (void)state;
+    hold_load(SIMBODY, "force", 800e-6, 4, 1e-05);
+}
+
+static void friction_acts(void **state)
+{
+    (void)state;
+    hold_friction(SIMBODY);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
         cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
+        cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(loads_and_motors_act),
+        cmocka_unit_test(friction_acts),
         cmocka_unit_test(ideal_joints_are_of_order_four),
         cmocka_unit_test(the_law_as_a_force_converges),
         cmocka_unit_test(its_own_steps_reach_an_accuracy),
