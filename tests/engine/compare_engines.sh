@@ -72,6 +72,6 @@ report "an engine that is not there is refused" $?
 ! compare "$@" --driver "$toy" --backends toy/leapfrog &&
     grep -q "'toy' cannot run a case the way 'leapfrog'; it has euler, midpoint" "$log"
 report "so is a way that it has not" $?
-! "$program" compare "$JOINTPLAY_CASES/mechanisms/compressor.yaml" --driver "$toy" -q 2>"$log" &&
-    grep -q "protocol 1 for engines cannot express the load 'gas'" "$log"
+! "$program" compare "$JOINTPLAY_CASES/mechanisms/bouncing-ball.yaml" --driver "$toy" -q 2>"$log" &&
+    grep -q "protocol 2 for engines cannot express the stop" "$log"
 report "and a case that cannot be told to any" $?

@@ -432,6 +432,9 @@ int main(void)
     }
     ChipmunkRun run;
     const bool is_native = driver_is_way(of, "native");
+    if (is_native) {
+        driver_refuse_friction(of);
+    }
     make(of, &run);
     cpSpaceSetUserData(run.space, &run);
     const bool is_kernel = driver_is_way(of, "kernel");

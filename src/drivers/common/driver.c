@@ -354,6 +354,16 @@ bool driver_is_way(const DriverCase *of, const char *way)
     return strcmp(of->way, way) == 0;
 }
 
+void driver_refuse_friction(const DriverCase *of)
+{
+    for (size_t i = 0; i < of->joint_count; i++) {
+        if (of->joints[i].law.friction > 0.0) {
+            driver_refuse("friction in '%s', for a hole of the engine's own has none",
+                          of->joints[i].name);
+        }
+    }
+}
+
 // The run.
 
 DriverRun driver_run_start(const DriverCase *of)

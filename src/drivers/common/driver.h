@@ -167,6 +167,9 @@ void driver_refuse(const char *format, ...) __attribute__((noreturn, format(prin
 // Whether the way is that one.
 bool driver_is_way(const DriverCase *of, const char *way);
 
+// Refuses friction: of ways whose holes are the engine's own.
+void driver_refuse_friction(const DriverCase *of);
+
 // A run of no steps. The clock begins with driver_run_begin.
 DriverRun driver_run_start(const DriverCase *of);
 void driver_run_begin(DriverRun *run);

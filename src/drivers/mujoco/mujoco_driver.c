@@ -248,6 +248,12 @@ int main(void)
     mju_user_error = complain;
     mju_user_warning = complain;
     const bool is_native = driver_is_way(of, "native");
+    if (is_native) {
+        driver_refuse_friction(of);
+    }
+    if (of->wants_model && actions_any(of)) {
+        driver_refuse("springs and loads in a file of MuJoCo's own");
+    }
     const bool has_springs = is_native && are_linear(of);
     const MujocoModel how = {.integrator = driver_is_way(of, "force") ? "RK4" : "Euler",
                              .has_tendons = is_native,
