@@ -268,6 +268,28 @@ def a_listed_spike_is_zoomed_to(browser, page):
     browser.picture("spike")
 
 
+def every_plot_has_a_table_with_its_peaks(browser, page):
+    browser.open(page)
+    bare = browser.value("""[...document.querySelectorAll("figure canvas[role=img]")].filter((canvas) =>
+        !canvas.closest("figure").querySelector("details.values")).map((canvas) => canvas.ariaLabel)""")
+    assert bare == [], bare
+    # made when it is opened, and not before
+    assert browser.value("document.querySelectorAll('.values table').length") == 0
+    browser.value("for (const details of document.querySelectorAll('.values')) details.open = true")
+    browser.wait_for("[...document.querySelectorAll('.values')].every((one) => one.querySelector('table'))")
+    found = browser.value("""(() => {
+        const plot = jointplay.plots.find((one) => one.title.includes("force"));
+        const rows = [...plot.figure.querySelectorAll(".values tbody tr")];
+        const shown = rows.map((row) => row.cells[row.cells.length - 1].textContent);
+        return plot.lines.map((line) => formatNumber(Math.max(...line.y))).map((most) =>
+            [most, shown.includes(most), rows.length]);
+    })()""")
+    assert found and all(has and 10 < count <= 64 for _, has, count in found), found
+    assert browser.value("document.documentElement.scrollWidth") <= 1200
+    browser.picture("tables")
+    browser.check_silence()
+
+
 def runs_can_be_hidden_and_the_axis_changed(browser, page):
     browser.open(page)
     shown = browser.value("[...jointplay.shown].length")
@@ -429,6 +451,7 @@ CLAIMS = [
     a_click_and_the_slider_move_the_time,
     a_drag_zooms_and_ticks_stay_apart,
     a_listed_spike_is_zoomed_to,
+    every_plot_has_a_table_with_its_peaks,
     runs_can_be_hidden_and_the_axis_changed,
     the_data_can_be_saved,
     canvases_have_roles_and_names,

@@ -28,6 +28,16 @@ class Page {
         return this.data.crank === null ? ms : `crank ${this.degrees(time).toFixed(2)} deg, ${ms}`;
     }
 
+    // The columns of a time in a table.
+    timeHeads() {
+        return this.data.crank === null ? ["ms"] : ["crank, deg", "ms"];
+    }
+
+    timeCells(time) {
+        const ms = (time * 1000).toPrecision(6);
+        return this.data.crank === null ? [ms] : [this.degrees(time).toFixed(2), ms];
+    }
+
     degrees(time) {
         return (this.data.crank.start_rad + this.data.crank.speed_rad_s * time) * DEG;
     }

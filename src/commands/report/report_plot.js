@@ -32,6 +32,53 @@ function colourOf(name) {
     return COLOURS.get(name);
 }
 
+const TABLE_ROWS = 60; // of a plot's table, at most
+
+// The numbers of a plot, for those who do not see it and those who want them: a table that is made
+// when it is opened. `makeRows` returns its rows; what there is more of is in the data.
+function valuesTable(heads, makeRows) {
+    const cells = (row, tag) => element("tr", {}, ...row.map((cell) => element(tag, {}, cell)));
+    const details = element(
+        "details",
+        { className: "values" },
+        element("summary", {}, "Values"),
+    );
+    details.addEventListener(
+        "toggle",
+        () => {
+            const { rows, more } = makeRows();
+            const head = element("thead", {}, cells(heads, "th"));
+            const body = element("tbody", {}, ...rows.map((row) => cells(row, "td")));
+            const table = element("table", {}, head, body);
+            details.append(element("div", { className: "wide", tabIndex: 0 }, table));
+            details.append(more > 0 ? `${more} more are in the data.` : "");
+        },
+        { once: true },
+    );
+    return details;
+}
+
+// Of so many values the numbers of the first, the last, and the least and the largest of equal
+// parts between, at most `most`, so that no peak is lost.
+function thinned(values, most) {
+    const last = values.length - 1;
+    const parts = Math.max(1, Math.floor((most - 2) / 2));
+    const kept = new Set([0, last]);
+    for (let part = 0; part < parts; part++) {
+        const first = Math.floor((part * values.length) / parts);
+        const end = Math.floor(((part + 1) * values.length) / parts);
+        let [low, high] = [first, first];
+        for (let i = first; i < end; i++) {
+            low = values[i] < values[low] ? i : low;
+            high = values[i] > values[high] ? i : high;
+        }
+        if (first < end) {
+            kept.add(low).add(high);
+        }
+    }
+    return [...kept].sort((a, b) => a - b);
+}
+
 // Makes a canvas as sharp as the screen; returns its context, in CSS pixels.
 function prepareCanvas(canvas, width, height) {
     const ratio = window.devicePixelRatio || 1;
@@ -70,7 +117,7 @@ class TimePlot {
             caption.append(this.makeLogSwitch());
         }
         const frame = element("div", { className: "frame" }, this.canvas, this.cursor, this.drag);
-        this.figure = element("figure", {}, caption, frame, this.legend);
+        this.figure = element("figure", {}, caption, frame, this.legend, this.makeTable());
         this.fillLegend();
         this.listen();
     }
@@ -82,6 +129,21 @@ class TimePlot {
             this.draw();
         });
         return element("label", { className: "switch" }, box, " log");
+    }
+
+    makeTable() {
+        return valuesTable(["run", ...this.page.timeHeads(), this.title], () => {
+            const most = Math.floor(TABLE_ROWS / Math.max(1, this.lines.length));
+            const rows = this.lines.flatMap((line) =>
+                thinned(line.y, most).map((i) => [
+                    line.name || line.backend,
+                    ...this.page.timeCells(line.x[i]),
+                    formatNumber(line.y[i]),
+                ]),
+            );
+            const all = this.lines.reduce((count, line) => count + line.y.length, 0);
+            return { rows, more: all - rows.length };
+        });
     }
 
     // What a reader who does not see the plot is told of it.

@@ -82,6 +82,26 @@ class RoundPlot {
         );
     }
 
+    // Rows of some of all signals: run, time, and what `vector` gives of a sample, largest and least
+    // of `size` among them.
+    addTable(heads, all, size, vector) {
+        const table = valuesTable(["run", ...this.page.timeHeads(), ...heads], () => {
+            const most = Math.floor(TABLE_ROWS / all.length);
+            const rows = all.flatMap((signals) => {
+                const { run } = signals;
+                const sizes = Float64Array.from(signals.ex, (_, i) => size(signals, i));
+                return thinned(sizes, most).map((i) => [
+                    run.backend,
+                    ...this.page.timeCells(run.from_s + i * run.interval_s),
+                    ...vector(signals, i).map(formatNumber),
+                ]);
+            });
+            const count = all.reduce((sum, signals) => sum + signals.ex.length, 0);
+            return { rows, more: count - rows.length };
+        });
+        this.figure.append(table);
+    }
+
     begin() {
         this.size = this.canvas.clientWidth;
         this.context = prepareCanvas(this.canvas, this.size, this.size);
@@ -143,6 +163,11 @@ class OrbitPlot extends RoundPlot {
             this.most = Math.max(this.most, signals.force[i] || 0);
         }
         this.note.append(this.makeScale());
+        const force = (of, i) => of.force[i] || 0;
+        this.addTable(["x, um", "y, um", "force, N"], [signals], force, (of, i) => [
+            ...of.offset(i).map((value) => 1e6 * value),
+            force(of, i),
+        ]);
     }
 
     // A bar with the colours and the largest force.
@@ -253,6 +278,8 @@ class LoadPlot extends RoundPlot {
                 ),
             );
         }
+        const size = (of, i) => Math.hypot(of.fx[i], of.fy[i]);
+        this.addTable(["force in x, N", "in y, N"], all, size, (of, i) => of.load(i));
     }
 
     shownSignals() {

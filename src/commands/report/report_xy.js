@@ -2,7 +2,6 @@
 // a revolution. Each has a hidden table with what it shows.
 
 const XY_HEIGHT = 240;
-const TABLE_ROWS = 60; // of a hidden table, at most
 
 class XYPlot {
     // A series: {name, backend, x, y, kind: "stem" | "line" | "dots"}. Of the options `xTitle` and
@@ -60,34 +59,19 @@ class XYPlot {
         return element("div", { className: "legend" }, ...keys, this.options.words || "");
     }
 
-    // For those who do not see the plot, and for those who want its numbers.
     makeTable() {
-        const rows = this.series.flatMap((one) =>
-            one.kind === "line"
-                ? []
-                : Array.from(one.x, (x, i) => [one.name, formatNumber(x), formatNumber(one.y[i])]),
-        );
-        if (rows.length === 0) {
-            return "";
-        }
-        const cells = (row, tag) => element("tr", {}, ...row.map((cell) => element(tag, {}, cell)));
-        const shown = rows.slice(0, TABLE_ROWS);
-        return element(
-            "details",
-            { className: "values" },
-            element("summary", {}, "Values"),
-            element(
-                "div",
-                { className: "wide" },
-                element(
-                    "table",
-                    {},
-                    element("thead", {}, cells(["run", this.options.xTitle, this.title], "th")),
-                    element("tbody", {}, ...shown.map((row) => cells(row, "td"))),
-                ),
-            ),
-            rows.length > shown.length ? `${rows.length - shown.length} more are in the data.` : "",
-        );
+        return valuesTable(["run", this.options.xTitle, this.title], () => {
+            const most = Math.floor(TABLE_ROWS / Math.max(1, this.series.length));
+            const rows = this.series.flatMap((one) => {
+                const numbers =
+                    one.kind === "line" ? thinned(one.y, most) : Array.from(one.y.keys());
+                const cells = (i) => [one.name, formatNumber(one.x[i]), formatNumber(one.y[i])];
+                return numbers.map(cells);
+            });
+            const all = this.series.reduce((count, one) => count + one.y.length, 0);
+            const shown = rows.slice(0, TABLE_ROWS);
+            return { rows: shown, more: all - shown.length };
+        });
     }
 
     describe() {
