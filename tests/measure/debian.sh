@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds the Debian packages, asks lintian about them, and runs the commands of README and tutorial from
 # the unpacked package in an empty folder. Needs debhelper, lintian and what packages.txt lists under
-# build; some three minutes. Usage: debian.sh [FOLDER for the packages]
+# build; a quarter of an hour. Usage: debian.sh [FOLDER for the packages]
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
