@@ -6,11 +6,11 @@
 #pragma once
 
 #include "base/err.h"
+#include "base/load_table.h"
 #include "base/vec2.h"
 #include "base/vec3.h"
 #include "kernel/contact_state.h"
 #include "model/drive.h"
-#include "base/load_table.h"
 
 #include <stdbool.h>
 #include <stddef.h>

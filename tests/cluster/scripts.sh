@@ -76,7 +76,7 @@ goes_back_when_told() {
     [ "$(cat asked 2>/dev/null)" = 'requeue 70_2' ]
 }
 
-echo 1..10
+echo 1..12
 check "a study that is complete ends well" ends_with 0 0 0 RUNNING
 check "one that is killed goes back in the queue" goes_back killed 0 RUNNING
 check "one that is told to end goes back in the queue" goes_back_when_told
@@ -87,3 +87,11 @@ check "a bad study fails at once" ends_with 3 3 0 RUNNING
 check "so does a solver that fails" ends_with 4 4 2 RUNNING
 check "so does a store that cannot be used" ends_with 5 5 0 RUNNING
 check "but not where an earlier try may hold it" goes_back 5 1 RUNNING
+
+# the paths of drivers hold wherever a task begins; one that is not there is refused
+touch 'an engine'
+"$program" study slurm two.yaml --shards 2 --dry-run --driver 'toy=an engine' |
+    grep -qxF "drivers=(--driver 'toy=$(pwd -P)/an engine')"
+check "a driver's path is whole" [ $? = 0 ]
+! "$program" study slurm two.yaml --shards 2 --dry-run --driver toy=none >log 2>&1 && grep -q "cannot find none" log
+check "a driver that is not there is refused" [ $? = 0 ]

@@ -40,4 +40,11 @@ JOINTPLAY_DRIVERS="$work/none" "$program" tune "$case" --error 0.3 --mjcf pair.x
     --schemes direct/staggered/impulse "$@" >out 2>"$log"
 grep -q 'not run here' pair.xml && grep -q "There is no whole model: there is no driver" out
 report "without the driver it is said that it was not run" $?
+own=$(dirname "$(realpath "$program")")/../drivers/jointplay-mujoco
+JOINTPLAY_DRIVERS="$work/none" "$program" tune "$case" --error 0.3 --mjcf named.xml -q \
+    --schemes direct/staggered/impulse --driver "mujoco=$own" "$@" >out 2>"$log"
+cmp -s model.xml named.xml
+report "with a driver that is named the same model is written" $?
+! "$program" tune "$case" --error 0.3 --driver "toy=$own" -q "$@" >out 2>"$log" && grep -q 'toy=.* is not used' "$log"
+report "and one of another engine is refused" $?
 echo 1..$number

@@ -14,6 +14,7 @@ folder=@folder@
 shards=@shards@
 study=@study@
 requeues=@requeues@
+drivers=(@drivers@)
 
 # By its place in the array: one of the tasks has the number of the whole array.
 task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
@@ -29,7 +30,7 @@ trap tell TERM
 
 cd "$folder" || exit 5
 say "shard $SLURM_ARRAY_TASK_ID of $shards on ${SLURMD_NODENAME:-?}, try $((restarts + 1))"
-"$program" study "$study" --shard "$SLURM_ARRAY_TASK_ID/$shards" \
+"$program" study "$study" "${drivers[@]}" --shard "$SLURM_ARRAY_TASK_ID/$shards" \
     --jobs "$SLURM_CPUS_PER_TASK" &
 child=$!
 [ -z "$is_told" ] || tell

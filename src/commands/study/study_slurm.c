@@ -3,6 +3,7 @@
 #include "base/shell.h"
 #include "base/shipped.h"
 #include "cli/arguments.h"
+#include "cli/common_options.h"
 #include "cli/output.h"
 #include "cli/written.h"
 #include "commands/study/design.h"
@@ -120,6 +121,14 @@ static void append_asked(const SlurmJob *job, Text *text)
     }
 }
 
+static void append_drivers(const SlurmJob *job, Text *text)
+{
+    for (size_t i = 0; i < job->driver_count; i++) {
+        text_append(text, i == 0 ? "--driver " : " --driver ");
+        shell_append_word(text, job->drivers[i]);
+    }
+}
+
 // Appends what stands for a word between two @. False where it is none of them.
 static bool append_value(const SlurmJob *job, const char *word, size_t length, Text *text)
 {
@@ -153,6 +162,10 @@ static bool append_value(const SlurmJob *job, const char *word, size_t length, T
         append_asked(job, text);
         return true;
     }
+    if (strncmp(word, "drivers@", length + 1) == 0) {
+        append_drivers(job, text);
+        return true;
+    }
     return false;
 }
 
@@ -183,8 +196,10 @@ void slurm_write(const SlurmJob *job, SlurmScript script, Text *text)
 enum { SCRIPT_RIGHTS = 0777 };
 
 typedef struct SlurmOptions {
-    const char *path; // of the study
-    SlurmJob job;     // its folder as given; the other paths are found
+    const char *path;                       // of the study
+    SlurmJob job;                           // its folder as given; the other paths are found
+    const char *drivers[ENGINE_DRIVER_MAX]; // as given
+    size_t driver_count;
     bool is_dry;
     bool is_quiet;
 } SlurmOptions;
@@ -202,6 +217,9 @@ static const OptionRow OPTIONS[] = {
     {"partition", "NAME", "Partition of both jobs", 0, OPTION_TEXT, AT(job.partition),
      .letter = 'p'},
     {"account", "NAME", "Account of both jobs", 0, OPTION_TEXT, AT(job.account), .letter = 'A'},
+    {"driver", "NAME=PROGRAM", "A program that runs cases on the engine NAME; may be given often",
+     0, OPTION_LIST, AT(drivers), .what = "drivers",
+     .count_offset = offsetof(SlurmOptions, driver_count), .high = ENGINE_DRIVER_MAX},
     {"requeues", "N",
      "Times a task that is killed or runs out of time goes back in the queue (default: 10)", 0,
      OPTION_COUNT, AT(job.requeues), .low = 0, .high = SLURM_REQUEUE_MAX},
@@ -249,6 +267,32 @@ static bool find_whole(const char *path, char target[FILE_PATH_SIZE], Err *err)
     text_copy(target, FILE_PATH_SIZE, whole);
     free(whole);
     return true;
+}
+
+// The drivers, whose programs are found from wherever a job begins. For free_drivers.
+static bool find_drivers(const SlurmOptions *options, SlurmJob *job, Err *err)
+{
+    for (size_t i = 0; i < options->driver_count; i++) {
+        const char *given = options->drivers[i];
+        BackendKind backend;
+        char program[FILE_PATH_SIZE];
+        if (!common_options_driver(given, &backend, err) ||
+            !find_whole(strchr(given, '=') + 1, program, err)) {
+            return false;
+        }
+        Text text;
+        text_init(&text);
+        text_append(&text, "%.*s=%s", (int)strcspn(given, "="), given, program);
+        job->drivers[job->driver_count++] = text.data;
+    }
+    return true;
+}
+
+static void free_drivers(SlurmJob *job)
+{
+    for (size_t i = 0; i < job->driver_count; i++) {
+        free(job->drivers[i]);
+    }
 }
 
 // What the names of the study's stores begin with.
@@ -341,6 +385,19 @@ static void say_next(const SlurmJob *job, const SlurmOptions *options)
     }
 }
 
+static bool write_job(const SlurmJob *job, const SlurmOptions *options, Err *err)
+{
+    if (options->is_dry) {
+        print_scripts(job);
+        return true;
+    }
+    if (!claim_scripts(job, err) || !write_scripts(job, options, err)) {
+        return false;
+    }
+    say_next(job, options);
+    return true;
+}
+
 static bool make_scripts(void *target, Err *err)
 {
     const SlurmOptions *options = target;
@@ -348,26 +405,21 @@ static bool make_scripts(void *target, Err *err)
     char study[FILE_PATH_SIZE];
     char folder[FILE_PATH_SIZE];
     char stem[FILE_PATH_SIZE];
+    char *drivers[ENGINE_DRIVER_MAX];
     SlurmJob job = options->job;
     job.program = program;
     job.study = study;
     job.folder = folder;
     job.stem = stem;
-    if (!slurm_check(&job, err) || !check_shards(options, err) ||
-        (!options->is_dry && !file_make_folder(options->job.folder, err)) ||
-        !find_stem(options->path, stem, err) || !find_whole("/proc/self/exe", program, err) ||
-        !find_whole(options->path, study, err) || !find_whole(options->job.folder, folder, err)) {
-        return false;
-    }
-    if (options->is_dry) {
-        print_scripts(&job);
-        return true;
-    }
-    if (!claim_scripts(&job, err) || !write_scripts(&job, options, err)) {
-        return false;
-    }
-    say_next(&job, options);
-    return true;
+    job.drivers = drivers;
+    const bool is_done =
+        slurm_check(&job, err) && check_shards(options, err) && find_drivers(options, &job, err) &&
+        (options->is_dry || file_make_folder(options->job.folder, err)) &&
+        find_stem(options->path, stem, err) && find_whole("/proc/self/exe", program, err) &&
+        find_whole(options->path, study, err) && find_whole(options->job.folder, folder, err) &&
+        write_job(&job, options, err);
+    free_drivers(&job);
+    return is_done;
 }
 
 static const Arguments STUDY_SLURM_ARGUMENTS = {

@@ -20,8 +20,10 @@ enum {
 };
 
 typedef struct SlurmJob {
-    const char *program;   // absolute path, as are the next two
-    const char *study;     // the study file
+    const char *program; // absolute path, as are the next two
+    const char *study;   // the study file
+    char **drivers;      // NAME=PROGRAM, with the whole path of each
+    size_t driver_count;
     const char *folder;    // where scripts, logs and stores go
     const char *stem;      // that their names begin with
     size_t shards;         // tasks of the array

@@ -556,6 +556,26 @@ static bool tune_on_engine(const TuneOptions *options, Err *err)
     return is_done;
 }
 
+// On ODE the one engine beside it is MuJoCo, which runs the model that is written for it.
+static bool take_drivers(const CommonOptions *common, Scenario *scenario, Err *err)
+{
+    for (size_t i = 0; i < common->driver_count; i++) {
+        const char *given = common->drivers[i];
+        BackendKind backend;
+        if (!common_options_driver(given, &backend, err)) {
+            return false;
+        }
+        if (backend != BACKEND_MUJOCO) {
+            return err_set(err, ERR_USAGE,
+                           "--driver %s is not used: without --backend tune runs ODE, and MuJoCo "
+                           "for --mjcf and --out",
+                           given);
+        }
+        scenario->engines[backend].driver = given;
+    }
+    return true;
+}
+
 static bool tune_case(void *target, Err *err)
 {
     const TuneOptions *options = target;
@@ -567,7 +587,8 @@ static bool tune_case(void *target, Err *err)
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
     bool is_done = common_options_load(common, scenario, err) &&
-                   settle_error(options, scenario, err) && check_files(options, scenario, err) &&
+                   take_drivers(common, scenario, err) && settle_error(options, scenario, err) &&
+                   check_files(options, scenario, err) &&
                    tune_options_search(options, scenario, &tune, err) &&
                    results_claim(&RESULTS, common, scenario_path(scenario), err);
     if (is_done) {
