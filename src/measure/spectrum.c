@@ -4,8 +4,10 @@
 // number of them, so that the sums of a discrete Fourier transform at whole lines are exact: no
 // window is needed, and nothing leaks from one order into another of a motion that repeats.
 //
-// Waves of even lines are the same half of all samples later, those of odd lines the opposite:
-// where their number is even, each line is a sum over half as many.
+// With N samples, half of which is H, waves of even lines are the same H samples later, those of
+// odd lines the opposite; and within that half the cosine of an even line is the same backwards and
+// its sine the opposite, of an odd line the other way round. So where N is even each line is a sum
+// over a quarter of the samples, of x_n +- x_(n+H) and the same of H - n, which are added up once.
 #include "measure/spectrum.h"
 
 #include "base/zeroed.h"
@@ -46,13 +48,19 @@ static double *turn_of(size_t parts)
     return turn;
 }
 
+// Terms of a line's sum.
+static size_t term_count(const Orders *orders)
+{
+    return orders->samples % 2 == 0 ? orders->samples / 4 + 1 : orders->samples;
+}
+
 Spectrum spectrum_begin(const Orders *orders)
 {
     return (Spectrum){
         .orders = *orders,
         .turn = turn_of(orders->samples),
         .values = zeroed(orders->samples, sizeof(double)),
-        .folded = zeroed(orders->samples, sizeof(double)),
+        .folded = zeroed(4 * term_count(orders), sizeof(double)),
     };
 }
 
@@ -63,32 +71,57 @@ void spectrum_finish(Spectrum *spectrum)
     free(spectrum->folded);
 }
 
-static void take_signal(Spectrum *spectrum, SpectrumSignal *signal, const void *context)
+// What cosines, or sines, of even lines, or odd ones, are multiplied by.
+static double *terms_of(const Spectrum *spectrum, bool is_odd, bool is_sine)
+{
+    if (spectrum->orders.samples % 2 == 1) {
+        return spectrum->values;
+    }
+    return spectrum->folded +
+           ((is_odd ? 2 : 0) + (is_sine ? 1 : 0)) * term_count(&spectrum->orders);
+}
+
+// Of even lines, or odd ones: the sums of two values that lie half of all samples apart, or their
+// differences, and these with those that lie as far from the end of that half.
+static void fold(Spectrum *spectrum, bool is_odd)
 {
     const size_t half = spectrum->orders.samples / 2;
-    double *values = spectrum->values;
-    for (size_t n = 0; n < spectrum->orders.samples; n++) {
-        values[n] = signal(context, spectrum->orders.first + n);
+    const double *values = spectrum->values;
+    const double sign = is_odd ? -1.0 : 1.0;
+    double *cosines = terms_of(spectrum, is_odd, false);
+    double *sines = terms_of(spectrum, is_odd, true);
+    cosines[0] = values[0] + sign * values[half];
+    for (size_t n = 1; 2 * n <= half; n++) {
+        const double one = values[n] + sign * values[n + half];
+        const size_t mirror = half - n;
+        const double other = mirror > n ? values[mirror] + sign * values[mirror + half] : 0.0;
+        cosines[n] = one + sign * other;
+        sines[n] = one - sign * other;
     }
-    for (size_t n = 0; n < half; n++) {
-        spectrum->folded[n] = values[n] + values[n + half];
-        spectrum->folded[n + half] = values[n] - values[n + half];
+}
+
+static void take_signal(Spectrum *spectrum, SpectrumSignal *signal, const void *context)
+{
+    for (size_t n = 0; n < spectrum->orders.samples; n++) {
+        spectrum->values[n] = signal(context, spectrum->orders.first + n);
+    }
+    if (spectrum->orders.samples % 2 == 0) {
+        fold(spectrum, false);
+        fold(spectrum, true);
     }
 }
 
 static double amplitude_at(const Spectrum *spectrum, size_t line)
 {
     const size_t samples = spectrum->orders.samples;
-    const bool is_even = samples % 2 == 0;
-    const size_t count = is_even ? samples / 2 : samples;
-    const double *values = !is_even        ? spectrum->values
-                           : line % 2 == 0 ? spectrum->folded
-                                           : spectrum->folded + count;
+    const size_t count = term_count(&spectrum->orders);
+    const double *cosines = terms_of(spectrum, line % 2 == 1, false);
+    const double *sines = terms_of(spectrum, line % 2 == 1, true);
     double real = 0.0;
     double imaginary = 0.0;
     for (size_t n = 0, at = 0; n < count; n++) {
-        real += values[n] * spectrum->turn[2 * at];
-        imaginary += values[n] * spectrum->turn[2 * at + 1];
+        real += cosines[n] * spectrum->turn[2 * at];
+        imaginary += sines[n] * spectrum->turn[2 * at + 1];
         at += line;
         at -= at >= samples ? samples : 0;
     }

@@ -37,7 +37,7 @@ typedef struct Spectrum {
     double
         *turn; // cosines and sines of a whole turn in as many parts as there are samples, in turn
     double *values; // of a signal at the samples
-    double *folded; // sums of two values that lie half of all samples apart, then their differences
+    double *folded; // what waves are multiplied by: of even lines cosines, then sines; of odd ones
 } Spectrum;
 
 // For spectrum_finish.

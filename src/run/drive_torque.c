@@ -53,6 +53,15 @@ static double moment_of_loads(const Linkage *linkage, const Motion *motions, dou
     return moment;
 }
 
+// Whether what presses in a joint has a moment about its point: without friction that of a pin goes
+// through the pin's centre.
+static bool has_moment(const Scenario *scenario, const Joint *joint)
+{
+    const double friction =
+        joint->contact.has_friction ? joint->contact.friction : scenario->contact.friction;
+    return joint->kind != JOINT_CLEARANCE || friction > 0.0;
+}
+
 double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t drive, size_t sample)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -78,8 +87,9 @@ double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t d
         const JointState *state = trajectory_state(run, sample, i);
         const double sign = joint->body_b == driven ? 1.0 : -1.0;
         const Vec2 arm = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b), point);
-        torque -=
-            sign * (vec2_cross(arm, state->force_on_b) + joint_moment(linkage, motions, i, state));
+        const double moment =
+            has_moment(scenario, joint) ? joint_moment(linkage, motions, i, state) : 0.0;
+        torque -= sign * (vec2_cross(arm, state->force_on_b) + moment);
     }
     return torque;
 }

@@ -45,9 +45,9 @@ static double between(double turns)
 static void amplitudes_are_those_of_the_sines(void **state)
 {
     (void)state;
-    MadeOmega *const SIGNALS[] = {known, shifted, known};
-    const size_t SAMPLES[] = {720, 720, 721}; // an even and an odd number
-    for (int i = 0; i < 3; i++) {
+    MadeOmega *const SIGNALS[] = {known, shifted, known, shifted};
+    const size_t SAMPLES[] = {720, 720, 721, 722}; // of four, odd, and of two alone
+    for (int i = 0; i < 4; i++) {
         Scenario scenario = turning(3.0, SAMPLES[i]);
         Trajectory *run = made_run(&scenario, SIGNALS[i]);
         const double amplitudes[] = {3.0, 5.0, 0.25, 0.0};
