@@ -88,7 +88,9 @@ static inline void kept_settled(const Scenario *scenario)
     kept_hold(scenario->settled.first);
     kept_hold(scenario->settled.motions);
     kept_hold(scenario->settled.halved.joints);
+    kept_hold(scenario->settled.halved.sections);
     kept_hold(scenario->settled.doubled.joints);
+    kept_hold(scenario->settled.doubled.sections);
 }
 
 // One that was read or built otherwise: it is freed.
