@@ -58,17 +58,27 @@ bool common_options_driver(const char *driver, BackendKind *backend, Err *err)
     return true;
 }
 
+bool common_options_take_driver(const char *driver, Scenario *scenario, BackendKind *backend,
+                                Err *err)
+{
+    if (!common_options_driver(driver, backend, err)) {
+        return false;
+    }
+    if (scenario->engines[*backend].driver != NULL) {
+        return err_set(err, ERR_USAGE, "--driver names two programs for the backend '%s'",
+                       OPTIONS_BACKENDS[*backend]);
+    }
+    scenario->engines[*backend].driver = driver;
+    return true;
+}
+
 bool common_options_take_drivers(const char *const *drivers, size_t count, Scenario *scenario,
                                  Err *err)
 {
     for (size_t i = 0; i < count; i++) {
         BackendKind backend;
-        if (!common_options_driver(drivers[i], &backend, err)) {
+        if (!common_options_take_driver(drivers[i], scenario, &backend, err)) {
             return false;
-        }
-        if (scenario->engines[backend].driver != NULL) {
-            return err_set(err, ERR_USAGE, "--driver names two programs for the backend '%s'",
-                           OPTIONS_BACKENDS[backend]);
         }
         bool is_used = false;
         for (size_t k = 0; k < scenario->run.backend_count; k++) {
@@ -79,7 +89,6 @@ bool common_options_take_drivers(const char *const *drivers, size_t count, Scena
                            "--driver %s is not used: '%.*s' is not among the backends", drivers[i],
                            (int)strcspn(drivers[i], "="), drivers[i]);
         }
-        scenario->engines[backend].driver = drivers[i];
     }
     return true;
 }

@@ -73,8 +73,12 @@ bool common_options_check_step(const CommonOptions *options, double step_s, Err 
 // ERR_USAGE where it has another form.
 bool common_options_driver(const char *driver, BackendKind *backend, Err *err);
 
-// Lets the engines of a scenario be run by the drivers that --driver names, which must outlive it.
-// Fails with ERR_USAGE where one has another form, or where two are of the same backend.
+// Lets the engine of a driver, which must outlive the scenario, be run by it; writes which backend
+// that is. Fails with ERR_USAGE where it has another form, or the backend has one.
+bool common_options_take_driver(const char *driver, Scenario *scenario, BackendKind *backend,
+                                Err *err);
+
+// The same of all that --driver names, each of which must be of a backend of the run.
 bool common_options_take_drivers(const char *const *drivers, size_t count, Scenario *scenario,
                                  Err *err);
 

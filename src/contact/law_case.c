@@ -40,7 +40,7 @@ bool law_has_friction(const Scenario *scenario)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
-        if (linkage_has_play(joint) && law_options(&scenario->contact, joint).friction > 0.0) {
+        if (linkage_has_play(joint) && scenario_friction(scenario, joint) > 0.0) {
             return true;
         }
     }

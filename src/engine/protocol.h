@@ -10,6 +10,9 @@
 char *engine_request(const Scenario *scenario, const char *way, double record_s, bool wants_model,
                      Err *err);
 
+// Two numbers, as a place, a velocity or a point of a table.
+json_t *engine_pair(Vec2 value);
+
 // The oldest protocol that has words for a scenario, and the first thing in it that no older one
 // has, such as "the spring 'x'"; empty where there is none.
 enum { ENGINE_NEED_SIZE = 96 };

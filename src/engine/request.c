@@ -78,7 +78,7 @@ bool engine_check(const Scenario *scenario, Err *err)
     return true;
 }
 
-static json_t *pair(Vec2 value)
+json_t *engine_pair(Vec2 value)
 {
     return json_pack("[f, f]", value.x, value.y);
 }
@@ -88,8 +88,8 @@ static json_t *body_object(const Body *body)
     const Motion *start = &body->start;
     return json_pack("{s:s, s:f, s:f, s:o, s:f, s:o, s:f}", "name", body->name, "mass_kg",
                      body->mass, "inertia_kg_m2", body->inertia, "position_m",
-                     pair(start->position), "angle_rad", start->angle, "velocity_m_s",
-                     pair(start->velocity), "omega_rad_s", start->omega);
+                     engine_pair(start->position), "angle_rad", start->angle, "velocity_m_s",
+                     engine_pair(start->velocity), "omega_rad_s", start->omega);
 }
 
 static json_t *law_object(const ForceLaw *law)
@@ -131,7 +131,7 @@ static json_t *joint_object(const Scenario *scenario, const Joint *joint, Err *e
     json_t *object =
         json_pack("{s:s, s:s, s:i, s:i, s:o, s:o}", "name", joint->name, "kind", KINDS[joint->kind],
                   "body_a", joint->body_a, "body_b", joint->body_b, "anchor_a_m",
-                  pair(joint->anchor_a), "anchor_b_m", pair(joint->anchor_b));
+                  engine_pair(joint->anchor_a), "anchor_b_m", engine_pair(joint->anchor_b));
     if (joint->kind == JOINT_PRISMATIC) {
         json_object_set_new(object, "direction_rad", json_real(joint->direction));
         json_object_set_new(object, "held_angle_rad", json_real(joint->held_angle));
@@ -194,7 +194,7 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
     json_t *request = json_pack(
         "{s:i, s:s, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "jointplay-driver", protocol, "ask",
         "run", "way", way, "step_s", scenario->run.step, "duration_s", scenario_duration(scenario),
-        "gravity_m_s2", pair(scenario_gravity(scenario)), "bodies", bodies, "joints", joints,
+        "gravity_m_s2", engine_pair(scenario_gravity(scenario)), "bodies", bodies, "joints", joints,
         "drive", drive_object(linkage), "sample_times_s", times_array(scenario));
     assert(request != NULL);
     if (protocol > 1) {

@@ -33,17 +33,13 @@ int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE])
     return what[0] == '\0' ? 1 : 2;
 }
 
-static json_t *pair(Vec2 value)
-{
-    return json_pack("[f, f]", value.x, value.y);
-}
-
 static json_t *spring_object(const Spring *spring)
 {
     return json_pack("{s:s, s:i, s:i, s:o, s:o, s:f, s:f, s:f}", "name", spring->name, "body_a",
-                     spring->body_a, "body_b", spring->body_b, "anchor_a_m", pair(spring->anchor_a),
-                     "anchor_b_m", pair(spring->anchor_b), "stiffness_N_m", spring->stiffness,
-                     "length_m", spring->length, "damping_N_s_m", spring->damping);
+                     spring->body_a, "body_b", spring->body_b, "anchor_a_m",
+                     engine_pair(spring->anchor_a), "anchor_b_m", engine_pair(spring->anchor_b),
+                     "stiffness_N_m", spring->stiffness, "length_m", spring->length,
+                     "damping_N_s_m", spring->damping);
 }
 
 static json_t *torsion_object(const char *name, int joint, double stiffness, double angle,
@@ -62,7 +58,7 @@ static json_t *load_object(const Linkage *linkage, const Load *load)
         json_object_set_new(object, "body", json_integer(load->body));
     }
     if (load->kind == LOAD_FORCE) {
-        json_object_set_new(object, "anchor_m", pair(load->anchor));
+        json_object_set_new(object, "anchor_m", engine_pair(load->anchor));
         json_object_set_new(object, "direction_rad", json_real(load->direction));
         json_object_set_new(object, "turns_along", json_boolean(load->frame == LOAD_IN_BODY));
     }
@@ -79,7 +75,8 @@ static json_t *load_object(const Linkage *linkage, const Load *load)
     }
     json_t *points = json_array();
     for (size_t i = 0; i < load->table.count; i++) {
-        json_array_append_new(points, pair((Vec2){load->table.at[i], load->table.values[i]}));
+        json_array_append_new(points,
+                              engine_pair((Vec2){load->table.at[i], load->table.values[i]}));
     }
     json_object_set_new(object, "points", points);
     json_object_set_new(object, "shape", json_string(LOAD_SHAPES[load->table.shape]));
@@ -103,7 +100,7 @@ static void add_torque(const Scenario *scenario, json_t *torsions, json_t *loads
     json_t *points = json_array();
     for (size_t i = 0; i < torque->table.count; i++) {
         json_array_append_new(points,
-                              pair((Vec2){torque->table.times[i], torque->table.values[i]}));
+                              engine_pair((Vec2){torque->table.times[i], torque->table.values[i]}));
     }
     json_array_append_new(loads, torque_object(linkage, points, torque->table.period_s));
     const Driver *followed = &torque->followed;
@@ -115,8 +112,8 @@ static void add_torque(const Scenario *scenario, json_t *torsions, json_t *loads
     if (followed->is_present) {
         const double end_s = 2.0 * scenario_duration(scenario); // engines go a step beyond the end
         const double start = stiffness * followed->start + torque->slope * followed->speed;
-        points = json_pack("[o, o]", pair((Vec2){0.0, start}),
-                           pair((Vec2){end_s, start + stiffness * followed->speed * end_s}));
+        points = json_pack("[o, o]", engine_pair((Vec2){0.0, start}),
+                           engine_pair((Vec2){end_s, start + stiffness * followed->speed * end_s}));
         json_array_append_new(loads, torque_object(linkage, points, 0.0));
     }
 }

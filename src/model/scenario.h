@@ -140,7 +140,13 @@ bool scenario_reports_any(const Scenario *scenario);
 // Time of one sample: an exact multiple of the sample interval, s.
 double scenario_sample_time(const Scenario *scenario, size_t sample);
 
-// The restitution of a joint with play: its own, or the contact's.
+// The friction of a joint with play: its own, or the contact's.
+static inline double scenario_friction(const Scenario *scenario, const Joint *joint)
+{
+    return joint->contact.has_friction ? joint->contact.friction : scenario->contact.friction;
+}
+
+// The restitution likewise.
 static inline double scenario_restitution(const Scenario *scenario, const Joint *joint)
 {
     return joint->contact.has_restitution ? joint->contact.restitution

@@ -57,9 +57,7 @@ static double moment_of_loads(const Linkage *linkage, const Motion *motions, dou
 // through the pin's centre.
 static bool has_moment(const Scenario *scenario, const Joint *joint)
 {
-    const double friction =
-        joint->contact.has_friction ? joint->contact.friction : scenario->contact.friction;
-    return joint->kind != JOINT_CLEARANCE || friction > 0.0;
+    return joint->kind != JOINT_CLEARANCE || scenario_friction(scenario, joint) > 0.0;
 }
 
 double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t drive, size_t sample)

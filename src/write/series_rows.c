@@ -1,7 +1,6 @@
 // Writes the rows of a series: one table of columns gives the head and the cells.
 #include "write/series_rows.h"
 #include "base/zeroed.h"
-#include "contact/law.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
 #include "model/loads.h"
@@ -98,7 +97,7 @@ static bool speeds_up(const Scenario *scenario, size_t body)
 static bool turns(const Scenario *scenario, size_t joint)
 {
     const Joint *of = joint_of(scenario, joint);
-    const double friction = law_options(&scenario->contact, of).friction;
+    const double friction = scenario_friction(scenario, of);
     const bool is_circle = of->kind == JOINT_CLEARANCE || of->kind == JOINT_STOP;
     return linkage_is_torsional(of) || of->kind == JOINT_GEAR || (is_circle && friction > 0.0);
 }

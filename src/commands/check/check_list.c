@@ -119,41 +119,51 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
     return true;
 }
 
-// Whether the case limits a number of its settled motion, from one of them on.
-static bool expects_settled(const Scenario *scenario, ExpectedNumber first)
+// Whether the case limits a number of its settled motion, and whether its growth.
+typedef struct SettledLimits {
+    bool are_any;
+    bool are_of_growth;
+} SettledLimits;
+
+static SettledLimits settled_limits(const Scenario *scenario)
 {
-    bool expects = false;
+    SettledLimits limits = {false, false};
     for (size_t i = 0; i < scenario->expectation_count; i++) {
         const Expectation *expectation = &scenario->expectations[i];
-        expects = expects || (expect_value_is_settled(expectation) && expectation->number >= first);
+        limits.are_any = limits.are_any || expect_value_is_settled(expectation);
+        limits.are_of_growth =
+            limits.are_of_growth || expectation->number == EXPECTED_SETTLED_GROWTH;
     }
-    return expects;
+    return limits;
 }
 
-// Gives the scenario the settled motion of another of the same case, whose start it does not have.
-static void take_motion(Scenario *scenario, Scenario *settled)
-{
-    const SettledStart own = scenario->settled;
-    settle_scenario(settled, (RunWatch){.progress = NULL});
-    scenario->settled = settled->settled;
-    scenario->settled.revolutions = own.revolutions;
-    settled->settled = own;
-}
-
-// Finds where the case starts: where the numbers of its baseline did, if there are such. Limits of
-// the settled motion are those of one that is found anew.
-static void settle_item(CheckItem *item, const CheckOptions *options)
+// Starts the case where the numbers of its baseline did, if there are such; its settled motion, of
+// which it limits numbers, is found anew.
+static bool start_as_baseline(CheckItem *item, bool limits_motion)
 {
     Scenario *scenario = item->scenario;
-    Scenario as_written = scenario_copy(scenario);
-    if (options->is_blessing || !baseline_start_scenario(&item->baseline, &item->now, scenario)) {
-        settle_scenario(scenario, (RunWatch){.progress = NULL});
-    } else if (expects_settled(scenario, EXPECTED_SETTLED_PERIOD)) {
-        take_motion(scenario, &as_written);
+    Scenario as_written = limits_motion ? scenario_copy(scenario) : (Scenario){.point_count = 0};
+    const bool is_started = baseline_start_scenario(&item->baseline, &item->now, scenario);
+    if (is_started && limits_motion) {
+        const SettledStart own = scenario->settled;
+        settle_scenario(&as_written, (RunWatch){.progress = NULL});
+        scenario->settled = as_written.settled;
+        scenario->settled.revolutions = own.revolutions;
+        as_written.settled = own;
     }
     scenario_free(&as_written);
-    if (expects_settled(scenario, EXPECTED_SETTLED_GROWTH)) {
-        settle_growth(scenario, (RunWatch){.progress = NULL});
+    return is_started;
+}
+
+// Finds where the case starts, and what it limits of its settled motion.
+static void settle_item(CheckItem *item, const CheckOptions *options)
+{
+    const SettledLimits limits = settled_limits(item->scenario);
+    if (options->is_blessing || !start_as_baseline(item, limits.are_any)) {
+        settle_scenario(item->scenario, (RunWatch){.progress = NULL});
+    }
+    if (limits.are_of_growth) {
+        settle_growth(item->scenario, (RunWatch){.progress = NULL});
     }
 }
 

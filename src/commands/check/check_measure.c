@@ -7,6 +7,7 @@
 #include "base/room.h"
 #include "base/text.h"
 #include "base/zeroed.h"
+#include "casefile/expect.h"
 #include "contact/law.h"
 #include "measure/chosen_run.h"
 #include "measure/section.h"
@@ -56,14 +57,12 @@ static double error_number(const TrajectoryError *error, ExpectedNumber number)
 
 bool expect_value_is_error(const Expectation *expectation)
 {
-    return expectation->number >= EXPECTED_ERROR_MAX &&
-           expectation->number <= EXPECTED_ERROR_PEAK_ALPHA_MAX;
+    return EXPECT_ROWS[expectation->number].group == EXPECT_ERROR;
 }
 
 bool expect_value_is_settled(const Expectation *expectation)
 {
-    return expectation->number >= EXPECTED_SETTLED_PERIOD &&
-           expectation->number <= EXPECTED_SETTLED_GROWTH;
+    return EXPECT_ROWS[expectation->number].group == EXPECT_SETTLED;
 }
 
 double expect_value_of_settled(const Expectation *expectation, const Scenario *scenario)

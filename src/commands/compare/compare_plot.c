@@ -49,9 +49,8 @@ static PlotStyle compare_plot_style_of(const Scheme *scheme)
         }
         return compare_style_of_engine(driver->name, way, driver->way_count);
     }
-    const bool has_map = strchr(scheme->name, '/') != strrchr(scheme->name, '/');
     return scheme_has_step(scheme)
-               ? compare_style_of_ode(scheme->solver, scheme->stepping, scheme->map, has_map)
+               ? compare_style_of_ode(scheme->name, scheme->solver, scheme->stepping, scheme->map)
                : compare_style_of_others();
 }
 

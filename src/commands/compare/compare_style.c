@@ -27,8 +27,10 @@ PlotStyle compare_style_of_engine(const char *engine, size_t way, size_t way_cou
                        .dash = is_last ? NULL : DASHES[way % 3]};
 }
 
-PlotStyle compare_style_of_ode(OdeSolver solver, OdeStepping stepping, OdeMap map, bool has_map)
+PlotStyle compare_style_of_ode(const char *scheme, OdeSolver solver, OdeStepping stepping,
+                               OdeMap map)
 {
+    const bool has_map = strchr(scheme, '/') != strrchr(scheme, '/');
     PlotStyle style = plot_style(1, has_map ? (size_t)map : (size_t)stepping);
     style.width = stepping == ODE_PLAIN ? 1.2 : 2.2;
     style.dash = solver == ODE_DIRECT ? NULL : "6 4";

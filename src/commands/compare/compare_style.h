@@ -9,9 +9,10 @@
 // does not depend on what else is compared, its last way a thick line.
 PlotStyle compare_style_of_engine(const char *engine, size_t way, size_t way_count);
 
-// Of a scheme of ODE: with play the map has the colour, else the stepping, which is then all there
-// is; the quick solver is dashed.
-PlotStyle compare_style_of_ode(OdeSolver solver, OdeStepping stepping, OdeMap map, bool has_map);
+// Of a scheme of ODE, SOLVER/STEPPING or with play SOLVER/STEPPING/MAP: with play the map has the
+// colour, else the stepping, which is then all there is; the quick solver is dashed.
+PlotStyle compare_style_of_ode(const char *scheme, OdeSolver solver, OdeStepping stepping,
+                               OdeMap map);
 
 // Of what chooses its own steps.
 PlotStyle compare_style_of_others(void);

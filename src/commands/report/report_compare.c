@@ -257,10 +257,9 @@ static PlotStyle style_of(const json_t *result, const json_t *scheme)
         return compare_style_of_others();
     }
     return compare_style_of_ode(
-        (OdeSolver)number_of(html_text_of(scheme, "solver"), OPTIONS_ODE_SOLVERS),
+        name, (OdeSolver)number_of(html_text_of(scheme, "solver"), OPTIONS_ODE_SOLVERS),
         (OdeStepping)number_of(html_text_of(scheme, "stepping"), OPTIONS_ODE_STEPPINGS),
-        (OdeMap)number_of(html_text_of(scheme, "map"), OPTIONS_ODE_MAPS),
-        strchr(name, '/') != strrchr(name, '/'));
+        (OdeMap)number_of(html_text_of(scheme, "map"), OPTIONS_ODE_MAPS));
 }
 
 static void append_picture(const json_t *result, Text *html)

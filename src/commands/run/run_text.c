@@ -714,8 +714,7 @@ static void write_friction(const Scenario *scenario, size_t width, Text *text)
         const Joint *joint = &linkage->joints[i];
         if (linkage_has_play(joint) && !linkage_is_torsional(joint)) {
             char said[40];
-            snprintf(said, sizeof said, "coefficient %.4g",
-                     law_options(&scenario->contact, joint).friction);
+            snprintf(said, sizeof said, "coefficient %.4g", scenario_friction(scenario, joint));
             alike_add(alike, joint->name, said);
         }
     }

@@ -562,7 +562,7 @@ static bool take_drivers(const CommonOptions *common, Scenario *scenario, Err *e
     for (size_t i = 0; i < common->driver_count; i++) {
         const char *given = common->drivers[i];
         BackendKind backend;
-        if (!common_options_driver(given, &backend, err)) {
+        if (!common_options_take_driver(given, scenario, &backend, err)) {
             return false;
         }
         if (backend != BACKEND_MUJOCO) {
@@ -571,7 +571,6 @@ static bool take_drivers(const CommonOptions *common, Scenario *scenario, Err *e
                            "for --mjcf and --out",
                            given);
         }
-        scenario->engines[backend].driver = given;
     }
     return true;
 }

@@ -57,7 +57,7 @@ static void tune_gazebo_write_surface(const TuneReport *report, const TuneGazebo
 {
     const Scenario *scenario = report->scenario;
     const Joint *joint = &scenario->linkage.joints[report->tune->contact.joint];
-    const double friction = law_options(&scenario->contact, joint).friction;
+    const double friction = scenario_friction(scenario, joint);
     text_append(text,
                 "<!-- in the collision of the pin, and the same in that of the hole -->\n"
                 "<surface>\n"
@@ -196,7 +196,7 @@ static void write_pair(const TuneReport *report, const TuneMujoco *mujoco, Text 
 {
     const Scenario *scenario = report->scenario;
     const Joint *joint = &scenario->linkage.joints[report->tune->contact.joint];
-    const double friction = law_options(&scenario->contact, joint).friction;
+    const double friction = scenario_friction(scenario, joint);
     char slides[FRICTION_SIZE] = "";
     if (friction > 0.0) {
         // both directions of sliding; MuJoCo's own numbers for torsion and rolling, which a planar
