@@ -268,10 +268,27 @@ def a_listed_spike_is_zoomed_to(browser, page):
     browser.picture("spike")
 
 
+def check_places(browser, names, units):
+    """The mechanism's table ends with the last places of the last run's bodies."""
+    found = browser.value("""(() => {
+        const { run, data } = jointplay.mechanism.poses[jointplay.mechanism.poses.length - 1];
+        const rows = [...document.querySelectorAll(".moving .values tbody tr")].slice(-data.bodies.length);
+        return data.bodies.map((body, i) => {
+            const cells = [...rows[i].cells].map((cell) => cell.textContent);
+            const last = %s.map(([name, unit]) => {
+                const values = findSignal(run, "body", i, name);
+                return formatNumber(values[values.length - 1] * unit);
+            });
+            return [cells.slice(cells.indexOf(body.name)), [body.name, ...last]];
+        });
+    })()""" % ("[" + ", ".join(f'["{name}", {unit}]' for name, unit in zip(names, units)) + "]"))
+    assert found and all(shown[:len(last)] == last for shown, last in found), found
+
+
 def every_plot_has_a_table_with_its_peaks(browser, page):
     browser.open(page)
-    bare = browser.value("""[...document.querySelectorAll("figure canvas[role=img]")].filter((canvas) =>
-        !canvas.closest("figure").querySelector("details.values")).map((canvas) => canvas.ariaLabel)""")
+    bare = browser.value("""[...document.querySelectorAll("canvas[role=img]")].filter((canvas) =>
+        !canvas.closest("figure, .moving").querySelector("details.values")).map((canvas) => canvas.ariaLabel)""")
     assert bare == [], bare
     # made when it is opened, and not before
     assert browser.value("document.querySelectorAll('.values table').length") == 0
@@ -285,6 +302,7 @@ def every_plot_has_a_table_with_its_peaks(browser, page):
             [most, shown.includes(most), rows.length]);
     })()""")
     assert found and all(has and 10 < count <= 64 for _, has, count in found), found
+    check_places(browser, ["x_m", "y_m", "angle_rad"], [1000, 1000, "DEG"])
     assert browser.value("document.documentElement.scrollWidth") <= 1200
     browser.picture("tables")
     browser.check_silence()
@@ -438,6 +456,9 @@ def a_mechanism_in_space_turns(browser, page):
     browser.mouse("mouseReleased", left + 0.6 * width, top + 90)
     assert browser.value("jointplay.mechanism.yaw") != before
     assert browser.value("jointplay.mechanism.pitch") > 0.45
+    browser.value("document.querySelector('.moving .values').open = true")
+    browser.wait_for("document.querySelector('.moving .values table') !== null")
+    check_places(browser, ["x_m", "y_m", "height_m"], [1000, 1000, 1000])
     browser.picture("space")
     browser.check_silence()
 

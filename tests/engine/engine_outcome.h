@@ -165,6 +165,25 @@ static inline double omega_error(const char *engine, const char *way, const Scen
     return hold_against(scenario, run, BACKEND_REFERENCE).error.omega_max;
 }
 
+// A slider-crank without play in a way, with the most that it may be off; and with play, contacts
+// within the step, where every engine has the same errors, of order 2, to steps of 1 us.
+static inline void hold_slider_crank(const char *engine, const char *way, double step_s,
+                                     double most)
+{
+    Scenario slider = load("cases/mechanisms/slider-crank.yaml", NULL, 0);
+    slider.run.step = step_s;
+    const Outcome ideal = outcome_of(engine, way, &slider, BACKEND_ANALYTIC);
+    assert_true(ideal.error.max < most);
+    Scenario pin = load_with("cases/mechanisms/slider-crank-pin.yaml", "run.revolutions=0.1");
+    pin.run.step = 10e-6;
+    const double coarse = omega_error(engine, "kernel", &pin, &pin);
+    pin.run.step = 1e-6;
+    const double fine = omega_error(engine, "kernel", &pin, &pin);
+    if (!(log(coarse / fine) / log(10.0) > 1.8) || !(fine < 1e-7)) {
+        fail_msg("%s, pin of the slider: %g at 10 us, %g at 1", engine, coarse, fine);
+    }
+}
+
 // A crank-rocker with play from rest, by a torque over time, with a spring and two dampers.
 static inline Scenario sprung(double step_s)
 {

@@ -75,10 +75,7 @@ static void a_slide_joint_holds_the_pin(void **state)
 static void a_slider_crank_can_be_told(void **state)
 {
     (void)state;
-    Scenario slider = load("cases/mechanisms/slider-crank.yaml", NULL, 0);
-    slider.run.step = 20e-6;
-    const Outcome ideal = outcome_of(CHIPMUNK, "staggered", &slider, BACKEND_ANALYTIC);
-    assert_true(ideal.error.max < 1e-2);
+    hold_slider_crank(CHIPMUNK, "staggered", 20e-6, 1e-2);
 }
 
 static void contacts_in_the_step_are_as_good_as_those_of_ode(void **state)

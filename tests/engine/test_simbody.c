@@ -60,10 +60,7 @@ static void its_own_steps_reach_an_accuracy(void **state)
 static void a_slider_crank_can_be_told(void **state)
 {
     (void)state;
-    Scenario slider = load("cases/mechanisms/slider-crank.yaml", NULL, 0);
-    slider.run.step = 50e-6;
-    const Outcome ideal = outcome_of(SIMBODY, "force", &slider, BACKEND_ANALYTIC);
-    assert_true(ideal.error.max < 1e-5);
+    hold_slider_crank(SIMBODY, "force", 50e-6, 1e-5);
 }
 
 static void contacts_in_the_step_are_as_good_as_those_of_ode(void **state)

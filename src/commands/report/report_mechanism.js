@@ -10,6 +10,8 @@ const PIN_MOST = 9;
 const LINKS_SEEN = 4; // link lengths that are a mechanism's size, at most
 const MARGIN = 50; // pixels: what stands below a pivot, and guides
 
+const PLACE_HEADS = ["x, mm", "y, mm", "angle, deg"];
+
 const rotate = ([x, y], angle) => {
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     return [c * x - s * y, s * x + c * y];
@@ -45,6 +47,12 @@ class Poses {
         }));
     }
 
+    // What a table says of a body, for PLACE_HEADS.
+    placeCells(body) {
+        const { x, y, angle } = this.now[body];
+        return [1000 * x, 1000 * y, angle * DEG].map(formatNumber);
+    }
+
     angle(body) {
         return body === GROUND ? 0 : this.now[body].angle;
     }
@@ -75,6 +83,33 @@ class Poses {
     }
 }
 
+// Where the bodies are at equal intervals of all runs.
+function placesTable(page, runs, heads) {
+    return valuesTable(["run", ...page.timeHeads(), "body", ...heads], () => {
+        const { bodies } = page.data;
+        const times = Math.max(2, Math.floor(TABLE_ROWS / (runs.length * bodies.length)));
+        const rows = [];
+        for (const poses of runs) {
+            const { run } = poses;
+            for (let k = 0; k < times && poses.count > 0; k++) {
+                const share = Math.round((k * (poses.count - 1)) / (times - 1));
+                const time = run.from_s + share * run.interval_s;
+                poses.set(time);
+                bodies.forEach((body, i) =>
+                    rows.push([
+                        run.backend,
+                        ...page.timeCells(time),
+                        body.name,
+                        ...poses.placeCells(i),
+                    ]),
+                );
+            }
+        }
+        const all = runs.reduce((sum, poses) => sum + poses.count * bodies.length, 0);
+        return { rows, more: all - rows.length };
+    });
+}
+
 class Mechanism {
     constructor(page) {
         this.page = page;
@@ -92,6 +127,7 @@ class Mechanism {
         this.findSize();
         this.findForces();
         this.trails = this.poses.map((poses) => this.tracePoints(poses));
+        this.table = placesTable(page, this.poses, PLACE_HEADS);
     }
 
     // The points that a body's outline goes through, in its own frame.

@@ -817,6 +817,7 @@ class Page {
                 { className: "moving" },
                 element("h2", {}, "The mechanism"),
                 this.mechanism.canvas,
+                this.mechanism.table,
             ),
             this.makeControls(),
             this.makeMechanismControls(),

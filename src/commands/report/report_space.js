@@ -5,6 +5,8 @@ const SPACE_YAW = -0.6; // rad, at first
 const SPACE_PITCH = 0.45;
 const SPACE_HEIGHT = 420; // pixels
 
+const SPACE_PLACE_HEADS = ["x, mm", "y, mm", "z, mm", "tilt of its axis, deg"];
+
 // A vector turned by a quaternion: v + 2 q x (q x v + w v).
 function turned([w, qx, qy, qz], [x, y, z]) {
     const cross = ([ax, ay, az], [bx, by, bz]) => [
@@ -50,6 +52,13 @@ class SpacePoses {
         this.forces = this.joints.map(({ force }) => force.map(now));
     }
 
+    // What a table says of a body, for SPACE_PLACE_HEADS.
+    placeCells(body) {
+        const { place, turn } = this.now[body];
+        const axis = turned(turn, [0, 0, 1]);
+        return [...place.map((value) => 1000 * value), Math.acos(axis[2]) * DEG].map(formatNumber);
+    }
+
     point(body, local) {
         return body === GROUND
             ? local
@@ -79,6 +88,7 @@ class SpaceMechanism {
         this.findOutlines();
         this.findSize();
         this.trails = this.poses.map((poses) => this.tracePoints(poses));
+        this.table = placesTable(page, this.poses, SPACE_PLACE_HEADS);
         this.listen();
     }
 
