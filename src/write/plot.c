@@ -347,18 +347,17 @@ void plot_enter_bare(const PlotPanel *panel)
 {
     Text *svg = panel->svg;
     draw_titles(panel);
-    // the clip path is named after its position, which no two panels share
-    text_append(svg,
-                "<clipPath id=\"cut-%.0f-%.0f\"><rect x=\"%g\" y=\"%g\" width=\"%g\" "
-                "height=\"%g\"/></clipPath>\n<g clip-path=\"url(#cut-%.0f-%.0f)\">\n",
-                panel->left, panel->top, panel->left, panel->top, panel->width, panel->height,
-                panel->left, panel->top);
+    // a picture in the picture cuts off what is beyond it, and needs no name that a page with many
+    // pictures would have twice
+    text_append(svg, "<svg x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" viewBox=\"%g %g %g %g\">\n",
+                panel->left, panel->top, panel->width, panel->height, panel->left, panel->top,
+                panel->width, panel->height);
 }
 
 void plot_leave(const PlotPanel *panel)
 {
     text_append(panel->svg,
-                "</g>\n<rect class=\"frame\" x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\"/>\n",
+                "</svg>\n<rect class=\"frame\" x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\"/>\n",
                 panel->left, panel->top, panel->width, panel->height);
 }
 

@@ -66,7 +66,7 @@ def nothing_in_it_asks_another_place(work):
 
 def the_picture_needs_no_style_sheet(work):
     text = make(work + "/c.html")
-    picture = text[text.index("<svg") : text.index("</svg>")]
+    picture = text[text.index("<svg") : text.index("</svg>\n</div>")]
     assert "<path" in picture and "<style" not in picture and "class=" not in picture
 
 
@@ -95,7 +95,7 @@ def the_picture_has_the_strokes_of_run(work):
     text = make(work + "/k.html", *words)
     status, _, errors = run("run", case, "--quiet", "--plot", work + "/k.svg", *words)
     assert status == 0, errors
-    ours = strokes(text[text.index("<svg") : text.index("</svg>")])
+    ours = strokes(text[text.index("<svg") : text.index("</svg>\n</div>")])
     theirs = strokes(open(work + "/k.svg", encoding="utf-8").read())
     assert len(ours) > 10 and ours == theirs
     # the control: a stroke that goes further is another

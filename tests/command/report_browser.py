@@ -277,7 +277,7 @@ def check_places(browser, names, units):
             const cells = [...rows[i].cells].map((cell) => cell.textContent);
             const last = %s.map(([name, unit]) => {
                 const values = findSignal(run, "body", i, name);
-                return formatNumber(values[values.length - 1] * unit);
+                return formatPlace(values[values.length - 1] * unit);
             });
             return [cells.slice(cells.indexOf(body.name)), [body.name, ...last]];
         });

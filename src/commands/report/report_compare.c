@@ -93,8 +93,11 @@ static void append_way(const json_t *row, Text *html)
         text_append(&words, "none");
     } else {
         units_append(&words, html_number_of(row, "wall_median_s"), "s");
-        text_append(&words, ": %s, ", way);
-        append_step(html_number_of(row, "step_s"), &words);
+        text_append(&words, ": %s", way);
+        if (is_path) {
+            text_append(&words, ", ");
+            append_step(html_number_of(row, "step_s"), &words);
+        }
     }
     html_words("td", words.data, html);
     text_finish(&words);
@@ -295,16 +298,38 @@ static void append_picture(const json_t *result, Text *html)
     text_append(html, "</section>\n");
 }
 
+static bool has_order(const json_t *scheme)
+{
+    return isfinite(html_number_of(json_object_get(scheme, "order"), "order"));
+}
+
+static bool has_any_order(const json_t *schemes)
+{
+    bool has = false;
+    size_t i;
+    json_t *scheme;
+    json_array_foreach(schemes, i, scheme)
+    {
+        has = has || has_order(scheme);
+    }
+    return has;
+}
+
 static void append_orders(const json_t *schemes, Text *html)
 {
     static const char *const HEADS[] = {"scheme", "order", "from step", "to step", "points"};
+    if (!has_any_order(schemes)) {
+        text_append(html, "<p class=\"note\">No order of the error in the step: none falls alike "
+                          "over three steps in a row.</p>\n");
+        return;
+    }
     html_table_begin("Observed order of the error in the step", 5, HEADS, html);
     size_t i;
     json_t *scheme;
     json_array_foreach(schemes, i, scheme)
     {
         const json_t *order = json_object_get(scheme, "order");
-        if (!isfinite(html_number_of(order, "order"))) {
+        if (!has_order(scheme)) {
             continue;
         }
         text_append(html, "<tr>");

@@ -10,6 +10,9 @@ const PIN_MOST = 9;
 const LINKS_SEEN = 4; // link lengths that are a mechanism's size, at most
 const MARGIN = 50; // pixels: what stands below a pivot, and guides
 
+// Of a table of places: rounding is no place.
+const formatPlace = (value) => formatNumber(Math.round(value * 1e9) / 1e9);
+
 const PLACE_HEADS = ["x, mm", "y, mm", "angle, deg"];
 
 const rotate = ([x, y], angle) => {
@@ -50,7 +53,7 @@ class Poses {
     // What a table says of a body, for PLACE_HEADS.
     placeCells(body) {
         const { x, y, angle } = this.now[body];
-        return [1000 * x, 1000 * y, angle * DEG].map(formatNumber);
+        return [1000 * x, 1000 * y, angle * DEG].map(formatPlace);
     }
 
     angle(body) {

@@ -56,7 +56,7 @@ class SpacePoses {
     placeCells(body) {
         const { place, turn } = this.now[body];
         const axis = turned(turn, [0, 0, 1]);
-        return [...place.map((value) => 1000 * value), Math.acos(axis[2]) * DEG].map(formatNumber);
+        return [...place.map((value) => 1000 * value), Math.acos(axis[2]) * DEG].map(formatPlace);
     }
 
     point(body, local) {

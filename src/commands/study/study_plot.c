@@ -321,7 +321,8 @@ void study_histogram_draw(const StudyPoints *points, const Column *column, PlotP
             most = fmax(most, bars.shares[group][i]);
         }
     }
-    panel->y = (Axis){.title = "share of the runs, %", .high = most};
+    // room above the bars for what is written there
+    panel->y = (Axis){.title = "share of the runs, %", .high = 1.1 * most};
     axis_round(&panel->y.low, &panel->y.high);
     panel->y.low = 0.0;
     // the outer bars are whole, even where all values are one
