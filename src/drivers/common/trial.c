@@ -5,8 +5,8 @@
 //     A = G(q_m, v_m, 1) - G(q_m, v_m, 0),  W = J A
 //     2 S = (F(v_m + e A) - F(v_m)) / e,    B = (G(v_m + e A) - G(v_m)) / e
 //     a + B Q/h + A P/h = G(q_m, v_m + A Q/h, P/h)
-//     v' = v + h a + B Q + A P + A' (h/2 P - Q)
-//     q' = q + h v + h^2/2 a - h^3/12 a' + B R + A Q + A' (h/2 Q - 2 R)
+//     v' = v + h a + h^3/24 a'' + B Q + B' (h/2 Q - R) + A P + A' (h/2 P - Q)
+//     q' = q + h v + h^2/2 a - h^3/12 a' + h^4/48 a'' + B R + A Q + A' (h/2 Q - 2 R)
 #include "drivers/common/trial.h"
 
 #include <math.h>
@@ -26,9 +26,7 @@ typedef struct Trial {
     TrialAccelerate accelerate;
     void *engine;
     DriverRun *run;
-    double *q_middle; // by coordinate; owned, as all arrays
-    double *v_middle;
-    double *other;
+    double *other;         // by coordinate; owned, as all arrays
     DriverMotion *motions; // by body
     DriverMotion *tried;   // of a trial
     Vec2 *bends;
@@ -113,7 +111,7 @@ static Vec2 bend_of(const Trial *trial, int body, Vec2 local)
 // u'' = J a + J' v at the middle's positions and velocities like those there.
 static void find_row_accelerations(Trial *trial, const double *v, const double *a, double *rows)
 {
-    tree_motions(trial->tree, trial->q_middle, v, trial->motions);
+    tree_motions(trial->tree, trial->in.q_middle, v, trial->motions);
     tree_bends(trial->tree, trial->motions, v, trial->bends);
     for (size_t i = 0; i < trial->in.rows; i++) {
         rows[i] = dot(trial->in.jacobian + i * trial->in.count, a, trial->in.count);
@@ -137,7 +135,7 @@ static void find_response(Trial *trial)
         double *response = trial->in.responses[0] + k * trial->in.count;
         memset(trial->in.work, 0, trial->in.rows * sizeof *trial->in.work);
         trial->in.work[k] = 1.0;
-        evaluate(trial, trial->q_middle, trial->v_middle, trial->in.work, size, response);
+        evaluate(trial, trial->in.q_middle, trial->in.v_middle, trial->in.work, size, response);
         for (size_t i = 0; i < trial->in.count; i++) {
             response[i] = (response[i] - trial->in.free[i]) / size;
         }
@@ -155,7 +153,7 @@ static void find_response(Trial *trial)
 static void find_drift(Trial *trial)
 {
     const size_t count = trial->in.count;
-    const double speed = sqrt(dot(trial->v_middle, trial->v_middle, count));
+    const double speed = sqrt(dot(trial->in.v_middle, trial->in.v_middle, count));
     for (size_t k = 0; k < trial->in.rows; k++) {
         const double *response = trial->in.responses[0] + k * count;
         const double size = sqrt(dot(response, response, count));
@@ -163,9 +161,9 @@ static void find_drift(Trial *trial)
             continue; // a turn of the ground: nothing follows it
         }
         const double nudge = NUDGE * (speed > 0.0 ? speed : 1.0) / size;
-        memcpy(trial->in.nudged, trial->v_middle, count * sizeof *trial->in.nudged);
+        memcpy(trial->in.nudged, trial->in.v_middle, count * sizeof *trial->in.nudged);
         add(trial->in.nudged, response, nudge, count);
-        evaluate(trial, trial->q_middle, trial->in.nudged, NULL, 0.0, trial->other);
+        evaluate(trial, trial->in.q_middle, trial->in.nudged, NULL, 0.0, trial->other);
         find_row_accelerations(trial, trial->in.nudged, trial->other, trial->in.work);
         for (size_t i = 0; i < count; i++) {
             trial->in.bend[k * count + i] = (trial->other[i] - trial->in.free[i]) / nudge;
@@ -177,43 +175,29 @@ static void find_drift(Trial *trial)
     }
 }
 
-// Mid-step, with the velocities that are to be expected there.
-static void find_middle(Trial *trial, double step_s)
-{
-    const size_t count = trial->in.count;
-    memcpy(trial->in.ahead, trial->in.a, count * sizeof *trial->in.ahead);
-    within_add_rows(&trial->in, trial->in.bend, trial->in.sums.impulse, 1.0, trial->in.ahead);
-    memcpy(trial->q_middle, trial->in.q, count * sizeof *trial->in.q);
-    memcpy(trial->v_middle, trial->in.v, count * sizeof *trial->in.v);
-    add(trial->q_middle, trial->in.v, 0.5 * step_s, count);
-    add(trial->q_middle, trial->in.ahead, 0.125 * step_s * step_s, count);
-    within_add_rows(&trial->in, trial->in.responses[0], trial->in.sums.impulse, 0.125 * step_s,
-                    trial->q_middle);
-    add(trial->v_middle, trial->in.ahead, 0.5 * step_s, count);
-}
-
 // The engine at mid-step under the contacts' mean force.
 static void find_accelerations(Trial *trial, double step_s)
 {
     const double per_s = 1.0 / step_s;
-    memcpy(trial->in.nudged, trial->v_middle, trial->in.count * sizeof *trial->in.nudged);
+    memcpy(trial->in.nudged, trial->in.v_middle, trial->in.count * sizeof *trial->in.nudged);
     within_add_rows(&trial->in, trial->in.responses[0], trial->in.sums.moment, per_s,
                     trial->in.nudged);
-    evaluate(trial, trial->q_middle, trial->in.nudged, trial->in.sums.impulse, per_s, trial->other);
+    evaluate(trial, trial->in.q_middle, trial->in.nudged, trial->in.sums.impulse, per_s,
+             trial->other);
     within_take_accelerations(&trial->in, trial->other, step_s);
 }
 
 static void take_step(Trial *trial, double step_s)
 {
     Within *in = &trial->in;
-    find_middle(trial, step_s);
+    within_find_middle(in, step_s);
     within_keep_free(in);
-    tree_motions(trial->tree, trial->q_middle, trial->v_middle, trial->motions);
+    tree_motions(trial->tree, trial->in.q_middle, trial->in.v_middle, trial->motions);
     find_jacobian(trial);
-    evaluate(trial, trial->q_middle, trial->v_middle, NULL, 0.0, trial->in.free);
+    evaluate(trial, trial->in.q_middle, trial->in.v_middle, NULL, 0.0, trial->in.free);
     find_response(trial);
     within_find_rate(in, step_s);
-    find_row_accelerations(trial, trial->v_middle, trial->in.free, trial->in.kernel.free);
+    find_row_accelerations(trial, trial->in.v_middle, trial->in.free, trial->in.kernel.free);
     find_drift(trial);
     within_find_free_rate(in, step_s);
     tree_motions(trial->tree, trial->in.q, trial->in.v, trial->motions);
@@ -252,8 +236,6 @@ static Trial make(const Tree *tree, TrialAccelerate accelerate, void *engine, Dr
                    .accelerate = accelerate,
                    .engine = engine,
                    .run = run,
-                   .q_middle = within_numbers(tree->coordinates),
-                   .v_middle = within_numbers(tree->coordinates),
                    .other = within_numbers(tree->coordinates),
                    .motions = room(of->body_count, sizeof *trial.motions),
                    .bends = room(of->body_count, sizeof *trial.bends),

@@ -54,13 +54,15 @@ void within_open(const DriverCase *of, size_t count, Within *in)
         driver_fail("there is no memory");
     }
     add_contacts(of, in);
-    double **by_coordinate[] = {&in->q,      &in->v,     &in->q_next, &in->v_next, &in->a,
-                                &in->a_rate, &in->ahead, &in->free,   &in->nudged};
+    double **by_coordinate[] = {&in->q,     &in->v,        &in->q_next,   &in->v_next,
+                                &in->a,     &in->a_rate,   &in->a_bend,   &in->a_change,
+                                &in->ahead, &in->q_middle, &in->v_middle, &in->free,
+                                &in->nudged};
     for (size_t i = 0; i < sizeof by_coordinate / sizeof *by_coordinate; i++) {
         *by_coordinate[i] = within_numbers(count);
     }
-    double **by_block[] = {&in->responses[0], &in->responses[1], &in->responses[2],
-                           &in->rate,         &in->jacobian,     &in->bend};
+    double **by_block[] = {&in->responses[0], &in->responses[1], &in->responses[2], &in->rate,
+                           &in->bend_rate,    &in->bend_before,  &in->jacobian,     &in->bend};
     for (size_t i = 0; i < sizeof by_block / sizeof *by_block; i++) {
         *by_block[i] = within_numbers(in->rows * count);
     }
@@ -85,6 +87,23 @@ void within_add_rows(const Within *in, const double *columns, const double *by_r
     }
 }
 
+void within_find_middle(Within *in, double step_s)
+{
+    const size_t count = in->count;
+    memcpy(in->ahead, in->a, count * sizeof *in->ahead);
+    within_add_rows(in, in->bend, in->sums.impulse, 1.0, in->ahead);
+    memcpy(in->q_middle, in->q, count * sizeof *in->q);
+    memcpy(in->v_middle, in->v, count * sizeof *in->v);
+    add(in->q_middle, in->v, 0.5 * step_s, count);
+    add(in->q_middle, in->ahead, 0.125 * step_s * step_s, count);
+    within_add_rows(in, in->responses[0], in->sums.impulse, 0.125 * step_s, in->q_middle);
+    // the parabola of the last step, about its middle, from its end to half a step behind that
+    const double cube = step_s * step_s * step_s;
+    add(in->v_middle, in->ahead, 0.5 * step_s, count);
+    add(in->v_middle, in->a_rate, 3.0 / 8.0 * step_s * step_s, count);
+    add(in->v_middle, in->a_bend, 7.0 / 48.0 * cube, count);
+}
+
 void within_keep_free(Within *in)
 {
     double size = 0.0;
@@ -98,15 +117,14 @@ void within_keep_free(Within *in)
         size = fmax(size, fabs(in->kernel.free[i]));
         pushed = fmax(pushed, fabs(change));
     }
-    in->is_calm = pushed <= CALM * size;
+    in->calm_steps = in->steps > 1 && pushed <= CALM * size ? in->calm_steps + 1 : 0;
 }
 
 void within_find_free_rate(Within *in, double step_s)
 {
     for (size_t i = 0; i < in->rows; i++) {
-        const bool is_known = in->steps > 1 && in->is_calm;
         in->kernel.free_rate[i] =
-            is_known ? (in->kernel.free[i] - in->free_before[i]) / step_s : 0.0;
+            in->calm_steps > 0 ? (in->kernel.free[i] - in->free_before[i]) / step_s : 0.0;
     }
 }
 
@@ -165,32 +183,51 @@ void within_take_accelerations(Within *in, const double *a, double step_s)
     memcpy(in->a, a, in->count * sizeof *in->a);
     within_add_rows(in, in->responses[0], in->sums.impulse, -1.0 / step_s, in->a);
     within_add_rows(in, in->bend, in->sums.moment, -1.0 / step_s, in->a);
-    for (size_t i = 0; i < in->count; i++) {
-        const bool is_known = in->steps > 1 && in->is_calm;
-        in->a_rate[i] = is_known ? (in->a[i] - in->ahead[i]) / step_s : 0.0;
+    for (size_t i = 0; i < in->rows * in->count; i++) {
+        in->bend_rate[i] = in->steps > 0 ? (in->bend[i] - in->bend_before[i]) / step_s : 0.0;
+        in->bend_before[i] = in->bend[i];
     }
+    for (size_t i = 0; i < in->count; i++) {
+        const double before = in->a_change[i];
+        in->a_change[i] = in->calm_steps > 0 ? (in->a[i] - in->ahead[i]) / step_s : 0.0;
+        in->a_bend[i] = in->calm_steps > 1 ? (in->a_change[i] - before) / step_s : 0.0;
+        in->a_rate[i] = in->a_change[i] + 0.5 * step_s * in->a_bend[i];
+    }
+}
+
+// Adds what the accelerations beside the contacts do up to a time: a parabola about mid-step,
+// a + a' t + a''/2 t^2.
+static void add_beside(const Within *in, double since_s, double middle_s, double *q, double *v)
+{
+    const double t = since_s - middle_s;
+    const double cube = middle_s * middle_s * middle_s;
+    add(v, in->a, since_s, in->count);
+    add(v, in->a_rate, 0.5 * (t * t - middle_s * middle_s), in->count);
+    add(v, in->a_bend, (t * t * t + cube) / 6.0, in->count);
+    add(q, in->v, since_s, in->count);
+    add(q, in->a, 0.5 * since_s * since_s, in->count);
+    add(q, in->a_rate, since_s * (since_s / 6.0 - 0.5 * middle_s) * since_s, in->count);
+    add(q, in->a_bend, (t * t * t * t + cube * (4.0 * since_s - middle_s)) / 24.0, in->count);
 }
 
 void within_find_inside(const Within *in, double since_s, double step_s, const KernelSums *sums,
                         double *q, double *v)
 {
-    const size_t count = in->count;
     const double off_s = since_s - 0.5 * step_s;
-    memcpy(q, in->q, count * sizeof *q);
-    memcpy(v, in->v, count * sizeof *v);
-    add(q, in->v, since_s, count);
-    add(q, in->a, 0.5 * since_s * since_s, count);
-    add(q, in->a_rate, since_s * (since_s / 6.0 - 0.25 * step_s) * since_s, count);
-    add(v, in->a, since_s, count);
-    add(v, in->a_rate, 0.5 * since_s * (since_s - step_s), count);
+    const double *second = sums->moment + in->rows; // integral of the moment
+    memcpy(q, in->q, in->count * sizeof *q);
+    memcpy(v, in->v, in->count * sizeof *v);
+    add_beside(in, since_s, 0.5 * step_s, q, v);
     within_add_rows(in, in->responses[0], sums->impulse, 1.0, v);
-    within_add_rows(in, in->bend, sums->moment, 1.0, v);
     within_add_rows(in, in->rate, sums->impulse, off_s, v);
     within_add_rows(in, in->rate, sums->moment, -1.0, v);
+    within_add_rows(in, in->bend, sums->moment, 1.0, v);
+    within_add_rows(in, in->bend_rate, sums->moment, off_s, v);
+    within_add_rows(in, in->bend_rate, second, -1.0, v);
     within_add_rows(in, in->responses[0], sums->moment, 1.0, q);
-    within_add_rows(in, in->bend, sums->moment + in->rows, 1.0, q);
     within_add_rows(in, in->rate, sums->moment, off_s, q);
-    within_add_rows(in, in->rate, sums->moment + in->rows, -2.0, q);
+    within_add_rows(in, in->rate, second, -2.0, q);
+    within_add_rows(in, in->bend, second, 1.0, q);
 }
 
 void within_find_end(Within *in, double step_s)

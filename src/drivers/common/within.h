@@ -22,20 +22,26 @@ typedef struct Within {
     double *v;
     double *q_next;
     double *v_next;
-    double *a; // beside the contacts'
+    double *a; // beside the contacts', at mid-step; its rate there, and that of its rate
     double *a_rate;
-    double *ahead; // a as it is to be expected: that of the step before, after its impulses
-    double *free;  // G, at mid-step
+    double *a_bend;
+    double *a_change; // from the mid-step before to this one
+    double *ahead;    // a as it is to be expected: that of the step before, after its impulses
+    double *q_middle; // of mid-step, as far as they are to be expected there
+    double *v_middle;
+    double *free; // G, at mid-step
     double *nudged;
     double *responses[WITHIN_BEFORE]; // A: row by row
     double *rate;                     // A'
     double *jacobian;                 // row by row
     double *bend;                     // B
-    double *drift;                    // S
-    double *free_before;              // by row
+    double *bend_rate;
+    double *bend_before;
+    double *drift;       // S
+    double *free_before; // by row
     double *work;
-    size_t steps; // of the run
-    bool is_calm;
+    size_t steps;      // of the run
+    size_t calm_steps; // in a row, in which the contacts pushed little
 } Within;
 
 // Makes the contacts of the pins in holes of a case, and all room. Refuses a case
@@ -48,6 +54,10 @@ double *within_numbers(size_t count);
 // Adds sums over the rows of A, or of A', to something by coordinate.
 void within_add_rows(const Within *in, const double *columns, const double *by_row, double scale,
                      double *target);
+
+// Where mid-step is to be expected, and how fast it goes there, from the accelerations of the steps
+// before.
+void within_find_middle(Within *in, double step_s);
 
 // What the free accelerations are behind the step's impulses, which have changed them by 2 S P; and
 // how they change by themselves, from those.

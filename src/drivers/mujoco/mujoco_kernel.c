@@ -3,13 +3,14 @@
 // q and v are MuJoCo's positions and velocities, both at the time t; u the rows, two a pin: pin
 // less hole, in the world's x and y; J their Jacobian, A = M^-1 J' what a unit impulse in a row
 // does to v, W = J A. A step h:
-//     q_m = q + h/2 v + h^2/8 (a + A P/h), v_m = v + h/2 a     a, P, A of the step before
+//     q_m = q + h/2 v + h^2/8 (a + A P/h)                      a, P, A of the step before
+//     v_m = v + h/2 a + 3/8 h^2 a' + 7/48 h^3 a''
 //     W, A, g = u'' without contacts, at q_m and v_m
 //     P, Q, R                                       the kernel's impulses, and their integrals
-//     v^ = v + h/2 a + A Q/h                        the mean velocity, with what the contacts do
+//     v^ = v_m + A Q/h                              the mean velocity, with what the contacts do
 //     a + B Q/h + A P/h from MuJoCo's step at q_m, v^, under the mean force P/h
-//     v' = v + h a + B Q + A P + A' (h/2 P - Q)
-//     q' = q + h v + h^2/2 a - h^3/12 a' + B R + A Q + A' (h/2 Q - 2 R)
+//     v' = v + h a + h^3/24 a'' + B Q + B' (h/2 Q - R) + A P + A' (h/2 P - Q)
+//     q' = q + h v + h^2/2 a - h^3/12 a' + h^4/48 a'' + B R + A Q + A' (h/2 Q - 2 R)
 // The accelerations without contacts are quadratic in v. Those of the rows, F(v), an impulse P
 // changes by 2 S P, those of the coordinates, G(v), by B P:
 //     2 S = (F(v + e A) - F(v)) / e,   B = (G(v + e A) - G(v)) / e,   e small;   W' = S + S'
@@ -121,7 +122,7 @@ static void step_engine(Adapter *by, double step_s)
     Within *in = &by->in;
     mjData *data = by->data;
     const int nv = (int)in->count;
-    mju_addScl(data->qvel, in->v, in->ahead, 0.5 * step_s, nv);
+    mju_copy(data->qvel, in->v_middle, nv);
     within_add_rows(in, in->responses[0], in->sums.moment, 1.0 / step_s, data->qvel);
     mj_fwdVelocity(by->model, data);
     mju_zero(data->qfrc_applied, nv);
@@ -136,24 +137,17 @@ static void take_step(Adapter *by, double step_s, const DriverMotion *motions)
     Within *in = &by->in;
     mjData *data = by->data;
     const int nv = (int)in->count;
-    // mid-step, with the velocities that are to be expected there
-    mju_addScl(data->qpos, in->q, in->v, 0.5 * step_s, nv);
-    mju_copy(in->ahead, in->a, nv);
-    within_add_rows(in, in->bend, in->sums.impulse, 1.0, in->ahead);
-    mju_addScl(data->qvel, in->v, in->ahead, 0.5 * step_s, nv);
-    mju_addToScl(data->qpos, in->ahead, 0.125 * step_s * step_s, nv);
-    within_add_rows(in, in->responses[0], in->sums.impulse, 0.125 * step_s, data->qpos);
+    within_find_middle(in, step_s);
     within_keep_free(in);
-    mju_copy(in->nudged, data->qvel, nv);
+    mju_copy(data->qpos, in->q_middle, nv);
+    mju_copy(data->qvel, in->v_middle, nv);
     mj_step1(by->model, data);
     within_age_responses(in);
     find_response(by);
     within_find_rate(in, step_s);
-    double *expected = in->q_next; // room
-    mju_copy(expected, in->nudged, nv);
-    find_free(by, expected, in->kernel.free);
+    find_free(by, in->v_middle, in->kernel.free);
     mju_copy(in->free, data->qacc, nv);
-    find_drift(by, expected);
+    find_drift(by, in->v_middle);
     within_find_free_rate(in, step_s);
     within_find_rows(in, motions);
     within_integrate(in, step_s);
