@@ -154,7 +154,8 @@ static void label_frontier(const PlotPanel *panel, const LadderPoint *const *lis
     double last_y = -INFINITY;
     for (size_t i = 0; i < count; i++) {
         const double x = at_x(panel, list[i]->wall_median_s) - 9.0;
-        const double y = plot_y(panel, list[i]->error) + 15.0;
+        const double bottom = panel->top + panel->height - 5.0;
+        const double y = fmin(plot_y(panel, list[i]->error) + 15.0, bottom);
         const bool is_on_last = fabs(x - last_x) < 40.0 && fabs(y - last_y) < 14.0;
         if (is_on_last || !(list[i]->step_s > 0.0)) {
             continue;
