@@ -27,7 +27,7 @@
 enum { ITERATIONS_OPEN = 10, ITERATIONS_SLIDING = 30, ITERATIONS_CLOSED = 100 };
 
 // Differences of trials are no better than the solver: so many as leave this share of the
-// accelerations, found at the start. How many these are depends on the masses: 30 to 60.
+// accelerations, found at the start. How many these are depends on the masses: 30 to 240.
 enum { ITERATIONS_TRIAL = 30, ITERATIONS_TRIAL_MOST = 1000 };
 static const double SOLVED = 1e-9;
 
