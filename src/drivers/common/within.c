@@ -117,7 +117,7 @@ void within_keep_free(Within *in)
         size = fmax(size, fabs(in->kernel.free[i]));
         pushed = fmax(pushed, fabs(change));
     }
-    in->calm_steps = in->steps > 1 && pushed <= CALM * size ? in->calm_steps + 1 : 0;
+    in->calm_steps = in->steps > 0 && pushed <= CALM * size ? in->calm_steps + 1 : 0;
 }
 
 void within_find_free_rate(Within *in, double step_s)
