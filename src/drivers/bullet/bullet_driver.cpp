@@ -49,7 +49,8 @@ class World
         return number == DRIVER_GROUND ? ground : *bodies[number];
     }
     void read(std::vector<DriverMotion> &motions);
-    void place_driven(double time_s, double step_s);
+    double driven_angle() const;
+    void place_driven(double angle);
     void turn_driven();
     void place(size_t i, const DriverMotion &motion);
     void push();
@@ -219,7 +220,7 @@ void World::read(std::vector<DriverMotion> &motions)
         motion.position = Vec2{place.x(), place.y()};
         motion.velocity = Vec2{from.getLinearVelocity().x(), from.getLinearVelocity().y()};
         if (of->has_drive && of->driven_body == static_cast<int>(i)) {
-            motion.angle = of->bodies[i].start.angle + of->drive_speed * now_s;
+            motion.angle = driven_angle();
             motion.omega = of->drive_speed;
             const Vec2 arm = vec2_rotate(motion.angle, centres[i]);
             motion.position = vec2_add(motion.position, arm);
@@ -228,18 +229,17 @@ void World::read(std::vector<DriverMotion> &motions)
     }
 }
 
-// The driven body where the others are, with what Bullet makes its speed of.
-void World::place_driven(double time_s, double step_s)
+// That of the driven body at the present time, rad.
+double World::driven_angle() const
 {
-    if (!of->has_drive) {
-        return;
-    }
+    return of->bodies[of->driven_body].start.angle + of->drive_speed * now_s;
+}
+
+void World::place_driven(double angle)
+{
     btRigidBody &driven = *bodies[of->driven_body];
-    const double angle = of->bodies[of->driven_body].start.angle + of->drive_speed * time_s;
     const btVector3 &place = driven.getWorldTransform().getOrigin();
-    const Vec2 pivot = {place.x(), place.y()};
-    driven.setWorldTransform(to_transform(pivot, angle));
-    driven.setInterpolationWorldTransform(to_transform(pivot, angle - of->drive_speed * step_s));
+    driven.setWorldTransform(to_transform(Vec2{place.x(), place.y()}, angle));
 }
 
 // Bullet finds the speed of a kinematic body from an arc cosine near 1, which is off by 1e-16 over
@@ -312,7 +312,9 @@ void World::stamp(double velocity_s)
 void World::start_staggered()
 {
     const std::vector<DriverMotion> start(now);
-    place_driven(now_s, of->step_s);
+    if (of->has_drive) {
+        place_driven(driven_angle());
+    }
     world.stepSimulation(of->step_s, 0);
     lag_s = 0.5 * of->step_s;
     for (size_t i = 0; i < bodies.size(); i++) {
@@ -349,7 +351,7 @@ void World::place(size_t i, const DriverMotion &motion)
 {
     btRigidBody &made = *bodies[i];
     if (of->has_drive && of->driven_body == static_cast<int>(i)) {
-        place_driven((motion.angle - of->bodies[i].start.angle) / of->drive_speed, trial_s);
+        place_driven(motion.angle);
         return;
     }
     made.setWorldTransform(to_transform(motion.position, motion.angle));
@@ -409,7 +411,9 @@ void World::run()
         push();
     }
     while (!driver_run_is_full(&answer)) {
-        place_driven(now_s, of->step_s);
+        if (of->has_drive) {
+            place_driven(driven_angle());
+        }
         world.stepSimulation(of->step_s, 0);
         now_s = of->step_s * static_cast<double>(++answer.steps);
         read(now);
