@@ -178,13 +178,12 @@ static void find_drift(Trial *trial)
 // The engine at mid-step under the contacts' mean force.
 static void find_accelerations(Trial *trial, double step_s)
 {
+    Within *in = &trial->in;
     const double per_s = 1.0 / step_s;
-    memcpy(trial->in.nudged, trial->in.v_middle, trial->in.count * sizeof *trial->in.nudged);
-    within_add_rows(&trial->in, trial->in.responses[0], trial->in.sums.moment, per_s,
-                    trial->in.nudged);
-    evaluate(trial, trial->in.q_middle, trial->in.nudged, trial->in.sums.impulse, per_s,
-             trial->other);
-    within_take_accelerations(&trial->in, trial->other, step_s);
+    memcpy(in->nudged, in->v_middle, in->count * sizeof *in->nudged);
+    within_add_rows(in, in->responses[0], in->sums.moment, per_s, in->nudged);
+    evaluate(trial, in->q_middle, in->nudged, in->sums.impulse, per_s, trial->other);
+    within_take_accelerations(in, trial->other, step_s);
 }
 
 static void take_step(Trial *trial, double step_s)
@@ -192,15 +191,15 @@ static void take_step(Trial *trial, double step_s)
     Within *in = &trial->in;
     within_find_middle(in, step_s);
     within_keep_free(in);
-    tree_motions(trial->tree, trial->in.q_middle, trial->in.v_middle, trial->motions);
+    tree_motions(trial->tree, in->q_middle, in->v_middle, trial->motions);
     find_jacobian(trial);
-    evaluate(trial, trial->in.q_middle, trial->in.v_middle, NULL, 0.0, trial->in.free);
+    evaluate(trial, in->q_middle, in->v_middle, NULL, 0.0, in->free);
     find_response(trial);
     within_find_rate(in, step_s);
-    find_row_accelerations(trial, trial->in.v_middle, trial->in.free, trial->in.kernel.free);
+    find_row_accelerations(trial, in->v_middle, in->free, in->kernel.free);
     find_drift(trial);
     within_find_free_rate(in, step_s);
-    tree_motions(trial->tree, trial->in.q, trial->in.v, trial->motions);
+    tree_motions(trial->tree, in->q, in->v, trial->motions);
     within_find_rows(in, trial->motions);
     within_integrate(in, step_s);
     find_accelerations(trial, step_s);
