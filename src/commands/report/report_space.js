@@ -55,8 +55,9 @@ class SpacePoses {
     // What a table says of a body, for SPACE_PLACE_HEADS.
     placeCells(body) {
         const { place, turn } = this.now[body];
-        const axis = turned(turn, [0, 0, 1]);
-        return [...place.map((value) => 1000 * value), Math.acos(axis[2]) * DEG].map(formatPlace);
+        const [x, y, z] = turned(turn, [0, 0, 1]);
+        const tilt = Math.atan2(Math.hypot(x, y), z);
+        return [...place.map((value) => 1000 * value), tilt * DEG].map(formatPlace);
     }
 
     point(body, local) {
