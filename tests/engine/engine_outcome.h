@@ -165,6 +165,24 @@ static inline double omega_error(const char *engine, const char *way, const Scen
     return hold_against(scenario, run, BACKEND_REFERENCE).error.omega_max;
 }
 
+// The errors of a case at a step and a shorter one, at which the scenario is left, and the order of
+// the error between them.
+typedef struct Refined {
+    double coarse;
+    double fine;
+    double order;
+} Refined;
+
+static inline Refined refined(const char *engine, const char *way, Scenario *scenario,
+                              double coarse_s, double fine_s)
+{
+    scenario->run.step = coarse_s;
+    const double coarse = omega_error(engine, way, scenario, scenario);
+    scenario->run.step = fine_s;
+    const double fine = omega_error(engine, way, scenario, scenario);
+    return (Refined){coarse, fine, log(coarse / fine) / log(coarse_s / fine_s)};
+}
+
 // A slider-crank without play in a way, with the most that it may be off; and with play, contacts
 // within the step, where every engine has the same errors, of order 2, to steps of 1 us.
 static inline void hold_slider_crank(const char *engine, const char *way, double step_s,
@@ -175,12 +193,9 @@ static inline void hold_slider_crank(const char *engine, const char *way, double
     const Outcome ideal = outcome_of(engine, way, &slider, BACKEND_ANALYTIC);
     assert_true(ideal.error.max < most);
     Scenario pin = load_with("cases/mechanisms/slider-crank-pin.yaml", "run.revolutions=0.1");
-    pin.run.step = 10e-6;
-    const double coarse = omega_error(engine, "kernel", &pin, &pin);
-    pin.run.step = 1e-6;
-    const double fine = omega_error(engine, "kernel", &pin, &pin);
-    if (!(log(coarse / fine) / log(10.0) > 1.8) || !(fine < 1e-7)) {
-        fail_msg("%s, pin of the slider: %g at 10 us, %g at 1", engine, coarse, fine);
+    const Refined error = refined(engine, "kernel", &pin, 10e-6, 1e-6);
+    if (!(error.order > 1.8) || !(error.fine < 1e-7)) {
+        fail_msg("%s, pin of the slider: %g at 10 us, %g at 1", engine, error.coarse, error.fine);
     }
 }
 
@@ -256,33 +271,26 @@ static inline void hold_load(const char *engine, const char *way, double step_s,
 {
     static const char *const OVERRIDES[] = {"run.duration=0.25 s", "run.samples=300"};
     Scenario scenario = load("cases/mechanisms/motor-flywheel.yaml", OVERRIDES, 2);
-    scenario.run.step = step_s;
-    const double coarse = omega_error(engine, way, &scenario, &scenario);
-    scenario.run.step = 0.5 * step_s;
-    const double fine = omega_error(engine, way, &scenario, &scenario);
-    const double found = log(coarse / fine) / log(2.0);
-    if (!(found > order - 0.3) || !(coarse < error)) {
-        fail_msg("%s %s: order %g, error %g", engine, way, found, coarse);
+    const Refined found = refined(engine, way, &scenario, step_s, 0.5 * step_s);
+    if (!(found.order > order - 0.3) || !(found.coarse < error)) {
+        fail_msg("%s %s: order %g, error %g", engine, way, found.order, found.coarse);
     }
     Scenario changed = scenario;
     changed.linkage.load_count = 0;
-    assert_true(omega_error(engine, way, &changed, &scenario) > 5.0 * coarse);
+    assert_true(omega_error(engine, way, &changed, &scenario) > 5.0 * found.coarse);
 }
 
 // Friction of 1 in the pin, contacts within the step and as a force.
 static inline void hold_friction(const char *engine)
 {
     Scenario scenario = load_with("cases/hard/friction-1.yaml", "run.revolutions=0.1");
-    scenario.run.step = 50e-6;
-    const double coarse = omega_error(engine, "kernel", &scenario, &scenario);
-    scenario.run.step = 12.5e-6;
-    const double fine = omega_error(engine, "kernel", &scenario, &scenario);
-    if (!(log(coarse / fine) / log(4.0) > 1.5) || !(fine < 1e-5)) {
-        fail_msg("friction: %g at 50 us, %g at 12.5", coarse, fine);
+    const Refined error = refined(engine, "kernel", &scenario, 50e-6, 12.5e-6);
+    if (!(error.order > 1.5) || !(error.fine < 1e-5)) {
+        fail_msg("friction: %g at 50 us, %g at 12.5", error.coarse, error.fine);
     }
     Scenario changed = scenario;
     changed.contact.friction = 0.0;
-    assert_true(omega_error(engine, "kernel", &changed, &scenario) > 100.0 * fine);
+    assert_true(omega_error(engine, "kernel", &changed, &scenario) > 100.0 * error.fine);
     // as a force: less of it, for the steps do not resolve how sticking begins
     static const char *const OVERRIDES[] = {"run.revolutions=0.05", "contact.friction=0.1"};
     scenario = load("cases/hard/friction-1.yaml", OVERRIDES, 2);
