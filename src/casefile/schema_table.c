@@ -435,14 +435,24 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "settled: in the motion that the reference comes to from several starts; centred: "
             "pins in the middle of their holes, or where the case puts them; pressed: on the wall "
             "of the hole where the reaction of an ideal joint would hold the pin"},
+    {.path = "run.settle-starts", .type = SCHEMA_INTEGER, AT(run.settle_starts), .low = 1.0,
+     .high = 1000.0, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
+     .doc = "different starts from which it is looked for: as written, pressed, and others that the "
+            "play allows; the run is in the motion that most come to"},
+    {.path = "run.settle-least", .type = SCHEMA_INTEGER, AT(run.settle_least), .low = 2.0,
+     .high = 1e6, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
+     .doc = "revolutions, or periods of what drives it, for which a start is watched before it is "
+            "said not to repeat"},
     {.path = "run.settle-most", .type = SCHEMA_INTEGER, AT(run.settle_most), .low = 2.0,
      .high = 1e6, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
-     .doc = "revolutions, or periods of the drive, after which a motion that does not repeat is "
-            "taken as it is"},
-    {.path = "run.settle-starts", .type = SCHEMA_INTEGER, AT(run.settle_starts), .low = 1.0,
-     .high = 64.0, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
-     .doc = "starts from which it is looked for: as written, pressed, and with other velocities; "
-            "the run is in the motion that most come to"},
+     .doc = "of a motion that does not repeat: revolutions after which it is taken as it is"},
+    {.path = "run.settle-to", AT(run.settle_to), .low = 0.0, .high = 1.0,
+     .low_is_open = true, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
+     .doc = "likewise: half the width of the 95 % confidence interval of each joint's largest "
+            "force, over that force, until which it is watched"},
+    {.path = "run.settle-budget", .dimension = DIMENSION_TIME, AT(run.settle_budget), .low = 0.0,
+     .high = 1e6, .low_is_open = true, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
+     .doc = "processor time for it, after which the run is in what is found by then"},
     {.path = "run.backends", .type = SCHEMA_BACKENDS, AT(run.backends),
      .words = OPTIONS_BACKENDS,
      .doc = "the solvers to run, in this order; analytic, by default too, is for four-bars and "

@@ -213,8 +213,11 @@ typedef struct RunOptions {
     const char *centred_because; // no key: why a case that does not name its start does not
                                  // settle; NULL: it settles, or names it
     bool is_start_given;         // no key: whether the case names its start
-    size_t settle_most;          // revolutions of START_SETTLED until it is taken as it is
-    size_t settle_starts;        // from which it is looked for
+    size_t settle_starts;        // of START_SETTLED: from which it is looked for
+    size_t settle_least;         // revolutions watched before a start is said not to repeat
+    size_t settle_most;          // until it is taken as it is
+    double settle_to;            // 1: the half width of the interval of a largest force, over it
+    double settle_budget;        // s of processor time
     double interval;  // no key, s: samples stand so far apart, as many as the run has room
                       // for; 0: as `samples` says
     double step;      // s; 0: chosen for the tolerance

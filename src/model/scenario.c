@@ -30,46 +30,6 @@ static void *copied(const void *array, size_t count, size_t size)
     return copy;
 }
 
-static SettledMotion settled_motion_copy(const SettledMotion *motion, const Linkage *linkage)
-{
-    SettledMotion copy = *motion;
-    copy.joints = copied(motion->joints, linkage->joint_count, sizeof *motion->joints);
-    copy.sections = copied(motion->sections, motion->section_count * linkage->body_count,
-                           sizeof *motion->sections);
-    return copy;
-}
-
-static void settled_motion_free(SettledMotion *motion)
-{
-    free(motion->joints);
-    free(motion->sections);
-}
-
-static SettledStart settled_start_copy(const SettledStart *settled, const Linkage *linkage)
-{
-    SettledStart copy = *settled;
-    copy.first = copied(settled->first, linkage->joint_count, sizeof *settled->first);
-    copy.motions = copied(settled->motions, settled->motion_count, sizeof *settled->motions);
-    for (size_t i = 0; i < settled->motion_count; i++) {
-        copy.motions[i] = settled_motion_copy(&settled->motions[i], linkage);
-    }
-    copy.halved = settled_motion_copy(&settled->halved, linkage);
-    copy.doubled = settled_motion_copy(&settled->doubled, linkage);
-    return copy;
-}
-
-void settled_start_free(SettledStart *settled)
-{
-    for (size_t i = 0; i < settled->motion_count; i++) {
-        settled_motion_free(&settled->motions[i]);
-    }
-    free(settled->motions);
-    free(settled->first);
-    settled_motion_free(&settled->halved);
-    settled_motion_free(&settled->doubled);
-    *settled = (SettledStart){0};
-}
-
 Scenario scenario_copy(const Scenario *scenario)
 {
     Scenario copy = *scenario;

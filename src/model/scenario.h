@@ -5,6 +5,7 @@
 #include "model/fourbar.h"
 #include "model/linkage.h"
 #include "model/options.h"
+#include "model/settled.h"
 #include "model/slidercrank.h"
 
 enum { SCENARIO_TITLE_SIZE = 256, SCENARIO_PATH_SIZE = 4096, SCENARIO_POINT_MAX = 4 };
@@ -30,52 +31,6 @@ typedef struct ScenarioKey {
     size_t member; // of its family
     size_t line;   // of the case file, from 1; 0 of the command line
 } ScenarioKey;
-
-// What a joint with play does in a settled motion.
-typedef struct SettledJoint {
-    double force;   // N, its largest over the period; of a motion that does not repeat the median
-                    // of the revolutions' largest forces
-    double low;     // N, 5 % of them are below; of one that repeats the same
-    double high;    // N, and 5 % above
-    double impacts; // contacts begun in a revolution
-} SettledJoint;
-
-// One that starts have come to.
-typedef struct SettledMotion {
-    size_t starts;        // how many
-    size_t period;        // revolutions after which it repeats; 0: it does not
-    double change;        // 1, over the last of them
-    SettledJoint *joints; // by joint; owned
-    size_t section_count; // revolutions whose ends are below: those of a period, of a motion that
-                          // does not repeat some of its last
-    double *sections; // rad/s, of each body at the end of each: [revolution * body_count + body];
-                      // owned
-} SettledMotion;
-
-// How fast small changes of a state grow in a settled motion.
-typedef struct SettledGrowth {
-    double factor;      // 1: in a revolution, below 1 where they die out; NAN: not known
-    bool is_at_most;    // they were gone before it could be told: it is not above the factor
-    size_t revolutions; // that it was seen over
-} SettledGrowth;
-
-// How the start of a scenario was found (run/settle.h).
-typedef struct SettledStart {
-    size_t revolutions;          // that it took; 0: the start is as written
-    bool is_pressed;             // START_PRESSED: the pins were put on their walls
-    bool is_followed;            // it was found from that of a neighbour in a study
-    double followed_from;        // of the key that is followed, SI: the neighbour's value
-    size_t starts;               // from which a motion was found
-    double *first;               // N, by joint: its largest force in the first revolution from the
-                                 // start as written; owned
-    size_t motion_count;         // different ones
-    SettledMotion *motions;      // that of most starts first, which runs start in; owned
-    SettledMotion halved;        // from there with half the damping; no joints: nobody has looked
-    SettledMotion doubled;       // and with twice as much
-    bool has_growth;             // somebody has looked for the growth of small changes
-    SettledGrowth growth;        // of the motion that runs start in
-    char message[ERR_TEXT_SIZE]; // why there is none
-} SettledStart;
 
 // It owns the arrays of its linkage and its own. An assignment shares them: it is for a scenario of
 // other options that does not outlive the first. What is to have other bodies, joints or a life of
@@ -176,9 +131,6 @@ bool scenario_settles(const Scenario *scenario);
 
 // Whether its start is still to be found, that motion or that of START_PRESSED.
 bool scenario_lacks_start(const Scenario *scenario);
-
-// Forgets how the start was found; the start itself stays.
-void settled_start_free(SettledStart *settled);
 
 // Gives all joints with play one stiffness, N/m^exponent, in place of the contact's and of their
 // own; 0 where the contact's law is to say it.

@@ -60,12 +60,12 @@ static bool has_moment(const Scenario *scenario, const Joint *joint)
     return joint->kind != JOINT_CLEARANCE || scenario_friction(scenario, joint) > 0.0;
 }
 
-double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t drive, size_t sample)
+double drive_torque_of(const Scenario *scenario, const Motion *motions, const JointState *states,
+                       double time_s, size_t drive)
 {
     const Linkage *linkage = &scenario->linkage;
-    const Motion *motions = trajectory_motion(run, sample, 0);
     if (!linkage->driver.is_present) {
-        return forces_drive_torque(linkage, motions, run->times[sample]);
+        return forces_drive_torque(linkage, motions, time_s);
     }
     const int driven = linkage_drive_body(linkage, drive);
     const int pivoted = linkage_drive(linkage, drive)->joint;
@@ -76,18 +76,29 @@ double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t d
     const Vec2 pull = vec2_add(body->acceleration, scenario_upward(scenario));
     double torque = linkage->bodies[driven].inertia * body->alpha +
                     mass * vec2_cross(vec2_sub(body->position, point), pull) -
-                    moment_of_loads(linkage, motions, run->times[sample], driven, point);
+                    moment_of_loads(linkage, motions, time_s, driven, point);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if ((int)i == pivoted || (joint->body_a != driven && joint->body_b != driven)) {
             continue;
         }
-        const JointState *state = trajectory_state(run, sample, i);
         const double sign = joint->body_b == driven ? 1.0 : -1.0;
         const Vec2 arm = vec2_sub(linkage_point(motions, joint->body_b, joint->anchor_b), point);
         const double moment =
-            has_moment(scenario, joint) ? joint_moment(linkage, motions, i, state) : 0.0;
-        torque -= sign * (vec2_cross(arm, state->force_on_b) + moment);
+            has_moment(scenario, joint) ? joint_moment(linkage, motions, i, &states[i]) : 0.0;
+        torque -= sign * (vec2_cross(arm, states[i].force_on_b) + moment);
     }
     return torque;
+}
+
+double drive_torque_at(const Scenario *scenario, const Trajectory *run, size_t drive, size_t sample)
+{
+    return drive_torque_of(scenario, trajectory_motion(run, sample, 0),
+                           trajectory_state(run, sample, 0), run->times[sample], drive);
+}
+
+size_t drive_torque_count(const Linkage *linkage)
+{
+    const size_t count = linkage_drive_count(linkage);
+    return !drive_torque_exists(linkage) ? 0 : count > 1 ? count : 1;
 }

@@ -7,10 +7,13 @@
 
 #include "run/settling.h"
 
+// Whether anything in it loses energy: without, there is no motion that is left of a start.
+bool settle_dissipates(const Scenario *scenario);
+
 // Gives a scenario that is to start settled or pressed that start, and says how it was found; one
 // that has it, or starts as written, stays as it is. The settled motion is looked for from
-// run.settle-starts starts side by side. Where there is none the scenario says why. The watch is
-// told of all revolutions as a share of run.settle-most of each start.
+// run.settle-starts starts side by side, within run.settle-budget. Where there is none the scenario
+// says why. The watch is told of all revolutions as a share of run.settle-least of each start.
 void settle_scenario(Scenario *scenario, RunWatch watch);
 
 // The same from the settled start of a neighbour alone: the scenario of another value of one key,

@@ -88,9 +88,9 @@ void damping_runs_end(DampingRuns *runs, Scenario *scenario)
     SettledMotion *const found[SCALE_COUNT] = {&settled->halved, &settled->doubled};
     for (size_t i = 0; i < SCALE_COUNT; i++) {
         if (runs->are_settled[i]) {
-            free(found[i]->joints);
-            free(found[i]->sections);
-            *found[i] = settling_motion(&runs->settlings[i]);
+            const Settling *settling = &runs->settlings[i];
+            settled_motion_free(found[i]);
+            *found[i] = settle_motion_of(&settling, 1, 1);
         }
         settling_finish(&runs->settlings[i]);
     }

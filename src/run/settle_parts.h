@@ -4,8 +4,21 @@
 #include "base/side_by_side.h"
 #include "run/settle.h"
 
-// What one has come to, as a motion of one start.
-SettledMotion settling_motion(const Settling *settling);
+// What some starts have come to, as one motion: what counts of the revolutions of all of them, or,
+// where it repeats, the last period of the first. Shares are of so many starts.
+SettledMotion settle_motion_of(const Settling *const *settlings, size_t count, size_t of);
+
+// 1: of a motion that does not repeat the widest half interval of a joint's headline, over the
+// headline; INFINITY where too few revolutions bound one.
+double settle_motion_width(const SettledMotion *motion, const Linkage *linkage);
+
+// Whether two starts that do not repeat have clearly different distributions of largest forces.
+bool settle_motions_differ(const SettledMotion *a, const SettledMotion *b, const Linkage *linkage);
+
+// Looks for the settled motions of a scenario from so many starts, the first of which is that of
+// `first`, a scenario of the same linkage, and puts what they have come to into the scenario. False
+// where no start came to anything: the scenario then says why.
+bool settle_search(Scenario *scenario, const Scenario *first, size_t count, RunWatch watch);
 
 // The runs with other damping, in pieces. NULL where nothing is settled or damped; the watch, which
 // outlives them, then has their revolutions.

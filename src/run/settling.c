@@ -6,16 +6,13 @@
 // and F_n the largest forces of each joint, the motion repeats after p revolutions where
 //     d_n = max(|x_n - x_(n-p)|, |F_n - F_(n-p)| / F_n)
 // is small and so is what is still to come of it: with r = d_n / d_(n-p), the sum d_n r / (1 - r).
-// A motion that comes near no earlier section does not repeat. Then the largest force of a
-// revolution is a random number, which has settled where Mann and Whitney's rank test tells the
-// later revolutions from earlier ones no more.
-//
-// A start that is not the first may turn at a tolerance of the reference that follows how near its
-// motion is to repeating, or to that of the first.
+// Where the last revolutions come near no earlier section, and Mann and Whitney's rank test no
+// longer tells later ones from earlier ones, settling_run ends.
 #include "run/settling.h"
 
 #include "base/memory.h"
 #include "base/zeroed.h"
+#include "run/drive_torque.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -36,9 +33,13 @@ const double SETTLE_SAME_MOTION = 1e-5;
 // 1: a section that comes as near to an earlier one may be on its way to repeat
 static const double NEAR_RETURN = 1e-2;
 
-// Of a motion that is to count as one that does not repeat: revolutions at least of each start, and
-// of its last ones those that come near no earlier section. Four starts then have 32 that count.
+// Of one start alone that is to count as not repeating: revolutions at least, and of its last ones
+// those that come near no earlier section.
 enum { RANDOM_LEAST = 16, RANDOM_LAST = 6 };
+
+// A motion that does not repeat may have come to it only now: of its revolutions a quarter does not
+// count, and not the first ones.
+enum { TRANSIENT_SHARE = 4, TRANSIENT_LEAST = 8 };
 
 // Of the reference where the last revolution came near no earlier one: what is random is so at any
 // tolerance, and a revolution takes half the time.
@@ -59,7 +60,9 @@ Settling settling_start(const Scenario *scenario)
 {
     Settling settling = {
         .scenario = scenario_copy(scenario),
+        .reach = zeroed(scenario->linkage.joint_count, sizeof *settling.reach),
         .state = run_state_create(&scenario->linkage),
+        .inside = sample_create(&scenario->linkage),
         .change = INFINITY,
         .left = INFINITY,
     };
@@ -73,11 +76,12 @@ Settling settling_start(const Scenario *scenario)
 void settling_finish(Settling *settling)
 {
     for (size_t i = 0; i < settling->count; i++) {
-        free(settling->revolutions[i].force_max);
-        free(settling->revolutions[i].impacts);
+        free(settling->revolutions[i].numbers);
         free(settling->revolutions[i].section);
     }
     free(settling->revolutions);
+    free(settling->reach);
+    sample_free(&settling->inside);
     run_state_free(&settling->state);
     scenario_free(&settling->scenario);
 }
@@ -89,31 +93,93 @@ static Revolution *add_revolution(Settling *settling)
         memory_grown(settling->revolutions, settling->count + 1, sizeof *settling->revolutions);
     Revolution *added = &settling->revolutions[settling->count++];
     *added = (Revolution){
-        .force_max = zeroed(linkage->joint_count, sizeof *added->force_max),
-        .impacts = zeroed(linkage->joint_count, sizeof *added->impacts),
+        .numbers = zeroed(settle_number_count(linkage), sizeof *added->numbers),
         .section = zeroed(SETTLE_RATES * linkage->body_count, sizeof *added->section),
     };
     return added;
 }
 
-// Takes what a step says of the joints; `touches` says which touched at its start.
-static void take_record(const Linkage *linkage, const StepRecord *record, bool *touches,
-                        Revolution *revolution)
+// A revolution under way.
+typedef struct Turn {
+    Settling *settling;
+    const Solver *solver;
+    void *state; // of the solver
+    Revolution *revolution;
+    double end_s;
+    bool *touches; // by joint, in the step before; owned
+} Turn;
+
+static void raise_number(double *number, double value)
 {
-    const size_t count = solver_joint_count(record->part, linkage);
-    for (size_t k = 0; k < count; k++) {
-        const size_t i = solver_joint(record->part, k);
-        if (!linkage_has_play(&linkage->joints[i])) {
-            continue;
+    *number = fmax(*number, value);
+}
+
+// What a step says of a joint with play; returns when its force was larger than before within the
+// step, s, or a negative number.
+static double take_joint(Turn *turn, const StepRecord *record, size_t index)
+{
+    const size_t joint = solver_joint(record->part, index);
+    double *numbers = turn->revolution->numbers + settle_joint_number(joint, SETTLE_FORCE);
+    SettleReach *reach = &turn->settling->reach[joint];
+    const JointState *state = &record->joints[index];
+    const double before = numbers[SETTLE_FORCE];
+    double peak_s = -1.0;
+    raise_number(&numbers[SETTLE_FORCE], state->force);
+    raise_number(&numbers[SETTLE_DEPTH], joint_state_depth(state));
+    if (record->peaks != NULL) {
+        const JointPeak *peak = &record->peaks[index];
+        const bool is_higher = peak->force > fmax(before, state->force);
+        const bool is_inside = peak->force_s > record->start_s && peak->force_s < record->end_s;
+        peak_s = is_higher && is_inside ? peak->force_s : -1.0;
+        raise_number(&numbers[SETTLE_FORCE], peak->force);
+        raise_number(&numbers[SETTLE_DEPTH], peak->depth);
+    }
+    reach->gap = fmax(reach->gap, state->gap);
+    if (state->is_touching) {
+        numbers[SETTLE_CONTACT] += (record->end_s - record->start_s) / turn->end_s;
+        if (!turn->touches[joint]) {
+            numbers[SETTLE_IMPACTS] += 1.0;
+            reach->approach = fmax(reach->approach, record->approach[index]);
         }
-        const JointState *joint = &record->joints[k];
-        double force = joint->force;
-        if (record->peaks != NULL) {
-            force = fmax(force, record->peaks[k].force);
+    }
+    turn->touches[joint] = state->is_touching;
+    return peak_s;
+}
+
+// Accelerations and the drives' torques at an instant in the last step.
+static void take_instant(Turn *turn, double time_s)
+{
+    const Scenario *scenario = &turn->settling->scenario;
+    const Linkage *linkage = &scenario->linkage;
+    Sample *inside = &turn->settling->inside;
+    double *numbers = turn->revolution->numbers;
+    turn->solver->observe(turn->state, time_s, inside);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        raise_number(&numbers[settle_body_number(linkage, i)], fabs(inside->bodies[i].alpha));
+    }
+    const size_t drives = drive_torque_count(linkage);
+    for (size_t i = 0; i < drives; i++) {
+        const double torque = drive_torque_of(scenario, inside->bodies, inside->joints, time_s, i);
+        raise_number(&numbers[settle_drive_number(linkage, i)], fabs(torque));
+    }
+}
+
+// What a step says. An acceleration is as large as any where a force is, which is looked at there.
+static void take_record(Turn *turn, const StepRecord *record)
+{
+    const Linkage *linkage = &turn->settling->scenario.linkage;
+    const size_t joints = solver_joint_count(record->part, linkage);
+    const bool is_seen = turn->settling->is_whole && !record->is_partial;
+    for (size_t k = 0; k < joints; k++) {
+        if (linkage_has_play(&linkage->joints[solver_joint(record->part, k)])) {
+            const double peak_s = take_joint(turn, record, k);
+            if (is_seen && peak_s >= 0.0) {
+                take_instant(turn, peak_s);
+            }
         }
-        revolution->force_max[i] = fmax(revolution->force_max[i], force);
-        revolution->impacts[i] += joint->is_touching && !touches[i] ? 1 : 0;
-        touches[i] = joint->is_touching;
+    }
+    if (is_seen) {
+        take_instant(turn, record->end_s);
     }
 }
 
@@ -136,42 +202,51 @@ static void take_section(Settling *settling, Revolution *revolution)
     }
 }
 
+// Steps to the end of the revolution.
+static bool turn_to_end(Turn *turn, Err *err)
+{
+    double reached_s = 0.0;
+    while (reached_s < turn->end_s) {
+        if (!turn->solver->step(turn->state, turn->end_s, err)) {
+            return false;
+        }
+        const StepRecord record = turn->solver->record(turn->state);
+        take_record(turn, &record);
+        reached_s = record.is_partial ? reached_s : solver_reached(&record);
+    }
+    return true;
+}
+
 bool settling_turn(Settling *settling, Err *err)
 {
     const Scenario *scenario = &settling->scenario;
-    const double end_s = scenario_duration(scenario);
-    const Solver *solver = &REFERENCE_SOLVER;
-    void *state = NULL;
-    if (!solver->open(scenario, &state, err)) {
+    const Linkage *linkage = &scenario->linkage;
+    Turn turn = {
+        .settling = settling,
+        .solver = &REFERENCE_SOLVER,
+        .end_s = scenario_duration(scenario),
+    };
+    if (!turn.solver->open(scenario, &turn.state, err)) {
         return false;
     }
-    bool *touches = zeroed(scenario->linkage.joint_count, sizeof *touches);
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        touches[i] = linkage_starts_touching(&scenario->linkage.joints[i]);
+    turn.touches = zeroed(linkage->joint_count, sizeof *turn.touches);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        turn.touches[i] = linkage_starts_touching(&linkage->joints[i]);
     }
-    Revolution *revolution = add_revolution(settling);
-    double reached_s = 0.0;
-    bool is_taken = true;
-    while (is_taken && reached_s < end_s) {
-        is_taken = solver->step(state, end_s, err);
-        if (is_taken) {
-            const StepRecord record = solver->record(state);
-            take_record(&scenario->linkage, &record, touches, revolution);
-            reached_s = record.is_partial ? reached_s : solver_reached(&record);
-        }
-    }
-    if (is_taken) {
-        run_state_take(solver, state, end_s, &settling->state);
-        take_section(settling, revolution);
-        settling->evaluations += solver->model(state).evaluations;
+    turn.revolution = add_revolution(settling);
+    const bool is_turned = turn_to_end(&turn, err);
+    if (is_turned) {
+        run_state_take(turn.solver, turn.state, turn.end_s, &settling->state);
+        take_section(settling, turn.revolution);
+        settling->evaluations += turn.solver->model(turn.state).evaluations;
         run_state_start(&settling->state, &settling->scenario);
     }
-    solver->close(state);
-    free(touches);
+    turn.solver->close(turn.state);
+    free(turn.touches);
     if (settling->watch != NULL) {
         turn_watch_count(settling->watch, settling->is_callers);
     }
-    return is_taken;
+    return is_turned;
 }
 
 // The larger of the differences of two revolutions' sections and largest forces, relative.
@@ -183,8 +258,9 @@ static double revolutions_apart(const Linkage *linkage, const Revolution *now,
         apart = fmax(apart, fabs(now->section[i] - then->section[i]) / fastest);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const double force = fmax(now->force_max[i], then->force_max[i]);
-        const double by = fabs(now->force_max[i] - then->force_max[i]);
+        const size_t number = settle_joint_number(i, SETTLE_FORCE);
+        const double force = fmax(now->numbers[number], then->numbers[number]);
+        const double by = fabs(now->numbers[number] - then->numbers[number]);
         apart = force > 0.0 ? fmax(apart, by / force) : apart;
     }
     return apart;
@@ -197,27 +273,29 @@ static double change_over(const Settling *settling, size_t last, size_t period)
                              &settling->revolutions[last - period], settling->fastest);
 }
 
-// The shortest period that the revolutions of one of p have to the digits of one motion: a mode
-// that changes its sign every revolution while it dies out is small after two revolutions before it
-// is after one.
-static size_t shortest_period(const Settling *settling, size_t last, size_t p)
+// The shortest period that the revolutions of one of p have to the digits that are asked for: a
+// mode that changes its sign every revolution while it dies out is small after two revolutions
+// before it is after one.
+static size_t shortest_period(const Settling *settling, size_t last, size_t p, double tolerance)
 {
+    const double same = fmax(SETTLE_SAME_MOTION, 2.0 * tolerance);
     size_t shortest = 1;
-    while (shortest < p &&
-           !(p % shortest == 0 && change_over(settling, last, shortest) <= SETTLE_SAME_MOTION)) {
+    while (shortest < p && !(p % shortest == 0 && change_over(settling, last, shortest) <= same)) {
         shortest++;
     }
     return shortest;
 }
 
 // Looks for the shortest period after which nothing more than the tolerance is to come; of
-// revolutions at the reference's own tolerance alone, for looser ones may repeat elsewhere.
-static bool settling_repeats(Settling *settling, double tolerance)
+// revolutions at a reference's tolerance that does not stand in the way alone, for looser ones may
+// repeat elsewhere.
+bool settling_repeats(Settling *settling, double tolerance)
 {
     const size_t last = settling->count - 1;
     const Revolution *of = settling->revolutions;
+    const bool takes_loose = NEAR_SHARE * tolerance >= settling->scenario.reference.tolerance;
     for (size_t p = 1; p <= SETTLE_PERIOD_MAX && 2 * p <= last; p++) {
-        if (of[last].is_loose || of[last - p].is_loose) {
+        if (!takes_loose && (of[last].is_loose || of[last - p].is_loose)) {
             continue;
         }
         const double change = change_over(settling, last, p);
@@ -227,7 +305,7 @@ static bool settling_repeats(Settling *settling, double tolerance)
             ratio < RATIO_MOST ? change * fmax(ratio, 0.5) / (1.0 - ratio) : INFINITY;
         const bool is_rounding = change < CHANGE_LEAST && before < CHANGE_LEAST;
         if (is_rounding || fmax(change, left) <= tolerance) {
-            settling->period = shortest_period(settling, last, p);
+            settling->period = shortest_period(settling, last, p, tolerance);
             settling->change = change;
             settling->left = is_rounding ? change : left;
             return true;
@@ -253,14 +331,24 @@ static double drift_of(const double *values, size_t count)
 
 size_t settling_counted(const Settling *settling)
 {
-    return settling->period > 0 ? settling->period : (settling->count + 1) / 2;
+    const size_t count = settling->count;
+    const size_t share = count / TRANSIENT_SHARE;
+    const size_t transient = share > TRANSIENT_LEAST ? share : TRANSIENT_LEAST;
+    return settling->period > 0 ? settling->period
+           : count > transient  ? count - transient
+                                : (count + 1) / 2;
 }
 
-size_t settling_forces(const Settling *settling, size_t joint, double *forces)
+bool settling_may_count(const Settling *settling)
+{
+    return settling->count >= TRANSIENT_LEAST;
+}
+
+size_t settling_numbers(const Settling *settling, size_t number, double *values)
 {
     const size_t many = settling_counted(settling);
     for (size_t k = 0; k < many; k++) {
-        forces[k] = settling->revolutions[settling->count - many + k].force_max[joint];
+        values[k] = settling->revolutions[settling->count - many + k].numbers[number];
     }
     return many;
 }
@@ -270,7 +358,8 @@ static bool settling_drifts(const Settling *settling)
     double *forces = zeroed(settling->count, sizeof *forces);
     bool drifts = false;
     for (size_t i = 0; i < settling->scenario.linkage.joint_count; i++) {
-        const size_t many = settling_forces(settling, i, forces);
+        const size_t many =
+            settling_numbers(settling, settle_joint_number(i, SETTLE_FORCE), forces);
         drifts = drifts || drift_of(forces, many) > DRIFT_LEAST;
     }
     free(forces);
@@ -284,12 +373,17 @@ static double nearest_return(const Settling *settling, size_t number)
     double nearest = INFINITY;
     for (size_t p = 1; p <= SETTLE_PERIOD_MAX && p <= number; p++) {
         double farthest = 0.0;
-        for (size_t k = 0; k < p && k + p <= number; k++) {
+        for (size_t k = 0; k < p && k + p <= number && farthest < nearest; k++) {
             farthest = fmax(farthest, change_over(settling, number - k, p));
         }
         nearest = fmin(nearest, farthest);
     }
     return nearest;
+}
+
+double settling_return(const Settling *settling)
+{
+    return settling->count > 0 ? nearest_return(settling, settling->count - 1) : INFINITY;
 }
 
 static bool is_near_return(const Settling *settling, size_t number)
@@ -311,13 +405,14 @@ static bool settling_is_random(const Settling *settling)
     return !settling_drifts(settling);
 }
 
-// How far the last period of a motion is from that of another, from a revolution of that on, both
-// of that many revolutions.
-static double apart_from(const Settling *a, const Settling *b, size_t period, size_t shift)
+// How far the last period of a motion, but for its last so many revolutions, is from that of
+// another, from a revolution of that on, both of that many revolutions.
+static double apart_from(const Settling *a, size_t before, const Settling *b, size_t period,
+                         size_t shift, double enough)
 {
     double apart = 0.0;
-    for (size_t k = 0; k < period; k++) {
-        const Revolution *of_a = &a->revolutions[a->count - period + k];
+    for (size_t k = 0; k < period && apart < enough; k++) {
+        const Revolution *of_a = &a->revolutions[a->count - before - period + k];
         const Revolution *of_b = &b->revolutions[b->count - period + (k + shift) % period];
         const double fastest = fmax(a->fastest, b->fastest);
         apart = fmax(apart, revolutions_apart(&a->scenario.linkage, of_a, of_b, fastest));
@@ -325,62 +420,50 @@ static double apart_from(const Settling *a, const Settling *b, size_t period, si
     return apart;
 }
 
-double settling_apart(const Settling *a, const Settling *b, size_t period)
+double settling_were_apart(const Settling *a, size_t before, const Settling *b, size_t period)
 {
     double nearest = INFINITY;
-    for (size_t shift = 0; shift < period && period <= a->count; shift++) {
-        nearest = fmin(nearest, apart_from(a, b, period, shift));
+    for (size_t shift = 0; shift < period && period + before <= a->count; shift++) {
+        nearest = fmin(nearest, apart_from(a, before, b, period, shift, nearest));
     }
     return nearest;
 }
 
-// How far the last revolutions are from a motion that is known to repeat.
-static double known_apart(const Settling *settling)
+double settling_apart(const Settling *a, const Settling *b, size_t period)
 {
-    const Settling *known = settling->known;
-    return known != NULL ? settling_apart(settling, known, known->period) : INFINITY;
+    return settling_were_apart(a, 0, b, period);
 }
 
-// Whether it has come to that motion, which is then its own.
-static bool is_known(Settling *settling)
+// One revolution at that tolerance of the reference, if it is looser than the result's.
+static bool turn_at(Settling *settling, double tolerance, Err *err)
 {
-    const double apart = known_apart(settling);
-    if (!(apart <= SETTLE_SAME_MOTION)) {
-        return false;
+    ReferenceOptions *reference = &settling->scenario.reference;
+    const double tight = reference->tolerance;
+    reference->tolerance = fmax(tight, tolerance);
+    const bool is_turned = settling_turn(settling, err);
+    if (is_turned) {
+        settling->revolutions[settling->count - 1].is_loose = reference->tolerance > tight;
     }
-    settling->period = settling->known->period;
-    settling->change = apart;
-    settling->left = apart;
-    return true;
+    reference->tolerance = tight;
+    return is_turned;
 }
 
-// Of the reference in the next revolution.
-static double next_tolerance(const Settling *settling, double tight)
+bool settling_turn_near(Settling *settling, double near, Err *err)
 {
-    const size_t count = settling->count;
-    const double nearest = count > 0 ? nearest_return(settling, count - 1) : INFINITY;
-    if (settling->is_quick) {
-        const double near = fmin(nearest, known_apart(settling));
-        return fmax(tight, fmin(NEAR_SHARE * near, QUICK_LOOSE));
-    }
-    return count >= LOOSE_FROM && nearest >= NEAR_RETURN ? fmax(tight, SETTLE_LOOSE) : tight;
+    return turn_at(settling, fmin(NEAR_SHARE * fmin(near, settling_return(settling)), QUICK_LOOSE),
+                   err);
 }
 
 bool settling_run(Settling *settling, double tolerance, size_t most, Err *err)
 {
-    ReferenceOptions *reference = &settling->scenario.reference;
-    const double tight = reference->tolerance;
     bool is_run = true;
     while (is_run && settling->count < most && settling->period == 0 && !settling->is_random) {
-        reference->tolerance = next_tolerance(settling, tight);
-        is_run = settling_turn(settling, err);
-        if (is_run) {
-            settling->revolutions[settling->count - 1].is_loose = reference->tolerance > tight;
-        }
-        settling->is_random = is_run && !is_known(settling) &&
-                              !settling_repeats(settling, tolerance) &&
-                              settling_is_random(settling);
+        const double nearest = settling_return(settling);
+        const bool is_far = settling->count >= LOOSE_FROM && nearest >= NEAR_RETURN;
+        is_run = settling->is_quick ? settling_turn_near(settling, nearest, err)
+                                    : turn_at(settling, is_far ? SETTLE_LOOSE : 0.0, err);
+        settling->is_random =
+            is_run && !settling_repeats(settling, tolerance) && settling_is_random(settling);
     }
-    reference->tolerance = tight;
     return is_run;
 }

@@ -35,19 +35,19 @@ static void append_joint(const Scenario *scenario, size_t number, Text *text)
     const SettledJoint *did = &motion->joints[number];
     text_append(text, "              ");
     text_append_shown(text, joint->name);
-    text_append(text, ": %.5g %s", did->force, unit);
+    text_append(text, ": %.5g %s", did->force.headline, unit);
     if (motion->period == 0) {
         text_append(text, " in the median %s, %.4g to %.4g in 5 to 95 %%", turn_word(scenario),
-                    did->low, did->high);
+                    did->force.low, did->force.high);
     }
     text_append(text, "\n");
     if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
         const SettledMotion *half = &settled->halved;
         const SettledMotion *twice = &settled->doubled;
         text_append(text, "                with half the damping %s%.4g %s%s, ", some_word(half),
-                    half->joints[number].force, unit, median_word(half));
+                    half->joints[number].force.headline, unit, median_word(half));
         text_append(text, "with twice as much %s%.4g%s\n", some_word(twice),
-                    twice->joints[number].force, median_word(twice));
+                    twice->joints[number].force.headline, median_word(twice));
     }
     text_append(text, "                from the assumed start %.5g %s, not counted\n",
                 settled->first[number], unit);
@@ -76,7 +76,8 @@ static void append_other(const Scenario *scenario, const SettledMotion *motion, 
         if (linkage_has_play(joint)) {
             text_append(text, " ");
             text_append_shown(text, joint->name);
-            text_append(text, " %.5g %s", motion->joints[i].force, joint_units(joint)->force);
+            text_append(text, " %.5g %s", motion->joints[i].force.headline,
+                        joint_units(joint)->force);
         }
     }
     text_append(text, "\n");
@@ -132,7 +133,7 @@ static size_t largest_joints(const Scenario *scenario, size_t numbers[SHOWN_JOIN
             continue;
         }
         size_t at = count;
-        while (at > 0 && joints[i].force > joints[numbers[at - 1]].force) {
+        while (at > 0 && joints[i].force.headline > joints[numbers[at - 1]].force.headline) {
             at--;
         }
         if (at < SHOWN_JOINTS) {
@@ -160,12 +161,12 @@ static void append_forces(const Scenario *scenario, const SettledMotion *motion,
         text_append(text, "%s", i > 0 ? ", " : "");
         text_append_shown(text, scenario->linkage.joints[numbers[i]].name);
         text_append(text, " ");
-        append_force(scenario, numbers[i], did->force, text);
+        append_force(scenario, numbers[i], did->force.headline, text);
         if (motion->period == 0) {
             text_append(text, " (");
-            append_force(scenario, numbers[i], did->low, text);
+            append_force(scenario, numbers[i], did->force.low, text);
             text_append(text, " to ");
-            append_force(scenario, numbers[i], did->high, text);
+            append_force(scenario, numbers[i], did->force.high, text);
             text_append(text, ")");
         }
     }
@@ -213,7 +214,7 @@ static void append_damped(const Scenario *scenario, size_t number, const Settled
                           Text *text)
 {
     text_append(text, "%s", some_word(motion));
-    append_force(scenario, number, motion->joints[number].force, text);
+    append_force(scenario, number, motion->joints[number].force.headline, text);
     text_append(text, "%s", median_word(motion));
 }
 
@@ -315,11 +316,11 @@ static json_t *motion_json(const Scenario *scenario, const SettledMotion *motion
         const SettledJoint *did = &motion->joints[i];
         json_t *of = json_object();
         json_object_set_new(of, "name", json_value_text(joint->name));
-        set_force(of, joint, "max", did->force);
-        set_force(of, joint, "max_low", did->low);
-        set_force(of, joint, "max_high", did->high);
+        set_force(of, joint, "max", did->force.headline);
+        set_force(of, joint, "max_low", did->force.low);
+        set_force(of, joint, "max_high", did->force.high);
         set_force(of, joint, "max_from_start", scenario->settled.first[i]);
-        json_value_set(of, "impacts_per_revolution", did->impacts);
+        json_value_set(of, "impacts_per_revolution", did->impacts.mean);
         json_array_append_new(joints, of);
     }
     json_t *found = json_object();

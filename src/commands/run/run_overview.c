@@ -151,10 +151,7 @@ Overview run_overview_make(const RunReport *report)
     }
     qsort(overview.joints, overview.joint_count, sizeof *overview.joints, by_size);
     qsort(overview.bodies, overview.body_count, sizeof *overview.bodies, by_size);
-    if (drive_torque_exists(linkage)) {
-        const size_t count = linkage_drive_count(linkage);
-        overview.drive_count = count > 1 ? count : 1; // that of a torque is none of them
-    }
+    overview.drive_count = drive_torque_count(linkage);
     for (size_t i = 0; i < overview.drive_count; i++) {
         overview.drives[i] = drive_row(scenario, overview.run, i, &ideal);
     }

@@ -1,0 +1,105 @@
+// Settles a mechanism from the settled start of a neighbour: the scenario of another value of a
+// key.
+#include "base/zeroed.h"
+#include "model/nearest.h"
+#include "run/settle_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Whether a start can be handed from one linkage to the other: both have the same bodies and
+// joints, and nothing counts whole turns.
+static bool can_follow(const Scenario *scenario, const Scenario *neighbour)
+{
+    const Linkage *own = &scenario->linkage;
+    const Linkage *other = &neighbour->linkage;
+    bool can = neighbour->settled.motion_count > 0 && scenario->run.start == START_SETTLED &&
+               !own->is_spatial && !other->is_spatial && own->torsion_count == 0 &&
+               own->body_count == other->body_count && own->joint_count == other->joint_count;
+    for (size_t i = 0; can && i < own->joint_count; i++) {
+        can = own->joints[i].kind == other->joints[i].kind &&
+              own->joints[i].limits.kind == LIMIT_NONE && own->joints[i].kind != JOINT_GEAR;
+    }
+    return can;
+}
+
+// A distance within some play as one within another: in the free part by its share of the play, in
+// the wall by its depth.
+static double in_other_play(double distance, double play, double other_play)
+{
+    return distance <= play ? distance * other_play / play : other_play + distance - play;
+}
+
+// Where a pin or block stands in its play, and what its contacts carry.
+static void follow_joint(const Joint *from, Joint *to)
+{
+    if (!linkage_has_play(to)) {
+        return;
+    }
+    const double play = linkage_radial_clearance(from);
+    const double own_play = linkage_radial_clearance(to);
+    memcpy(to->contacts, from->contacts, sizeof to->contacts);
+    if (to->kind == JOINT_CLEARANCE) {
+        const Vec2 at = from->clearance.start;
+        const double distance = vec2_length(at);
+        to->clearance.start =
+            distance > 0.0 ? vec2_scale(in_other_play(distance, play, own_play) / distance, at)
+                           : at;
+    } else if (to->kind == JOINT_GUIDE) {
+        const Vec2 at = from->guide.start;
+        to->guide.start = (Vec2){copysign(in_other_play(fabs(at.x), play, own_play), at.x), at.y};
+    }
+}
+
+// How much faster the drive turns than the neighbour's.
+static double drive_ratio(const Scenario *scenario, const Scenario *neighbour)
+{
+    const Driver *own = &scenario->linkage.driver;
+    const Driver *other = &neighbour->linkage.driver;
+    return drive_is_steady(own) && drive_is_steady(other) ? own->speed / other->speed : 1.0;
+}
+
+// The neighbour's start with the scenario's own sizes: positions moved as little as these need, and
+// speeds in proportion to the drive's. False where there is none.
+static bool start_as_neighbour(const Scenario *neighbour, Scenario *scenario)
+{
+    Linkage *linkage = &scenario->linkage;
+    Motion *motions = zeroed(linkage->body_count, sizeof *motions);
+    linkage_start(&neighbour->linkage, motions);
+    const double ratio = drive_ratio(scenario, neighbour);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].velocity = vec2_scale(ratio, motions[i].velocity);
+        motions[i].omega *= ratio;
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        follow_joint(&neighbour->linkage.joints[i], &linkage->joints[i]);
+    }
+    const bool is_placed = nearest_positions(linkage, motions);
+    if (is_placed) {
+        nearest_speeds(linkage, false, motions);
+        for (size_t i = 0; i < linkage->body_count; i++) {
+            linkage->bodies[i].start = motions[i];
+        }
+    }
+    free(motions);
+    return is_placed;
+}
+
+bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch)
+{
+    bool is_followed = scenario_lacks_start(scenario) && settle_dissipates(scenario) &&
+                       can_follow(scenario, neighbour);
+    if (is_followed) {
+        Scenario first = scenario_copy(scenario);
+        is_followed =
+            start_as_neighbour(neighbour, &first) && settle_search(scenario, &first, 1, watch);
+        scenario_free(&first);
+    }
+    if (is_followed) {
+        scenario->settled.is_followed = true;
+    } else {
+        settle_scenario(scenario, watch);
+    }
+    return is_followed;
+}
