@@ -220,8 +220,10 @@ Range trajectory_joint_range(const Trajectory *trajectory, size_t sample, size_t
 
 double trajectory_contact_share(const Trajectory *trajectory, size_t joint)
 {
-    return trajectory->joints[joint].contact_time /
-           (trajectory->duration_s - trajectory->report_from_s);
+    const double share = trajectory->joints[joint].contact_time /
+                         (trajectory->duration_s - trajectory->report_from_s);
+    // a sum of steps may be longer than the time that they fill by its rounding
+    return share > 1.0 ? 1.0 : share;
 }
 
 bool trajectory_feels_play(const Trajectory *trajectory, const Joint *joint)

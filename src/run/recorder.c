@@ -2,9 +2,11 @@
 //
 // Every step counts: extremes of omega (at the step's end) and alpha (its mean), each contact from
 // the first step with overlap to the last: force maximum, impulse, depth, duration; and the energy
-// that went in and out. Extremes and contacts are those of the reported time alone. The ranges hold
-// the same values, and every value that is shown, over the whole run; a step that crosses the
-// border of two stretches belongs to both where its values are means.
+// that went in and out. Extremes and contacts are those of the reported time alone: a contact that
+// is under way when it begins has not begun in it, and the rest of its duration, impulse and forces
+// counts (run/report_cut.h). The ranges hold the same values, and every value that is shown, over
+// the whole run; a step that crosses the border of two stretches belongs to both where its values
+// are means.
 #include "run/recorder.h"
 #include "base/hash.h"
 #include "base/sorted.h"
@@ -192,7 +194,8 @@ static void recorder_ranges_finish(RecorderRanges *own)
     free(own->forces);
 }
 
-Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory)
+Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory, const Solver *solver,
+                        const void *of)
 {
     trajectory->hash = HASH_START;
     const Linkage *linkage = &scenario->linkage;
@@ -203,6 +206,7 @@ Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory)
         .has_joint = zeroed(linkage->joint_count, sizeof *recorder.has_joint),
         .was_touching = zeroed(linkage->joint_count, sizeof *recorder.was_touching),
         .open = zeroed(linkage->joint_count, sizeof *recorder.open),
+        .cut = report_cut_start(linkage, solver, of, trajectory->report_from_s),
         .ranges = recorder_ranges_start(scenario, trajectory),
     };
     // a contact that is under way has begun before
@@ -271,27 +275,41 @@ static void end_contact(Recorder *recorder, size_t number)
     }
 }
 
+// Whether a peak that a step shows is on its side of the start of the reported time.
+static bool is_kept(const Recorder *recorder, const StepRecord *step, double peak_s)
+{
+    const double from_s = recorder->trajectory->report_from_s;
+    return peak_s >= from_s || step->end_s <= from_s;
+}
+
 // The force and depth of a joint at a time.
 static JointPeak top_at(const JointState *state, double time_s)
 {
     return (JointPeak){state->force, joint_state_depth(state), time_s, time_s};
 }
 
-// The largest force and depth of a joint in a step, as far as it knows.
-static JointPeak top_of(const StepRecord *step, size_t index)
+// The largest force and depth of a joint in a step, as far as it knows. A step may show a peak of
+// the one before, which need not have been reported.
+static JointPeak top_of(const Recorder *recorder, const StepRecord *step, size_t index)
 {
+    const size_t number = solver_joint(step->part, index);
+    if (recorder->is_cut && recorder->cut.is_cut[number]) {
+        return recorder->cut.tops[number];
+    }
     JointPeak top = top_at(&step->joints[index], step->joint_s);
     if (step->peaks == NULL) {
         return top;
     }
     const JointPeak *between = &step->peaks[index];
-    if (between->force > top.force) {
+    const double force_s = between->force_s > 0.0 ? between->force_s : step->joint_s;
+    const double depth_s = between->depth_s > 0.0 ? between->depth_s : step->joint_s;
+    if (between->force > top.force && is_kept(recorder, step, force_s)) {
         top.force = between->force;
-        top.force_s = between->force_s > 0.0 ? between->force_s : step->joint_s;
+        top.force_s = force_s;
     }
-    if (between->depth > top.depth) {
+    if (between->depth > top.depth && is_kept(recorder, step, depth_s)) {
         top.depth = between->depth;
-        top.depth_s = between->depth_s > 0.0 ? between->depth_s : step->joint_s;
+        top.depth_s = depth_s;
     }
     return top;
 }
@@ -305,6 +323,7 @@ static void recorder_add_contact(Recorder *recorder, const StepRecord *step, siz
     Spike *spike = &recorder->open[number];
     const double duration = step->end_s - step->start_s;
     const double from_s = recorder->trajectory->report_from_s;
+    const bool is_cut = recorder->is_cut && recorder->cut.is_cut[number];
     const bool is_reported = is_after_start(recorder, step->end_s);
     if (state->is_touching && !recorder->was_touching[number]) {
         joint->impacts += step->start_s >= from_s ? 1 : 0;
@@ -317,15 +336,17 @@ static void recorder_add_contact(Recorder *recorder, const StepRecord *step, siz
     if (state->is_touching) {
         spike->duration_s += duration;
         spike->impulse += step->impulse[index];
-        const JointPeak top = top_of(step, index);
+        const JointPeak top = top_of(recorder, step, index);
         if (top.force > spike->force_max) {
             spike->force_max = top.force;
             spike->peak_s = top.force_s;
             spike->eccentricity = state->eccentricity;
         }
         spike->penetration_max = fmax(spike->penetration_max, top.depth);
-        joint->contact_time += is_reported ? duration : 0.0;
-        joint->impulse += is_reported ? step->impulse[index] : 0.0;
+        joint->contact_time += is_reported ? step->end_s - fmax(step->start_s, from_s) : 0.0;
+        joint->impulse += is_cut        ? recorder->cut.after[number]
+                          : is_reported ? step->impulse[index]
+                                        : 0.0;
     } else if (recorder->was_touching[number]) {
         end_contact(recorder, number);
     }
@@ -372,7 +393,10 @@ static void recorder_raise_body(Recorder *recorder, const StepRecord *step, size
 static void recorder_raise_joint(Recorder *recorder, const StepRecord *step, size_t k)
 {
     const size_t i = solver_joint(step->part, k);
-    const JointPeak top = top_of(step, k);
+    if (!report_cut_has(&recorder->cut, i)) {
+        return; // the last that is known of it is not reported
+    }
+    const JointPeak top = top_of(recorder, step, k);
     const bool is_first = !recorder->has_joint[i];
     JointExtremes *joint = &recorder->trajectory->joints[i];
     if (step->space_joints != NULL) {
@@ -419,6 +443,7 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
     const size_t body_count = solver_body_count(step->part, linkage);
     const size_t joint_count = solver_joint_count(step->part, linkage);
     uint64_t hash = trajectory->hash;
+    recorder->is_cut = report_cut_take(&recorder->cut, step);
     for (size_t k = 0; k < body_count; k++) {
         hash = hash_number(hash_number(hash, step->omega[k]), step->alpha[k]);
     }
@@ -535,6 +560,7 @@ void recorder_finish(Recorder *recorder)
     Trajectory *trajectory = recorder->trajectory;
     const Linkage *linkage = &recorder->scenario->linkage;
     recorder_ranges_finish(&recorder->ranges);
+    report_cut_finish(&recorder->cut);
     for (size_t i = 0; i < trajectory->body_count; i++) {
         set_crank(linkage, &trajectory->bodies[i].omega_max);
         set_crank(linkage, &trajectory->bodies[i].omega_min);

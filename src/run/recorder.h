@@ -1,7 +1,7 @@
 // What happens between samples, gathered step by step in memory that does not grow with the steps.
 #pragma once
 
-#include "model/solver.h"
+#include "run/report_cut.h"
 
 // The ranges of a run, gathered step by step where its trajectory has room for them.
 
@@ -22,10 +22,15 @@ typedef struct Recorder {
     bool has_all;       // whether all of them have been in one
     bool *was_touching; // by joint, in the step before
     Spike *open;        // the contact under way, by joint
+    ReportCut cut;      // of the step that the reported time begins in
+    bool is_cut;        // whether the last record is one that it cuts
     RecorderRanges ranges;
 } Recorder;
 
-Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory);
+// The solver is asked for what is within the step that the reported time begins in; NULL: nobody
+// is.
+Recorder recorder_start(const Scenario *scenario, Trajectory *trajectory, const Solver *solver,
+                        const void *of);
 
 // Takes in one step.
 void recorder_add(Recorder *recorder, const StepRecord *step);

@@ -514,7 +514,7 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     }
     loop.turning = turning_start(&scenario->linkage);
     loop.sample = sample_create(&scenario->linkage);
-    loop.recorder = recorder_start(scenario, trajectory);
+    loop.recorder = recorder_start(scenario, trajectory, solver, loop.state);
     loop.ahead = part_samples_start(&loop.recorder, &loop.turning, solver, loop.state);
     loop.probe_own =
         probe == NULL ? NULL

@@ -42,7 +42,7 @@ static void contacts_are_counted_from_onset_to_end(void **state)
     Scenario scenario = mechanism_paper();
     mechanism_loosen(&scenario, "crank-coupler");
     Trajectory *trajectory = trajectory_create(&scenario, "test");
-    Recorder recorder = recorder_start(&scenario, trajectory);
+    Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
     Steps steps = {.approach = {0.0, 0.25, 0.0, 0.0}};
     const double forces[] = {0.0, 10.0, 30.0, 20.0, 0.0, 0.0, 5.0, 0.0, 7.0};
     const double gaps[] = {1e-6, -1e-7, -3e-7, -2e-7, 1e-6, 1e-6, -5e-8, 1e-6, -7e-8};
@@ -79,7 +79,7 @@ static void only_the_strongest_contacts_are_kept(void **state)
     Scenario scenario = mechanism_paper();
     mechanism_loosen(&scenario, "crank-coupler");
     Trajectory *trajectory = trajectory_create(&scenario, "test");
-    Recorder recorder = recorder_start(&scenario, trajectory);
+    Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
     Steps steps = {.approach = {0.0}};
     // forty contacts of one step; their forces go up and down: 0, 7, 14, ... modulo 40
     for (int i = 0; i < 40; i++) {
@@ -101,7 +101,7 @@ static void extremes_hold_a_single_step(void **state)
     (void)state;
     const Scenario scenario = mechanism_paper();
     Trajectory *trajectory = trajectory_create(&scenario, "test");
-    Recorder recorder = recorder_start(&scenario, trajectory);
+    Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
     Steps steps = {.approach = {0.0}};
     for (int i = 0; i < 100; i++) {
         steps.omega[1] = -10.0 - (i == 42 ? 5.0 : 0.0);
@@ -126,7 +126,7 @@ static void the_order_of_steps_is_part_of_the_hash(void **state)
     uint64_t hashes[2];
     for (int order = 0; order < 2; order++) {
         Trajectory *trajectory = trajectory_create(&scenario, "test");
-        Recorder recorder = recorder_start(&scenario, trajectory);
+        Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
         Steps steps = {.approach = {0.0}};
         for (int i = 0; i < 2; i++) {
             steps.omega[1] = i == order ? 1.0 : 2.0;
@@ -151,7 +151,7 @@ static void a_start_that_is_not_reported_leaves_no_extremes(void **state)
         scenario.run.report_from = i == 0 ? 4e-6 : 0.0;
         Trajectory *trajectory = trajectory_create(&scenario, "test");
         trajectory_keep_ranges(trajectory, &scenario);
-        Recorder recorder = recorder_start(&scenario, trajectory);
+        Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
         Steps steps = {.approach = {0.0}};
         for (int k = 0; k < 9; k++) {
             steps.omega[1] = k == 0 ? 1e3 : -10.0;
@@ -180,7 +180,7 @@ static void every_step_is_in_the_range_of_its_stretch(void **state)
     for (int i = 0; i < 2; i++) {
         Trajectory *trajectory = trajectory_create(&scenario, "test");
         trajectory->ranges = ranges_create(&scenario.linkage, 4, 2.5e-6);
-        Recorder recorder = recorder_start(&scenario, trajectory);
+        Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
         double omega[3] = {0.0};
         double alpha[3] = {0.0};
         JointState joints[4] = {{.gap = 0.0}};
@@ -228,7 +228,7 @@ static void tops_within_a_step_that_is_looked_into_are_extremes(void **state)
     const Scenario scenario = mechanism_paper();
     const Solver solver = {.name = "swings", .observe = observe_swings};
     Trajectory *trajectory = trajectory_create(&scenario, "test");
-    Recorder recorder = recorder_start(&scenario, trajectory);
+    Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
     Looker looker = looker_start(&scenario, &solver, NULL, &recorder);
     Sample end = sample_create(&scenario.linkage);
     Look looks[LOOK_MAX];
