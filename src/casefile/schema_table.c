@@ -426,8 +426,9 @@ const SchemaRow SCHEMA_ROWS[] = {
             "acceleration, the largest force; without a drive, over a tenth of the signal's range"},
     {.path = "run.report-from", .type = SCHEMA_SPAN, .dimension = DIMENSION_TIME,
      AT(run.report_from), .low = 0.0, .high = 1e6, .needs = VALUED,
-     .doc = "extremes, contacts and spikes are reported from this time on, such as 1 revolution; "
-            "errors, energy, series and picture cover the whole run"},
+     .doc = "extremes, contacts and spikes are reported from this time on, such as 1 revolution, "
+            "and of a contact under way then the rest; errors, energy, series and picture cover "
+            "the whole run"},
     {.path = "run.start", .type = SCHEMA_CHOICE, AT(run.start), .words = OPTIONS_RUN_STARTS,
      .needs = PLAY | REPEATING | IMPACT,
      .default_words = "settled; centred of a case that gives a joint's start or runs for less than "

@@ -24,8 +24,8 @@ static const double FLIGHT_S = 0.01;
 enum { STOP = 1 }; // the joint's number
 static const double END_S = 0.06;
 
-// How it is computed, and how far its impulses may be off: those of rows that hold a step's mean
-// by the share of a step of 20 us in a contact of 31 ms.
+// How it is computed, and how far its impulses may be off, 1: rows of a whole step see a contact of
+// 31 ms begin up to two steps of 20 us late, and end as late.
 typedef struct Way {
     const Solver *solver;
     const char *settings[3];
@@ -36,8 +36,8 @@ typedef struct Way {
 static const Way WAYS[] = {
     {&REFERENCE_SOLVER, {"run.start=centred"}, 1, 1e-9},
     {&ODE_SOLVER, {"run.step=100us"}, 1, 1e-6},
-    {&ODE_SOLVER, {"run.step=20us", "ode.stepping=staggered", "ode.map=midpoint"}, 3, 2e-3},
-    {&ODE_SOLVER, {"run.step=20us", "ode.stepping=plain", "ode.map=textbook"}, 3, 2e-3},
+    {&ODE_SOLVER, {"run.step=20us", "ode.stepping=staggered", "ode.map=midpoint"}, 3, 5e-3},
+    {&ODE_SOLVER, {"run.step=20us", "ode.stepping=plain", "ode.map=textbook"}, 3, 5e-3},
 };
 enum { WAY_COUNT = sizeof WAYS / sizeof *WAYS };
 

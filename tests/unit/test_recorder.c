@@ -73,6 +73,35 @@ static void contacts_are_counted_from_onset_to_end(void **state)
     trajectory_destroy(trajectory);
 }
 
+// Six steps of 1 us with a contact in the middle four, reported from 2.25 us: what is a mean over a
+// step is spread evenly over it, and so is the impulse where nobody can look inside.
+static void a_contact_under_way_is_cut(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_paper();
+    mechanism_loosen(&scenario, "crank-coupler");
+    scenario.run.report_from = 2.25e-6;
+    scenario.run.keeps_contacts = true;
+    Trajectory *trajectory = trajectory_create(&scenario, "test");
+    Recorder recorder = recorder_start(&scenario, trajectory, NULL, NULL);
+    Steps steps = {.approach = {0.0}};
+    const double forces[] = {0.0, 50.0, 40.0, 10.0, 20.0, 0.0};
+    for (int i = 0; i < 6; i++) {
+        add_step(&recorder, &steps, i, forces[i], forces[i] > 0.0 ? -1e-9 * forces[i] : 1e-6);
+    }
+    recorder_finish(&recorder);
+    const JointExtremes *joint = &trajectory->joints[1];
+    assert_near(joint->contact_time, 2.75e-6, 1e-18);
+    assert_near(joint->impulse, 0.75 * 40e-6 + 30e-6, 1e-18);
+    assert_near(joint->force_max.value, 40.0, 0.0);
+    assert_near(joint->force_max.time_s, 2.25e-6, 0.0);
+    assert_near(joint->penetration_max.value, 40e-9, 1e-20);
+    assert_int_equal(joint->impacts, 0);
+    assert_int_equal(joint->spike_count, 0);
+    assert_int_equal(trajectory->contact_count, 0);
+    trajectory_destroy(trajectory);
+}
+
 static void only_the_strongest_contacts_are_kept(void **state)
 {
     (void)state;
@@ -267,6 +296,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_are_counted_from_onset_to_end),
+        cmocka_unit_test(a_contact_under_way_is_cut),
         cmocka_unit_test(only_the_strongest_contacts_are_kept),
         cmocka_unit_test(extremes_hold_a_single_step),
         cmocka_unit_test(a_start_that_is_not_reported_leaves_no_extremes),
