@@ -13,9 +13,13 @@
 #include "casefile/slider.h"
 #include "casefile/store.h"
 #include "casefile/unused.h"
+#include "model/common_period.h"
 #include "model/space.h"
 
 #include <string.h>
+
+// 1: of a period, what rounding may leave
+static const double PERIOD_ROUNDING = 1e-9;
 
 // Notes which values a joint has of its own.
 static void note_given(const Entries *entries, size_t number, Joint *joint)
@@ -109,34 +113,64 @@ static void store_partners(const Entries *entries, Scenario *scenario)
     }
 }
 
-// How a case starts that does not say so: settled, unless it says where its joints start, or there
-// is no motion to settle or no time for it.
-static void store_run_start(const Entries *entries, Scenario *scenario)
+// Lets a drive of which a stiffness or a damping is given follow its speed with these: no body is
+// driven then, and the run has a duration.
+static void soften_drive(const Entries *entries, Scenario *scenario)
 {
-    RunOptions *run = &scenario->run;
-    run->is_start_given = entries_find(entries, "run.start", 0) != NULL;
-    if (run->is_start_given || !scenario_has_clearance(scenario)) {
-        return;
+    Linkage *linkage = &scenario->linkage;
+    if (entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL) {
+        scenario->run.duration = scenario_duration(scenario);
+        linkage->torque.followed = linkage->driver;
+        linkage->torque.table = (TimeTable){.count = 1};
+        linkage->driver.is_present = false;
     }
+}
+
+// Why a case that does not say how it starts is not settled: it says where its joints start, or
+// there is no motion to settle or no time for it. NULL: it is.
+static const char *reason_against(const Entries *entries, const Scenario *acting,
+                                  const CommonPeriod *period)
+{
+    const RunOptions *run = &acting->run;
+    const bool is_steady = drive_is_steady(&acting->linkage.driver);
     bool is_given = false;
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+    for (size_t i = 0; i < acting->linkage.joint_count; i++) {
         is_given = is_given || entries_find(entries, "joints.*.start", i) != NULL;
     }
-    const Driver *driver = &scenario->linkage.driver;
-    const double period_s = linkage_period(&scenario->linkage);
-    const bool is_steady = drive_is_steady(driver);
-    run->centred_because =
-        !driver->is_present ? "nothing drives it at a given speed"
-        : entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL
-            ? "its drive is soft, and turns it at no given speed"
-        : !loads_repeat(&scenario->linkage) ? "a load over time does not repeat with its drive"
-        : period_s == 0.0 ? "the speed of its drive changes without a drive.period"
-        : scenario->contact.model == CONTACT_POISSON ? "contacts of model poisson have no state"
-        : is_given                                   ? "the case gives where a joint starts"
-        : is_steady && run->revolutions < 1.0        ? "it runs for less than a revolution"
-        : !is_steady && run->duration < period_s     ? "it runs for less than a period of its drive"
-                                                     : NULL;
-    run->start = run->centred_because != NULL ? START_CENTRED : START_SETTLED;
+    return period->period_s == 0.0                    ? period->why
+           : acting->contact.model == CONTACT_POISSON ? "contacts of model poisson have no state"
+           : is_given                                 ? "the case gives where a joint starts"
+           : is_steady && run->revolutions < 1.0      ? "it runs for less than a revolution"
+           : !is_steady && run->duration < (1.0 - PERIOD_ROUNDING) * period->period_s
+               ? "it runs for less than a period"
+               : NULL;
+}
+
+// How a case starts: settled, unless it says otherwise or something is against it. A drive of
+// constant speed may have loads that take several revolutions: one shows a part of the motion.
+static bool store_run_start(const Entries *entries, Scenario *scenario, Err *err)
+{
+    RunOptions *run = &scenario->run;
+    const Entry *entry = entries_find(entries, "run.start", 0);
+    run->is_start_given = entry != NULL;
+    if (!scenario_has_clearance(scenario)) {
+        return true;
+    }
+    Scenario acting = *scenario;
+    soften_drive(entries, &acting);
+    const CommonPeriod period = common_period_find(&acting.linkage);
+    if (entry != NULL) {
+        return run->start != START_SETTLED || !period.is_mismatch ||
+               entries_refuse(entry, err,
+                              "%s\nallowed: periods of which one is a whole number of the other, "
+                              "or whole numbers of them are the same; or run.start: centred",
+                              period.why);
+    }
+    const char *reason = reason_against(entries, &acting, &period);
+    if (reason != NULL) {
+        scenario_start_as_written(scenario, reason);
+    }
+    return true;
 }
 
 // The line of a motor's torque over speed, and its rotor on the body that it turns.
@@ -153,19 +187,6 @@ static void complete_motor(const Entries *entries, Linkage *linkage)
         torque->slope = torque->no_load != 0.0 ? torque->table.values[0] / torque->no_load : 0.0;
         linkage_turning(linkage, torque->joint, &turned, &against);
         linkage->bodies[turned].inertia += torque->inertia;
-    }
-}
-
-// Lets a drive of which a stiffness or a damping is given follow its speed with these: no body is
-// driven then, and the run has a duration.
-static void soften_drive(const Entries *entries, Scenario *scenario)
-{
-    Linkage *linkage = &scenario->linkage;
-    if (entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL) {
-        scenario->run.duration = scenario_duration(scenario);
-        linkage->torque.followed = linkage->driver;
-        linkage->torque.table = (TimeTable){.count = 1};
-        linkage->driver.is_present = false;
     }
 }
 
@@ -192,7 +213,9 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         return false;
     }
     store_partners(entries, scenario);
-    store_run_start(entries, scenario);
+    if (!store_run_start(entries, scenario, err)) {
+        return false;
+    }
     scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
     space_complete(&scenario->linkage);
     return true;

@@ -107,26 +107,46 @@ static bool repeat_angles(const Entry *entry, Driver *driver, Err *err)
     return check_turns(entry, driver, err);
 }
 
+// Values that repeat have one at the end of a period and at its start, which is left out at the
+// end.
+static bool fold_end(const Entry *entry, const char *what, TimeTable *table, Err *err)
+{
+    const size_t last = table->count - 1;
+    const double end_s = table->times[last];
+    const bool is_at_end = fabs(end_s - table->period_s) <= PERIOD_ROUNDING * table->period_s;
+    if (is_at_end && table->times[0] == 0.0 && table->values[last] != table->values[0]) {
+        return entries_refuse(entry, err,
+                              "the %s at the end of a period is not that at its start\nallowed: "
+                              "the same at both, or a period longer than %.6g s",
+                              what, end_s);
+    }
+    if (!is_at_end && end_s > table->period_s) {
+        return entries_refuse(entry, err,
+                              "the points of the %s do not fit into a period\nallowed: a "
+                              "period of at least %.6g s, the time of the last point",
+                              what, end_s);
+    }
+    table->count -= is_at_end && table->times[0] == 0.0 ? 1 : 0;
+    return true;
+}
+
 static bool repeat_speeds(const Entry *entry, Driver *driver, Err *err)
 {
-    TimeTable *speeds = &driver->table;
-    const size_t last = speeds->count - 1;
-    const double end_s = speeds->times[last];
-    const bool is_at_end = fabs(end_s - speeds->period_s) <= PERIOD_ROUNDING * speeds->period_s;
-    if (is_at_end && speeds->times[0] == 0.0 && speeds->values[last] != speeds->values[0]) {
+    return fold_end(entry, "speed", &driver->table, err) && check_turns(entry, driver, err);
+}
+
+// A torque or a force over time has the period that stands beside it.
+static bool repeat_torque(const Entries *entries, const Entry *entry, Linkage *linkage, Err *err)
+{
+    TimeTable *table = &linkage->torque.table;
+    if (table->count < 2) {
         return entries_refuse(entry, err,
-                              "the speed at the end of a period is not that at its start\nallowed: "
-                              "the same at both, or a period longer than %.6g s",
-                              end_s);
+                              "only what changes over time repeats\nallowed: drive.period beside "
+                              "drive.speed, drive.angle, drive.torque or drive.force over time");
     }
-    if (!is_at_end && end_s > speeds->period_s) {
-        return entries_refuse(entry, err,
-                              "the points of the speed do not fit into a period\nallowed: a "
-                              "period of at least %.6g s, the time of the last point",
-                              end_s);
-    }
-    speeds->count -= is_at_end && speeds->times[0] == 0.0 ? 1 : 0;
-    return check_turns(entry, driver, err);
+    table->period_s = linkage->driver.table.period_s;
+    const bool is_force = entries_find(entries, "drive.force", 0) != NULL;
+    return fold_end(entry, is_force ? "force" : "torque", table, err);
 }
 
 static bool complete(const Entries *entries, const DriveKeys *keys, size_t index, Driver *driver,
@@ -146,9 +166,7 @@ bool drives_complete(const Entries *entries, Linkage *linkage, Err *err)
 {
     const Entry *entry = entries_find(entries, "drive.period", 0);
     if (entry != NULL && !linkage->driver.is_present) {
-        return entries_refuse(entry, err,
-                              "only a speed or an angle over time repeats\nallowed: drive.period "
-                              "beside drive.speed or drive.angle alone");
+        return repeat_torque(entries, entry, linkage, err);
     }
     bool is_good = complete(entries, &CRANK_KEYS, 0, &linkage->driver, err);
     for (size_t i = 0; is_good && i < linkage->further_count; i++) {

@@ -407,20 +407,3 @@ bool loads_complete(const Entries *entries, Linkage *linkage, Err *err)
     }
     return true;
 }
-
-bool loads_repeat(const Linkage *linkage)
-{
-    const double period_s = linkage_period(linkage);
-    for (size_t i = 0; i < linkage->load_count; i++) {
-        const Load *load = &linkage->loads[i];
-        if (load->table.count <= 1 || load->over != LOAD_OVER_TIME) {
-            continue;
-        }
-        const double share = load->table.period / period_s;
-        const double times = fmax(share, 1.0 / share);
-        if (!(load->table.period > 0.0) || fabs(times - round(times)) > PERIOD_ROUNDING * times) {
-            return false;
-        }
-    }
-    return true;
-}

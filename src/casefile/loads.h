@@ -18,9 +18,6 @@ bool loads_store_period(const Target *target, const Linkage *linkage, Load *load
 // not go together.
 bool loads_complete(const Entries *entries, Linkage *linkage, Err *err);
 
-// Whether all loads repeat with the drive, in one of its periods or in some of them.
-bool loads_repeat(const Linkage *linkage);
-
 // Whether a key of a load says how it is.
 bool loads_apply(const SchemaRow *row, const Linkage *linkage, const Load *load);
 

@@ -28,7 +28,7 @@ static const Condition CONDITIONS[] = {
     {SPATIAL, 0, {"space: spatial", "space", true}},
     {PLAY, 0, {"a joint with play", "", false}},
     {TURNING, 0, {"a drive of constant speed", "", false}},
-    {REPEATING, 0, {"a drive of constant speed, or with drive.period", "", false}},
+    {REPEATING, 0, {"a drive of constant speed, or a period of drive or loads", "", false}},
     {IDEAL, 0, {"a case whose joints are all ideal", "", false}},
     {IMPACT, PLAY, {"contact.model: impact", "contact.model", false}},
     {POISSON, PLAY, {"contact.model: poisson", "contact.model", true}},
@@ -65,7 +65,7 @@ static const Condition WANTS[] = {
     {SETTLED, 0, {"run.start: settled", "run.start", false}},
     {REMEMBERED, 0, {"a contact.damping but none, viscous and dissipation", "contact.damping", false}},
     {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
-    {UNSTEADY, 0, {"a drive.speed or drive.angle over time", "drive.speed", false}},
+    {UNSTEADY, 0, {"a drive.speed, angle, torque or force over time", "drive.speed", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
 };
 // clang-format on
@@ -157,7 +157,7 @@ static unsigned drive_bits(const Scenario *scenario)
     return bit(DRIVE, linkage->driver.is_present || is_soft) | bit(TORQUE, is_torque && !is_force) |
            bit(FORCE, is_torque && is_force) |
            bit(DRIVEN, linkage->driver.is_present || is_torque) | bit(TURNING, is_steady) |
-           bit(TIMED, !is_steady) | bit(REPEATING, linkage_period(linkage) > 0.0);
+           bit(TIMED, !is_steady) | bit(REPEATING, scenario_settling_period(scenario) > 0.0);
 }
 
 static unsigned contact_bits(const Scenario *scenario)
@@ -302,7 +302,8 @@ static unsigned row_bits(const Scenario *scenario)
            bit(SHUFFLED, scenario->ode.iterations > SHUFFLE_ITERATIONS) |
            bit(MOVED, build_is_determined(&scenario->linkage)) |
            bit(SETTLED, scenario->run.start == START_SETTLED) |
-           bit(UNSTEADY, scenario->linkage.driver.table.count > 0) |
+           bit(UNSTEADY, scenario->linkage.driver.table.count > 0 ||
+                             scenario->linkage.torque.table.count > 1) |
            bit(REMEMBERED, scenario->contact.damping != DAMPING_DISSIPATION) |
            bit(DERIVED, scenario->contact.damping != DAMPING_DISSIPATION ||
                             scenario->contact.dissipation == 0.0);

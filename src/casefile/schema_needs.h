@@ -34,7 +34,7 @@ enum {
     FORCE = 1 << 29,               // or a force
     DRIVEN = 1 << 26,              // there is a drive, a torque or a force
     OWN = 1 << 27,                 // the joint notes that it has the value of its own
-    REPEATING = 1 << 30,           // the drive has a period: constant speed, or one that repeats
+    REPEATING = 1 << 30,           // all that acts has a period in common
     DISSIPATING = (int)(1U << 31), // the damping dissipates without a memory
     TURNING = 1 << 28,             // the drive's speed is constant: revolutions measure the run
 };

@@ -279,11 +279,11 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "drive.profile", .type = SCHEMA_CHOICE, AT(linkage.driver.profile),
      .words = PROFILES, .needs = DRIVE, .doc = "of drive.angle, " PROFILE_DOC},
     {.path = "drive.period", .dimension = DIMENSION_TIME, AT(linkage.driver.table.period_s),
-     .low = 0.0, .high = 1e6, .low_is_open = true, .default_words = "none", .needs = DRIVE | VALUED,
-     .wants = UNSTEADY,
+     .low = 0.0, .high = 1e6, .low_is_open = true, .default_words = "none",
+     .needs = DRIVEN | VALUED, .wants = UNSTEADY,
      .doc = "time after which a speed over time repeats: linear from its last point to the first "
             "of the next period, with whole turns in each; an angle over time likewise, from 0 s "
-            "to the end of the period"},
+            "to the end of the period; a torque or force over time likewise, without turns"},
     {.path = "drive.torque", .type = SCHEMA_TORQUE, .form = SCHEMA_LONG,
      .dimension = DIMENSION_TORQUE, AT(linkage.torque.table), .low = -1e9, .high = 1e9,
      .rivalry = SCHEMA_DRIVING, .side = 1, .default_words = "none", .needs = TORQUE,
@@ -396,7 +396,8 @@ const SchemaRow SCHEMA_ROWS[] = {
 
     {.path = "run.revolutions", AT(run.revolutions), .low = 0.0, .high = 1e6,
      .low_is_open = true, .needs = TURNING,
-     .doc = "length of the run; may be a fraction"},
+     .doc = "length of the run; may be a fraction; loads of 720 deg, as of a four-stroke engine, "
+            "take two to be shown whole"},
     {.path = "run.duration", .dimension = DIMENSION_TIME, AT(run.duration),
      .low = 0.0, .high = 1e6, .low_is_open = true, .needs = TIMED,
      .doc = "length of a run without a drive of constant speed"},
@@ -431,9 +432,11 @@ const SchemaRow SCHEMA_ROWS[] = {
             "the whole run"},
     {.path = "run.start", .type = SCHEMA_CHOICE, AT(run.start), .words = OPTIONS_RUN_STARTS,
      .needs = PLAY | REPEATING | IMPACT,
-     .default_words = "settled; centred of a case that gives a joint's start or runs for less than "
-                      "a revolution or a period of its drive",
-     .doc = "settled: in the motion that the reference comes to from several starts; centred: "
+     .default_words = "settled; centred of a case that gives a joint's start, runs for less than "
+                      "a revolution or a period, or has none",
+     .doc = "settled: in the motion that the reference comes to from several starts, by periods "
+            "that drive and loads have in common: a revolution or drive.period, a load's period "
+            "or that of a torque, or whole numbers of these; centred: "
             "pins in the middle of their holes, or where the case puts them; pressed: on the wall "
             "of the hole where the reaction of an ideal joint would hold the pin"},
     {.path = "run.settle-starts", .type = SCHEMA_INTEGER, AT(run.settle_starts), .low = 1.0,

@@ -6,6 +6,7 @@
 // difference of any body's velocity, or of its angular velocity times its reach.
 #include "measure/section.h"
 
+#include "model/common_period.h"
 #include "model/joint_rows.h"
 
 #include <math.h>
@@ -88,7 +89,8 @@ static void find_period(const Trajectory *run, Sections *sections)
 Sections section_find(const Trajectory *run)
 {
     Sections sections = {.change = NAN};
-    const double period_s = linkage_period(&run->linkage);
+    const double drive_s = linkage_period(&run->linkage);
+    const double period_s = drive_s > 0.0 ? drive_s : common_period_find(&run->linkage).period_s;
     if (!run->is_complete || !(period_s > 0.0) || run->sample_count < 2) {
         return sections;
     }

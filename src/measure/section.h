@@ -1,7 +1,8 @@
 // The sections of a run (Poincare's): its state once a revolution, always at one crank angle, and
 // after how many revolutions it comes back.
 //
-// A revolution is a period of the drive (linkage_period): of one of constant speed a turn.
+// A revolution is a period of the drive (linkage_period): of one of constant speed a turn; without
+// such a drive a period of all that acts (model/common_period.h).
 #pragma once
 
 #include "model/trajectory.h"

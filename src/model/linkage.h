@@ -414,7 +414,8 @@ enum { LINKAGE_INSTANT_SIZE = 64 };
 void linkage_describe_instant(const Linkage *linkage, double time_s,
                               char text[LINKAGE_INSTANT_SIZE]);
 
-// Time of one turn of the driver, s; 0 where there is no driver, or its speed is not constant.
+// Time of one turn of the driver, or of a period of one whose speed repeats, s; 0 where there is no
+// driver, or it does not repeat. Loads may take longer to be the same again: model/common_period.h.
 double linkage_period(const Linkage *linkage);
 
 // How far a body's points go from its centre of mass, m: the distance of its furthest joint, at

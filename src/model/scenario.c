@@ -2,6 +2,7 @@
 #include "model/scenario.h"
 
 #include "base/zeroed.h"
+#include "model/common_period.h"
 
 #include <string.h>
 
@@ -30,11 +31,30 @@ static void *copied(const void *array, size_t count, size_t size)
     return copy;
 }
 
+// Why it starts as written, in words of the copy's own.
+static void share_reason(const Scenario *scenario, Scenario *copy)
+{
+    if (scenario->reason != NULL) {
+        copy->reason = copied(scenario->reason, 1 + strlen(scenario->reason), 1);
+        copy->run.centred_because = copy->reason;
+    }
+}
+
+void scenario_start_as_written(Scenario *scenario, const char *reason)
+{
+    char *own = copied(reason, 1 + strlen(reason), 1);
+    free(scenario->reason);
+    scenario->reason = own;
+    scenario->run.centred_because = own;
+    scenario->run.start = START_CENTRED;
+}
+
 Scenario scenario_copy(const Scenario *scenario)
 {
     Scenario copy = *scenario;
     copy.linkage = linkage_copy(&scenario->linkage);
     copy.path = copied(scenario->path, 1 + strlen(scenario_path(scenario)), 1);
+    share_reason(scenario, &copy);
     copy.expectations =
         copied(scenario->expectations, scenario->expectation_count, sizeof *scenario->expectations);
     copy.keys = copied(scenario->keys, scenario->key_count, sizeof *scenario->keys);
@@ -48,6 +68,8 @@ Scenario scenario_around(const Scenario *scenario, Linkage linkage)
     Scenario around = *scenario;
     around.linkage = linkage;
     around.path = NULL;
+    around.reason = NULL;
+    around.run.centred_because = NULL;
     around.expectations = NULL;
     // that the start is found holds for whatever is a part of it
     around.settled = (SettledStart){.revolutions = scenario->settled.revolutions,
@@ -74,11 +96,14 @@ void scenario_free(Scenario *scenario)
 {
     linkage_free(&scenario->linkage);
     free(scenario->path);
+    free(scenario->reason);
     free(scenario->expectations);
     settled_start_free(&scenario->settled);
     free(scenario->outcomes);
     free(scenario->keys);
     scenario->path = NULL;
+    scenario->reason = NULL;
+    scenario->run.centred_because = NULL;
     scenario->expectations = NULL;
     scenario->outcomes = NULL;
     scenario->keys = NULL;
@@ -144,9 +169,21 @@ double scenario_sample_time(const Scenario *scenario, size_t sample)
     return turn * (double)sample / (double)scenario->run.samples;
 }
 
+double scenario_settling_period(const Scenario *scenario)
+{
+    return common_period_find(&scenario->linkage).period_s;
+}
+
+double scenario_settling_turns(const Scenario *scenario)
+{
+    return drive_is_steady(&scenario->linkage.driver)
+               ? round(scenario_settling_period(scenario) / linkage_period(&scenario->linkage))
+               : 1.0;
+}
+
 bool scenario_settles(const Scenario *scenario)
 {
-    return scenario->run.start == START_SETTLED && linkage_period(&scenario->linkage) > 0.0 &&
+    return scenario->run.start == START_SETTLED && scenario_settling_period(scenario) > 0.0 &&
            scenario->contact.model == CONTACT_IMPACT && scenario_has_clearance(scenario);
 }
 

@@ -37,7 +37,8 @@ typedef struct ScenarioKey {
 // its own needs scenario_copy.
 typedef struct Scenario {
     char title[SCENARIO_TITLE_SIZE];
-    char *path; // of the case file, as given; owned; NULL where there is none: scenario_path
+    char *path;   // of the case file, as given; owned; NULL where there is none: scenario_path
+    char *reason; // why it starts as written: run.centred_because; owned, or NULL
     ScenarioSpace space; // linkage.is_spatial is the same
     Linkage linkage;
     bool has_fourbar; // whether the case used that short form
@@ -125,6 +126,16 @@ static inline Vec2 scenario_upward(const Scenario *scenario)
 {
     return vec2_sub((Vec2){0.0, 0.0}, scenario_gravity(scenario));
 }
+
+// The period in which a motion can settle, s: that of all that acts, drives, torques and loads
+// (model/common_period.h). 0: there is none.
+double scenario_settling_period(const Scenario *scenario);
+
+// The same in revolutions of a drive of constant speed, a whole number; else 1.
+double scenario_settling_turns(const Scenario *scenario);
+
+// Lets it start as the case puts its bodies, and keeps why in words of its own.
+void scenario_start_as_written(Scenario *scenario, const char *reason);
 
 // Whether runs are to start in a settled motion: it is asked for, and there is one to come to.
 bool scenario_settles(const Scenario *scenario);

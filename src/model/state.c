@@ -100,18 +100,24 @@ static void turn_back_joint(const Linkage *linkage, int number, const double *ba
     }
 }
 
+// By how much the angle of a joint is turned back, rad (linkage_turning).
+static double turned_back(const Linkage *linkage, int joint, const double *back_rad)
+{
+    int turned;
+    int against;
+    linkage_turning(linkage, joint, &turned, &against);
+    return back_rad[turned] - (against == LINKAGE_GROUND ? 0.0 : back_rad[against]);
+}
+
 static void turn_back_springs(Linkage *linkage, const double *back_rad)
 {
     for (size_t i = 0; i < linkage->torsion_count; i++) {
-        int turned;
-        int against;
-        linkage_turning(linkage, linkage->torsions[i].joint, &turned, &against);
-        linkage->torsions[i].angle -=
-            back_rad[turned] - (against == LINKAGE_GROUND ? 0.0 : back_rad[against]);
+        linkage->torsions[i].angle -= turned_back(linkage, linkage->torsions[i].joint, back_rad);
     }
 }
 
-static void start_in_plane(const RunState *state, Linkage *linkage)
+// Returns by how much the joint of a torque is turned back, rad.
+static double start_in_plane(const RunState *state, Linkage *linkage)
 {
     const size_t count = linkage->body_count;
     double *back_rad = zeroed(count, sizeof *back_rad);
@@ -127,7 +133,10 @@ static void start_in_plane(const RunState *state, Linkage *linkage)
         linkage->bodies[i].start = motions[i];
         linkage->bodies[i].start.angle -= back_rad[i];
     }
+    const bool has_joint = linkage->joint_count > 0;
+    const double back = has_joint ? turned_back(linkage, linkage->torque.joint, back_rad) : 0.0;
     free(back_rad);
+    return back;
 }
 
 // Where pins and blocks stand in their play, to more digits than the bodies' positions have.
@@ -178,14 +187,22 @@ void run_state_start(const RunState *state, Scenario *scenario)
     for (size_t i = 0; i < linkage->further_count; i++) {
         turn_on(&linkage->further[i], state->time_s);
     }
-    shift_loads(linkage, state->time_s, turns_rad);
+    Driver *followed = &linkage->torque.followed;
+    if (followed->is_present) {
+        const double turned_rad = turn_on(followed, state->time_s);
+        followed->start += turned_rad;
+    }
     if (linkage->is_spatial) {
         for (size_t i = 0; i < linkage->body_count; i++) {
             space_set_place(&state->sample.space_bodies[i], &linkage->bodies[i]);
         }
     } else {
-        start_in_plane(state, linkage);
+        const double back_rad = start_in_plane(state, linkage);
+        // a soft drive stays as far ahead of the crank as it was
+        followed->start -= followed->is_present ? back_rad : 0.0;
+        turns_rad += linkage->driver.is_present ? 0.0 : back_rad;
     }
+    shift_loads(linkage, state->time_s, turns_rad);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
         for (size_t k = 0; k < JOINT_PLACES; k++) {

@@ -440,6 +440,7 @@ static void take_start(const Linkage *from, Linkage *to)
     memcpy(to->torsions, from->torsions, to->torsion_count * sizeof *to->torsions);
     memcpy(to->loads, from->loads, to->load_count * sizeof *to->loads);
     to->driver.start = from->driver.start;
+    to->torque.followed.start = from->torque.followed.start;
 }
 
 static size_t decided_count(const Search *search, size_t *tried)

@@ -66,8 +66,8 @@ Settling settling_start(const Scenario *scenario)
         .change = INFINITY,
         .left = INFINITY,
     };
-    settling.scenario.run.revolutions = 1.0;
-    settling.scenario.run.duration = linkage_period(&scenario->linkage);
+    settling.scenario.run.revolutions = scenario_settling_turns(scenario);
+    settling.scenario.run.duration = scenario_settling_period(scenario);
     settling.scenario.reference.tolerance =
         fmax(settling.scenario.reference.tolerance, SETTLE_REFERENCE);
     return settling;

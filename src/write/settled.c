@@ -175,12 +175,13 @@ static void append_forces(const Scenario *scenario, const SettledMotion *motion,
 // How long a run shows all of a motion that repeats, where this one does not.
 static void append_length(const Scenario *scenario, size_t period, Text *text)
 {
-    const double whole_s = (double)period * linkage_period(&scenario->linkage);
+    const double whole_s = (double)period * scenario_settling_period(scenario);
     if (whole_s <= (1.0 + 1e-9) * scenario_duration(scenario)) {
         return;
     }
     if (drive_is_steady(&scenario->linkage.driver)) {
-        text_append(text, " (run.revolutions: %zu shows all)", period);
+        text_append(text, " (run.revolutions: %.6g shows all)",
+                    (double)period * scenario_settling_turns(scenario));
     } else {
         text_append(text, " (run.duration: %.6g s shows all)", whole_s);
     }
