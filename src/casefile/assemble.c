@@ -162,8 +162,8 @@ static bool store_run_start(const Entries *entries, Scenario *scenario, Err *err
     if (entry != NULL) {
         return run->start != START_SETTLED || !period.is_mismatch ||
                entries_refuse(entry, err,
-                              "%s\nallowed: periods of which one is a whole number of the other, "
-                              "or whole numbers of them are the same; or run.start: centred",
+                              "%s\nallowed: periods of which whole numbers up to 64 take the same "
+                              "time; or run.start: centred",
                               period.why);
     }
     const char *reason = reason_against(entries, &acting, &period);

@@ -58,25 +58,33 @@ static double difference(const Linkage *linkage, const RunState *a, const Sample
     return most / largest;
 }
 
+// How far the run of a scenario that starts in one state is from the one that went on to another.
+static double apart_of(const Scenario *next, const Solver *solver, const RunState *from,
+                       const RunState *to)
+{
+    void *state = NULL;
+    Err err = {ERR_NONE, ""};
+    if (!solver->open(next, &state, &err)) {
+        fail_msg("%s", err.text);
+    }
+    double end_s = 0.0;
+    const double goal_s = to->time_s - from->time_s;
+    stride_to(solver, state, goal_s * (1.0 - 1e-9), &end_s);
+    Sample sample = sample_create(&next->linkage);
+    solver->observe(state, goal_s, &sample);
+    const double apart = difference(&next->linkage, to, &sample);
+    sample_free(&sample);
+    solver->close(state);
+    return apart;
+}
+
 // How far a run that is started from a state is from the one that went on, after some time.
 static double apart_after(const Scenario *scenario, const Solver *solver, const RunState *from,
                           const RunState *to)
 {
     Scenario next = scenario_copy(scenario);
     run_state_start(from, &next);
-    void *state = NULL;
-    Err err = {ERR_NONE, ""};
-    if (!solver->open(&next, &state, &err)) {
-        fail_msg("%s", err.text);
-    }
-    double end_s = 0.0;
-    const double goal_s = to->time_s - from->time_s;
-    stride_to(solver, state, goal_s * (1.0 - 1e-9), &end_s);
-    Sample sample = sample_create(&next.linkage);
-    solver->observe(state, goal_s, &sample);
-    const double apart = difference(&next.linkage, to, &sample);
-    sample_free(&sample);
-    solver->close(state);
+    const double apart = apart_of(&next, solver, from, to);
     scenario_free(&next);
     return apart;
 }
@@ -177,6 +185,63 @@ static void every_stepping_of_ode_goes_on(void **state)
             assert_true(apart.continued < limit);
         }
     }
+}
+
+// A rotor with a load over two turns.
+static Scenario rotor(const char *drive, const char *length)
+{
+    char text[1024];
+    const int size = snprintf(
+        text, sizeof text,
+        "bodies:\n  rotor: {mass: 1 kg, inertia: 0.01 kg m^2, at: [0 m, 0 m]}\n"
+        "joints:\n  pivot: {between: [ground, rotor], at: [0 m, 0 m]}\n"
+        "drive: {joint: pivot, %s}\n"
+        "loads:\n  gas: {body: rotor, over: crank-angle, period: 720 deg, torque: [[0 deg, 0 "
+        "N m], [90 deg, -0.4 N m], [180 deg, 0 N m]]}\n"
+        "run: {%s, samples: 10}\n",
+        drive, length);
+    Scenario scenario;
+    Err err = {ERR_NONE, ""};
+    if (!casefile_load_text("rotor.yaml", text, (size_t)size, NULL, 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return scenario;
+}
+
+// Once it has made three turns and a part of one it is turned back: the load and a soft drive keep
+// count all the same. The control forgets the turns.
+static void check_turns(Scenario scenario)
+{
+    void *of = NULL;
+    Err err = {ERR_NONE, ""};
+    assert_true(REFERENCE_SOLVER.open(&scenario, &of, &err));
+    RunState from = run_state_create(&scenario.linkage);
+    RunState to = run_state_create(&scenario.linkage);
+    double end_s = 0.0;
+    do {
+        stride_to(&REFERENCE_SOLVER, of, nextafter(end_s, INFINITY), &end_s);
+        run_state_take(&REFERENCE_SOLVER, of, end_s, &from);
+    } while (from.sample.bodies[0].angle < 6.1 * M_PI);
+    stride_to(&REFERENCE_SOLVER, of, end_s + 0.5, &end_s);
+    run_state_take(&REFERENCE_SOLVER, of, end_s, &to);
+    assert_true(apart_after(&scenario, &REFERENCE_SOLVER, &from, &to) < 1e-9);
+    Scenario forgets = scenario_copy(&scenario);
+    run_state_start(&from, &forgets);
+    forgets.linkage.loads[0].shift = 0.0;
+    assert_true(apart_of(&forgets, &REFERENCE_SOLVER, &from, &to) > 1e-3);
+    scenario_free(&forgets);
+    REFERENCE_SOLVER.close(of);
+    run_state_free(&from);
+    run_state_free(&to);
+    scenario_free(&scenario);
+}
+
+static void what_counts_turns_goes_on(void **state)
+{
+    (void)state;
+    check_turns(rotor("stall-torque: 1 N m, no-load-speed: 120 rpm", "duration: 3 s"));
+    check_turns(
+        rotor("speed: 100 rpm, stiffness: 0.4 N m/rad, damping: 0.05 N m s/rad", "revolutions: 5"));
 }
 
 // What is the same to the last bit in two runs some steps after a state was taken of one and put
@@ -367,6 +432,7 @@ int main(void)
         cmocka_unit_test(many_contacts_go_on_to_the_last_bit),
         cmocka_unit_test(every_stepping_of_ode_goes_on),
         cmocka_unit_test(the_reference_goes_on),
+        cmocka_unit_test(what_counts_turns_goes_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
