@@ -9,10 +9,11 @@
 #include <stdio.h>
 #include <string.h>
 
-// What the motion is told by: a revolution, or a period of a drive whose speed repeats.
+// What the motion is told by: a revolution, or a period of a drive whose speed repeats or of loads.
 static const char *turn_word(const Scenario *scenario)
 {
-    return drive_is_steady(&scenario->linkage.driver) ? "revolution" : "period";
+    const bool is_steady = drive_is_steady(&scenario->linkage.driver);
+    return is_steady && scenario_settling_turns(scenario) == 1.0 ? "revolution" : "period";
 }
 
 // Around the force of a motion that does not repeat.
