@@ -216,7 +216,7 @@ void run_truth_energy(const RunReport *report, const Style *style, Text *text);
 json_t *spike_json_bands(const RunReport *report, const Trajectory *run);
 
 // Puts `section` and `spectrum` of a complete run into an object: its state once a revolution, and
-// its signals by order; null where nothing drives it with a period, or for less than one.
+// its signals by order; null where nothing that acts has a period, or for less than one.
 void run_signals_json(json_t *object, const Scenario *scenario, const Trajectory *run);
 
 // Puts the spikes of a signal into an object: <name>_spikes, their count, threshold and resolution.
