@@ -355,7 +355,7 @@ static bool draw_once(Scenario *scenario, const SettleReach *reach, size_t point
     Draw draw = {
         .linkage = &drawn,
         .reach = reach,
-        .period_s = linkage_period(&drawn),
+        .period_s = scenario_settling_period(scenario),
         .motions = zeroed(drawn.body_count, sizeof *draw.motions),
         .shrink = recurrence_share(coordinate_count(&drawn)),
         .share = 1.0,

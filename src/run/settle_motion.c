@@ -79,6 +79,19 @@ static SettledNumber number_of(const Counted *counted, size_t number)
     return (counted->settlings[0]->period > 0 ? number_of_period : number_of_all)(counted, number);
 }
 
+// Of a revolution of the drive, of which a common period with loads may have several.
+static SettledNumber impacts_of(const Counted *counted, size_t joint)
+{
+    const double turns = scenario_settling_turns(&counted->settlings[0]->scenario);
+    SettledNumber found = number_of(counted, settle_joint_number(joint, SETTLE_IMPACTS));
+    double *const values[] = {&found.headline,   &found.low,         &found.high,    &found.median,
+                              &found.median_low, &found.median_high, &found.largest, &found.mean};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        *values[i] /= turns;
+    }
+    return found;
+}
+
 // The angular velocities at the ends of the revolutions that count, of the first start.
 static void add_sections(const Settling *settling, SettledMotion *motion)
 {
@@ -109,7 +122,7 @@ static void add_numbers(const Counted *counted, SettledMotion *motion)
             motion->joints[i] = (SettledJoint){
                 .force = number_of(counted, settle_joint_number(i, SETTLE_FORCE)),
                 .depth = number_of(counted, settle_joint_number(i, SETTLE_DEPTH)),
-                .impacts = number_of(counted, settle_joint_number(i, SETTLE_IMPACTS)),
+                .impacts = impacts_of(counted, i),
                 .contact = number_of(counted, settle_joint_number(i, SETTLE_CONTACT)),
             };
         }

@@ -68,12 +68,10 @@ void settle_scenario(Scenario *scenario, RunWatch watch)
         settled->is_pressed = pressed_start(scenario, &err);
         snprintf(settled->message, sizeof settled->message, "%s", err.text);
     } else if (!settle_dissipates(scenario)) {
-        run->start = START_CENTRED;
-        run->centred_because =
-            "nothing in it dissipates energy, so that it never forgets its start";
+        scenario_start_as_written(
+            scenario, "nothing in it dissipates energy, so that it never forgets its start");
     } else if (!settle_search(scenario, scenario, run->settle_starts, watch) &&
                !run->is_start_given) {
-        run->start = START_CENTRED;
-        run->centred_because = "it fails before its motion has settled";
+        scenario_start_as_written(scenario, "it fails before its motion has settled");
     }
 }

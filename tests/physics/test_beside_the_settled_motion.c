@@ -44,7 +44,7 @@ static double largest_of(const Settling *settling)
     double largest = 0.0;
     for (size_t k = settling->count - settling->period; k < settling->count; k++) {
         for (size_t i = 0; i < settling->scenario.linkage.joint_count; i++) {
-            largest = fmax(largest, settling->revolutions[k].force_max[i]);
+            largest = fmax(largest, settling->revolutions[k].numbers[settle_joint_number(i, SETTLE_FORCE)]);
         }
     }
     return largest;
@@ -69,7 +69,7 @@ static double shown_of(const Scenario *scenario, const SettledMotion *motion)
 {
     double largest = 0.0;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        largest = fmax(largest, motion->joints[i].force);
+        largest = fmax(largest, motion->joints[i].force.headline);
     }
     return largest;
 }
@@ -166,7 +166,7 @@ static void what_does_not_repeat_has_the_median_of_many_revolutions(void **state
     const double median = sorted_median(forces + FIRST, MANY - FIRST);
     assert_true(fabs(shown_of(&scenario, halved) - median) < 3.0 * error);
     assert_true(fabs(shown_of(&scenario, &scenario.settled.doubled) - median) > 3.0 * error);
-    assert_true(halved->joints[0].low <= halved->joints[0].high);
+    assert_true(halved->joints[0].force.low <= halved->joints[0].force.high);
     settling_finish(&settling);
     scenario_free(&scenario);
 }

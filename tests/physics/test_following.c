@@ -33,7 +33,7 @@ static double force_along(const char *law, const char *const *values, bool *are_
         assert_true(scenario.settled.motion_count > 0);
         force = 0.0;
         for (size_t k = 0; k < scenario.linkage.joint_count; k++) {
-            force = fmax(force, scenario.settled.motions[0].joints[k].force);
+            force = fmax(force, scenario.settled.motions[0].joints[k].force.headline);
         }
         before = scenario;
     }

@@ -123,7 +123,7 @@ static double pressing_force(const Oscillator *of, const Ripple *ripple)
 static void check_force(const Scenario *scenario, size_t joint, double force)
 {
     assert_int_equal(scenario->settled.motions[0].period, 1);
-    assert_close(scenario->settled.motions[0].joints[joint].force, force, TOLERANCE);
+    assert_close(scenario->settled.motions[0].joints[joint].force.headline, force, TOLERANCE);
     Trajectory *run = complete(scenario, &REFERENCE_SOLVER);
     Trajectory *ode = complete(scenario, &ODE_SOLVER);
     assert_close(run->joints[joint].force_max.value, force, TOLERANCE);
