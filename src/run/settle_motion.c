@@ -19,6 +19,10 @@ static const double DIFFERENT = 0.1;
 // of both half intervals together, which 2 of them leave to chance in one pair of ten thousand
 static const double APART = 2.0;
 
+// 1: what a number of a revolution may be off by that is turned at the reference's loosest tolerance
+// (run/settling.c)
+static const double TURNED_TO = 1e-3;
+
 // The revolutions that count, of some starts.
 typedef struct Counted {
     const Settling *const *settlings;
@@ -61,11 +65,11 @@ static SettledNumber number_of_all(const Counted *counted, size_t number)
     const Quantile median = quantile_of(&series, 0.5);
     SettledNumber found = {
         .headline = headline.value,
-        .low = headline.low,
-        .high = headline.high,
+        .low = (1.0 - TURNED_TO) * headline.low,
+        .high = (1.0 + TURNED_TO) * headline.high,
         .median = median.value,
-        .median_low = median.low,
-        .median_high = median.high,
+        .median_low = (1.0 - TURNED_TO) * median.low,
+        .median_high = (1.0 + TURNED_TO) * median.high,
     };
     for (size_t k = 0; k < many; k++) {
         found.largest = fmax(found.largest, counted->values[k]);

@@ -128,11 +128,11 @@ static double find_near(Start *start)
     return nearest;
 }
 
-// Whether it has repeated for so long that it will, whatever digits it has.
-static bool has_repeated_long(const Start *start)
+// Whether it has repeated for so long, times a number, that it will, whatever digits it has.
+static bool has_repeated_long(const Start *start, size_t times)
 {
     const size_t since = start->settling.count - start->seen_at;
-    return since >= CONFIRM_LEAST && since >= CONFIRM_TIMES * start->seen_at;
+    return since >= CONFIRM_LEAST && since >= times * start->seen_at;
 }
 
 static void look_whether_repeats(Start *start)
@@ -147,7 +147,7 @@ static void look_whether_repeats(Start *start)
         return;
     }
     const bool is_confirmed = settling_repeats(settling, CONFIRMED) ||
-                              (has_repeated_long(start) && settling_repeats(settling, REPEATS));
+                              (has_repeated_long(start, CONFIRM_TIMES) && settling_repeats(settling, REPEATS));
     if (is_confirmed) {
         start->state = START_DONE;
         start->motion = MOTION_NEW;
@@ -365,6 +365,17 @@ static double random_width(const Search *search)
     return widest;
 }
 
+// Whether a start is still to be confirmed: chance brings one that does not repeat as near to an
+// earlier revolution as one that does.
+static bool any_repeating(const Search *search)
+{
+    bool is_any = false;
+    for (size_t i = 0; i < search->count; i++) {
+        is_any = is_any || search->starts[i].state == START_REPEATING;
+    }
+    return is_any;
+}
+
 // Turns all starts until each is done or has been watched for long enough.
 static void search_run(Search *search, const Scenario *scenario)
 {
@@ -383,7 +394,8 @@ static void search_run(Search *search, const Scenario *scenario)
         if (search->live_count == 0 && !take_up(search)) {
             return;
         }
-        const bool is_watched = goal >= least && random_width(search) <= run->settle_to;
+        const bool is_watched = goal >= least && !any_repeating(search) &&
+                                random_width(search) <= run->settle_to;
         if (atomic_load(&search->is_spent) || goal >= run->settle_most || is_watched) {
             return;
         }
@@ -393,13 +405,14 @@ static void search_run(Search *search, const Scenario *scenario)
 }
 
 // Where a motion that repeats has been found, one that was not watched for long enough may still
-// come to it; and what repeated when the budget was spent does.
+// come to it; and what repeated for a while when the budget was spent does.
 static void decide(Search *search, const RunOptions *run)
 {
     const size_t least = watch_least(search, run);
     for (size_t i = 0; i < search->count; i++) {
         Start *start = &search->starts[i];
-        if (start->state == START_REPEATING && settling_repeats(&start->settling, REPEATS)) {
+        if (start->state == START_REPEATING && has_repeated_long(start, 0) &&
+            settling_repeats(&start->settling, REPEATS)) {
             start->state = START_DONE;
             start->motion = MOTION_NEW;
         }
