@@ -28,6 +28,7 @@ static const size_t DAMPED_MOST = 32;
 struct DampingRuns {
     Settling settlings[SCALE_COUNT];
     bool are_settled[SCALE_COUNT];
+    double tolerance; // 1
     size_t next;
 };
 
@@ -37,6 +38,10 @@ DampingRuns *damping_runs_begin(const Scenario *scenario, TurnWatch *watch)
         return NULL;
     }
     DampingRuns *runs = zeroed(1, sizeof *runs);
+    // a motion that repeats to fewer digits does so with other damping, too
+    const SettledMotion *motion = &scenario->settled.motions[0];
+    runs->tolerance =
+        motion->period > 0 ? fmax(DAMPED_TOLERANCE, motion->change) : DAMPED_TOLERANCE;
     for (size_t i = 0; i < SCALE_COUNT; i++) {
         Settling *settling = &runs->settlings[i];
         *settling = settling_start(scenario);
@@ -69,7 +74,7 @@ static void damping_runs_work(size_t index, bool is_callers, void *context)
     const size_t most = allowed < DAMPED_MOST ? allowed : DAMPED_MOST;
     Err unused = {ERR_NONE, ""};
     settling->is_callers = is_callers;
-    runs->are_settled[index] = settling_run(settling, DAMPED_TOLERANCE, most, &unused);
+    runs->are_settled[index] = settling_run(settling, runs->tolerance, most, &unused);
 }
 
 SideBySideTasks damping_runs_tasks(DampingRuns *runs)

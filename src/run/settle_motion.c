@@ -19,8 +19,8 @@ static const double DIFFERENT = 0.1;
 // of both half intervals together, which 2 of them leave to chance in one pair of ten thousand
 static const double APART = 2.0;
 
-// 1: what a number of a revolution may be off by that is turned at the reference's loosest tolerance
-// (run/settling.c)
+// 1: what a number of a revolution may be off by that is turned at the reference's loosest
+// tolerance (run/settling.c)
 static const double TURNED_TO = 1e-3;
 
 // The revolutions that count, of some starts.

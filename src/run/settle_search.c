@@ -31,8 +31,11 @@ static const double REPEATS = 1e-3;
 // 1: the same of the state that runs start in: a peak's five digits and two more
 static const double CONFIRMED = 1e-7;
 
-// 1: a motion that comes no nearer to what it was a period before has left it
-static const double LEFT = 1e-2;
+// 1: a revolution whose forces, or whose section, differ by more from those a period before does
+// not repeat it. Chance brings one or two revolutions of a motion that does not repeat as near, and
+// not all of them; and peaks may well be as steady as that where the state is not.
+static const double FORCES_LEFT = 2e-3;
+static const double SECTION_LEFT = 1e-2;
 
 // 1: how near a start is to a known motion that comes nearer to it, and by what share of its
 // distance a period it has to
@@ -70,6 +73,8 @@ typedef struct Start {
     Err err;
     size_t goal;    // revolutions at the end of the round
     size_t seen_at; // revolutions when it was seen to repeat
+    size_t period;  // after which it was
+    double change;  // 1: the most that its forces have changed by over a period since
     int motion;     // number of the known motion, or MOTION_NEW
 } Start;
 
@@ -135,6 +140,16 @@ static bool has_repeated_long(const Start *start, size_t times)
     return since >= CONFIRM_LEAST && since >= times * start->seen_at;
 }
 
+// Its motion is known to repeat, to no more digits than it has shown.
+static void take_repeated(Start *start)
+{
+    start->settling.period = start->period;
+    start->settling.change = start->change;
+    start->settling.left = 0.0;
+    start->state = START_DONE;
+    start->motion = MOTION_NEW;
+}
+
 static void look_whether_repeats(Start *start)
 {
     Settling *settling = &start->settling;
@@ -142,17 +157,22 @@ static void look_whether_repeats(Start *start)
         if (settling_repeats(settling, REPEATS)) {
             start->state = START_REPEATING;
             start->seen_at = settling->count;
+            start->period = settling->period;
+            start->change = 0.0;
             settling->period = 0;
         }
         return;
     }
-    const bool is_confirmed = settling_repeats(settling, CONFIRMED) ||
-                              (has_repeated_long(start, CONFIRM_TIMES) && settling_repeats(settling, REPEATS));
-    if (is_confirmed) {
+    const double change = settling_forces_change(settling, start->period);
+    start->change = fmax(start->change, change);
+    if (settling_repeats(settling, CONFIRMED)) {
         start->state = START_DONE;
         start->motion = MOTION_NEW;
-    } else if (settling_return(settling) > LEFT) {
+    } else if (change > FORCES_LEFT ||
+               settling_section_change(settling, start->period) > SECTION_LEFT) {
         start->state = START_TURNING;
+    } else if (has_repeated_long(start, CONFIRM_TIMES)) {
+        take_repeated(start);
     }
 }
 
@@ -394,8 +414,8 @@ static void search_run(Search *search, const Scenario *scenario)
         if (search->live_count == 0 && !take_up(search)) {
             return;
         }
-        const bool is_watched = goal >= least && !any_repeating(search) &&
-                                random_width(search) <= run->settle_to;
+        const bool is_watched =
+            goal >= least && !any_repeating(search) && random_width(search) <= run->settle_to;
         if (atomic_load(&search->is_spent) || goal >= run->settle_most || is_watched) {
             return;
         }
@@ -404,30 +424,18 @@ static void search_run(Search *search, const Scenario *scenario)
     }
 }
 
-// Where a motion that repeats has been found, one that was not watched for long enough may still
-// come to it; and what repeated for a while when the budget was spent does.
-static void decide(Search *search, const RunOptions *run)
+// What has repeated for a while when the search ends is taken to.
+static void decide(Search *search)
 {
-    const size_t least = watch_least(search, run);
+    search->live_count = 0;
     for (size_t i = 0; i < search->count; i++) {
         Start *start = &search->starts[i];
-        if (start->state == START_REPEATING && has_repeated_long(start, 0) &&
-            settling_repeats(&start->settling, REPEATS)) {
-            start->state = START_DONE;
-            start->motion = MOTION_NEW;
+        if (start->state == START_REPEATING && has_repeated_long(start, 0)) {
+            take_repeated(start);
+            search->live[search->live_count++] = i;
         }
-    }
-    search->live_count = search->count;
-    for (size_t i = 0; i < search->count; i++) {
-        search->live[i] = i;
     }
     take_new(search);
-    for (size_t i = 0; i < search->count; i++) {
-        Start *start = &search->starts[i];
-        if (search->known_count > 0 && is_going(start) && start->settling.count < least) {
-            start->state = START_UNDECIDED;
-        }
-    }
 }
 
 // One more period of each known motion, as exact as the result, in which all of its numbers are
@@ -581,7 +589,7 @@ bool settle_search(Scenario *scenario, const Scenario *first, size_t count, RunW
     };
     search.starts[0].settling.watch = &search.watch;
     search_run(&search, scenario);
-    decide(&search, &scenario->run);
+    decide(&search);
     side_by_side_run(search.known_count, side_by_side_processors(), finish_known, &search);
     size_t tried;
     const bool is_found = decided_count(&search, &tried) > 0;

@@ -37,9 +37,9 @@ static const double NEAR_RETURN = 1e-2;
 // those that come near no earlier section.
 enum { RANDOM_LEAST = 16, RANDOM_LAST = 6 };
 
-// A motion that does not repeat may have come to it only now: of its revolutions a quarter does not
+// A motion that does not repeat may have come to it only now: of its revolutions half do not
 // count, and not the first ones.
-enum { TRANSIENT_SHARE = 4, TRANSIENT_LEAST = 8 };
+enum { TRANSIENT_SHARE = 2, TRANSIENT_LEAST = 8 };
 
 // Of the reference where the last revolution came near no earlier one: what is random is so at any
 // tolerance, and a revolution takes half the time.
@@ -249,14 +249,21 @@ bool settling_turn(Settling *settling, Err *err)
     return is_turned;
 }
 
-// The larger of the differences of two revolutions' sections and largest forces, relative.
-static double revolutions_apart(const Linkage *linkage, const Revolution *now,
-                                const Revolution *then, double fastest)
+// The largest difference of two revolutions' sections, over the fastest point's speed.
+static double sections_apart(const Linkage *linkage, const Revolution *now, const Revolution *then,
+                             double fastest)
 {
     double apart = 0.0;
     for (size_t i = 0; i < SETTLE_RATES * linkage->body_count; i++) {
         apart = fmax(apart, fabs(now->section[i] - then->section[i]) / fastest);
     }
+    return apart;
+}
+
+// The largest difference of a joint's largest forces in two revolutions, relative.
+static double forces_apart(const Linkage *linkage, const Revolution *now, const Revolution *then)
+{
+    double apart = 0.0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const size_t number = settle_joint_number(i, SETTLE_FORCE);
         const double force = fmax(now->numbers[number], then->numbers[number]);
@@ -266,11 +273,30 @@ static double revolutions_apart(const Linkage *linkage, const Revolution *now,
     return apart;
 }
 
+// The larger of both.
+static double revolutions_apart(const Linkage *linkage, const Revolution *now,
+                                const Revolution *then, double fastest)
+{
+    return fmax(sections_apart(linkage, now, then, fastest), forces_apart(linkage, now, then));
+}
+
 // d_n above, over p revolutions.
 static double change_over(const Settling *settling, size_t last, size_t period)
 {
     return revolutions_apart(&settling->scenario.linkage, &settling->revolutions[last],
                              &settling->revolutions[last - period], settling->fastest);
+}
+
+double settling_forces_change(const Settling *settling, size_t period)
+{
+    const Revolution *last = &settling->revolutions[settling->count - 1];
+    return forces_apart(&settling->scenario.linkage, last, last - period);
+}
+
+double settling_section_change(const Settling *settling, size_t period)
+{
+    const Revolution *last = &settling->revolutions[settling->count - 1];
+    return sections_apart(&settling->scenario.linkage, last, last - period, settling->fastest);
 }
 
 // The shortest period that the revolutions of one of p have to the digits that are asked for: a

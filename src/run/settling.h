@@ -112,5 +112,10 @@ double settling_apart(const Settling *a, const Settling *b, size_t period);
 // The same of revolutions of the first that ended so many before its last.
 double settling_were_apart(const Settling *a, size_t before, const Settling *b, size_t period);
 
+// How far the last revolution is from that so many before it, which has to be there: the largest
+// forces of its joints, relative, and the velocities at its end, over the fastest point's.
+double settling_forces_change(const Settling *settling, size_t period);
+double settling_section_change(const Settling *settling, size_t period);
+
 // How near the last revolutions come to earlier ones, over a whole period: 1, relative.
 double settling_return(const Settling *settling);
