@@ -1,6 +1,7 @@
 // The factors from SI to the units that people read.
 #include "write/units.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,22 +25,112 @@ double units_per_si(const char *unit)
     return 1.0;
 }
 
+static const char *const PREFIXES[] = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
+
+enum { NO_PREFIX = 4, PREFIX_MOST = sizeof PREFIXES / sizeof *PREFIXES - 1, DIGITS_MOST = 3 };
+
+// Of the first digit of a number, as it is rounded to three: 2 of 999, 3 of 999.7; 0 of 0.
+static int first_place(double value)
+{
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.2e", fabs(value));
+    const double rounded = strtod(digits, NULL);
+    return rounded == 0.0 ? 0 : (int)floor(log10(rounded) + 1e-9);
+}
+
+// Of the last digit that an interval leaves: that of the first digit of its half width.
+static int last_place(double value, double low, double high)
+{
+    const double half = fmax(value - low, high - value);
+    const int first = first_place(value);
+    const int least = first - DIGITS_MOST + 1;
+    if (!(half > 0.0) || !isfinite(half)) {
+        return least;
+    }
+    const int last = (int)floor(log10(half) + 1e-9);
+    return last < least ? least : last > first && value != 0.0 ? first : last;
+}
+
+// As printf rounds it.
+static double rounded_to(double value, int place)
+{
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.16e", value);
+    const int first = value == 0.0 ? place : atoi(strchr(digits, 'e') + 1);
+    if (first < place) {
+        return round(value * pow(10.0, -place)) * pow(10.0, place);
+    }
+    snprintf(digits, sizeof digits, "%.*e", first - place, value);
+    return strtod(digits, NULL);
+}
+
+static int prefix_of(double value, int place)
+{
+    const int prefix = NO_PREFIX + (int)floor(first_place(rounded_to(value, place)) / 3.0);
+    return prefix < 0 ? 0 : prefix > PREFIX_MOST ? PREFIX_MOST : prefix;
+}
+
+// To the digit at a place, in units of a prefix.
+static void append_to(Text *text, double value, int place, int prefix)
+{
+    const int power = 3 * (prefix - NO_PREFIX);
+    const double shown = rounded_to(value, place) / pow(10.0, power);
+    text_append(text, "%.*f", power > place ? power - place : 0, shown == 0.0 ? 0.0 : shown);
+}
+
 void units_append(Text *text, double value, const char *unit)
 {
-    static const char *const PREFIXES[] = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
-    enum { NONE = 4, MOST = sizeof PREFIXES / sizeof *PREFIXES - 1 };
     if (!isfinite(value)) {
         text_append(text, "-");
         return;
     }
-    // as it is rounded: 999.7 is 1.00 k
-    char digits[32];
-    snprintf(digits, sizeof digits, "%.2e", value);
-    const double rounded = strtod(digits, NULL);
-    const int exponent = rounded == 0.0 ? 0 : (int)floor(log10(fabs(rounded)) + 1e-9);
-    int prefix = NONE + (int)floor(exponent / 3.0);
-    prefix = prefix < 0 ? 0 : prefix > MOST ? MOST : prefix;
-    const double shown = rounded / pow(10.0, 3.0 * (prefix - NONE));
-    const int before = fabs(shown) >= 100.0 ? 3 : fabs(shown) >= 10.0 ? 2 : 1;
-    text_append(text, "%.*f %s%s", 3 - before, shown, PREFIXES[prefix], unit);
+    units_append_within(text, value, value, value, unit);
+}
+
+void units_append_within(Text *text, double value, double low, double high, const char *unit)
+{
+    if (isinf(high)) {
+        text_append(text, "at least ");
+        units_append(text, low, unit);
+        return;
+    }
+    const int place = last_place(value, low, high);
+    const int prefix = prefix_of(value, place);
+    append_to(text, value, place, prefix);
+    text_append(text, " %s%s", PREFIXES[prefix], unit);
+}
+
+void units_append_interval(Text *text, double value, double low, double high, const char *unit)
+{
+    units_append_within(text, value, low, high, unit);
+    if (isinf(high) || !(high > low)) {
+        return;
+    }
+    const int place = last_place(value, low, high);
+    const int prefix = prefix_of(value, place);
+    const double digit = pow(10.0, place);
+    // by less than rounding adds to a number of whole digits
+    text_append(text, " (");
+    append_to(text, floor(low / digit + 1e-9) * digit, place, prefix);
+    text_append(text, " to ");
+    append_to(text, ceil(high / digit - 1e-9) * digit, place, prefix);
+    text_append(text, ")");
+}
+
+void units_append_beside(Text *text, double value, double low, double high, double beside,
+                         double beside_low, double beside_high)
+{
+    const bool is_bounded = !isinf(beside_high);
+    const double shown = is_bounded ? beside : beside_low;
+    const int place =
+        is_bounded ? last_place(beside, beside_low, beside_high) : last_place(shown, shown, shown);
+    const bool is_known = !isinf(high);
+    append_to(text, is_known ? value : low,
+              is_known ? last_place(value, low, high) : last_place(low, low, low),
+              prefix_of(shown, place));
+}
+
+void units_append_digits(Text *text, double value, double low, double high)
+{
+    append_to(text, value, last_place(value, low, high), NO_PREFIX);
 }

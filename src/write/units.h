@@ -33,6 +33,24 @@ static inline double units_wrapped_deg(double angle_rad)
 // finite a dash.
 void units_append(Text *text, double value, const char *unit);
 
+// A number that is known to lie between two others has no digit that half of that interval is
+// larger than ten of, and three at most; without an interval, which is a width of 0, three. A high
+// end of INFINITY leaves only the low one: "at least 3.2 kN".
+
+// With a prefix: "3.4 kN" of 3.2 to 3.6 kN.
+void units_append_within(Text *text, double value, double low, double high, const char *unit);
+
+// The same and its interval, whose ends are rounded away from it: "3.4 kN (3.2 to 3.6)".
+void units_append_interval(Text *text, double value, double low, double high, const char *unit);
+
+// As a number alone, with the prefix that `units_append_within` gives another value and interval:
+// the second column of a table whose first has the unit.
+void units_append_beside(Text *text, double value, double low, double high, double beside,
+                         double beside_low, double beside_high);
+
+// As a number alone, without a prefix.
+void units_append_digits(Text *text, double value, double low, double high);
+
 // The units of what touches in a joint: those of forces and lengths, or where limits turn it those
 // of torques and angles.
 
