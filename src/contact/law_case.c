@@ -86,12 +86,26 @@ bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, E
     return true;
 }
 
+// Whether a force of the contact opposes its speed: none where its restitution is 1.
+static bool is_damped(const ContactOptions *contact)
+{
+    switch (contact->damping) {
+    case DAMPING_VISCOUS:
+        return contact->viscous_coefficient > 0.0;
+    case DAMPING_DISSIPATION:
+        return contact->dissipation > 0.0 ||
+               damping_factor(contact->damping, contact->restitution) > 0.0;
+    default:
+        return damping_factor(contact->damping, contact->restitution) > 0.0;
+    }
+}
+
 bool law_has_damping(const Scenario *scenario)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
-        if (linkage_has_play(joint) &&
-            law_options(&scenario->contact, joint).damping != DAMPING_NONE) {
+        const ContactOptions own = law_options(&scenario->contact, joint);
+        if (linkage_has_play(joint) && is_damped(&own)) {
             return true;
         }
     }
