@@ -1,12 +1,10 @@
-// Writes how the start of a scenario was found.
+// Says in words how the start of a scenario was found.
 #include "write/settled.h"
 
-#include "write/json_value.h"
 #include "write/table.h"
 #include "write/units.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 // What the motion is told by: a revolution, or a period of a drive whose speed repeats or of loads.
@@ -16,42 +14,33 @@ static const char *turn_word(const Scenario *scenario)
     return is_steady && scenario_settling_turns(scenario) == 1.0 ? "revolution" : "period";
 }
 
-// Around the force of a motion that does not repeat.
-static const char *some_word(const SettledMotion *motion)
+static const char *joint_force_unit(const Scenario *scenario, size_t number)
 {
-    return motion->period == 0 ? "some " : "";
+    return joint_units(&scenario->linkage.joints[number])->force;
 }
 
-static const char *median_word(const SettledMotion *motion)
+static void append_force(const Scenario *scenario, size_t number, double force, Text *text)
 {
-    return motion->period == 0 ? " in the median" : "";
+    units_append(text, force, joint_force_unit(scenario, number));
 }
 
-static void append_joint(const Scenario *scenario, size_t number, Text *text)
+// "11 to 59 %", or "at least 79 %" where all starts come to it.
+static void append_share(const SettledMotion *motion, Text *text)
 {
-    const SettledStart *settled = &scenario->settled;
-    const Joint *joint = &scenario->linkage.joints[number];
-    const char *unit = joint_units(joint)->force;
-    const SettledMotion *motion = &settled->motions[0];
-    const SettledJoint *did = &motion->joints[number];
-    text_append(text, "              ");
-    text_append_shown(text, joint->name);
-    text_append(text, ": %.5g %s", did->force.headline, unit);
-    if (motion->period == 0) {
-        text_append(text, " in the median %s, %.4g to %.4g in 5 to 95 %%", turn_word(scenario),
-                    did->force.low, did->force.high);
+    if (motion->share_high >= 1.0) {
+        text_append(text, "at least %.0f %%", motion->share_low * UNITS_PERCENT);
+    } else {
+        text_append(text, "%.0f to %.0f %%", motion->share_low * UNITS_PERCENT,
+                    motion->share_high * UNITS_PERCENT);
     }
-    text_append(text, "\n");
-    if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
-        const SettledMotion *half = &settled->halved;
-        const SettledMotion *twice = &settled->doubled;
-        text_append(text, "                with half the damping %s%.4g %s%s, ", some_word(half),
-                    half->joints[number].force.headline, unit, median_word(half));
-        text_append(text, "with twice as much %s%.4g%s\n", some_word(twice),
-                    twice->joints[number].force.headline, median_word(twice));
-    }
-    text_append(text, "                from the assumed start %.5g %s, not counted\n",
-                settled->first[number], unit);
+}
+
+// "10 of 16 starts (35 to 85 %)"; what they do follows.
+static void append_starts(const SettledStart *settled, const SettledMotion *motion, Text *text)
+{
+    text_append(text, "%zu of %zu starts (", motion->starts, settled->starts);
+    append_share(motion, text);
+    text_append(text, ")");
 }
 
 static void append_period(const Scenario *scenario, const SettledMotion *motion, Text *text)
@@ -65,23 +54,142 @@ static void append_period(const Scenario *scenario, const SettledMotion *motion,
     }
 }
 
+// "; 16 of 16 starts come to it (at least 79 % of such starts)."
+static void append_share_of_all(const SettledStart *settled, const SettledMotion *motion,
+                                Text *text)
+{
+    if (settled->starts <= 1) {
+        text_append(text, "found from one start.");
+        return;
+    }
+    text_append(text, "%zu of %zu starts come to it (", motion->starts, settled->starts);
+    append_share(motion, text);
+    text_append(text, " of such starts).");
+}
+
+// "Does not repeat in 200 revolutions of each of 16 starts; ..."
+static void append_watched(const Scenario *scenario, const SettledMotion *motion, Text *text)
+{
+    text_append(text, "Does not repeat in %zu %ss", motion->watched, turn_word(scenario));
+    if (motion->starts > 1) {
+        text_append(text, " of each of %zu starts", motion->starts);
+    }
+    text_append(text, "; a longer transient cannot be ruled out.");
+}
+
+// What of the search the budget did not allow; nothing where it is complete.
+static void append_budget(const Scenario *scenario, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    const size_t undecided =
+        settled->tried > settled->starts ? settled->tried - settled->starts : 0;
+    if (settled->is_spent) {
+        text_append(text, " run.settle-budget (%.4g s) ended the search%s",
+                    scenario->run.settle_budget, undecided > 0 ? " by then;" : ".");
+    }
+    if (undecided > 0) {
+        text_append(text, " %zu of %zu starts %s undecided", undecided, settled->tried,
+                    undecided > 1 ? "are" : "is");
+        if (!settled->is_spent) {
+            text_append(text, " within run.settle-budget (%.4g s)", scenario->run.settle_budget);
+        }
+        text_append(text, ".");
+    }
+}
+
+// All that is known.
+
+// The force of a joint with other damping: where it does not repeat the median.
+static void append_damped(const Scenario *scenario, size_t number, const SettledMotion *motion,
+                          Text *text)
+{
+    const SettledNumber *force = &motion->joints[number].force;
+    if (motion->period > 0) {
+        append_force(scenario, number, force->headline, text);
+        return;
+    }
+    text_append(text, "some ");
+    const char *unit = joint_force_unit(scenario, number);
+    units_append_within(text, force->median, force->median_low, force->median_high, unit);
+    text_append(text, " in the median");
+}
+
+static bool has_damped(const SettledStart *settled)
+{
+    return settled->halved.joints != NULL && settled->doubled.joints != NULL;
+}
+
+static void append_damped_joint(const Scenario *scenario, size_t number, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    if (has_damped(settled)) {
+        text_append(text, "                with half the damping ");
+        append_damped(scenario, number, &settled->halved, text);
+        text_append(text, "\n                with twice as much ");
+        append_damped(scenario, number, &settled->doubled, text);
+        text_append(text, "\n");
+    }
+}
+
+// The largest force of a revolution of a motion that does not repeat.
+static void append_spread(const Scenario *scenario, size_t number, const SettledMotion *motion,
+                          Text *text)
+{
+    const SettledNumber *force = &motion->joints[number].force;
+    const char *unit = joint_force_unit(scenario, number);
+    text_append(text, "95 %% below ");
+    units_append_interval(text, force->headline, force->low, force->high, unit);
+    text_append(text, ", median ");
+    units_append_interval(text, force->median, force->median_low, force->median_high, unit);
+    text_append(text, ", most ");
+    units_append(text, force->largest, unit);
+}
+
+static void append_joint(const Scenario *scenario, size_t number, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    const Joint *joint = &scenario->linkage.joints[number];
+    const char *unit = joint_units(joint)->force;
+    const SettledMotion *motion = &settled->motions[0];
+    text_append(text, "              ");
+    text_append_shown(text, joint->name);
+    if (motion->period == 0) {
+        text_append(text, ": largest of a %s, of %zu\n                ", turn_word(scenario),
+                    motion->counted);
+        append_spread(scenario, number, motion, text);
+        text_append(text, "\n");
+    } else {
+        text_append(text, ": %.5g %s\n", motion->joints[number].force.headline, unit);
+    }
+    append_damped_joint(scenario, number, text);
+    text_append(text, "                from the assumed start %.5g %s, not counted\n",
+                settled->first[number], unit);
+}
+
 // Another motion that starts have come to.
 static void append_other(const Scenario *scenario, const SettledMotion *motion, Text *text)
 {
-    text_append(text, "              %zu of %zu starts come to another, which ", motion->starts,
-                scenario->settled.starts);
+    text_append(text, "              ");
+    append_starts(&scenario->settled, motion, text);
+    text_append(text, " come to another, which ");
     append_period(scenario, motion, text);
-    text_append(text, ":");
+    text_append(text, ":\n");
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
-        if (linkage_has_play(joint)) {
-            text_append(text, " ");
-            text_append_shown(text, joint->name);
-            text_append(text, " %.5g %s", motion->joints[i].force.headline,
+        if (!linkage_has_play(joint)) {
+            continue;
+        }
+        text_append(text, "                ");
+        text_append_shown(text, joint->name);
+        text_append(text, " ");
+        if (motion->period == 0) {
+            append_spread(scenario, i, motion, text);
+        } else {
+            text_append(text, "%.5g %s", motion->joints[i].force.headline,
                         joint_units(joint)->force);
         }
+        text_append(text, "\n");
     }
-    text_append(text, "\n");
 }
 
 // What becomes of a small change of the state.
@@ -96,6 +204,23 @@ static void append_growth(const Scenario *scenario, Text *text)
                 turn_word(scenario));
 }
 
+static void append_search(const Scenario *scenario, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    const SettledMotion *motion = &settled->motions[0];
+    text_append(text, "  start       settled: ");
+    if (motion->period == 0) {
+        append_watched(scenario, motion, text);
+        text_append(text, " ");
+    } else {
+        append_period(scenario, motion, text);
+        text_append(text, ", found in %zu; ", settled->revolutions);
+    }
+    append_share_of_all(settled, motion, text);
+    append_budget(scenario, text);
+    text_append(text, "\n");
+}
+
 void settled_text(const Scenario *scenario, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
@@ -105,10 +230,7 @@ void settled_text(const Scenario *scenario, Text *text)
     if (settled->motion_count == 0) {
         return;
     }
-    text_append(text, "  start       settled: ");
-    append_period(scenario, &settled->motions[0], text);
-    text_append(text, ", found in %zu from %zu of %zu start%s\n", settled->revolutions,
-                settled->motions[0].starts, settled->starts, settled->starts > 1 ? "s" : "");
+    append_search(scenario, text);
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         if (linkage_has_play(&scenario->linkage.joints[i])) {
             append_joint(scenario, i, text);
@@ -147,29 +269,19 @@ static size_t largest_joints(const Scenario *scenario, size_t numbers[SHOWN_JOIN
     return count;
 }
 
-static void append_force(const Scenario *scenario, size_t number, double force, Text *text)
-{
-    units_append(text, force, joint_units(&scenario->linkage.joints[number])->force);
-}
-
-// "crank-coupler 2.36 kN, rod-slider 1.12 kN" of one motion.
+// "crank-coupler 2.36 kN, rod-slider 1.12 kN" of one motion; of one that does not repeat the 95 %
+// quantiles.
 static void append_forces(const Scenario *scenario, const SettledMotion *motion, Text *text)
 {
     size_t numbers[SHOWN_JOINTS];
     const size_t count = largest_joints(scenario, numbers);
     for (size_t i = 0; i < count; i++) {
-        const SettledJoint *did = &motion->joints[numbers[i]];
+        const SettledNumber *force = &motion->joints[numbers[i]].force;
         text_append(text, "%s", i > 0 ? ", " : "");
         text_append_shown(text, scenario->linkage.joints[numbers[i]].name);
         text_append(text, " ");
-        append_force(scenario, numbers[i], did->force.headline, text);
-        if (motion->period == 0) {
-            text_append(text, " (");
-            append_force(scenario, numbers[i], did->force.low, text);
-            text_append(text, " to ");
-            append_force(scenario, numbers[i], did->force.high, text);
-            text_append(text, ")");
-        }
+        units_append_interval(text, force->headline, force->low, force->high,
+                              joint_force_unit(scenario, numbers[i]));
     }
 }
 
@@ -181,43 +293,52 @@ static void append_length(const Scenario *scenario, size_t period, Text *text)
         return;
     }
     if (drive_is_steady(&scenario->linkage.driver)) {
-        text_append(text, " (run.revolutions: %.6g shows all)",
+        text_append(text, " (pictures of all: run.revolutions: %.6g)",
                     (double)period * scenario_settling_turns(scenario));
     } else {
-        text_append(text, " (run.duration: %.6g s shows all)", whole_s);
+        text_append(text, " (pictures of all: run.duration: %.6g s)", whole_s);
     }
 }
 
+// Of a motion that does not repeat, where no table has its numbers.
+static void append_random_forces(const Scenario *scenario, Text *text)
+{
+    const SettledMotion *motion = &scenario->settled.motions[0];
+    Text line;
+    text_init(&line);
+    text_append(&line,
+                "  Largest force of a %s, 95 %% quantile (its interval): ", turn_word(scenario));
+    append_forces(scenario, motion, &line);
+    text_append(&line, ".");
+    screen_sentence(&line, text);
+}
+
 // What the run shows, and how it was found.
-static void append_motion(const Scenario *scenario, Text *text)
+static void append_motion(const Scenario *scenario, bool is_below_table, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
     const SettledMotion *motion = &settled->motions[0];
     Text line;
     text_init(&line);
-    text_append(&line, "  Settled motion, ");
     if (motion->period == 0) {
-        text_append(&line,
-                    "which does not repeat in %zu %ss; largest force of a %s, median (5 to 95 "
-                    "%%): ",
-                    settled->revolutions, turn_word(scenario), turn_word(scenario));
-        append_forces(scenario, motion, &line);
+        text_append(&line, "  ");
+        append_watched(scenario, motion, &line);
+        text_append(&line, " ");
     } else {
-        text_append(&line, "which ");
+        text_append(&line, "  Settled motion, which ");
         append_period(scenario, motion, &line);
+        if (is_below_table && motion->period > 1) {
+            text_append(&line, ", all of which the table is of");
+        }
         append_length(scenario, motion->period, &line);
+        text_append(&line, "; ");
     }
-    text_append(&line, "; %zu of %zu starts come to it.", motion->starts, settled->starts);
+    append_share_of_all(settled, motion, &line);
+    append_budget(scenario, &line);
     screen_sentence(&line, text);
-}
-
-// The force of a joint with other damping; of a motion that does not repeat one of few revolutions.
-static void append_damped(const Scenario *scenario, size_t number, const SettledMotion *motion,
-                          Text *text)
-{
-    text_append(text, "%s", some_word(motion));
-    append_force(scenario, number, motion->joints[number].force.headline, text);
-    text_append(text, "%s", median_word(motion));
+    if (motion->period == 0 && !is_below_table) {
+        append_random_forces(scenario, text);
+    }
 }
 
 // What the case as it is written says of its first revolution, and other damping of the settled
@@ -236,7 +357,7 @@ static void append_beside(const Scenario *scenario, Text *text)
     text_append(&line, " ");
     append_force(scenario, numbers[0], settled->first[numbers[0]], &line);
     text_append(&line, ", not counted.");
-    if (settled->halved.joints != NULL && settled->doubled.joints != NULL) {
+    if (has_damped(settled)) {
         text_append(&line, " With half the damping: ");
         append_damped(scenario, numbers[0], &settled->halved, &line);
         text_append(&line, ", with twice as much: ");
@@ -246,7 +367,37 @@ static void append_beside(const Scenario *scenario, Text *text)
     screen_sentence(&line, text);
 }
 
-void settled_sentences(const Scenario *scenario, Text *text)
+void settled_louder(const Scenario *scenario, const char *where, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    size_t number;
+    size_t joint;
+    if (!settled_is_louder(settled, &scenario->linkage, &number, &joint)) {
+        return;
+    }
+    const SettledMotion *motion = &settled->motions[number];
+    const SettledNumber *force = &motion->joints[joint].force;
+    const double shown = settled->motions[0].joints[joint].force.headline;
+    Text line;
+    text_init(&line);
+    text_append(&line, "  Louder: ");
+    append_starts(settled, motion, &line);
+    text_append(&line, " come to another motion: ");
+    text_append_shown(&line, scenario->linkage.joints[joint].name);
+    text_append(&line, " ");
+    units_append_interval(&line, force->headline, force->low, force->high,
+                          joint_force_unit(scenario, joint));
+    if (shown > 0.0) {
+        text_append(&line, ", %.2g times the ", force->headline / shown);
+        append_force(scenario, joint, shown, &line);
+        text_append(&line, " %s.", where);
+    } else {
+        text_append(&line, ", and none %s.", where);
+    }
+    screen_sentence(&line, text);
+}
+
+void settled_sentences(const Scenario *scenario, bool is_below_table, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
     if (scenario->run.centred_because != NULL) {
@@ -259,12 +410,13 @@ void settled_sentences(const Scenario *scenario, Text *text)
     if (settled->motion_count == 0) {
         return;
     }
-    append_motion(scenario, text);
+    append_motion(scenario, is_below_table, text);
     if (settled->motion_count > 1) {
         Text line;
         text_init(&line);
-        text_append(&line, "  %zu of %zu starts come to %s: ", settled->motions[1].starts,
-                    settled->starts,
+        text_append(&line, "  ");
+        append_starts(settled, &settled->motions[1], &line);
+        text_append(&line, " come to %s: ",
                     settled->motion_count > 2 ? "others, the next" : "another motion");
         append_forces(scenario, &settled->motions[1], &line);
         text_append(&line, ".");
@@ -276,93 +428,7 @@ void settled_sentences(const Scenario *scenario, Text *text)
 void settled_lines(const Scenario *scenario, Text *text)
 {
     const size_t start = text->length;
-    settled_sentences(scenario, text);
+    settled_louder(scenario, "of the motion here", text);
+    settled_sentences(scenario, false, text);
     text_fold_behind(text, start, STYLE_WIDTH);
-}
-
-static void set_force(json_t *of, const Joint *joint, const char *name, double value)
-{
-    char key[64];
-    const bool is_turn = linkage_is_torsional(joint);
-    snprintf(key, sizeof key, "%s_%s_%s", is_turn ? "torque" : "force", name,
-             is_turn ? "N_m" : "N");
-    json_value_set(of, key, value);
-}
-
-// The angular velocities at the ends of the revolutions of a motion, by body.
-static json_t *sections_json(const Scenario *scenario, const SettledMotion *motion)
-{
-    const Linkage *linkage = &scenario->linkage;
-    json_t *bodies = json_object();
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        json_t *values = json_array();
-        for (size_t k = 0; k < motion->section_count; k++) {
-            json_array_append_new(values,
-                                  json_value_real(motion->sections[k * linkage->body_count + i]));
-        }
-        json_object_set_new(bodies, linkage->bodies[i].name, values);
-    }
-    json_t *object = json_object();
-    json_object_set_new(object, "bodies", bodies);
-    return object;
-}
-
-static json_t *motion_json(const Scenario *scenario, const SettledMotion *motion)
-{
-    json_t *joints = json_array();
-    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const Joint *joint = &scenario->linkage.joints[i];
-        if (!linkage_has_play(joint)) {
-            continue;
-        }
-        const SettledJoint *did = &motion->joints[i];
-        json_t *of = json_object();
-        json_object_set_new(of, "name", json_value_text(joint->name));
-        set_force(of, joint, "max", did->force.headline);
-        set_force(of, joint, "max_low", did->force.low);
-        set_force(of, joint, "max_high", did->force.high);
-        set_force(of, joint, "max_from_start", scenario->settled.first[i]);
-        json_value_set(of, "impacts_per_revolution", did->impacts.mean);
-        json_array_append_new(joints, of);
-    }
-    json_t *found = json_object();
-    json_object_set_new(found, "starts", json_integer((json_int_t)motion->starts));
-    json_object_set_new(found, "period", json_integer((json_int_t)motion->period));
-    json_value_set(found, "change", motion->change);
-    json_object_set_new(found, "joints", joints);
-    if (motion->section_count > 0) {
-        json_object_set_new(found, "section_omega_rad_s", sections_json(scenario, motion));
-    }
-    return found;
-}
-
-void settled_json(json_t *object, const Scenario *scenario)
-{
-    const SettledStart *settled = &scenario->settled;
-    if (scenario->run.centred_because != NULL) {
-        json_object_set_new(object, "starts_as_written_because",
-                            json_string(scenario->run.centred_because));
-    }
-    if (settled->motion_count == 0) {
-        return;
-    }
-    json_t *found = motion_json(scenario, &settled->motions[0]);
-    json_object_set_new(found, "revolutions", json_integer((json_int_t)settled->revolutions));
-    json_object_set_new(found, "starts_tried", json_integer((json_int_t)settled->starts));
-    if (settled->has_growth) {
-        json_value_set(found, "growth_per_revolution", settled->growth.factor);
-        json_object_set_new(found, "growth_is_at_most", json_boolean(settled->growth.is_at_most));
-    }
-    json_t *others = json_array();
-    for (size_t i = 1; i < settled->motion_count; i++) {
-        json_array_append_new(others, motion_json(scenario, &settled->motions[i]));
-    }
-    json_object_set_new(found, "other_motions", others);
-    if (settled->halved.joints != NULL) {
-        json_object_set_new(found, "half_damping", motion_json(scenario, &settled->halved));
-    }
-    if (settled->doubled.joints != NULL) {
-        json_object_set_new(found, "double_damping", motion_json(scenario, &settled->doubled));
-    }
-    json_object_set_new(object, "settled", found);
 }

@@ -9,6 +9,7 @@
 #include "write/assumed.h"
 #include "write/json_value.h"
 #include "write/settings_json.h"
+#include "write/settled.h"
 #include "write/units.h"
 #include "write/xml.h"
 
@@ -38,19 +39,52 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
+// A row of a motion that does not repeat.
+static void spread_row(const OverviewRow *row, Text *html)
+{
+    text_append(html, "<tr>");
+    html_words("th scope=\"row\"", row->name, html);
+    for (OverviewCell cell = 0; cell < OVERVIEW_CELL_COUNT; cell++) {
+        Text words;
+        text_init(&words);
+        run_overview_cell(row, cell, &words);
+        html_words("td", words.data, html);
+        text_finish(&words);
+    }
+    text_append(html, "</tr>\n");
+}
+
+static void write_row(const Overview *overview, const OverviewRow *row, bool has_crank, Text *html)
+{
+    if (run_overview_is_random(overview)) {
+        spread_row(row, html);
+    } else {
+        answer_row(row, has_crank, html);
+    }
+}
+
 static void overview_head(const Overview *overview, bool has_crank, Text *html)
 {
+    const bool is_random = run_overview_is_random(overview);
     text_append(html,
                 "<div class=\"wide\"><table class=\"numbers\">\n<caption>%sargest angular "
-                "acceleration of each body, by ",
+                "acceleration of each body, ",
                 overview->joint_count > 0 ? "Largest force of each joint with play, l" : "L");
-    xml_append(overview->run->backend, html);
+    if (is_random) {
+        text_append(html, "of %zu %s of the settled motion", overview->motion->counted,
+                    has_crank ? "revolutions" : "periods");
+    } else {
+        text_append(html, "by ");
+        xml_append(overview->run->backend, html);
+    }
     text_append(html,
-                "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>"
-                "<th scope=\"col\">largest</th><th scope=\"col\">at</th>"
+                "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>%s"
                 "<th scope=\"col\">x ideal</th><th scope=\"col\">impacts%s</th>"
                 "<th scope=\"col\">contact</th><th scope=\"col\">deepest</th></tr></thead>\n"
                 "<tbody>\n",
+                is_random ? "<th scope=\"col\">95 % below</th><th scope=\"col\">+- %</th>"
+                            "<th scope=\"col\">median</th><th scope=\"col\">most</th>"
+                          : "<th scope=\"col\">largest</th><th scope=\"col\">at</th>",
                 has_crank ? " a turn" : "");
 }
 
@@ -64,13 +98,13 @@ static void append_overview(const RunReport *report, Text *html)
     if (joints + bodies > 0) {
         overview_head(&overview, has_crank, html);
         for (size_t i = 0; i < joints; i++) {
-            answer_row(&overview.joints[i], has_crank, html);
+            write_row(&overview, &overview.joints[i], has_crank, html);
         }
         for (size_t i = 0; i < bodies; i++) {
-            answer_row(&overview.bodies[i], has_crank, html);
+            write_row(&overview, &overview.bodies[i], has_crank, html);
         }
         for (size_t i = 0; i < overview.drive_count; i++) {
-            answer_row(&overview.drives[i], has_crank, html);
+            write_row(&overview, &overview.drives[i], has_crank, html);
         }
         text_append(html, "</tbody></table></div>\n");
     }
@@ -91,6 +125,11 @@ static void append_overview(const RunReport *report, Text *html)
 static void append_answer(const RunReport *report, Text *html)
 {
     text_append(html, "<section id=\"answer\">\n<h2>The answer</h2>\n");
+    Text louder;
+    text_init(&louder);
+    settled_louder(report->scenario, "below", &louder);
+    html_list(louder.data, html);
+    text_finish(&louder);
     append_overview(report, html);
     Text sentences;
     text_init(&sentences);

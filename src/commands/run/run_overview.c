@@ -57,7 +57,7 @@ static OverviewRow joint_row(const RunReport *report, const Trajectory *run, siz
             : 1.0;
     return (OverviewRow){
         .name = joint->name,
-        .number = is_turn ? "torque_max" : "force_max",
+        .stem = is_turn ? "torque" : "force",
         .unit = units->force,
         .unit_key = units->force_key,
         .largest = extremes->force_max.value,
@@ -80,7 +80,7 @@ static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSiz
     const double size = fabs(largest->value);
     return (OverviewRow){
         .name = run->linkage.bodies[number].name,
-        .number = "alpha_size_max",
+        .stem = "alpha_size",
         .unit = "rad/s^2",
         .unit_key = "rad_s2",
         .largest = size,
@@ -93,6 +93,10 @@ static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSiz
     };
 }
 
+// 1: the peak of a motion is another than that of the run where it is larger by so much: the same
+// one is as exact in both
+static const double OTHER_PEAK = 1e-4;
+
 // Of several drives each has the name of its joint.
 static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run, size_t drive,
                              const IdealSizes *ideal)
@@ -101,7 +105,7 @@ static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run, si
     const bool is_alone = linkage_drive_count(linkage) <= 1;
     OverviewRow row = {
         .name = is_alone ? "drive" : linkage->joints[linkage_drive(linkage, drive)->joint].name,
-        .number = "torque_max",
+        .stem = "torque",
         .unit = "N m",
         .unit_key = "N_m",
         .crank_rad = NAN,
@@ -120,6 +124,41 @@ static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run, si
     return row;
 }
 
+// The settled motion that rows are of where it is more than the run shows: it does not repeat, or
+// takes several revolutions to. NULL where the run shows all, or knows no play.
+static const SettledMotion *overview_motion(const Scenario *scenario, const Trajectory *run)
+{
+    const SettledStart *settled = &scenario->settled;
+    const bool is_there = settled->motion_count > 0 && options_backend_has_play(run->backend);
+    return is_there && settled->motions[0].period != 1 ? &settled->motions[0] : NULL;
+}
+
+// Makes the largest of a row that of the motion: over its period, of which the run may be a part,
+// or of the distribution of one that does not repeat.
+static void take_largest(const SettledMotion *motion, const SettledNumber *number, OverviewRow *row)
+{
+    const double ideal = row->largest / row->ratio;
+    if (motion->period == 0) {
+        row->spread = number;
+    }
+    if (motion->period == 0 || number->headline > row->largest * (1.0 + OTHER_PEAK)) {
+        row->crank_rad = NAN;
+        row->time_s = NAN;
+    }
+    row->largest = motion->period == 0 ? number->headline : fmax(row->largest, number->headline);
+    row->ratio = row->largest / ideal;
+}
+
+static void take_joint(const SettledMotion *motion, const SettledJoint *did, OverviewRow *row)
+{
+    const bool is_random = motion->period == 0;
+    take_largest(motion, &did->force, row);
+    row->settled = is_random ? did : NULL;
+    row->impacts = is_random ? did->impacts.median : did->impacts.mean;
+    row->contact = is_random ? did->contact.median : did->contact.mean;
+    row->deepest = is_random ? did->depth.headline : fmax(row->deepest, did->depth.headline);
+}
+
 static int by_size(const void *a, const void *b)
 {
     const OverviewRow *first = a;
@@ -127,33 +166,55 @@ static int by_size(const void *a, const void *b)
     return (first->largest < second->largest) - (first->largest > second->largest);
 }
 
+static void add_joints(const RunReport *report, const IdealSizes *ideal, Overview *overview)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    overview->joints = zeroed(linkage->joint_count, sizeof *overview->joints);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (trajectory_feels_play(overview->run, &linkage->joints[i])) {
+            OverviewRow row = joint_row(report, overview->run, i, ideal);
+            if (overview->motion != NULL) {
+                take_joint(overview->motion, &overview->motion->joints[i], &row);
+            }
+            overview->joints[overview->joint_count++] = row;
+        }
+    }
+    qsort(overview->joints, overview->joint_count, sizeof *overview->joints, by_size);
+}
+
+static void add_bodies(const Linkage *linkage, const IdealSizes *ideal, Overview *overview)
+{
+    overview->bodies = zeroed(linkage->body_count, sizeof *overview->bodies);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        OverviewRow row = body_row(overview->run, i, ideal);
+        if (linkage_is_driven(linkage, (int)i) || !(row.largest > 0.0)) {
+            continue;
+        }
+        if (overview->motion != NULL) {
+            take_largest(overview->motion, &overview->motion->alpha[i], &row);
+        }
+        overview->bodies[overview->body_count++] = row;
+    }
+    qsort(overview->bodies, overview->body_count, sizeof *overview->bodies, by_size);
+}
+
 Overview run_overview_make(const RunReport *report)
 {
     const Scenario *scenario = report->scenario;
-    const Linkage *linkage = &scenario->linkage;
     Overview overview = {.run = overview_run(report)};
     if (overview.run == NULL) {
         return overview;
     }
-    overview.joints = zeroed(linkage->joint_count, sizeof *overview.joints);
-    overview.bodies = zeroed(linkage->body_count, sizeof *overview.bodies);
+    overview.motion = overview_motion(scenario, overview.run);
     IdealSizes ideal = ideal_sizes(scenario);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (trajectory_feels_play(overview.run, &linkage->joints[i])) {
-            overview.joints[overview.joint_count++] = joint_row(report, overview.run, i, &ideal);
-        }
-    }
-    for (size_t i = 0; i < linkage->body_count; i++) {
-        const OverviewRow row = body_row(overview.run, i, &ideal);
-        if (!linkage_is_driven(linkage, (int)i) && row.largest > 0.0) {
-            overview.bodies[overview.body_count++] = row;
-        }
-    }
-    qsort(overview.joints, overview.joint_count, sizeof *overview.joints, by_size);
-    qsort(overview.bodies, overview.body_count, sizeof *overview.bodies, by_size);
-    overview.drive_count = drive_torque_count(linkage);
+    add_joints(report, &ideal, &overview);
+    add_bodies(&scenario->linkage, &ideal, &overview);
+    overview.drive_count = drive_torque_count(&scenario->linkage);
     for (size_t i = 0; i < overview.drive_count; i++) {
         overview.drives[i] = drive_row(scenario, overview.run, i, &ideal);
+        if (overview.motion != NULL) {
+            take_largest(overview.motion, &overview.motion->drives[i], &overview.drives[i]);
+        }
     }
     ideal_sizes_free(&ideal);
     return overview;
@@ -193,14 +254,20 @@ static void cell_number(Table *table, const char *format, double value)
     table_cell(table, "%s", isfinite(value) ? words : "");
 }
 
+static void cell_name(const char *name, Table *table)
+{
+    Text shown;
+    text_init(&shown);
+    text_append_shown(&shown, name);
+    const bool is_long = strlen(shown.data) > NAME_MOST;
+    table_cell(table, "%.*s%s", is_long ? NAME_MOST - 1 : NAME_MOST, shown.data,
+               is_long ? "~" : "");
+    text_finish(&shown);
+}
+
 static void overview_row(const OverviewRow *row, bool has_crank, Table *table)
 {
-    Text name;
-    text_init(&name);
-    text_append_shown(&name, row->name);
-    const bool is_long = strlen(name.data) > NAME_MOST;
-    table_cell(table, "%.*s%s", is_long ? NAME_MOST - 1 : NAME_MOST, name.data, is_long ? "~" : "");
-    text_finish(&name);
+    cell_name(row->name, table);
     cell_units(table, row->largest, row->unit);
     cell_number(table, has_crank ? "%.1f" : "%.4g",
                 has_crank ? units_wrapped_deg(row->crank_rad) : row->time_s * UNITS_MS);
@@ -208,6 +275,139 @@ static void overview_row(const OverviewRow *row, bool has_crank, Table *table)
     cell_number(table, "%.3g", row->impacts);
     cell_number(table, "%.1f %%", row->contact * UNITS_PERCENT);
     cell_units(table, row->deepest, row->depth);
+}
+
+// Half the width of the interval of the 95 % quantile, to its wider side.
+static void append_width(const SettledNumber *of, Text *text)
+{
+    const double half = fmax(of->high - of->headline, of->headline - of->low);
+    const double percent = half / of->headline * UNITS_PERCENT;
+    if (isfinite(percent)) {
+        text_append(text, percent < 10.0 ? "%.2g" : "%.0f", percent);
+    }
+}
+
+// The median or the largest, in the unit of the headline.
+static void append_in_its_unit(const SettledNumber *of, double value, double low, double high,
+                               Text *text)
+{
+    units_append_beside(text, value, low, high, of->headline, of->low, of->high);
+}
+
+static void append_headline(const SettledNumber *of, const char *unit, Text *text)
+{
+    if (isinf(of->high)) {
+        text_append(text, "> ");
+        units_append(text, of->low, unit);
+    } else {
+        units_append_within(text, of->headline, of->low, of->high, unit);
+    }
+}
+
+static void append_share(const SettledNumber *share, Text *text)
+{
+    units_append_digits(text, share->median * UNITS_PERCENT, share->median_low * UNITS_PERCENT,
+                        share->median_high * UNITS_PERCENT);
+    text_append(text, " %%");
+}
+
+void run_overview_cell(const OverviewRow *row, OverviewCell cell, Text *text)
+{
+    const SettledNumber *of = row->spread;
+    const SettledJoint *joint = row->settled;
+    const double ideal = of->headline / row->ratio;
+    switch (cell) {
+    case OVERVIEW_HEADLINE:
+        append_headline(of, row->unit, text);
+        return;
+    case OVERVIEW_WIDTH:
+        append_width(of, text);
+        return;
+    case OVERVIEW_MEDIAN:
+        append_in_its_unit(of, of->median, of->median_low, of->median_high, text);
+        return;
+    case OVERVIEW_MOST:
+        append_in_its_unit(of, of->largest, of->largest, of->largest, text);
+        return;
+    case OVERVIEW_RATIO:
+        if (isfinite(row->ratio)) {
+            units_append_digits(text, row->ratio, of->low / ideal, of->high / ideal);
+        }
+        return;
+    case OVERVIEW_IMPACTS:
+        if (joint != NULL) {
+            text_append(text, "%.3g", joint->impacts.median);
+        }
+        return;
+    case OVERVIEW_CONTACT:
+        if (joint != NULL) {
+            append_share(&joint->contact, text);
+        }
+        return;
+    case OVERVIEW_DEPTH:
+        if (joint != NULL) {
+            append_headline(&joint->depth, row->depth, text);
+        }
+        return;
+    case OVERVIEW_CELL_COUNT:
+        return;
+    }
+}
+
+static void spread_row(const OverviewRow *row, Table *table)
+{
+    cell_name(row->name, table);
+    for (OverviewCell cell = 0; cell < OVERVIEW_CELL_COUNT; cell++) {
+        Text words;
+        text_init(&words);
+        run_overview_cell(row, cell, &words);
+        table_cell(table, "%s", words.data);
+        text_finish(&words);
+    }
+}
+
+// The table of a run, or of a motion that repeats.
+static Table *run_table(const Overview *overview, bool has_crank)
+{
+    const SectionHead heads[] = {
+        {overview->joint_count > 0 ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY},
+        {"largest", "", TABLE_RIGHT},
+        {"at", has_crank ? "deg" : "ms", TABLE_RIGHT},
+        {"x ideal", "", TABLE_RIGHT},
+        {"impacts", has_crank ? "a turn" : "", TABLE_RIGHT},
+        {"contact", "", TABLE_RIGHT},
+        {"deepest", "", TABLE_RIGHT},
+    };
+    return table_headed(sizeof heads / sizeof *heads, heads);
+}
+
+// That of a motion that does not repeat.
+static Table *spread_table(const Overview *overview, bool has_crank)
+{
+    const SectionHead heads[] = {
+        {overview->joint_count > 0 ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY},
+        {"95 %", has_crank ? "of turns" : "", TABLE_RIGHT},
+        {"+-", "%", TABLE_RIGHT},
+        {"median", "", TABLE_RIGHT},
+        {"most", "", TABLE_RIGHT},
+        {"times", "ideal", TABLE_RIGHT | TABLE_MINOR},
+        {"impacts", has_crank ? "a turn" : "", TABLE_RIGHT},
+        {"contact", "", TABLE_RIGHT},
+        {"deepest", "", TABLE_RIGHT},
+    };
+    Table *table = table_headed(sizeof heads / sizeof *heads, heads);
+    table_fit(table, STYLE_WIDTH);
+    return table;
+}
+
+static void write_row(const Overview *overview, const OverviewRow *row, bool has_crank,
+                      Table *table)
+{
+    if (run_overview_is_random(overview)) {
+        spread_row(row, table);
+    } else {
+        overview_row(row, has_crank, table);
+    }
 }
 
 static void write_table(const Overview *overview, const Scenario *scenario, OverviewRows rows,
@@ -219,25 +419,16 @@ static void write_table(const Overview *overview, const Scenario *scenario, Over
     if (joints + bodies == 0) {
         return;
     }
-    const SectionHead heads[] = {
-        {overview->joint_count > 0 ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY},
-        {"largest", "", TABLE_RIGHT},
-        {"at", has_crank ? "deg" : "ms", TABLE_RIGHT},
-        {"x ideal", "", TABLE_RIGHT},
-        {"impacts", has_crank ? "a turn" : "", TABLE_RIGHT},
-        {"contact", "", TABLE_RIGHT},
-        {"deepest", "", TABLE_RIGHT},
-    };
-    enum { COLUMNS = sizeof heads / sizeof *heads };
-    Table *table = table_headed(COLUMNS, heads);
+    Table *table =
+        (run_overview_is_random(overview) ? spread_table : run_table)(overview, has_crank);
     for (size_t i = 0; i < joints; i++) {
-        overview_row(&overview->joints[i], has_crank, table);
+        write_row(overview, &overview->joints[i], has_crank, table);
     }
     for (size_t i = 0; i < bodies; i++) {
-        overview_row(&overview->bodies[i], has_crank, table);
+        write_row(overview, &overview->bodies[i], has_crank, table);
     }
     for (size_t i = 0; i < overview->drive_count; i++) {
-        overview_row(&overview->drives[i], has_crank, table);
+        write_row(overview, &overview->drives[i], has_crank, table);
     }
     table_write(table, text);
     table_destroy(table);
@@ -413,9 +604,27 @@ static void write_assumed(const Scenario *scenario, Text *text)
     text_finish(&assumed);
 }
 
+// What the columns of a motion that does not repeat are.
+static void write_columns(const RunReport *report, Text *text)
+{
+    const Trajectory *run = overview_run(report);
+    const SettledMotion *motion = run != NULL ? overview_motion(report->scenario, run) : NULL;
+    if (motion == NULL || motion->period > 0) {
+        return;
+    }
+    const char *turn = drive_is_steady(&report->scenario->linkage.driver) ? "revolution" : "period";
+    char words[256];
+    snprintf(words, sizeof words,
+             "Largest of a %s: 95 %% are below the first number, +- its 95 %% confidence interval; "
+             "most: in %zu. Impacts, contact: medians.",
+             turn, motion->counted);
+    append_paragraph(words, text);
+}
+
 void run_overview_sentences(const RunReport *report, Text *text)
 {
-    settled_sentences(report->scenario, text);
+    settled_sentences(report->scenario, true, text);
+    write_columns(report, text);
     write_certainty(report, text);
     write_restitution(report->scenario, text);
     write_time(report, text);
@@ -427,8 +636,11 @@ static void write_all(const RunReport *report, const Overview *overview, Overvie
                       bool is_alone, Text *text)
 {
     text_append(text, "\n");
+    size_t start = text->length;
+    settled_louder(report->scenario, "below", text);
+    text_fold_behind(text, start, STYLE_WIDTH);
     write_table(overview, report->scenario, rows, text);
-    const size_t start = text->length;
+    start = text->length;
     run_overview_sentences(report, text);
     text_fold_behind(text, start, STYLE_WIDTH);
     if (is_alone) {
@@ -479,23 +691,35 @@ void run_overview_screen(const void *of, const Style *style, Text *text)
     run_overview_write(report, true, text);
 }
 
+static void largest_json(json_t *object, const OverviewRow *row)
+{
+    char key[64];
+    snprintf(key, sizeof key, "%s_max_%s", row->stem, row->unit_key);
+    json_value_set(object, key, row->largest);
+    if (row->spread != NULL) {
+        settled_json_number(object, row->stem, row->unit_key, row->spread);
+    }
+    snprintf(key, sizeof key, "%s_max_crank_deg", row->stem);
+    json_value_set(object, key, units_wrapped_deg(row->crank_rad));
+    snprintf(key, sizeof key, "%s_max_time_s", row->stem);
+    json_value_set(object, key, row->time_s);
+    json_value_set(object, "ratio_to_ideal", row->ratio);
+}
+
 static json_t *row_json(const OverviewRow *row)
 {
     json_t *object = json_object();
-    char key[64];
     json_object_set_new(object, "name", json_value_text(row->name));
-    snprintf(key, sizeof key, "%s_%s", row->number, row->unit_key);
-    json_value_set(object, key, row->largest);
-    snprintf(key, sizeof key, "%s_crank_deg", row->number);
-    json_value_set(object, key, units_wrapped_deg(row->crank_rad));
-    snprintf(key, sizeof key, "%s_time_s", row->number);
-    json_value_set(object, key, row->time_s);
-    json_value_set(object, "ratio_to_ideal", row->ratio);
+    largest_json(object, row);
     if (row->depth != NULL) {
         json_value_set(object, "impacts_per_revolution", row->impacts);
         json_value_set(object, "contact_fraction", row->contact);
+        char key[64];
         snprintf(key, sizeof key, "penetration_max_%s", row->depth);
         json_value_set(object, key, row->deepest);
+        if (row->settled != NULL) {
+            settled_json_number(object, "penetration", row->depth, &row->settled->depth);
+        }
     }
     return object;
 }
@@ -514,6 +738,10 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_t *made = json_object();
     json_object_set_new(made, "backend",
                         overview.run != NULL ? json_string(overview.run->backend) : json_null());
+    if (run_overview_is_random(&overview)) {
+        json_object_set_new(made, "counted_revolutions",
+                            json_integer((json_int_t)overview.motion->counted));
+    }
     json_object_set_new(made, "joints", joints);
     json_object_set_new(made, "bodies", bodies);
     json_object_set_new(made, "drive",
