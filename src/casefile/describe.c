@@ -378,6 +378,7 @@ static const char *expect_path(ExpectGroup group)
         [EXPECT_ENERGY] = "energy.",
         [EXPECT_SECTION] = "section.",
         [EXPECT_SETTLED] = "settled.",
+        [EXPECT_SETTLED_JOINTS] = "settled.joints.<joint>.",
         [EXPECT_COST] = "cost.",
     };
     return PATHS[group];

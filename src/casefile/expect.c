@@ -3,6 +3,7 @@
 //     path = [backend .] bodies . NAME . number | [backend .] joints . NAME . number
 //          | [backend .] error . number | [backend .] energy . number | [backend .] section .
 //          number | [backend .] cost . number | settled . number
+//          | settled . joints . NAME . number
 //
 // How its runs end is read in expect_outcome.c.
 #include "casefile/expect.h"
@@ -18,8 +19,13 @@
 enum { SEGMENT_MAX = 4, CHOICE_MAX = EXPECTED_NUMBER_COUNT };
 
 const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
-    [EXPECT_BODIES] = "bodies", [EXPECT_JOINTS] = "joints",   [EXPECT_ERROR] = "error",
-    [EXPECT_ENERGY] = "energy", [EXPECT_SECTION] = "section", [EXPECT_SETTLED] = "settled",
+    [EXPECT_BODIES] = "bodies",
+    [EXPECT_JOINTS] = "joints",
+    [EXPECT_ERROR] = "error",
+    [EXPECT_ENERGY] = "energy",
+    [EXPECT_SECTION] = "section",
+    [EXPECT_SETTLED] = "settled",
+    [EXPECT_SETTLED_JOINTS] = "settled.joints",
     [EXPECT_COST] = "cost",
 };
 
@@ -28,6 +34,9 @@ const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
     [id] = {.group = of, .name = word, .number = id, .dimension = unit, .doc = words}
 #define WHOLE(id, of, word, words) \
     [id] = {.group = of, .name = word, .number = id, .is_count = true, .doc = words}
+#define OF_SETTLED_JOINT(id, word, words) \
+    [id] = {.group = EXPECT_SETTLED_JOINTS, .name = word, .number = id, .dimension = DIMENSION_FORCE, \
+            .needs_play = true, .doc = words}
 // by the kind of a number of a joint
 #define DIMENSION_OF_COUNT   DIMENSION_NONE
 #define DIMENSION_OF_SHARE   DIMENSION_NONE
@@ -97,9 +106,19 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
           "revolutions after which the settled motion repeats; 0: it does not"),
     WHOLE(EXPECTED_SETTLED_MOTIONS, EXPECT_SETTLED, "motions",
           "different motions that starts settle in"),
+    NUMBER(EXPECTED_SETTLED_SHARE, EXPECT_SETTLED, "share", DIMENSION_NONE,
+           "share of the starts that come to the settled motion, of those whose motion is known"),
     NUMBER(EXPECTED_SETTLED_GROWTH, EXPECT_SETTLED, "growth", DIMENSION_NONE,
            "by what a small change of the settled motion is multiplied in a revolution, or its "
            "bound where it is gone"),
+    OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_MAX, "force_max",
+                     "largest force of the whole settled motion; where it does not repeat the 95 % "
+                     "quantile of the largest in a revolution"),
+    OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_MEDIAN, "force_median",
+                     "median of the largest force in a revolution; the largest force where the "
+                     "motion repeats"),
+    OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_LARGEST, "force_largest",
+                     "largest force in all revolutions that were counted"),
     WHOLE(EXPECTED_STEPS, EXPECT_COST, "steps", "steps of the solver"),
     WHOLE(EXPECTED_EVALUATIONS, EXPECT_COST, "evaluations",
           "evaluations of the equations of motion"),
@@ -114,6 +133,7 @@ typedef struct Path {
     char segments[SEGMENT_MAX][LINKAGE_NAME_SIZE];
     size_t starts[SEGMENT_MAX]; // in characters, from the start of the key
     size_t first;               // segment behind the backend
+    size_t member;              // segment of the name of a body or joint
 } Path;
 
 static Span segment_span(const Path *path, size_t segment)
@@ -128,8 +148,8 @@ static bool refuse_path(const Path *path, Err *err)
     return source_error(
         path->source, keys_span(path->node),
         "joints.NAME.NUMBER, bodies.NAME.NUMBER, error.NUMBER, energy.NUMBER, "
-        "section.NUMBER, cost.NUMBER, outcome, each with a backend before it or none, or "
-        "settled.NUMBER",
+        "section.NUMBER, cost.NUMBER, outcome, each with a backend before it or none; "
+        "settled.NUMBER, settled.joints.NAME.NUMBER",
         err, "'%.60s' is not the path of a number", path->node->key->text);
 }
 
@@ -169,7 +189,22 @@ static void take_backend(Path *path, Expectation *expectation)
     path->first = expectation->backend >= 0 ? 1 : 0;
 }
 
-static bool find_group(const Path *path, ExpectGroup *group, Err *err)
+// The words that a path can begin with.
+static size_t first_words(bool has_backend, const char *choices[EXPECT_GROUP_COUNT + BACKEND_COUNT])
+{
+    size_t count = 0;
+    for (int i = 0; i < EXPECT_GROUP_COUNT; i++) {
+        if (i != EXPECT_SETTLED_JOINTS) {
+            choices[count++] = EXPECT_GROUPS[i];
+        }
+    }
+    for (int i = 0; !has_backend && i < BACKEND_COUNT; i++) {
+        choices[count++] = OPTIONS_BACKENDS[i];
+    }
+    return count;
+}
+
+static bool find_group(Path *path, ExpectGroup *group, Err *err)
 {
     if (path->first == path->count) {
         return refuse_path(path, err);
@@ -177,34 +212,33 @@ static bool find_group(const Path *path, ExpectGroup *group, Err *err)
     const int found = find_word(path->segments[path->first], EXPECT_GROUPS, EXPECT_GROUP_COUNT);
     if (found < 0) {
         const char *choices[EXPECT_GROUP_COUNT + BACKEND_COUNT];
-        size_t count = 0;
-        for (; count < EXPECT_GROUP_COUNT; count++) {
-            choices[count] = EXPECT_GROUPS[count];
-        }
-        for (int i = 0; path->first == 0 && i < BACKEND_COUNT; i++) {
-            choices[count++] = OPTIONS_BACKENDS[i];
-        }
+        const size_t count = first_words(path->first > 0, choices);
         return keys_refuse(path->source, segment_span(path, path->first), "part of a path",
                            path->segments[path->first], choices, count, err);
     }
     *group = (ExpectGroup)found;
-    const bool has_member = *group == EXPECT_BODIES || *group == EXPECT_JOINTS;
+    path->member = path->first + 1;
     if (*group == EXPECT_SETTLED && path->first > 0) {
         return refuse_path(path, err);
     }
-    return path->count == path->first + (has_member ? 3 : 2) || refuse_path(path, err);
+    if (*group == EXPECT_SETTLED && path->count > 2 && strcmp(path->segments[1], "joints") == 0) {
+        *group = EXPECT_SETTLED_JOINTS;
+        path->member++;
+    }
+    return path->count == path->member + (expect_has_member(*group) ? 2 : 1) ||
+           refuse_path(path, err);
 }
 
 static bool find_member(const Path *path, const Entries *entries, ExpectGroup group,
                         Expectation *expectation, Err *err)
 {
-    if (group != EXPECT_BODIES && group != EXPECT_JOINTS) {
+    if (!expect_has_member(group)) {
         expectation->member = 0;
         return true;
     }
     const SchemaFamily family = group == EXPECT_BODIES ? SCHEMA_BODY : SCHEMA_JOINT;
     const EntryNames *names = &entries->names[family];
-    const char *name = path->segments[path->first + 1];
+    const char *name = path->segments[path->member];
     expectation->member = entries_number(entries, family, name);
     if (expectation->member >= 0) {
         return true;
@@ -213,10 +247,15 @@ static bool find_member(const Path *path, const Entries *entries, ExpectGroup gr
     for (size_t i = 0; i < names->count; i++) {
         choices[i] = names->names[i];
     }
-    keys_refuse(path->source, segment_span(path, path->first + 1), SCHEMA_FAMILIES[family].what,
-                name, choices, names->count, err);
+    keys_refuse(path->source, segment_span(path, path->member), SCHEMA_FAMILIES[family].what, name,
+                choices, names->count, err);
     free(choices);
     return false;
+}
+
+static bool has_joint(ExpectGroup group)
+{
+    return expect_has_member(group) && group != EXPECT_BODIES;
 }
 
 static bool find_number(const Path *path, ExpectGroup group, const Scenario *scenario,
@@ -224,7 +263,7 @@ static bool find_number(const Path *path, ExpectGroup group, const Scenario *sce
 {
     const size_t last = path->count - 1;
     const bool is_ideal =
-        group == EXPECT_JOINTS && !linkage_has_play(&scenario->linkage.joints[expectation->member]);
+        has_joint(group) && !linkage_has_play(&scenario->linkage.joints[expectation->member]);
     const char *choices[CHOICE_MAX];
     size_t count = 0;
     for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {
@@ -238,9 +277,10 @@ static bool find_number(const Path *path, ExpectGroup group, const Scenario *sce
             return true;
         }
         if (is_it) {
-            return source_error(path->source, segment_span(path, last), "force_max, force_spikes",
-                                err, "%s has no play, and so no %s", path->segments[last - 1],
-                                row->name);
+            return source_error(
+                path->source, segment_span(path, last),
+                group == EXPECT_JOINTS ? "force_max, force_spikes" : "a joint with play", err,
+                "%s has no play, and so no %s", path->segments[last - 1], row->name);
         }
     }
     return keys_refuse(path->source, segment_span(path, last), "number", path->segments[last],
@@ -251,8 +291,7 @@ static bool find_number(const Path *path, ExpectGroup group, const Scenario *sce
 static ExpectRow row_of(const Scenario *scenario, ExpectGroup group, const Expectation *expectation)
 {
     ExpectRow row = EXPECT_ROWS[expectation->number];
-    if (group == EXPECT_JOINTS &&
-        linkage_is_torsional(&scenario->linkage.joints[expectation->member])) {
+    if (has_joint(group) && linkage_is_torsional(&scenario->linkage.joints[expectation->member])) {
         row.dimension = row.dimension == DIMENSION_FORCE     ? DIMENSION_TORQUE
                         : row.dimension == DIMENSION_IMPULSE ? DIMENSION_ANGULAR_IMPULSE
                         : row.dimension == DIMENSION_LENGTH  ? DIMENSION_ANGLE

@@ -11,10 +11,17 @@ typedef enum ExpectGroup {
     EXPECT_ERROR,
     EXPECT_ENERGY,
     EXPECT_SECTION,
-    EXPECT_SETTLED, // of the case, not of a run
+    EXPECT_SETTLED,        // of the case, not of a run
+    EXPECT_SETTLED_JOINTS, // likewise; two words
     EXPECT_COST,
     EXPECT_GROUP_COUNT,
 } ExpectGroup;
+
+// Whether its paths have the name of a body or joint.
+static inline bool expect_has_member(ExpectGroup group)
+{
+    return group == EXPECT_BODIES || group == EXPECT_JOINTS || group == EXPECT_SETTLED_JOINTS;
+}
 
 // A number that can be limited.
 typedef struct ExpectRow {

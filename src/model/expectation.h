@@ -44,10 +44,14 @@ typedef enum ExpectedNumber {
     EXPECTED_RESIDUAL,
     EXPECTED_SECTION_PERIOD, // revolutions
     EXPECTED_SECTION_CHANGE, // 1
-    EXPECTED_SETTLED_PERIOD, // revolutions, as the two below of the case's settled motion
+    EXPECTED_SETTLED_PERIOD, // revolutions, as all to the cost of the case's settled motion
     EXPECTED_SETTLED_MOTIONS,
-    EXPECTED_SETTLED_GROWTH, // 1
-    EXPECTED_STEPS,          // of the cost
+    EXPECTED_SETTLED_SHARE,     // 1
+    EXPECTED_SETTLED_GROWTH,    // 1
+    EXPECTED_SETTLED_FORCE_MAX, // of a joint, N, as the two below
+    EXPECTED_SETTLED_FORCE_MEDIAN,
+    EXPECTED_SETTLED_FORCE_LARGEST,
+    EXPECTED_STEPS, // of the cost
     EXPECTED_EVALUATIONS,
     EXPECTED_NUMBER_COUNT,
 } ExpectedNumber;

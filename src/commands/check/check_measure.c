@@ -62,7 +62,8 @@ bool expect_value_is_error(const Expectation *expectation)
 
 bool expect_value_is_settled(const Expectation *expectation)
 {
-    return EXPECT_ROWS[expectation->number].group == EXPECT_SETTLED;
+    const ExpectGroup group = EXPECT_ROWS[expectation->number].group;
+    return group == EXPECT_SETTLED || group == EXPECT_SETTLED_JOINTS;
 }
 
 double expect_value_of_settled(const Expectation *expectation, const Scenario *scenario)
@@ -71,9 +72,19 @@ double expect_value_of_settled(const Expectation *expectation, const Scenario *s
     if (settled->motion_count == 0) {
         return NAN;
     }
+    const SettledMotion *motion = &settled->motions[0];
+    const SettledNumber *force = &motion->joints[expectation->member].force;
     switch (expectation->number) {
     case EXPECTED_SETTLED_PERIOD:
-        return (double)settled->motions[0].period;
+        return (double)motion->period;
+    case EXPECTED_SETTLED_SHARE:
+        return (double)motion->starts / (double)settled->starts;
+    case EXPECTED_SETTLED_FORCE_MAX:
+        return force->headline;
+    case EXPECTED_SETTLED_FORCE_MEDIAN:
+        return force->median;
+    case EXPECTED_SETTLED_FORCE_LARGEST:
+        return force->largest;
     case EXPECTED_SETTLED_MOTIONS:
         return (double)settled->motion_count;
     default:
