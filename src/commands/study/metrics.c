@@ -8,6 +8,7 @@
 #include "measure/section.h"
 #include "measure/spectrum.h"
 #include "model/joint_numbers.h"
+#include "write/json_value.h"
 
 #include <assert.h>
 #include <math.h>
@@ -17,12 +18,13 @@
 
 // What a number of a run is of; the columns stand in this order.
 typedef enum Owner {
-    OF_BODY,    // each whose motion is not prescribed: BodyExtremes
-    OF_JOINT,   // each with play: model/joint_number_list.h, whole numbers first
-    OF_RUN,     // Trajectory
-    OF_SETTLED, // SettledStart, in studies whose case is settled
-    OF_ERROR,   // TrajectoryError, in studies with a truth
-    OF_TRUTH,   // Truth, likewise
+    OF_BODY,          // each whose motion is not prescribed: BodyExtremes
+    OF_JOINT,         // each with play: model/joint_number_list.h, whole numbers first
+    OF_RUN,           // Trajectory
+    OF_SETTLED,       // SettledStart, in studies whose case is settled
+    OF_SETTLED_JOINT, // each with play, likewise: SettledNumber of its force
+    OF_ERROR,         // TrajectoryError, in studies with a truth
+    OF_TRUTH,         // Truth, likewise
     OWNER_COUNT,
 } Owner;
 
@@ -50,7 +52,7 @@ typedef struct Measured {
 // One column for each owner.
 typedef struct Metric {
     Owner owner;
-    const char *name; // with its unit
+    const char *name; // with its unit; of a joint that limits turn turned_key of it
     ColumnKind kind;
     Need need;
     size_t offset; // in its owner: of a size_t for COLUMN_WHOLE, of a double for COLUMN_REAL
@@ -88,6 +90,12 @@ static double find_period(const Measured *measured, size_t unused)
 {
     (void)unused;
     return (double)measured->settled->motions[0].period;
+}
+
+static double find_watched(const Measured *measured, size_t unused)
+{
+    (void)unused;
+    return (double)measured->settled->motions[0].watched;
 }
 
 static double find_order_1(const Measured *measured, size_t body)
@@ -138,6 +146,7 @@ static double find_section_change(const Measured *measured, size_t unused)
 #define BODY(...) ROW(OF_BODY, BodyExtremes, __VA_ARGS__)
 #define RUN(...) ROW(OF_RUN, Trajectory, __VA_ARGS__)
 #define SETTLED(...) ROW(OF_SETTLED, SettledStart, __VA_ARGS__)
+#define FORCE(...) ROW(OF_SETTLED_JOINT, SettledNumber, __VA_ARGS__)
 #define ERROR(...) ROW(OF_ERROR, TrajectoryError, __VA_ARGS__)
 #define TRUTH(...) ROW(OF_TRUTH, Truth, __VA_ARGS__)
 #define FOUND(owner, name, kind, need, find, ...) \
@@ -203,12 +212,30 @@ static const Metric METRICS[] = {
             "revolutions that it took to settle", "revolutions until settled"),
     SETTLED("settled_motions", WHOLE, NOTHING, motion_count,
             "different motions that its starts came to", "number of settled motions"),
+    FOUND(OF_SETTLED, "settled_watched", WHOLE, NOTHING, find_watched,
+          "revolutions that each start of its motion was watched for, at least",
+          "revolutions watched"),
     SETTLED("settled_growth", REAL, GROWTH, growth.factor,
             "growth of a small change of its motion in a revolution, or its bound",
             "growth of a small change in a revolution"),
     SETTLED("followed_from", REAL, FOLLOWED, followed_from,
             "value of the followed key at the run whose motion it started in",
           "value that the motion was followed from"),
+    FORCE("settled_force_N", REAL, NOTHING, headline,
+          "largest force of the whole settled motion; where it does not repeat the 95 % quantile of "
+          "the largest in a revolution",
+          "largest force of the settled motion"),
+    FORCE("settled_force_low_N", REAL, NOTHING, low,
+          "low end of the 95 % confidence interval of <joint>_settled_force_N",
+          "largest force of the settled motion, low end"),
+    FORCE("settled_force_high_N", REAL, NOTHING, high,
+          "its high end; none where too few revolutions are known",
+          "largest force of the settled motion, high end"),
+    FORCE("settled_force_median_N", REAL, NOTHING, median,
+          "median of the largest force in a revolution; the largest force where the motion repeats",
+          "median of the largest force in a revolution"),
+    FORCE("settled_force_largest_N", REAL, NOTHING, largest,
+          "largest force in all revolutions that were counted"),
     ERROR("error_max", REAL, NOTHING, max,
           "largest error of any velocity of bodies and pins, over its own largest",
           "largest error of the velocities"),
@@ -317,7 +344,7 @@ static bool metrics_find_member(const Linkage *linkage, Owner owner, size_t memb
         *name = linkage->bodies[member].name;
         return !linkage_is_driven(linkage, (int)member);
     }
-    if (owner == OF_JOINT) {
+    if (owner == OF_JOINT || owner == OF_SETTLED_JOINT) {
         *name = linkage->joints[member].name;
         return linkage_has_play(&linkage->joints[member]);
     }
@@ -386,7 +413,14 @@ static size_t list_member(const Linkage *linkage, Owner owner, size_t member, Li
 static size_t list_results(const Linkage *linkage, Lists lists, Result results[RECORD_RESULT_MAX])
 {
     const size_t members[OWNER_COUNT] = {
-        linkage->body_count, linkage->joint_count, 1, lists.has_settled ? 1 : 0, 1, 1};
+        linkage->body_count,
+        linkage->joint_count,
+        1,
+        lists.has_settled ? 1 : 0,
+        lists.has_settled ? linkage->joint_count : 0,
+        1,
+        1,
+    };
     size_t count = 0;
     for (Owner owner = 0; owner < OWNER_COUNT; owner++) {
         for (size_t i = 0; i < members[owner]; i++) {
@@ -401,13 +435,15 @@ bool metrics_fit(const Scenario *scenario, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     size_t of_body = 0;
+    size_t of_joint = JOINT_NUMBER_COUNT;
     for (size_t k = 0; k < METRIC_COUNT; k++) {
         // a body either turns or slides, and has as many numbers for both
         of_body += METRICS[k].owner == OF_BODY && METRICS[k].need != SLIDES ? 1 : 0;
+        of_joint += METRICS[k].owner == OF_SETTLED_JOINT ? 1 : 0;
     }
     size_t count = METRIC_COUNT + JOINT_NUMBER_COUNT + of_body * linkage->body_count;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        count += linkage_has_play(&linkage->joints[i]) ? JOINT_NUMBER_COUNT : 0;
+        count += linkage_has_play(&linkage->joints[i]) ? of_joint : 0;
     }
     return count <= RECORD_RESULT_MAX ||
            err_set(err, ERR_CASE,
@@ -416,11 +452,24 @@ bool metrics_fit(const Scenario *scenario, Err *err)
                    linkage->body_count, RECORD_RESULT_MAX);
 }
 
+// The key of a number, which is turned where it is of a joint that limits turn.
+static const char *metric_key(const Linkage *linkage, const Result *result,
+                              char turned[TURNED_KEY_SIZE])
+{
+    if (result->metric->owner != OF_SETTLED_JOINT ||
+        !linkage_is_torsional(&linkage->joints[result->member])) {
+        return result->metric->name;
+    }
+    turned_key(result->metric->name, turned);
+    return turned;
+}
+
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
 {
     Result results[RECORD_RESULT_MAX];
     const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0', spec->has_growth};
     const size_t count = list_results(&scenario->linkage, lists, results);
+    char turned[TURNED_KEY_SIZE];
     *layout = (Layout){0};
     metrics_add_settings(spec, layout);
     for (size_t i = 0; i < count; i++) {
@@ -435,7 +484,7 @@ void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
         } else if (metric->owner < OF_ERROR || spec->has_truth) {
             Column *column = &layout->results[layout->result_count++];
             column->kind = metric->kind;
-            name_column(layout, column, result->of, metric->name);
+            name_column(layout, column, result->of, metric_key(&scenario->linkage, result, turned));
         }
     }
 }
@@ -456,7 +505,12 @@ bool metrics_title(const char *column, const char **title, const char **key, siz
 {
     for (size_t i = 0; i < METRIC_COUNT; i++) {
         const Metric *metric = &METRICS[i];
-        if (has_key(column, metric->name, metric->owner == OF_BODY, owner_length)) {
+        const bool is_of_joint = metric->owner == OF_SETTLED_JOINT;
+        const bool has_owner = metric->owner == OF_BODY || is_of_joint;
+        char turned[TURNED_KEY_SIZE];
+        turned_key(metric->name, turned);
+        if (has_key(column, metric->name, has_owner, owner_length) ||
+            (is_of_joint && has_key(column, turned, true, owner_length))) {
             *title = metric->words[metric->words[1] != NULL ? 1 : 0];
             *key = metric->name;
             return true;
@@ -477,7 +531,8 @@ bool metrics_title(const char *column, const char **title, const char **key, siz
 static bool is_there(const Metric *metric, const Measured *measured)
 {
     if ((metric->owner >= OF_ERROR && !measured->error.is_known) ||
-        (metric->owner == OF_SETTLED && measured->settled->motion_count == 0)) {
+        ((metric->owner == OF_SETTLED || metric->owner == OF_SETTLED_JOINT) &&
+         measured->settled->motion_count == 0)) {
         return false;
     }
     switch (metric->need) {
@@ -503,6 +558,8 @@ static double metrics_read_value(const Metric *metric, const Measured *measured,
         NULL,
         measured->run,
         measured->settled,
+        metric->owner == OF_SETTLED_JOINT ? &measured->settled->motions[0].joints[member].force
+                                          : NULL,
         &measured->error,
         measured->truth,
     };
@@ -582,7 +639,7 @@ static bool is_expectable(const char *meaning)
 
 static const char *before_name(Owner owner)
 {
-    return owner == OF_BODY ? "<body>_" : "";
+    return owner == OF_BODY ? "<body>_" : owner == OF_SETTLED_JOINT ? "<joint>_" : "";
 }
 
 // The columns whose meanings the page of a case has.
