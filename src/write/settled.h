@@ -7,6 +7,10 @@
 
 #include <jansson.h>
 
+// 1: the share of the revolutions of a motion that does not repeat that its headlines are above,
+// and how sure all intervals are.
+static const double SETTLED_QUANTILE = 0.95;
+
 // Lines for the head of a result: what the motion does, after how many revolutions, and of each
 // joint with play its largest force there beside that of the first revolution, which is not
 // counted.

@@ -277,11 +277,15 @@ static void overview_row(const OverviewRow *row, bool has_crank, Table *table)
     cell_units(table, row->deepest, row->depth);
 }
 
-// Half the width of the interval of the 95 % quantile, to its wider side.
+// 1: half the width of the interval of the 95 % quantile, to its wider side, over that.
+static double width_of(const SettledNumber *of)
+{
+    return fmax(of->high - of->headline, of->headline - of->low) / of->headline;
+}
+
 static void append_width(const SettledNumber *of, Text *text)
 {
-    const double half = fmax(of->high - of->headline, of->headline - of->low);
-    const double percent = half / of->headline * UNITS_PERCENT;
+    const double percent = width_of(of) * UNITS_PERCENT;
     if (isfinite(percent)) {
         text_append(text, percent < 10.0 ? "%.2g" : "%.0f", percent);
     }
@@ -304,6 +308,20 @@ static void append_headline(const SettledNumber *of, const char *unit, Text *tex
     }
 }
 
+// Times what it is with ideal joints; nothing where that is not known.
+static void append_ratio(const SettledNumber *of, double ideal, Text *text)
+{
+    if (!isfinite(of->headline / ideal)) {
+        return;
+    }
+    if (isinf(of->high)) {
+        text_append(text, "> ");
+        units_append_digits(text, of->low / ideal, of->low / ideal, of->low / ideal);
+    } else {
+        units_append_digits(text, of->headline / ideal, of->low / ideal, of->high / ideal);
+    }
+}
+
 static void append_share(const SettledNumber *share, Text *text)
 {
     units_append_digits(text, share->median * UNITS_PERCENT, share->median_low * UNITS_PERCENT,
@@ -315,7 +333,6 @@ void run_overview_cell(const OverviewRow *row, OverviewCell cell, Text *text)
 {
     const SettledNumber *of = row->spread;
     const SettledJoint *joint = row->settled;
-    const double ideal = of->headline / row->ratio;
     switch (cell) {
     case OVERVIEW_HEADLINE:
         append_headline(of, row->unit, text);
@@ -330,9 +347,7 @@ void run_overview_cell(const OverviewRow *row, OverviewCell cell, Text *text)
         append_in_its_unit(of, of->largest, of->largest, of->largest, text);
         return;
     case OVERVIEW_RATIO:
-        if (isfinite(row->ratio)) {
-            units_append_digits(text, row->ratio, of->low / ideal, of->high / ideal);
-        }
+        append_ratio(of, of->headline / row->ratio, text);
         return;
     case OVERVIEW_IMPACTS:
         if (joint != NULL) {
@@ -698,6 +713,7 @@ static void largest_json(json_t *object, const OverviewRow *row)
     json_value_set(object, key, row->largest);
     if (row->spread != NULL) {
         settled_json_number(object, row->stem, row->unit_key, row->spread);
+        json_value_set(object, "width", width_of(row->spread));
     }
     snprintf(key, sizeof key, "%s_max_crank_deg", row->stem);
     json_value_set(object, key, units_wrapped_deg(row->crank_rad));
@@ -741,6 +757,7 @@ void run_overview_json(json_t *object, const RunReport *report)
     if (run_overview_is_random(&overview)) {
         json_object_set_new(made, "counted_revolutions",
                             json_integer((json_int_t)overview.motion->counted));
+        json_value_set(made, "quantile", SETTLED_QUANTILE);
     }
     json_object_set_new(made, "joints", joints);
     json_object_set_new(made, "bodies", bodies);
