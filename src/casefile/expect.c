@@ -112,11 +112,9 @@ const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
            "by what a small change of the settled motion is multiplied in a revolution, or its "
            "bound where it is gone"),
     OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_MAX, "force_max",
-                     "largest force of the whole settled motion; where it does not repeat the 95 % "
-                     "quantile of the largest in a revolution"),
+                     "settled motion's largest force; 95 % quantile where it does not repeat"),
     OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_MEDIAN, "force_median",
-                     "median of the largest force in a revolution; the largest force where the "
-                     "motion repeats"),
+                     "median of the largest force in a revolution of the settled motion"),
     OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_LARGEST, "force_largest",
                      "largest force in all revolutions that were counted"),
     WHOLE(EXPECTED_STEPS, EXPECT_COST, "steps", "steps of the solver"),

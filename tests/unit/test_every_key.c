@@ -15,8 +15,9 @@
 
 // How a run is made and reported: chosen by the user, not measured, and the same on any machine.
 static const char *const UNSHAKEN[] = {
-    "run.revolutions", "run.duration",        "run.tolerance", "run.spike-threshold",
-    "run.report-from", "reference.tolerance", "drive.period",
+    "run.revolutions",     "run.duration",    "run.tolerance",
+    "run.spike-threshold", "run.report-from", "reference.tolerance",
+    "drive.period",        "run.settle-to",   "run.settle-budget",
 };
 
 // What has no line in the program for libjointplay that is looked at here.
@@ -30,7 +31,10 @@ static const char *const UNWRITTEN[] = {
     "run.spike-threshold",
     "run.report-from",
     "run.start",
+    "run.settle-least",
     "run.settle-most",
+    "run.settle-to",
+    "run.settle-budget",
     "run.settle-starts",
     "run.samples",
     // of other engines
