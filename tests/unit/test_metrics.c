@@ -123,6 +123,45 @@ static void results_are_those_of_the_trajectory(void **state)
     trajectory_destroy(exact);
 }
 
+// Of the whole settled motion, whatever the run itself had; the control is the run's own force.
+static void settled_forces_are_those_of_the_motion(void **state)
+{
+    (void)state;
+    const Spec spec = one_key(false);
+    Scenario scenario = mechanism_loose(1);
+    Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
+    scenario.run.start = START_SETTLED;
+    Layout layout;
+    metrics_layout(&spec, &scenario, &layout);
+    SettledJoint joints[8] = {{.force = {.headline = 0.0}}};
+    joints[1].force = (SettledNumber){
+        .headline = 5.0, .low = 4.0, .high = INFINITY, .median = 3.0, .largest = 7.0};
+    SettledMotion motion = {.starts = 1, .watched = 200, .joints = joints};
+    scenario.settled.motions = &motion;
+    scenario.settled.motion_count = 1;
+    double results[RECORD_RESULT_MAX];
+    metrics_take(&layout, &scenario, run, NULL, results);
+    assert_true(results[column(&layout, "crank_coupler_settled_force_N")] == 5.0);
+    assert_true(results[column(&layout, "crank_coupler_settled_force_low_N")] == 4.0);
+    // no revolution bounds it
+    assert_true(isnan(results[column(&layout, "crank_coupler_settled_force_high_N")]));
+    assert_true(results[column(&layout, "crank_coupler_settled_force_median_N")] == 3.0);
+    assert_true(results[column(&layout, "crank_coupler_settled_force_largest_N")] == 7.0);
+    assert_true(results[column(&layout, "settled_watched")] == 200.0);
+    assert_true(results[column(&layout, "crank_coupler_force_max_N")] ==
+                run->joints[1].force_max.value);
+    assert_true(run->joints[1].force_max.value != 5.0);
+    // each has a title, and whose it is
+    const char *title;
+    const char *key;
+    size_t owner;
+    assert_true(metrics_title("crank_coupler_settled_force_low_N", &title, &key, &owner));
+    assert_int_equal(owner, strlen("crank_coupler"));
+    assert_string_equal(key, "settled_force_low_N");
+    scenario.settled = (SettledStart){.motion_count = 0};
+    trajectory_destroy(run);
+}
+
 static void without_a_truth_there_is_no_error(void **state)
 {
     (void)state;
@@ -173,6 +212,7 @@ int main(void)
         cmocka_unit_test(too_many_bodies_are_refused),
         cmocka_unit_test(names_that_become_one_are_numbered),
         cmocka_unit_test(results_are_those_of_the_trajectory),
+        cmocka_unit_test(settled_forces_are_those_of_the_motion),
         cmocka_unit_test(without_a_truth_there_is_no_error),
         cmocka_unit_test(what_was_not_felt_is_no_number),
     };

@@ -86,8 +86,9 @@ static bool choose_results(Store *store, Choice *choice, Err *err)
     static const struct {
         const char *ending;
         double least;
-    } WANTED[] = {{"_force_max_N", 0.0}, {"settled_growth", 0.0},     {"alpha_peak_rad_s2", 1e-6},
-                  {"error_max", 0.0},    {"_penetration_max_m", 0.0}, {"_omega_max_rad_s", 1e-6}};
+    } WANTED[] = {{"_settled_force_N", 0.0},   {"_force_max_N", 0.0}, {"settled_growth", 0.0},
+                  {"alpha_peak_rad_s2", 1e-6}, {"error_max", 0.0},    {"_penetration_max_m", 0.0},
+                  {"_omega_max_rad_s", 1e-6}};
     const size_t first = choice->layout->setting_count;
     for (size_t k = 0; k < sizeof WANTED / sizeof *WANTED; k++) {
         for (size_t i = 0; i < choice->layout->result_count; i++) {
