@@ -5,7 +5,7 @@
 #include "measure/chosen_run.h"
 
 // What is watched while the settled motion is looked for (run/settle.h).
-#define SETTLING "settling, of run.settle-most"
+#define SETTLING "settling, of run.settle-budget"
 
 typedef struct Progress {
     const char *backend; // of the run that is watched

@@ -51,7 +51,7 @@ enum {
     CONFIRM_TIMES = 2,   // and as many times those that it took
     TIMES_AS_LONG = 5,   // that one is watched for that does not repeat where others do
     STARTS_LEAST = 4,    // that are watched to the end whatever the budget
-    ALLOWANCE_FROM = 16, // each start has had, before the budget leaves some undecided
+    ALLOWANCE_FROM = 16, // each has had, before the budget leaves further ones undecided
 };
 
 typedef enum StartState {
@@ -281,11 +281,11 @@ static size_t watch_least(const Search *search, const RunOptions *run)
 // Leaves as many starts undecided as the budget does not allow to watch for so long.
 static void leave_undecided(Search *search, size_t goal, size_t least)
 {
-    size_t turned = atomic_load(&search->watch.turned);
-    find_live(search, goal, search->count);
+    const size_t turned = atomic_load(&search->watch.turned);
     const double per_turn_s = spent_s(search) / (double)(turned > 0 ? turned : 1);
     const double allowed = (search->budget_s - spent_s(search)) /
                            (per_turn_s * (double)(least > goal ? least - goal : 1));
+    find_live(search, goal, search->count);
     for (size_t i = 0; i < search->live_count; i++) {
         if (i >= STARTS_LEAST && (double)i >= allowed) {
             search->starts[search->live[i]].state = START_UNDECIDED;
@@ -403,6 +403,9 @@ static void search_run(Search *search, const Scenario *scenario)
     const size_t first = FIRST_MOST < run->settle_most ? FIRST_MOST : run->settle_most;
     run_round(search, first, 1);
     make_starts(search, scenario);
+    if (is_going(&search->starts[0])) {
+        leave_undecided(search, 0, run->settle_least);
+    }
     for (size_t goal = ROUND_FIRST;;) {
         goal = goal < run->settle_most ? goal : run->settle_most;
         run_round(search, goal, search->count);
@@ -564,6 +567,7 @@ static Search search_create(const Scenario *first, size_t count, RunWatch watch)
         .watch = turn_watch_begin(watch),
     };
     search.watch.most = count * first->run.settle_least;
+    search.watch.budget_s = search.budget_s;
     return search;
 }
 

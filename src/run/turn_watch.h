@@ -8,6 +8,8 @@
 typedef struct TurnWatch {
     RunWatch watch;
     double started_s;     // by the clock
+    double computed_s;    // of processor time, when it began
+    double budget_s;      // of processor time, in which it ends; 0: it has none
     atomic_size_t turned; // revolutions so far
     size_t most;          // that there may be
 } TurnWatch;
