@@ -27,7 +27,12 @@ double units_per_si(const char *unit)
 
 static const char *const PREFIXES[] = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
 
-enum { NO_PREFIX = 4, PREFIX_MOST = sizeof PREFIXES / sizeof *PREFIXES - 1, DIGITS_MOST = 3 };
+enum {
+    NO_PREFIX = 4,
+    PREFIX_MOST = sizeof PREFIXES / sizeof *PREFIXES - 1,
+    DIGITS_MOST = 3,
+    DECIMALS_MOST = 2, // of what is far smaller than its prefix
+};
 
 // Of the first digit of a number, as it is rounded to three: 2 of 999, 3 of 999.7; 0 of 0.
 static int first_place(double value)
@@ -75,7 +80,9 @@ static void append_to(Text *text, double value, int place, int prefix)
 {
     const int power = 3 * (prefix - NO_PREFIX);
     const double shown = rounded_to(value, place) / pow(10.0, power);
-    text_append(text, "%.*f", power > place ? power - place : 0, shown == 0.0 ? 0.0 : shown);
+    const int decimals = power > place ? power - place : 0;
+    text_append(text, "%.*f", decimals < DECIMALS_MOST ? decimals : DECIMALS_MOST,
+                shown == 0.0 ? 0.0 : shown);
 }
 
 void units_append(Text *text, double value, const char *unit)

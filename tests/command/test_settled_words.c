@@ -167,8 +167,8 @@ static void its_screen_says_how_sure_that_is(void **state)
                 "Does not repeat in 60 revolutions of each of 4 starts; a longer "
                 "transient cannot be ruled out. 4 of 4 starts come to it (at least "
                 "40 % of such starts).");
-    assert_says(program->output, "Largest of a revolution: 95 % are below the first number, +- its "
-                                 "95 % confidence interval; most: in ");
+    assert_says(program->output, "95 %, +-: quantile of a turn's largest, its 95 % interval; most: "
+                                 "in ");
     assert_null(strstr(program->output, "settle-budget"));
     program_run(program, "run slider.yaml -q --full --set run.settle-starts=4 --set "
                          "run.settle-most=60 --set run.settle-budget='600 s'");

@@ -32,6 +32,8 @@ static void an_interval_leaves_its_first_digit(void **state)
         // no interval
         {2682.0, 2682.0, 2682.0, "N", "2.68 kN"},
         {0.0, 0.0, 0.0, "N", "0.00 N"},
+        // smaller than any prefix
+        {3e-16, 3e-16, 3e-16, "rad/s^2", "0.00 prad/s^2"},
         // too few revolutions for an upper end
         {3412.0, 3230.0, INFINITY, "N", "at least 3.23 kN"},
     };

@@ -82,7 +82,7 @@ static void overview_head(const Overview *overview, bool has_crank, Text *html)
                 "<th scope=\"col\">x ideal</th><th scope=\"col\">impacts%s</th>"
                 "<th scope=\"col\">contact</th><th scope=\"col\">deepest</th></tr></thead>\n"
                 "<tbody>\n",
-                is_random ? "<th scope=\"col\">95 % below</th><th scope=\"col\">+- %</th>"
+                is_random ? "<th scope=\"col\">95 %</th><th scope=\"col\">+- %</th>"
                             "<th scope=\"col\">median</th><th scope=\"col\">most</th>"
                           : "<th scope=\"col\">largest</th><th scope=\"col\">at</th>",
                 has_crank ? " a turn" : "");

@@ -627,12 +627,11 @@ static void write_columns(const RunReport *report, Text *text)
     if (motion == NULL || motion->period > 0) {
         return;
     }
-    const char *turn = drive_is_steady(&report->scenario->linkage.driver) ? "revolution" : "period";
-    char words[256];
+    const bool has_crank = drive_is_steady(&report->scenario->linkage.driver);
+    char words[128];
     snprintf(words, sizeof words,
-             "Largest of a %s: 95 %% are below the first number, +- its 95 %% confidence interval; "
-             "most: in %zu. Impacts, contact: medians.",
-             turn, motion->counted);
+             "95 %%, +-: quantile of a %s's largest, its 95 %% interval; most: in %zu.",
+             has_crank ? "turn" : "period", motion->counted);
     append_paragraph(words, text);
 }
 
