@@ -162,13 +162,13 @@ static void its_screen_says_how_sure_that_is(void **state)
     program_run(program, "run slider.yaml -q --set run.settle-starts=4 --set run.settle-most=60 "
                          "--set run.settle-budget='600 s'");
     assert_int_equal(program->status, 0);
-    assert_says(program->output, "median  most  times  impacts  contact  deepest");
+    assert_says(program->output, "50 %  most  times  impacts  contact  deepest");
     assert_says(program->output,
                 "Does not repeat in 60 revolutions of each of 4 starts; a longer "
                 "transient cannot be ruled out. 4 of 4 starts come to it (at least "
                 "40 % of such starts).");
-    assert_says(program->output, "95 %, +-: quantile of a turn's largest, its 95 % interval; most: "
-                                 "in ");
+    assert_says(program->output, "95 %, 50 %: quantiles of a turn's largest; +-: 95 % interval; "
+                                 "most: in ");
     assert_null(strstr(program->output, "settle-budget"));
     program_run(program, "run slider.yaml -q --full --set run.settle-starts=4 --set "
                          "run.settle-most=60 --set run.settle-budget='600 s'");

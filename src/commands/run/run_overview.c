@@ -230,10 +230,11 @@ void run_overview_free(Overview *overview)
 
 enum { NAME_MOST = 17, JOINTS_MOST = 5, JOINTS_LEAST = 3, BODIES_MOST = 3 };
 
-// How many of each are shown.
+// How many of each are shown, and on how wide a screen.
 typedef struct OverviewRows {
     size_t joints;
     size_t bodies;
+    size_t width; // characters; 0: any number
 } OverviewRows;
 
 static void cell_units(Table *table, double value, const char *unit)
@@ -287,7 +288,7 @@ static void append_width(const SettledNumber *of, Text *text)
 {
     const double percent = width_of(of) * UNITS_PERCENT;
     if (isfinite(percent)) {
-        text_append(text, percent < 10.0 ? "%.2g" : "%.0f", percent);
+        text_append(text, percent < 1.0 ? "<1" : "%.0f", percent);
     }
 }
 
@@ -397,13 +398,13 @@ static Table *run_table(const Overview *overview, bool has_crank)
 }
 
 // That of a motion that does not repeat.
-static Table *spread_table(const Overview *overview, bool has_crank)
+static Table *spread_table(const Overview *overview, bool has_crank, size_t width)
 {
     const SectionHead heads[] = {
         {overview->joint_count > 0 ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY},
         {"95 %", has_crank ? "of turns" : "", TABLE_RIGHT},
         {"+-", "%", TABLE_RIGHT},
-        {"median", "", TABLE_RIGHT},
+        {"50 %", "", TABLE_RIGHT},
         {"most", "", TABLE_RIGHT},
         {"times", "ideal", TABLE_RIGHT | TABLE_MINOR},
         {"impacts", has_crank ? "a turn" : "", TABLE_RIGHT},
@@ -411,7 +412,7 @@ static Table *spread_table(const Overview *overview, bool has_crank)
         {"deepest", "", TABLE_RIGHT},
     };
     Table *table = table_headed(sizeof heads / sizeof *heads, heads);
-    table_fit(table, STYLE_WIDTH);
+    table_fit(table, width);
     return table;
 }
 
@@ -434,8 +435,8 @@ static void write_table(const Overview *overview, const Scenario *scenario, Over
     if (joints + bodies == 0) {
         return;
     }
-    Table *table =
-        (run_overview_is_random(overview) ? spread_table : run_table)(overview, has_crank);
+    Table *table = run_overview_is_random(overview) ? spread_table(overview, has_crank, rows.width)
+                                                    : run_table(overview, has_crank);
     for (size_t i = 0; i < joints; i++) {
         write_row(overview, &overview->joints[i], has_crank, table);
     }
@@ -630,7 +631,7 @@ static void write_columns(const RunReport *report, Text *text)
     const bool has_crank = drive_is_steady(&report->scenario->linkage.driver);
     char words[128];
     snprintf(words, sizeof words,
-             "95 %%, +-: quantile of a %s's largest, its 95 %% interval; most: in %zu.",
+             "95 %%, 50 %%: quantiles of a %s's largest; +-: 95 %% interval; most: in %zu.",
              has_crank ? "turn" : "period", motion->counted);
     append_paragraph(words, text);
 }
@@ -673,10 +674,10 @@ static size_t count_lines(const char *text)
 
 enum { TITLE_LINES = 3 };
 
-void run_overview_write(const RunReport *report, bool is_alone, Text *text)
+void run_overview_write(const RunReport *report, size_t width, bool is_alone, Text *text)
 {
     Overview overview = run_overview_make(report);
-    OverviewRows rows = {JOINTS_MOST, BODIES_MOST};
+    OverviewRows rows = {JOINTS_MOST, BODIES_MOST, width};
     for (;;) {
         Text own;
         text_init(&own);
@@ -702,7 +703,7 @@ void run_overview_screen(const void *of, const Style *style, Text *text)
 {
     const RunReport *report = of;
     section_title(report->scenario->title, scenario_path(report->scenario), style, text);
-    run_overview_write(report, true, text);
+    run_overview_write(report, style->width, true, text);
 }
 
 static void largest_json(json_t *object, const OverviewRow *row)

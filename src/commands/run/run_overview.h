@@ -69,11 +69,12 @@ typedef enum OverviewCell {
 void run_overview_cell(const OverviewRow *row, OverviewCell cell, Text *text);
 
 // Of the run that is taken for the truth, or the last that is complete, or of the settled motion
-// where that is more than a run shows: of each joint with play its largest force, of each body its
-// largest angular acceleration, of each drive its largest torque, each beside that with ideal
+// where that is more than the run shows: of each joint with play its largest force, of each body
+// its largest angular acceleration, of each drive its largest torque, each beside that with ideal
 // joints; how the motion settled and what the damping does to it; how far ODE is off; and what was
-// assumed. `is_alone` without the tables of run_text.c below it.
-void run_overview_write(const RunReport *report, bool is_alone, Text *text);
+// assumed. The width is that of a style (write/table.h). `is_alone` without the tables of
+// run_text.c below it.
+void run_overview_write(const RunReport *report, size_t width, bool is_alone, Text *text);
 
 // The whole first screen: title and overview.
 void run_overview_screen(const void *report, const Style *style, Text *text);

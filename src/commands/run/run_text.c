@@ -807,7 +807,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     const RunReport *report = of;
     const Scenario *scenario = report->scenario;
     section_title(scenario->title, scenario_path(scenario), style, text);
-    run_overview_write(report, false, text);
+    run_overview_write(report, style->width, false, text);
     text_append(text, "\n");
     write_mechanism(report, style->width, text);
     run_loads_write(report, style->width, text);
