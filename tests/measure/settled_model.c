@@ -244,7 +244,7 @@ void model_depth(const Model *model, int contact, const ModelOffset *offset, dou
     }
     const double *x = offset->x;
     const double *v = offset->v;
-    const double length = hypot(x[0], x[1]);
+    const double length = sqrt(x[0] * x[0] + x[1] * x[1]);
     depth[0] = length - model->clearance;
     if (length == 0.0) {
         depth[1] = hypot(v[0], v[1]);

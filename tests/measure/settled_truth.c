@@ -42,9 +42,9 @@ enum {
 };
 
 // of a step: forces of a motion that repeats are then good to 1e-7; linkages, whose contacts are
-// many and whose motions hardly ever repeat, to 1e-6
+// many and whose motions hardly ever repeat, to 1e-5
 static const double TOLERANCE_WALL = 1e-9;
-static const double TOLERANCE_PIN = 1e-8;
+static const double TOLERANCE_PIN = 1e-7;
 // the first period is compared with the program's own, impacts multiply what it is off by
 static const double TOLERANCE_FIRST = 1e-12;
 // of sections over their scales and of forces over the largest

@@ -68,6 +68,11 @@ typedef struct TurnEvent {
     double share; // of the step
 } TurnEvent;
 
+static double length_of(const double vector[2])
+{
+    return sqrt(vector[0] * vector[0] + vector[1] * vector[1]);
+}
+
 static void begin_touch(const Turn *turn, ModelTouch *touch, double closing)
 {
     *touch = (ModelTouch){.is_touching = true,
@@ -323,8 +328,8 @@ static void accept(Turn *turn, const Trial *trial)
     memcpy(turn->y, trial->y, sizeof turn->y);
     memcpy(turn->rates, trial->rates, sizeof turn->rates);
     turn->offset = trial->offset;
-    turn->reached = fmax(turn->reached, hypot(turn->offset.x[0], turn->offset.x[1]));
-    turn->fastest = fmax(turn->fastest, hypot(turn->offset.v[0], turn->offset.v[1]));
+    turn->reached = fmax(turn->reached, length_of(turn->offset.x));
+    turn->fastest = fmax(turn->fastest, length_of(turn->offset.v));
     for (int i = 0; i < model_contacts(turn->model); i++) {
         ModelTouch *touch = &turn->touches[i];
         double depth[3];
@@ -336,7 +341,7 @@ static void accept(Turn *turn, const Trial *trial)
 static double step_limit(const Turn *turn, double left)
 {
     double limit = fmin(left, LONGEST * turn->model->period);
-    const double speed = hypot(turn->offset.v[0], turn->offset.v[1]);
+    const double speed = length_of(turn->offset.v);
     if (turn->model->is_pin && !turn->touches[0].is_touching && speed > 0.0) {
         limit = fmin(limit, CROSSED * turn->model->clearance / speed);
     }
