@@ -9,8 +9,10 @@
 // A start is a position anywhere in the play and a relative velocity of at most what crosses the
 // play twice in a period, or what the first 50 periods from the case's own start reach. One
 // coordinate: 64 starts of 500 periods; linkages: 16 of 200. A start ends where it has repeated for
-// 100 periods; one that does not repeat is turned five times as long (of a linkage three times)
-// where another one repeats, or where it seems to be about to.
+// 100 periods. Those that do not repeat are turned twice, four and eight times as long, as long as
+// one of the others repeats, one seems to be about to, they disagree in their quantiles, or the
+// last quarter of all their periods differs from the quarter before: then they may be in a
+// transient.
 //
 // One line a motion:
 //   period         of the motion in periods of the case, 1 to 12; 0: it does not repeat
@@ -30,7 +32,7 @@
 enum {
     PERIOD_MOST = 12,
     PILOT = 50,
-    LONGER = 5,
+    LONGEST = 8,
     WINDOW = 100,
     CHECKED = 20,
     SECTION = 4,
@@ -38,7 +40,6 @@ enum {
     WALL_PERIODS = 500,
     PIN_STARTS = 16,
     PIN_PERIODS = 200,
-    PIN_LONGER = 3,
 };
 
 // of a step: forces of a motion that repeats are then good to 1e-7; linkages, whose contacts are
@@ -54,6 +55,9 @@ static const double IS_SAME = 1e-3;
 static const double HAS_SETTLED = 1e-3;
 // between the quantiles of starts that do not repeat: motions of their own
 static const double IS_OTHER = 0.15;
+// between quarters: in the 95 % quantile, and in the median, which moves more by chance
+static const double QUANTILE_MOVES = 0.1;
+static const double MEDIAN_MOVES = 0.2;
 // of the imposed motion: where nothing ever separates errors are measured by this
 static const double LENGTH_LEAST = 1e-2;
 
@@ -78,6 +82,7 @@ typedef struct Truth {
     int start_count;
     size_t periods;
     Start *starts;
+    double *pool; // room for the forces of all periods of all starts
     int motion_count;
 } Truth;
 
@@ -225,29 +230,6 @@ static uint64_t hash_of(const char *name)
     return hash;
 }
 
-static void run_starts(Truth *truth)
-{
-    SettledDraw draw = settled_draw_start(hash_of(truth->sizes->name), 77);
-    bool repeats = false;
-    for (int i = 0; i < truth->start_count; i++) {
-        double y[MODEL_STATES] = {0.0};
-        draw_start(truth, &draw, y);
-        Start *start = &truth->starts[i];
-        start->turn = turn_start(&truth->model, truth->scale, tolerance_of(&truth->model), y);
-        turn_on(truth, start, truth->periods);
-        repeats = repeats || start->period > 0;
-    }
-    const size_t longer = truth->periods * (truth->model.is_pin ? PIN_LONGER : LONGER);
-    for (int i = 0; i < truth->start_count; i++) {
-        Start *start = &truth->starts[i];
-        if (start->period == 0 && (repeats || start->nearest < SEEMS_TO)) {
-            turn_on(truth, start, longer);
-            // what still dies away by then is taken as it is
-            start->period = start->period > 0 ? start->period : period_to(start, IS_SAME);
-        }
-    }
-}
-
 static int compare(const void *a, const void *b)
 {
     const double left = *(const double *)a;
@@ -270,6 +252,96 @@ static size_t add_peaks(const Start *start, double *pool, size_t used)
     const size_t kept = start->period > 0 ? (size_t)start->period : start->count / 2;
     memcpy(pool + used, start->peaks + start->count - kept, kept * sizeof *pool);
     return used + kept;
+}
+
+static void find_quantile(Start *start, double *pool)
+{
+    const size_t used = add_peaks(start, pool, 0);
+    qsort(pool, used, sizeof *pool, compare);
+    start->q95 = quantile(pool, used, 0.95);
+}
+
+// Whether a quantile of the starts that do not repeat lies further than that from another.
+static bool is_apart(const Truth *truth)
+{
+    double sorted[WALL_STARTS];
+    size_t count = 0;
+    for (int i = 0; i < truth->start_count; i++) {
+        Start *start = &truth->starts[i];
+        if (start->period == 0) {
+            find_quantile(start, truth->pool);
+            sorted[count++] = start->q95;
+        }
+    }
+    qsort(sorted, count, sizeof *sorted, compare);
+    bool is_any = false;
+    for (size_t i = 1; i < count; i++) {
+        is_any = is_any || sorted[i] > sorted[i - 1] * (1.0 + IS_OTHER);
+    }
+    return is_any;
+}
+
+typedef struct Level {
+    double median, q95;
+} Level;
+
+// The forces in a quarter of their periods, of all starts that do not repeat.
+static Level level_of(const Truth *truth, size_t quarter)
+{
+    size_t used = 0;
+    for (int i = 0; i < truth->start_count; i++) {
+        const Start *start = &truth->starts[i];
+        const size_t length = start->count / 4;
+        if (start->period == 0) {
+            memcpy(truth->pool + used, start->peaks + quarter * length, length * sizeof(double));
+            used += length;
+        }
+    }
+    qsort(truth->pool, used, sizeof *truth->pool, compare);
+    return (Level){quantile(truth->pool, used, 0.5), quantile(truth->pool, used, 0.95)};
+}
+
+static bool is_moving(const Truth *truth)
+{
+    const Level before = level_of(truth, 2);
+    const Level last = level_of(truth, 3);
+    return fabs(last.q95 - before.q95) > QUANTILE_MOVES * before.q95 ||
+           fabs(last.median - before.median) > MEDIAN_MOVES * before.median;
+}
+
+// Whether starts that do not repeat may still be in a transient.
+static bool is_undecided(const Truth *truth)
+{
+    int repeating = 0;
+    bool seems_to = false;
+    for (int i = 0; i < truth->start_count; i++) {
+        repeating += truth->starts[i].period > 0;
+        seems_to = seems_to || truth->starts[i].nearest < SEEMS_TO;
+    }
+    return repeating < truth->start_count &&
+           (repeating > 0 || seems_to || is_apart(truth) || is_moving(truth));
+}
+
+static void run_starts(Truth *truth)
+{
+    SettledDraw draw = settled_draw_start(hash_of(truth->sizes->name), 77);
+    for (int i = 0; i < truth->start_count; i++) {
+        double y[MODEL_STATES] = {0.0};
+        draw_start(truth, &draw, y);
+        Start *start = &truth->starts[i];
+        start->turn = turn_start(&truth->model, truth->scale, tolerance_of(&truth->model), y);
+        turn_on(truth, start, truth->periods);
+    }
+    for (size_t longer = 2; longer <= LONGEST && is_undecided(truth); longer *= 2) {
+        for (int i = 0; i < truth->start_count; i++) {
+            turn_on(truth, &truth->starts[i], longer * truth->periods);
+        }
+    }
+    // what still dies away by then is taken as it is
+    for (int i = 0; i < truth->start_count; i++) {
+        Start *start = &truth->starts[i];
+        start->period = start->period > 0 ? start->period : period_to(start, IS_SAME);
+    }
 }
 
 static double largest_of(const Start *start)
@@ -304,13 +376,6 @@ static bool is_same(const Start *a, const Start *b)
     return false;
 }
 
-static void find_quantile(Start *start, double *pool)
-{
-    const size_t used = add_peaks(start, pool, 0);
-    qsort(pool, used, sizeof *pool, compare);
-    start->q95 = quantile(pool, used, 0.95);
-}
-
 // Starts that do not repeat, in the order of their quantiles, are one motion until there is a gap.
 static void sort_others(Truth *truth)
 {
@@ -332,12 +397,12 @@ static void sort_others(Truth *truth)
     }
 }
 
-static void find_motions(Truth *truth, double *pool)
+static void find_motions(Truth *truth)
 {
     for (int i = 0; i < truth->start_count; i++) {
         Start *start = &truth->starts[i];
         start->motion = -1;
-        find_quantile(start, pool);
+        find_quantile(start, truth->pool);
         for (int k = 0; k < i && start->period > 0 && start->motion < 0; k++) {
             if (is_same(start, &truth->starts[k])) {
                 start->motion = truth->starts[k].motion;
@@ -384,8 +449,9 @@ static Bounds bounds_of(const Truth *truth, int motion)
     return bounds;
 }
 
-static void print_motion(const Truth *truth, int motion, double *pool)
+static void print_motion(const Truth *truth, int motion)
 {
+    double *pool = truth->pool;
     double after[WALL_STARTS];
     size_t used = 0;
     size_t count = 0;
@@ -415,19 +481,19 @@ static void find_truth(const SettledCase *sizes)
     truth.start_count = truth.model.is_pin ? PIN_STARTS : WALL_STARTS;
     truth.periods = truth.model.is_pin ? PIN_PERIODS : WALL_PERIODS;
     truth.starts = calloc((size_t)truth.start_count, sizeof *truth.starts);
-    double *pool = calloc((size_t)truth.start_count * truth.periods * LONGER, sizeof *pool);
-    if (truth.starts == NULL || pool == NULL) {
+    truth.pool = calloc((size_t)truth.start_count * truth.periods * LONGEST, sizeof *truth.pool);
+    if (truth.starts == NULL || truth.pool == NULL) {
         abort();
     }
     run_pilot(&truth);
     run_starts(&truth);
-    find_motions(&truth, pool);
+    find_motions(&truth);
     size_t evaluations = 0;
     for (int i = 0; i < truth.start_count; i++) {
         evaluations += truth.starts[i].turn.evaluations;
     }
     for (int motion = 0; motion < truth.motion_count; motion++) {
-        print_motion(&truth, motion, pool);
+        print_motion(&truth, motion);
     }
     fflush(stdout);
     fprintf(stderr, "%s: %.1f M evaluations, play %.3g, speed %.3g\n", sizes->name,
@@ -437,7 +503,7 @@ static void find_truth(const SettledCase *sizes)
         free(truth.starts[i].sections);
     }
     free(truth.starts);
-    free(pool);
+    free(truth.pool);
 }
 
 // The largest force of the first periods from the case's own start.
