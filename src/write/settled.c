@@ -64,7 +64,8 @@ static void append_share_of_all(const SettledStart *settled, const SettledMotion
     }
     text_append(text, "%zu of %zu starts come to it (", motion->starts, settled->starts);
     append_share(motion, text);
-    text_append(text, " of such starts).");
+    // what does not repeat has more to be said of it
+    text_append(text, motion->period > 0 ? " of such starts)." : ").");
 }
 
 // "Does not repeat in 200 revolutions of each of 16 starts; ..."
@@ -88,7 +89,7 @@ static void append_budget(const Scenario *scenario, Text *text)
                     scenario->run.settle_budget, undecided > 0 ? " by then;" : ".");
     }
     if (undecided > 0) {
-        text_append(text, " %zu of %zu starts %s undecided", undecided, settled->tried,
+        text_append(text, " %zu of %zu %s undecided", undecided, settled->tried,
                     undecided > 1 ? "are" : "is");
         if (!settled->is_spent) {
             text_append(text, " within run.settle-budget (%.4g s)", scenario->run.settle_budget);
@@ -108,7 +109,6 @@ static void append_damped(const Scenario *scenario, size_t number, const Settled
         append_force(scenario, number, force->headline, text);
         return;
     }
-    text_append(text, "some ");
     const char *unit = joint_force_unit(scenario, number);
     units_append_within(text, force->median, force->median_low, force->median_high, unit);
     text_append(text, " in the median");

@@ -166,7 +166,7 @@ static void its_screen_says_how_sure_that_is(void **state)
     assert_says(program->output,
                 "Does not repeat in 60 revolutions of each of 4 starts; a longer "
                 "transient cannot be ruled out. 4 of 4 starts come to it (at least "
-                "40 % of such starts).");
+                "40 %).");
     assert_says(program->output, "95 %, 50 %: quantiles of a turn's largest; +-: 95 % interval; "
                                  "most: in ");
     assert_null(strstr(program->output, "settle-budget"));
@@ -188,7 +188,7 @@ static void a_spent_budget_is_said(void **state)
     program_run(program, "run slider.yaml -q --set run.settle-budget='2 s'");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "run.settle-budget (2 s) ended the search by then; ");
-    assert_says(program->output, " of 16 starts are undecided.");
+    assert_says(program->output, " of 16 are undecided.");
     json_t *root = run_json(program, "run slider.yaml -q --json --set run.settle-budget='2 s'");
     const json_t *settled = json_object_get(root, "settled");
     assert_true(json_is_true(json_object_get(settled, "is_spent")));

@@ -426,14 +426,15 @@ static void write_row(const Overview *overview, const OverviewRow *row, bool has
     }
 }
 
-static void write_table(const Overview *overview, const Scenario *scenario, OverviewRows rows,
+// Returns whether --full is said to have what there is no room for.
+static bool write_table(const Overview *overview, const Scenario *scenario, OverviewRows rows,
                         Text *text)
 {
     const bool has_crank = drive_is_steady(&scenario->linkage.driver);
     const size_t joints = overview->joint_count < rows.joints ? overview->joint_count : rows.joints;
     const size_t bodies = overview->body_count < rows.bodies ? overview->body_count : rows.bodies;
     if (joints + bodies == 0) {
-        return;
+        return false;
     }
     Table *table = run_overview_is_random(overview) ? spread_table(overview, has_crank, rows.width)
                                                     : run_table(overview, has_crank);
@@ -461,6 +462,7 @@ static void write_table(const Overview *overview, const Scenario *scenario, Over
     if (more_joints + more_bodies > 0) {
         text_append(text, ": --full shows them.\n");
     }
+    return more_joints + more_bodies > 0;
 }
 
 // How sure it is.
@@ -654,11 +656,11 @@ static void write_all(const RunReport *report, const Overview *overview, Overvie
     size_t start = text->length;
     settled_louder(report->scenario, "below", text);
     text_fold_behind(text, start, STYLE_WIDTH);
-    write_table(overview, report->scenario, rows, text);
+    const bool is_full_named = write_table(overview, report->scenario, rows, text);
     start = text->length;
     run_overview_sentences(report, text);
     text_fold_behind(text, start, STYLE_WIDTH);
-    if (is_alone) {
+    if (is_alone && !is_full_named) {
         text_append(text, "  --full: all tables\n");
     }
 }
