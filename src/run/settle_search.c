@@ -51,6 +51,7 @@ enum {
     CONFIRM_TIMES = 2,   // and as many times those that it took
     TIMES_AS_LONG = 5,   // that one is watched for that does not repeat where others do
     STARTS_LEAST = 4,    // that are watched to the end whatever the budget
+    FINISH_LOOKS = 16,   // at accelerations in each step of a known motion's last period
     ALLOWANCE_FROM = 16, // each has had, before the budget leaves further ones undecided
 };
 
@@ -186,7 +187,7 @@ static void start_run(size_t index, bool is_callers, void *context)
     double near = find_near(start);
     while (is_going(start) && settling->count < start->goal && !atomic_load(&search->is_spent)) {
         // what does not repeat counts from here on, of all its numbers
-        settling->is_whole = settling_may_count(settling);
+        settling->looks = settling_may_count(settling) ? 1 : 0;
         if (!settling_turn_near(settling, near, &start->err)) {
             start->state = START_FAILED;
             return;
@@ -448,7 +449,7 @@ static void finish_known(size_t index, bool is_callers, void *context)
     Search *search = context;
     Settling *settling = &search->starts[search->known[index]].settling;
     Err unused = {ERR_NONE, ""};
-    settling->is_whole = true;
+    settling->looks = FINISH_LOOKS;
     settling->is_callers = is_callers;
     for (size_t k = 0; k < settling->period && settling_turn(settling, &unused); k++) {
     }

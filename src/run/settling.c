@@ -169,17 +169,18 @@ static void take_record(Turn *turn, const StepRecord *record)
 {
     const Linkage *linkage = &turn->settling->scenario.linkage;
     const size_t joints = solver_joint_count(record->part, linkage);
-    const bool is_seen = turn->settling->is_whole && !record->is_partial;
+    const size_t looks = record->is_partial ? 0 : turn->settling->looks;
     for (size_t k = 0; k < joints; k++) {
         if (linkage_has_play(&linkage->joints[solver_joint(record->part, k)])) {
             const double peak_s = take_joint(turn, record, k);
-            if (is_seen && peak_s >= 0.0) {
+            if (looks > 0 && peak_s >= 0.0) {
                 take_instant(turn, peak_s);
             }
         }
     }
-    if (is_seen) {
-        take_instant(turn, record->end_s);
+    for (size_t k = 1; k <= looks; k++) {
+        const double share = (double)k / (double)looks;
+        take_instant(turn, record->start_s + share * (record->end_s - record->start_s));
     }
 }
 

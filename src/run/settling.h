@@ -67,7 +67,8 @@ typedef struct Settling {
     double change;    // 1: over the last period, of sections and largest forces
     double left;      // 1: what is estimated to be still to come of it
     bool is_quick;    // its revolutions are not shown, and as loose as its motion allows
-    bool is_whole;    // accelerations and torques are looked for within the steps, too
+    size_t looks;     // instants of a step at which accelerations and torques are looked at, beside
+                      // those of the joints' largest forces; 0: nobody asks for them
     TurnWatch *watch; // told of each revolution; NULL: nobody wants to know
     bool is_callers;  // it is turned in the thread of who asked for it
 } Settling;

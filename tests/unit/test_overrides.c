@@ -62,7 +62,7 @@ static void wrong_overrides_are_usage_errors(void **state)
            "              ^~~\n"
            "allowed: revolutions, duration, samples, step, tolerance, tolerance-of, most-steps, "
            "spike-threshold, "
-           "report-from, start, settle-most, settle-starts, backends");
+           "report-from, start, settle-starts, settle-least, settle-most, settle-to, settle-budget, backends");
     refuse(IMPACT, "joints.follower-ground.hole=9 mm", ERR_USAGE,
            "--set joints.follower-ground.hole=9 mm: joints.follower-ground.pin is missing\n"
            "    --set joints.follower-ground.hole=9 mm\n"
