@@ -20,29 +20,18 @@ Scenario scenario_default(void)
     };
 }
 
-// A copy of an array; NULL of NULL.
-static void *copied(const void *array, size_t count, size_t size)
-{
-    if (array == NULL) {
-        return NULL;
-    }
-    void *copy = zeroed(count, size);
-    memcpy(copy, array, count * size);
-    return copy;
-}
-
 // Why it starts as written, in words of the copy's own.
 static void share_reason(const Scenario *scenario, Scenario *copy)
 {
     if (scenario->reason != NULL) {
-        copy->reason = copied(scenario->reason, 1 + strlen(scenario->reason), 1);
+        copy->reason = zeroed_copy(scenario->reason, 1 + strlen(scenario->reason), 1);
         copy->run.centred_because = copy->reason;
     }
 }
 
 void scenario_start_as_written(Scenario *scenario, const char *reason)
 {
-    char *own = copied(reason, 1 + strlen(reason), 1);
+    char *own = zeroed_copy(reason, 1 + strlen(reason), 1);
     free(scenario->reason);
     scenario->reason = own;
     scenario->run.centred_because = own;
@@ -53,13 +42,14 @@ Scenario scenario_copy(const Scenario *scenario)
 {
     Scenario copy = *scenario;
     copy.linkage = linkage_copy(&scenario->linkage);
-    copy.path = copied(scenario->path, 1 + strlen(scenario_path(scenario)), 1);
+    copy.path = zeroed_copy(scenario->path, 1 + strlen(scenario_path(scenario)), 1);
     share_reason(scenario, &copy);
-    copy.expectations =
-        copied(scenario->expectations, scenario->expectation_count, sizeof *scenario->expectations);
-    copy.keys = copied(scenario->keys, scenario->key_count, sizeof *scenario->keys);
+    copy.expectations = zeroed_copy(scenario->expectations, scenario->expectation_count,
+                                    sizeof *scenario->expectations);
+    copy.keys = zeroed_copy(scenario->keys, scenario->key_count, sizeof *scenario->keys);
     copy.settled = settled_start_copy(&scenario->settled, &scenario->linkage);
-    copy.outcomes = copied(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
+    copy.outcomes =
+        zeroed_copy(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
     return copy;
 }
 
@@ -89,7 +79,7 @@ const char *scenario_path(const Scenario *scenario)
 void scenario_set_path(Scenario *scenario, const char *path)
 {
     free(scenario->path);
-    scenario->path = copied(path, 1 + strlen(path), 1);
+    scenario->path = zeroed_copy(path, 1 + strlen(path), 1);
 }
 
 void scenario_free(Scenario *scenario)

@@ -9,24 +9,13 @@
 // 1: by what a force has to exceed another's to be louder: the digits that a motion is told by
 static const double LOUDER_LEAST = 0.01;
 
-// A copy of an array; NULL of NULL.
-static void *copied(const void *array, size_t count, size_t size)
-{
-    if (array == NULL) {
-        return NULL;
-    }
-    void *copy = zeroed(count, size);
-    memcpy(copy, array, count * size);
-    return copy;
-}
-
 static SettledMotion copy_motion(const SettledMotion *motion, const Linkage *linkage)
 {
     SettledMotion copy = *motion;
-    copy.joints = copied(motion->joints, linkage->joint_count, sizeof *motion->joints);
-    copy.alpha = copied(motion->alpha, linkage->body_count, sizeof *motion->alpha);
-    copy.sections = copied(motion->sections, motion->section_count * linkage->body_count,
-                           sizeof *motion->sections);
+    copy.joints = zeroed_copy(motion->joints, linkage->joint_count, sizeof *motion->joints);
+    copy.alpha = zeroed_copy(motion->alpha, linkage->body_count, sizeof *motion->alpha);
+    copy.sections = zeroed_copy(motion->sections, motion->section_count * linkage->body_count,
+                                sizeof *motion->sections);
     return copy;
 }
 
@@ -41,8 +30,8 @@ void settled_motion_free(SettledMotion *motion)
 SettledStart settled_start_copy(const SettledStart *settled, const Linkage *linkage)
 {
     SettledStart copy = *settled;
-    copy.first = copied(settled->first, linkage->joint_count, sizeof *settled->first);
-    copy.motions = copied(settled->motions, settled->motion_count, sizeof *settled->motions);
+    copy.first = zeroed_copy(settled->first, linkage->joint_count, sizeof *settled->first);
+    copy.motions = zeroed_copy(settled->motions, settled->motion_count, sizeof *settled->motions);
     for (size_t i = 0; i < settled->motion_count; i++) {
         copy.motions[i] = copy_motion(&settled->motions[i], linkage);
     }
