@@ -409,6 +409,10 @@ const SchemaRow SCHEMA_ROWS[] = {
                       "or the model is poisson",
      .doc = "step of ODE and other engines; auto: chosen for an error within the tolerance, of ODE with "
             "stepping staggered and map impulse, or extrapolated if all joints are ideal"},
+    {.path = "run.budget", .dimension = DIMENSION_TIME, AT(run.budget), .low = 0.0, .high = 1e9,
+     .low_is_open = true, .zero_word = "none", .backends = SCHEMA_STEPPED,
+     .doc = "processor time of each engine in `run` for the trials of a step that is chosen and for "
+            "starts beside this one; what is beyond it is said, and not run"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
      .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
      .doc = "largest error of any velocity of bodies and of pins in their holes, over its own "

@@ -124,7 +124,7 @@ static void begin_trial(size_t trial, double step_s, void *context)
 
 ChosenWatch progress_watch_trials(Progress *progress, const char *backend)
 {
-    return (ChosenWatch){progress_watch(progress, backend), begin_trial};
+    return (ChosenWatch){.run = progress_watch(progress, backend), .begin = begin_trial};
 }
 
 void progress_end(Progress *progress)

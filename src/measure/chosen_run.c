@@ -436,6 +436,9 @@ static const double ONE_PLACE = 0.01;
 // a step this near to that of a good trial is not tried instead
 static const double NEAR_STEP = 1.2;
 
+// 1: of the budget, which has to be spent before the trials show what a step takes
+static const double BUDGET_KNOWN = 0.05;
+
 typedef struct Chosen {
     const Scenario *scenario;
     BackendKind backend;
@@ -445,7 +448,8 @@ typedef struct Chosen {
     StepChoice choice;
     DistanceMeasure measure; // of the truth, as the next
     ForceMeasure forces;
-    double started_s; // by the clock
+    double started_s;  // by the clock
+    double computed_s; // of processor time, when the trials began
     TrialWindow window;
     double cost; // world steps to a step
     size_t trials;
@@ -569,6 +573,50 @@ static void chosen_run_count(Chosen *chosen, const Trial *trial)
     chosen->failed_s = run->duration_s;
 }
 
+// World steps of a whole run of that step.
+static double cost_of(const Chosen *chosen, double step_s)
+{
+    return chosen->cost * scenario_duration(chosen->scenario) / step_s;
+}
+
+// World steps that the budget has left, by what those of the trials took.
+static double steps_in_budget(const Chosen *chosen)
+{
+    const double spent_s = clock_processor_s() - chosen->computed_s;
+    const double budget_s = chosen->watch.budget_s;
+    if (budget_s == 0.0 || chosen->steps == 0 || !(spent_s > BUDGET_KNOWN * budget_s)) {
+        return INFINITY;
+    }
+    return (budget_s - spent_s) * (double)chosen->steps / spent_s;
+}
+
+static double steps_left(const Chosen *chosen)
+{
+    const size_t most = chosen->scenario->run.most_steps;
+    const double left = most > chosen->steps ? (double)(most - chosen->steps) : 1.0;
+    return fmax(1.0, fmin(left, steps_in_budget(chosen)));
+}
+
+// Whether the budget is used up before the steps.
+static bool is_of_budget(const Chosen *chosen)
+{
+    const double most = (double)chosen->scenario->run.most_steps;
+    return steps_in_budget(chosen) < most - (double)chosen->steps;
+}
+
+// Processor time of a run that would hold the tolerance, by the scheme's second order, where the
+// budget is why there is none; else 0.
+static double budget_wanted(const Chosen *chosen, const Trial *trial)
+{
+    if (!is_of_budget(chosen)) {
+        return 0.0;
+    }
+    const double excess = trial->error / chosen->scenario->run.tolerance;
+    const double spent_s = clock_processor_s() - chosen->computed_s;
+    return spent_s / (double)chosen->steps * cost_of(chosen, trial->step_s) *
+           sqrt(fmax(excess, 1.0));
+}
+
 static Trajectory *finish(const Chosen *chosen, Trial *trial)
 {
     Trajectory *run = trial->run;
@@ -581,6 +629,7 @@ static Trajectory *finish(const Chosen *chosen, Trial *trial)
     run->estimate_s = trial->holds ? chosen->window.until_s : trial->held_s;
     run->estimate_is_cut = trial->holds && chosen->window.is_uncertain;
     run->is_short = !trial->holds;
+    run->wanted_s = run->is_short ? budget_wanted(chosen, trial) : 0.0;
     const size_t length = strlen(run->label);
     const ToleranceOf kind = chosen->scenario->run.tolerance_of;
     snprintf(run->label + length, sizeof run->label - length, ", error%s%s %.3g wanted",
@@ -611,23 +660,11 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
     return trial;
 }
 
-// World steps of a whole run of that step.
-static double cost_of(const Chosen *chosen, double step_s)
-{
-    return chosen->cost * scenario_duration(chosen->scenario) / step_s;
-}
-
-static double steps_left(const Chosen *chosen)
-{
-    const size_t most = chosen->scenario->run.most_steps;
-    return most > chosen->steps ? (double)(most - chosen->steps) : 1.0;
-}
-
 // The step of the last trial: as fine as can be had, unless that is no finer than the best known.
 static double last_step(const Chosen *chosen, double wanted_s)
 {
     const double finest_s = chosen->cost * scenario_duration(chosen->scenario) / steps_left(chosen);
-    const double step_s = fmax(wanted_s, finest_s);
+    const double step_s = fmin(fmax(wanted_s, finest_s), chosen->choice.first_step_s);
     const bool is_near = chosen->best_step_s > 0.0 && step_s * NEAR_STEP >= chosen->best_step_s;
     return is_near ? chosen->best_step_s : step_s;
 }
@@ -636,7 +673,8 @@ static double last_step(const Chosen *chosen, double wanted_s)
 static Trajectory *end_trials(const Chosen *chosen, Trial *trial)
 {
     char message[ERR_TEXT_SIZE];
-    if (trial->holds || (trial->run->is_complete && trial->held_s > 0.0)) {
+    const bool is_worth_it = trial->held_s > 0.0 || is_of_budget(chosen);
+    if (trial->holds || (trial->run->is_complete && is_worth_it)) {
         return finish(chosen, trial);
     }
     if (trial->run->is_complete) {
@@ -753,6 +791,7 @@ Trajectory *chosen_run_make_on(BackendKind backend, const Scenario *scenario, co
         .watch = watch,
         .choice = step_choice_begin(scenario),
         .started_s = clock_now_s(),
+        .computed_s = clock_processor_s(),
         .cost = COST_AT_FIRST,
     };
     Truth own = {.trajectory = NULL};

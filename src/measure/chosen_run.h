@@ -8,12 +8,14 @@
 typedef struct ChosenWatch {
     RunWatch run;
     void (*begin)(size_t trial, double step_s, void *context); // may be NULL
+    double budget_s; // of processor time, for all trials together; 0: as long as it takes
 } ChosenWatch;
 
 // Runs the scenario on ODE, or on another engine, at falling steps, each trial held against the
 // truth as it goes, until one holds run.tolerance up to the truth's horizon: that trial is the
 // result. Its error_estimate is an upper bound, the measured error and the truth's uncertainty, up
-// to estimate_s. Where run.most-steps are used up first it is the best trial, marked as short;
+// to estimate_s. Where run.most-steps or the budget of the watch are used up first it is the best
+// trial, marked as short, with what the tolerance would take where that is the budget's doing;
 // where none held the tolerance at all, or there is no truth, it is a failed run with the reason.
 // Steps, evaluations and time are those of all trials. The truth is made where it is NULL; the
 // probe may be NULL. The caller destroys what comes back.

@@ -1,5 +1,6 @@
 // Measures the distributions of a motion that cannot be predicted.
 #include "measure/ensemble.h"
+#include "base/clock.h"
 #include "base/sorted.h"
 #include "base/zeroed.h"
 #include "model/perturb.h"
@@ -76,9 +77,10 @@ static void tell_of_member(double share, double wall_s, void *context)
                             members->before_s + wall_s, members->watch.context);
 }
 
-void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
+void ensemble_run(const Scenario *scenario, const Solver *solver, double budget_s, RunWatch watch,
                   Ensemble *ensemble)
 {
+    const double began_s = clock_processor_s();
     MembersWatch members = {.watch = watch};
     const RunWatch of_member = {
         .progress = watch.progress != NULL ? tell_of_member : NULL,
@@ -87,7 +89,8 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
     Draws draws;
     PerturbUnit *units = zeroed(scenario->linkage.body_count, sizeof *units);
     memset(ensemble, 0, sizeof *ensemble);
-    for (unsigned member = 0; member < ENSEMBLE_MEMBERS; member++) {
+    bool has_time = true;
+    for (unsigned member = 0; member < ENSEMBLE_MEMBERS && has_time; member++) {
         Trajectory *trajectory = run_member(scenario, solver, of_member, member, units);
         members.done++;
         members.before_s += members.wall_s;
@@ -98,6 +101,9 @@ void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch
             memcpy(ensemble->message, trajectory->message, sizeof ensemble->message);
         }
         trajectory_destroy(trajectory);
+        // a further one takes as long as those before
+        const double spent_s = clock_processor_s() - began_s;
+        has_time = budget_s == 0.0 || spent_s + spent_s / (member + 1) <= budget_s;
     }
     free(units);
     const size_t joints = ensemble_joint_count(&scenario->linkage);

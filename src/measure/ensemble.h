@@ -28,6 +28,7 @@ typedef struct Distribution {
 } Distribution;
 
 typedef struct Ensemble {
+    bool is_beyond_budget;       // none was run, for there was no time for some
     size_t members;              // complete runs
     size_t failed;               // runs that were not
     char message[ERR_TEXT_SIZE]; // of the first failed one
@@ -42,6 +43,7 @@ static inline size_t ensemble_joint_count(const Linkage *linkage)
 }
 
 // Runs the scenario from ENSEMBLE_MEMBERS starts that differ by ENSEMBLE_PERTURBATION, the first
-// one unperturbed. The watch is told of all of them as of one run.
-void ensemble_run(const Scenario *scenario, const Solver *solver, RunWatch watch,
+// one unperturbed, or from as many of them as a budget allows, s of processor time (0: all). The
+// watch is told of all of them as of one run.
+void ensemble_run(const Scenario *scenario, const Solver *solver, double budget_s, RunWatch watch,
                   Ensemble *ensemble);

@@ -127,7 +127,7 @@ void task_spread(const void *context, void *result)
     const Task *task = context;
     const Solver *solver = registry_solver(task->backend);
     if (!backend_run_is_chosen(&task->scenario, task->backend)) {
-        ensemble_run(&task->scenario, solver, NOBODY, result);
+        ensemble_run(&task->scenario, solver, 0.0, NOBODY, result);
         return;
     }
     // a step that was chosen once is good for starts beside this one
@@ -136,7 +136,7 @@ void task_spread(const void *context, void *result)
                                          (ChosenWatch){.begin = NULL}, NULL);
     if (run->is_complete) {
         const Scenario scenario = chosen_run_scenario(&task->scenario, run->step_s);
-        ensemble_run(&scenario, solver, NOBODY, ensemble);
+        ensemble_run(&scenario, solver, 0.0, NOBODY, ensemble);
     } else {
         *ensemble = (Ensemble){.failed = ENSEMBLE_MEMBERS};
         memcpy(ensemble->message, run->message, sizeof ensemble->message);

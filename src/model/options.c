@@ -102,6 +102,7 @@ RunOptions run_options_default(void)
         .settle_most = 2000,   // ten times that: the budget ends most searches before
         .settle_to = 0.1,      // a quantile of two digits
         .settle_budget = 10.0, // s: what somebody waits for
+        .budget = 10.0,        // likewise
         .tolerance_of = TOLERANCE_OF_MOTION, // what of all errors is most sure of
         .most_steps = 3000000, // a minute of world steps that are full of contacts, 20 us each
         // as much as ideal joints show by themselves, so that they show no spike

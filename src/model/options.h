@@ -218,6 +218,7 @@ typedef struct RunOptions {
     size_t settle_most;          // until it is taken as it is
     double settle_to;            // 1: the half width of the interval of a largest force, over it
     double settle_budget;        // s of processor time
+    double budget;               // s of processor time of each engine in `run`; 0: none
     double interval;  // no key, s: samples stand so far apart, as many as the run has room
                       // for; 0: as `samples` says
     double step;      // s; 0: chosen for the tolerance

@@ -173,6 +173,8 @@ typedef struct Trajectory {
     double estimate_s;      // s, up to which it holds
     bool estimate_is_cut;   // the reference is too uncertain after that for the error wanted
     bool is_short;          // that is less than was asked for: the trials had no more steps
+    double wanted_s;        // s of processor time that a run for the tolerance would take, where
+                            // run.budget did not allow it; else 0
     uint64_t hash;          // of every step's velocities, accelerations and joint forces
 } Trajectory;
 

@@ -152,7 +152,7 @@ static Ran run_auto(Bench *bench, double value)
     scenario.run.tolerance = value;
     const double started_s = clock_processor_s();
     return judge(bench, started_s,
-                 backend_run(&scenario, BACKEND_ODE, &bench->truth, (ChosenWatch){NOBODY, NULL},
+                 backend_run(&scenario, BACKEND_ODE, &bench->truth, (ChosenWatch){.run = NOBODY},
                              &TRACER_PROBE));
 }
 

@@ -209,6 +209,26 @@ static void a_tolerance_that_takes_too_many_steps_is_held_as_far_as_they_go(void
     trajectory_destroy(whole);
 }
 
+// A budget that is spent at once leaves one trial more, whose error is measured, and says what the
+// tolerance would take.
+static void a_budget_that_does_not_suffice_says_what_would(void **state)
+{
+    (void)state;
+    const Scenario scenario = loose(1e-6, 3);
+    const ChosenWatch watch = {.budget_s = 1e-9};
+    Trajectory *run = chosen_run_make(&scenario, NULL, watch, NULL);
+    assert_true(run->is_complete && run->is_short);
+    assert_true(run->trials <= 2);
+    assert_true(run->wanted_s > 1e-9);
+    // the control: without a budget nothing is wanted, and to where that holds this one does not
+    Trajectory *whole = chosen(&scenario);
+    assert_true(!whole->is_short && whole->wanted_s == 0.0);
+    run->estimate_s = whole->estimate_s;
+    assert_true(error_of(run, &scenario, BACKEND_REFERENCE) > 1e-6);
+    trajectory_destroy(run);
+    trajectory_destroy(whole);
+}
+
 typedef struct Told {
     size_t trials;
     size_t truths;
@@ -239,7 +259,7 @@ static void trials_tell_when_they_begin(void **state)
     (void)state;
     const Scenario scenario = loose(1e-5, 1);
     Told told = {.trials = 0};
-    const ChosenWatch watch = {{ignore_progress, &told}, take_trial};
+    const ChosenWatch watch = {.run = {ignore_progress, &told}, .begin = take_trial};
     Trajectory *run = chosen_run_make(&scenario, NULL, watch, NULL);
     assert_true(run->is_complete);
     assert_int_equal(told.truths, 1);
@@ -482,6 +502,7 @@ int main(void)
         cmocka_unit_test(what_the_trials_cost_is_counted),
         cmocka_unit_test(one_truth_or_another_of_the_same_case_is_one_run),
         cmocka_unit_test(a_tolerance_that_takes_too_many_steps_is_held_as_far_as_they_go),
+        cmocka_unit_test(a_budget_that_does_not_suffice_says_what_would),
         cmocka_unit_test(trials_tell_when_they_begin),
         cmocka_unit_test(where_the_reference_is_not_sure_enough_the_window_ends),
         cmocka_unit_test(an_error_that_cannot_be_told_is_refused),

@@ -68,7 +68,7 @@ static void mean_and_deviation_are_those_of_the_members(void **state)
     }
     const double deviation = sqrt(squares / (ENSEMBLE_MEMBERS * (ENSEMBLE_MEMBERS - 1)));
     Ensemble ensemble;
-    ensemble_run(&scenario, registry_solver(BACKEND_ODE), (RunWatch){0}, &ensemble);
+    ensemble_run(&scenario, registry_solver(BACKEND_ODE), 0.0, (RunWatch){0}, &ensemble);
     const Distribution *found = &ensemble.joints[loose_joint(&scenario)][ENSEMBLE_FORCE_MAX];
     print_message("# forces %.6g to %.6g N, mean %.6g, deviation %.3g\n", found->low, found->high,
                   found->mean, found->deviation);
@@ -78,10 +78,25 @@ static void mean_and_deviation_are_those_of_the_members(void **state)
     assert_near(found->deviation, deviation, 1e-6 * deviation + 1e-15 * found->mean);
 }
 
+// A budget that is spent at once allows one start, and is no failure of the others.
+static void a_budget_ends_it_and_says_how_many_there_are(void **state)
+{
+    (void)state;
+    const Scenario scenario = short_case();
+    Ensemble ensemble;
+    ensemble_run(&scenario, registry_solver(BACKEND_ODE), 1e-9, (RunWatch){0}, &ensemble);
+    assert_int_equal(ensemble.members, 1);
+    assert_int_equal(ensemble.failed, 0);
+    // the control: with time for all there are all
+    ensemble_run(&scenario, registry_solver(BACKEND_ODE), 1e9, (RunWatch){0}, &ensemble);
+    assert_int_equal(ensemble.members, ENSEMBLE_MEMBERS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mean_and_deviation_are_those_of_the_members),
+        cmocka_unit_test(a_budget_ends_it_and_says_how_many_there_are),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static void every_member_of_an_ensemble_is_watched(void **state)
         const Solver *solver = registry_solver(i == 0 ? BACKEND_REFERENCE : BACKEND_ODE);
         Heard heard = {0};
         Ensemble ensemble;
-        ensemble_run(&scenario, solver, (RunWatch){hear, &heard}, &ensemble);
+        ensemble_run(&scenario, solver, 0.0, (RunWatch){hear, &heard}, &ensemble);
         assert_int_equal(ensemble.members, ENSEMBLE_MEMBERS);
         // all of them are one run to those who watch
         assert_int_equal(heard.runs, 1);
@@ -96,8 +96,8 @@ static void every_trial_of_a_chosen_step_is_watched(void **state)
     scenario.ode.stepping = ODE_STAGGERED;
     scenario.ode.map = ODE_MAP_IMPULSE;
     Heard heard = {0};
-    Trajectory *run =
-        chosen_run_make(&scenario, NULL, (ChosenWatch){{hear, &heard}, hear_trial}, NULL);
+    Trajectory *run = chosen_run_make(
+        &scenario, NULL, (ChosenWatch){.run = {hear, &heard}, .begin = hear_trial}, NULL);
     assert_true(run->is_complete);
     // the reference, and two trials at least
     assert_true(heard.trials >= 3);

@@ -1,5 +1,6 @@
 // Runs a case on its backends, with reference and ensembles, and writes the series of the runs.
 #include "commands/run/case_run.h"
+#include "base/clock.h"
 #include "base/side_by_side.h"
 #include "base/zeroed.h"
 #include "cli/long_work.h"
@@ -61,7 +62,8 @@ static Trajectory *case_run_run_backend(const CaseRun *run, BackendKind backend,
     if (truth != NULL && strcmp(truth->backend, solver->name) == 0) {
         return truth;
     }
-    const ChosenWatch watch = progress_watch_trials(progress, solver->name);
+    ChosenWatch watch = progress_watch_trials(progress, solver->name);
+    watch.budget_s = run->scenario.run.budget;
     progress->is_warned = is_announced;
     Trajectory *trajectory = backend_run(&run->scenario, backend,
                                          truth == NULL ? NULL : &run->truth, watch, &TRACER_PROBE);
@@ -101,12 +103,40 @@ static void match_contacts(CaseRun *run)
     run->report.matches = run->matches;
 }
 
+// World steps to a step of one that was chosen: a gear of 2.
+static const double STEPS_TO_ONE = 2.0;
+
+// Starts at least, whose numbers are a distribution.
+static const double STARTS_LEAST = 2.0;
+
+// Processor time that is left of the budget for starts beside one, s; 0: as long as they take.
+// False where it is not enough for some.
+static bool has_budget(const CaseRun *run, size_t number, double *left_s)
+{
+    const Trajectory *made = run->runs[number];
+    const double budget_s = run->scenario.run.budget;
+    *left_s = 0.0;
+    if (budget_s == 0.0) {
+        return true;
+    }
+    *left_s = budget_s - run->spent_s[number];
+    const double share = made->trials > 0 && made->step_s > 0.0
+                             ? STEPS_TO_ONE * made->duration_s / made->step_s / (double)made->steps
+                             : 1.0;
+    return *left_s > STARTS_LEAST * fmin(share, 1.0) * run->spent_s[number];
+}
+
 // Where the motion cannot be predicted, its statistics may still agree.
 static void run_ensembles(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
     for (size_t i = 0; i < options->backend_count; i++) {
+        double left_s;
         if (!OPTIONS_BACKEND_HAS_PLAY[options->backends[i]] || !run->runs[i]->is_complete) {
+            continue;
+        }
+        if (!has_budget(run, i, &left_s)) {
+            run->ensembles[i].is_beyond_budget = true;
             continue;
         }
         const Solver *solver = registry_solver(options->backends[i]);
@@ -117,7 +147,7 @@ static void run_ensembles(CaseRun *run, Progress *progress)
         const bool is_chosen = backend_run_is_chosen(&run->scenario, options->backends[i]);
         const Scenario scenario =
             is_chosen ? chosen_run_scenario(&run->scenario, run->runs[i]->step_s) : run->scenario;
-        ensemble_run(&scenario, solver, watch, &run->ensembles[i]);
+        ensemble_run(&scenario, solver, left_s, watch, &run->ensembles[i]);
         progress_end(progress);
     }
     run->report.ensembles = run->ensembles;
@@ -157,9 +187,11 @@ void case_run_execute(CaseRun *run, Progress *progress)
     const bool is_announced = long_work_announce(&run->scenario, progress->line.is_quiet);
     case_run_make_truth(run, progress);
     for (size_t i = 0; i < options->backend_count; i++) {
+        const double began_s = clock_processor_s();
         run->runs[i] =
             case_run_run_backend(run, options->backends[i],
                                  is_announced && options->backends[i] == BACKEND_ODE, progress);
+        run->spent_s[i] = clock_processor_s() - began_s;
         run->failed_count += run->runs[i]->is_complete ? 0 : 1;
     }
     measure_errors(run);

@@ -18,7 +18,9 @@ typedef struct CaseRun {
     Truth truth;     // its trajectory is among the runs where its backend is
     RunMatches matches[BACKEND_COUNT];
     Ensemble ensembles[BACKEND_COUNT];
-    RunReport report; // points into this CaseRun, which must not be moved
+    double
+        spent_s[BACKEND_COUNT]; // of processor time by each backend, but for starts beside its run
+    RunReport report;           // points into this CaseRun, which must not be moved
     size_t failed_count;
 } CaseRun;
 

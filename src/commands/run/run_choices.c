@@ -37,6 +37,11 @@ bool run_choices_read_step(const char *step, void *choices, Err *err)
     return add_override(choices, "run.step=", step, err);
 }
 
+bool run_choices_read_budget(const char *budget, void *choices, Err *err)
+{
+    return add_override(choices, "run.budget=", budget, err);
+}
+
 void run_choices_begin(RunChoices *choices)
 {
     text_init(&choices->backends);

@@ -7,7 +7,8 @@
 // The first member of the options of a command that has the rows below.
 typedef struct RunChoices {
     CommonOptions common;
-    char *owned[OPTION_SETTING_MAX]; // of the settings, those that --step and --backend stand for
+    char *owned[OPTION_SETTING_MAX]; // of the settings, those that --step, --budget and --backend
+                                     // stand for
     size_t owned_count;
     Text backends; // names, separated by commas
     bool is_uncertified;
@@ -20,6 +21,8 @@ typedef struct RunChoices {
      OPTION_READ, .read = run_choices_read_backend, .words = OPTIONS_BACKENDS}, \
     {"step", "TIME", "The step, such as '2 us': short for --set run.step=TIME", help_group, \
      OPTION_READ, .read = run_choices_read_step}, \
+    {"budget", "TIME", "Processor time of each engine, or none: short for --set run.budget=TIME", \
+     help_group, OPTION_READ, .read = run_choices_read_budget}, \
     COMMON_SET(help_group), \
     COMMON_DRIVERS(help_group), \
     {"uncertified", NULL, \
@@ -28,6 +31,7 @@ typedef struct RunChoices {
 // clang-format on
 bool run_choices_read_backend(const char *names, void *choices, Err *err);
 bool run_choices_read_step(const char *step, void *choices, Err *err);
+bool run_choices_read_budget(const char *budget, void *choices, Err *err);
 
 // Before the command line is read, once all of it has been (ERR_USAGE), and when all is done.
 void run_choices_begin(RunChoices *choices);

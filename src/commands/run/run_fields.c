@@ -120,6 +120,7 @@ RunJoint run_fields_joint(const Linkage *linkage, const Trajectory *run, size_t 
 static const Field ESTIMATE_FIELDS[] = {
     {"error_estimate", FIELD_NUMBER, FIELD_JSON, RUN(error_estimate)},
     {"error_estimate_until_s", FIELD_NUMBER, FIELD_JSON, RUN(estimate_s)},
+    {"budget_wanted_s", FIELD_NUMBER, FIELD_JSON, RUN(wanted_s)},
     {"trials", FIELD_COUNT, FIELD_JSON, RUN(trials)},
     {"tolerance_held", FIELD_VALUE, FIELD_JSON, .json = is_held},
     {0},

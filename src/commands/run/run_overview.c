@@ -487,6 +487,16 @@ static void append_unknown_error(const RunReport *report, const Trajectory *run,
     }
 }
 
+// What the tolerance would take that run.budget did not allow.
+static void append_wanted(const RunReport *report, const Trajectory *run, Text *text)
+{
+    if (run->wanted_s > 0.0) {
+        text_append(text, "; %.3g would take some ", report->scenario->run.tolerance);
+        units_append(text, run->wanted_s, "s");
+        text_append(text, " (--budget none)");
+    }
+}
+
 static void append_error(const RunReport *report, size_t number, Text *text)
 {
     const Trajectory *run = report->runs[number];
@@ -507,6 +517,7 @@ static void append_error(const RunReport *report, size_t number, Text *text)
     if (isfinite(error->force_max_in_horizon)) {
         text_append(text, ", %.2g in forces", error->force_max_in_horizon);
     }
+    append_wanted(report, run, text);
     text_append(text, ".");
 }
 

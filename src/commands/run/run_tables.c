@@ -269,7 +269,8 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
             run_report_leaves_branch(report, run)
                 ? "give one of the ideal joints play: they pass a change point there, "
                   "where no step keeps to the motion's branch"
-                : "allow more steps: run.most-steps");
+            : run->wanted_s > 0.0 ? "allow more time: run.budget"
+                                  : "allow more steps: run.most-steps");
     }
     // without the reference's doubts what is not whole ends at the horizon, at a sample
     const double *last_s = &run->times[run->sample_count - 1];
@@ -806,6 +807,8 @@ void run_truth_ensembles(const RunReport *report, const Style *style, Text *text
             text_append(text, "  %s: %zu starts", report->runs[i]->backend, ensemble->members);
             text_append(text, ensemble->failed > 0 ? ", and %zu that failed: %s\n" : "\n",
                         ensemble->failed, ensemble->message);
+        } else if (ensemble->is_beyond_budget) {
+            text_append(text, "  %s: none within run.budget\n", report->runs[i]->backend);
         }
     }
 }

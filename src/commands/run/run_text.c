@@ -750,6 +750,7 @@ static const char *why_held_only_so_far(const RunReport *report, const Trajector
         return "the reference is too uncertain";
     }
     return run_report_leaves_branch(report, run) ? "its joints pass a change point there"
+           : run->wanted_s > 0.0                 ? "run.budget is too small"
                                                  : "run.most-steps is too small";
 }
 
