@@ -15,9 +15,9 @@
 
 // How a run is made and reported: chosen by the user, not measured, and the same on any machine.
 static const char *const UNSHAKEN[] = {
-    "run.revolutions",     "run.duration",    "run.tolerance",
-    "run.spike-threshold", "run.report-from", "reference.tolerance",
-    "drive.period",        "run.settle-to",   "run.settle-budget",
+    "run.revolutions",   "run.duration",        "run.tolerance", "run.spike-threshold",
+    "run.report-from",   "reference.tolerance", "drive.period",  "run.settle-to",
+    "run.settle-budget", "run.budget",
 };
 
 // What has no line in the program for libjointplay that is looked at here.
@@ -35,6 +35,7 @@ static const char *const UNWRITTEN[] = {
     "run.settle-most",
     "run.settle-to",
     "run.settle-budget",
+    "run.budget",
     "run.settle-starts",
     "run.samples",
     // of other engines

@@ -60,9 +60,11 @@ static void wrong_overrides_are_usage_errors(void **state)
            "--set run.stp=1 us: unknown key 'stp'; did you mean 'step'?\n"
            "    --set run.stp=1 us\n"
            "              ^~~\n"
-           "allowed: revolutions, duration, samples, step, budget, tolerance, tolerance-of, most-steps, "
+           "allowed: revolutions, duration, samples, step, budget, tolerance, tolerance-of, "
+           "most-steps, "
            "spike-threshold, "
-           "report-from, start, settle-starts, settle-least, settle-most, settle-to, settle-budget, backends");
+           "report-from, start, settle-starts, settle-least, settle-most, settle-to, "
+           "settle-budget, backends");
     refuse(IMPACT, "joints.follower-ground.hole=9 mm", ERR_USAGE,
            "--set joints.follower-ground.hole=9 mm: joints.follower-ground.pin is missing\n"
            "    --set joints.follower-ground.hole=9 mm\n"
