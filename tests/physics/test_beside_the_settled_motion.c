@@ -44,7 +44,8 @@ static double largest_of(const Settling *settling)
     double largest = 0.0;
     for (size_t k = settling->count - settling->period; k < settling->count; k++) {
         for (size_t i = 0; i < settling->scenario.linkage.joint_count; i++) {
-            largest = fmax(largest, settling->revolutions[k].numbers[settle_joint_number(i, SETTLE_FORCE)]);
+            largest = fmax(largest,
+                           settling->revolutions[k].numbers[settle_joint_number(i, SETTLE_FORCE)]);
         }
     }
     return largest;
