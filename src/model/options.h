@@ -205,24 +205,27 @@ typedef struct ContactOptions {
     double bounce_speed; // m/s, CONTACT_POISSON: slower impacts do not bounce
 } ContactOptions;
 
+enum { OPTIONS_REASON_SIZE = 256 }; // of a sentence with two names
+
 typedef struct RunOptions {
     double revolutions; // of a driver of constant speed
     double duration;    // s, where there is none
     size_t samples;     // per revolution of that driver, or in the whole run without it
     RunStart start;
-    const char *centred_because; // no key: why a case that does not name its start does not
-                                 // settle; NULL: it settles, or names it
-    bool is_start_given;         // no key: whether the case names its start
-    size_t settle_starts;        // of START_SETTLED: from which it is looked for
-    size_t settle_least;         // revolutions watched before a start is said not to repeat
-    size_t settle_most;          // until it is taken as it is
-    double settle_to;            // 1: the half width of the interval of a largest force, over it
-    double settle_budget;        // s of processor time
-    double budget;               // s of processor time of each engine in `run`; 0: none
-    double interval;  // no key, s: samples stand so far apart, as many as the run has room
-                      // for; 0: as `samples` says
-    double step;      // s; 0: chosen for the tolerance
-    double tolerance; // 1, largest error wanted of a step that is chosen
+    // no key: why a case that does not name its start does not settle; empty: it settles, or names
+    // it
+    char centred_because[OPTIONS_REASON_SIZE];
+    bool is_start_given;  // no key: whether the case names its start
+    size_t settle_starts; // of START_SETTLED: from which it is looked for
+    size_t settle_least;  // revolutions watched before a start is said not to repeat
+    size_t settle_most;   // until it is taken as it is
+    double settle_to;     // 1: the half width of the interval of a largest force, over it
+    double settle_budget; // s of processor time
+    double budget;        // s of processor time of each engine in `run`; 0: none
+    double interval;      // no key, s: samples stand so far apart, as many as the run has room
+                          // for; 0: as `samples` says
+    double step;          // s; 0: chosen for the tolerance
+    double tolerance;     // 1, largest error wanted of a step that is chosen
     ToleranceOf tolerance_of;
     size_t most_steps;      // world steps of all trials of a step that is chosen
     double spike_threshold; // 1, least prominence of a spike over what ideal joints show

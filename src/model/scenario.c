@@ -4,6 +4,7 @@
 #include "base/zeroed.h"
 #include "model/common_period.h"
 
+#include <stdio.h>
 #include <string.h>
 
 const char *const SCENARIO_SPACES[] = {"planar", "spatial", NULL};
@@ -20,22 +21,11 @@ Scenario scenario_default(void)
     };
 }
 
-// Why it starts as written, in words of the copy's own.
-static void share_reason(const Scenario *scenario, Scenario *copy)
-{
-    if (scenario->reason != NULL) {
-        copy->reason = zeroed_copy(scenario->reason, 1 + strlen(scenario->reason), 1);
-        copy->run.centred_because = copy->reason;
-    }
-}
-
 void scenario_start_as_written(Scenario *scenario, const char *reason)
 {
-    char *own = zeroed_copy(reason, 1 + strlen(reason), 1);
-    free(scenario->reason);
-    scenario->reason = own;
-    scenario->run.centred_because = own;
-    scenario->run.start = START_CENTRED;
+    RunOptions *run = &scenario->run;
+    snprintf(run->centred_because, sizeof run->centred_because, "%s", reason);
+    run->start = START_CENTRED;
 }
 
 Scenario scenario_copy(const Scenario *scenario)
@@ -43,7 +33,6 @@ Scenario scenario_copy(const Scenario *scenario)
     Scenario copy = *scenario;
     copy.linkage = linkage_copy(&scenario->linkage);
     copy.path = zeroed_copy(scenario->path, 1 + strlen(scenario_path(scenario)), 1);
-    share_reason(scenario, &copy);
     copy.expectations = zeroed_copy(scenario->expectations, scenario->expectation_count,
                                     sizeof *scenario->expectations);
     copy.keys = zeroed_copy(scenario->keys, scenario->key_count, sizeof *scenario->keys);
@@ -58,8 +47,6 @@ Scenario scenario_around(const Scenario *scenario, Linkage linkage)
     Scenario around = *scenario;
     around.linkage = linkage;
     around.path = NULL;
-    around.reason = NULL;
-    around.run.centred_because = NULL;
     around.expectations = NULL;
     // that the start is found holds for whatever is a part of it
     around.settled = (SettledStart){.revolutions = scenario->settled.revolutions,
@@ -86,14 +73,11 @@ void scenario_free(Scenario *scenario)
 {
     linkage_free(&scenario->linkage);
     free(scenario->path);
-    free(scenario->reason);
     free(scenario->expectations);
     settled_start_free(&scenario->settled);
     free(scenario->outcomes);
     free(scenario->keys);
     scenario->path = NULL;
-    scenario->reason = NULL;
-    scenario->run.centred_because = NULL;
     scenario->expectations = NULL;
     scenario->outcomes = NULL;
     scenario->keys = NULL;

@@ -38,7 +38,6 @@ typedef struct ScenarioKey {
 typedef struct Scenario {
     char title[SCENARIO_TITLE_SIZE];
     char *path;   // of the case file, as given; owned; NULL where there is none: scenario_path
-    char *reason; // why it starts as written: run.centred_because; owned, or NULL
     ScenarioSpace space; // linkage.is_spatial is the same
     Linkage linkage;
     bool has_fourbar; // whether the case used that short form

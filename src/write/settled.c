@@ -224,7 +224,7 @@ static void append_search(const Scenario *scenario, Text *text)
 void settled_text(const Scenario *scenario, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
-    if (scenario->run.centred_because != NULL) {
+    if (scenario->run.centred_because[0] != '\0') {
         text_append(text, "  start       as written: %s\n", scenario->run.centred_because);
     }
     if (settled->motion_count == 0) {
@@ -400,7 +400,7 @@ void settled_louder(const Scenario *scenario, const char *where, Text *text)
 void settled_sentences(const Scenario *scenario, bool is_below_table, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
-    if (scenario->run.centred_because != NULL) {
+    if (scenario->run.centred_because[0] != '\0') {
         Text line;
         text_init(&line);
         text_append(&line, "  Starts as written, and the first impacts count: %s.",

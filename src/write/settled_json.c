@@ -169,7 +169,7 @@ static void set_search(json_t *found, const Scenario *scenario)
 void settled_json(json_t *object, const Scenario *scenario)
 {
     const SettledStart *settled = &scenario->settled;
-    if (scenario->run.centred_because != NULL) {
+    if (scenario->run.centred_because[0] != '\0') {
         json_object_set_new(object, "starts_as_written_because",
                             json_string(scenario->run.centred_because));
     }
