@@ -457,7 +457,7 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "run.settle-to", AT(run.settle_to), .low = 0.0, .high = 1.0,
      .low_is_open = true, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
      .doc = "likewise: half the width of the 95 % confidence interval of each joint's largest "
-            "force, over that force, until which it is watched"},
+            "force, over that force, until which it is watched; 1: whatever it is"},
     {.path = "run.settle-budget", .dimension = DIMENSION_TIME, AT(run.settle_budget), .low = 0.0,
      .high = 1e6, .low_is_open = true, .needs = PLAY | REPEATING | IMPACT, .wants = SETTLED,
      .doc = "processor time for it, after which the run is in what is found by then"},

@@ -397,6 +397,13 @@ static bool any_repeating(const Search *search)
     return is_any;
 }
 
+// Whether the intervals are as narrow as asked for. A half width of all of a force asks for nothing:
+// few revolutions do not bound a quantile at all.
+static bool is_narrow(const Search *search, double settle_to)
+{
+    return settle_to >= 1.0 || random_width(search) <= settle_to;
+}
+
 // Turns all starts until each is done or has been watched for long enough.
 static void search_run(Search *search, const Scenario *scenario)
 {
@@ -419,7 +426,7 @@ static void search_run(Search *search, const Scenario *scenario)
             return;
         }
         const bool is_watched =
-            goal >= least && !any_repeating(search) && random_width(search) <= run->settle_to;
+            goal >= least && !any_repeating(search) && is_narrow(search, run->settle_to);
         if (atomic_load(&search->is_spent) || goal >= run->settle_most || is_watched) {
             return;
         }
