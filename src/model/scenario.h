@@ -37,7 +37,7 @@ typedef struct ScenarioKey {
 // its own needs scenario_copy.
 typedef struct Scenario {
     char title[SCENARIO_TITLE_SIZE];
-    char *path;   // of the case file, as given; owned; NULL where there is none: scenario_path
+    char *path; // of the case file, as given; owned; NULL where there is none: scenario_path
     ScenarioSpace space; // linkage.is_spatial is the same
     Linkage linkage;
     bool has_fourbar; // whether the case used that short form

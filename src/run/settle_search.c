@@ -397,8 +397,8 @@ static bool any_repeating(const Search *search)
     return is_any;
 }
 
-// Whether the intervals are as narrow as asked for. A half width of all of a force asks for nothing:
-// few revolutions do not bound a quantile at all.
+// Whether the intervals are as narrow as asked for. A half width of all of a force asks for
+// nothing: few revolutions do not bound a quantile at all.
 static bool is_narrow(const Search *search, double settle_to)
 {
     return settle_to >= 1.0 || random_width(search) <= settle_to;

@@ -101,7 +101,8 @@ static const struct {
 // Of what is printed or drawn from the runs, and of the limits for their cost: no number of a run
 // depends on them.
 static const char *const OF_OUTPUT[] = {
-    "title", "points.", "expect", "run.spike-threshold", "run.report-from", "run.most-steps"};
+    "title",           "points.",        "expect",    "run.spike-threshold",
+    "run.report-from", "run.most-steps", "run.budget"};
 
 // What a part is, whether or not a run of this kind feels it: the laws of cylinders, which --set
 // and
