@@ -226,7 +226,7 @@ static void take_new(Search *search)
     }
 }
 
-// All starts in a state or on their way, or the first alone.
+// Those of the first so many starts that are on their way, to be turned to so many revolutions.
 static void find_live(Search *search, size_t goal, size_t count)
 {
     search->live_count = 0;
