@@ -155,11 +155,6 @@ static bool fill_side(WorldResponse *response, const ResponsePlace *of, size_t s
     const double age_s = joint->state.age_s; // as the kernel counts it
     joint->state = from->state;
     joint->state.age_s = age_s;
-    if (from->state.is_touching && joint->frequency == 0.0) {
-        // a contact that began in a step with rows
-        joint->frequency = sqrt(force_law_tangent(&from->law, fmax(from->inside, DBL_MIN)) *
-                                play_mobility(of->joint, place));
-    }
     fill_rows(response, of, side, joint->first_row);
     return true;
 }
