@@ -38,6 +38,19 @@ bool err_set_lines(Err *err, ErrKind kind, const char *lines)
     return false;
 }
 
+bool err_add(Err *err, const Err *further)
+{
+    if (err->kind == ERR_NONE || further->kind == ERR_NONE) {
+        return err_set_lines(err, further->kind, further->text);
+    }
+    err->kind = further->kind > err->kind ? further->kind : err->kind;
+    char *lines = malloc(strlen(err->text) + strlen(further->text) + sizeof "\n");
+    assert(lines != NULL);
+    sprintf(lines, "%s\n%s", err->text, further->text);
+    take_lines(err, lines);
+    return false;
+}
+
 void err_prefix(Err *err, const char *prefix)
 {
     if (err->kind == ERR_NONE) {

@@ -31,5 +31,9 @@ bool err_set(Err *err, ErrKind kind, const char *format, ...) __attribute__((for
 // The same of a text that has its lines already, such as that of another error.
 bool err_set_lines(Err *err, ErrKind kind, const char *lines);
 
+// Adds another error on lines of its own below one that is set; of both kinds the graver, which has
+// the larger number, stays. Always returns false.
+bool err_add(Err *err, const Err *further);
+
 // Puts "prefix: " in front of the text of an error that is set.
 void err_prefix(Err *err, const char *prefix);

@@ -125,7 +125,7 @@ static bool write_file(const Results *results, const ResultFile *file, const cha
     return is_done;
 }
 
-// Keeps the first error and goes on: what is missing of one file does not take the others away.
+// Says every error and goes on: what is missing of one file does not take the others away.
 bool results_write(const Results *results, const CommonOptions *options, const char *case_path,
                    const void *report, Err *err)
 {
@@ -135,7 +135,7 @@ bool results_write(const Results *results, const CommonOptions *options, const c
         Err own = {0};
         if (path != NULL &&
             !write_file(results, &results->files[i], path, options, true, report, &own)) {
-            is_done = err_set_lines(err, own.kind, own.text);
+            is_done = err_add(err, &own);
         }
     }
     for (size_t i = 0; options->folder != NULL && i < results->file_count; i++) {
@@ -145,7 +145,7 @@ bool results_write(const Results *results, const CommonOptions *options, const c
         if (file->ending != NULL &&
             !(find_path(results, options, case_path, file, path, &own) &&
               write_file(results, file, path, options, false, report, &own))) {
-            is_done = err_set_lines(err, own.kind, own.text);
+            is_done = err_add(err, &own);
         }
     }
     return is_done;

@@ -375,8 +375,10 @@ static void files_hold_what_was_asked_for(void **state)
     program_run(program, "tune --full $cases/paper/impact-k66.yaml --set run.start=centred --set "
                          "contact.resting-speed=none --error 3e-2 --schemes "
                          "direct/plain/corrected --sdf c.sdf --mjcf c.xml --out out");
-    assert_int_equal(program->status, 0);
-    assert_says(program->errors, "--sdf: Gazebo's contact with constants has an error of 0.");
+    // a file that misses the error is written where it is named, and is a failure
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "the file of --sdf misses the error: it has an error of ");
+    assert_says(program->errors, "times the 0.03 asked for");
     assert_says(program->output, "soft_cfm");
     program_path(program, "c.sdf", path);
     program_read(path, program->output);
@@ -400,6 +402,24 @@ static void files_hold_what_was_asked_for(void **state)
     program_fails_usage(program,
                         "tune $cases/paper/ideal-nominal.yaml --error 1e-2 --mjcf none.xml",
                         "--mjcf: no joint of the case has play");
+}
+
+// Of what a folder gets by the way, what misses the error is left out, and said.
+static void a_folder_gets_what_meets_the_error(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_run(program, "tune $cases/paper/impact-k66.yaml --set run.start=centred --set "
+                         "contact.resting-speed=none --error 3e-2 --schemes "
+                         "direct/plain/corrected --out kept");
+    assert_int_equal(program->status, 0);
+    assert_says(program->errors, "not written: kept/impact-k66-tune.sdf (it has an error of ");
+    assert_says(program->output, "--code: step ");
+    assert_says(program->output, "--sdf: step ");
+    program_path(program, "kept/impact-k66-tune.c", path);
+    assert_int_equal(access(path, R_OK), 0);
+    program_path(program, "kept/impact-k66-tune.sdf", path);
+    assert_int_not_equal(access(path, R_OK), 0);
 }
 
 static void what_cannot_be_asked_is_refused(void **state)
@@ -473,6 +493,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_search_that_would_take_too_long_says_so, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(files_hold_what_was_asked_for, program_set_up,
+                                        program_tear_down),
+        cmocka_unit_test_setup_teardown(a_folder_gets_what_meets_the_error, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(what_cannot_be_asked_is_refused, program_set_up,
                                         program_tear_down),

@@ -11,6 +11,7 @@
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_engine.h"
 #include "commands/tune/tune_export.h"
+#include "commands/tune/tune_files.h"
 #include "commands/tune/tune_linear.h"
 #include "commands/tune/tune_program.h"
 #include "commands/tune/tune_search.h"
@@ -326,6 +327,19 @@ static bool has_contact(const TuneReport *report, bool is_found, const char *rea
     return is_found;
 }
 
+// Whether a file is to be written, and in words why not.
+static bool is_wanted(const TuneReport *report, TuneFileKind kind, const char **nothing)
+{
+    static char reason[ERR_TEXT_SIZE]; // the caller reads it at once
+    Text words;
+    text_init(&words);
+    const bool is_good = tune_file_is_wanted(report, kind, &words);
+    snprintf(reason, sizeof reason, "%s", words.data);
+    text_finish(&words);
+    *nothing = reason;
+    return is_good;
+}
+
 // Programs are of planar cases.
 static const char *cmd_tune_program_lacks(const Scenario *scenario)
 {
@@ -344,27 +358,21 @@ static bool cmd_tune_write_code(const void *target, Text *text, const char **not
     if (!has_contact(report, trial != NULL, "no run has a meaningful error", nothing)) {
         return false;
     }
-    const char *lacks = tune_export_lacks(report);
-    if (lacks != NULL) {
-        *nothing = lacks;
-        return false;
-    }
     const TuneProgram *program = &report->tune->program;
-    if (program->reason[0] != '\0') {
-        *nothing = program->reason;
+    if (!program->is_run) {
+        *nothing = tune_export_lacks(report);
         return false;
     }
-    if (tune_report_is_met(report) && !program->meets) {
-        *nothing = "its error is larger than what was asked for";
-        return false;
-    }
-    return tune_export_code(report, text, err);
+    return is_wanted(report, TUNE_FILE_CODE, nothing) && tune_export_code(report, text, err);
 }
 
 static bool write_sdf(const void *target, Text *text, const char **nothing, Err *err)
 {
     (void)err;
     const TuneReport *report = target;
+    if (!is_wanted(report, TUNE_FILE_SDF, nothing)) {
+        return false;
+    }
     tune_gazebo_write(report, text);
     return has_contact(report, text->length > 0, tune_linear_lacks(report->scenario, report->tune),
                        nothing);
@@ -374,6 +382,9 @@ static bool write_mjcf(const void *target, Text *text, const char **nothing, Err
 {
     (void)err;
     const TuneReport *report = target;
+    if (!is_wanted(report, TUNE_FILE_MJCF, nothing)) {
+        return false;
+    }
     tune_mujoco_write(report, text);
     const TuneContact *contact = &report->tune->contact;
     const char *lacks = contact->is_limit && report->tune->linear != TUNE_NONE
@@ -421,25 +432,13 @@ static bool check_files(const TuneOptions *options, const Scenario *scenario, Er
     return true;
 }
 
-// Nor is a program written for an error that it does not meet.
-static bool check_program(const TuneProgram *program, const Tune *tune, Err *err)
-{
-    if (!program->is_run || program->meets) {
-        return true;
-    }
-    return err_set(err, ERR_DIFFERS,
-                   "the program of --code, run with libjointplay, has an error of %.3g at a step "
-                   "of %.3g ms, where %.3g was asked for; --schemes may name another setting",
-                   program->error, program->step_s * UNITS_MS, tune->target);
-}
-
 // That nothing meets the error is a result, with a status of its own.
 static bool check_met(const TuneReport *report, Err *err)
 {
     const Tune *tune = report->tune;
     const TuneTrial *best = tune_best(tune, tune->winner);
     if (tune_report_is_met(report)) {
-        return check_program(&tune->program, tune, err);
+        return tune_files_check(report, err);
     }
     if (tune->held_s > 0.0) {
         return tune_held_text_unmet(report, err);
@@ -461,25 +460,30 @@ static bool cmd_tune_run_program(const TuneOptions *options, const TuneSearch *w
     const CommonOptions *common = &options->common;
     const TuneReport report = {work->scenario, work->tune, common->overrides,
                                common->override_count, common->time_limit_s};
-    const bool may_shorten = tune_report_is_met(&report) && work->tune->held_s == 0.0;
-    const bool is_asked = options->code != NULL || common->folder != NULL;
-    if (!is_asked || work->scenario->linkage.is_spatial || tune_export_trial(&report) == NULL ||
-        tune_export_lacks(&report) != NULL) {
-        return true;
+    return work->tune->asked[TUNE_FILE_CODE] == TUNE_UNASKED ||
+           work->scenario->linkage.is_spatial || tune_program_run(work, &report, err);
+}
+
+// Which files are asked for, by name or in a folder.
+static void take_files(const TuneOptions *options, Tune *tune)
+{
+    const char *const named[TUNE_FILE_COUNT] = {
+        [TUNE_FILE_CODE] = options->code,
+        [TUNE_FILE_SDF] = options->sdf,
+        [TUNE_FILE_MJCF] = options->mjcf,
+    };
+    for (int kind = 0; kind < TUNE_FILE_COUNT; kind++) {
+        tune->asked[kind] = named[kind] != NULL              ? TUNE_NAMED
+                            : options->common.folder != NULL ? TUNE_IN_FOLDER
+                                                             : TUNE_UNASKED;
     }
-    Scenario *scenario = calloc(1, sizeof *scenario);
-    assert(scenario != NULL);
-    const bool is_done = tune_export_scenario(&report, scenario, err) &&
-                         tune_program_run(work, scenario, may_shorten, err);
-    free(scenario);
-    return is_done;
 }
 
 static bool search(const TuneOptions *options, const Scenario *scenario, Tune *tune, Err *err)
 {
     const CommonOptions *common = &options->common;
     Watching watching = {tune, status_line_start(common->is_quiet)};
-    tune->model.is_asked = options->mjcf != NULL || common->folder != NULL;
+    take_files(options, tune);
     const TuneSearch work = {
         .tune = tune,
         .scenario = scenario,
@@ -517,19 +521,6 @@ static void cmd_tune_warn(const TuneOptions *options, const Scenario *scenario)
                 "tune searches for\n",
                 (int)strcspn(given, "="), given);
         }
-    }
-}
-
-// Constants are written whatever their error, which is in the file and worth a word.
-static void warn_of_constants(const TuneOptions *options, const TuneReport *report)
-{
-    TuneGazebo gazebo;
-    const Tune *tune = report->tune;
-    if (options->sdf != NULL && !options->common.is_quiet && tune_gazebo_find(tune, &gazebo) &&
-        !(gazebo.error <= tune->target)) {
-        output_say("jointplay: warning: --sdf: Gazebo's contact with constants has an error of "
-                   "%.2g at %.3g us, where %.3g was asked for\n",
-                   gazebo.error, gazebo.step_s * UNITS_US, tune->target);
     }
 }
 
@@ -601,10 +592,8 @@ static bool tune_case(void *target, Err *err)
         is_done = check_met(&report, err);
         Err unwritten = {0};
         if (!results_write(&RESULTS, common, scenario_path(scenario), &report, &unwritten)) {
-            // that an error is not met says why a program is not written
-            is_done = err_set_lines(err, unwritten.kind, unwritten.text);
+            is_done = err_add(err, &unwritten);
         }
-        warn_of_constants(options, &report);
     }
     tune_destroy(tune);
     scenario_destroy(scenario);

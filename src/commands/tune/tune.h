@@ -115,25 +115,39 @@ typedef struct TuneReference {
 
 // The program that --code writes, run before it is written.
 typedef struct TuneProgram {
-    bool is_asked;
     bool is_run;
+    int trial;           // whose setting it has, but for the step; TUNE_NONE before it is run
     bool meets;          // its error and the truth's uncertainty are within the target
     double step_first_s; // of the setting that was found
     double error_first;  // 1: with that step; NAN where there is none
     double step_s;       // that the program has: shorter where that step missed the target
     double error;        // 1: against the reference at the times that it prints
+    size_t steps;        // calls of jp_world_step
+    double processor_s;  // of its run
     char reason[LADDER_MESSAGE_SIZE]; // why there is none
 } TuneProgram;
 
 // MuJoCo's whole model with the contact made linear, run there before it is written.
 typedef struct TuneModel {
-    bool is_asked;
     char *text;                       // owned; NULL: there is none
     double step_s;                    // of the model
     double error;                     // 1: as of a trial, against the law itself
+    size_t steps;                     // of its run
+    double processor_s;               // likewise
     char engine[LADDER_MESSAGE_SIZE]; // name and version
     char reason[LADDER_MESSAGE_SIZE]; // why there is none
 } TuneModel;
+
+// The files in which a setting is handed on.
+typedef enum TuneFileKind {
+    TUNE_FILE_CODE,
+    TUNE_FILE_SDF,
+    TUNE_FILE_MJCF,
+    TUNE_FILE_COUNT
+} TuneFileKind;
+
+// Whether one is asked for: a folder gets those that are within the target, a name any.
+typedef enum TuneAsked { TUNE_UNASKED, TUNE_IN_FOLDER, TUNE_NAMED } TuneAsked;
 
 typedef struct Tune {
     double target;  // 1; INFINITY where any error will do
@@ -159,6 +173,7 @@ typedef struct Tune {
     int linear; // the kp and kd to take, or TUNE_NONE
     int row;    // the ERP and CFM, at a step that is held
     TuneReference reference;
+    TuneAsked asked[TUNE_FILE_COUNT];
     TuneProgram program;
     TuneModel model;
 } Tune;

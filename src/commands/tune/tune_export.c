@@ -469,10 +469,61 @@ static bool tune_export_choose_step(Scenario *scenario, Err *err)
     return is_chosen;
 }
 
-bool tune_export_scenario(const TuneReport *report, Scenario *scenario, Err *err)
+// Whether the library steps as the setting of a trial does; in words why it does not.
+static const char *lacks_of(const TuneReport *report, const TuneTrial *trial)
+{
+    Scenario scenario = *report->scenario;
+    tune_apply(&report->tune->schemes[trial->scheme], trial->value, &scenario);
+    if (scenario.run.step == 0.0) {
+        // the way of stepping that a step chosen for a tolerance is for
+        scenario = scenario_with_step(&scenario, scenario.run.step);
+    }
+    return tune_world_lacks(&scenario);
+}
+
+const char *tune_export_lacks(const TuneReport *report)
 {
     const TuneTrial *trial = tune_export_trial(report);
-    assert(trial != NULL);
+    return trial != NULL ? lacks_of(report, trial) : NULL;
+}
+
+// In order of cost, before the place of the first that costs more.
+static size_t insert_by_cost(const Tune *tune, int trial, int *trials, size_t count)
+{
+    size_t at = count;
+    while (at > 0 && tune_trial_cost(tune, &tune->trials[trials[at - 1]]) >
+                         tune_trial_cost(tune, &tune->trials[trial])) {
+        trials[at] = trials[at - 1];
+        at--;
+    }
+    trials[at] = trial;
+    return count + 1;
+}
+
+size_t tune_export_trials(const TuneReport *report, int trials[SCHEME_MAX])
+{
+    const Tune *tune = report->tune;
+    const TuneTrial *found = tune_export_trial(report);
+    size_t count = 0;
+    if (found == NULL) {
+        return 0;
+    }
+    if (!tune_report_is_met(report) || tune->held_s > 0.0) {
+        trials[0] = (int)(found - tune->trials);
+        return lacks_of(report, found) == NULL ? 1 : 0;
+    }
+    for (size_t i = 0; i < tune->scheme_count; i++) {
+        const TuneTrial *best = tune_best(tune, (int)i);
+        if (best != NULL && tune_is_within(tune, best) && lacks_of(report, best) == NULL) {
+            count = insert_by_cost(tune, (int)(best - tune->trials), trials, count);
+        }
+    }
+    return count;
+}
+
+bool tune_export_scenario(const TuneReport *report, int number, Scenario *scenario, Err *err)
+{
+    const TuneTrial *trial = &report->tune->trials[number];
     *scenario = *report->scenario;
     tune_apply(&report->tune->schemes[trial->scheme], trial->value, scenario);
     return scenario->run.step > 0.0 || tune_export_choose_step(scenario, err);
@@ -481,7 +532,7 @@ bool tune_export_scenario(const TuneReport *report, Scenario *scenario, Err *err
 // The scenario of a program that was run already: its step is known.
 static void take_program(const TuneReport *report, Scenario *scenario)
 {
-    const TuneTrial *trial = tune_export_trial(report);
+    const TuneTrial *trial = &report->tune->trials[report->tune->program.trial];
     *scenario = *report->scenario;
     tune_apply(&report->tune->schemes[trial->scheme], trial->value, scenario);
     if (scenario->run.step == 0.0) {
@@ -492,9 +543,12 @@ static void take_program(const TuneReport *report, Scenario *scenario)
 
 bool tune_export_code(const TuneReport *report, Text *text, Err *err)
 {
-    const TuneTrial *trial = tune_export_trial(report);
     const TuneProgram *program = &report->tune->program;
-    assert(trial != NULL);
+    // the setting with the program's own step
+    TuneTrial trial = report->tune->trials[program->trial];
+    if (scheme_has_step(&report->tune->schemes[trial.scheme].scheme)) {
+        trial.value = program->step_s;
+    }
     Scenario *scenario = malloc(sizeof *scenario);
     assert(scenario != NULL);
     take_program(report, scenario);
@@ -502,8 +556,8 @@ bool tune_export_code(const TuneReport *report, Text *text, Err *err)
     Text command;
     text_init(&words);
     text_init(&command);
-    tune_setting_words(report, trial, &words);
-    tune_setting_command(report, trial, " ", &command);
+    tune_setting_words(report, &trial, &words);
+    tune_setting_command(report, &trial, " ", &command);
     const TuneCode code = {.scenario = scenario,
                            .words = words.data,
                            .command = command.data,
@@ -516,19 +570,6 @@ bool tune_export_code(const TuneReport *report, Text *text, Err *err)
     text_finish(&command);
     free(scenario);
     return is_written;
-}
-
-const char *tune_export_lacks(const TuneReport *report)
-{
-    const TuneTrial *trial = tune_export_trial(report);
-    assert(trial != NULL);
-    Scenario scenario = *report->scenario;
-    tune_apply(&report->tune->schemes[trial->scheme], trial->value, &scenario);
-    if (scenario.run.step == 0.0) {
-        // the way of stepping that a step chosen for a tolerance is for
-        scenario = scenario_with_step(&scenario, scenario.run.step);
-    }
-    return tune_world_lacks(&scenario);
 }
 
 // Text, each line moved in by four spaces.

@@ -18,9 +18,13 @@ bool tune_export_code(const TuneReport *report, Text *text, Err *err);
 // Why there is no program of that setting against libjointplay; NULL where there is one.
 const char *tune_export_lacks(const TuneReport *report);
 
-// The scenario of the setting of code, its step chosen where it is chosen for a tolerance.
+// The settings, by the numbers of their trials, with which a program could be written: those that
+// meet the error, the cheapest first, or else the one to hand on. Returns how many there are.
+size_t tune_export_trials(const TuneReport *report, int trials[SCHEME_MAX]);
+
+// The scenario of the setting of a trial, its step chosen where it is chosen for a tolerance.
 // ERR_SOLVER where none can be.
-bool tune_export_scenario(const TuneReport *report, Scenario *scenario, Err *err);
+bool tune_export_scenario(const TuneReport *report, int trial, Scenario *scenario, Err *err);
 
 // For people, one section each.
 void tune_export_write(const TuneReport *report, const Style *style, Text *text);

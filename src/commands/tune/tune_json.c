@@ -217,6 +217,8 @@ static json_t *program_object(const TuneProgram *program)
     json_value_set(object, "step_s", program->step_s);
     json_value_set(object, "error_max", program->error);
     json_object_set_new(object, "meets", json_boolean(program->meets));
+    json_object_set_new(object, "steps", json_integer((json_int_t)program->steps));
+    json_value_set(object, "processor_s", program->processor_s);
     json_value_set(object, "first_step_s", program->step_first_s);
     json_value_set(object, "first_error_max", program->error_first);
     json_object_set_new(object, "message", json_value_text(program->reason));

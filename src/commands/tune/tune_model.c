@@ -26,6 +26,8 @@ static void measure(const TuneSearch *search, const EngineDriver *driver, const 
     Trajectory *run =
         engine_run_model(driver, NATIVE, scenario, search->time_limit_s, &said, &model->text);
     LadderRun result = {.kind = LADDER_ERROR, .is_complete = run->is_complete};
+    model->steps = run->steps;
+    model->processor_s = run->wall_s;
     snprintf(result.message, sizeof result.message, "%.*s", LADDER_MESSAGE_SIZE - 1, run->message);
     if (run->is_complete) {
         const Truth *truth = search->truth;

@@ -5,8 +5,10 @@
 // is built with the same calls in a process of its own, and held against the reference at exactly
 // the times that the program prints.
 #include "commands/tune/tune_program.h"
+#include "base/clock.h"
 #include "base/err.h"
 #include "base/zeroed.h"
+#include "commands/tune/tune_export.h"
 #include "commands/tune/tune_world.h"
 #include "contact/law.h"
 #include "measure/child.h"
@@ -521,25 +523,32 @@ static const Solver LIBRARY = {
     .close = close_world,
 };
 
+// A setting with which the program could be written: its trial, and the case with it.
+typedef struct Candidate {
+    int trial;
+    Scenario scenario;
+} Candidate;
+
 typedef struct Measuring {
     const TuneSearch *search;
-    const Scenario *scenario; // with the setting
+    const Candidate *candidates; // the cheapest of the search first
+    size_t count;
     bool may_shorten;
     bool is_begun;
     TuneProgram *program;
 } Measuring;
 
-// The error of the program at a step, NAN where it has none, with the reason.
-static double tune_program_measure(const Measuring *measuring, double step_s, TuneProgram *program)
+// The error of the world against the reference at the times that the program prints.
+static LadderRun tune_program_compare(const Tune *tune, const Scenario *printed,
+                                      TuneProgram *program)
 {
-    const Tune *tune = measuring->search->tune;
-    Scenario printed = *measuring->scenario;
-    printed.run.step = step_s;
-    printed.run.interval = tune_world_every(&printed) * step_s;
     LadderRun run = {.kind = LADDER_ERROR};
-    Trajectory *own = run_motion(&printed, &LIBRARY, NOBODY);
-    printed.reference.tolerance = TIGHTER * law_reference_tolerance(&printed);
-    Trajectory *truth = run_motion(&printed, registry_solver(BACKEND_REFERENCE), NOBODY);
+    const double started_s = clock_processor_s();
+    Trajectory *own = run_motion(printed, &LIBRARY, NOBODY);
+    program->processor_s = clock_processor_s() - started_s;
+    Scenario finer = *printed;
+    finer.reference.tolerance = TIGHTER * law_reference_tolerance(printed);
+    Trajectory *truth = run_motion(&finer, registry_solver(BACKEND_REFERENCE), NOBODY);
     const Trajectory *failed = !own->is_complete ? own : truth;
     run.is_complete = own->is_complete && truth->is_complete;
     snprintf(run.message, sizeof run.message, "%.*s", LADDER_MESSAGE_SIZE - 1, failed->message);
@@ -549,35 +558,76 @@ static double tune_program_measure(const Measuring *measuring, double step_s, Tu
     }
     trajectory_destroy(truth);
     trajectory_destroy(own);
-    return tune_error(tune, &run, program->reason);
+    return run;
 }
 
-static bool is_met(const Tune *tune, double error)
+// The program of a setting at a step; its error is NAN where it has none, for the reason there.
+static TuneProgram tune_program_measure(const Measuring *measuring, const Candidate *candidate,
+                                        double step_s)
 {
-    return error + tune->truth.uncertainty <= tune->target;
+    const Tune *tune = measuring->search->tune;
+    TuneProgram program = {.is_run = true, .trial = candidate->trial, .step_s = step_s};
+    Scenario printed = candidate->scenario;
+    printed.run.step = step_s;
+    printed.run.interval = tune_world_every(&printed) * step_s;
+    program.steps = tune_world_steps(&printed);
+    const LadderRun run = tune_program_compare(tune, &printed, &program);
+    program.error = tune_error(tune, &run, program.reason);
+    program.meets = program.error + tune->truth.uncertainty <= tune->target;
+    return program;
 }
 
-// In the child: coarse to fine, until the target is met.
+// Whether a program is to be preferred to another: it meets the target for less, or comes nearer.
+static bool is_better(const Tune *tune, const TuneProgram *program, const TuneProgram *than)
+{
+    if (program->meets != than->meets) {
+        return program->meets;
+    }
+    if (program->meets) {
+        return tune->cost == TUNE_STEPS ? program->steps < than->steps
+                                        : program->processor_s < than->processor_s;
+    }
+    return !isnan(program->error) && !(program->error >= than->error);
+}
+
+// From coarse to fine, until two neighbours meet the target: an error that is small by luck is no
+// basis for a program. `best` is what other settings come to; what costs more is left.
+static TuneProgram search_steps(const Measuring *measuring, const Candidate *candidate,
+                                const TuneProgram *best)
+{
+    const Tune *tune = measuring->search->tune;
+    const double first_s = candidate->scenario.run.step;
+    const TuneProgram first = tune_program_measure(measuring, candidate, first_s);
+    TuneProgram found = first;
+    TuneProgram last = first;
+    int index = tune_index_below(first_s);
+    index += tune_value(index) < first_s ? 0 : 1;
+    for (int i = 0; i < SHORTER_MOST && measuring->may_shorten; i++, index++) {
+        if (best->meets && !is_better(tune, &last, best) && last.processor_s > best->processor_s) {
+            break;
+        }
+        const TuneProgram next = tune_program_measure(measuring, candidate, tune_value(index));
+        if (last.meets && next.meets) {
+            found = last;
+            break;
+        }
+        last = next;
+        found = is_better(tune, &next, &found) || next.meets ? next : found;
+    }
+    found.step_first_s = first_s;
+    found.error_first = first.error;
+    return found;
+}
+
+// In the child.
 static void work(const void *context, void *result)
 {
     const Measuring *measuring = context;
-    const Tune *tune = measuring->search->tune;
     TuneProgram *program = result;
-    *program = *measuring->program;
-    const double first_s = program->step_s;
-    program->error_first = program->error = tune_program_measure(measuring, first_s, program);
-    program->meets = is_met(tune, program->error);
-    if (!measuring->may_shorten) {
-        return;
-    }
-    int index = tune_index_below(first_s);
-    index += tune_value(index) < first_s ? 0 : 1;
-    for (int i = 0; i < SHORTER_MOST && !program->meets; i++, index++) {
-        const double error = tune_program_measure(measuring, tune_value(index), program);
-        program->meets = is_met(tune, error);
-        if (program->meets || isnan(program->error) || error < program->error) {
-            program->step_s = tune_value(index);
-            program->error = error;
+    for (size_t i = 0; i < measuring->count; i++) {
+        const TuneProgram own = search_steps(measuring, &measuring->candidates[i], program);
+        if (i == 0 || is_better(measuring->search->tune, &own, program)) {
+            *program = own;
         }
     }
 }
@@ -616,18 +666,60 @@ static bool tune_program_wait(void *owner)
     return true;
 }
 
-bool tune_program_run(const TuneSearch *search, const Scenario *scenario, bool may_shorten,
-                      Err *err)
+// Whether the library steps two cases in the same way: it chooses its rows' map by itself, and an
+// impulse needs no solver of ODE's.
+static bool is_stepped_alike(const Scenario *a, const Scenario *b)
+{
+    const bool is_impulse = scenario_integrates_contacts(a);
+    return a->ode.stepping == b->ode.stepping && is_impulse == scenario_integrates_contacts(b) &&
+           (is_impulse || a->ode.solver == b->ode.solver);
+}
+
+// The settings that a program can have, each way of stepping once. Fails with ERR_SOLVER where one
+// that chooses its step finds none.
+static bool list_candidates(const TuneReport *report, Candidate *candidates, size_t *count,
+                            Err *err)
+{
+    int trials[SCHEME_MAX];
+    const size_t trial_count = tune_export_trials(report, trials);
+    *count = 0;
+    for (size_t i = 0; i < trial_count; i++) {
+        Candidate *candidate = &candidates[*count];
+        candidate->trial = trials[i];
+        if (!tune_export_scenario(report, trials[i], &candidate->scenario, err)) {
+            return false;
+        }
+        bool is_new = true;
+        for (size_t k = 0; k < *count; k++) {
+            is_new = is_new && !is_stepped_alike(&candidates[k].scenario, &candidate->scenario);
+        }
+        *count += is_new ? 1 : 0;
+    }
+    return true;
+}
+
+static bool run_candidates(const TuneSearch *search, const TuneReport *report,
+                           Candidate *candidates, Err *err)
 {
     TuneProgram *program = &search->tune->program;
-    *program = (TuneProgram){.is_asked = true,
-                             .is_run = true,
-                             .step_first_s = scenario->run.step,
-                             .step_s = scenario->run.step,
+    Measuring measuring = {
+        .search = search,
+        .candidates = candidates,
+        .may_shorten = tune_report_is_met(report) && search->tune->held_s == 0.0,
+        .program = program,
+    };
+    if (!list_candidates(report, candidates, &measuring.count, err)) {
+        return false;
+    }
+    if (measuring.count == 0) {
+        return true;
+    }
+    *program = (TuneProgram){.is_run = true,
+                             .trial = candidates[0].trial,
+                             .step_first_s = candidates[0].scenario.run.step,
+                             .step_s = candidates[0].scenario.run.step,
                              .error_first = NAN,
                              .error = NAN};
-    Measuring measuring = {
-        .search = search, .scenario = scenario, .may_shorten = may_shorten, .program = program};
     const Pool pool = {
         .jobs = 1,
         .work = work,
@@ -640,4 +732,12 @@ bool tune_program_run(const TuneSearch *search, const Scenario *scenario, bool m
         .owner = &measuring,
     };
     return pool_run(&pool, err);
+}
+
+bool tune_program_run(const TuneSearch *search, const TuneReport *report, Err *err)
+{
+    Candidate *candidates = zeroed(SCHEME_MAX, sizeof *candidates);
+    const bool is_done = run_candidates(search, report, candidates, err);
+    free(candidates);
+    return is_done;
 }

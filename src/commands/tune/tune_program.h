@@ -4,10 +4,9 @@
 
 #include "commands/tune/tune_runs.h"
 
-// Runs the world of the program of a scenario, which has a setting with a step, and holds it
-// against the reference at the times that the program prints. Where the error is above the target
-// that the setting meets, the step is shortened along the grid until it is not; a step that is held
-// stays, and so does one that may not be shortened. The result is the search's program. Fails with
-// ERR_SOLVER where there is no process left.
-bool tune_program_run(const TuneSearch *search, const Scenario *scenario, bool may_shorten,
-                      Err *err);
+// Runs the worlds of the programs that could be written, and holds each against the reference at
+// the times that it prints. Where the error is above the target, the step is shortened along the
+// grid until it and the next finer one meet it; a step that is held stays. The cheapest that meets
+// the target, or else the nearest, is the search's program; there is none where no setting can be
+// written. Fails with ERR_SOLVER where there is no process left.
+bool tune_program_run(const TuneSearch *search, const TuneReport *report, Err *err);

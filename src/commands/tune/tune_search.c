@@ -525,7 +525,7 @@ bool tune_search_execute(const TuneSearch *asked, Err *err)
               tune_linear_run(&search, err);
     const TuneReport report = {.scenario = search.scenario, .tune = tune};
     TuneMujoco mujoco;
-    if (is_done && tune->model.is_asked && !tune->contact.is_limit &&
+    if (is_done && tune->asked[TUNE_FILE_MJCF] != TUNE_UNASKED && !tune->contact.is_limit &&
         tune_mujoco_find(&report, &mujoco)) {
         tune_model_run(&search, mujoco.step_s);
     }

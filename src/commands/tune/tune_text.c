@@ -1,6 +1,7 @@
 // Writes the text of a search: the cheapest setting, its use, and what was tried.
 #include "commands/tune/tune.h"
 #include "commands/tune/tune_export.h"
+#include "commands/tune/tune_files.h"
 #include "commands/tune/tune_search.h"
 #include "write/measured_fields.h"
 #include "write/number.h"
@@ -602,6 +603,7 @@ void tune_screen_write(const void *target, const Style *style, Text *text)
     if (!(tune->held_s > 0.0) || !tune_is_met_held(tune)) {
         tune_screen_schemes(report, text);
     }
+    tune_files_write(report, text);
     if (tune->reference.tolerance > 0.0) {
         text_append(text, "  Without ODE: reference.tolerance=%.3g, error %.3g, %.4g ms.\n",
                     tune->reference.tolerance, tune->reference.error,

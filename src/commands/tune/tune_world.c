@@ -49,6 +49,7 @@ static void tune_code_head(const TuneCode *code, const char *what, const char *c
     if (isfinite(code->target)) {
         text_append(text, ", %.3g asked for", code->target);
     }
+    text_append(text, "\n// cost     %zu steps", tune_world_steps(code->scenario));
     text_append(text, "\n// same as  %s\n", code->command);
 }
 
@@ -712,19 +713,23 @@ double tune_world_every(const Scenario *scenario)
     return fmax(1.0, round(scenario_sample_time(scenario, 1) / scenario->run.step));
 }
 
+size_t tune_world_steps(const Scenario *scenario)
+{
+    // what is left of the last step is rounding
+    return (size_t)ceil(scenario_duration(scenario) / scenario->run.step - 1e-6);
+}
+
 static void write_includes(const Scenario *scenario, Text *text)
 {
     const double step_s = scenario->run.step;
     const double every = tune_world_every(scenario);
-    // what is left of the last step is rounding
-    const double steps = ceil(scenario_duration(scenario) / step_s - 1e-6);
     text_append(text,
                 "\n#include <jointplay/jointplay.h>\n#include <math.h>\n#include <stdio.h>\n"
                 "#include <stdlib.h>\n\n"
                 "static const double STEP = %s; // s\n"
-                "static const int STEPS = %.0f, EVERY = %.0f; // from line to line\n\n"
+                "static const int STEPS = %zu, EVERY = %.0f; // from line to line\n\n"
                 "static dWorldID world;\n",
-                number_shortest(step_s).text, steps, every);
+                number_shortest(step_s).text, tune_world_steps(scenario), every);
 }
 
 // The bodies and joints, which main makes.

@@ -23,6 +23,9 @@ static const double TUNE_WORLD_ERP = 1.5;
 // How many steps of a program lie between two lines of its table, which are about a sample apart.
 double tune_world_every(const Scenario *scenario);
 
+// How many steps a program takes.
+size_t tune_world_steps(const Scenario *scenario);
+
 // Why the library cannot do a case with its setting, as a sentence that ends without a full stop;
 // NULL where it can.
 const char *tune_world_lacks(const Scenario *scenario);
