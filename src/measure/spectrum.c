@@ -100,15 +100,20 @@ static void fold(Spectrum *spectrum, bool is_odd)
     }
 }
 
+static void fold_signal(Spectrum *spectrum)
+{
+    if (spectrum->orders.samples % 2 == 0) {
+        fold(spectrum, false);
+        fold(spectrum, true);
+    }
+}
+
 static void take_signal(Spectrum *spectrum, SpectrumSignal *signal, const void *context)
 {
     for (size_t n = 0; n < spectrum->orders.samples; n++) {
         spectrum->values[n] = signal(context, spectrum->orders.first + n);
     }
-    if (spectrum->orders.samples % 2 == 0) {
-        fold(spectrum, false);
-        fold(spectrum, true);
-    }
+    fold_signal(spectrum);
 }
 
 static double amplitude_at(const Spectrum *spectrum, size_t line)
@@ -128,13 +133,64 @@ static double amplitude_at(const Spectrum *spectrum, size_t line)
     return line == 0 ? real / (double)samples : 2.0 * hypot(real, imaginary) / (double)samples;
 }
 
-void spectrum_find(Spectrum *spectrum, SpectrumSignal *signal, const void *context,
-                   double *amplitudes)
+static void find_amplitudes(const Spectrum *spectrum, double *amplitudes)
 {
-    take_signal(spectrum, signal, context);
     for (size_t k = 0; k < spectrum->orders.count; k++) {
         amplitudes[k] = amplitude_at(spectrum, k);
     }
+}
+
+// The largest amplitude of the lines below a share of the sampling rate, as many as are looked at.
+static double largest_below(const Spectrum *spectrum, size_t parts)
+{
+    const size_t last = spectrum->orders.samples / parts;
+    double largest = 0.0;
+    for (size_t k = 1; k <= spectrum->orders.count && k < last; k++) {
+        largest = fmax(largest, amplitude_at(spectrum, last - k));
+    }
+    return largest;
+}
+
+// What may be folded into a line from either side of the sampling rate.
+static double find_folded(const Spectrum *spectrum)
+{
+    const double half = largest_below(spectrum, 2);
+    const double quarter = largest_below(spectrum, 4);
+    return quarter > 0.0 ? 2.0 * half * fmin(1.0, half / quarter) : 2.0 * half;
+}
+
+double spectrum_find(Spectrum *spectrum, SpectrumSignal *signal, const void *context,
+                     double *amplitudes)
+{
+    take_signal(spectrum, signal, context);
+    find_amplitudes(spectrum, amplitudes);
+    return find_folded(spectrum);
+}
+
+double spectrum_find_acceleration(Spectrum *spectrum, SpectrumSignal *signal, SpectrumSignal *rate,
+                                  const void *context, double span_s, double *amplitudes)
+{
+    const Orders *orders = &spectrum->orders;
+    const size_t first = orders->first;
+    const size_t end = first + orders->samples;
+    // the parabola b t + c t^2
+    const double c = (rate(context, end) - rate(context, first)) / (2.0 * span_s);
+    const double b = (signal(context, end) - signal(context, first)) / span_s - c * span_s;
+    const double start = signal(context, first);
+    for (size_t n = 0; n < orders->samples; n++) {
+        const double time_s = span_s * (double)n / (double)orders->samples;
+        spectrum->values[n] = signal(context, first + n) - start - time_s * (b + c * time_s);
+    }
+    fold_signal(spectrum);
+    find_amplitudes(spectrum, amplitudes);
+    amplitudes[0] = 2.0 * c;
+    double square = 0.0;
+    for (size_t k = 1; k < orders->count; k++) {
+        const double frequency = 2.0 * M_PI * (double)k / span_s;
+        square = frequency * frequency;
+        amplitudes[k] *= square;
+    }
+    return square * find_folded(spectrum);
 }
 
 // The angular velocity of one body.

@@ -47,9 +47,16 @@ void spectrum_finish(Spectrum *spectrum);
 // The amplitudes of a signal, one an order: of order 0 its mean, of any other
 //     a_k = (2 / N) |sum over n of x_n exp(-2 pi i k n / M)|
 // with M samples a revolution and N in all. What the signal has above half the sampling rate is
-// folded into lower orders.
-void spectrum_find(Spectrum *spectrum, SpectrumSignal *signal, const void *context,
-                   double *amplitudes);
+// folded into lower orders: by up to the value that is returned, as far as the amplitudes next to a
+// half and a quarter of that rate tell, which are taken to go on falling as between these.
+double spectrum_find(Spectrum *spectrum, SpectrumSignal *signal, const void *context,
+                     double *amplitudes);
+
+// The same of the second derivative of a signal with a rate: of x less the parabola that makes x
+// and its rate end as they began, times the square of each frequency. What is folded was first
+// divided by the square of its own, far higher one. `span_s` is the time of all samples.
+double spectrum_find_acceleration(Spectrum *spectrum, SpectrumSignal *signal, SpectrumSignal *rate,
+                                  const void *context, double span_s, double *amplitudes);
 
 // The amplitude of a body's angular velocity at one whole order, rad/s; NAN where there is none.
 double spectrum_body_order(const Trajectory *run, size_t body, size_t order);

@@ -30,12 +30,6 @@ static double omega_at(const void *context, size_t sample)
     return trajectory_motion(signal->run, sample, signal->number)->omega;
 }
 
-static double alpha_at(const void *context, size_t sample)
-{
-    const Signal *signal = context;
-    return trajectory_motion(signal->run, sample, signal->number)->alpha;
-}
-
 static double x_at(const void *context, size_t sample)
 {
     const Signal *signal = context;
@@ -158,17 +152,42 @@ static json_t *section_json(const Scenario *scenario, const Trajectory *run,
 
 // Spectra.
 
-static void set_amplitudes(json_t *object, const char *key, Spectrum *spectrum, SpectrumSignal *of,
-                           const Signal *signal)
+// The lines of a signal, and by how much they may be off, under the same key in `uncertainty`.
+static void set_lines(json_t *object, const char *key, const double *amplitudes, size_t count,
+                      double folded)
 {
-    const size_t count = spectrum->orders.count;
-    double *amplitudes = zeroed(count, sizeof *amplitudes);
-    spectrum_find(spectrum, of, signal, amplitudes);
     json_t *values = json_array();
     for (size_t k = 0; k < count; k++) {
         json_array_append_new(values, json_value_real(amplitudes[k]));
     }
     json_object_set_new(object, key, values);
+    json_t *uncertainty = json_object_get(object, "uncertainty");
+    if (uncertainty == NULL) {
+        uncertainty = json_object();
+        json_object_set_new(object, "uncertainty", uncertainty);
+    }
+    json_value_set(uncertainty, key, folded);
+}
+
+static void set_amplitudes(json_t *object, const char *key, Spectrum *spectrum, SpectrumSignal *of,
+                           const Signal *signal)
+{
+    double *amplitudes = zeroed(spectrum->orders.count, sizeof *amplitudes);
+    const double folded = spectrum_find(spectrum, of, signal, amplitudes);
+    set_lines(object, key, amplitudes, spectrum->orders.count, folded);
+    free(amplitudes);
+}
+
+// Of a body's angle.
+static void set_accelerations(json_t *object, Spectrum *spectrum, const Signal *signal)
+{
+    const Orders *orders = &spectrum->orders;
+    const double *times = signal->run->times;
+    const double span_s = times[orders->first + orders->samples] - times[orders->first];
+    double *amplitudes = zeroed(orders->count, sizeof *amplitudes);
+    const double folded =
+        spectrum_find_acceleration(spectrum, angle_at, omega_at, signal, span_s, amplitudes);
+    set_lines(object, "alpha_rad_s2", amplitudes, orders->count, folded);
     free(amplitudes);
 }
 
@@ -191,7 +210,7 @@ static json_t *spectrum_json(const Scenario *scenario, const Trajectory *run, co
         const Signal signal = {scenario, run, i};
         json_t *body = json_object();
         set_amplitudes(body, "omega_rad_s", &spectrum, omega_at, &signal);
-        set_amplitudes(body, "alpha_rad_s2", &spectrum, alpha_at, &signal);
+        set_accelerations(body, &spectrum, &signal);
         set_amplitudes(body, "velocity_x_m_s", &spectrum, velocity_x_at, &signal);
         set_amplitudes(body, "velocity_y_m_s", &spectrum, velocity_y_at, &signal);
         json_object_set_new(bodies, linkage->bodies[i].name, body);
