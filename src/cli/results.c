@@ -8,10 +8,28 @@
 #include "write/file.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum { ENDING_SIZE = 32 }; // "-compare.json"
 
-void results_print(const Results *results, const CommonOptions *options, const void *report)
+void results_print_begin(const CommonOptions *options, ResultsText *write, const void *report,
+                         Text *begun)
+{
+    if (options->is_json) {
+        return;
+    }
+    const Style style = output_style(stdout, options->is_wide);
+    write(report, &style, begun);
+    Text shown; // which is folded
+    text_init(&shown);
+    text_append(&shown, "%s", begun->data);
+    output_text(&shown, &style);
+    text_finish(&shown);
+    fflush(stdout);
+}
+
+void results_print_rest(const Results *results, const CommonOptions *options, const void *report,
+                        const Text *begun)
 {
     if (options->is_json) {
         output_json(results->json(report));
@@ -23,8 +41,21 @@ void results_print(const Results *results, const CommonOptions *options, const v
     const bool is_whole = results->screen == NULL || options->is_full || options->is_wide;
     (is_whole ? results->text : results->screen)(report, &style, &text);
     text_append(&text, "%s", results->is_followed ? "\n" : "");
-    output_text(&text, &style);
+    const bool is_begun = begun->length > 0 && strncmp(text.data, begun->data, begun->length) == 0;
+    Text rest;
+    text_init(&rest);
+    text_append(&rest, "%s", text.data + (is_begun ? begun->length : 0));
+    output_text(&rest, &style);
+    text_finish(&rest);
     text_finish(&text);
+}
+
+void results_print(const Results *results, const CommonOptions *options, const void *report)
+{
+    Text begun;
+    text_init(&begun);
+    results_print_rest(results, options, report, &begun);
+    text_finish(&begun);
 }
 
 bool results_path(const CommonOptions *options, const char *name, const char *ending, char *path,

@@ -36,6 +36,16 @@ typedef struct Results {
 // A table of files, in the initializer of Results.
 #define RESULT_FILES(rows) .files = (rows), .file_count = sizeof(rows) / sizeof *(rows)
 
+// Prints what the text of a report begins with, before the rest of it is known, where it is printed
+// as text, and appends it to `begun`.
+typedef void ResultsText(const void *report, const Style *style, Text *text);
+void results_print_begin(const CommonOptions *options, ResultsText *write, const void *report,
+                         Text *begun);
+
+// Prints the report as results_print does, but for what was printed already, if it begins with it.
+void results_print_rest(const Results *results, const CommonOptions *options, const void *report,
+                        const Text *begun);
+
 // Prints the report, as text or as JSON. `options` here and below are those of the command, which
 // begin with CommonOptions.
 void results_print(const Results *results, const CommonOptions *options, const void *report);

@@ -341,9 +341,8 @@ static void append_motion(const Scenario *scenario, bool is_below_table, Text *t
     }
 }
 
-// What the case as it is written says of its first revolution, and other damping of the settled
-// one.
-static void append_beside(const Scenario *scenario, Text *text)
+// What the case as it is written says of its first revolution.
+static void append_first(const Scenario *scenario, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
     size_t numbers[SHOWN_JOINTS];
@@ -357,13 +356,26 @@ static void append_beside(const Scenario *scenario, Text *text)
     text_append(&line, " ");
     append_force(scenario, numbers[0], settled->first[numbers[0]], &line);
     text_append(&line, ", not counted.");
-    if (has_damped(settled)) {
-        text_append(&line, " With half the damping: ");
-        append_damped(scenario, numbers[0], &settled->halved, &line);
-        text_append(&line, ", with twice as much: ");
-        append_damped(scenario, numbers[0], &settled->doubled, &line);
-        text_append(&line, ".");
+    screen_sentence(&line, text);
+}
+
+void settled_damping_sentence(const Scenario *scenario, Text *text)
+{
+    const SettledStart *settled = &scenario->settled;
+    size_t numbers[SHOWN_JOINTS];
+    if (settled->motion_count == 0 || !has_damped(settled) ||
+        largest_joints(scenario, numbers) == 0) {
+        return;
     }
+    Text line;
+    text_init(&line);
+    text_append(&line, "  With half the damping: ");
+    text_append_shown(&line, scenario->linkage.joints[numbers[0]].name);
+    text_append(&line, " ");
+    append_damped(scenario, numbers[0], &settled->halved, &line);
+    text_append(&line, ", with twice as much: ");
+    append_damped(scenario, numbers[0], &settled->doubled, &line);
+    text_append(&line, ".");
     screen_sentence(&line, text);
 }
 
@@ -422,7 +434,7 @@ void settled_sentences(const Scenario *scenario, bool is_below_table, Text *text
         text_append(&line, ".");
         screen_sentence(&line, text);
     }
-    append_beside(scenario, text);
+    append_first(scenario, text);
 }
 
 void settled_lines(const Scenario *scenario, Text *text)
@@ -430,5 +442,6 @@ void settled_lines(const Scenario *scenario, Text *text)
     const size_t start = text->length;
     settled_louder(scenario, "of the motion here", text);
     settled_sentences(scenario, false, text);
+    settled_damping_sentence(scenario, text);
     text_fold_behind(text, start, STYLE_WIDTH);
 }

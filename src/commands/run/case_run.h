@@ -22,6 +22,9 @@ typedef struct CaseRun {
         spent_s[BACKEND_COUNT]; // of processor time by each backend, but for starts beside its run
     RunReport report;           // points into this CaseRun, which must not be moved
     size_t failed_count;
+    // Called with a report of the reference alone as soon as there is one; NULL: nobody waits.
+    void (*answered)(const RunReport *report, void *listener);
+    void *listener;
 } CaseRun;
 
 // Runs the scenario that stands in it, with the reference certified unless it is to run alone, on

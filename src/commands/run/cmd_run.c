@@ -101,13 +101,28 @@ static const Results RESULTS = {
     RESULT_FILES(FILES),
 };
 
-static bool report_case(const RunCommand *command, const CaseRun *run, json_t *objects, Err *err)
+// What is printed of a case so far.
+typedef struct Printing {
+    const CommonOptions *options;
+    Progress *progress;
+    Text begun;
+} Printing;
+
+static void print_answer(const RunReport *report, void *listener)
+{
+    Printing *printing = listener;
+    progress_end(printing->progress);
+    results_print_begin(printing->options, run_overview_answer, report, &printing->begun);
+}
+
+static bool report_case(const RunCommand *command, const CaseRun *run, const Text *begun,
+                        json_t *objects, Err *err)
 {
     const CommonOptions *common = &command->choices.common;
     if (objects != NULL) {
         json_array_append_new(objects, run_json_build(&run->report));
     } else {
-        results_print(&RESULTS, common, &run->report);
+        results_print_rest(&RESULTS, common, &run->report, begun);
     }
     return (command->series == NULL ||
             run_files_write(run, RUN_SERIES, command->series, common->is_quiet, err)) &&
@@ -171,9 +186,14 @@ static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
     Progress progress;
     progress_begin(&progress, command->choices.common.is_quiet);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
+        Printing printing = {.options = &command->choices.common, .progress = &progress};
+        text_init(&printing.begun);
+        runs[i].answered = print_answer;
+        runs[i].listener = &printing;
         case_run_execute(&runs[i], &progress);
         runs[i].report.has_log_forces = strcmp(command->force_axis, "log") == 0;
-        is_reported = report_case(command, &runs[i], objects, err);
+        is_reported = report_case(command, &runs[i], &printing.begun, objects, err);
+        text_finish(&printing.begun);
     }
     if (is_reported && objects != NULL) {
         print_json(objects);

@@ -487,13 +487,21 @@ static void append_unknown_error(const RunReport *report, const Trajectory *run,
     }
 }
 
-// What the tolerance would take that run.budget did not allow.
+// What the tolerance would take that run.budget did not allow, or up to when it is held alone, and
+// where that is for the reference, that.
 static void append_wanted(const RunReport *report, const Trajectory *run, Text *text)
 {
+    const double tolerance = report->scenario->run.tolerance;
     if (run->wanted_s > 0.0) {
-        text_append(text, "; %.3g would take some ", report->scenario->run.tolerance);
+        text_append(text, "; %.3g would take some ", tolerance);
         units_append(text, run->wanted_s, "s");
         text_append(text, " (--budget none)");
+    } else if (run->is_short) {
+        text_append(text, "; %.3g is NOT HELD beyond %.4g ms", tolerance,
+                    run->estimate_s * UNITS_MS);
+    } else if (run->estimate_is_cut) {
+        text_append(text, "; %.3g is held to %.4g ms, to where the reference is certain enough",
+                    tolerance, run->estimate_s * UNITS_MS);
     }
 }
 
@@ -521,14 +529,15 @@ static void append_error(const RunReport *report, size_t number, Text *text)
     text_append(text, ".");
 }
 
-static void write_certainty(const RunReport *report, Text *text)
+// How far each engine is off; which runs failed.
+static void write_engines(const RunReport *report, Text *text)
 {
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
         Text words;
         text_init(&words);
         if (!run->is_complete) {
-            text_append(&words, "%s FAILED: %.120s", run->backend, run->message);
+            text_append(&words, "%s FAILED: %.300s", run->backend, run->message);
         } else if (strcmp(run->backend, OPTIONS_BACKENDS[BACKEND_ODE]) == 0 ||
                    run->engine.name[0] != '\0') {
             append_error(report, i, &words);
@@ -538,6 +547,10 @@ static void write_certainty(const RunReport *report, Text *text)
         }
         text_finish(&words);
     }
+}
+
+static void write_certainty(const RunReport *report, Text *text)
+{
     if (!run_report_has_truth(report)) {
         return;
     }
@@ -649,19 +662,34 @@ static void write_columns(const RunReport *report, Text *text)
     append_paragraph(words, text);
 }
 
-void run_overview_sentences(const RunReport *report, Text *text)
+// What is known with the reference: how the motion settled, how sure that is, what was assumed.
+static void write_answer(const RunReport *report, Text *text)
 {
     settled_sentences(report->scenario, true, text);
     write_columns(report, text);
     write_certainty(report, text);
     write_restitution(report->scenario, text);
-    write_time(report, text);
     write_assumed(report->scenario, text);
 }
 
-// All of it but the title.
-static void write_all(const RunReport *report, const Overview *overview, OverviewRows rows,
-                      bool is_alone, Text *text)
+// What takes longer: other damping, and the engines.
+static void write_beside(const RunReport *report, Text *text)
+{
+    settled_damping_sentence(report->scenario, text);
+    write_engines(report, text);
+    write_time(report, text);
+}
+
+void run_overview_sentences(const RunReport *report, Text *text)
+{
+    write_answer(report, text);
+    write_beside(report, text);
+}
+
+// The table, and below it what is known with the reference. Returns whether --full is said to have
+// what there is no room for.
+static bool write_table_and_answer(const RunReport *report, const Overview *overview,
+                                   OverviewRows rows, Text *text)
 {
     text_append(text, "\n");
     size_t start = text->length;
@@ -669,11 +697,9 @@ static void write_all(const RunReport *report, const Overview *overview, Overvie
     text_fold_behind(text, start, STYLE_WIDTH);
     const bool is_full_named = write_table(overview, report->scenario, rows, text);
     start = text->length;
-    run_overview_sentences(report, text);
+    write_answer(report, text);
     text_fold_behind(text, start, STYLE_WIDTH);
-    if (is_alone && !is_full_named) {
-        text_append(text, "  --full: all tables\n");
-    }
+    return is_full_named;
 }
 
 static size_t count_lines(const char *text)
@@ -685,17 +711,37 @@ static size_t count_lines(const char *text)
     return lines;
 }
 
-enum { TITLE_LINES = 3 };
+enum { TITLE_LINES = 3, ENGINE_LINES = 2, BUDGET_LINES = 1, DAMPING_LINES = 2, LAST_LINES = 2 };
 
-void run_overview_write(const RunReport *report, size_t width, bool is_alone, Text *text)
+// How many lines the rest will take at the most, before it is known.
+static size_t lines_of_rest(const Scenario *scenario)
+{
+    const RunOptions *options = &scenario->run;
+    size_t lines = LAST_LINES;
+    lines +=
+        scenario->settled.motion_count > 0 && scenario_has_clearance(scenario) ? DAMPING_LINES : 0;
+    for (size_t i = 0; i < options->backend_count; i++) {
+        const BackendKind backend = options->backends[i];
+        const bool is_engine = backend != BACKEND_ANALYTIC && backend != BACKEND_REFERENCE;
+        const bool may_be_cut = options->step == 0.0 && options->budget > 0.0;
+        lines += is_engine ? ENGINE_LINES + (may_be_cut ? BUDGET_LINES : 0) : 0;
+    }
+    return lines;
+}
+
+// Appends the answer on as many lines as leave room for the rest. Returns whether it says what
+// --full is for.
+static bool append_answer(const RunReport *report, size_t width, Text *text)
 {
     Overview overview = run_overview_make(report);
     OverviewRows rows = {JOINTS_MOST, BODIES_MOST, width};
+    const size_t most = RUN_OVERVIEW_LINES - TITLE_LINES;
+    bool is_full_named = false;
     for (;;) {
         Text own;
         text_init(&own);
-        write_all(report, &overview, rows, is_alone, &own);
-        const bool fits = count_lines(own.data) + TITLE_LINES <= RUN_OVERVIEW_LINES;
+        is_full_named = write_table_and_answer(report, &overview, rows, &own);
+        const bool fits = count_lines(own.data) + lines_of_rest(report->scenario) <= most;
         // bodies first, then joints: what is left out is said, and --full has it
         if (fits || (rows.bodies == 0 && rows.joints == JOINTS_LEAST)) {
             text_append(text, "%s", own.data);
@@ -710,6 +756,25 @@ void run_overview_write(const RunReport *report, size_t width, bool is_alone, Te
         }
     }
     run_overview_free(&overview);
+    return is_full_named;
+}
+
+void run_overview_answer(const void *of, const Style *style, Text *text)
+{
+    const RunReport *report = of;
+    section_title(report->scenario->title, scenario_path(report->scenario), style, text);
+    append_answer(report, style->width, text);
+}
+
+void run_overview_write(const RunReport *report, size_t width, bool is_alone, Text *text)
+{
+    const bool is_full_named = append_answer(report, width, text);
+    const size_t start = text->length;
+    write_beside(report, text);
+    text_fold_behind(text, start, STYLE_WIDTH);
+    if (is_alone && !is_full_named) {
+        text_append(text, "  --full: all tables\n");
+    }
 }
 
 void run_overview_screen(const void *of, const Style *style, Text *text)

@@ -76,6 +76,10 @@ void run_overview_cell(const OverviewRow *row, OverviewCell cell, Text *text);
 // run_text.c below it.
 void run_overview_write(const RunReport *report, size_t width, bool is_alone, Text *text);
 
+// What the first screen begins with, as soon as there is a reference, of a report of it alone:
+// title, table, how the motion settled, how sure it is, what was assumed.
+void run_overview_answer(const void *report, const Style *style, Text *text);
+
 // The whole first screen: title and overview.
 void run_overview_screen(const void *report, const Style *style, Text *text);
 
