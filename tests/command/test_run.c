@@ -2,7 +2,10 @@
 #include "program.h"
 
 #include <math.h>
+#include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
 
 static void a_bad_case_ends_with_status_3_before_anything_runs(void **state)
 {
@@ -18,6 +21,51 @@ static void a_bad_case_ends_with_status_3_before_anything_runs(void **state)
     assert_says(program->errors, "bad.yaml:2:");
     program_path(program, "out", path);
     assert_int_equal(access(path, F_OK), -1);
+}
+
+// Starts a run whose engine takes some minutes, by itself.
+static pid_t start_long_run(const Program *program)
+{
+    const pid_t process = fork();
+    if (process == 0) {
+        char word[PROGRAM_PATH_SIZE];
+        snprintf(word, sizeof word, "%s/paper/impact-k66.yaml", getenv("JOINTPLAY_CASES"));
+        if (chdir(program->folder) == 0 && freopen(".output", "w", stdout) != NULL &&
+            freopen(".errors", "w", stderr) != NULL) {
+            execl(getenv("JOINTPLAY_PROGRAM"), "jointplay", "run", word, "--set",
+                  "run.backends=[ode, reference]", "--set", "ode.map=textbook", "--set",
+                  "ode.stepping=plain", "--set", "run.step=1 ns", (char *)NULL);
+        }
+        _exit(127);
+    }
+    return process;
+}
+
+// Into a file as on a screen: the table and how sure it is, before the engine, which is named first
+// among the backends, has come far.
+static void the_answer_is_there_before_the_engines(void **state)
+{
+    Program *program = *state;
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, ".output", path);
+    const pid_t process = start_long_run(program);
+    const struct timespec pause = {0, 20000000};
+    int ended = 0;
+    program->output[0] = '\0';
+    for (int i = 0; strstr(program->output, "Assumed:") == NULL; i++) {
+        assert_true(i < 3000); // a minute
+        nanosleep(&pause, NULL);
+        if (access(path, R_OK) == 0) {
+            program_read(path, program->output);
+        }
+    }
+    assert_int_equal(waitpid(process, &ended, WNOHANG), 0); // it goes on
+    kill(process, SIGKILL);
+    waitpid(process, &ended, 0);
+    assert_says(program->output, "crank-coupler");
+    assert_says(program->output, "The reference is right to");
+    assert_null(strstr(program->output, "off by"));
+    assert_null(strstr(program->output, "Time:"));
 }
 
 static void a_missing_case_ends_with_status_5(void **state)
@@ -530,6 +578,7 @@ int main(void)
         COMMAND_TEST(a_bad_case_ends_with_status_3_before_anything_runs),
         COMMAND_TEST(a_missing_case_ends_with_status_5),
         COMMAND_TEST(a_run_prints_extremes_error_and_cost),
+        COMMAND_TEST(the_answer_is_there_before_the_engines),
         COMMAND_TEST(json_of_one_case_is_one_object),
         COMMAND_TEST(json_of_several_cases_is_a_list_of_them),
         COMMAND_TEST(settings_of_the_command_line_replace_those_of_the_case),
