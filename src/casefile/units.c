@@ -36,6 +36,7 @@ static const Unit UNITS[] = {
     {"s",       DIMENSION_TIME,          1.0,    1.0},
     {"ms",      DIMENSION_TIME,          1.0,    1e3},
     {"us",      DIMENSION_TIME,          1.0,    1e6},
+    {"ns",      DIMENSION_TIME,          1.0,    1e9},
     {"m/s^2",   DIMENSION_ACCELERATION,  1.0,    1.0},
     {"mm/s^2",  DIMENSION_ACCELERATION,  1.0,    1e3},
     {"m/s",     DIMENSION_SPEED,         1.0,    1.0},

@@ -34,7 +34,7 @@ static pid_t start_long_run(const Program *program)
             freopen(".errors", "w", stderr) != NULL) {
             execl(getenv("JOINTPLAY_PROGRAM"), "jointplay", "run", word, "--set",
                   "run.backends=[ode, reference]", "--set", "ode.map=textbook", "--set",
-                  "ode.stepping=plain", "--set", "run.step=1 ns", (char *)NULL);
+                  "ode.stepping=plain", "--set", "run.step=0.01 us", (char *)NULL);
         }
         _exit(127);
     }
