@@ -142,12 +142,60 @@ static bool has_failed(const LadderPoint *point)
     return (point->is_measured && !point->run.is_complete) || point->timing_message[0] != '\0';
 }
 
+static bool is_truth(const Ladder *ladder, const LadderPoint *point)
+{
+    return strcmp(point->name, ladder->truth.backend) == 0;
+}
+
+static double error_of(const Ladder *ladder, const LadderPoint *point)
+{
+    const LadderTruth *truth = &ladder->truth;
+    // the truth against itself has no error but its uncertainty
+    if (is_truth(ladder, point)) {
+        return truth->uncertainty;
+    }
+    const TrajectoryError *error = &point->run.error;
+    return error_of_run(error, truth->is_limited);
+}
+
+// The frontier is that of ODE and of other engines: the solvers that the truth is made by stand
+// beside them.
+static bool is_ranked(const Ladder *ladder, const LadderPoint *point)
+{
+    const Scheme *scheme = &ladder->schemes[point->scheme];
+    return scheme->backend == BACKEND_ODE || scheme->driver != NULL;
+}
+
+// of two error runs side by side on a busy machine the times are that uncertain
+static const double TIME_MARGIN = 2.0;
+
+// Whether another point is both more accurate and by far faster: no time of this one could bring it
+// to the frontier.
+static bool is_beaten(const Ladder *ladder, const LadderPoint *point)
+{
+    const double error = error_of(ladder, point);
+    for (size_t i = 0; i < ladder->point_count && is_ranked(ladder, point); i++) {
+        const LadderPoint *other = &ladder->points[i];
+        const double error_of_other = error_of(ladder, other);
+        if (is_ranked(ladder, other) && other->run.error.is_known && !has_failed(other) &&
+            isfinite(error_of_other) && !(error_of_other > error) &&
+            TIME_MARGIN * other->run.wall_s < point->run.wall_s) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Of a point that is beaten one timing run is enough.
 static bool is_done(const Ladder *ladder, size_t number)
 {
     const LadderRun run = ladder_run(ladder, number);
     const LadderPoint *point = &ladder->points[run.point];
-    return run.kind == LADDER_ERROR ? point->is_measured
-                                    : point->is_timed[run.round] || has_failed(point);
+    if (run.kind == LADDER_ERROR) {
+        return point->is_measured;
+    }
+    return point->is_timed[run.round] || has_failed(point) ||
+           (run.round > 0 && is_beaten(ladder, point));
 }
 
 size_t ladder_next(const Ladder *ladder, size_t from)
@@ -220,7 +268,8 @@ double ladder_time_left(const Ladder *ladder, size_t jobs)
         const LadderPoint *point = &ladder->points[i];
         const double run_s = time_of_point(ladder, i, rate);
         error_s += point->is_measured ? 0.0 : run_s;
-        for (size_t round = 0; round < ladder->repeats && !has_failed(point); round++) {
+        const size_t rounds = is_beaten(ladder, point) ? 1 : ladder->repeats;
+        for (size_t round = 0; round < rounds && !has_failed(point); round++) {
             timing_s += point->is_timed[round] ? 0.0 : run_s;
         }
     }
@@ -406,22 +455,6 @@ size_t frontier_cheapest(size_t count, const double *times, const double *errors
 
 const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
 
-static bool is_truth(const Ladder *ladder, const LadderPoint *point)
-{
-    return strcmp(point->name, ladder->truth.backend) == 0;
-}
-
-static double error_of(const Ladder *ladder, const LadderPoint *point)
-{
-    const LadderTruth *truth = &ladder->truth;
-    // the truth against itself has no error but its uncertainty
-    if (is_truth(ladder, point)) {
-        return truth->uncertainty;
-    }
-    const TrajectoryError *error = &point->run.error;
-    return error_of_run(error, truth->is_limited);
-}
-
 static void ladder_explain(LadderPoint *point, const char *reason)
 {
     snprintf(point->reason, sizeof point->reason, "%s", reason);
@@ -506,8 +539,6 @@ static void fit_orders(Ladder *ladder)
     }
 }
 
-// The frontier and the cheapest points are those of ODE and of other engines: the solvers that the
-// truth is made by stand beside them.
 static void rank_points(Ladder *ladder)
 {
     const size_t count = ladder->point_count;
@@ -517,9 +548,7 @@ static void rank_points(Ladder *ladder)
     assert(times != NULL && errors != NULL && marks != NULL);
     for (size_t i = 0; i < count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        const Scheme *scheme = &ladder->schemes[point->scheme];
-        const bool is_ranked = scheme->backend == BACKEND_ODE || scheme->driver != NULL;
-        times[i] = is_ranked ? point->wall_median_s : NAN;
+        times[i] = is_ranked(ladder, point) ? point->wall_median_s : NAN;
         errors[i] = point->error;
     }
     frontier_mark(count, times, errors, marks);

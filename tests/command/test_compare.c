@@ -29,7 +29,7 @@ static double number(const json_t *object, const char *key)
 }
 
 // The runs of a comparison: each point an error run and the timing runs.
-static size_t count_runs(const json_t *root)
+static size_t count_most_runs(const json_t *root)
 {
     size_t points = 0;
     const json_t *schemes = json_object_get(root, "schemes");
@@ -164,26 +164,28 @@ static void killing_it_at_any_moment_loses_nothing(void **state)
     run_words(program, "--json");
     assert_int_equal(program->status, 0);
     json_t *root = program_json(program);
-    const size_t runs = count_runs(root);
-    // behind the key and the truth a line a run, none of them made twice
-    assert_int_equal(count_lines(program, "s.jsonl"), runs + 2);
+    // behind the key and the truth a line a run: at the most an error run of each point, and all
+    // its timing runs
+    const size_t runs = count_lines(program, "s.jsonl") - 2;
+    const size_t most = count_most_runs(root);
+    assert_true(runs <= most && runs >= most / 3);
     if (lines > 2) {
         char words[128];
-        snprintf(words, sizeof words, "took %zu of %zu runs from the store s.jsonl", lines - 2,
-                 runs);
+        snprintf(words, sizeof words, "took %zu runs from the store s.jsonl; ", lines - 2);
         assert_says(program->errors, words);
     }
     json_decref(root);
     // once more: everything is there, and nothing is run
     run_words(program, "--json");
     char words[128];
-    snprintf(words, sizeof words, "took %zu of %zu runs from the store s.jsonl", runs, runs);
+    snprintf(words, sizeof words, "took %zu runs from the store s.jsonl; 0 are left", runs);
     assert_says(program->errors, words);
     assert_int_equal(count_lines(program, "s.jsonl"), runs + 2);
     // more repeats only add to it
     run_words(program, "--json --repeats 6");
     assert_says(program->errors, "took ");
-    assert_int_equal(count_lines(program, "s.jsonl"), runs + runs / 6 + 2);
+    const size_t added = count_lines(program, "s.jsonl") - 2 - runs;
+    assert_true(added > 0 && added <= most / 6);
 }
 
 static void told_to_stop_it_says_what_is_kept_and_ends_by_the_signal(void **state)

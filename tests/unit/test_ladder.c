@@ -312,7 +312,35 @@ static void a_runner_that_is_stopped_goes_on_later(void **state)
     runner.listener.should_stop = NULL;
     err = (Err){0};
     assert_true(runner_execute(&runner, &err));
-    assert_int_equal(counts.runs, ladder_run_total(ladder));
+    assert_int_equal(ladder_run_done(ladder), ladder_run_total(ladder));
+    // of points that others beat in error and by far in time all but one timing run are left out
+    assert_true(counts.runs >= 2 * ladder->point_count);
+    ladder_destroy(ladder);
+}
+
+// Of three points one is beaten in error and time, one in time alone.
+static void a_point_that_is_beaten_is_timed_once(void **state)
+{
+    (void)state;
+    Ladder *ladder = make_ladder();
+    static const struct {
+        size_t point;
+        double error;
+        double wall_s;
+        size_t runs;
+    } POINTS[] = {{0, 1e-3, 1.0, REPEATS}, {1, 1e-4, 2.5, REPEATS}, {3, 1e-2, 2.5, 1}};
+    for (size_t i = 0; i < 3; i++) {
+        LadderRun run = {.point = POINTS[i].point, .is_complete = true, .wall_s = POINTS[i].wall_s};
+        run.error = (TrajectoryError){.is_known = true, .max = POINTS[i].error};
+        assert_true(ladder_add(ladder, &run));
+    }
+    size_t runs[8] = {0};
+    for (size_t i = ladder->point_count; i < ladder_run_total(ladder); i++) {
+        runs[ladder_run(ladder, i).point] += ladder_next(ladder, i) == i ? 1 : 0;
+    }
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(runs[POINTS[i].point], POINTS[i].runs);
+    }
     ladder_destroy(ladder);
 }
 
@@ -454,6 +482,7 @@ int main(void)
         cmocka_unit_test(a_point_without_a_sample_in_the_horizon_has_no_error),
         cmocka_unit_test(a_runner_makes_what_is_missing),
         cmocka_unit_test(a_runner_that_is_stopped_goes_on_later),
+        cmocka_unit_test(a_point_that_is_beaten_is_timed_once),
         cmocka_unit_test(a_run_that_hangs_is_a_failed_run),
         cmocka_unit_test(without_a_truth_there_is_no_comparison),
         cmocka_unit_test(ensembles_are_made_beyond_a_horizon),

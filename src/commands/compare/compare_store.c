@@ -251,8 +251,8 @@ static bool compare_store_take_all(CompareStore *store, Ladder *ladder, bool is_
     }
     written_damage(&store->journal, is_quiet);
     if (store->taken > 0) {
-        output_say("took %zu of %zu runs from the store %s\n", store->taken,
-                   ladder_run_total(ladder), store->journal.path);
+        output_say("took %zu runs from the store %s; %zu are left\n", store->taken,
+                   store->journal.path, ladder_run_total(ladder) - ladder_run_done(ladder));
     }
     if (others > 0) {
         output_say("left %zu timing runs of another machine there\n", others);
