@@ -109,7 +109,10 @@ static void json_holds_every_point(void **state)
     for (size_t i = 0; i < 3; i++) {
         const json_t *point = json_array_get(points, i);
         assert_string_equal(json_string_value(json_object_get(point, "status")), "ok");
-        assert_int_equal(json_array_size(json_object_get(point, "wall_s")), 5);
+        // a point that another beats in both may be timed once
+        const size_t timed = json_array_size(json_object_get(point, "wall_s"));
+        const bool is_best = json_is_true(json_object_get(point, "on_frontier"));
+        assert_true(timed == 5 || (timed == 1 && !is_best));
         assert_true(number(point, "wall_min_s") <= number(point, "wall_median_s"));
         assert_true(number(point, "wall_median_s") <= number(point, "wall_max_s"));
     }
