@@ -325,9 +325,12 @@ JP_API JpStatus jp_world_undo(JpWorld *world, JpError *error);
  *
  * jp_world_save writes *size, and where `state` has so many bytes, the state; with `state` NULL the
  * size alone. The answers of bodies that were found in earlier steps are forgotten, so that both
- * worlds find them anew. JP_ERROR_ARGUMENT where `room` is too small. jp_world_resume puts a state
- * into a world; JP_ERROR_ARGUMENT, the world untouched, where it is not one of a world like this.
- */
+ * worlds find them anew, and the last step can no longer be taken back. JP_ERROR_ARGUMENT where
+ * `room` is too small; JP_ERROR_WORLD where a number of the world is none that it could go on with.
+ *
+ * jp_world_resume puts a state into a world; JP_ERROR_ARGUMENT, the world untouched, where it is
+ * not one of a world like this, of another format than this library's, or damaged: its checksum
+ * differs, or a number in it is none that a world can have, such as one that is not finite. */
 JP_API JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size,
                               JpError *error);
 JP_API JpStatus jp_world_resume(JpWorld *world, const void *state, size_t size, JpError *error);

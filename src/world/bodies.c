@@ -228,13 +228,9 @@ void bodies_wake(Bodies *bodies)
     bodies->moving = bodies->count;
 }
 
-// ODE multiplies up to four of these numbers with each other and takes squares on the way: this to
-// the sixth power is a double. What masses and inertias make of them ODE's own assertions see.
-static const double LARGEST = 1e50;
-
 static bool is_vector_in_range(const dReal *vector)
 {
-    return fabs(vector[0]) + fabs(vector[1]) + fabs(vector[2]) <= 0.1 * LARGEST;
+    return fabs(vector[0]) + fabs(vector[1]) + fabs(vector[2]) <= 0.1 * BODIES_LARGEST;
 }
 
 static bool is_body_in_range(dBodyID id)
@@ -246,7 +242,7 @@ static bool is_body_in_range(dBodyID id)
     for (int v = 0; v < 5; v++) {
         sum += fabs(vectors[v][0]) + fabs(vectors[v][1]) + fabs(vectors[v][2]);
     }
-    return sum <= LARGEST;
+    return sum <= BODIES_LARGEST;
 }
 
 // What of a body that is out of range is so most of all.

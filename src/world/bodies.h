@@ -60,6 +60,10 @@ BodyRecord *bodies_add(Bodies *bodies, dBodyID body);
 // those given (NULL among them is the world itself). Returns false where there is no memory.
 bool bodies_gather(Bodies *bodies, const dBodyID *seeds, size_t seed_count);
 
+// ODE multiplies up to four of a body's numbers with each other and takes squares on the way: this
+// to the sixth power is a double. What masses and inertias make of them ODE's own assertions see.
+static const double BODIES_LARGEST = 1e50;
+
 // Whether all numbers of all bodies are of a size that ODE can multiply with each other. Where they
 // are not, the name of one.
 bool bodies_are_in_range(const Bodies *bodies, const char **name);

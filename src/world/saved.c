@@ -1,40 +1,270 @@
 // A world's state as bytes: what a step leaves behind for the next one, and nothing else.
 //
-// A head, then each body in the order in which the world knows them, then each joint. Numbers stand
-// as they are in memory: they are for the same library on the same machine, and come back exactly.
+// Words of 8 bytes: a head, then each body in the order in which the world knows them, then each
+// joint, then a checksum of all words before it. Numbers stand as they are in memory: they are for
+// the same library on the same machine, and come back exactly.
+//
+// One walk over the fields counts, writes, checks and reads the words, so that none is forgotten in
+// one of these. Bytes are checked before anything is read, also those whose checksum is right.
+// Laws, limits and the numbers of rows and contacts are the joints' own and no part of the state:
+// nothing in it is an index.
+#include "base/hash.h"
 #include "world/found.h"
 #include "world/play.h"
 #include "world/step.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char MAGIC[16] = "jointplay world";
+static const char MAGIC[16] = "jointplay state";
 
-typedef struct SavedHead {
-    char magic[sizeof MAGIC];
-    size_t size; // of all
-    size_t body_count;
-    size_t joint_count;
-    JpStepping stepping;
-    double last_step;
-    JpWorldStats stats;
-    WorldPace pace;
-} SavedHead;
+// Counts up where the words of a state or their meaning change.
+static const uint64_t FORMAT = 1;
 
-typedef struct SavedBody {
-    BodyMoment moment;
-    dVector3 last_omega;
-    dVector3 last_alpha;
-    bool has_last;
-    double opening[6];
-} SavedBody;
+enum { WORD = 8 };
 
-typedef struct SavedJoint {
-    PlayKind kind;
-    size_t place_count;
-    JointFound carried;
-} SavedJoint;
+_Static_assert(sizeof(double) == WORD && sizeof(size_t) == WORD, "numbers and counts are words");
+
+typedef enum WalkAim {
+    WALK_COUNT, // the words
+    WALK_WRITE, // the fields as words
+    WALK_CHECK, // words, and change nothing
+    WALK_READ,  // words into the fields
+} WalkAim;
+
+typedef struct Walk {
+    WalkAim aim;
+    char *to;         // of WALK_WRITE: where the state begins
+    const char *from; // of WALK_CHECK and WALK_READ
+    size_t count;     // words so far
+    // of WALK_CHECK
+    bool is_other;    // whether the state is of a world made in another way
+    const char *name; // of the first number that no world has; NULL: none
+    size_t word;      // where that is
+    double value;
+} Walk;
+
+// What a number may be.
+typedef struct Range {
+    double least;
+    double most;
+} Range;
+
+static const Range FINITE = {-DBL_MAX, DBL_MAX};
+static const Range SIZE = {0.0, DBL_MAX};
+static const Range SIZE_OR_NONE = {0.0, INFINITY};
+static const Range OF_BODY = {-BODIES_LARGEST, BODIES_LARGEST};
+
+// How far the square of a quaternion's length is from 1 at most: ODE keeps it to rounding.
+static const double TURN_OFF = 1e-9;
+
+// The next word: written from a field, or what stands there.
+static uint64_t next_word(Walk *walk, uint64_t field)
+{
+    uint64_t word = field;
+    if (walk->aim == WALK_WRITE) {
+        memcpy(walk->to + WORD * walk->count, &word, WORD);
+    } else if (walk->aim != WALK_COUNT) {
+        memcpy(&word, walk->from + WORD * walk->count, WORD);
+    }
+    walk->count++;
+    return word;
+}
+
+static void note_wrong(Walk *walk, const char *name, double value)
+{
+    if (walk->name == NULL) {
+        walk->name = name;
+        walk->word = walk->count - 1;
+        walk->value = value;
+    }
+}
+
+static void walk_number(Walk *walk, double *field, Range range, const char *name)
+{
+    uint64_t word;
+    double value;
+    memcpy(&word, field, WORD);
+    word = next_word(walk, word);
+    memcpy(&value, &word, WORD);
+    if (walk->aim == WALK_READ) {
+        *field = value;
+    } else if (walk->aim == WALK_CHECK && !(value >= range.least && value <= range.most)) {
+        note_wrong(walk, name, value);
+    }
+}
+
+static void walk_numbers(Walk *walk, double *fields, size_t count, Range range, const char *name)
+{
+    for (size_t i = 0; i < count; i++) {
+        walk_number(walk, &fields[i], range, name);
+    }
+}
+
+static void walk_vec3(Walk *walk, Vec3 *field, const char *name)
+{
+    walk_number(walk, &field->x, FINITE, name);
+    walk_number(walk, &field->y, FINITE, name);
+    walk_number(walk, &field->z, FINITE, name);
+}
+
+static void walk_flag(Walk *walk, bool *field, const char *name)
+{
+    const uint64_t word = next_word(walk, *field ? 1 : 0);
+    if (walk->aim == WALK_READ) {
+        *field = word != 0;
+    } else if (walk->aim == WALK_CHECK && word > 1) {
+        note_wrong(walk, name, (double)word);
+    }
+}
+
+static void walk_count(Walk *walk, size_t *field)
+{
+    const uint64_t word = next_word(walk, *field);
+    if (walk->aim == WALK_READ) {
+        *field = word;
+    }
+}
+
+// A word that has to be this world's own.
+static void walk_own(Walk *walk, uint64_t own)
+{
+    walk->is_other = next_word(walk, own) != own || walk->is_other;
+}
+
+static void walk_turn(Walk *walk, dQuaternion turn)
+{
+    const size_t first = walk->count;
+    walk_numbers(walk, turn, 4, OF_BODY, "a body's orientation");
+    if (walk->aim == WALK_CHECK) {
+        dQuaternion found;
+        memcpy(found, walk->from + WORD * first, sizeof found);
+        const double square =
+            found[0] * found[0] + found[1] * found[1] + found[2] * found[2] + found[3] * found[3];
+        if (!(fabs(square - 1.0) <= TURN_OFF)) {
+            note_wrong(walk, "the square of the length of a body's quaternion", square);
+        }
+    }
+}
+
+static void walk_body(Walk *walk, BodyRecord *record)
+{
+    BodyMoment *moment = &record->found;
+    walk_numbers(walk, moment->position, 3, OF_BODY, "a body's position");
+    walk_turn(walk, moment->turn);
+    walk_numbers(walk, moment->velocity, 3, OF_BODY, "a body's velocity");
+    walk_numbers(walk, moment->omega, 3, OF_BODY, "a body's angular velocity");
+    walk_numbers(walk, moment->force, 3, OF_BODY, "a force on a body");
+    walk_numbers(walk, moment->torque, 3, OF_BODY, "a torque on a body");
+    walk_flag(walk, &moment->is_enabled, "whether a body is enabled");
+    walk_numbers(walk, record->last_omega, 3, FINITE, "a body's angular velocity before");
+    walk_numbers(walk, record->last_alpha, 3, FINITE, "a body's angular acceleration before");
+    walk_flag(walk, &record->has_last, "whether a body was stepped before");
+    walk_numbers(walk, record->opening, 6, FINITE, "how far ODE's joints moved a body");
+}
+
+static void walk_state(Walk *walk, ContactState *state)
+{
+    walk_flag(walk, &state->is_touching, "whether a contact touches");
+    walk_flag(walk, &state->is_slack, "whether a contact is slack");
+    walk_flag(walk, &state->is_released, "whether a contact was released");
+    walk_flag(walk, &state->is_resting, "whether a contact's impact is over");
+    walk_number(walk, &state->impact_speed, SIZE, "a contact's impact speed");
+    walk_number(walk, &state->damping_speed, SIZE, "the speed in a contact's damping");
+    walk_number(walk, &state->age_s, SIZE, "a contact's age");
+}
+
+static void walk_peaks(Walk *walk, ContactPeaks *peaks)
+{
+    walk_number(walk, &peaks->force, FINITE, "a contact's largest force");
+    walk_number(walk, &peaks->depth, FINITE, "a contact's largest depth");
+    walk_numbers(walk, peaks->forces, 2, FINITE, "a contact's force in a step before");
+    walk_numbers(walk, peaks->depths, 2, FINITE, "a contact's depth in a step before");
+    walk_flag(walk, &peaks->has_series, "whether a contact has lasted for a step");
+    walk_number(walk, &peaks->since, FINITE, "the time between a contact's steps");
+}
+
+// Not what each step finds anew before it looks at it.
+static void walk_side(Walk *walk, Side *side)
+{
+    walk_state(walk, &side->state);
+    walk_number(walk, &side->age, SIZE, "a contact's age");
+    walk_number(walk, &side->lasts, SIZE_OR_NONE, "how long a contact lasts");
+    walk_number(walk, &side->tried, FINITE, "a contact's mobility");
+    walk_number(walk, &side->inside, SIZE, "a contact's depth");
+    walk_number(walk, &side->last_closing, FINITE, "a contact's closing speed before");
+    walk_number(walk, &side->last_step, SIZE, "the step before");
+    walk_number(walk, &side->mobility, FINITE, "a contact's mobility");
+    walk_number(walk, &side->force, FINITE, "a contact's force");
+    walk_peaks(walk, &side->peaks);
+    walk_number(walk, &side->force_max, FINITE, "the largest force of a side");
+    walk_number(walk, &side->depth_max, FINITE, "the largest depth of a side");
+    walk_number(walk, &side->impulse, FINITE, "the impulse of a side");
+    walk_number(walk, &side->work, FINITE, "the work of a side");
+    walk_count(walk, &side->impacts);
+}
+
+// What steps with contacts inside them have left for the next one.
+static void walk_inside(Walk *walk, KernelContact *contact)
+{
+    walk_state(walk, &contact->state);
+    walk_number(walk, &contact->frequency, SIZE, "a contact's frequency");
+    walk_number(walk, &contact->force_per_speed, SIZE, "a contact's force per speed");
+    walk_number(walk, &contact->tolerance, SIZE, "a contact's tolerance");
+    walk_number(walk, &contact->first_width_s, SIZE, "a contact's first local step");
+    walk_numbers(walk, contact->mobility_before, 3, FINITE, "a contact's mobility before");
+    walk_flag(walk, &contact->is_overdamped, "whether a contact is overdamped");
+}
+
+// A rotor that is driven has the inertia that its joint was made with; one that is led has none.
+static void walk_rotor(Walk *walk, const JpJoint *joint, Rotor *rotor)
+{
+    bool is_driven = isfinite(rotor->inertia);
+    walk_flag(walk, &is_driven, "whether a rotor is driven");
+    if (walk->aim == WALK_READ) {
+        rotor->inertia = is_driven && joint->rotor_inertia > 0.0 ? joint->rotor_inertia : INFINITY;
+    }
+    walk_number(walk, &rotor->position, FINITE, "a rotor's position");
+    walk_number(walk, &rotor->speed, FINITE, "a rotor's speed");
+    walk_number(walk, &rotor->drive, FINITE, "a rotor's drive");
+}
+
+static void walk_joint(Walk *walk, JpJoint *joint)
+{
+    JointFound *found = &joint->found;
+    walk_own(walk, joint->kind);
+    walk_own(walk, joint->place_count);
+    walk_own(walk, joint->rotor_inertia > 0.0 ? 1 : 0);
+    walk_rotor(walk, joint, &found->rotor);
+    walk_vec3(walk, &found->force, "a joint's force");
+    walk_number(walk, &found->last, FINITE, "a joint's angle");
+    for (size_t i = 0; i < joint->place_count; i++) {
+        for (size_t k = 0; k < SIDE_COUNT; k++) {
+            walk_side(walk, &found->places[i].sides[k]);
+            walk_inside(walk, &found->places[i].inside[k]);
+        }
+        walk_number(walk, &found->places[i].slid, FINITE, "the energy that friction has taken");
+    }
+}
+
+static void walk_stats(Walk *walk, JpWorldStats *stats)
+{
+    walk_count(walk, &stats->steps);
+    walk_count(walk, &stats->world_steps);
+    walk_count(walk, &stats->rows);
+    walk_count(walk, &stats->fallbacks);
+    walk_count(walk, &stats->coarse);
+}
+
+static void walk_pace(Walk *walk, WorldPace *pace)
+{
+    walk_flag(walk, &pace->is_set, "whether local steps were made");
+    walk_numbers(walk, pace->longest_s, 2, SIZE_OR_NONE, "the next local step");
+    walk_number(walk, &pace->duration_before_s, SIZE, "the step before");
+    walk_number(walk, &pace->stiff_width_s, SIZE_OR_NONE, "the next implicit local step");
+}
 
 static size_t count_joints(const JpWorld *world)
 {
@@ -45,9 +275,45 @@ static size_t count_joints(const JpWorld *world)
     return count;
 }
 
-static size_t saved_size(size_t bodies, size_t joints)
+// The words in front, by which bytes are known to be a state of this library: MAGIC, FORMAT, and
+// how many bytes there are in all.
+enum { FRONT_WORDS = 4 };
+
+// All words but these and the checksum.
+static void walk_world(Walk *walk, JpWorld *world)
 {
-    return sizeof(SavedHead) + bodies * sizeof(SavedBody) + joints * sizeof(SavedJoint);
+    walk->count = FRONT_WORDS;
+    walk_own(walk, world->bodies.count);
+    walk_own(walk, count_joints(world));
+    walk_own(walk, world->options.stepping);
+    walk_number(walk, &world->found.last_step, SIZE, "the step before");
+    walk_stats(walk, &world->found.stats);
+    walk_pace(walk, &world->pace);
+    for (size_t i = 0; i < world->bodies.count; i++) {
+        walk_body(walk, &world->bodies.records[i]);
+    }
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        walk_joint(walk, joint);
+    }
+}
+
+static size_t saved_size(JpWorld *world)
+{
+    Walk walk = {.aim = WALK_COUNT};
+    walk_world(&walk, world);
+    return WORD * (walk.count + 1);
+}
+
+// Of all words but the last: one that is changed always changes it.
+static uint64_t checksum(const char *state, size_t size)
+{
+    uint64_t hash = HASH_START;
+    for (size_t at = 0; at + WORD < size; at += WORD) {
+        uint64_t word;
+        memcpy(&word, state + at, WORD);
+        hash = hash_word(hash, word);
+    }
+    return hash;
 }
 
 static WorldPace pace_of(const JpWorld *world)
@@ -64,63 +330,75 @@ static WorldPace pace_of(const JpWorld *world)
     };
 }
 
-// Writes the world behind the head. What is found there is that of a step that would begin now.
-static void write_world(JpWorld *world, char *at)
-{
-    for (size_t i = 0; i < world->bodies.count; i++) {
-        const BodyRecord *record = &world->bodies.records[i];
-        SavedBody saved;
-        memset(&saved, 0, sizeof saved); // its gaps, too
-        saved.moment = record->found;
-        memcpy(saved.last_omega, record->last_omega, sizeof saved.last_omega);
-        memcpy(saved.last_alpha, record->last_alpha, sizeof saved.last_alpha);
-        saved.has_last = record->has_last;
-        memcpy(saved.opening, record->opening, sizeof saved.opening);
-        memcpy(at, &saved, sizeof saved);
-        at += sizeof saved;
-    }
-    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        SavedJoint saved;
-        memset(&saved, 0, sizeof saved);
-        saved.kind = joint->kind;
-        saved.place_count = joint->place_count;
-        saved.carried = joint->found;
-        memcpy(at, &saved, sizeof saved);
-        at += sizeof saved;
-    }
-}
-
-// What a joint carries, as if a step had found it so. The laws and where sides are stay its own.
-static void find_joint(const JointFound *carried, JpJoint *joint)
-{
-    joint->found = *carried;
-    for (size_t i = 0; i < joint->place_count; i++) {
-        for (size_t k = 0; k < SIDE_COUNT; k++) {
-            const Side *own = &joint->places[i].sides[k];
-            Side *found = &joint->found.places[i].sides[k];
-            found->law = own->law;
-            found->sign = own->sign;
-            found->limit = own->limit;
-        }
-    }
-}
-
-static void find_body(const SavedBody *saved, BodyRecord *record)
-{
-    record->found = saved->moment;
-    memcpy(record->last_omega, saved->last_omega, sizeof record->last_omega);
-    memcpy(record->last_alpha, saved->last_alpha, sizeof record->last_alpha);
-    record->has_last = saved->has_last;
-    memcpy(record->opening, saved->opening, sizeof record->opening);
-}
-
-// Puts back what is found, with a kernel that begins at a pace.
-static void go_on_from_found(JpWorld *world, WorldPace pace)
+// Puts back what is found, with a kernel that begins anew.
+static void go_on_from_found(JpWorld *world)
 {
     WorldResponse none = {0};
     world->found.pause = (CachePause){0};
     found_put_back(world, &none);
-    world->pace = pace;
+}
+
+// What a step that failed has left of a body may be no number, and is of no use.
+static void forget_lost_body(BodyRecord *record)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++) {
+        sum += record->last_omega[k] + record->last_alpha[k];
+        sum += record->opening[k] + record->opening[k + 3];
+    }
+    if (!isfinite(sum)) {
+        memset(record->last_omega, 0, sizeof record->last_omega);
+        memset(record->last_alpha, 0, sizeof record->last_alpha);
+        memset(record->opening, 0, sizeof record->opening);
+        record->has_last = false;
+    }
+}
+
+// A contact of which nothing can be expected is as one that has not been looked at yet.
+static void forget_lost_contact(KernelContact *contact)
+{
+    const double *before = contact->mobility_before;
+    const double sum = contact->frequency + contact->force_per_speed + contact->first_width_s +
+                       before[0] + before[1] + before[2];
+    if (!isfinite(sum)) {
+        contact->frequency = contact->force_per_speed = contact->first_width_s = 0.0;
+        memset(contact->mobility_before, 0, sizeof contact->mobility_before);
+    }
+}
+
+static void forget_lost(JpWorld *world)
+{
+    for (size_t i = 0; i < world->bodies.count; i++) {
+        forget_lost_body(&world->bodies.records[i]);
+    }
+    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
+        for (size_t i = 0; i < joint->place_count; i++) {
+            forget_lost_contact(&joint->found.places[i].inside[0]);
+            forget_lost_contact(&joint->found.places[i].inside[1]);
+        }
+    }
+}
+
+static void write_state(JpWorld *world, char *state, uint64_t size)
+{
+    forget_lost(world);
+    memcpy(state, MAGIC, sizeof MAGIC);
+    memcpy(state + sizeof MAGIC, &FORMAT, WORD);
+    memcpy(state + sizeof MAGIC + WORD, &size, WORD);
+    Walk walk = {.aim = WALK_WRITE, .to = state};
+    walk_world(&walk, world);
+    const uint64_t sum = checksum(state, size);
+    memcpy(state + size - WORD, &sum, WORD);
+}
+
+// Fails with a status where a number is none that a world can go on with.
+static JpStatus check_numbers(const Walk *walk, JpStatus status, JpError *error)
+{
+    return walk->name == NULL ? JP_OK
+                              : refusal(error, status,
+                                        "word %zu of the state, %s, is %g: no world goes on "
+                                        "with that",
+                                        walk->word, walk->name, walk->value);
 }
 
 JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size, JpError *error)
@@ -128,7 +406,7 @@ JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size, J
     REFUSAL_TRY(refusal_of_null(world, "the world", error));
     REFUSAL_TRY(refusal_of_null(size, "the size", error));
     REFUSAL_TRY(step_know_bodies(world, error));
-    *size = saved_size(world->bodies.count, count_joints(world));
+    *size = saved_size(world);
     if (state == NULL) {
         return refusal_none(error);
     }
@@ -137,82 +415,71 @@ JpStatus jp_world_save(JpWorld *world, void *state, size_t room, size_t *size, J
                        "the state takes %zu bytes, and there is room for %zu", *size, room);
     }
     found_keep(world);
-    SavedHead head;
-    memset(&head, 0, sizeof head);
-    memcpy(head.magic, MAGIC, sizeof MAGIC);
-    head.size = *size;
-    head.body_count = world->bodies.count;
-    head.joint_count = count_joints(world);
-    head.stepping = world->options.stepping;
-    head.last_step = world->last_step;
-    head.stats = world->stats;
-    head.pace = pace_of(world);
-    memcpy(state, &head, sizeof head);
-    write_world(world, (char *)state + sizeof head);
+    world->pace = pace_of(world);
+    write_state(world, state, *size);
     // as the world that is resumed does
-    go_on_from_found(world, head.pace);
+    go_on_from_found(world);
+    Walk walk = {.aim = WALK_CHECK, .from = state};
+    walk_world(&walk, world);
+    REFUSAL_TRY(check_numbers(&walk, JP_ERROR_WORLD, error));
     return refusal_none(error);
 }
 
-// Whether the joints are of the same kinds, with as many places.
-static bool has_joints(const JpWorld *world, const char *at)
+// Whether these bytes are whole, and a state that this library has written.
+static JpStatus check_front(const char *state, size_t size, JpError *error)
 {
-    for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        SavedJoint saved;
-        memcpy(&saved, at, sizeof saved);
-        if (saved.kind != joint->kind || saved.place_count != joint->place_count) {
-            return false;
-        }
-        at += sizeof saved;
+    if (size < WORD * (FRONT_WORDS + 1)) {
+        return refusal(error, JP_ERROR_ARGUMENT, "the state has %zu bytes, fewer than any", size);
     }
-    return true;
+    if (memcmp(state, MAGIC, sizeof MAGIC) != 0) {
+        return refusal(error, JP_ERROR_ARGUMENT, "these bytes are not a state that was saved");
+    }
+    uint64_t format;
+    uint64_t written;
+    uint64_t sum;
+    memcpy(&format, state + sizeof MAGIC, WORD);
+    memcpy(&written, state + sizeof MAGIC + WORD, WORD);
+    if (format != FORMAT) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the state is of format %llu; this version of the library reads format %llu",
+                       (unsigned long long)format, (unsigned long long)FORMAT);
+    }
+    if (written != size) {
+        return refusal(error, JP_ERROR_ARGUMENT, "the state has %zu bytes of the %llu saved", size,
+                       (unsigned long long)written);
+    }
+    memcpy(&sum, state + size - WORD, WORD);
+    return size % WORD == 0 && sum == checksum(state, size)
+               ? JP_OK
+               : refusal(error, JP_ERROR_ARGUMENT,
+                         "the state is damaged: its checksum is not that of its bytes");
 }
 
-static void resume_world(JpWorld *world, const SavedHead *head, const char *bodies,
-                         const char *joints)
+static JpStatus check_world(JpWorld *world, const char *state, size_t size, JpError *error)
 {
-    found_keep(world); // what is no part of the state, such as gravity
-    world->found.last_step = head->last_step;
-    world->found.stats = head->stats;
-    for (size_t i = 0; i < head->body_count; i++) {
-        SavedBody saved;
-        memcpy(&saved, bodies + i * sizeof saved, sizeof saved);
-        find_body(&saved, &world->bodies.records[i]);
+    Walk walk = {.aim = WALK_CHECK, .from = state};
+    if (size == saved_size(world)) {
+        walk_world(&walk, world);
     }
-    for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
-        SavedJoint saved;
-        memcpy(&saved, joints, sizeof saved);
-        find_joint(&saved.carried, joint);
-        joints += sizeof saved;
+    if (size != saved_size(world) || walk.is_other) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the state is of a world made in another way than this one with %zu bodies "
+                       "and %zu joints: with others, in another order, or with another stepping",
+                       world->bodies.count, count_joints(world));
     }
-    go_on_from_found(world, head->pace);
+    return check_numbers(&walk, JP_ERROR_ARGUMENT, error);
 }
 
 JpStatus jp_world_resume(JpWorld *world, const void *state, size_t size, JpError *error)
 {
     REFUSAL_TRY(refusal_of_null(world, "the world", error));
     REFUSAL_TRY(refusal_of_null(state, "the state", error));
+    REFUSAL_TRY(check_front(state, size, error));
     REFUSAL_TRY(step_know_bodies(world, error));
-    SavedHead head;
-    if (size < sizeof head) {
-        return refusal(error, JP_ERROR_ARGUMENT, "the state has %zu bytes, fewer than any", size);
-    }
-    memcpy(&head, state, sizeof head);
-    if (memcmp(head.magic, MAGIC, sizeof MAGIC) != 0 || head.size != size) {
-        return refusal(error, JP_ERROR_ARGUMENT, "these bytes are not a state that was saved");
-    }
-    const size_t joints = count_joints(world);
-    const char *bodies = (const char *)state + sizeof head;
-    const char *behind = bodies + head.body_count * sizeof(SavedBody);
-    if (head.body_count != world->bodies.count || head.joint_count != joints ||
-        size != saved_size(head.body_count, head.joint_count) ||
-        head.stepping != world->options.stepping || !has_joints(world, behind)) {
-        return refusal(
-            error, JP_ERROR_ARGUMENT,
-            "the state is of a world with %zu bodies and %zu joints, made in another way "
-            "than this one with %zu and %zu",
-            head.body_count, head.joint_count, world->bodies.count, joints);
-    }
-    resume_world(world, &head, bodies, behind);
+    REFUSAL_TRY(check_world(world, state, size, error));
+    found_keep(world); // what is no part of the state, such as gravity
+    Walk walk = {.aim = WALK_READ, .from = state};
+    walk_world(&walk, world);
+    go_on_from_found(world);
     return refusal_none(error);
 }
