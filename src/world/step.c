@@ -40,10 +40,14 @@ static bool is_staggered(const JpWorld *world)
 // mean of both it would throw back what it stops.
 static const double STOPPED = 2.0;
 
+static bool is_stopped(const MapContact *contact, double mobility)
+{
+    return contact->damping * mobility * contact->step > STOPPED;
+}
+
 static const Map *map_for(const MapContact *contact, double mobility)
 {
-    return map_get(contact->damping * mobility * contact->step > STOPPED ? ODE_MAP_CORRECTED
-                                                                         : ODE_MAP_MIDPOINT);
+    return map_get(is_stopped(contact, mobility) ? ODE_MAP_CORRECTED : ODE_MAP_MIDPOINT);
 }
 
 static JpStatus gather(JpWorld *world, JpError *error)
@@ -142,21 +146,33 @@ static void note_short_contact(const JpJoint *joint, const Place *place, Side *s
     }
 }
 
-// The mobility with which a side meets the stability limit: of free bodies where that is low
-// enough, or, once in a contact, found by trial.
+// The mobility with which a side's map is chosen: of free bodies, which is never below the world's,
+// where that is low enough for map midpoint; or, once in a contact, found by trial.
 static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
-    const Map *map = map_get(ODE_MAP_MIDPOINT);
+    JpWorld *world = joint->world;
     REFUSAL_TRY(check_contact(side, step, error));
     note_short_contact(joint, place, side, step);
-    if (side->mobility > 0.0 || side_is_stable(side, map, play_mobility(joint, place), step)) {
+    const double free = play_mobility(joint, place);
+    const MapContact contact = side_contact(side, step);
+    const bool is_stable = side_is_stable(side, map_get(ODE_MAP_MIDPOINT), free, step);
+    if (side->mobility > 0.0 || (is_stable && !is_stopped(&contact, free))) {
         return JP_OK;
     }
     const double force = side->sign * force_law_elastic(&side->law, side->depth);
     if (force == 0.0 || !isfinite(force)) {
         return JP_OK; // no push to try with
     }
-    REFUSAL_TRY(trial_mobility(joint->world, &place->along, force, step, &side->mobility, error));
+    const JpStatus known = trial_check(world, error);
+    if (known == JP_ERROR_WORLD && is_stable) {
+        coarse_note(world,
+                    "how hard a contact is damped in the step of %g s cannot be tried in a world "
+                    "with bodies that are not known; add them with jp_world_add_all",
+                    step);
+        return JP_OK;
+    }
+    REFUSAL_TRY(known);
+    REFUSAL_TRY(trial_mobility(world, &place->along, force, step, &side->mobility, error));
     side->mobility += 1.0 / joint->rotor.inertia;
     return JP_OK;
 }
