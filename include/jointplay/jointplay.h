@@ -9,7 +9,8 @@
  * which may be NULL, with one sentence. Errors are above JP_OK, which is 0: what the function was
  * to fill in is untouched then, and a world is as it was before the call. JP_COARSE, below JP_OK,
  * is of jp_world_step alone and no error. With both of these all numbers are finite, but for gaps
- * to sides that do not exist.
+ * to sides that do not exist. Sentences number the joints of a world from 1, in the order in which
+ * they were created.
  *
  * No function prints, or ends your program. ODE does both where its own numbers go wrong. From the
  * first jp_world_create to the last jp_world_destroy the library has handlers of its own for that

@@ -260,12 +260,12 @@ JpStatus pin_check_inside(const JpJoint *joint, PinMoment moment, JpError *error
             [PIN_STEPPED] = "would be after a step as long as this",
         };
         if (!(depth <= most)) {
-            return refusal(error, JP_ERROR_OUTSIDE,
-                           "the pin of %g m radius %s %g m beyond %s with play of %g m; at most "
-                           "%g m are allowed",
-                           radius, WHEN[moment], depth,
-                           place->shape == PLACE_HOLE ? "the wall of its hole" : "a collar", play,
-                           most);
+            return refusal(
+                error, JP_ERROR_OUTSIDE,
+                "the pin of %g m radius, joint %zu, %s %g m beyond %s with play of %g m; "
+                "at most %g m are allowed",
+                radius, joint->number, WHEN[moment], depth,
+                place->shape == PLACE_HOLE ? "the wall of its hole" : "a collar", play, most);
         }
     }
     return JP_OK;

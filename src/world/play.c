@@ -2,6 +2,7 @@
 #include "world/play.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,11 +14,29 @@ JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2])
         joint->kind = kind;
         memcpy(joint->bodies, bodies, sizeof joint->bodies);
         joint->rotor.inertia = INFINITY;
+        joint->number = world->joints != NULL ? world->joints->number + 1 : 1;
         joint->next = world->joints;
         world->joints = joint;
         world->found.is_kept = false;
     }
     return joint;
+}
+
+PlayName play_name(const JpJoint *joint)
+{
+    static const char *const KINDS[] = {
+        [PLAY_STOPS] = "stops",
+        [PLAY_BACKLASH] = "backlash",
+        [PLAY_PIN] = "pin",
+    };
+    PlayName name;
+    snprintf(name.text, sizeof name.text, "joint %zu (%s)", joint->number, KINDS[joint->kind]);
+    return name;
+}
+
+const char *play_unit(const JpJoint *joint)
+{
+    return joint->kind != PLAY_PIN && joint->coordinate.is_angle ? "rad" : "m";
 }
 
 JpStatus play_check_bodies(const JpJoint *joint, JpError *error)
@@ -31,8 +50,9 @@ JpStatus play_check_bodies(const JpJoint *joint, JpError *error)
     }
     return is_whole ? JP_OK
                     : refusal(error, JP_ERROR_WORLD,
-                              "a body of a joint with play was destroyed, or its joint in ODE was "
-                              "attached to other bodies; destroy the joint with jp_joint_destroy");
+                              "a body of %s was destroyed, or its joint in ODE was attached to "
+                              "other bodies; destroy the joint with jp_joint_destroy",
+                              play_name(joint).text);
 }
 
 // Sums: one that overflows is as good as one that is infinite.

@@ -50,6 +50,7 @@ typedef struct JointFound {
 struct JpJoint {
     JpWorld *world;
     JpJoint *next;
+    size_t number; // among those of its world, in the order in which they were made, from 1
     PlayKind kind;
     dBodyID bodies[2];     // NULL is the world; of a pin in its hole the pin's first
     Coordinate coordinate; // not of a pin
@@ -111,6 +112,16 @@ struct JpWorld {
     double work;      // done in the step under way (world/work.h)
     double work_most; // in a step
 };
+
+// How messages call a joint, such as "joint 2 (stops)".
+typedef struct PlayName {
+    char text[48];
+} PlayName;
+
+PlayName play_name(const JpJoint *joint);
+
+// The unit of its lengths: rad, or m.
+const char *play_unit(const JpJoint *joint);
 
 // Fails where a body of a joint was destroyed, or ODE's joint got other bodies.
 JpStatus play_check_bodies(const JpJoint *joint, JpError *error);

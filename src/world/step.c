@@ -71,16 +71,28 @@ static JpStatus gather(JpWorld *world, JpError *error)
                    : refusal(error, JP_ERROR_MEMORY, "there is no memory for the world's bodies");
 }
 
+// Fails as the law of a side that touches gives no force.
+static JpStatus refuse_depth(const JpJoint *joint, const Side *side, double step, JpError *error)
+{
+    const double limit = force_law_depth_limit(&side->law);
+    const char *unit = play_unit(joint);
+    if (side->depth > limit) {
+        return refusal(error, JP_ERROR_WORLD,
+                       "%s is %g %s beyond its play, and its contact's law holds to %g %s; the "
+                       "step of %g s may be too long",
+                       play_name(joint).text, side->depth, unit, limit, unit, step);
+    }
+    return refusal(error, JP_ERROR_WORLD,
+                   "%s is %g %s beyond its play, where its contact's law gives no finite force "
+                   "above 0; the step of %g s may be too long",
+                   play_name(joint).text, side->depth, unit, step);
+}
+
 // Whether the law of a side that touches gives a spring and damper there.
-static JpStatus check_contact(const Side *side, double step, JpError *error)
+static JpStatus check_contact(const JpJoint *joint, const Side *side, double step, JpError *error)
 {
     const MapContact contact = side_contact(side, step);
-    return map_contact_is_sound(&contact)
-               ? JP_OK
-               : refusal(error, JP_ERROR_WORLD,
-                         "a joint is %g inside its play, where its contact's law gives no force; "
-                         "the step of %g s may be too long",
-                         side->depth, step);
+    return map_contact_is_sound(&contact) ? JP_OK : refuse_depth(joint, side, step, error);
 }
 
 // Steps to a contact, below which rows have its force wrong by more than some percent.
@@ -141,8 +153,8 @@ static void note_short_contact(const JpJoint *joint, const Place *place, Side *s
         is_short = is_too_short(side, side->tried, step);
     }
     if (is_short) {
-        coarse_note(world, "a contact or its oscillation lasts less than %g steps of %g s",
-                    STEPS_TO_A_CONTACT, step);
+        coarse_note(world, "a contact of %s or its oscillation lasts less than %g steps of %g s",
+                    play_name(joint).text, STEPS_TO_A_CONTACT, step);
     }
 }
 
@@ -151,7 +163,7 @@ static void note_short_contact(const JpJoint *joint, const Place *place, Side *s
 static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double step, JpError *error)
 {
     JpWorld *world = joint->world;
-    REFUSAL_TRY(check_contact(side, step, error));
+    REFUSAL_TRY(check_contact(joint, side, step, error));
     note_short_contact(joint, place, side, step);
     const double free = play_mobility(joint, place);
     const MapContact contact = side_contact(side, step);
@@ -166,9 +178,9 @@ static JpStatus find_mobility(JpJoint *joint, Place *place, Side *side, double s
     const JpStatus known = trial_check(world, error);
     if (known == JP_ERROR_WORLD && is_stable) {
         coarse_note(world,
-                    "how hard a contact is damped in the step of %g s cannot be tried in a world "
-                    "with bodies that are not known; add them with jp_world_add_all",
-                    step);
+                    "how hard %s is damped in the step of %g s cannot be tried in a world with "
+                    "bodies that are not known; add them with jp_world_add_all",
+                    play_name(joint).text, step);
         return JP_OK;
     }
     REFUSAL_TRY(known);
@@ -189,19 +201,16 @@ static JpStatus make_row(JpJoint *joint, Place *place, Side *side, double step, 
     const double speed =
         row.erp / step * side->depth + side->sign * (rotor->speed + yield * rotor->drive);
     if (!isfinite(speed) || !isfinite(row.cfm)) {
-        return refusal(error, JP_ERROR_WORLD,
-                       "a joint is %g inside its play, where its contact's law gives no force; the "
-                       "step of %g s may be too long",
-                       side->depth, step);
+        return refuse_depth(joint, side, step, error);
     }
     row_make(joint, place, side, row.cfm + yield, speed, step);
     world->stats.rows++;
     if (falls_back) {
         world->stats.fallbacks++;
         coarse_note(world,
-                    "a contact's oscillation is too fast for the step of %g s: its row presses "
-                    "as the textbook's map has it",
-                    step);
+                    "the oscillation of %s in a contact is too fast for the step of %g s: its row "
+                    "presses as the textbook's map has it",
+                    play_name(joint).text, step);
     }
     return JP_OK;
 }
@@ -261,7 +270,8 @@ static void press_one(const JpJoint *joint, Place *place, double step)
         high->state.is_touching) {
         Side *left = low->closing > 0.0 ? high : low;
         left->state.is_touching = false;
-        coarse_note(joint->world, "a joint crosses its play within a step of %g s", step);
+        coarse_note(joint->world, "%s crosses its play within a step of %g s",
+                    play_name(joint).text, step);
     }
 }
 
@@ -432,9 +442,9 @@ static JpStatus check_joints_after(const JpWorld *world, double step, JpError *e
         if (!play_is_finite(joint)) {
             return refusal(
                 error, JP_ERROR_WORLD,
-                "a joint with play would have a force, a work or a rotor's speed that is "
-                "no finite number after a step of %g s; the world is as before it",
-                step);
+                "%s would have a force, a work or a rotor's speed that is no finite number after "
+                "a step of %g s; the world is as before it",
+                play_name(joint).text, step);
         }
     }
     return JP_OK;

@@ -465,6 +465,48 @@ static void a_body_destroyed_under_its_joint_is_noticed(void **state)
     }
 }
 
+// ---- what a sentence says of a joint ------------------------------------------------------------
+
+static void assert_says(JpWorld *play, double step, JpStatus status, const char *says)
+{
+    JpError error;
+    const JpStatus found = jp_world_step(play, step, &error);
+    if (found != status || strstr(error.text, says) == NULL) {
+        fail_msg("\"%s\" is not in \"%s\"", says, error.text);
+    }
+}
+
+// A second joint on the door's hinge, whose law holds to A e^(B - 1), and a pin.
+static void a_depth_beyond_a_law_is_said_of_which_joint_and_in_which_unit(void **state)
+{
+    (void)state;
+    JpStops stops = jp_stops_default();
+    stops.high = 0.005;
+    stops.contact.compliance = 1e-5;
+    stops.contact.offset = 1.0;
+    JpJoint *joint = NULL;
+    Door door = door_make(JP_STEPPING_STAGGERED);
+    assert_int_equal(jp_stops_create(door.play, door.hinge, &stops, &joint, NULL), JP_OK);
+    assert_says(door.play, 0.016, JP_ERROR_WORLD,
+                "joint 2 (stops) is 0.0110024 rad beyond its play, "
+                "and its contact's law holds to 1e-05 rad");
+    jp_joint_destroy(joint);
+    JpPinInHole pin = jp_pin_default();
+    pin.hole_radius = 5e-3;
+    pin.pin_radius = 4.9e-3;
+    pin.contact = stops.contact;
+    const dBodyID rod = dBodyCreate(door.world);
+    dBodySetLinearVel(rod, 1.0, 0, 0);
+    assert_int_equal(jp_pin_create(door.play, NULL, rod, &pin, &joint, NULL), JP_OK);
+    assert_says(door.play, 2.5e-4, JP_ERROR_WORLD, "joint 2 (pin) is 0.00015 m beyond its play");
+    dBodySetPosition(rod, 1, 0, 0);
+    assert_says(door.play, 1e-4, JP_ERROR_OUTSIDE, "the pin of 0.0049 m radius, joint 2, is");
+    dBodyDestroy(rod);
+    assert_says(door.play, 1e-4, JP_ERROR_WORLD, "a body of joint 2 (pin) was destroyed");
+    jp_joint_destroy(joint);
+    door_finish(&door);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -474,6 +516,7 @@ int main(void)
         cmocka_unit_test(random_worlds_at_long_steps_end_in_a_sentence),
         cmocka_unit_test(joints_with_any_numbers_end_in_finite_numbers_or_a_sentence),
         cmocka_unit_test(a_body_destroyed_under_its_joint_is_noticed),
+        cmocka_unit_test(a_depth_beyond_a_law_is_said_of_which_joint_and_in_which_unit),
     };
     return cmocka_run_group_tests(tests, ode_group_setup, ode_group_teardown);
 }
