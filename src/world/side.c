@@ -10,10 +10,18 @@
 
 #include <math.h>
 
+// A depth beyond what the law holds for has no mean force. It still touches, and the step then
+// fails (world/step.c): a comparison with a depth that is no number would let it pass.
 static Overlap find_overlap(const Side *side, const SideMotion *motion, double step)
 {
-    return motion->earlier > 0.0 ? overlap_between(&side->law, motion->gap, motion->gaps, step)
-                                 : (Overlap){.depth = fmax(-motion->gap, 0.0), .share = 1.0};
+    if (!(motion->earlier > 0.0)) {
+        return (Overlap){.depth = fmax(-motion->gap, 0.0), .share = 1.0};
+    }
+    Overlap found = overlap_between(&side->law, motion->gap, motion->gaps, step);
+    if (isnan(found.depth)) {
+        found.depth = -fmin(motion->gaps[0], motion->gaps[1]);
+    }
+    return found;
 }
 
 void side_begin(Side *side, double closing)
