@@ -15,9 +15,10 @@
  * No function prints, or ends your program. ODE does both where its own numbers go wrong. From the
  * first jp_world_create to the last jp_world_destroy the library has handlers of its own for that
  * (dSetDebugHandler, dSetErrorHandler, dSetMessageHandler), which turn what ODE finds wrong in
- * jp_world_step into a JpStatus, and hand on all else to the handlers that were there before. If
- * you set handlers of your own, set them before the first world. Nothing else is kept outside what
- * you hand over.
+ * jp_world_step into a JpStatus, and hand on all else to the handlers that were there before; and
+ * for ODE's memory (dSetAllocHandler, dSetReallocHandler), which ask those and turn a lack of it in
+ * any call of the library into JP_ERROR_MEMORY. If you set handlers of your own, set them before
+ * the first world. Nothing else is kept outside what you hand over.
  *
  * Threads: a thread may use one world while others use other worlds, each with the ODE data of its
  * own (dAllocateODEDataForThread). Worlds that share a space of geoms, and handlers of ODE, belong

@@ -1,5 +1,6 @@
 // Makes, drives and reads backlash and stops on the coordinate of a hinge or slider.
 #include "world/contact.h"
+#include "world/fault.h"
 #include "world/play.h"
 #include "world/pressing_row.h"
 
@@ -37,11 +38,16 @@ static JpStatus check_joint(const JpWorld *world, dJointID joint, JpError *error
     return JP_OK;
 }
 
-// The row of an angle.
+// The row of an angle. Returns false where ODE has no memory for it.
 static bool make_motor(JpJoint *joint)
 {
     PlaceRow *row = &joint->places[0].row;
-    row->motor = pressing_row_of_angle(joint->world->id, joint->bodies, &row->feedback);
+    Fault fault;
+    fault_begin(&fault);
+    if (setjmp(fault.left) == 0) {
+        row->motor = pressing_row_of_angle(joint->world->id, joint->bodies, &row->feedback);
+    }
+    fault_end(&fault);
     return row->motor != NULL;
 }
 
@@ -62,7 +68,7 @@ static JpStatus make_joint(JpWorld *world, PlayKind kind, dJointID on, const For
     }
     if (coordinate.is_angle && !make_motor(joint)) {
         jp_joint_destroy(joint);
-        return refusal(error, JP_ERROR_MEMORY, "ODE could not make the joint's motor");
+        return refusal(error, JP_ERROR_MEMORY, "ODE has no memory for the joint's motor");
     }
     *created = joint;
     return refusal_none(error);

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static _Thread_local Fault *innermost;
 
@@ -24,6 +25,8 @@ static struct {
     pthread_mutex_t lock;
     size_t world_count;
     dMessageFunction *before[KIND_COUNT];
+    dAllocFunction *allocate_before; // NULL: ODE's own
+    dReallocFunction *reallocate_before;
 } handlers = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
 // Leaves the step that is under way in this thread, or notes the message in it. Returns whether
@@ -94,6 +97,29 @@ static void on_message(int number, const char *message, va_list arguments)
     handle(KIND_MESSAGE, number, message, arguments);
 }
 
+// Memory that ODE has asked for.
+static void *present(void *made)
+{
+    if (made == NULL && innermost != NULL) {
+        innermost->is_of_memory = true;
+        longjmp(innermost->left, 1);
+    }
+    return made;
+}
+
+static void *on_allocate(size_t size)
+{
+    return present(handlers.allocate_before != NULL ? handlers.allocate_before(size)
+                                                    : malloc(size));
+}
+
+static void *on_reallocate(void *old, size_t old_size, size_t size)
+{
+    return present(handlers.reallocate_before != NULL
+                       ? handlers.reallocate_before(old, old_size, size)
+                       : realloc(old, size));
+}
+
 static const struct {
     dMessageFunction *(*get)(void);
     void (*set)(dMessageFunction *handler);
@@ -112,6 +138,10 @@ void fault_hold(void)
             handlers.before[kind] = KINDS[kind].get();
             KINDS[kind].set(KINDS[kind].own);
         }
+        handlers.allocate_before = dGetAllocHandler();
+        handlers.reallocate_before = dGetReallocHandler();
+        dSetAllocHandler(on_allocate);
+        dSetReallocHandler(on_reallocate);
     }
     pthread_mutex_unlock(&handlers.lock);
 }
@@ -126,6 +156,12 @@ void fault_release(void)
                 KINDS[kind].set(handlers.before[kind]);
             }
         }
+        if (dGetAllocHandler() == on_allocate) {
+            dSetAllocHandler(handlers.allocate_before);
+        }
+        if (dGetReallocHandler() == on_reallocate) {
+            dSetReallocHandler(handlers.reallocate_before);
+        }
     }
     pthread_mutex_unlock(&handlers.lock);
 }
@@ -133,6 +169,7 @@ void fault_release(void)
 void fault_begin(Fault *fault)
 {
     fault->outer = innermost;
+    fault->is_of_memory = false;
     fault->text[0] = fault->message[0] = '\0';
     fault->message_count = 0;
     innermost = fault;

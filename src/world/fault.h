@@ -5,17 +5,23 @@
 // takes it away. In a step of the library it leaves the step; else it hands on to the handler that
 // was there before.
 //
+// Where ODE has no memory for a body or joint it goes on with a NULL. Handlers of the same kind for
+// its allocations, which ask those that were there before, leave the step or whatever else of the
+// library is under way.
+//
 // Messages, such as "LCP internal error", ODE prints and goes on, with forces that are not those
 // asked for. In a step of the library they are noted and not printed.
 #pragma once
 
 #include <setjmp.h>
+#include <stdbool.h>
 
 enum { FAULT_TEXT_SIZE = 128 };
 
 typedef struct Fault {
     jmp_buf left;                  // where to go on
-    char text[FAULT_TEXT_SIZE];    // what ODE says
+    bool is_of_memory;             // ODE has none
+    char text[FAULT_TEXT_SIZE];    // else what it says
     unsigned message_count;        // after which ODE went on
     char message[FAULT_TEXT_SIZE]; // the first of them
     struct Fault *outer;

@@ -6,6 +6,8 @@
 // is followed only if such a place exists, as far as there are bodies, and has to end there.
 #include "world/listing.h"
 
+#include "world/fault.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,13 +34,25 @@ static size_t find_next(const dBodyID probes[PROBES])
     return WORDS;
 }
 
-// Lists so many bodies that were there before the probes; false where the chain is another.
-static bool list_bodies(dWorldID world, dBodyID *bodies, size_t count)
+// Makes the probes, the first ones before ODE has no memory for more. Returns false then.
+static bool make_probes(dWorldID world, dBodyID probes[PROBES])
 {
-    dBodyID probes[PROBES];
-    for (size_t i = 0; i < PROBES; i++) {
-        probes[i] = dBodyCreate(world);
+    Fault fault;
+    fault_begin(&fault);
+    if (setjmp(fault.left) == 0) {
+        for (size_t i = 0; i < PROBES; i++) {
+            probes[i] = dBodyCreate(world);
+        }
+        fault_end(&fault);
+        return true;
     }
+    fault_end(&fault);
+    return false;
+}
+
+// Lists so many bodies that were there before the probes; false where the chain is another.
+static bool list_bodies(const dBodyID probes[PROBES], dBodyID *bodies, size_t count)
+{
     const size_t next = find_next(probes);
     dBodyID at = next < WORDS ? word_of(probes[0], next) : NULL;
     size_t listed = 0;
@@ -46,10 +60,27 @@ static bool list_bodies(dWorldID world, dBodyID *bodies, size_t count)
         bodies[listed++] = at;
         at = word_of(at, next);
     }
-    for (size_t i = 0; i < PROBES; i++) {
-        dBodyDestroy(probes[i]);
-    }
     return listed == count && at == NULL;
+}
+
+// Lists all bodies that there are.
+static JpStatus list(JpWorld *world, dBodyID *bodies, size_t count, JpError *error)
+{
+    dBodyID probes[PROBES] = {NULL};
+    const bool has_memory = make_probes(world->id, probes);
+    const bool is_listed = has_memory && list_bodies(probes, bodies, count);
+    for (size_t i = 0; i < PROBES; i++) {
+        if (probes[i] != NULL) {
+            dBodyDestroy(probes[i]);
+        }
+    }
+    if (!has_memory) {
+        return refusal(error, JP_ERROR_MEMORY, "ODE has no memory for a body");
+    }
+    return is_listed ? refusal_none(error)
+                     : refusal(error, JP_ERROR_NONE,
+                               "this version of ODE does not show which bodies its world has; add "
+                               "each with jp_world_add_body");
 }
 
 static bool add_bodies(JpWorld *world, const dBodyID *bodies, size_t count)
@@ -74,12 +105,8 @@ JpStatus listing_add_all(JpWorld *world, JpError *error)
     if (bodies == NULL) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the world's bodies");
     }
-    JpStatus status = refusal_none(error);
-    if (!list_bodies(world->id, bodies, (size_t)count)) {
-        status = refusal(error, JP_ERROR_NONE,
-                         "this version of ODE does not show which bodies its world has; add each "
-                         "with jp_world_add_body");
-    } else if (!add_bodies(world, bodies, (size_t)count)) {
+    JpStatus status = list(world, bodies, (size_t)count, error);
+    if (status == JP_OK && !add_bodies(world, bodies, (size_t)count)) {
         status = refusal(error, JP_ERROR_MEMORY, "there is no memory for the world's bodies");
     }
     free(bodies);

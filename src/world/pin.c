@@ -10,6 +10,7 @@
 
 #include "contact/pin_axis.h"
 #include "world/contact.h"
+#include "world/fault.h"
 
 #include <math.h>
 
@@ -370,15 +371,23 @@ static void make_places(JpJoint *joint, const JpPinInHole *given, const ForceLaw
     }
 }
 
-// A pin is no joint of ODE's, which would lose its bodies.
-static void watch_bodies(JpJoint *joint)
+// A pin is no joint of ODE's, which would lose its bodies. Returns false where ODE has no memory.
+static bool watch_bodies(JpJoint *joint)
 {
-    for (int i = 0; i < 2; i++) {
-        if (joint->bodies[i] != NULL) {
-            joint->watches[i] = dJointCreateNull(joint->world->id, 0);
-            dJointAttach(joint->watches[i], joint->bodies[i], NULL);
+    Fault fault;
+    fault_begin(&fault);
+    if (setjmp(fault.left) == 0) {
+        for (int i = 0; i < 2; i++) {
+            if (joint->bodies[i] != NULL) {
+                joint->watches[i] = dJointCreateNull(joint->world->id, 0);
+                dJointAttach(joint->watches[i], joint->bodies[i], NULL);
+            }
         }
+        fault_end(&fault);
+        return true;
     }
+    fault_end(&fault);
+    return false;
 }
 
 JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
@@ -396,7 +405,10 @@ JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInH
     if (joint == NULL) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for a joint");
     }
-    watch_bodies(joint);
+    if (!watch_bodies(joint)) {
+        jp_joint_destroy(joint);
+        return refusal(error, JP_ERROR_MEMORY, "ODE has no memory for the joint's watches");
+    }
     joint->pin = place_pin(bodies, given);
     make_places(joint, given, &law);
     const JpStatus status = pin_check_inside(joint, PIN_MADE, error);

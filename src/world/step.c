@@ -494,6 +494,9 @@ static JpStatus make_step_guarded(JpWorld *world, double step, WorldResponse *re
     }
     fault_end(&fault);
     threads_renew(world);
+    if (fault.is_of_memory) {
+        return refusal(error, JP_ERROR_MEMORY, "ODE has no memory for a step");
+    }
     return refusal(error, JP_ERROR_WORLD,
                    "ODE cannot make a step of %g s: \"%.100s\"; the world is as before it, its "
                    "joints may contradict each other or the step be too long",

@@ -3,6 +3,8 @@
 // Not several threads: ODE's self-threaded implementation does all in the thread that waits for it.
 #include "world/threads.h"
 
+#include "world/fault.h"
+
 static void give(JpWorld *world)
 {
     world->threading = dThreadingAllocateSelfThreadedImplementation();
@@ -27,10 +29,22 @@ void threads_end(JpWorld *world)
     }
 }
 
+// Where ODE has no memory for another one the world gets ODE's default.
 void threads_renew(JpWorld *world)
 {
-    if (world->threading != NULL) {
-        give(world);
-        dWorldCleanupWorkingMemory(world->id);
+    if (world->threading == NULL) {
+        return;
     }
+    Fault fault;
+    fault_begin(&fault);
+    if (setjmp(fault.left) == 0) {
+        give(world);
+    } else {
+        world->threading = NULL;
+    }
+    fault_end(&fault);
+    if (world->threading == NULL) {
+        dWorldSetStepThreadingImplementation(world->id, NULL, NULL);
+    }
+    dWorldCleanupWorkingMemory(world->id);
 }

@@ -15,6 +15,36 @@ JpWorldOptions jp_world_options_default(void)
     };
 }
 
+// What a world has of ODE. Returns false where that has no memory.
+static bool make_groups(JpWorld *world)
+{
+    Fault fault;
+    fault_begin(&fault);
+    if (setjmp(fault.left) == 0) {
+        world->rows = dJointGroupCreate(0);
+        world->contacts = dJointGroupCreate(0);
+        threads_begin(world);
+        fault_end(&fault);
+        return true;
+    }
+    fault_end(&fault);
+    return false;
+}
+
+// Gives all back that a world has, whether it was made or not.
+static void finish_world(JpWorld *world)
+{
+    if (world->rows != NULL) {
+        dJointGroupDestroy(world->rows);
+    }
+    if (world->contacts != NULL) {
+        dJointGroupDestroy(world->contacts);
+    }
+    threads_end(world);
+    fault_release();
+    free(world);
+}
+
 JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **created,
                          JpError *error)
 {
@@ -38,10 +68,11 @@ JpStatus jp_world_create(dWorldID id, const JpWorldOptions *options, JpWorld **c
     world->id = id;
     world->options = chosen;
     world->work_most = JP_WORK_DEFAULT;
-    world->rows = dJointGroupCreate(0);
-    world->contacts = dJointGroupCreate(0);
     fault_hold();
-    threads_begin(world);
+    if (!make_groups(world)) {
+        finish_world(world);
+        return refusal(error, JP_ERROR_MEMORY, "ODE has no memory for a world's joints");
+    }
     *created = world;
     return refusal_none(error);
 }
@@ -54,17 +85,13 @@ void jp_world_destroy(JpWorld *world)
     while (world->joints != NULL) {
         jp_joint_destroy(world->joints);
     }
-    dJointGroupDestroy(world->rows);
-    dJointGroupDestroy(world->contacts);
     bodies_finish(&world->bodies);
     response_cache_free(world->cache);
     if (world->kernel != NULL) {
         kernel_finish(world->kernel);
     }
     free(world->kernel);
-    threads_end(world);
-    fault_release();
-    free(world);
+    finish_world(world);
 }
 
 static JpStatus check_body(const JpWorld *world, dBodyID body, JpError *error)
