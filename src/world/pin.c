@@ -332,7 +332,9 @@ static Vec3 into_body(dBodyID body, Vec3 axis)
 static Pin place_pin(const dBodyID bodies[2], const JpPinInHole *given)
 {
     const Vec3 asked = vec3_of(given->axis);
-    const Vec3 axis = vec3_scale(1.0 / vec3_length(asked), asked);
+    // also of one whose square, or whose inverse, no double holds
+    const double size = hypot(hypot(asked.x, asked.y), asked.z);
+    const Vec3 axis = {asked.x / size, asked.y / size, asked.z / size};
     Pin pin = {
         .hole_count = given->width > 0.0 ? PIN_ENDS : 1,
         .middle = vec3_of(given->hole),

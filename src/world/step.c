@@ -563,8 +563,8 @@ JpStatus jp_world_undo(JpWorld *world, JpError *error)
     REFUSAL_TRY(check_joints(world, error));
     if (!world->found.is_kept) {
         return refusal(error, JP_ERROR_NONE,
-                       "there is no step to take back: the last one failed or was taken back, or "
-                       "joints or bodies have changed since");
+                       "there is no step to take back: the last one failed or was taken back, the "
+                       "world was saved or resumed since, or joints or bodies have changed");
     }
     WorldResponse none = {0};
     found_put_back(world, &none);

@@ -296,6 +296,29 @@ static void a_pin_in_no_hole_is_refused(void **state)
     scene_finish(&scene);
 }
 
+// Only the direction of an axis counts, also of one whose square no double holds.
+static void an_axis_of_any_length_is_taken(void **state)
+{
+    (void)state;
+    static const double LENGTHS[] = {1e-310, 1e-200, 2.0, 1e200, 1e308};
+    Scene scene = scene_make();
+    JpPinInHole pin = jp_pin_default();
+    pin.hole_radius = 5e-3;
+    pin.pin_radius = 4.9e-3;
+    pin.contact.stiffness = 1e6;
+    for (size_t i = 0; i < sizeof LENGTHS / sizeof *LENGTHS; i++) {
+        JpJoint *joint = NULL;
+        JpPinState now;
+        pin.axis[2] = LENGTHS[i];
+        const dBodyID body = dBodyCreate(scene.world);
+        assert_int_equal(jp_pin_create(scene.play, NULL, body, &pin, &joint, NULL), JP_OK);
+        assert_int_equal(jp_pin_state(joint, &now, NULL), JP_OK);
+        assert_near(now.tilt, 0.0, 1e-15);
+        jp_joint_destroy(joint);
+    }
+    scene_finish(&scene);
+}
+
 static void a_state_of_another_kind_of_joint_is_refused(void **state)
 {
     (void)state;
@@ -348,6 +371,7 @@ int main(void)
         cmocka_unit_test(a_joint_that_is_none_is_refused),
         cmocka_unit_test(a_drive_that_is_none_is_refused),
         cmocka_unit_test(a_pin_in_no_hole_is_refused),
+        cmocka_unit_test(an_axis_of_any_length_is_taken),
         cmocka_unit_test(a_state_of_another_kind_of_joint_is_refused),
         cmocka_unit_test(a_world_that_has_left_all_numbers_is_refused),
     };
