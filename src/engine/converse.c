@@ -1,22 +1,20 @@
 // Runs another program, writes its input and reads its output, both at once and never for ever.
 //
-// fork -> exec, with three channels: sockets, so that writing to a program that has gone is an
-// error and no signal. One loop waits for all of them. The program is the leader of a group of
-// processes of its own, which is killed as a whole, and dies with its parent.
+// The program runs under a supervisor (engine/supervisor.h), with three channels: sockets, so that
+// writing to a program that has gone is an error and no signal. One loop waits for all of them.
 #include "engine/converse.h"
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "engine/supervisor.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -24,7 +22,6 @@
 enum {
     CHUNK_SIZE = 1 << 16, // bytes read at a time
     COMPLAINT_SIZE = 512, // bytes kept of what it says on standard error: the last ones
-    NOT_STARTED = 127,    // exit status where there is nothing to run, as a shell has it
     LOOK_MS = 200,        // between two looks at whether it is still there
 };
 
@@ -34,7 +31,7 @@ typedef enum Channel { CHANNEL_INPUT, CHANNEL_OUTPUT, CHANNEL_COMPLAINTS, CHANNE
 
 typedef struct Talk {
     const Converse *with;
-    pid_t process;
+    pid_t supervisor;            // ends as the program does
     int channels[CHANNEL_COUNT]; // -1: closed
     size_t written;
     char *line; // that is not whole yet; owned
@@ -53,30 +50,6 @@ static void close_channel(Talk *talk, Channel which)
         close(talk->channels[which]);
         talk->channels[which] = -1;
     }
-}
-
-// In the child: becomes the program.
-static _Noreturn void become(const char *program, int ends[CHANNEL_COUNT], pid_t parent)
-{
-    static const int SIGNALS[] = {SIGABRT, SIGSEGV, SIGFPE, SIGILL,
-                                  SIGBUS,  SIGPIPE, SIGINT, SIGTERM};
-    for (size_t i = 0; i < sizeof SIGNALS / sizeof SIGNALS[0]; i++) {
-        signal(SIGNALS[i], SIG_DFL);
-    }
-    setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) {
-        _exit(NOT_STARTED);
-    }
-    for (int i = 0; i < CHANNEL_COUNT; i++) {
-        if (dup2(ends[i], i) < 0) {
-            _exit(NOT_STARTED);
-        }
-    }
-    char *const arguments[] = {(char *)program, NULL};
-    execv(program, arguments);
-    dprintf(STDERR_FILENO, "cannot be run: %s\n", strerror(errno));
-    _exit(NOT_STARTED);
 }
 
 static bool make_channels(int ours[CHANNEL_COUNT], int theirs[CHANNEL_COUNT])
@@ -110,21 +83,13 @@ static bool converse_start(Talk *talk, Err *err)
         return err_set(err, ERR_SOLVER, "cannot talk to %s: %s", talk->with->program,
                        strerror(errno));
     }
-    const pid_t parent = getpid();
-    talk->process = fork();
-    if (talk->process == 0) {
-        become(talk->with->program, theirs, parent);
-    }
+    talk->supervisor = supervisor_start(talk->with->program, theirs);
     const int reason = errno;
     for (int i = 0; i < CHANNEL_COUNT; i++) {
         close(theirs[i]);
     }
-    if (talk->process < 0) {
-        return err_set(err, ERR_SOLVER, "cannot start %s: %s", talk->with->program,
-                       strerror(reason));
-    }
-    setpgid(talk->process, talk->process);
-    return true;
+    return talk->supervisor > 0 ||
+           err_set(err, ERR_SOLVER, "cannot start %s: %s", talk->with->program, strerror(reason));
 }
 
 static void write_input(Talk *talk)
@@ -224,7 +189,7 @@ static bool converse_once(Talk *talk, int wait_ms, bool *is_busy, Err *err)
 static bool look_after(Talk *talk)
 {
     talk->is_gone =
-        talk->is_gone || waitpid(talk->process, &talk->status, WNOHANG) == talk->process;
+        talk->is_gone || waitpid(talk->supervisor, &talk->status, WNOHANG) == talk->supervisor;
     return talk->is_gone;
 }
 
@@ -303,13 +268,8 @@ static bool converse_judge(Talk *talk, Err *err)
 // Ends it and all that it has started.
 static void converse_end(Talk *talk)
 {
-    if (talk->process > 0) {
-        kill(-talk->process, SIGKILL);
-    }
-    if (talk->process > 0 && !talk->is_gone) {
-        kill(talk->process, SIGKILL);
-        while (waitpid(talk->process, &talk->status, 0) < 0 && errno == EINTR) {
-        }
+    if (talk->supervisor > 0 && !talk->is_gone) {
+        supervisor_end(talk->supervisor);
     }
     for (int i = 0; i < CHANNEL_COUNT; i++) {
         close_channel(talk, (Channel)i);

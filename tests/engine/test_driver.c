@@ -13,11 +13,15 @@
 #include "run/registry.h"
 #include "run/run.h"
 
+#include <fcntl.h>
 #include <math.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -258,6 +262,117 @@ static void what_cannot_be_told_is_refused_by_name(void **state)
     }
 }
 
+// A pipe that every process of a driver holds open.
+typedef struct Family {
+    int ours;
+    int theirs;
+} Family;
+
+static Family family_start(const char *named)
+{
+    int ends[2];
+    char number[16];
+    assert_int_equal(pipe(ends), 0);
+    fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+    snprintf(number, sizeof number, "%d", ends[1]);
+    setenv("JOINTPLAY_TOY_PIPE", number, 1);
+    fault(named);
+    return (Family){.ours = ends[0], .theirs = ends[1]};
+}
+
+// Reads what comes next of the pipe, for a while: how many bytes; 0 where nobody holds it any more,
+// -1 where somebody does and says nothing.
+static ssize_t family_read(const Family *family)
+{
+    char said[8];
+    struct pollfd watched = {.fd = family->ours, .events = POLLIN};
+    return poll(&watched, 1, (int)(1e3 * SOON_S)) == 1 ? read(family->ours, said, sizeof said) : -1;
+}
+
+// Whether all three of the family were there, and none is left.
+static void family_finish(Family *family, size_t met, const char *how)
+{
+    close(family->theirs);
+    ssize_t count;
+    while ((count = family_read(family)) > 0) {
+        met += (size_t)count;
+    }
+    if (count != 0 || met != 3) {
+        fail_msg("%s: of %zu processes of a driver some are left", how, met);
+    }
+    close(family->ours);
+    unsetenv("JOINTPLAY_TOY_PIPE");
+    fault("");
+}
+
+// The toy as a shell starts it that stays above it.
+static EngineDriver wrapped_toy(char path[])
+{
+    EngineDriver driver = toy();
+    const int file = mkstemp(path);
+    dprintf(file, "#!/bin/sh\n'%s'\nexit $?\n", driver.program);
+    fchmod(file, 0700);
+    close(file);
+    snprintf(driver.program, sizeof driver.program, "%s", path);
+    return driver;
+}
+
+// A process that runs a case by a driver and ends by a signal meanwhile.
+static void run_and_end_by(const EngineDriver *driver, int number)
+{
+    Scenario scenario = ideal(600e-6);
+    Family family = family_start("family-hangs");
+    const pid_t program = fork();
+    if (program == 0) {
+        prctl(PR_SET_DUMPABLE, 0);
+        signal(number, SIG_DFL);
+        trajectory_destroy(engine_run(driver, "midpoint", &scenario, SOON_S, NULL));
+        _exit(0);
+    }
+    size_t met = 0;
+    for (ssize_t count; met < 3 && (count = family_read(&family)) > 0;) {
+        met += (size_t)count;
+    }
+    int status;
+    kill(program, number);
+    assert_int_equal(waitpid(program, &status, 0), program);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == number);
+    family_finish(&family, met, strsignal(number));
+}
+
+// However the program ends: what the driver has started ends as well, in sessions of their own too.
+static void no_process_of_a_driver_outlives_the_program(void **state)
+{
+    (void)state;
+    static const int SIGNALS[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGKILL};
+    char path[] = "/tmp/jointplay-wrapped-XXXXXX";
+    const EngineDriver driver = wrapped_toy(path);
+    for (size_t i = 0; i < sizeof SIGNALS / sizeof *SIGNALS; i++) {
+        run_and_end_by(&driver, SIGNALS[i]);
+    }
+    unlink(path);
+}
+
+// Nor does one outlive the run: not where it ends as it should, nor where it takes too long.
+static void no_process_of_a_driver_outlives_the_run(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/jointplay-wrapped-XXXXXX";
+    const EngineDriver driver = wrapped_toy(path);
+    Scenario scenario = ideal(600e-6);
+    Family family = family_start("family");
+    Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
+    assert_true(run->is_complete);
+    trajectory_destroy(run);
+    family_finish(&family, 0, "done");
+    family = family_start("family-hangs");
+    run = engine_run(&driver, "midpoint", &scenario, 3.0, NULL);
+    assert_non_null(strstr(run->message, "exceeded its time limit of 3 s"));
+    trajectory_destroy(run);
+    family_finish(&family, 0, "time limit");
+    unlink(path);
+}
+
 // Starts a process that after a while kills what the parent has started besides.
 static pid_t start_killer(pid_t parent)
 {
@@ -316,6 +431,8 @@ int main(void)
         cmocka_unit_test(what_is_no_driver_is_refused),
         cmocka_unit_test(a_name_without_a_driver_says_which_there_are),
         cmocka_unit_test(what_cannot_be_told_is_refused_by_name),
+        cmocka_unit_test(no_process_of_a_driver_outlives_the_program),
+        cmocka_unit_test(no_process_of_a_driver_outlives_the_run),
         cmocka_unit_test(a_hundred_kills_leave_nothing_hanging),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

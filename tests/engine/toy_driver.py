@@ -180,7 +180,26 @@ def leave_a_child(samples):
     os._exit(0)
 
 
+def leave_a_family(samples):
+    """A child, one in a session of its own, and one whose parent is gone, all of which hold the
+    pipe of JOINTPLAY_TOY_PIPE open and say there that they are."""
+    pipe = int(os.environ["JOINTPLAY_TOY_PIPE"])
+    for kind in range(3):
+        if os.fork() == 0:
+            if kind > 0:
+                os.setsid()
+            if kind == 2 and os.fork() > 0:
+                os._exit(0)
+            for i in range(3):
+                os.close(i)
+            os.write(pipe, b".")
+            time.sleep(600)
+            os._exit(0)
+
+
 FAULTS = {
+    "family": leave_a_family,
+    "family-hangs": lambda samples: (leave_a_family(samples), time.sleep(600)),
     "nan": spoil(1, 3, math.nan),
     "far": spoil(1, 0, 1e6),
     "apart": spoil(1, 0, 0.35),
