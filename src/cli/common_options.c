@@ -18,15 +18,25 @@ size_t common_options_count_jobs(void)
     return cores < 1 ? 1 : (size_t)(cores < most ? cores : most);
 }
 
-bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *err)
+bool common_options_read(const CommonOptions *options, Scenario *scenario, Err *err)
 {
-    if (!casefile_load(options->path, options->overrides, options->override_count, scenario, err)) {
-        return false;
-    }
+    return casefile_load(options->path, options->overrides, options->override_count, scenario, err);
+}
+
+void common_options_settle(const CommonOptions *options, Scenario *scenario)
+{
     Progress progress;
     progress_begin(&progress, options->is_quiet);
     settle_scenario(scenario, progress_watch(&progress, SETTLING));
     progress_end(&progress);
+}
+
+bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *err)
+{
+    if (!common_options_read(options, scenario, err)) {
+        return false;
+    }
+    common_options_settle(options, scenario);
     return true;
 }
 

@@ -63,6 +63,12 @@ typedef struct CommonOptions {
 size_t common_options_count_jobs(void);
 
 // Reads the case of the path with the values of --set. Fails as casefile_load does.
+bool common_options_read(const CommonOptions *options, Scenario *scenario, Err *err);
+
+// Finds the settled start of a case that is to have one, and shows how far it has come.
+void common_options_settle(const CommonOptions *options, Scenario *scenario);
+
+// Reads the case, and finds its start.
 bool common_options_load(const CommonOptions *options, Scenario *scenario, Err *err);
 
 // Whether the case can be run at a step, s: it is read once more with it, so that the checks and

@@ -50,7 +50,8 @@ void engine_list(char *text, size_t size);
 typedef struct EngineSaid {
     char settings[4 * ENGINE_TEXT_SIZE]; // of the engine, that are not its defaults
     double opening_m;                    // largest, of an ideal joint at a sample
-    bool is_refused;                     // the driver cannot express the case in that way
+    bool is_refused;                     // the driver does not take the case in that way
+    char refused[ENGINE_TEXT_SIZE];      // what of it
     char **model; // where a file of the engine's own goes; NULL: it is not wanted
 } EngineSaid;
 
@@ -72,5 +73,12 @@ Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
 Trajectory *engine_run_model(const EngineDriver *driver, const char *way, const Scenario *scenario,
                              double time_limit_s, EngineSaid *said, char **model);
 
-// Whether a scenario can be expressed in the protocol; ERR_CASE, naming what cannot, where not.
-bool engine_check(const Scenario *scenario, Err *err);
+// Whether a scenario is of a kind that drivers can be told of; ERR_CASE, naming the engine and what
+// its driver cannot take, where not.
+bool engine_check(const char *engine, const Scenario *scenario, Err *err);
+
+// Whether a driver takes a scenario in one of these ways at least, which need not have a start yet:
+// the driver is asked for the first sample of each. ERR_CASE as above, by the last of the ways.
+// What else goes wrong shows when it runs.
+bool engine_takes(const EngineDriver *driver, const char *const *ways, size_t count,
+                  const Scenario *scenario, Err *err);

@@ -15,6 +15,9 @@
 // for a driver to say what it is: a Python script with its libraries takes some seconds
 static const double HELLO_LIMIT_S = 20.0;
 
+// 1: of a run, at most, up to which a driver is asked whether it takes the case
+static const double FIRST_SHARE = 1e-4;
+
 enum {
     HELLO_OUTPUT_MOST = 1 << 20,
     OUTPUT_MOST = 1 << 30, // of a run: samples of 50,000 a second for minutes
@@ -183,25 +186,37 @@ bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err)
     return ask_hello(driver, err);
 }
 
+// Whether a driver can be told of all of a scenario.
+static bool check_protocol(const EngineDriver *driver, const Scenario *scenario, Err *err)
+{
+    char needed[ENGINE_NEED_SIZE];
+    if (!engine_check(driver->name, scenario, err)) {
+        return false;
+    }
+    const int protocol = engine_needs(&scenario->linkage, needed);
+    if (protocol <= driver->protocol) {
+        return true;
+    }
+    char what[2 * ENGINE_NEED_SIZE];
+    snprintf(what, sizeof what, "%s, which protocol %d for drivers has and its %d has not", needed,
+             protocol, driver->protocol);
+    return engine_refuse(driver->name, what, err);
+}
+
 // Runs the scenario and fills the trajectory.
 static bool fill(const EngineDriver *driver, const char *way, const Scenario *scenario,
                  double time_limit_s, Trajectory *trajectory, EngineSaid *said,
                  EngineRecords *records, Err *err)
 {
     EngineDriver again = *driver; // what it says of itself in this run
+    if (!check_protocol(driver, scenario, err)) {
+        said->is_refused = true;
+        return false;
+    }
     char *request = engine_request(scenario, way, records != NULL ? records->record_s : 0.0,
                                    said->model != NULL, err);
     if (request == NULL) {
         return false;
-    }
-    char needed[ENGINE_NEED_SIZE];
-    const int protocol = engine_needs(&scenario->linkage, needed);
-    if (protocol > driver->protocol) {
-        free(request);
-        said->is_refused = true;
-        return err_set(err, ERR_CASE,
-                       "the driver speaks protocol %d, which has no words for %s; protocol %d has",
-                       driver->protocol, needed, protocol);
     }
     EngineReply reply = engine_reply_start(scenario, &again, trajectory, said);
     reply.records = records;
@@ -262,4 +277,37 @@ Trajectory *engine_run_recorded(const EngineDriver *driver, const char *way,
     said = said != NULL ? said : &own;
     *said = (EngineSaid){.opening_m = 0.0};
     return run_said(driver, way, scenario, time_limit_s, said, records);
+}
+
+// The scenario up to its first sample alone.
+static Scenario first_sample(const Scenario *scenario)
+{
+    Scenario first = *scenario;
+    const double duration_s = scenario_duration(scenario);
+    // a step that is chosen as the run goes is none yet
+    first.run.step = scenario->run.step > 0.0 ? scenario->run.step : FIRST_SHARE * duration_s;
+    const double share = fmin(first.run.step / duration_s, FIRST_SHARE);
+    first.run.revolutions *= share;
+    first.run.duration *= share;
+    return first;
+}
+
+bool engine_takes(const EngineDriver *driver, const char *const *ways, size_t count,
+                  const Scenario *scenario, Err *err)
+{
+    if (!check_protocol(driver, scenario, err)) {
+        return false;
+    }
+    const Scenario first = first_sample(scenario);
+    EngineSaid said = {.is_refused = false};
+    for (size_t i = 0; i < count; i++) {
+        trajectory_destroy(engine_run(driver, ways[i], &first, HELLO_LIMIT_S, &said));
+        if (!said.is_refused) {
+            return true;
+        }
+    }
+    char name[2 * ENGINE_NAME_SIZE];
+    snprintf(name, sizeof name, "%s%s%s", driver->name, count == 1 ? "/" : "",
+             count == 1 ? ways[0] : "");
+    return count == 0 || engine_refuse(name, said.refused, err);
 }

@@ -78,6 +78,22 @@ static size_t list_ways(const EngineDriver *driver, EngineWay wanted,
     return count;
 }
 
+static bool check_engine(const Scenario *scenario, BackendKind backend, Err *err)
+{
+    EngineDriver driver;
+    const char *ways[ENGINE_WAY_COUNT];
+    Err other = {0};
+    if (!engine_check(OPTIONS_BACKENDS[backend], scenario, err)) {
+        return false;
+    }
+    // a driver that is missing is a run that fails
+    if (!find_driver(scenario, backend, &driver, &other)) {
+        return true;
+    }
+    const size_t count = list_ways(&driver, scenario->engines[backend].way, ways);
+    return engine_takes(&driver, ways, count, scenario, err);
+}
+
 // Runs the case in one way.
 static bool run_way(EngineState *state, const char *way, Err *err)
 {
@@ -153,7 +169,7 @@ static bool engine_open(const Scenario *scenario, BackendKind backend, void **op
     if (is_run) {
         Err own = {0};
         is_run = run_way(state, ways[way], &own);
-        // what it cannot express in its best way it may in another
+        // what it does not take in its best way it may in another
         while (!is_run && state->said.is_refused && way + 1 < count) {
             own = (Err){0};
             is_run = run_way(state, ways[++way], &own);
@@ -406,12 +422,17 @@ static void engine_totals(const void *of, JointExtremes *joints)
 }
 
 #define ENGINE_SOLVER(id, word, solver, is)                                                        \
+    static bool check_##id(const Scenario *scenario, Err *err)                                     \
+    {                                                                                              \
+        return check_engine(scenario, id, err);                                                    \
+    }                                                                                              \
     static bool open_##id(const Scenario *scenario, void **state, Err *err)                        \
     {                                                                                              \
         return engine_open(scenario, id, state, err);                                              \
     }                                                                                              \
     const Solver solver = {                                                                        \
         .name = word,                                                                              \
+        .check = check_##id,                                                                       \
         .open = open_##id,                                                                         \
         .step = engine_step,                                                                       \
         .record = engine_record,                                                                   \

@@ -5,8 +5,12 @@
 
 #include <jansson.h>
 
-// The request for a run, as one line of JSON; the caller frees it. NULL, with ERR_CASE, where the
-// scenario cannot be expressed. Records of at least that length are asked for, none where it is 0.
+// Says what of a case an engine cannot run: ERR_CASE.
+bool engine_refuse(const char *engine, const char *what, Err *err);
+
+// The request for a run of a scenario that engine_check passes, as one line of JSON; the caller
+// frees it. NULL, with ERR_CASE, where a contact has no law. Records of at least that length are
+// asked for, none where it is 0.
 char *engine_request(const Scenario *scenario, const char *way, double record_s, bool wants_model,
                      Err *err);
 
@@ -14,7 +18,7 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
 json_t *engine_pair(Vec2 value);
 
 // The oldest protocol that has words for a scenario, and the first thing in it that no older one
-// has, such as "the spring 'x'"; empty where there is none.
+// has, such as "springs ('x')"; empty where there is none.
 enum { ENGINE_NEED_SIZE = 96 };
 int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE]);
 

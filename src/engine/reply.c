@@ -326,10 +326,12 @@ static bool take_line(EngineReply *reply, const json_t *line, Err *err)
     }
     if ((value = json_object_get(line, "refused")) != NULL) {
         const char *what = json_string_value(value);
+        what = what != NULL ? what : "this case";
         if (reply->said != NULL) {
             reply->said->is_refused = true;
+            text_copy(reply->said->refused, sizeof reply->said->refused, what);
         }
-        return err_set(err, ERR_SOLVER, "cannot express %s", what != NULL ? what : "this case");
+        return err_set(err, ERR_SOLVER, "does not take %s", what);
     }
     if (reply->scenario != NULL && json_object_get(line, "sample") != NULL) {
         return take_sample(reply, line, err);

@@ -8,27 +8,29 @@
 
 #include <assert.h>
 #include <jansson.h>
+#include <stdio.h>
 
 const char ENGINE_HELLO[] = "{\"jointplay-driver\": 1, \"ask\": \"hello\"}\n";
 
 enum { REQUEST_FLAGS = JSON_REAL_PRECISION(17) | JSON_COMPACT };
 
-static bool refuse(Err *err, const char *what)
+bool engine_refuse(const char *engine, const char *what, Err *err)
 {
-    return err_set(err, ERR_CASE, "protocol %d for engines cannot express %s", ENGINE_PROTOCOL,
+    return err_set(err, ERR_CASE, "%s cannot run this case: its driver does not take %s", engine,
                    what);
 }
 
-static bool refuse_named(Err *err, const char *what, const char *name)
+static bool refuse_joint(const char *engine, const char *what, const Joint *joint, Err *err)
 {
-    return err_set(err, ERR_CASE, "protocol %d for engines cannot express %s '%s'", ENGINE_PROTOCOL,
-                   what, name);
+    char words[ENGINE_NEED_SIZE];
+    snprintf(words, sizeof words, "%s (joint '%s')", what, joint->name);
+    return engine_refuse(engine, words, err);
 }
 
-static bool check_joint(const Joint *joint, Err *err)
+static bool check_joint(const char *engine, const Joint *joint, Err *err)
 {
     if (joint->limits.kind != LIMIT_NONE) {
-        return refuse_named(err, "the limits of joint", joint->name);
+        return refuse_joint(engine, "limits of a joint", joint, err);
     }
     switch (joint->kind) {
     case JOINT_REVOLUTE:
@@ -36,42 +38,42 @@ static bool check_joint(const Joint *joint, Err *err)
     case JOINT_PRISMATIC:
         return true;
     case JOINT_GUIDE:
-        return refuse_named(err, "the block between guides", joint->name);
+        return refuse_joint(engine, "a block between guides", joint, err);
     case JOINT_STOP:
-        return refuse_named(err, "the stop", joint->name);
+        return refuse_joint(engine, "stops", joint, err);
     case JOINT_GEAR:
-        return refuse_named(err, "the gears", joint->name);
+        return refuse_joint(engine, "gears", joint, err);
     case JOINT_KIND_COUNT:
         break;
     }
     return false;
 }
 
-bool engine_check(const Scenario *scenario, Err *err)
+bool engine_check(const char *engine, const Scenario *scenario, Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
     if (linkage->is_spatial) {
-        return refuse(err, "a mechanism in space");
+        return engine_refuse(engine, "a mechanism in space", err);
     }
     if (scenario->contact.model != CONTACT_IMPACT && scenario_has_clearance(scenario)) {
-        return refuse(err, "contact.model: poisson");
+        return engine_refuse(engine, "contact.model: poisson", err);
     }
     if (linkage->further_count > 0) {
-        return refuse(err, "several drives");
+        return engine_refuse(engine, "several drives", err);
     }
     if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
-        return refuse(err, "a drive whose speed is over time");
+        return engine_refuse(engine, "a drive whose speed changes over time", err);
     }
     if (linkage->torque.followed.is_present && !drive_is_steady(&linkage->torque.followed)) {
-        return refuse(err, "a soft drive whose speed is over time");
+        return engine_refuse(engine, "a soft drive whose speed changes over time", err);
     }
     const Torque *torque = &linkage->torque;
     if (torque->table.count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC &&
         (torque->slope > 0.0 || torque->followed.is_present)) {
-        return refuse(err, "a motor or soft drive along a line");
+        return engine_refuse(engine, "a motor or soft drive along a line", err);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (!check_joint(&linkage->joints[i], err)) {
+        if (!check_joint(engine, &linkage->joints[i], err)) {
             return false;
         }
     }
@@ -173,9 +175,6 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
                      Err *err)
 {
     const Linkage *linkage = &scenario->linkage;
-    if (!engine_check(scenario, err)) {
-        return NULL;
-    }
     json_t *bodies = json_array();
     json_t *joints = json_array();
     bool is_whole = true;

@@ -22,11 +22,11 @@ int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE])
 {
     what[0] = '\0';
     if (linkage->spring_count > 0) {
-        snprintf(what, ENGINE_NEED_SIZE, "the spring '%s'", linkage->springs[0].name);
+        snprintf(what, ENGINE_NEED_SIZE, "springs ('%s')", linkage->springs[0].name);
     } else if (linkage->torsion_count > 0) {
-        snprintf(what, ENGINE_NEED_SIZE, "the torsion spring '%s'", linkage->torsions[0].name);
+        snprintf(what, ENGINE_NEED_SIZE, "torsion springs ('%s')", linkage->torsions[0].name);
     } else if (linkage->load_count > 0) {
-        snprintf(what, ENGINE_NEED_SIZE, "the load '%s'", linkage->loads[0].name);
+        snprintf(what, ENGINE_NEED_SIZE, "loads ('%s')", linkage->loads[0].name);
     } else if (has_torque(linkage)) {
         snprintf(what, ENGINE_NEED_SIZE, "a drive by torque");
     }

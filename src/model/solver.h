@@ -82,6 +82,9 @@ typedef struct SolverModel {
 typedef struct Solver {
     const char *name; // as in a case's list of backends
     bool is_ideal;    // takes every joint as ideal, whatever its play
+    // Optional: whether it can run the scenario at all, whose start may still have to be found:
+    // asked before any long work. Fails with ERR_CASE, naming what it cannot run.
+    bool (*check)(const Scenario *scenario, Err *err);
     // Makes the state at time zero. On failure *state stays NULL.
     bool (*open)(const Scenario *scenario, void **state, Err *err);
     // Takes one step of the solver's own choosing towards stop_s. It may end beyond stop_s only

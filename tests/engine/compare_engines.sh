@@ -73,5 +73,5 @@ report "an engine that is not there is refused" $?
     grep -q "'toy' cannot run a case the way 'leapfrog'; it has euler, midpoint" "$log"
 report "so is a way that it has not" $?
 ! "$program" compare "$JOINTPLAY_CASES/mechanisms/bouncing-ball.yaml" --driver "$toy" -q 2>"$log" &&
-    grep -q "protocol 2 for engines cannot express the stop" "$log"
-report "and a case that cannot be told to any" $?
+    grep -q "bouncing-ball.yaml: toy cannot run this case: its driver does not take stops (joint '" "$log"
+report "and a case that no driver takes" $?

@@ -75,6 +75,21 @@ report "--driver names another program for an engine" $?
 run --driver "mujoco=$JOINTPLAY_TOY_DRIVER" --backend mujoco --step 200us --set engines.mujoco=kernel
 [ $? = 4 ] && grep -q "the driver 'mujoco' has no way 'kernel'" "$log"
 report "a way that it has not is a failed run" $?
+
+# finding a start would take minutes here, and show its progress
+refused() {
+    timeout 30 "$program" "$@" --driver "$toy" --set 'run.settle-budget=900 s' \
+        --set run.settle-least=1000000 >out 2>"$log"
+    [ $? = 3 ] && ! grep -q settling "$log" && [ ! -s out ] && grep -q \
+        "toy.* cannot run this case: its driver does not take the pin-in-hole 'crank-coupler'" "$log"
+}
+play=$JOINTPLAY_CASES/paper/impact-k66.yaml
+refused run "$play" --backend ode,toy && refused report "$play" --backend ode,toy -o page.html &&
+    [ ! -e page.html ]
+report "what a driver does not take is said before a start is looked for and others run" $?
+refused compare "$play" && refused tune "$play" --backend toy --error 1e-2
+report "before a comparison and a search, too" $?
+
 run --driver "$toy"
 [ $? = 2 ] && grep -q "is not used: 'toy' is not among the backends" "$log"
 report "a driver that nothing asks for is refused" $?

@@ -211,42 +211,44 @@ static void a_name_without_a_driver_says_which_there_are(void **state)
     unsetenv("JOINTPLAY_DRIVERS");
 }
 
-// What the protocol has no words for is refused by name, before any program is started.
+// What drivers are not told of is refused by name, before any program is started.
 static void what_cannot_be_told_is_refused_by_name(void **state)
 {
     (void)state;
     static const char *const CASES[][2] = {
         {"cases/mechanisms/compressor.yaml", ""},
-        {"cases/mechanisms/slider-crank-guide.yaml", "cannot express the block between guides"},
+        {"cases/mechanisms/slider-crank-guide.yaml",
+         "mujoco cannot run this case: its driver does not take a block between guides (joint "},
         {"cases/mechanisms/pendulum.yaml", ""},
-        {"cases/mechanisms/gear-pair.yaml", "cannot express"},
-        {"cases/mechanisms/bouncing-ball.yaml", "cannot express the stop"},
-        {"cases/mechanisms/start-and-stop.yaml", "cannot express a drive whose speed is over time"},
-        {"cases/mechanisms/five-bar.yaml", "cannot express several drives"},
-        {"cases/paper/stackup-poisson.yaml", "cannot express contact.model: poisson"},
+        {"cases/mechanisms/gear-pair.yaml", "does not take a drive whose speed changes over time"},
+        {"cases/mechanisms/bouncing-ball.yaml", "does not take stops (joint "},
+        {"cases/mechanisms/start-and-stop.yaml",
+         "does not take a drive whose speed changes over time"},
+        {"cases/mechanisms/five-bar.yaml", "does not take several drives"},
+        {"cases/paper/stackup-poisson.yaml", "does not take contact.model: poisson"},
         {"cases/paper/impact-k66.yaml", ""},
         {"cases/mechanisms/slider-crank.yaml", ""},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         Scenario scenario = load(CASES[i][0], NULL, 0);
         Err err = {0};
-        const bool is_right = engine_check(&scenario, &err);
+        const bool is_right = engine_check("mujoco", &scenario, &err);
         if (is_right != (CASES[i][1][0] == '\0') || strstr(err.text, CASES[i][1]) == NULL) {
             fail_msg("%s: '%s' is not '%s'", CASES[i][0], err.text, CASES[i][1]);
         }
     }
-    // a driver that cannot express what the protocol can says so itself
+    // a driver that does not take what the protocol has says so itself
     const EngineDriver driver = toy();
     Scenario scenario = load_with("cases/paper/impact-k66.yaml", "run.start=centred");
     Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
     assert_string_equal(run->message,
-                        "toy midpoint: cannot express the pin-in-hole 'crank-coupler'");
+                        "toy midpoint: does not take the pin-in-hole 'crank-coupler'");
     trajectory_destroy(run);
     // one of protocol 1 is not given what that has no words for
     static const char *const NEEDS[][2] = {
-        {"cases/mechanisms/run-up.yaml", "the spring 'return'"},
-        {"cases/hard/rotor-on-a-spring.yaml", "the torsion spring 'spring'"},
-        {"cases/mechanisms/compressor.yaml", "the load 'gas'"},
+        {"cases/mechanisms/run-up.yaml", "springs ('return')"},
+        {"cases/hard/rotor-on-a-spring.yaml", "torsion springs ('spring')"},
+        {"cases/mechanisms/compressor.yaml", "loads ('gas')"},
     };
     for (size_t i = 0; i < sizeof NEEDS / sizeof *NEEDS; i++) {
         char message[160];
@@ -254,12 +256,39 @@ static void what_cannot_be_told_is_refused_by_name(void **state)
         run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
         snprintf(
             message, sizeof message,
-            "toy midpoint: the driver speaks protocol 1, which has no words for %s; protocol 2 "
-            "has",
+            "toy midpoint: toy cannot run this case: its driver does not take %s, which protocol "
+            "2 for drivers has and its 1 has not",
             NEEDS[i][1]);
         assert_string_equal(run->message, message);
         trajectory_destroy(run);
     }
+}
+
+// A driver is asked whether it takes a case before there is a start; the reason is its own.
+static void what_a_driver_does_not_take_is_known_before_a_run(void **state)
+{
+    (void)state;
+    const EngineDriver driver = toy();
+    static const char *const WAYS[] = {"euler", "midpoint"};
+    Scenario scenario;
+    Err err = {0};
+    assert_true(casefile_load("cases/paper/impact-k66.yaml", NULL, 0, &scenario, &err));
+    assert_true(scenario_lacks_start(&scenario));
+    assert_false(engine_takes(&driver, WAYS, 2, &scenario, &err));
+    assert_int_equal(err.kind, ERR_CASE);
+    assert_string_equal(err.text, "toy cannot run this case: its driver does not take the "
+                                  "pin-in-hole 'crank-coupler'");
+    err = (Err){0};
+    assert_false(engine_takes(&driver, WAYS, 1, &scenario, &err));
+    assert_non_null(strstr(err.text, "toy/euler cannot run this case"));
+    scenario_free(&scenario);
+    // the controls: a case that it takes, and a fault that a run has to show
+    scenario = ideal(1e-4);
+    scenario.run.step = 0.0;
+    assert_true(engine_takes(&driver, WAYS, 2, &scenario, &err));
+    fault("abort");
+    assert_true(engine_takes(&driver, WAYS, 2, &scenario, &err));
+    fault("");
 }
 
 // A pipe that every process of a driver holds open.
@@ -431,6 +460,7 @@ int main(void)
         cmocka_unit_test(what_is_no_driver_is_refused),
         cmocka_unit_test(a_name_without_a_driver_says_which_there_are),
         cmocka_unit_test(what_cannot_be_told_is_refused_by_name),
+        cmocka_unit_test(what_a_driver_does_not_take_is_known_before_a_run),
         cmocka_unit_test(no_process_of_a_driver_outlives_the_program),
         cmocka_unit_test(no_process_of_a_driver_outlives_the_run),
         cmocka_unit_test(a_hundred_kills_leave_nothing_hanging),

@@ -178,10 +178,10 @@ static bool compare_options_ladder(const CompareOptions *options, const CompareE
     size_t scheme_count;
     double steps[LADDER_STEP_MAX];
     size_t step_count;
-    if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err) ||
-        !compare_engines_apply(engines, scenario, schemes, &scheme_count, err)) {
+    if (!common_options_list_schemes(&options->common, scenario, schemes, &scheme_count, err)) {
         return false;
     }
+    compare_engines_apply(engines, schemes, &scheme_count);
     *left = (LadderLeft){.finest_s = 0.0};
     if (options->steps == NULL || strcmp(options->steps, ALL_STEPS) == 0) {
         step_count = usual_steps(options, scenario, steps);
@@ -411,9 +411,13 @@ static bool compare_case(void *target, Err *err)
     Scenario *scenario = calloc(1, sizeof *scenario);
     assert(scenario != NULL);
     CompareEngines *engines = compare_engines_read(options, err);
-    bool is_done = engines != NULL && common_options_load(&options->common, scenario, err) &&
-                   compare_options_ladder(options, engines, scenario, &ladder, &left, err) &&
-                   results_claim(&RESULTS, &options->common, scenario_path(scenario), err);
+    bool is_done = engines != NULL && common_options_read(&options->common, scenario, err) &&
+                   compare_engines_check(engines, scenario, err);
+    if (is_done) {
+        common_options_settle(&options->common, scenario);
+        is_done = compare_options_ladder(options, engines, scenario, &ladder, &left, err) &&
+                  results_claim(&RESULTS, &options->common, scenario_path(scenario), err);
+    }
     if (is_done) {
         cmd_compare_warn(options, scenario);
         is_done = compare_ladder(options, scenario, ladder, left, err);

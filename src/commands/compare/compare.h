@@ -76,10 +76,12 @@ typedef struct CompareEngines {
 // program is no driver.
 CompareEngines *compare_engines_read(const CompareOptions *options, Err *err);
 
+// Whether each engine takes the scenario, whose start may still have to be found, in one of its
+// ways at least. Fails with ERR_CASE, naming what it does not take.
+bool compare_engines_check(const CompareEngines *engines, const Scenario *scenario, Err *err);
+
 // Adds their ways to the schemes of a scenario, and takes ODE's out where it is not asked for.
-// Fails with ERR_CASE where the engines cannot be told of it.
-bool compare_engines_apply(const CompareEngines *engines, const Scenario *scenario, Scheme *schemes,
-                           size_t *count, Err *err);
+void compare_engines_apply(const CompareEngines *engines, Scheme *schemes, size_t *count);
 
 // Whether a ladder has other engines than ODE.
 bool compare_engines_are_any(const Ladder *ladder);

@@ -119,12 +119,26 @@ CompareEngines *compare_engines_read(const CompareOptions *options, Err *err)
     return engines;
 }
 
-bool compare_engines_apply(const CompareEngines *engines, const Scenario *scenario, Scheme *schemes,
-                           size_t *count, Err *err)
+bool compare_engines_check(const CompareEngines *engines, const Scenario *scenario, Err *err)
 {
-    if (engines->scheme_count > 0 && !engine_check(scenario, err)) {
-        return false;
+    const char *ways[ENGINE_WAY_MAX];
+    for (size_t i = 0, next; i < engines->scheme_count; i = next) {
+        const EngineDriver *driver = engines->schemes[i].driver;
+        for (next = i; next < engines->scheme_count && next - i < ENGINE_WAY_MAX &&
+                       engines->schemes[next].driver == driver;
+             next++) {
+            ways[next - i] = engines->schemes[next].way;
+        }
+        if (!engine_takes(driver, ways, next - i, scenario, err)) {
+            err_prefix(err, scenario_path(scenario));
+            return false;
+        }
     }
+    return true;
+}
+
+void compare_engines_apply(const CompareEngines *engines, Scheme *schemes, size_t *count)
+{
     size_t kept = 0;
     for (size_t i = 0; i < *count; i++) {
         if (engines->has_ode || schemes[i].backend != BACKEND_ODE) {
@@ -136,7 +150,6 @@ bool compare_engines_apply(const CompareEngines *engines, const Scenario *scenar
         assert(*count < SCHEME_MAX);
         schemes[(*count)++] = engines->schemes[i];
     }
-    return true;
 }
 
 // Another engine, or another build of its driver, is another comparison.

@@ -2,6 +2,7 @@
 #include "commands/run/run_choices.h"
 #include "casefile/casefile.h"
 #include "measure/chosen_run.h"
+#include "run/registry.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -108,6 +109,16 @@ static bool check_uncertified(const Scenario *scenario, Err *err)
     return true;
 }
 
+// What a backend cannot run is said before a start is looked for and others run.
+static bool check_backends(const Scenario *scenario, Err *err)
+{
+    const bool is_right = registry_check(scenario, err);
+    if (!is_right) {
+        err_prefix(err, scenario_path(scenario));
+    }
+    return is_right;
+}
+
 bool run_choices_load(const RunChoices *choices, const char *path, CaseRun *run, Err *err)
 {
     const CommonOptions *common = &choices->common;
@@ -115,5 +126,6 @@ bool run_choices_load(const RunChoices *choices, const char *path, CaseRun *run,
     return casefile_load(path, common->overrides, common->override_count, &run->scenario, err) &&
            common_options_take_drivers(common->drivers, common->driver_count, &run->scenario,
                                        err) &&
-           (!run->is_uncertified || check_uncertified(&run->scenario, err));
+           (!run->is_uncertified || check_uncertified(&run->scenario, err)) &&
+           check_backends(&run->scenario, err);
 }

@@ -38,6 +38,7 @@ void run_choices_begin(RunChoices *choices);
 bool run_choices_end(RunChoices *choices, Err *err);
 void run_choices_finish(RunChoices *choices);
 
-// Loads a case with what was chosen into a run that is all zero. Fails as casefile_load does, and
-// with ERR_USAGE where --uncertified does not go with a step that is chosen by its error.
+// Loads a case with what was chosen into a run that is all zero. Fails as casefile_load does, with
+// ERR_USAGE where --uncertified does not go with a step that is chosen by its error, and with
+// ERR_CASE where a backend cannot run it.
 bool run_choices_load(const RunChoices *choices, const char *path, CaseRun *run, Err *err);

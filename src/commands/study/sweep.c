@@ -128,14 +128,17 @@ static void sweep_run(const SweepRun *task, Record *record)
     design_values(task->spec, task->run, record->settings);
     BackendKind backend;
     Err err = {0};
-    if (design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
+    if (!design_scenario(task->spec, record->settings, scenario, &backend, &err)) {
+        give_reason(record, RUN_OUTCOME_REFUSED, err.text);
+    } else if (scenario_lacks_start(scenario) && !registry_check_backend(scenario, backend, &err)) {
+        // one whose start need not be found is refused as soon as it runs
+        give_reason(record, RUN_OUTCOME_FAILED, err.text);
+    } else {
         follow_settle(task->spec, task->run, scenario);
         if (task->spec->has_growth) {
             settle_growth(scenario, (RunWatch){.progress = NULL});
         }
         sweep_measure(task, scenario, backend, record);
-    } else {
-        give_reason(record, RUN_OUTCOME_REFUSED, err.text);
     }
     scenario_destroy(scenario);
 }

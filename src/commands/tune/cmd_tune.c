@@ -540,7 +540,7 @@ static bool tune_on_engine(const TuneOptions *options, Err *err)
     assert(scenario != NULL);
     const TuneEngineOptions asked = {
         .common = common, .engine = options->backend, .target = options->error};
-    const bool is_done = common_options_load(common, scenario, err) &&
+    const bool is_done = common_options_read(common, scenario, err) &&
                          settle_error(options, scenario, err) &&
                          tune_engine_run(&asked, scenario, err);
     scenario_destroy(scenario);

@@ -37,6 +37,7 @@ typedef struct EngineTrial {
     double error; // 1; NAN where the run failed
     double wall_s;
     size_t steps;
+    bool is_refused; // the driver does not take the case in that way
     char message[ERR_TEXT_SIZE];
 } EngineTrial;
 
@@ -77,11 +78,11 @@ static double limit_of(const EngineTune *tune)
     return asked_s > 0.0 ? asked_s : DEFAULT_LIMIT_S;
 }
 
-static Trajectory *run_at(const EngineTune *tune, size_t way, double step_s)
+static Trajectory *run_at(const EngineTune *tune, size_t way, double step_s, EngineSaid *said)
 {
     Scenario scenario = *tune->scenario;
     scenario.run.step = step_s;
-    return engine_run(&tune->driver, tune->ways[way].way, &scenario, limit_of(tune), NULL);
+    return engine_run(&tune->driver, tune->ways[way].way, &scenario, limit_of(tune), said);
 }
 
 // A step, by its number: of one digit.
@@ -96,9 +97,14 @@ static double step_of(const EngineTune *tune, size_t number)
 static const EngineTrial *make_trial(EngineTune *tune, size_t way, double step_s)
 {
     EngineTrial *trial = &tune->trials[tune->trial_count++];
-    Trajectory *run = run_at(tune, way, step_s);
-    *trial = (EngineTrial){
-        .way = way, .step_s = step_s, .error = NAN, .wall_s = run->wall_s, .steps = run->steps};
+    EngineSaid said;
+    Trajectory *run = run_at(tune, way, step_s, &said);
+    *trial = (EngineTrial){.way = way,
+                           .step_s = step_s,
+                           .error = NAN,
+                           .wall_s = run->wall_s,
+                           .steps = run->steps,
+                           .is_refused = said.is_refused};
     if (run->is_complete) {
         const bool is_limited = tune->truth.is_limited;
         const TrajectoryError error = error_against(run, tune->truth.trajectory,
@@ -121,7 +127,7 @@ static double time_of(const EngineTune *tune, const EngineTrial *trial)
 {
     double times[REPEATS] = {trial->wall_s};
     for (size_t i = 1; i < REPEATS; i++) {
-        Trajectory *run = run_at(tune, trial->way, trial->step_s);
+        Trajectory *run = run_at(tune, trial->way, trial->step_s, NULL);
         times[i] = run->is_complete ? run->wall_s : INFINITY;
         trajectory_destroy(run);
     }
@@ -141,8 +147,8 @@ static void search_way(EngineTune *tune, size_t way)
             }
             return;
         }
-        // what cannot be expressed is so at any step
-        if (strstr(trial->message, "cannot express") != NULL || trial->wall_s > SLOW_S ||
+        // what is refused is so at any step
+        if (trial->is_refused || trial->wall_s > SLOW_S ||
             (tune->best != NULL && trial->wall_s > tune->best->wall_s)) {
             return;
         }
@@ -249,7 +255,24 @@ static bool search(EngineTune *tune, Err *err)
                    tune->driver.name, tune->options->target);
 }
 
-bool tune_engine_run(const TuneEngineOptions *options, const Scenario *scenario, Err *err)
+// Whether the engine is there and takes the case.
+static bool check_engine(EngineTune *tune, Err *err)
+{
+    const char *ways[SCHEME_ENGINE_MAX];
+    if (!find_engine(tune, err)) {
+        return false;
+    }
+    for (size_t i = 0; i < tune->way_count; i++) {
+        ways[i] = tune->ways[i].way;
+    }
+    const bool is_taken = engine_takes(&tune->driver, ways, tune->way_count, tune->scenario, err);
+    if (!is_taken) {
+        err_prefix(err, scenario_path(tune->scenario));
+    }
+    return is_taken;
+}
+
+bool tune_engine_run(const TuneEngineOptions *options, Scenario *scenario, Err *err)
 {
     if (!(options->target > 0.0)) {
         return err_set(err, ERR_USAGE, "--backend needs --error X, such as --error 1e-3");
@@ -258,7 +281,11 @@ bool tune_engine_run(const TuneEngineOptions *options, const Scenario *scenario,
     assert(tune != NULL);
     tune->options = options;
     tune->scenario = scenario;
-    const bool is_done = engine_check(scenario, err) && find_engine(tune, err) && search(tune, err);
+    bool is_done = check_engine(tune, err);
+    if (is_done) {
+        common_options_settle(options->common, scenario);
+        is_done = search(tune, err);
+    }
     free(tune);
     return is_done;
 }

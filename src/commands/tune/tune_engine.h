@@ -10,7 +10,8 @@ typedef struct TuneEngineOptions {
     double target;      // 1, of the error that the scenario's tolerance is of
 } TuneEngineOptions;
 
-// Runs the engine's ways at falling steps, each until its error meets the target, and prints how
-// cheap they are. ERR_USAGE where there is no such engine or way, ERR_CASE where the case cannot be
-// told to it, ERR_DIFFERS where nothing meets the error.
-bool tune_engine_run(const TuneEngineOptions *options, const Scenario *scenario, Err *err);
+// Finds the start of the scenario, runs the engine's ways at falling steps, each until its error
+// meets the target, and prints how cheap they are. ERR_USAGE where there is no such engine or way,
+// ERR_CASE, before anything runs, where it does not take the case, ERR_DIFFERS where nothing meets
+// the error.
+bool tune_engine_run(const TuneEngineOptions *options, Scenario *scenario, Err *err);

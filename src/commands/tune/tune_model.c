@@ -44,7 +44,8 @@ void tune_model_run(const TuneSearch *search, double step_s)
     TuneModel *model = &tune->model;
     EngineDriver driver;
     Err err = {0};
-    if (!engine_check(search->scenario, &err) || !find_driver(search->scenario, &driver, &err)) {
+    if (!engine_check(OPTIONS_BACKENDS[BACKEND_MUJOCO], search->scenario, &err) ||
+        !find_driver(search->scenario, &driver, &err)) {
         snprintf(model->reason, sizeof model->reason, "%.*s", LADDER_MESSAGE_SIZE - 1, err.text);
         return;
     }
