@@ -82,10 +82,18 @@ bool common_options_take_driver(const char *driver, Scenario *scenario, BackendK
     return true;
 }
 
-bool common_options_take_drivers(const char *const *drivers, size_t count, Scenario *scenario,
-                                 Err *err)
+void common_options_limit_drivers(double time_limit_s, Scenario *scenario)
 {
-    for (size_t i = 0; i < count; i++) {
+    for (int i = 0; i < BACKEND_COUNT; i++) {
+        scenario->engines[i].time_limit_s = time_limit_s;
+    }
+}
+
+bool common_options_take_drivers(const CommonOptions *options, Scenario *scenario, Err *err)
+{
+    const char *const *drivers = options->drivers;
+    common_options_limit_drivers(options->time_limit_s, scenario);
+    for (size_t i = 0; i < options->driver_count; i++) {
         BackendKind backend;
         if (!common_options_take_driver(drivers[i], scenario, &backend, err)) {
             return false;

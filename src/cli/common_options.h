@@ -84,9 +84,12 @@ bool common_options_driver(const char *driver, BackendKind *backend, Err *err);
 bool common_options_take_driver(const char *driver, Scenario *scenario, BackendKind *backend,
                                 Err *err);
 
-// The same of all that --driver names, each of which must be of a backend of the run.
-bool common_options_take_drivers(const char *const *drivers, size_t count, Scenario *scenario,
-                                 Err *err);
+// Lets a run of any engine take so long, s, by the clock on the wall; 0: the usual limit.
+void common_options_limit_drivers(double time_limit_s, Scenario *scenario);
+
+// Both, of all that --driver names, each of which must be of a backend of the run, and of
+// --time-limit.
+bool common_options_take_drivers(const CommonOptions *options, Scenario *scenario, Err *err);
 
 // The schemes of a scenario that --schemes names, or the usual ones. Fails with ERR_USAGE for a
 // word that none of them has.

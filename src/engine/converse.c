@@ -201,7 +201,7 @@ static bool converse_until_closed(Talk *talk, Err *err)
         const double left_s = stop_s - clock_now_s();
         bool is_busy;
         if (!(left_s > 0.0)) {
-            return err_set(err, ERR_SOLVER, "exceeded its time limit of %.4g s", limit_s);
+            return err_set(err, ERR_SOLVER, "took longer than its limit of %.4g s", limit_s);
         }
         const int wait_ms = left_s < 1e-3 * LOOK_MS ? (int)ceil(1e3 * left_s) : LOOK_MS;
         if (!converse_once(talk, wait_ms, &is_busy, err)) {

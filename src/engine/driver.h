@@ -78,7 +78,7 @@ Trajectory *engine_run_model(const EngineDriver *driver, const char *way, const 
 bool engine_check(const char *engine, const Scenario *scenario, Err *err);
 
 // Whether a driver takes a scenario in one of these ways at least, which need not have a start yet:
-// the driver is asked for the first sample of each. ERR_CASE as above, by the last of the ways.
-// What else goes wrong shows when it runs.
+// the driver is asked for the first sample of each, within the limit of a run, s, and some 20 s at
+// most. ERR_CASE as above, by the last of the ways. What else goes wrong shows when it runs.
 bool engine_takes(const EngineDriver *driver, const char *const *ways, size_t count,
-                  const Scenario *scenario, Err *err);
+                  const Scenario *scenario, double time_limit_s, Err *err);

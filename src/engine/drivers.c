@@ -293,15 +293,16 @@ static Scenario first_sample(const Scenario *scenario)
 }
 
 bool engine_takes(const EngineDriver *driver, const char *const *ways, size_t count,
-                  const Scenario *scenario, Err *err)
+                  const Scenario *scenario, double time_limit_s, Err *err)
 {
     if (!check_protocol(driver, scenario, err)) {
         return false;
     }
+    const double limit_s = time_limit_s > 0.0 ? fmin(time_limit_s, HELLO_LIMIT_S) : HELLO_LIMIT_S;
     const Scenario first = first_sample(scenario);
     EngineSaid said = {.is_refused = false};
     for (size_t i = 0; i < count; i++) {
-        trajectory_destroy(engine_run(driver, ways[i], &first, HELLO_LIMIT_S, &said));
+        trajectory_destroy(engine_run(driver, ways[i], &first, limit_s, &said));
         if (!said.is_refused) {
             return true;
         }

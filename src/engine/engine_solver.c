@@ -23,8 +23,8 @@ enum { RECORDS_WANTED = 1 << 16 };
 // of a time: a record that ends so little before the last sample has reached it
 static const double TIME_ROUNDING = 1e-9;
 
-// s: a driver that takes longer hangs
-static const double RUN_LIMIT_S = 3600.0;
+// s: a driver that takes longer hangs, as --time-limit of the commands has it
+static const double RUN_LIMIT_S = 600.0;
 
 typedef struct EngineState {
     const Scenario *scenario;
@@ -91,20 +91,23 @@ static bool check_engine(const Scenario *scenario, BackendKind backend, Err *err
         return true;
     }
     const size_t count = list_ways(&driver, scenario->engines[backend].way, ways);
-    return engine_takes(&driver, ways, count, scenario, err);
+    return engine_takes(&driver, ways, count, scenario, scenario->engines[backend].time_limit_s,
+                        err);
 }
 
 // Runs the case in one way.
-static bool run_way(EngineState *state, const char *way, Err *err)
+static bool run_way(EngineState *state, BackendKind backend, const char *way, Err *err)
 {
     const Scenario *scenario = state->scenario;
+    const double asked_s = scenario->engines[backend].time_limit_s;
     trajectory_destroy(state->answer);
     engine_records_finish(&state->records);
     state->records =
         engine_records_start(scenario->linkage.body_count, scenario->linkage.joint_count,
                              scenario_duration(scenario) / RECORDS_WANTED);
-    state->answer = engine_run_recorded(&state->driver, way, scenario, RUN_LIMIT_S, &state->said,
-                                        &state->records);
+    state->answer =
+        engine_run_recorded(&state->driver, way, scenario, asked_s > 0.0 ? asked_s : RUN_LIMIT_S,
+                            &state->said, &state->records);
     return state->answer->is_complete || err_set(err, ERR_SOLVER, "%s", state->answer->message);
 }
 
@@ -168,11 +171,11 @@ static bool engine_open(const Scenario *scenario, BackendKind backend, void **op
     size_t way = 0;
     if (is_run) {
         Err own = {0};
-        is_run = run_way(state, ways[way], &own);
+        is_run = run_way(state, backend, ways[way], &own);
         // what it does not take in its best way it may in another
         while (!is_run && state->said.is_refused && way + 1 < count) {
             own = (Err){0};
-            is_run = run_way(state, ways[++way], &own);
+            is_run = run_way(state, backend, ways[++way], &own);
         }
         is_run = is_run || err_set(err, ERR_SOLVER, "%s", own.text);
     }

@@ -268,8 +268,9 @@ typedef struct OdeOptions {
 // How another engine runs a case.
 typedef struct EngineOptions {
     EngineWay way;
-    const char *driver; // no key: NAME=PROGRAM, as --driver has it, in place of the driver that
-                        // came with the program; NULL: none. Not owned
+    const char *driver;  // no key: NAME=PROGRAM, as --driver has it, in place of the driver that
+                         // came with the program; NULL: none. Not owned
+    double time_limit_s; // no key: of one run, by the clock on the wall; 0: the usual one
 } EngineOptions;
 
 // s, the step where a case names a way of stepping but no step: one that is chosen has its own way.

@@ -66,6 +66,15 @@ for fault in abort starts-over failed nan; do
     [ $? = 4 ] && grep -q 'on driver: toy euler: ' "$log" && grep -q 'driver FAILED' out
     report "a driver with the fault '$fault' is a failed run: exit status 4" $?
 done
+for fault in hang stops; do
+    JOINTPLAY_TOY_FAULT=$fault run --driver "$toy" --backend analytic,toy --step 200us --time-limit 2s
+    [ $? = 4 ] && grep -q 'on driver: toy euler: took longer than its limit of 2 s' "$log"
+    report "a driver with the fault '$fault' is a failed run once its time is up" $?
+done
+JOINTPLAY_TOY_FAULT=hang "$program" report "$case" --set run.samples=30 -q --driver "$toy" \
+    --backend analytic,toy --step 200us --time-limit 2s -o hung.html 2>"$log"
+[ $? = 4 ] && grep -q 'on driver: toy euler: took longer than its limit of 2 s' "$log"
+report "in a report as well" $?
 run --backend analytic,mujoco --step 200us
 [ $? = 4 ] && grep -q "there is no driver for 'mujoco' here" "$log"
 report "so is one that is missing" $?

@@ -145,7 +145,7 @@ static void one_that_hangs_is_ended(void **state)
     const double began_s = clock_now_s();
     Trajectory *run = engine_run(&driver, "midpoint", &scenario, 1.0, NULL);
     assert_false(run->is_complete);
-    assert_non_null(strstr(run->message, "exceeded its time limit of 1 s"));
+    assert_non_null(strstr(run->message, "took longer than its limit of 1 s"));
     assert_true(clock_now_s() - began_s < SOON_S);
     fault("");
     trajectory_destroy(run);
@@ -274,20 +274,20 @@ static void what_a_driver_does_not_take_is_known_before_a_run(void **state)
     Err err = {0};
     assert_true(casefile_load("cases/paper/impact-k66.yaml", NULL, 0, &scenario, &err));
     assert_true(scenario_lacks_start(&scenario));
-    assert_false(engine_takes(&driver, WAYS, 2, &scenario, &err));
+    assert_false(engine_takes(&driver, WAYS, 2, &scenario, SOON_S, &err));
     assert_int_equal(err.kind, ERR_CASE);
     assert_string_equal(err.text, "toy cannot run this case: its driver does not take the "
                                   "pin-in-hole 'crank-coupler'");
     err = (Err){0};
-    assert_false(engine_takes(&driver, WAYS, 1, &scenario, &err));
+    assert_false(engine_takes(&driver, WAYS, 1, &scenario, SOON_S, &err));
     assert_non_null(strstr(err.text, "toy/euler cannot run this case"));
     scenario_free(&scenario);
     // the controls: a case that it takes, and a fault that a run has to show
     scenario = ideal(1e-4);
     scenario.run.step = 0.0;
-    assert_true(engine_takes(&driver, WAYS, 2, &scenario, &err));
+    assert_true(engine_takes(&driver, WAYS, 2, &scenario, SOON_S, &err));
     fault("abort");
-    assert_true(engine_takes(&driver, WAYS, 2, &scenario, &err));
+    assert_true(engine_takes(&driver, WAYS, 2, &scenario, SOON_S, &err));
     fault("");
 }
 
@@ -396,7 +396,7 @@ static void no_process_of_a_driver_outlives_the_run(void **state)
     family_finish(&family, 0, "done");
     family = family_start("family-hangs");
     run = engine_run(&driver, "midpoint", &scenario, 3.0, NULL);
-    assert_non_null(strstr(run->message, "exceeded its time limit of 3 s"));
+    assert_non_null(strstr(run->message, "took longer than its limit of 3 s"));
     trajectory_destroy(run);
     family_finish(&family, 0, "time limit");
     unlink(path);

@@ -214,6 +214,7 @@ FAULTS = {
     "short": lambda samples: samples.pop(),
     "other-times": lambda samples: samples.reverse(),
     "hang": hang,
+    "stops": lambda samples: os.kill(os.getpid(), signal.SIGSTOP),
     "child": leave_a_child,
 }
 

@@ -106,8 +106,7 @@ static bool read_case(CheckItem *item, const CheckOptions *options)
     if (item->err.kind != ERR_NONE ||
         !casefile_load(item->path, options->common.overrides, options->common.override_count,
                        item->scenario, &item->err) ||
-        !common_options_take_drivers(options->common.drivers, options->common.driver_count,
-                                     item->scenario, &item->err)) {
+        !common_options_take_drivers(&options->common, item->scenario, &item->err)) {
         scenario_destroy(item->scenario);
         item->scenario = NULL;
         note_refusal(item, options);

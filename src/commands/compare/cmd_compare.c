@@ -412,7 +412,7 @@ static bool compare_case(void *target, Err *err)
     assert(scenario != NULL);
     CompareEngines *engines = compare_engines_read(options, err);
     bool is_done = engines != NULL && common_options_read(&options->common, scenario, err) &&
-                   compare_engines_check(engines, scenario, err);
+                   compare_engines_check(engines, scenario, options->common.time_limit_s, err);
     if (is_done) {
         common_options_settle(&options->common, scenario);
         is_done = compare_options_ladder(options, engines, scenario, &ladder, &left, err) &&

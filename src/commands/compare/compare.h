@@ -76,9 +76,11 @@ typedef struct CompareEngines {
 // program is no driver.
 CompareEngines *compare_engines_read(const CompareOptions *options, Err *err);
 
-// Whether each engine takes the scenario, whose start may still have to be found, in one of its
-// ways at least. Fails with ERR_CASE, naming what it does not take.
-bool compare_engines_check(const CompareEngines *engines, const Scenario *scenario, Err *err);
+// Whether each engine, a run of which may take so long, s, takes the scenario, whose start may
+// still have to be found, in one of its ways at least. Fails with ERR_CASE, naming what it does not
+// take.
+bool compare_engines_check(const CompareEngines *engines, const Scenario *scenario,
+                           double time_limit_s, Err *err);
 
 // Adds their ways to the schemes of a scenario, and takes ODE's out where it is not asked for.
 void compare_engines_apply(const CompareEngines *engines, Scheme *schemes, size_t *count);

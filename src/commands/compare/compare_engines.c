@@ -119,7 +119,8 @@ CompareEngines *compare_engines_read(const CompareOptions *options, Err *err)
     return engines;
 }
 
-bool compare_engines_check(const CompareEngines *engines, const Scenario *scenario, Err *err)
+bool compare_engines_check(const CompareEngines *engines, const Scenario *scenario,
+                           double time_limit_s, Err *err)
 {
     const char *ways[ENGINE_WAY_MAX];
     for (size_t i = 0, next; i < engines->scheme_count; i = next) {
@@ -129,7 +130,7 @@ bool compare_engines_check(const CompareEngines *engines, const Scenario *scenar
              next++) {
             ways[next - i] = engines->schemes[next].way;
         }
-        if (!engine_takes(driver, ways, next - i, scenario, err)) {
+        if (!engine_takes(driver, ways, next - i, scenario, time_limit_s, err)) {
             err_prefix(err, scenario_path(scenario));
             return false;
         }

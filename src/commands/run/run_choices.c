@@ -124,8 +124,7 @@ bool run_choices_load(const RunChoices *choices, const char *path, CaseRun *run,
     const CommonOptions *common = &choices->common;
     run->is_uncertified = choices->is_uncertified;
     return casefile_load(path, common->overrides, common->override_count, &run->scenario, err) &&
-           common_options_take_drivers(common->drivers, common->driver_count, &run->scenario,
-                                       err) &&
+           common_options_take_drivers(common, &run->scenario, err) &&
            (!run->is_uncertified || check_uncertified(&run->scenario, err)) &&
            check_backends(&run->scenario, err);
 }

@@ -25,6 +25,7 @@ typedef struct RunChoices {
      help_group, OPTION_READ, .read = run_choices_read_budget}, \
     COMMON_SET(help_group), \
     COMMON_DRIVERS(help_group), \
+    COMMON_TIME_LIMIT(help_group, "A driver's run that takes longer has failed (default: 600 s)"), \
     {"uncertified", NULL, \
      "Run the reference alone, in a fifth of the time: its uncertainty and horizon are not known", \
      help_group, OPTION_FLAG, .offset = offsetof(RunChoices, is_uncertified)}

@@ -376,6 +376,7 @@ bool design_scenario(const Spec *spec, const Cell *values, Scenario *scenario, B
         is_good = common_options_driver(spec->drivers[i], &of, &own);
         built.engines[of].driver = spec->drivers[i];
     }
+    common_options_limit_drivers(spec->limits.time_s, &built);
     overrides_finish(spec, &overrides);
     if (!is_good) {
         scenario_free(&built);

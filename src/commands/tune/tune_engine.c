@@ -265,7 +265,8 @@ static bool check_engine(EngineTune *tune, Err *err)
     for (size_t i = 0; i < tune->way_count; i++) {
         ways[i] = tune->ways[i].way;
     }
-    const bool is_taken = engine_takes(&tune->driver, ways, tune->way_count, tune->scenario, err);
+    const bool is_taken =
+        engine_takes(&tune->driver, ways, tune->way_count, tune->scenario, limit_of(tune), err);
     if (!is_taken) {
         err_prefix(err, scenario_path(tune->scenario));
     }
