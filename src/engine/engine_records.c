@@ -18,6 +18,9 @@ enum {
 // s: of rounding, over a record's length, that one begins beside the end of the last
 static const double RECORD_ROUNDING = 1e-3;
 
+// SI: no number of a step is larger
+static const double RECORD_NUMBER_MOST = 1e15;
+
 static size_t size_of_record(const EngineRecords *records)
 {
     return RECORD_TIMES + RECORD_BODY * records->body_count + RECORD_JOINT * records->joint_count;
@@ -48,7 +51,8 @@ static bool read_row(const json_t *row, size_t known, size_t count, double *numb
     for (size_t i = 0; i < count; i++) {
         const json_t *value = json_array_get(row, i);
         numbers[i] = json_is_number(value) ? json_number_value(value) : NAN;
-        if (!json_is_number(value) && (i < known || !json_is_null(value))) {
+        if (json_is_number(value) ? !(fabs(numbers[i]) <= RECORD_NUMBER_MOST)
+                                  : i < known || !json_is_null(value)) {
             return false;
         }
     }
@@ -86,9 +90,11 @@ bool engine_records_take(EngineRecords *records, const json_t *line, Err *err)
     }
     double *numbers = records->numbers + records->count * size;
     if (!read_record(records, line, numbers)) {
-        return err_set(err, ERR_SOLVER,
-                       "its step %zu is not of two times, %zu bodies and %zu joints",
-                       records->count, records->body_count, records->joint_count);
+        return err_set(
+            err, ERR_SOLVER,
+            "its step %zu is not of two times, %zu bodies and %zu joints, or has a number "
+            "above %.0e",
+            records->count, records->body_count, records->joint_count, RECORD_NUMBER_MOST);
     }
     const double last_s =
         records->count > 0 ? engine_records_end(records, records->count - 1) : 0.0;

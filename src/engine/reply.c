@@ -6,6 +6,7 @@
 #include "engine/protocol.h"
 
 #include "base/memory.h"
+#include "base/printable.h"
 #include "base/text.h"
 
 #include <jansson.h>
@@ -23,6 +24,12 @@ static const double OPENING_MOST = 0.05;
 // and of the mechanism's size, which is let go in any case: impacts change speeds in between
 static const double JUMP_MOST = 20.0;
 static const double JUMP_FLOOR = 1e-3;
+
+// SI: no number of a mechanism is larger, be it a speed, a force or a count of steps
+static const double NUMBER_MOST = 1e15;
+
+// contacts that may begin in a step of the case's: engines divide it
+static const double CONTACTS_MOST = 1e3;
 
 enum {
     BODY_NUMBERS = 6,  // x, y, angle and their rates
@@ -67,7 +74,10 @@ static bool read_text(const json_t *object, const char *in, const char *key, cha
     if (!json_is_string(value)) {
         return refuse_key(err, in, key, "a text");
     }
-    text_copy(target, size, json_string_value(value));
+    // it is shown in tables, pages and messages
+    char *shown = printable_copy(json_string_value(value), false);
+    text_copy(target, size, shown);
+    free(shown);
     return true;
 }
 
@@ -93,13 +103,13 @@ static bool read_rows(const json_t *object, const char *key, size_t rows, size_t
         is_right = json_is_array(row) && json_array_size(row) == columns;
         for (size_t k = 0; is_right && k < columns; k++) {
             const json_t *value = json_array_get(row, k);
-            is_right = json_is_number(value);
+            is_right = json_is_number(value) && fabs(json_number_value(value)) <= NUMBER_MOST;
             numbers[columns * i + k] = json_number_value(value);
         }
     }
     return is_right ||
-           err_set(err, ERR_SOLVER, "its samples have '%s' that is not %zu rows of %zu numbers",
-                   key, rows, columns);
+           err_set(err, ERR_SOLVER, "its '%s' are not %zu rows of %zu numbers of at most %.0e", key,
+                   rows, columns, NUMBER_MOST);
 }
 
 static bool take_hello(EngineReply *reply, const json_t *line, Err *err)
@@ -273,11 +283,24 @@ static bool take_totals(EngineReply *reply, const json_t *done, Err *err)
     if (!read_rows(done, "joints", run->joint_count, TOTAL_NUMBERS, totals, err)) {
         return false;
     }
+    static const char *const NAMES[TOTAL_NUMBERS] = {"largest force", "deepest penetration",
+                                                     "contacts begun"};
+    const double contacts_most =
+        CONTACTS_MOST * ceil(scenario_duration(reply->scenario) / reply->scenario->run.step);
+    for (size_t i = 0; i < TOTAL_NUMBERS * run->joint_count; i++) {
+        const bool is_count = i % TOTAL_NUMBERS == TOTAL_NUMBERS - 1;
+        if (!(totals[i] >= 0.0) ||
+            (is_count && (totals[i] != floor(totals[i]) || totals[i] > contacts_most))) {
+            return err_set(err, ERR_SOLVER, "says of '%s' that its %s is %.6g, which has to be %s",
+                           reply->scenario->linkage.joints[i / TOTAL_NUMBERS].name,
+                           NAMES[i % TOTAL_NUMBERS], totals[i],
+                           is_count ? "a whole number of at most 1000 a step" : "0 or more");
+        }
+    }
     for (size_t i = 0; i < run->joint_count; i++) {
         run->joints[i].force_max.value = totals[TOTAL_NUMBERS * i];
         run->joints[i].penetration_max.value = totals[TOTAL_NUMBERS * i + 1];
-        const double begun = totals[TOTAL_NUMBERS * i + 2];
-        run->joints[i].impacts = begun > 0.0 && begun < 1e15 ? (size_t)begun : 0;
+        run->joints[i].impacts = (size_t)totals[TOTAL_NUMBERS * i + 2];
     }
     return true;
 }
@@ -294,12 +317,18 @@ static bool take_done(EngineReply *reply, const json_t *done, Err *err)
         !read_number(done, "done", "wall_s", &run->wall_s, err) || !take_totals(reply, done, err)) {
         return false;
     }
-    if (!(steps >= 1.0) || !(run->wall_s > 0.0)) {
-        return err_set(err, ERR_SOLVER, "says that it made %g steps in %g s", steps, run->wall_s);
+    const bool is_count = steps >= 1.0 && steps <= NUMBER_MOST && steps == floor(steps);
+    if (!is_count || !(run->wall_s > 0.0) || !(run->wall_s <= NUMBER_MOST)) {
+        return err_set(
+            err, ERR_SOLVER,
+            "says that its 'steps' are %g and its 'wall_s' %g: a whole number from 1 and "
+            "a time above 0 are wanted, of at most %.0e",
+            steps, run->wall_s, NUMBER_MOST);
     }
     const json_t *settings = json_object_get(done, "settings");
     if (json_is_string(settings)) {
-        text_copy(reply->said->settings, sizeof reply->said->settings, json_string_value(settings));
+        read_text(done, "done", "settings", reply->said->settings, sizeof reply->said->settings,
+                  err);
     }
     const json_t *model = json_object_get(done, "model");
     if (json_is_string(model) && reply->said->model != NULL && *reply->said->model == NULL) {

@@ -100,6 +100,7 @@ static void what_goes_wrong_is_a_failed_run_with_its_reason(void **state)
     (void)state;
     static const char *const FAULTS[][2] = {
         {"nan", "is no JSON object"},
+        {"fast", "its 'bodies' are not 3 rows of 6 numbers of at most 1e+15"},
         {"far", "is suddenly 1e+06 m away"},
         {"apart", "is suddenly 0.36"},
         {"drive", "its drive is"},
@@ -134,6 +135,45 @@ static void what_goes_wrong_is_a_failed_run_with_its_reason(void **state)
     Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
     assert_true(run->is_complete);
     trajectory_destroy(run);
+}
+
+static void totals_that_cannot_be_are_refused_by_their_names(void **state)
+{
+    (void)state;
+    static const char *const LIES[][2] = {
+        {"steps=1e300", "its 'steps' are 1e+300"},
+        {"steps=0", "its 'steps' are 0"},
+        {"steps=2.5", "its 'steps' are 2.5"},
+        {"steps=NaN", "is no JSON object"},
+        {"wall_s=1e300", "its 'wall_s' 1e+300"},
+        {"wall_s=-1", "its 'wall_s' -1"},
+        {"force=-5", "its largest force is -5, which has to be 0 or more"},
+        {"depth=-1e300", "numbers of at most 1e+15"},
+        {"depth=-1e-9", "its deepest penetration is -1e-09"},
+        {"contacts=0.5",
+         "its contacts begun is 0.5, which has to be a whole number of at most 1000 a step"},
+        {"contacts=-1", "its contacts begun is -1"},
+        {"contacts=9e14", "its contacts begun is 9e+14"},
+        {"contacts=1e16", "numbers of at most 1e+15"},
+    };
+    const EngineDriver driver = toy();
+    Scenario scenario = ideal(600e-6);
+    for (size_t i = 0; i < sizeof LIES / sizeof *LIES; i++) {
+        setenv("JOINTPLAY_TOY_LIE", LIES[i][0], 1);
+        Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, NULL);
+        if (run->is_complete || strstr(run->message, LIES[i][1]) == NULL) {
+            fail_msg("%s: '%s' does not say '%s'", LIES[i][0], run->message, LIES[i][1]);
+        }
+        trajectory_destroy(run);
+    }
+    // what would be obeyed by a terminal is text
+    setenv("JOINTPLAY_TOY_LIE", "settings=\"a\\nb\\u001b[31m\"", 1);
+    EngineSaid said;
+    Trajectory *run = engine_run(&driver, "midpoint", &scenario, SOON_S, &said);
+    assert_true(run->is_complete);
+    assert_string_equal(said.settings, "a\\nb\\x1b[31m");
+    trajectory_destroy(run);
+    unsetenv("JOINTPLAY_TOY_LIE");
 }
 
 static void one_that_hangs_is_ended(void **state)
@@ -456,6 +496,7 @@ int main(void)
         cmocka_unit_test(a_driver_says_what_it_is),
         cmocka_unit_test(its_methods_have_their_orders),
         cmocka_unit_test(what_goes_wrong_is_a_failed_run_with_its_reason),
+        cmocka_unit_test(totals_that_cannot_be_are_refused_by_their_names),
         cmocka_unit_test(one_that_hangs_is_ended),
         cmocka_unit_test(what_is_no_driver_is_refused),
         cmocka_unit_test(a_name_without_a_driver_says_which_there_are),

@@ -12,6 +12,7 @@ import sys
 import time
 
 FAULT = os.environ.get("JOINTPLAY_TOY_FAULT", "")
+LIE = os.environ.get("JOINTPLAY_TOY_LIE", "")
 RECORDS = os.environ.get("JOINTPLAY_TOY_RECORDS", "")
 
 
@@ -128,6 +129,9 @@ def run(case):
         t = end
         steps += 1
     wall = time.perf_counter() - began
+    # of `done` a test may replace any number: "steps=1e300", "depth=-1"
+    key, _, value = LIE.partition("=")
+    lie = {key: json.loads(value)} if key else {}
     FAULTS.get(FAULT, lambda s: None)(samples)
     nothing = [[0.0, 0.0] for _ in case["joints"]]
     for at, bodies in samples:
@@ -136,8 +140,9 @@ def run(case):
         tell_steps(samples)
     if FAULT == "no-end":
         return
-    say(done={"steps": steps, "wall_s": wall, "joints": [[0.0, 0.0, 0] for _ in nothing],
-              "settings": "none"})
+    total = [lie.get("force", 0.0), lie.get("depth", 0.0), lie.get("contacts", 0)]
+    say(done={"steps": lie.get("steps", steps), "wall_s": lie.get("wall_s", wall),
+              "joints": [total for _ in nothing], "settings": lie.get("settings", "none")})
     if FAULT == "goes-on":
         say(sample=0.0, bodies=samples[0][1], joints=nothing)
     if FAULT == "lingers":
@@ -201,6 +206,7 @@ FAULTS = {
     "family": leave_a_family,
     "family-hangs": lambda samples: (leave_a_family(samples), time.sleep(600)),
     "nan": spoil(1, 3, math.nan),
+    "fast": spoil(1, 3, 1e308),
     "far": spoil(1, 0, 1e6),
     "apart": spoil(1, 0, 0.35),
     "drive": spoil(0, 2, 0.2),
