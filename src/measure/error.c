@@ -67,14 +67,15 @@ static Vec3 angular_acceleration(const Trajectory *trajectory, size_t sample, si
 }
 
 // A body's largest angular acceleration in the reference, but at least this share of that with
-// which its furthest point would accelerate as the fastest of all does.
+// which its furthest point would accelerate as the fastest of all does, and the floor of rest.
 static double alpha_scale(const Trajectory *reference, size_t body, double fastest)
 {
-    double largest = DISTANCE_FLOOR * fastest / reference->reach[body];
+    const double floor = fmax(DISTANCE_FLOOR * fastest, reference->floor.acceleration);
+    double largest = floor / reference->reach[body];
     for (size_t k = 0; k < reference->sample_count; k++) {
         largest = fmax(largest, vec3_length(angular_acceleration(reference, k, body)));
     }
-    return largest > 0.0 ? largest : 1.0;
+    return largest;
 }
 
 static double fastest_change(const Trajectory *reference)
@@ -166,20 +167,19 @@ double error_energy(const Trajectory *run)
                 : linkage_kinetic_energy(&run->linkage, trajectory_motion(run, i, 0));
         largest = fmax(largest, kinetic);
     }
-    return largest;
+    return fmax(largest, run->floor.energy);
 }
 
-// Of a run in which nothing moves there is none to lose.
 static double energy_lost(const Trajectory *trajectory, const Trajectory *reference)
 {
-    const double lost = fabs(trajectory->energy.residual);
-    return lost > 0.0 || isnan(lost) ? lost / error_energy(reference) : 0.0;
+    return fabs(trajectory->energy.residual) / error_energy(reference);
 }
 
 // The forces of contacts.
 //
 //     e_j = max_k |F_jk - F_ref,jk| / S_j    at the samples k
-//     S_j = max_k |F_ref,jk|, at least ERROR_FORCE_FLOOR of the largest of any joint
+//     S_j = max_k |F_ref,jk|, at least ERROR_FORCE_FLOOR of the largest of any joint, and the floor
+//     of rest (model/scale.h)
 // and of the peaks P of contacts, largest forces of every step, with S_j the largest of these.
 
 // Two numbers over a scale. What is not finite is no small error.
@@ -205,8 +205,8 @@ static double error_largest_force(const Trajectory *reference, size_t joint)
     return largest;
 }
 
-// A size, but at least the floor's share of the largest of the joints that are like it in unit.
-// Where nothing pushes any of them that is 1 N.
+// A size, but at least the floor's share of the largest of the joints that are like it in unit, and
+// what is no force to speak of in the mechanism.
 static double force_scale(const Trajectory *reference, size_t joint,
                           double (*size)(const Trajectory *reference, size_t joint))
 {
@@ -219,7 +219,8 @@ static double force_scale(const Trajectory *reference, size_t joint,
             largest = fmax(largest, size(reference, i));
         }
     }
-    return largest > 0.0 ? fmax(own, ERROR_FORCE_FLOOR * largest) : 1.0;
+    const double rest = is_torsional ? reference->floor.torque : reference->floor.force;
+    return fmax(fmax(own, ERROR_FORCE_FLOOR * largest), rest);
 }
 
 static double error_force_between(const Trajectory *trajectory, const Trajectory *reference,
@@ -425,16 +426,16 @@ static double peak_size(AlphaPeaks peaks)
 }
 
 // Of the largest acceleration of the body in the reference, but at least the floor's share of that
-// with which its furthest point would accelerate as the fastest of all by turning does.
+// with which its furthest point would accelerate as the fastest of all by turning does, and the
+// floor of rest.
 static double peak_scale(const Trajectory *reference, size_t body)
 {
     double fastest = 0.0;
     for (size_t i = 0; i < reference->body_count; i++) {
         fastest = fmax(fastest, peak_size(peaks_of_steps(reference, i)) * reference->reach[i]);
     }
-    const double largest = fmax(peak_size(peaks_of_steps(reference, body)),
-                                ERROR_FORCE_FLOOR * fastest / reference->reach[body]);
-    return largest > 0.0 && isfinite(largest) ? largest : 1.0;
+    const double floor = fmax(ERROR_FORCE_FLOOR * fastest, reference->floor.acceleration);
+    return fmax(peak_size(peaks_of_steps(reference, body)), floor / reference->reach[body]);
 }
 
 static double alpha_apart(AlphaPeaks run, AlphaPeaks truth, double scale)

@@ -69,7 +69,7 @@ typedef struct BodyError {
 
 // The largest energy that a run's balance is about, J: the work of the drive, what was lost, or the
 // largest kinetic energy. Over whole turns the work may be next to nothing, and what goes to and
-// fro is what a solver has to get right.
+// fro is what a solver has to get right. At least the floor of a mechanism at rest.
 double error_energy(const Trajectory *run);
 
 // Both trajectories must be of the same scenario: same bodies, same sample times. The horizon, s,

@@ -2,7 +2,8 @@
 // rates.
 //
 //     d = max over rates |r - r_ref| / max(max over t |r_ref|, f)
-//     f = 1e-6 V of a velocity, 1e-6 V / reach of an angular rate
+//     f = F of a velocity, F / reach of an angular rate
+//     F = max(1e-6 V, floor)    with the floor of a mechanism at rest: model/scale.h
 //     V = max over bodies and t (|v| + |omega| reach), the speed of the fastest point
 //
 // The relative velocity in a joint is that of the pin's middle P against the point of the hole's
@@ -170,7 +171,8 @@ static double fastest_point(const DistanceMeasure *measure, const Trajectory *re
 DistanceMeasure distance_measure(const Trajectory *reference)
 {
     DistanceMeasure measure = distance_rates(&reference->linkage);
-    const double floor = DISTANCE_FLOOR * fastest_point(&measure, reference);
+    const double floor =
+        fmax(DISTANCE_FLOOR * fastest_point(&measure, reference), reference->floor.speed);
     for (size_t i = 0; i < measure.count; i++) {
         DistanceRate *rate = &measure.rates[i];
         for (size_t k = 0; k < reference->sample_count; k++) {
@@ -179,8 +181,6 @@ DistanceMeasure distance_measure(const Trajectory *reference)
             rate->largest = size > rate->largest ? size : rate->largest;
         }
         rate->scale = fmax(rate->largest, rate->reach > 0.0 ? floor / rate->reach : floor);
-        // where nothing moves there is nothing to be relative to
-        rate->scale = rate->scale > 0.0 ? rate->scale : 1.0;
     }
     return measure;
 }

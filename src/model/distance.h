@@ -17,7 +17,8 @@ static const double DISTANCE_GROWTH = 1e5;
 
 // The least a rate is measured in, of the speed of the fastest point of all bodies (of an angular
 // rate: of that over the body's reach). A rate smaller than that is mostly rounding: the turning of
-// what only translates, the centre of a balanced rotor.
+// what only translates, the centre of a balanced rotor. Where no point is that fast it is the floor
+// of a mechanism at rest.
 static const double DISTANCE_FLOOR = 1e-6;
 
 // The scenario with samples fine enough to compare on, its own among them.

@@ -48,7 +48,7 @@ void perturb_units(const Trajectory *reference, PerturbUnit *units)
         fastest = fmax(fastest, units[i].moving);
     }
     for (size_t i = 0; i < reference->body_count; i++) {
-        units[i].moving = fmax(units[i].moving, fastest > 0.0 ? SLOWEST * fastest : 1.0);
+        units[i].moving = fmax(units[i].moving, fmax(SLOWEST * fastest, reference->floor.speed));
         units[i].turning = units[i].moving / reference->reach[i];
     }
 }

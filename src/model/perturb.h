@@ -14,7 +14,8 @@ typedef struct PerturbUnit {
     double turning; // rad/s, with which its furthest point moves that fast
 } PerturbUnit;
 
-// Those of all bodies in a trajectory, at least a thousandth of the fastest body's.
+// Those of all bodies in a trajectory, at least a thousandth of the fastest body's, and the
+// floor of a mechanism at rest.
 void perturb_units(const Trajectory *reference, PerturbUnit *units);
 
 // Changes the speeds of the bodies in a random direction, by a change of the size given, as the

@@ -5,7 +5,7 @@
 // reach: of a body's furthest joint from its centre; span: of the driven body's furthest point from
 // its pivot; T: period of the drive, in which gravity alone makes no more than g T; E: stored in
 // springs at the start, and what a torque gives in one radian, a force along the largest reach; m:
-// of all bodies.
+// of all bodies. At rest the least that anything is measured in is REST V, REST A, REST m A.
 #include "model/scale.h"
 
 #include "base/zeroed.h"
@@ -103,6 +103,85 @@ void scale_free(SpeedScale *scale)
     free(scale->speeding);
     free(scale->reaches);
     *scale = (SpeedScale){.turning = NULL};
+}
+
+// A step of 1 us leaves 1e-10 m/s where positions of 1 m are rounded; a pendulum that is released
+// 1e-6 rad from its equilibrium has 1e-6 of the speed of a fall.
+static const double REST = 1e-7;
+
+// A pin that a stiff contact holds shivers by the rounding of its depth and what the reference
+// allows itself: 1e-10 of the speed of that fall.
+static const double REST_PRESSED = 1e-5;
+
+// 1, of the energy of that fall: the square of a speed, and above what sums of energies round off
+static const double REST_ENERGY = 1e-12;
+
+// Rounding of the sums that make up a potential energy, of the largest of them.
+static const double POTENTIAL_ROUNDING = 64.0 * 0x1p-53;
+
+// Potential energy of the bodies without regard to signs, J, and their mass, kg.
+static double potential_size(const Scenario *scenario, double *mass)
+{
+    double size = 0.0;
+    *mass = 0.0;
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        const Body *body = &scenario->linkage.bodies[i];
+        const Vec2 position = body->start.position;
+        *mass += body->mass;
+        size += body->mass *
+                (fabs(scenario->gravity.x * position.x) + fabs(scenario->gravity.y * position.y) +
+                 fabs(scenario->gravity.z * body->space.height));
+    }
+    return size;
+}
+
+static bool has_play(const Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage_has_play(&linkage->joints[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Takes the speed of the drives and its change, m/s and m/s^2. False where none moves.
+static bool take_drives(const Linkage *linkage, double *moving, double *changing)
+{
+    double driven = 0.0;
+    double fastest = 0.0;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const double speed = fabs(linkage_drive(linkage, i)->speed);
+        fastest = fmax(fastest, speed);
+        driven = fmax(driven, speed * driven_span(linkage, i));
+    }
+    *moving = driven > 0.0 ? driven : *moving;
+    *changing = driven > 0.0 ? driven * fastest : *changing;
+    return driven > 0.0;
+}
+
+ScaleFloor scale_floor(const Scenario *scenario)
+{
+    SpeedScale scale = scale_speeds(scenario);
+    double mass;
+    double reach = 0.0;
+    const double potential = potential_size(scenario, &mass);
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        reach = fmax(reach, scale.reaches[i]);
+    }
+    double moving = scale.moving;
+    double changing = scale.changing;
+    const bool is_driven = take_drives(&scenario->linkage, &moving, &changing);
+    const bool is_pressed = !is_driven && has_play(&scenario->linkage);
+    const ScaleFloor floor = {
+        .speed = (is_pressed ? REST_PRESSED : REST) * moving,
+        .acceleration = REST * changing,
+        .force = REST * mass * scale.changing,
+        .torque = REST * mass * scale.changing * reach,
+        .energy = REST_ENERGY * 0.5 * mass * moving * moving + POTENTIAL_ROUNDING * potential,
+    };
+    scale_free(&scale);
+    return floor;
 }
 
 void scale_carry(const Linkage *linkage, SpeedScale *scale, Carry *carry)

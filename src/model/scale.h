@@ -22,6 +22,23 @@ SpeedScale scale_speeds(const Scenario *scenario);
 
 void scale_free(SpeedScale *scale);
 
+// The least that anything of a run is measured in, so that what is at rest is not held against its
+// own rounding.
+typedef struct ScaleFloor {
+    double speed;        // m/s, of a point; of an angular rate it is divided by the body's reach
+    double acceleration; // m/s^2, likewise
+    double force;        // N
+    double torque;       // N m
+    double energy;       // J
+} ScaleFloor;
+
+// A ten-millionth of how fast the scenario would move if it fell, was pushed or went on as it
+// started, of its changes, and of the forces that these take; where pins may rest in their holes, a
+// hundred-thousandth of the speed. Of a mechanism that is driven a ten-millionth of its drives'
+// speed. Of the energy the square of a millionth, and the rounding of its potential energy, which
+// depends on the origin.
+ScaleFloor scale_floor(const Scenario *scenario);
+
 // Carries the speeds seen so far, of a linkage.
 void scale_carry(const Linkage *linkage, SpeedScale *scale, Carry *carry);
 

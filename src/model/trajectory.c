@@ -81,6 +81,7 @@ static Trajectory *create(const Scenario *scenario, const char *backend, bool ha
     trajectory->alpha_spikes = zeroed(trajectory->body_count, sizeof(SignalSpikes));
     trajectory->force_spikes = zeroed(trajectory->joint_count, sizeof(SignalSpikes));
     linkage_reaches(&scenario->linkage, trajectory->reach);
+    trajectory->floor = scale_floor(scenario);
     trajectory->linkage = linkage_copy(&scenario->linkage);
     trajectory->sample_count = samples;
     trajectory->times = calloc(samples, sizeof *trajectory->times);

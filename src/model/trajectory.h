@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/ranges.h"
+#include "model/scale.h"
 #include "model/scenario.h"
 #include "model/signal_spikes.h"
 #include "model/space.h"
@@ -139,8 +140,9 @@ typedef struct Trajectory {
     char message[ERR_TEXT_SIZE];       // why it failed
     size_t body_count;
     size_t joint_count;
-    double *reach;   // m, of each body's points from its centre: linkage_reach; owned
-    Linkage linkage; // what moved; owned
+    double *reach;    // m, of each body's points from its centre: linkage_reach; owned
+    ScaleFloor floor; // the least that its numbers are measured in
+    Linkage linkage;  // what moved; owned
     size_t sample_count;
     double *times;              // s, by sample; owned, like the three below
     double *crank_angles;       // rad, by sample, not wrapped

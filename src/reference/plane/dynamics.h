@@ -77,6 +77,7 @@ typedef struct Dynamics {
     bool may_branch;          // whether loops move freely, and may come to a change point
     double start_energy;      // J, of such a linkage: what it has, less what it was given
     double greatest_energy;   // J, kinetic, so far
+    double energy_floor;      // J, the least that is no rounding
     DynamicsRoom room;
 } Dynamics;
 

@@ -2,6 +2,7 @@
 #include "reference/plane/dynamics.h"
 
 #include "model/forces.h"
+#include "model/scale.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 #include "reference/system.h"
@@ -53,8 +54,9 @@ static bool has_gone_astray(Dynamics *dynamics, const double *y)
     double kinetic = 0.0;
     const double energy = energy_balance(dynamics, y, &kinetic);
     dynamics->greatest_energy = fmax(dynamics->greatest_energy, kinetic);
-    return !(fabs(energy - dynamics->start_energy) <=
-             share * dynamics->greatest_energy + 1e-9 * fabs(dynamics->start_energy));
+    return !(fabs(energy - dynamics->start_energy) <= share * dynamics->greatest_energy +
+                                                          1e-9 * fabs(dynamics->start_energy) +
+                                                          dynamics->energy_floor);
 }
 
 static void plane_start(System *system, double *y)
@@ -67,6 +69,7 @@ static void plane_start(System *system, double *y)
     tree_start(tree, motions, y + tree->coordinate_count);
     loops_start(tree, &room, y, y + tree->coordinate_count);
     if (dynamics->may_branch) {
+        dynamics->energy_floor = scale_floor(system->scenario).energy;
         dynamics->start_energy = energy_balance(dynamics, y, &dynamics->greatest_energy);
     }
 }
