@@ -356,6 +356,8 @@ static void note_start(Loop *loop)
 {
     Sample sample = loop->sample;
     loop->solver->observe(loop->state, 0.0, &sample);
+    // what springs hold depends on the turn
+    turning_unwrap(&loop->turning, NULL, &sample);
     loop->start_energy =
         mechanical_energy(loop->scenario, &sample) + stored_energy(loop->scenario, &sample);
 }

@@ -125,6 +125,94 @@ static void a_damped_oscillator_decays_as_its_closed_form(void **state)
     }
 }
 
+// A rotor of I = .5 kg m^2 that starts at an angle with 5 rad/s: a spring that is relaxed at 0, or
+// a load over the position that pulls as the spring does, or a stop a tenth of a rad further on.
+typedef enum Counted { COUNTED_BY_SPRING, COUNTED_BY_LOAD, COUNTED_BY_STOP, COUNTED_COUNT } Counted;
+
+static const double SPIN = 5.0; // rad/s
+
+static Scenario counted(Counted by, double start)
+{
+    Scenario scenario = sprung(0.0);
+    Linkage *linkage = &scenario.linkage;
+    Body *rotor = &linkage->bodies[0];
+    rotor->inertia = 0.5;
+    rotor->start = (Motion){.angle = start, .omega = SPIN};
+    linkage->joints[0].anchor_b = (Vec2){0.0, 0.0};
+    linkage->torsion_count = by == COUNTED_BY_SPRING ? 1 : 0;
+    linkage->torsions[0].angle = 0.0;
+    if (by == COUNTED_BY_LOAD) {
+        linkage->load_count = 1;
+        Load *load = &linkage->loads[0];
+        *load = (Load){.kind = LOAD_ALONG, .over = LOAD_OVER_POSITION};
+        load->table =
+            (LoadTable){.count = 2, .at = {-30.0, 30.0}, .values = {30.0 * SPRING, -30.0 * SPRING}};
+        load_table_settle(&load->table);
+    }
+    if (by == COUNTED_BY_STOP) {
+        linkage->joints[0].limits =
+            (Limits){.kind = LIMIT_STOPS, .low = -INFINITY, .high = start + 0.1};
+        linkage->joints[0].contact = (JointContact){.stiffness = SPRING, .exponent = 1.0};
+        scenario.contact.damping = DAMPING_NONE;
+    }
+    scenario.run.duration = 0.1;
+    scenario.run.step = 1e-4;
+    return scenario;
+}
+
+// rad/s: cos and sin of w t, w^2 = k / I, which at the stop begin after .1 rad
+static double counted_omega(Counted by, double start, double time_s)
+{
+    const double w = sqrt(SPRING / 0.5);
+    const double since_s = time_s - 0.1 / SPIN;
+    return by != COUNTED_BY_STOP ? SPIN * cos(w * time_s) - start * w * sin(w * time_s)
+                                 : SPIN * cos(w * fmax(0.0, since_s));
+}
+
+// The error of omega over what the spring may reach; that of the energy goes by the same.
+static double counted_error(const Scenario *scenario, BackendKind backend, Counted by, double start)
+{
+    Trajectory *run = complete_run(scenario, backend);
+    const double w = sqrt(SPRING / 0.5);
+    const double scale = hypot(SPIN, by == COUNTED_BY_STOP ? 0.0 : start * w);
+    double largest = fabs(run->energy.residual) / (0.25 * scale * scale);
+    for (size_t k = 0; k < run->sample_count; k++) {
+        const double truth = counted_omega(by, start, run->times[k]);
+        const Motion *motion = trajectory_motion(run, k, 0);
+        largest = fmax(largest, fabs(motion->omega - truth) / scale);
+    }
+    trajectory_destroy(run);
+    return largest;
+}
+
+// The spring of a start in the turn before or after holds k (2 pi)^2 / 2 more or less.
+static void whole_turns_of_the_start_count(void **state)
+{
+    (void)state;
+    const int degrees[] = {-720, -550, -360, -190, -170, 0, 170, 190, 360, 550, 720};
+    for (Counted by = 0; by < COUNTED_COUNT; by++) {
+        for (size_t i = 0; i < sizeof degrees / sizeof *degrees; i++) {
+            const double start = degrees[i] * M_PI / 180.0;
+            Scenario scenario = counted(by, start);
+            assert_near(counted_error(&scenario, BACKEND_REFERENCE, by, start), 0.0, 1e-9);
+            for (OdeStepping stepping = 0; stepping < ODE_STEPPING_COUNT; stepping++) {
+                if (by == COUNTED_BY_STOP && stepping == ODE_EXTRAPOLATED) {
+                    continue;
+                }
+                scenario.ode.stepping = stepping;
+                scenario.ode.map = stepping == ODE_PLAIN ? ODE_MAP_TEXTBOOK : ODE_MAP_IMPULSE;
+                const double error = counted_error(&scenario, BACKEND_ODE, by, start);
+                // of the first order at 100 us w h / 2 = 4.5e-4
+                assert_near(error, 0.0, stepping == ODE_PLAIN ? 3e-3 : 1e-4);
+            }
+        }
+        // control: a whole turn further on it is not the same
+        const Scenario scenario = counted(by, 2.0 * M_PI);
+        assert_true(by == COUNTED_BY_STOP ||
+                    counted_error(&scenario, BACKEND_REFERENCE, by, 0.0) > 1.0);
+    }
+}
+
 // A damper a thousand times too strong for an explicit step lets the arm creep: the spring pulls it
 // home at k / c.
 static void a_strong_damper_is_stable_at_any_step(void **state)
@@ -355,6 +443,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_pendulum_follows_the_elliptic_integral),
         cmocka_unit_test(a_damped_oscillator_decays_as_its_closed_form),
+        cmocka_unit_test(whole_turns_of_the_start_count),
         cmocka_unit_test(a_strong_damper_is_stable_at_any_step),
         cmocka_unit_test(a_torque_over_time_turns_as_its_integral),
         cmocka_unit_test(a_torque_with_impacts_inside_the_step_does_what_its_angle_says),
