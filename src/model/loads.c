@@ -176,12 +176,25 @@ double loads_work(const Linkage *linkage, const double *values, const Motion *fr
     return work;
 }
 
-double loads_next_bend(const Linkage *linkage, double time_s)
+// Whether it bends at times that are known.
+static bool has_bends(const Linkage *linkage, const Load *load)
+{
+    return load->table.count > 1 && load_is_timed(linkage, load);
+}
+
+bool load_jumps(const Linkage *linkage, const Load *load)
+{
+    return load->table.shape == LOAD_STEPS && has_bends(linkage, load);
+}
+
+// The first point after a time, of the loads that count.
+static double next_point(const Linkage *linkage, double time_s,
+                         bool (*counts)(const Linkage *linkage, const Load *load))
 {
     double next_s = INFINITY;
     for (size_t i = 0; i < linkage->load_count; i++) {
         const Load *load = &linkage->loads[i];
-        if (load->table.count > 1 && load_is_timed(linkage, load)) {
+        if (counts(linkage, load)) {
             const Clock clock = clock_of(linkage, load);
             const double next =
                 load_table_next(&load->table, argument_from(&clock, time_s), clock.rate);
@@ -189,4 +202,14 @@ double loads_next_bend(const Linkage *linkage, double time_s)
         }
     }
     return next_s;
+}
+
+double loads_next_bend(const Linkage *linkage, double time_s)
+{
+    return next_point(linkage, time_s, has_bends);
+}
+
+double loads_next_jump(const Linkage *linkage, double time_s)
+{
+    return next_point(linkage, time_s, load_jumps);
 }

@@ -11,6 +11,9 @@ bool load_is_force(const Linkage *linkage, const Load *load);
 // angle of a crank that turns at a constant speed.
 bool load_is_timed(const Linkage *linkage, const Load *load);
 
+// Whether it is one that jumps from point to point.
+bool load_jumps(const Linkage *linkage, const Load *load);
+
 // The value of a load, N or N m, at a time: over time and a steady crank's angle that of the piece
 // which holds from a time on that is no later, so that it is smooth in between.
 double load_value(const Linkage *linkage, const Load *load, const Motion *motions, double time_s,
@@ -44,3 +47,6 @@ double loads_work(const Linkage *linkage, const double *values, const Motion *fr
 // The first time after one at which a load bends or jumps, s, as far as that is known from the time
 // alone; INFINITY where none does.
 double loads_next_bend(const Linkage *linkage, double time_s);
+
+// Likewise of those that jump alone.
+double loads_next_jump(const Linkage *linkage, double time_s);

@@ -9,6 +9,7 @@
 
 #include "base/lcg.h"
 #include "base/load_table.h"
+#include "measure/chosen_run.h"
 #include "run/drive_torque.h"
 
 #include <stdio.h>
@@ -370,6 +371,140 @@ static void tables_keep_to_their_points(void **state)
     }
 }
 
+// A rotor of .01 kg m^2 on a spring of 2 N m/rad under a torque that jumps at 100, 300 and 600 ms,
+// each a sample of 1000 in a second; of 997 none is.
+enum { JUMPS = 3 };
+static const double JUMP_AT[JUMPS + 1] = {0.1, 0.3, 0.6, INFINITY}; // s
+static const double JUMP_TO[JUMPS] = {0.2, -0.4, 0.3};              // N m
+
+static Scenario jumping(size_t samples, double step_s)
+{
+    Scenario scenario = kept_default();
+    Linkage *linkage = &scenario.linkage;
+    linkage->body_count = linkage->joint_count = linkage->torsion_count = linkage->load_count = 1;
+    linkage->bodies[0] = (Body){.name = "rotor", .mass = 1.0, .inertia = 0.01};
+    linkage->bodies[0].start.omega = 1.0;
+    linkage->joints[0] = (Joint){.name = "pivot", .body_a = LINKAGE_GROUND, .body_b = 0};
+    linkage->torsions[0] = (TorsionSpring){.joint = 0, .stiffness = 2.0};
+    Load *load = &linkage->loads[0];
+    *load = (Load){.kind = LOAD_ALONG, .joint = 0};
+    load->table = (LoadTable){.count = JUMPS + 1, .at = {0.0}, .shape = LOAD_STEPS};
+    for (size_t i = 0; i < JUMPS; i++) {
+        load->table.at[i + 1] = JUMP_AT[i];
+        load->table.values[i + 1] = JUMP_TO[i];
+    }
+    load_table_settle(&load->table);
+    scenario.gravity = scenario_downward(0.0);
+    scenario.run.duration = 1.0;
+    scenario.run.samples = samples;
+    scenario.run.step = step_s;
+    scenario.ode.stepping = ODE_STAGGERED;
+    return scenario;
+}
+
+// The rotor's omega: an oscillator about M / k, from jump to jump.
+static double jumping_omega(double time_s)
+{
+    const double w = sqrt(2.0 / 0.01);
+    double angle = 0.0;
+    double omega = 1.0;
+    double from_s = 0.0;
+    double rest = 0.0;
+    for (size_t i = 0; i <= JUMPS && from_s < time_s; i++) {
+        const double since_s = fmin(JUMP_AT[i], time_s) - from_s;
+        const double off = angle - rest;
+        angle = rest + off * cos(w * since_s) + omega / w * sin(w * since_s);
+        omega = omega * cos(w * since_s) - off * w * sin(w * since_s);
+        from_s += since_s;
+        rest = i < JUMPS ? JUMP_TO[i] / 2.0 : 0.0;
+    }
+    return omega;
+}
+
+static double jumping_error(const Trajectory *run)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < run->sample_count; k++) {
+        const double truth = jumping_omega(run->times[k]);
+        largest = fmax(largest, fabs(trajectory_motion(run, k, 0)->omega - truth));
+    }
+    return largest;
+}
+
+static double jumping_error_of(size_t samples, BackendKind backend, double step_s)
+{
+    const Scenario scenario = jumping(samples, step_s);
+    Trajectory *run = complete_run(&scenario, backend);
+    const double error = jumping_error(run);
+    trajectory_destroy(run);
+    return error;
+}
+
+static size_t steps_for_tolerance(const Scenario *scenario)
+{
+    Trajectory *run = chosen_run_make(scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    if (!run->is_complete || run->is_short) {
+        fail_msg("%s", run->message);
+    }
+    const size_t steps = run->steps;
+    trajectory_destroy(run);
+    return steps;
+}
+
+// Control: where no sample meets a jump nothing is to be read beside one.
+static void a_load_that_jumps_at_a_sample_costs_no_steps(void **state)
+{
+    (void)state;
+    assert_near(jumping_error_of(1000, BACKEND_REFERENCE, 0.0), 0.0, 1e-10);
+    // 24.9 us end at no jump, 25 us at all
+    const double at_jumps = jumping_error_of(1000, BACKEND_ODE, 25e-6);
+    assert_true(at_jumps < 1e-6);
+    assert_true(jumping_error_of(1000, BACKEND_ODE, 24.9e-6) < 3.0 * at_jumps);
+    assert_true(jumping_error_of(1000, BACKEND_ODE, 24e-6) < 1.1 * at_jumps);
+    // half a step without the jump is what was read there
+    assert_true(0.5 * 25e-6 * 0.6 / 0.01 > 100.0 * at_jumps);
+    const Scenario with = jumping(1000, 0.0);
+    const Scenario without = jumping(997, 0.0);
+    const size_t steps = steps_for_tolerance(&with);
+    assert_true(2 * steps <= 3 * steps_for_tolerance(&without));
+    assert_true(steps < 10000);
+}
+
+// The same of teeth with play, whose contacts are integrated within the steps.
+static void teeth_under_a_load_that_jumps_cost_no_steps(void **state)
+{
+    (void)state;
+    static const char TEXT[] =
+        "title: Gears\n"
+        "bodies:\n"
+        "  small: {mass: 0.1 kg, inertia: 20 kg mm^2, at: [0 mm, 0 mm], spin: 20 rad/s}\n"
+        "  large: {mass: 0.5 kg, inertia: 400 kg mm^2, at: [80 mm, 0 mm]}\n"
+        "joints:\n"
+        "  pinion: {between: [ground, small], at: [0 mm, 0 mm]}\n"
+        "  wheel:  {between: [ground, large], at: [80 mm, 0 mm]}\n"
+        "  mesh:   {gears: [pinion, wheel], teeth: [20, 60], backlash: 0.1 mm, stiffness: 1e8 "
+        "N/m}\n"
+        "loads:\n"
+        "  push: {joint: pinion, interpolation: steps,\n"
+        "         torque: [[0 s, 0.2 N m], [50 ms, -0.4 N m], [150 ms, 0.3 N m]]}\n"
+        "contact: {restitution: 0.5}\n"
+        "run: {duration: 200 ms, samples: 1000, step: auto, backends: [ode]}\n";
+    size_t steps[2];
+    for (int i = 0; i < 2; i++) {
+        const char *samples = i == 0 ? "run.samples=1000" : "run.samples=997";
+        Scenario scenario;
+        Err err = {0};
+        if (!casefile_load_text("gears.yaml", TEXT, sizeof TEXT - 1, &samples, 1, &scenario,
+                                &err)) {
+            fail_msg("%s", err.text);
+        }
+        steps[i] = steps_for_tolerance(&scenario);
+        scenario_free(&scenario);
+    }
+    assert_true(2 * steps[0] <= 3 * steps[1]);
+    assert_true(steps[0] < 10000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -378,6 +513,8 @@ int main(void)
         cmocka_unit_test(work_goes_into_the_gas_and_friction),
         cmocka_unit_test(a_motor_runs_up_as_its_one_equation_says),
         cmocka_unit_test(a_soft_drive_is_an_oscillator),
+        cmocka_unit_test(a_load_that_jumps_at_a_sample_costs_no_steps),
+        cmocka_unit_test(teeth_under_a_load_that_jumps_cost_no_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -173,13 +173,22 @@ static void set_rows(Applied *applied, double step_s, AppliedRule rule, int dire
              1.0 / (share * linkage->torque.slope), is_mean);
 }
 
+static double mean_of(const Applied *applied, const Load *load, const Motion *motions,
+                      double from_s, double to_s)
+{
+    const Linkage *linkage = applied->linkage;
+    return applied->is_held && load_jumps(linkage, load)
+               ? load_value(linkage, load, motions, applied->held_s, applied->held_s)
+               : load_mean(linkage, load, motions, from_s, to_s);
+}
+
 // Adds the loads, of which each has its mean over the step.
 static void push_loads(Applied *applied, const Motion *motions, double from_s, double to_s)
 {
     const Linkage *linkage = applied->linkage;
     for (size_t i = 0; i < linkage->load_count; i++) {
         const Load *load = &linkage->loads[i];
-        applied->pushed[i] = load_mean(linkage, load, motions, from_s, to_s);
+        applied->pushed[i] = mean_of(applied, load, motions, from_s, to_s);
         applied->rates[i] = load_rate(linkage, load, motions);
         load_add(linkage, load, applied->pushed[i], motions, applied->loads);
     }

@@ -17,6 +17,8 @@ typedef struct Applied {
     const Linkage *linkage;
     const dBodyID *bodies; // of the world
     bool is_any;           // whether anything acts; else nothing below is used
+    bool is_held;          // whether loads that jump keep the value that they have from a time on
+    double held_s;         // that time
     double *angles;        // rad, of the bodies when last looked at, not wrapped;
                            // owned, as all arrays below
     AppliedRow *dampers;   // of the springs

@@ -121,7 +121,7 @@ typedef struct NodesLevel {
     size_t steps_a_node;
     double step_s;
     double weight;  // 1, of its motion in the nodes'
-    long index;     // steps from time zero to where its speeds stand
+    long index;     // steps from node zero to where its speeds stand
     double *turned; // rad, angles half a step later: what whole turns they have; owned
 } NodesLevel;
 
@@ -133,14 +133,18 @@ typedef struct NodeState {
 
 typedef struct Nodes {
     const Scenario *scenario;
+    double origin_s;   // of node zero: time zero, or where a load has jumped
     double interval_s; // from node to node
+    bool holds_jumps;  // whether loads that jump keep the value that they have from there on
+    bool is_driven;    // whether the drive alone determines the motion
     size_t level_count;
     NodesLevel levels[NODES_LEVEL_MAX];
     bool is_started;
-    size_t steps; // of all worlds so far
-    long next;    // number of the node that comes next; number zero is at time zero
-    size_t kept;  // nodes kept of those before it
+    size_t steps;                  // of all worlds so far
+    long next;                     // number of the node that comes next
+    size_t kept;                   // nodes kept of those before it
     NodeState *states[NODES_KEPT]; // at those, in order; not of the driven body; owned
+    Motion *start;                 // at time zero; owned
     Motion *motions;               // to work with; owned
 } Nodes;
 
@@ -149,6 +153,9 @@ enum {
     SETTLE_STEPS = 4, // two are not enough for order 6, eight change nothing
     NODES_BEFORE = 2, // time zero, so that the first interval is in the middle of its six nodes too
 };
+
+// A start takes some ten intervals' steps.
+static const double INTERVALS_A_JUMP = 20.0;
 
 // The weights that leave no error in h^2 .. h^L.
 static void set_weights(Nodes *nodes)
@@ -213,7 +220,7 @@ static bool step_level(Nodes *nodes, NodesLevel *level, long direction, Err *err
 {
     const Scenario *scenario = nodes->scenario;
     const Linkage *linkage = &scenario->linkage;
-    const double start_s = (double)level->index * level->step_s;
+    const double start_s = nodes->origin_s + (double)level->index * level->step_s;
     const double step_s = (double)direction * level->step_s;
     if (forces_damp(linkage)) {
         world_place_driven(&level->world, start_s + 0.5 * step_s, start_s, direction);
@@ -249,32 +256,59 @@ static bool run_back(Nodes *nodes, NodesLevel *level, long steps, Motion *motion
     return true;
 }
 
-// Puts a world to where it starts, before time zero.
-static bool start_level(Nodes *nodes, NodesLevel *level, Err *err)
+// Puts a world to where it starts, before node zero, where the bodies move as they do in `from`.
+static bool start_level(Nodes *nodes, NodesLevel *level, const Motion *from, Err *err)
 {
     const Linkage *linkage = &nodes->scenario->linkage;
     const long steps = NODES_BEFORE * (long)level->steps_a_node + SETTLE_STEPS;
     Motion *motions = nodes->motions;
-    linkage_start(linkage, motions);
-    Err unused = {ERR_NONE, ""};
-    DriveState drives[LINKAGE_DRIVE_MAX];
-    linkage_drives_since(linkage, 0.0, 0.0, drives);
-    if (kinematics_solve_driven(linkage, drives, motions, &unused)) {
+    level->index = 0;
+    level->world.applied.is_held = nodes->holds_jumps;
+    level->world.applied.held_s = nodes->origin_s;
+    if (nodes->is_driven) {
         level->index = -stepping_start(nodes->scenario, level->step_s, steps, motions);
-    } else if (!run_back(nodes, level, steps, motions, err)) {
-        return false;
+    } else {
+        memcpy(motions, from, linkage->body_count * sizeof *motions);
+        if (!run_back(nodes, level, steps, motions, err)) {
+            return false;
+        }
     }
     place_level(level, linkage->body_count, motions);
     return true;
 }
 
-// Starts all worlds and finds the first node that all of them come to settled.
-static bool start_levels(Nodes *nodes, Err *err)
+// Whether the drive alone determines the motion.
+static bool is_determined(const Linkage *linkage, Motion *motions)
 {
+    Err unused = {ERR_NONE, ""};
+    DriveState drives[LINKAGE_DRIVE_MAX];
+    linkage_start(linkage, motions);
+    linkage_drives_since(linkage, 0.0, 0.0, drives);
+    return kinematics_solve_driven(linkage, drives, motions, &unused);
+}
+
+// Whether loads jump, and so seldom that starting anew there costs less than the run itself.
+static bool jumps_seldom(const Nodes *nodes)
+{
+    const double duration_s = scenario_duration(nodes->scenario);
+    const double most = duration_s / (INTERVALS_A_JUMP * nodes->interval_s);
+    double count = 0.0;
+    double jump_s = loads_next_jump(&nodes->scenario->linkage, 0.0);
+    while (jump_s < duration_s && count <= most) {
+        count += 1.0;
+        jump_s = loads_next_jump(&nodes->scenario->linkage, jump_s);
+    }
+    return count > 0.0 && count <= most;
+}
+
+// Starts all worlds and finds the first node that all of them come to settled.
+static bool start_levels(Nodes *nodes, const Motion *from, Err *err)
+{
+    nodes->kept = 0;
     nodes->next = -NODES_BEFORE;
     for (size_t k = 0; k < nodes->level_count; k++) {
         NodesLevel *level = &nodes->levels[k];
-        if (!start_level(nodes, level, err)) {
+        if (!start_level(nodes, level, from, err)) {
             return false;
         }
         const long settled = level->index + SETTLE_STEPS;
@@ -304,7 +338,7 @@ static void add_level(const NodesLevel *level, size_t body_count, Motion *motion
 // linkage cannot be followed back that far. Fails with ERR_SOLVER where a step of a world does.
 static bool nodes_advance(Nodes *nodes, Err *err)
 {
-    if (!nodes->is_started && !start_levels(nodes, err)) {
+    if (!nodes->is_started && !start_levels(nodes, nodes->start, err)) {
         return false;
     }
     // the oldest one makes room
@@ -350,7 +384,11 @@ static bool nodes_init(const Scenario *scenario, Nodes *nodes, Err *err)
     for (size_t k = 0; k < NODES_KEPT; k++) {
         nodes->states[k] = zeroed(body_count, sizeof *nodes->states[k]);
     }
-    linkage_start(&scenario->linkage, nodes->motions);
+    nodes->start = zeroed(body_count, sizeof *nodes->start);
+    nodes->is_driven = is_determined(&scenario->linkage, nodes->motions);
+    nodes->holds_jumps = !nodes->is_driven && jumps_seldom(nodes);
+    linkage_start(&scenario->linkage, nodes->start);
+    memcpy(nodes->motions, nodes->start, body_count * sizeof *nodes->start);
     for (size_t k = 0; k < nodes->level_count; k++) {
         NodesLevel *level = &nodes->levels[k];
         level->turned = zeroed(body_count, sizeof *level->turned);
@@ -371,6 +409,7 @@ static void nodes_finish(Nodes *nodes)
     for (size_t k = 0; k < NODES_KEPT; k++) {
         free(nodes->states[k]);
     }
+    free(nodes->start);
     free(nodes->motions);
 }
 
@@ -380,12 +419,15 @@ static void nodes_carry(Nodes *nodes, Carry *carry)
     for (size_t k = 0; k < nodes->level_count; k++) {
         NodesLevel *level = &nodes->levels[k];
         world_carry(&level->world, carry);
+        CARRY(carry, level->world.applied.held_s);
+        CARRY(carry, level->world.applied.is_held);
         CARRY(carry, level->index);
         CARRY_ARRAY(carry, level->turned, count);
     }
     for (size_t k = 0; k < NODES_KEPT; k++) {
         CARRY_ARRAY(carry, nodes->states[k], count);
     }
+    CARRY(carry, nodes->origin_s);
     CARRY(carry, nodes->is_started);
     CARRY(carry, nodes->steps);
     CARRY(carry, nodes->next);
@@ -409,6 +451,7 @@ typedef struct Extrapolated {
     bool is_begun;       // the part at time zero has been handed out
     long interval;       // number of the node before it
     Hermite (*paths)[3]; // x, y and angle in the interval; owned, as are all arrays
+    double jump_s;       // where a load jumps next and all is begun anew; INFINITY: nowhere
     double start_s;      // of the last part
     Sample begin;        // of it, once the next one is being made
     Sample middle;       // likewise
@@ -462,6 +505,14 @@ static void make_extrapolated(const Linkage *linkage, Extrapolated *own)
     own->rows = zeroed(own->response->ideal_rows, sizeof *own->rows);
 }
 
+// Finds where the nodes have to begin anew.
+static void set_jump(Extrapolated *own)
+{
+    own->jump_s = own->nodes.holds_jumps
+                      ? loads_next_jump(&own->scenario->linkage, own->nodes.origin_s)
+                      : INFINITY;
+}
+
 static bool extrapolated_open(const Scenario *scenario, void **state, Err *err)
 {
     if (scenario_has_clearance(scenario)) {
@@ -476,6 +527,7 @@ static bool extrapolated_open(const Scenario *scenario, void **state, Err *err)
     own->end = sample_create(&scenario->linkage);
     make_extrapolated(&scenario->linkage, own);
     if (nodes_init(scenario, &own->nodes, err)) {
+        set_jump(own);
         *state = own;
         return true;
     }
@@ -495,7 +547,8 @@ static bool enter_interval(Extrapolated *own, long interval, Err *err)
     }
     double times[NODES_KEPT];
     for (size_t k = 0; k < NODES_KEPT; k++) {
-        times[k] = (double)(nodes->next - NODES_KEPT + (long)k) * nodes->interval_s;
+        const double count = (double)(nodes->next - NODES_KEPT + (long)k);
+        times[k] = nodes->origin_s + count * nodes->interval_s;
     }
     for (size_t i = 0; i < own->scenario->linkage.body_count; i++) {
         for (size_t c = 0; c < 3; c++) {
@@ -534,6 +587,12 @@ static void fill_motions(const Extrapolated *own, double time_s, Motion *motions
     stepping_set_driven(linkage, time_s, motions);
 }
 
+// A time from which on loads are as they are at a time; where one jumps next, as before the jump.
+static double before_jump(const Extrapolated *own, double time_s)
+{
+    return time_s < own->jump_s ? time_s : 0.5 * (own->nodes.origin_s + own->jump_s);
+}
+
 // The motions and the joints' forces at a time in the interval, and the powers. Returns false where
 // the forces are not determined; they are then untouched.
 static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Powers *powers)
@@ -543,14 +602,15 @@ static bool work_out(const Extrapolated *own, double time_s, Sample *sample, Pow
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     fill_motions(own, time_s, sample->bodies);
-    loads_of_all(linkage, sample->bodies, time_s, time_s, loads);
+    const double from_s = before_jump(own, time_s);
+    loads_of_all(linkage, sample->bodies, time_s, from_s, loads);
     if (!ideal_forces_solve(own->scenario, sample->bodies, loads, own->response, own->rows,
                             sample->joints)) {
         return false;
     }
     powers->drive = forces_torque_power(linkage, sample->bodies, time_s);
     powers->damping = forces_damping_power(linkage, sample->bodies);
-    powers->loads = loads_power(linkage, sample->bodies, time_s, time_s);
+    powers->loads = loads_power(linkage, sample->bodies, time_s, from_s);
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
         const int body = linkage_drive_body(linkage, i);
         stepping_offsets(linkage, sample->bodies, body, own->offsets);
@@ -600,6 +660,16 @@ static bool make_part(Extrapolated *own, double end_s, Err *err)
     return true;
 }
 
+// Begins anew where a load jumps, with a part of no length, so that what stands behind the jump is
+// on record.
+static bool begin_anew(Extrapolated *own, Err *err)
+{
+    own->nodes.origin_s = own->jump_s;
+    set_jump(own);
+    return start_levels(&own->nodes, own->end.bodies, err) && enter_interval(own, 0, err) &&
+           make_part(own, own->nodes.origin_s, err);
+}
+
 static bool extrapolated_step(void *state, double stop_s, Err *err)
 {
     Extrapolated *own = state;
@@ -608,14 +678,19 @@ static bool extrapolated_step(void *state, double stop_s, Err *err)
         own->is_begun = true;
         return enter_interval(own, 0, err) && make_part(own, 0.0, err);
     }
+    if (own->end.time_s >= own->jump_s) {
+        return begin_anew(own, err);
+    }
     const double interval_s = own->nodes.interval_s;
-    const double done = own->end.time_s / interval_s - (double)own->interval;
+    const double origin_s = own->nodes.origin_s;
+    const double done = (own->end.time_s - origin_s) / interval_s - (double)own->interval;
     if (done > 1.0 - ROUNDING && !enter_interval(own, own->interval + 1, err)) {
         return false;
     }
-    // no part goes beyond a node
-    const double node_s = (double)(own->interval + 1) * interval_s;
-    return make_part(own, stop_s < node_s + ROUNDING * interval_s ? stop_s : node_s, err);
+    // no part goes beyond a node, or a jump
+    const double node_s = origin_s + (double)(own->interval + 1) * interval_s;
+    const double end_s = stop_s < node_s + ROUNDING * interval_s ? stop_s : node_s;
+    return make_part(own, own->jump_s < end_s + ROUNDING * interval_s ? own->jump_s : end_s, err);
 }
 
 static bool extrapolated_carry(void *state, Carry *carry)
@@ -624,6 +699,7 @@ static bool extrapolated_carry(void *state, Carry *carry)
     const Linkage *linkage = &own->scenario->linkage;
     nodes_carry(&own->nodes, carry);
     CARRY(carry, own->is_begun);
+    CARRY(carry, own->jump_s);
     CARRY(carry, own->interval);
     CARRY_ARRAY(carry, own->paths, linkage->body_count);
     CARRY(carry, own->end.time_s);

@@ -757,12 +757,14 @@ static void find_means(ImpulseStep *step, const Motion *middle)
     }
 }
 
-// Where the step ends: on the ticks, but not beyond the run, nor beyond a kink of the drive's
-// speed.
+// Where the step ends: on the ticks, but not beyond the run, nor beyond a kink of the drive's speed
+// or a jump of a load.
 static void set_end(ImpulseStep *step, size_t ticks)
 {
     const double rounding_s = STEPPING_ROUNDING * step->tick_s;
-    const double kink_s = linkage_next_kink(&step->scenario->linkage, step->start_s);
+    const Linkage *linkage = &step->scenario->linkage;
+    const double kink_s =
+        fmin(linkage_next_kink(linkage, step->start_s), loads_next_jump(linkage, step->start_s));
     step->tick += ticks;
     step->end_s = stepping_end(step->scenario, step->start_s, (double)step->tick * step->tick_s,
                                step->tick_s);

@@ -34,8 +34,9 @@ typedef struct ImpulseStep {
     Touch *places; // owned, as are all arrays here
     double tick_s; // the finest step
     size_t tick;   // at the end of the last step, or before it
-    bool is_kink;  // whether the last step ends at a kink of the drive's speed
-    double end_s;  // likewise
+    bool
+        is_kink; // whether the last step ends at a kink of the drive's speed, or where a load jumps
+    double end_s; // likewise
     size_t count;
     double start_s; // of the last step
     double width_s;

@@ -15,10 +15,14 @@
 // too.
 //
 // Read between: speeds linear in each step, positions their integral, accelerations linear between
-// mid-steps. That needs the step after: the run is one step ahead of what it hands on.
+// mid-steps. That needs the step after: the run is one step ahead of what it hands on. Where a load
+// or the drive's acceleration jumps within a step, by a share s of it, speeds are linear on each
+// side, with the acceleration a_- of the step before and a_+ that gives the step its mean:
+//     s a_- + (1 - s) a_+ = a
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. 2006, VII.1.4 on SHAKE.
 #include "base/zeroed.h"
 #include "model/joint_rows.h"
+#include "model/loads.h"
 #include "model/response.h"
 #include "ode/plane/contact_rows.h"
 #include "ode/stepping.h"
@@ -342,14 +346,45 @@ static Vec2 centre_acceleration(const Stride *stride, size_t body, double step_s
                       vec2_sub(stride->velocity[body], stride->middle[body].velocity));
 }
 
-static Motion motion_at(const Staggered *staggered, size_t body, double since_s)
+// The jumps of a load or of the drive's acceleration about the step that is handed on.
+typedef struct StrideJumps {
+    double inside_s; // after its start; 0: none is in it, or there is no step before
+    bool is_before;  // whether one is at its start or in the step before: then that one's
+                     // acceleration says nothing of this one's
+    bool is_ahead;   // likewise at its end or in the next
+} StrideJumps;
+
+static double next_jump(const Linkage *linkage, double time_s)
+{
+    return fmin(linkage_next_kink(linkage, time_s), loads_next_jump(linkage, time_s));
+}
+
+static StrideJumps jumps_about(const Staggered *staggered)
+{
+    const Linkage *linkage = &staggered->scenario->linkage;
+    const double step_s = staggered->step_s;
+    const double start_s = staggered->now->start_s;
+    const double rounding_s = STEPPING_ROUNDING * step_s;
+    const double inside_s = next_jump(linkage, start_s + rounding_s) - start_s;
+    const bool is_inside = start_s > 0.0 && inside_s < step_s - rounding_s;
+    return (StrideJumps){
+        .inside_s = is_inside ? inside_s : 0.0,
+        .is_before = next_jump(linkage, start_s - step_s + rounding_s) <= start_s + rounding_s,
+        .is_ahead =
+            next_jump(linkage, start_s + step_s - rounding_s) < start_s + 2.0 * step_s - rounding_s,
+    };
+}
+
+static Motion motion_at(const Staggered *staggered, size_t body, const StrideJumps *jumps,
+                        double since_s)
 {
     const Stride *now = staggered->now;
     const double step_s = staggered->step_s;
     const Snapshot *middle = &now->middle[body];
     const double off_s = since_s - 0.5 * step_s;
     const Stride *other = off_s < 0.0 ? staggered->before : staggered->ahead;
-    const double share = fabs(off_s) / step_s; // of the way to the other step's middle
+    const bool is_cut = off_s < 0.0 ? jumps->is_before : jumps->is_ahead;
+    const double share = is_cut ? 0.0 : fabs(off_s) / step_s; // of the way to the other's middle
     const Vec2 mean = centre_acceleration(now, body, step_s);
     const Vec2 beside = centre_acceleration(other, body, step_s);
     // positions: v_n t + a t^2 / 2 from the start, where they are h/2 v_n behind mid-step
@@ -366,15 +401,52 @@ static Motion motion_at(const Staggered *staggered, size_t body, double since_s)
     };
 }
 
+// A rate on one side of a jump: its derivative there, and what it has gained since the step began.
+typedef struct Gained {
+    double slope;
+    double gain;
+} Gained;
+
+static Gained gained_beside(double before, double mean, double jump_s, double step_s,
+                            double since_s)
+{
+    const double after = (step_s * mean - jump_s * before) / (step_s - jump_s);
+    return since_s <= jump_s ? (Gained){before, since_s * before}
+                             : (Gained){after, step_s * mean - (step_s - since_s) * after};
+}
+
+// Puts the rates of a body's motion onto their side of a jump.
+static void set_beside_jump(const Staggered *staggered, size_t body, double jump_s, double since_s,
+                            Motion *motion)
+{
+    const Stride *now = staggered->now;
+    const double step_s = staggered->step_s;
+    const Vec2 before = centre_acceleration(staggered->before, body, step_s);
+    const Vec2 mean = centre_acceleration(now, body, step_s);
+    const Gained x = gained_beside(before.x, mean.x, jump_s, step_s, since_s);
+    const Gained y = gained_beside(before.y, mean.y, jump_s, step_s, since_s);
+    const Gained turning =
+        gained_beside(staggered->before->alpha[body], now->alpha[body], jump_s, step_s, since_s);
+    motion->velocity = vec2_add(now->middle[body].velocity, (Vec2){x.gain, y.gain});
+    motion->acceleration = (Vec2){x.slope, y.slope};
+    motion->omega = now->middle[body].omega + turning.gain;
+    motion->alpha = turning.slope;
+}
+
 static void staggered_observe(const void *state, double time_s, Sample *sample)
 {
     const Staggered *staggered = state;
     const Linkage *linkage = &staggered->scenario->linkage;
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
+    const double since_s = time_s - staggered->now->start_s;
+    const StrideJumps jumps = jumps_about(staggered);
     for (size_t i = 0; i < linkage->body_count; i++) {
         Motion *motion = &sample->bodies[i];
-        *motion = motion_at(staggered, i, time_s - staggered->now->start_s);
+        *motion = motion_at(staggered, i, &jumps, since_s);
+        if (jumps.inside_s > 0.0) {
+            set_beside_jump(staggered, i, jumps.inside_s, since_s, motion);
+        }
         motion->angle = world_count_turns(&staggered->world, i, motion->angle);
     }
     stepping_set_driven(linkage, time_s, sample->bodies);
