@@ -464,6 +464,34 @@ void recorder_add(Recorder *recorder, const StepRecord *step)
     trajectory->energy.friction += step->friction;
 }
 
+// Raises the contact under way to what a sample in it shows.
+static inline void see_contact(Recorder *recorder, size_t number, const JointState *state,
+                               double time_s)
+{
+    Spike *spike = &recorder->open[number];
+    if (!recorder->was_touching[number] || time_s < spike->onset_s) {
+        return;
+    }
+    if (state->force > spike->force_max) {
+        spike->force_max = state->force;
+        spike->peak_s = time_s;
+        spike->eccentricity = state->eccentricity;
+    }
+    const double depth = joint_state_depth(state);
+    spike->penetration_max = depth > spike->penetration_max ? depth : spike->penetration_max;
+}
+
+double recorder_contact_force(const Recorder *recorder, size_t joint)
+{
+    const JointExtremes *of = &recorder->trajectory->joints[joint];
+    const Spike *spike = &recorder->open[joint];
+    // one that is weaker than all that are kept is in no result
+    const bool is_kept = recorder->scenario->run.keeps_contacts ||
+                         of->spike_count < TRAJECTORY_SPIKE_MAX ||
+                         spike->force_max > of->spikes[TRAJECTORY_SPIKE_MAX - 1].force_max;
+    return recorder->was_touching[joint] && is_kept ? spike->force_max : of->force_max.value;
+}
+
 // Raises the extremes to those of a sample of a part or of all (NULL).
 static inline void see_extremes(Recorder *recorder, const SolverPart *part, const Sample *sample)
 {
@@ -487,6 +515,7 @@ static inline void see_extremes(Recorder *recorder, const SolverPart *part, cons
         const JointState *state = &sample->joints[i];
         const JointPeak top = top_at(state, time_s);
         raise_joint(&trajectory->joints[i], false, &linkage->joints[i], &top, state->tilt, time_s);
+        see_contact(recorder, i, state, time_s);
         if (linkage->is_spatial) {
             raise_joint_space(&trajectory->joints[i], false, &sample->space_joints[i], time_s);
         }
@@ -544,7 +573,14 @@ void recorder_raise(Recorder *recorder, RecorderSignal signal, size_t number, do
                             : ranges_of_body(number, of_body),
                    extreme.time_s, extreme.value);
     }
-    if (extreme.time_s >= trajectory->report_from_s &&
+    Spike *spike = is_force && recorder->was_touching[number] ? &recorder->open[number] : NULL;
+    if (spike != NULL && extreme.time_s >= spike->onset_s && extreme.value > spike->force_max) {
+        spike->force_max = extreme.value;
+        spike->peak_s = extreme.time_s;
+    }
+    const bool is_beyond =
+        sign * extreme.value > sign * find_extreme(trajectory, signal, number, sign)->value;
+    if (is_beyond && extreme.time_s >= trajectory->report_from_s &&
         (is_force ? recorder->has_joint : recorder->has_body)[number]) {
         *find_extreme(trajectory, signal, number, sign) = extreme;
     }

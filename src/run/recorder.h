@@ -47,6 +47,10 @@ typedef enum RecorderSignal { RECORDER_OMEGA, RECORDER_ALPHA, RECORDER_FORCE } R
 const Extreme *recorder_extreme(const Recorder *recorder, RecorderSignal signal, size_t number,
                                 double sign);
 
+// The largest force so far of a joint's contact under way, where it is one that is reported; else
+// that of the joint.
+double recorder_contact_force(const Recorder *recorder, size_t joint);
+
 // Takes in one value that lies beyond that, at a time in the last step.
 void recorder_raise(Recorder *recorder, RecorderSignal signal, size_t number, double sign,
                     Extreme extreme);

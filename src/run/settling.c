@@ -53,6 +53,11 @@ static const double NEAR_SHARE = 1e-5;
 // Of the reference on that way at the loosest: a peak is off by less than a thousandth.
 static const double QUICK_LOOSE = 1e-6;
 
+// Of a force: by so much of the largest so far it may rise between two looks, which parabolas then
+// climb to the top of.
+static const double FORCE_RISE = 0.01;
+enum { FORCE_CLIMBS = 8 };
+
 // Of a rank test: in standard deviations, what one in a hundred samples exceeds by chance.
 static const double DRIFT_LEAST = 2.6;
 
@@ -106,7 +111,8 @@ typedef struct Turn {
     void *state; // of the solver
     Revolution *revolution;
     double end_s;
-    bool *touches; // by joint, in the step before; owned
+    bool *touches;  // by joint, in the step before; owned, like the next
+    double *forces; // N or N m, at each look of a step, by joint
 } Turn;
 
 static void raise_number(double *number, double value)
@@ -164,6 +170,77 @@ static void take_instant(Turn *turn, double time_s)
     }
 }
 
+// The force of a joint at an instant in the last step, N or N m.
+static double force_at(const Turn *turn, size_t joint, double time_s)
+{
+    Sample *inside = &turn->settling->inside;
+    turn->solver->observe(turn->state, time_s, inside);
+    return inside->joints[joint].force;
+}
+
+// Three instants and the force there.
+typedef struct ForceTop {
+    double time_s[3];
+    double force[3];
+} ForceTop;
+
+// When the parabola through three instants has its top, s; NAN where it has none.
+static double top_of_parabola(const ForceTop *top)
+{
+    const double *t = top->time_s;
+    const double before = (top->force[1] - top->force[0]) / (t[1] - t[0]);
+    const double behind = (top->force[2] - top->force[1]) / (t[2] - t[1]);
+    const double bend = (behind - before) / (t[2] - t[0]);
+    return bend < 0.0 ? 0.5 * (t[0] + t[1]) - 0.5 * before / bend : NAN;
+}
+
+// Puts an instant in place of one of the three that is lowest, in order of time.
+static void take_into(ForceTop *top, double time_s, double force)
+{
+    const int out = top->force[0] < top->force[2] ? 0 : 2;
+    const int at = out == 0 ? (time_s > top->time_s[1] ? time_s > top->time_s[2] ? 2 : 1 : 0)
+                            : (time_s < top->time_s[1] ? time_s < top->time_s[0] ? 0 : 1 : 2);
+    const int stride = out == 0 ? 1 : -1;
+    for (int i = out; i != at; i += stride) {
+        top->time_s[i] = top->time_s[i + stride];
+        top->force[i] = top->force[i + stride];
+    }
+    top->time_s[at] = time_s;
+    top->force[at] = force;
+}
+
+// Climbs to the largest force of a joint in a step from that of its looks, by parabolas through
+// three instants: friction has a part in it, and no step ends where it is largest.
+static void climb_force(const Turn *turn, const StepRecord *record, size_t joint, size_t looks)
+{
+    const double *forces = turn->forces + joint * (looks + 1);
+    double *largest = &turn->revolution->numbers[settle_joint_number(joint, SETTLE_FORCE)];
+    size_t most = 0;
+    for (size_t k = 1; k <= looks; k++) {
+        most = forces[k] > forces[most] ? k : most;
+    }
+    if (forces[most] < (1.0 - FORCE_RISE) * *largest || !(record->end_s > record->start_s)) {
+        return;
+    }
+    const size_t middle = most == 0 ? 1 : most == looks ? looks - 1 : most;
+    const double part_s = (record->end_s - record->start_s) / (double)looks;
+    ForceTop top;
+    for (size_t i = 0; i < 3; i++) {
+        top.time_s[i] = record->start_s + (double)(middle - 1 + i) * part_s;
+        top.force[i] = forces[middle - 1 + i];
+    }
+    for (int i = 0; i < FORCE_CLIMBS; i++) {
+        const double time_s = top_of_parabola(&top);
+        if (!(time_s > record->start_s && time_s < record->end_s) || time_s == top.time_s[0] ||
+            time_s == top.time_s[1] || time_s == top.time_s[2]) {
+            return;
+        }
+        const double force = force_at(turn, joint, time_s);
+        raise_number(largest, force);
+        take_into(&top, time_s, force);
+    }
+}
+
 // What a step says. An acceleration is as large as any where a force is, which is looked at there.
 static void take_record(Turn *turn, const StepRecord *record)
 {
@@ -178,9 +255,17 @@ static void take_record(Turn *turn, const StepRecord *record)
             }
         }
     }
-    for (size_t k = 1; k <= looks; k++) {
+    for (size_t k = looks > 1 ? 0 : 1; k <= looks; k++) {
         const double share = (double)k / (double)looks;
         take_instant(turn, record->start_s + share * (record->end_s - record->start_s));
+        for (size_t i = 0; looks > 1 && i < linkage->joint_count; i++) {
+            turn->forces[i * (looks + 1) + k] = turn->settling->inside.joints[i].force;
+        }
+    }
+    for (size_t i = 0; looks > 1 && i < linkage->joint_count; i++) {
+        if (linkage_has_play(&linkage->joints[i])) {
+            climb_force(turn, record, i, looks);
+        }
     }
 }
 
@@ -230,6 +315,7 @@ bool settling_turn(Settling *settling, Err *err)
     if (!turn.solver->open(scenario, &turn.state, err)) {
         return false;
     }
+    turn.forces = zeroed(linkage->joint_count * (settling->looks + 1) + 1, sizeof *turn.forces);
     turn.touches = zeroed(linkage->joint_count, sizeof *turn.touches);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         turn.touches[i] = linkage_starts_touching(&linkage->joints[i]);
@@ -244,6 +330,7 @@ bool settling_turn(Settling *settling, Err *err)
     }
     turn.solver->close(turn.state);
     free(turn.touches);
+    free(turn.forces);
     if (settling->watch != NULL) {
         turn_watch_count(settling->watch, settling->is_callers);
     }

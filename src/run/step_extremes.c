@@ -55,10 +55,9 @@ static double aim_value(const Aim *aim, const Look *look)
 static double extreme_so_far(const Looker *looker, size_t signal, double sign)
 {
     const size_t bodies = looker->scenario->linkage.body_count;
-    const Extreme *extreme =
-        signal < bodies ? recorder_extreme(looker->recorder, RECORDER_ALPHA, signal, sign)
-                        : recorder_extreme(looker->recorder, RECORDER_FORCE, signal - bodies, sign);
-    return sign * extreme->value;
+    return signal < bodies
+               ? sign * recorder_extreme(looker->recorder, RECORDER_ALPHA, signal, sign)->value
+               : recorder_contact_force(looker->recorder, signal - bodies);
 }
 
 static bool step_extremes_is_near(const Aim *aim, double value, double share)
@@ -395,7 +394,9 @@ static void raise_signal(const Cluster *cluster, Signal signal)
 {
     Recorder *recorder = cluster->looker->recorder;
     const Extreme *extreme = recorder_extreme(recorder, signal.which, signal.number, signal.sign);
-    const double so_far = signal.sign * extreme->value;
+    const double so_far = signal.which == RECORDER_FORCE
+                              ? recorder_contact_force(recorder, signal.number)
+                              : signal.sign * extreme->value;
     double values[CURVE_NODES];
     size_t largest = 0;
     for (size_t k = 0; k < CURVE_NODES; k++) {

@@ -12,6 +12,7 @@
 #include "base/sorted.h"
 #include "base/union_find.h"
 #include "base/zeroed.h"
+#include "model/loads.h"
 #include "run/spikes.h"
 #include "run/step_extremes.h"
 
@@ -97,9 +98,14 @@ static const double OWN_SHARE = 0.1;
 // of a pin without friction
 static const double ROUNDING = 1e-6;
 
+// of a step: a corner so near to its start is there
+static const double CORNER_ROUNDING = 1e-9;
+
 typedef struct Tracer {
     const Scenario *scenario;
     Looker looker;
+    bool has_corners; // whether a drive's acceleration or a load jumps
+    bool has_traces;  // whether joints have play: else it looks for extremes alone
     SpikeScale scale;
     Trace *alpha;    // by body; owned, like the next two
     Trace *force;    // by joint
@@ -111,6 +117,12 @@ typedef struct Tracer {
     Causes causes;
 } Tracer;
 
+// When a drive's acceleration or a load jumps next after a time, s.
+static double next_corner(const Linkage *linkage, double time_s)
+{
+    return fmin(linkage_next_kink(linkage, time_s), loads_next_jump(linkage, time_s));
+}
+
 static bool is_traced(const Tracer *tracer, size_t body)
 {
     return !linkage_is_driven(&tracer->scenario->linkage, (int)body);
@@ -119,17 +131,22 @@ static bool is_traced(const Tracer *tracer, size_t body)
 static void *tracer_begin(const Scenario *scenario, const Solver *solver, const void *state,
                           Recorder *recorder, const void *shared)
 {
-    if (!scenario_has_clearance(scenario) || solver->is_ideal) {
+    if (solver->is_ideal) {
         return NULL;
     }
     Tracer *tracer = calloc(1, sizeof *tracer);
     assert(tracer != NULL);
     tracer->scenario = scenario;
     tracer->looker = looker_start(scenario, solver, state, recorder);
+    tracer->has_begun = zeroed(scenario->linkage.body_count, sizeof *tracer->has_begun);
+    tracer->has_corners = isfinite(next_corner(&scenario->linkage, 0.0));
+    tracer->has_traces = scenario_has_clearance(scenario);
+    if (!tracer->has_traces) {
+        return tracer;
+    }
     tracer->alpha = zeroed(scenario->linkage.body_count, sizeof *tracer->alpha);
     tracer->force = zeroed(scenario->linkage.joint_count, sizeof *tracer->force);
     tracer->impulse = zeroed(scenario->linkage.joint_count, sizeof *tracer->impulse);
-    tracer->has_begun = zeroed(scenario->linkage.body_count, sizeof *tracer->has_begun);
     tracer->body_s = zeroed(scenario->linkage.body_count, sizeof *tracer->body_s);
     tracer->joint_s = zeroed(scenario->linkage.joint_count, sizeof *tracer->joint_s);
     tracer->causes = causes_find(&scenario->linkage);
@@ -249,7 +266,16 @@ static void tracer_add_bodies(Tracer *tracer, const SolverPart *part, int count,
     }
 }
 
-// Where the run begins nothing has been looked at before.
+// Whether a step begins at a corner: the end of the step before it then says nothing of its start.
+static bool begins_at_corner(const Tracer *tracer, const StepRecord *step)
+{
+    const double rounding_s = CORNER_ROUNDING * (step->end_s - step->start_s);
+    return tracer->has_corners &&
+           next_corner(&tracer->scenario->linkage, step->start_s - rounding_s) <=
+               step->start_s + rounding_s;
+}
+
+// Where the run begins, or a corner lies, nothing has been looked at before.
 static void look_at_start(Tracer *tracer, const StepRecord *step)
 {
     const size_t joint_count = solver_joint_count(step->part, &tracer->scenario->linkage);
@@ -257,10 +283,12 @@ static void look_at_start(Tracer *tracer, const StepRecord *step)
         tracer->last = looker_first(&tracer->looker);
     }
     const Look look = look_inside(&tracer->looker, step->start_s);
-    tracer_add_bodies(tracer, step->part, 1, &look);
-    for (size_t k = 0; k < joint_count; k++) {
+    if (tracer->has_traces) {
+        tracer_add_bodies(tracer, step->part, 1, &look);
+    }
+    for (size_t k = 0; tracer->has_traces && k < joint_count; k++) {
         const size_t i = solver_joint(step->part, k);
-        trace_add(&tracer->force[i], look.time_s, look.force[i], 0.0);
+        trace_add(&tracer->force[i], look.time_s, look.force[i], tracer->impulse[i]);
     }
     looker_keep(&tracer->looker, &tracer->last, &look);
 }
@@ -331,7 +359,7 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
 {
     bool *has_begun = &tracer->has_begun[step->part != NULL ? step->part->number : 0];
     tracer->looker.part = step->part;
-    if (!*has_begun) {
+    if (!*has_begun || (step->changed == NULL && begins_at_corner(tracer, step))) {
         look_at_start(tracer, step);
         *has_begun = true;
     }
@@ -345,12 +373,31 @@ static void add_instants(Tracer *tracer, const StepRecord *step)
     add_signals(tracer, step);
 }
 
+// Looks for the extremes of a step without a trace.
+static void look_alone(Tracer *tracer, const StepRecord *step)
+{
+    bool *has_begun = &tracer->has_begun[step->part != NULL ? step->part->number : 0];
+    tracer->looker.part = step->part;
+    if (!*has_begun || begins_at_corner(tracer, step)) {
+        look_at_start(tracer, step);
+        *has_begun = true;
+    }
+    tracer->last.time_s = step->start_s;
+    Look looks[LOOK_MAX];
+    looks[0] = look_at_end(&tracer->looker, step);
+    look_into_step(&tracer->looker, &tracer->last, 1, step->is_smooth, looks);
+    looker_keep(&tracer->looker, &tracer->last, &looks[0]);
+}
+
 static void tracer_look(void *own, const StepRecord *step)
 {
-    if (step->is_mean) {
-        add_means(own, step);
-    } else {
-        add_instants(own, step);
+    Tracer *tracer = own;
+    if (step->is_mean && tracer->has_traces) {
+        add_means(tracer, step);
+    } else if (!step->is_mean && tracer->has_traces) {
+        add_instants(tracer, step);
+    } else if (!step->is_mean) {
+        look_alone(tracer, step);
     }
 }
 
@@ -479,13 +526,13 @@ static void tell_all(Tracer *tracer, Trajectory *trajectory)
 static void tracer_end(void *own, Trajectory *trajectory)
 {
     Tracer *tracer = own;
-    if (trajectory->is_complete) {
+    if (trajectory->is_complete && tracer->has_traces) {
         tell_all(tracer, trajectory);
     }
-    for (size_t i = 0; i < tracer->scenario->linkage.body_count; i++) {
+    for (size_t i = 0; tracer->has_traces && i < tracer->scenario->linkage.body_count; i++) {
         trace_finish(&tracer->alpha[i]);
     }
-    for (size_t i = 0; i < tracer->scenario->linkage.joint_count; i++) {
+    for (size_t i = 0; tracer->has_traces && i < tracer->scenario->linkage.joint_count; i++) {
         trace_finish(&tracer->force[i]);
     }
     free(tracer->alpha);

@@ -9,7 +9,9 @@
 #include "../measure/random_draw.h"
 
 #include "base/zeroed.h"
+#include "measure/chosen_run.h"
 #include "run/registry.h"
+#include "run/settle.h"
 #include "run/tracer.h"
 
 #include <string.h>
@@ -366,12 +368,184 @@ static void shipped_cases_show_their_extremes(void **state)
     }
 }
 
+// A disc of radius R that is dropped on a plate while it goes sideways, without damping:
+//     m y'' = N - m g,   m x'' = -T,   J w' = -R T,   N = K d^1.5,   T = mu N tanh((x' + R w) /
+//     v_s)
+// The largest force, hypot(N, T), is that of friction's turn, at none of the solver's steps.
+static const char SLIDING[] =
+    "title: A disc that slides on a plate\n"
+    "bodies:\n"
+    "  disc: {mass: 0.35 kg, inertia: 41.5 kg mm^2, at: [0 mm, 17.4 mm],\n"
+    "         velocity: [-0.102 m/s, 0 m/s]}\n"
+    "joints:\n"
+    "  plate: {between: [ground, disc], at-a: [0 mm, 0 mm], at-b: [0 mm, 17.4 mm],\n"
+    "          normal: 90 deg, radius: 15.4 mm}\n"
+    "contact: {stiffness: 1.3991e9 N/m^1.5, friction: 0.3, friction-speed: 100 mm/s, damping: "
+    "none}\n"
+    "run: {duration: 25 ms, samples: 100, step: auto, backends: [ode], tolerance: 1e-4,\n"
+    "      tolerance-of: peaks}\n";
+
+typedef struct Disc {
+    double y, vy, vx, w; // height over the plate's touch, m; m/s; rad/s
+} Disc;
+
+static const double DISC_MASS = 0.35, DISC_INERTIA = 41.5e-6, DISC_RADIUS = 15.4e-3;
+
+// Writes the normal force and friction, and the rates.
+static Disc disc_rates(const Disc *at, double *size)
+{
+    const double depth = fmax(0.0, -at->y);
+    const double normal = 1.3991e9 * depth * sqrt(depth);
+    const double arm = DISC_RADIUS;
+    const double friction = 0.3 * normal * tanh((at->vx + arm * at->w) / 0.1);
+    *size = hypot(normal, friction);
+    return (Disc){at->vy, normal / DISC_MASS - 9.80665, -friction / DISC_MASS,
+                  -arm * friction / DISC_INERTIA};
+}
+
+static Disc disc_moved(Disc at, Disc by, double step)
+{
+    return (Disc){at.y + step * by.y, at.vy + step * by.vy, at.vx + step * by.vx,
+                  at.w + step * by.w};
+}
+
+// The largest force of the first impact, by Runge and Kutta's method from the touch on, N.
+static double disc_largest(void)
+{
+    const double step_s = 2e-8;
+    Disc at = {0.0, -sqrt(2.0 * 9.80665 * 2e-3), -0.102, 0.0};
+    double largest = 0.0;
+    do {
+        double size, unused;
+        const Disc a = disc_rates(&at, &size);
+        largest = fmax(largest, size);
+        const Disc second = disc_moved(at, a, 0.5 * step_s);
+        const Disc b = disc_rates(&second, &unused);
+        const Disc third = disc_moved(at, b, 0.5 * step_s);
+        const Disc c = disc_rates(&third, &unused);
+        const Disc fourth = disc_moved(at, c, step_s);
+        const Disc d = disc_rates(&fourth, &unused);
+        at = disc_moved(at, a, step_s / 6.0);
+        at = disc_moved(at, b, step_s / 3.0);
+        at = disc_moved(at, c, step_s / 3.0);
+        at = disc_moved(at, d, step_s / 6.0);
+    } while (at.y <= 0.0);
+    return largest;
+}
+
+static Scenario loaded(const char *text, size_t size)
+{
+    Scenario scenario;
+    Err err = {0};
+    if (!casefile_load_text("inside.yaml", text, size, NULL, 0, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    return scenario;
+}
+
+// Control: the contact's largest force at the ends of the steps alone.
+static void a_contact_has_its_largest_force_between_steps(void **state)
+{
+    (void)state;
+    Scenario scenario = loaded(SLIDING, sizeof SLIDING - 1);
+    const double truth = disc_largest();
+    Trajectory *run = tracer_run(&scenario, registry_solver(BACKEND_REFERENCE), NOBODY);
+    Trajectory *bare = run_scenario(&scenario, registry_solver(BACKEND_REFERENCE), NOBODY);
+    assert_true(run->is_complete && bare->is_complete && run->joints[0].spike_count > 0);
+    assert_close(run->joints[0].force_max.value, truth, 1e-8);
+    assert_close(run->joints[0].spikes[0].force_max, truth, 1e-8);
+    assert_true(bare->joints[0].spikes[0].force_max < (1.0 - 1e-6) * truth);
+    trajectory_destroy(bare);
+    trajectory_destroy(run);
+    // the uncertainty of peaks is then far below a tolerance of 1e-4
+    run = backend_run(&scenario, BACKEND_ODE, NULL, (ChosenWatch){.begin = NULL}, &TRACER_PROBE);
+    if (!run->is_complete || run->is_short) {
+        fail_msg("%s", run->message);
+    }
+    assert_close(run->joints[0].spikes[0].force_max, truth, 1e-4);
+    trajectory_destroy(run);
+    scenario_free(&scenario);
+}
+
+// Between two corners of a drive's acceleration motion is smooth, and the closed form looks on both
+// sides of each.
+static void ideal_joints_show_both_sides_of_every_corner(void **state)
+{
+    (void)state;
+    static const char TEXT[] =
+        "title: A crank-rocker that a drive turns by a trapezoid\n"
+        "four-bar:\n"
+        "  ground:   {length: 254 mm}\n"
+        "  crank:    {length: 108 mm,   mass: 0.12 kg, inertia: 173.92 kg mm^2}\n"
+        "  coupler:  {length: 279.4 mm, mass: 0.29 kg, inertia: 2070.46 kg mm^2}\n"
+        "  follower: {length: 270.5 mm, mass: 0.28 kg, inertia: 1988.39 kg mm^2}\n"
+        "drive: {angle: [[0 s, 0 deg], [0.3 s, 200 deg], [0.5 s, 100 deg]], profile: trapezoid}\n"
+        "run: {duration: 500 ms, samples: 97, backends: [reference]}\n";
+    Scenario scenario = loaded(TEXT, sizeof TEXT - 1);
+    Trajectory *truth = run_scenario(&scenario, registry_solver(BACKEND_ANALYTIC), NOBODY);
+    for (size_t samples = 97; samples < 2000; samples += 903) {
+        scenario.run.samples = samples;
+        Trajectory *run = tracer_run(&scenario, registry_solver(BACKEND_REFERENCE), NOBODY);
+        Trajectory *bare = run_scenario(&scenario, registry_solver(BACKEND_REFERENCE), NOBODY);
+        assert_true(run->is_complete && bare->is_complete && truth->is_complete);
+        for (size_t i = 1; i < run->body_count; i++) {
+            const BodyExtremes *is = &run->bodies[i];
+            const BodyExtremes *as = &truth->bodies[i];
+            assert_close(is->omega_max.value, as->omega_max.value, 1e-9);
+            assert_close(is->omega_min.value, as->omega_min.value, 1e-9);
+            assert_close(is->alpha_max.value, as->alpha_max.value, 1e-9);
+            assert_close(is->alpha_min.value, as->alpha_min.value, 1e-9);
+        }
+        // control: the coupler's, at the ends of steps and at samples alone
+        assert_false(
+            fabs(bare->bodies[1].alpha_max.value / truth->bodies[1].alpha_max.value - 1.0) < 1e-4);
+        trajectory_destroy(bare);
+        trajectory_destroy(run);
+    }
+    trajectory_destroy(truth);
+    scenario_free(&scenario);
+}
+
+// The truth is the run of a period from the settled start, looked into.
+static void a_settled_motion_has_the_largest_force_of_its_period(void **state)
+{
+    (void)state;
+    const char *path = "cases/mechanisms/compressor.yaml";
+    Scenario scenario;
+    Err err = {0};
+    const char *overrides[] = {"run.settle-starts=2", "run.revolutions=1", "run.samples=20"};
+    if (!casefile_load(path, overrides, 3, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    settle_scenario(&scenario, NOBODY);
+    assert_int_equal(scenario.settled.motions[0].period, 1);
+    Trajectory *run = tracer_run(&scenario, registry_solver(BACKEND_REFERENCE), NOBODY);
+    assert_true(run->is_complete);
+    for (size_t i = 0; i < run->joint_count; i++) {
+        if (linkage_has_play(&scenario.linkage.joints[i])) {
+            const double force = scenario.settled.motions[0].joints[i].force.headline;
+            assert_close(force, run->joints[i].force_max.value, 1e-8);
+            // control: the samples alone miss it
+            double sampled = 0.0;
+            for (size_t k = 0; k < run->sample_count; k++) {
+                sampled = fmax(sampled, trajectory_state(run, k, i)->force);
+            }
+            assert_true(sampled < (1.0 - 1e-6) * force);
+        }
+    }
+    trajectory_destroy(run);
+    scenario_free(&scenario);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_of_four_bars_show_their_extremes),
         cmocka_unit_test(random_mechanisms_show_their_extremes),
         cmocka_unit_test(shipped_cases_show_their_extremes),
+        cmocka_unit_test(a_contact_has_its_largest_force_between_steps),
+        cmocka_unit_test(ideal_joints_show_both_sides_of_every_corner),
+        cmocka_unit_test(a_settled_motion_has_the_largest_force_of_its_period),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,8 @@
 //
 // Read between: speeds linear in each step, positions their integral, accelerations linear between
 // mid-steps. That needs the step after: the run is one step ahead of what it hands on. Where a load
-// or the drive's acceleration jumps within a step, by a share s of it, speeds are linear on each
-// side, with the acceleration a_- of the step before and a_+ that gives the step its mean:
+// jumps within a step, after a share s of it, speeds are linear on each side, with the acceleration
+// a_- of the step before and a_+ that gives the step its mean:
 //     s a_- + (1 - s) a_+ = a
 // Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed. 2006, VII.1.4 on SHAKE.
 #include "base/zeroed.h"
@@ -346,7 +346,7 @@ static Vec2 centre_acceleration(const Stride *stride, size_t body, double step_s
                       vec2_sub(stride->velocity[body], stride->middle[body].velocity));
 }
 
-// The jumps of a load or of the drive's acceleration about the step that is handed on.
+// The jumps of loads about the step that is handed on.
 typedef struct StrideJumps {
     double inside_s; // after its start; 0: none is in it, or there is no step before
     bool is_before;  // whether one is at its start or in the step before: then that one's
@@ -354,24 +354,20 @@ typedef struct StrideJumps {
     bool is_ahead;   // likewise at its end or in the next
 } StrideJumps;
 
-static double next_jump(const Linkage *linkage, double time_s)
-{
-    return fmin(linkage_next_kink(linkage, time_s), loads_next_jump(linkage, time_s));
-}
-
 static StrideJumps jumps_about(const Staggered *staggered)
 {
     const Linkage *linkage = &staggered->scenario->linkage;
     const double step_s = staggered->step_s;
     const double start_s = staggered->now->start_s;
     const double rounding_s = STEPPING_ROUNDING * step_s;
-    const double inside_s = next_jump(linkage, start_s + rounding_s) - start_s;
+    const double inside_s = loads_next_jump(linkage, start_s + rounding_s) - start_s;
     const bool is_inside = start_s > 0.0 && inside_s < step_s - rounding_s;
     return (StrideJumps){
         .inside_s = is_inside ? inside_s : 0.0,
-        .is_before = next_jump(linkage, start_s - step_s + rounding_s) <= start_s + rounding_s,
-        .is_ahead =
-            next_jump(linkage, start_s + step_s - rounding_s) < start_s + 2.0 * step_s - rounding_s,
+        .is_before =
+            loads_next_jump(linkage, start_s - step_s + rounding_s) <= start_s + rounding_s,
+        .is_ahead = loads_next_jump(linkage, start_s + step_s - rounding_s) <
+                    start_s + 2.0 * step_s - rounding_s,
     };
 }
 
