@@ -131,7 +131,8 @@ static bool is_traced(const Tracer *tracer, size_t body)
 static void *tracer_begin(const Scenario *scenario, const Solver *solver, const void *state,
                           Recorder *recorder, const void *shared)
 {
-    if (solver->is_ideal) {
+    // with ideal joints alone a solver that cannot sketch a step would be asked too often
+    if (solver->is_ideal || (!scenario_has_clearance(scenario) && solver->sketch == NULL)) {
         return NULL;
     }
     Tracer *tracer = calloc(1, sizeof *tracer);
