@@ -54,14 +54,13 @@ static bool find_name(const char *cases, const char *name, char *found, size_t s
     return is_found;
 }
 
-bool shipped_find(const char *path, char *found, size_t size)
+bool shipped_find_own(const char *path, char *found, size_t size)
 {
     char prefix[PATH_MAX];
     char data[PATH_MAX + sizeof SHIPPED_DATA];
     char cases[sizeof data + sizeof "/cases"];
     text_copy(found, size, path);
-    if (path[0] == '\0' || path[0] == '/' || access(path, F_OK) == 0 ||
-        !find_prefix(prefix, sizeof prefix)) {
+    if (path[0] == '\0' || path[0] == '/' || !find_prefix(prefix, sizeof prefix)) {
         return false;
     }
     snprintf(data, sizeof data, "%s/%s", prefix, SHIPPED_DATA);
@@ -76,4 +75,13 @@ bool shipped_find(const char *path, char *found, size_t size)
     }
     text_copy(found, size, path);
     return false;
+}
+
+bool shipped_find(const char *path, char *found, size_t size)
+{
+    if (access(path, F_OK) == 0) {
+        text_copy(found, size, path);
+        return false;
+    }
+    return shipped_find_own(path, found, size);
 }

@@ -12,3 +12,6 @@
 // bare name without an ending such as "stackup-impact", in one of the folders of cases. True where
 // it is one of those that came with the program. A path that does not fit counts as not there.
 bool shipped_find(const char *path, char *found, size_t size);
+
+// The same, whatever stands here: only what came with the program is looked for.
+bool shipped_find_own(const char *path, char *found, size_t size);

@@ -24,8 +24,11 @@ report "a case is found by its path" $?
 report "a case is found by its name" $?
 "$program" study cases/studies/mapping.yaml --dry-run >"$log" 2>&1 && grep -q '2400 runs' "$log"
 report "a study is found, and its case" $?
-"$program" check cases/paper/ideal-nominal.yaml --quick >"$log" 2>&1 && grep -q '1 within' "$log"
+"$program" check cases/paper/ideal-nominal.yaml --shipped --quick >"$log" 2>&1 && grep -q "1 within" "$log"
 report "a baseline is found" $?
+"$program" check --quick >"$log" 2>&1
+[ $? = 5 ] && grep -q "baseline is not there" "$log"
+report "a check without baselines of one's own fails" $?
 "$program" check cases/hard/grashof-limit.yaml --expect-only >"$log" 2>&1
 report "a hard case is found" $?
 

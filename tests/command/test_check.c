@@ -287,6 +287,33 @@ static void a_baseline_that_was_stopped_goes_on_where_it_stood(void **state)
     assert_says(program->output, "1 setting changed");
 }
 
+// In a wrong folder, or with a forgotten --baselines, nothing else is checked in its place.
+static void the_programs_own_baselines_are_for_those_who_ask(void **state)
+{
+    Program *program = *state;
+    program_run(program, "check --quick");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "no baselines to compare with: /");
+    assert_says(program->errors, "/results/baseline is not there; --baselines names");
+    program_run(program, "check --quick ideal-nominal");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there is no baseline results/baseline/ideal-nominal.json of your "
+                                 "own for ");
+    program_run(program, "check --quick --shipped ideal-nominal");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "1 case: 1 within");
+    // the same beside baselines of one's own
+    program_run(program, "check --bless pin.yaml -q");
+    assert_int_equal(program->status, 0);
+    program_run(program, "check --quick --shipped ideal-nominal");
+    assert_int_equal(program->status, 0);
+    program_run(program, "check --quick --shipped pin.yaml");
+    assert_int_equal(program->status, 5);
+    program_fails_usage(program, "check --shipped --baselines b",
+                        "it does not go with --baselines");
+    program_fails_usage(program, "check --shipped --bless pin.yaml", "it does not go with --bless");
+}
+
 static void what_cannot_be_checked_never_passes(void **state)
 {
     Program *program = *state;
@@ -296,10 +323,10 @@ static void what_cannot_be_checked_never_passes(void **state)
     assert_says(program->errors, "there is no baseline b/other.json");
     program_run(program, "check --baselines nowhere");
     assert_int_equal(program->status, 5);
-    assert_says(program->errors, "there is no folder of baselines nowhere");
+    assert_says(program->errors, "/nowhere is not there; --baselines names another folder");
     program_run(program, "check --baselines .");
     assert_int_equal(program->status, 5);
-    assert_says(program->errors, "there is no baseline in .");
+    assert_says(program->errors, "/. has no file that ends in .json");
 
     // of another case
     assert_int_equal(system("true"), 0);
@@ -640,6 +667,7 @@ int main(void)
         CHECK_TEST(a_name_of_dashes_and_a_digit_ends),
         CHECK_TEST(more_jobs_than_processors_are_allowed),
         CHECK_TEST(a_baseline_that_was_stopped_goes_on_where_it_stood),
+        CHECK_TEST(the_programs_own_baselines_are_for_those_who_ask),
         CHECK_TEST(what_cannot_be_checked_never_passes),
         CHECK_TEST(a_run_that_fails_is_an_error_and_blesses_nothing),
         CHECK_TEST(junit_is_valid_and_has_the_numbers_of_a_failure),

@@ -65,10 +65,16 @@ static void show_path(const char *whole, char target[FILE_PATH_SIZE])
     }
 }
 
-static void read_baseline(CheckItem *item, bool is_blessing)
+static void read_baseline(CheckItem *item, const CheckOptions *options)
 {
-    Err *err = is_blessing ? &item->baseline_err : &item->err;
+    Err *err = options->is_blessing ? &item->baseline_err : &item->err;
     item->is_there = access(item->baseline_path, F_OK) == 0;
+    if (!item->is_there && item->is_shipped && !options->is_shipped) {
+        err_set(err, ERR_FILE,
+                "there is no baseline %s of your own for %s, which came with the program; "
+                "--shipped compares it with the program's",
+                item->baseline_path, item->path);
+    }
     baseline_json_read(item->baseline_path, &item->baseline, err);
 }
 
@@ -191,7 +197,7 @@ static void add_named(CheckItem *item, const CheckOptions *options)
         return;
     }
     item->has_baseline = true;
-    read_baseline(item, options->is_blessing);
+    read_baseline(item, options);
     settle_item(item, options);
     const char *other = item->baseline.case_path;
     if (item->baseline.count > 0 && strcmp(other, item->relative) != 0) {
@@ -235,13 +241,23 @@ static int is_baseline(const struct dirent *entry)
     return length > 5 && strcmp(entry->d_name + length - 5, ".json") == 0;
 }
 
+// Says where baselines were looked for. `what` says what was found there.
+static bool refuse_folder(const CheckOptions *options, const char *what, Err *err)
+{
+    char here[FILE_PATH_SIZE] = "";
+    const bool is_relative = options->folder[0] != '/' && getcwd(here, sizeof here) != NULL;
+    return err_set(err, ERR_FILE,
+                   "no baselines to compare with: %s%s%s %s; --baselines names another folder, "
+                   "--bless CASE makes a baseline, --shipped checks the program's own cases",
+                   is_relative ? here : "", is_relative ? "/" : "", options->folder, what);
+}
+
 static bool find_all(const CheckOptions *options, CheckItem **items, size_t *count, Err *err)
 {
     struct dirent **entries;
     const int found = scandir(options->folder, &entries, is_baseline, alphasort);
     if (found < 0) {
-        return err_set(err, ERR_FILE, "there is no folder of baselines %s: %s", options->folder,
-                       strerror(errno));
+        return refuse_folder(options, errno == ENOENT ? "is not there" : strerror(errno), err);
     }
     *items = calloc((size_t)found + 1, sizeof **items);
     assert(*items != NULL);
@@ -251,10 +267,7 @@ static bool find_all(const CheckOptions *options, CheckItem **items, size_t *cou
         free(entries[i]);
     }
     free(entries);
-    return found > 0 ||
-           err_set(err, ERR_FILE,
-                   "there is no baseline in %s; jointplay check --bless CASE makes one",
-                   options->folder);
+    return found > 0 || refuse_folder(options, "has no file that ends in .json", err);
 }
 
 static int is_case(const struct dirent *entry)
@@ -263,23 +276,29 @@ static int is_case(const struct dirent *entry)
     return length > 5 && strcmp(entry->d_name + length - 5, ".yaml") == 0;
 }
 
-// Adds the path of one case, in the item that will be its own.
-static void add_path(const char *path, CheckItem **items, size_t *count)
+// What is meant by the path of a case: with --shipped the program's own, whatever stands here.
+static bool find_case(const CheckOptions *options, const char *given, char path[FILE_PATH_SIZE])
+{
+    return options->is_shipped ? shipped_find_own(given, path, FILE_PATH_SIZE)
+                               : shipped_find(given, path, FILE_PATH_SIZE);
+}
+
+// Adds one case, in the item that will be its own.
+static void add_path(const char *path, bool is_shipped, CheckItem **items, size_t *count)
 {
     *items = realloc(*items, (*count + 1) * sizeof **items);
     assert(*items != NULL);
     CheckItem *item = &(*items)[(*count)++];
-    *item = (CheckItem){.has_baseline = false};
-    shipped_find(path, item->path, sizeof item->path);
+    *item = (CheckItem){.is_shipped = is_shipped};
+    text_copy(item->path, sizeof item->path, path);
 }
 
 // Adds the cases of a folder; false where it is none.
-static bool add_folder(const char *given, CheckItem **items, size_t *count, Err *err)
+static bool add_folder(const char *path, bool is_shipped, CheckItem **items, size_t *count,
+                       Err *err)
 {
     struct dirent **entries;
     struct stat status;
-    char path[FILE_PATH_SIZE];
-    shipped_find(given, path, sizeof path);
     if (stat(path, &status) != 0 || !S_ISDIR(status.st_mode)) {
         return false;
     }
@@ -291,7 +310,7 @@ static bool add_folder(const char *given, CheckItem **items, size_t *count, Err 
     for (int i = 0; i < found; i++) {
         char joined[2 * FILE_PATH_SIZE];
         snprintf(joined, sizeof joined, "%.*s/%s", (int)length, path, entries[i]->d_name);
-        add_path(joined, items, count);
+        add_path(joined, is_shipped, items, count);
         free(entries[i]);
     }
     if (found >= 0) {
@@ -306,8 +325,10 @@ static bool add_folder(const char *given, CheckItem **items, size_t *count, Err 
 static bool name_all(const CheckOptions *options, CheckItem **items, size_t *count, Err *err)
 {
     for (size_t i = 0; i < options->path_count; i++) {
-        if (!add_folder(options->paths[i], items, count, err)) {
-            add_path(options->paths[i], items, count);
+        char path[FILE_PATH_SIZE];
+        const bool is_shipped = find_case(options, options->paths[i], path);
+        if (!add_folder(path, is_shipped, items, count, err)) {
+            add_path(path, is_shipped, items, count);
         }
         if (err->kind != ERR_NONE) {
             return false;
@@ -379,6 +400,8 @@ enum { SHAKE_MAX = 1000000 };
 static const OptionRow OPTIONS[] = {
     {"baselines", "DIR", "Where the baselines are (default: results/baseline)", 1, OPTION_TEXT,
      AT(folder)},
+    {"shipped", NULL, "Check the cases that came with the program against its own baselines", 1,
+     OPTION_FLAG, AT(is_shipped)},
     {"bless", NULL, "Write new baselines from what is measured now, and list what moved", 1,
      OPTION_FLAG, AT(is_blessing)},
     {"quick", NULL, "One run per case: no ensembles, no orders", 1, OPTION_FLAG, AT(is_quick)},
@@ -400,23 +423,35 @@ static const OptionRow OPTIONS[] = {
     COMMON_QUIET(3),
 };
 
-// Without baselines here, those that came with the program are meant where all cases are to be
-// checked, or one of its own.
-static void choose_folder(CheckOptions *options)
+// Which folder the baselines are in: nothing but a word of the user leads to the program's own, so
+// that a check in the wrong folder does not pass for what was meant.
+static bool choose_folder(CheckOptions *options, Err *err)
 {
-    char path[FILE_PATH_SIZE];
-    const bool is_meant =
-        options->folder == DEFAULT_FOLDER && !options->is_blessing &&
-        (options->path_count == 0 || shipped_find(options->paths[0], path, sizeof path));
-    if (is_meant && shipped_find(DEFAULT_FOLDER, options->shipped, sizeof options->shipped)) {
-        options->folder = options->shipped;
+    if (!options->is_shipped) {
+        options->folder = options->folder != NULL ? options->folder : DEFAULT_FOLDER;
+        return true;
     }
+    if (options->is_blessing || options->is_expect_only || options->folder != NULL) {
+        return err_set(err, ERR_USAGE,
+                       "--shipped compares with the program's own baselines: it does not go with "
+                       "%s",
+                       options->is_blessing      ? "--bless"
+                       : options->is_expect_only ? "--expect-only"
+                                                 : "--baselines");
+    }
+    options->folder = options->shipped;
+    return shipped_find_own(DEFAULT_FOLDER, options->shipped, sizeof options->shipped) ||
+           err_set(err, ERR_FILE,
+                   "the program's own baselines are not there: it was copied without its "
+                   "share/jointplay");
 }
 
 static bool check_together(void *target, Err *err)
 {
     CheckOptions *options = target;
-    choose_folder(options);
+    if (!choose_folder(options, err)) {
+        return false;
+    }
     if (options->is_blessing && (options->is_quick || options->shake > 0)) {
         return err_set(err, ERR_USAGE,
                        "--bless measures in full and unshaken: it goes with "
@@ -461,7 +496,6 @@ const Arguments CHECK_ARGUMENTS = {
 
 void check_options_init(CheckOptions *options)
 {
-    *options = (CheckOptions){.folder = DEFAULT_FOLDER,
-                              .common.jobs = common_options_count_jobs(),
+    *options = (CheckOptions){.common.jobs = common_options_count_jobs(),
                               .common.time_limit_s = DEFAULT_TIME_LIMIT};
 }

@@ -17,9 +17,9 @@ typedef struct CheckOptions {
     CommonOptions common;              // its time limit that of one start; no path or folder
     const char *paths[CHECK_PATH_MAX]; // of the cases; none: all that have a baseline
     size_t path_count;
-    const char *folder; // of the baselines
-    char
-        shipped[FILE_PATH_SIZE]; // folder of those that came with the program, where they are meant
+    const char *folder;           // of the baselines; NULL: the usual one
+    char shipped[FILE_PATH_SIZE]; // folder of those that came with the program, with is_shipped
+    bool is_shipped;              // the program's own cases against its own baselines
     bool is_blessing;
     bool is_quick;
     bool is_expect_only;
@@ -37,6 +37,7 @@ typedef struct CheckItem {
     char path[FILE_PATH_SIZE];          // of the case, as people would write it here
     char baseline_path[FILE_PATH_SIZE]; //
     char relative[FILE_PATH_SIZE];      // of the case, seen from the baseline's folder
+    bool is_shipped;                    // the case came with the program
     Scenario *scenario;                 // owned; NULL where the case could not be read
     Baseline baseline;                  // empty where it could not be read
     Baseline now;                       // head of what this program makes of the case
