@@ -172,6 +172,34 @@ static void rows_are_exported_and_drawn(void **state)
     assert_says(program->output, "4 of 4 runs are over");
 }
 
+// Every command finds the store beside the study file from another folder, and says where it is.
+static void a_store_beside_its_study_is_found_from_elsewhere(void **state)
+{
+    Program *program = *state;
+    char words[2 * PROGRAM_PATH_SIZE];
+    run_well(program, "study s.yaml");
+    snprintf(words, sizeof words, "mkdir '%s/b'", program->folder);
+    assert_int_equal(system(words), 0);
+    strcat(program->folder, "/b");
+    run_well(program, "study status ../s.yaml");
+    assert_says(program->output, "4 of 4 runs are over");
+    assert_says(program->output, "Store ../s.sqlite");
+    run_well(program, "study ../s.yaml");
+    assert_says(program->output, "Nothing was left to run; the runs are kept in ../s.sqlite.");
+    run_well(program, "study export ../s.yaml --csv a.csv");
+    run_well(program, "study plot ../s.yaml --x run_step_s --y error_max a.svg");
+    // what is not there was looked for in both folders
+    snprintf(words, sizeof words, "cp '%s/../s.yaml' '%s/../t.yaml'", program->folder,
+             program->folder);
+    assert_int_equal(system(words), 0);
+    run_well(program, "study status ../t.yaml");
+    assert_says(program->output, "There is no t.sqlite in the working folder or in ../.");
+    program_run(program, "study export ../t.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "there is no t.sqlite in the working folder or in ../");
+    *strrchr(program->folder, '/') = '\0';
+}
+
 static void a_study_of_which_every_run_fails_ends_with_status_4(void **state)
 {
     Program *program = *state;
@@ -310,6 +338,7 @@ int main(void)
         STUDY_TEST(what_came_of_it_is_printed),
         STUDY_TEST(a_picture_has_the_units_and_scales_of_its_study),
         STUDY_TEST(rows_are_exported_and_drawn),
+        STUDY_TEST(a_store_beside_its_study_is_found_from_elsewhere),
         STUDY_TEST(a_study_of_which_every_run_fails_ends_with_status_4),
         STUDY_TEST(a_study_that_follows_a_key_has_the_same_rows_in_parts),
         STUDY_TEST(shards_of_several_divisions_are_not_guessed_at),

@@ -209,7 +209,7 @@ static void shards_merge_to_what_one_store_holds(void **state)
     run_well(program, "study s.yaml --shard 3/3 --jobs 1");
     program_run(program, "study merge s.yaml");
     assert_int_equal(program->status, 5);
-    assert_says(program->errors, "there is no s.2-of-3.sqlite in the working folder");
+    assert_says(program->errors, "there is no s.2-of-3.sqlite beside the other parts");
     assert_false(is_there(program, "s.sqlite"));
     run_well(program, "study s.yaml --shard 2/3");
     run_well(program, "study merge s.yaml");

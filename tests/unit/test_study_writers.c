@@ -181,7 +181,7 @@ static void status_counts_outcomes_and_reasons(void **state)
     make_store(110);
     Store *store = view();
     const StudyPart parts[] = {{"a.1-of-2.sqlite", store, 120}, {"a.2-of-2.sqlite", NULL, 80}};
-    assert_true(study_text_status(parts, 2, &STYLE_PLAIN, &text, &err));
+    assert_true(study_text_status(parts, 2, "here", &STYLE_PLAIN, &text, &err));
     assert_has(text, "110 of 200 runs are over (55.0 %)");
     assert_has(text, "a.1-of-2.sqlite   120   110   91.7       3");
     assert_has(text, "not begun");

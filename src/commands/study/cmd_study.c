@@ -43,15 +43,95 @@ static int stem_length(const char *study)
     return (int)(dot == NULL || dot == base ? strlen(base) : (size_t)(dot - base));
 }
 
-bool study_path_store(const char *study, Shard shard, char path[FILE_PATH_SIZE], Err *err)
+bool study_path_name(const char *study, Shard shard, char name[FILE_PATH_SIZE], Err *err)
 {
     const int length =
         shard.count == 1
-            ? snprintf(path, FILE_PATH_SIZE, "%.*s.sqlite", stem_length(study), base_name(study))
-            : snprintf(path, FILE_PATH_SIZE, "%.*s.%" PRIu64 "-of-%" PRIu64 ".sqlite",
+            ? snprintf(name, FILE_PATH_SIZE, "%.*s.sqlite", stem_length(study), base_name(study))
+            : snprintf(name, FILE_PATH_SIZE, "%.*s.%" PRIu64 "-of-%" PRIu64 ".sqlite",
                        stem_length(study), base_name(study), shard.index + 1, shard.count);
     return length < FILE_PATH_SIZE ||
            err_set(err, ERR_FILE, "the path of the store of %s is too long", study);
+}
+
+// The N of <stem>.I-of-N.sqlite, 1 of <stem>.sqlite; 0 where the name is another.
+static uint64_t study_path_shards_of(const char *study, const char *name)
+{
+    const size_t stem = (size_t)stem_length(study);
+    uint64_t index = 1;
+    uint64_t count = 1;
+    char made[FILE_PATH_SIZE];
+    Err err = {0};
+    if (strncmp(name, base_name(study), stem) != 0 ||
+        (strcmp(name + stem, ".sqlite") != 0 &&
+         sscanf(name + stem, ".%" SCNu64 "-of-%" SCNu64 ".sqlite", &index, &count) != 2)) {
+        return 0;
+    }
+    // it is the name only if it would be made just so
+    const bool is_name = index >= 1 && index <= count && count <= DESIGN_SHARD_MAX &&
+                         study_path_name(study, (Shard){index - 1, count}, made, &err) &&
+                         strcmp(made, name) == 0;
+    return is_name ? count : 0;
+}
+
+// The folder of a study file, with a slash at its end; empty where that is the working folder.
+static void study_path_own_folder(const char *study, char folder[FILE_PATH_SIZE])
+{
+    text_copy(folder, FILE_PATH_SIZE, study);
+    folder[FILE_PATH_SIZE - 1] = '\0';
+    char *slash = strrchr(folder, '/');
+    *(slash == NULL ? folder : slash + 1) = '\0';
+}
+
+static bool has_stores(const char *study, const char *path)
+{
+    DIR *folder = opendir(path[0] == '\0' ? "." : path);
+    bool is_any = false;
+    for (const struct dirent *entry;
+         folder != NULL && !is_any && (entry = readdir(folder)) != NULL;) {
+        is_any = study_path_shards_of(study, entry->d_name) > 0;
+    }
+    if (folder != NULL) {
+        closedir(folder);
+    }
+    return is_any;
+}
+
+// Where the stores of a study are: in the working folder, unless there is none and some are beside
+// the study file. Every command asks here, so that the one finds what the other wrote. As above.
+static void study_path_folder(const char *study, char folder[FILE_PATH_SIZE])
+{
+    study_path_own_folder(study, folder);
+    if (folder[0] != '\0' && (has_stores(study, "") || !has_stores(study, folder))) {
+        folder[0] = '\0';
+    }
+}
+
+bool study_path_store(const char *study, Shard shard, char path[FILE_PATH_SIZE], Err *err)
+{
+    char folder[FILE_PATH_SIZE];
+    char name[FILE_PATH_SIZE];
+    study_path_folder(study, folder);
+    if (!study_path_name(study, shard, name, err)) {
+        return false;
+    }
+    const size_t length = strlen(folder);
+    text_copy(path, FILE_PATH_SIZE, folder);
+    text_copy(path + length, FILE_PATH_SIZE - length, name);
+    return length + strlen(name) < FILE_PATH_SIZE ||
+           err_set(err, ERR_FILE, "the path of the store of %s is too long", study);
+}
+
+// Where a store is looked for: "in the working folder", and in that of the study file.
+static void study_path_append_places(const char *study, Text *text)
+{
+    char folder[FILE_PATH_SIZE];
+    study_path_own_folder(study, folder);
+    text_append(text, "in the working folder");
+    if (folder[0] != '\0') {
+        text_append(text, " or in ");
+        text_append_shown(text, folder);
+    }
 }
 
 // Whether the word names a study file, by its ending, and not a store.
@@ -61,48 +141,44 @@ static bool study_path_is_study(const char *word)
     return dot != NULL && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
 }
 
+// There is no store of a study yet.
+static bool refuse_place(const char *study, const char *path, Err *err)
+{
+    Text places;
+    text_init(&places);
+    study_path_append_places(study, &places);
+    err_set(err, ERR_FILE, "there is no %s %s; 'jointplay study' with the study file makes it",
+            path, places.data);
+    text_finish(&places);
+    return false;
+}
+
 // The store that a word of the command line means: the word, or the usual one of a study file.
 static bool study_path_find(const char *word, char path[FILE_PATH_SIZE], Err *err)
 {
     if (study_path_is_study(word)) {
-        return study_path_store(word, (Shard){0, 1}, path, err);
+        return study_path_store(word, (Shard){0, 1}, path, err) &&
+               (access(path, F_OK) == 0 || refuse_place(word, path, err));
     }
     return snprintf(path, FILE_PATH_SIZE, "%s", word) < FILE_PATH_SIZE ||
            err_set(err, ERR_FILE, "the path of the store is too long");
 }
 
-// The N of <stem>.I-of-N.sqlite; 0 where the name is another.
-static uint64_t read_shards(const char *study, const char *name)
-{
-    const size_t stem = (size_t)stem_length(study);
-    uint64_t index;
-    uint64_t count;
-    char made[FILE_PATH_SIZE];
-    Err err = {0};
-    if (strncmp(name, base_name(study), stem) != 0 ||
-        sscanf(name + stem, ".%" SCNu64 "-of-%" SCNu64 ".sqlite", &index, &count) != 2) {
-        return 0;
-    }
-    // it is the name only if it would be made just so
-    const bool is_name = index >= 1 && index <= count && count > 1 && count <= DESIGN_SHARD_MAX &&
-                         study_path_store(study, (Shard){index - 1, count}, made, &err) &&
-                         strcmp(made, name) == 0;
-    return is_name ? count : 0;
-}
-
-// The parts of a study that stand in the working folder under their usual names, how many parts it
-// was divided into; 0 where there is none. Fails with ERR_FILE where there are parts of several
-// such divisions.
+// How many parts a study was divided into, by the stores that are where its own are; 0 where there
+// are no parts. Fails with ERR_FILE where there are parts of several such divisions.
 static bool study_path_count_shards(const char *study, uint64_t *shards, Err *err)
 {
+    char path[FILE_PATH_SIZE];
+    study_path_folder(study, path);
     *shards = 0;
-    DIR *folder = opendir(".");
+    DIR *folder = opendir(path[0] == '\0' ? "." : path);
     if (folder == NULL) {
         return true;
     }
     bool are_alike = true;
     for (const struct dirent *entry; are_alike && (entry = readdir(folder)) != NULL;) {
-        const uint64_t count = read_shards(study, entry->d_name);
+        const uint64_t found = study_path_shards_of(study, entry->d_name);
+        const uint64_t count = found > 1 ? found : 0;
         are_alike =
             count == 0 || *shards == 0 || count == *shards ||
             err_set(err, ERR_FILE,
@@ -122,6 +198,7 @@ typedef struct Parts {
     size_t count;
     size_t room;
     StudyPart *parts; // owned, as their stores are and their paths
+    Text places;      // where the one that is not there was looked for
 } Parts;
 
 static const OptionRow STUDY_STATUS_OPTIONS[] = {
@@ -167,6 +244,7 @@ static bool finish_parts(Parts *parts, Err *err)
         is_closed = store_close(parts->parts[i].store, err) && is_closed;
         free((void *)parts->parts[i].path);
     }
+    text_finish(&parts->places);
     free(parts->parts);
     return is_closed;
 }
@@ -183,6 +261,7 @@ static bool add_study(Parts *parts, const char *study, Err *err)
     if (is_added && (shards == 0 || access(path, F_OK) == 0)) {
         is_added = cmd_study_add_part(parts, path, design_run_count(spec), err);
         shards = 0;
+        study_path_append_places(study, &parts->places);
     }
     for (uint64_t i = 0; is_added && i < shards; i++) {
         const Shard shard = {i, shards};
@@ -198,7 +277,8 @@ static bool print_parts(const Parts *parts, bool is_wide, Err *err)
     Text text;
     text_init(&text);
     const Style style = output_style(stdout, is_wide);
-    const bool is_written = study_text_status(parts->parts, parts->count, &style, &text, err);
+    const bool is_written =
+        study_text_status(parts->parts, parts->count, parts->places.data, &style, &text, err);
     if (is_written) {
         output_text(&text, &style);
     }
@@ -215,6 +295,7 @@ static bool tell(void *target, Err *err)
     bool is_reported = true;
     for (size_t i = 0; i < words->count && is_reported; i++) {
         Parts parts = {0};
+        text_init(&parts.places);
         const char *word = words->words[i];
         is_reported =
             (study_path_is_study(word) ? add_study(&parts, word, err)
@@ -229,7 +310,8 @@ static const Arguments STUDY_STATUS_ARGUMENTS = {
     .program = "jointplay study status",
     .usage = "FILE-or-STORE...",
     .doc = "Shows how far a study has come. For a study file, the stores of the usual names in "
-           "the working folder are read. The study may be running meanwhile.",
+           "the working folder or, without such, beside it are read. The study may be running "
+           "meanwhile.",
     .argument = {.type = OPTION_READ, .read = study_words_read},
     OPTION_ROWS(STUDY_STATUS_OPTIONS),
 };
@@ -298,8 +380,8 @@ static const Arguments STUDY_EXPORT_ARGUMENTS = {
     .program = "jointplay study export",
     .usage = "FILE-or-STORE",
     .doc = "Writes the rows of a store, one per run, in the order of their numbers."
-           "\vA study file stands for its usual store in the working folder; - for standard "
-           "output.",
+           "\vA study file stands for its usual store in the working folder or beside it; - for "
+           "standard output.",
     .argument = {.type = OPTION_TEXT, STUDY_EXPORT_AT(store), .what = "export takes one store"},
     OPTION_ROWS(STUDY_EXPORT_OPTIONS),
     .check = study_export_check,
@@ -353,7 +435,7 @@ static char *find_shard(const char *study, Shard shard, Err *err)
     if (!study_path_store(study, shard, path, err) ||
         (access(path, F_OK) != 0 &&
          !err_set(err, ERR_FILE,
-                  "there is no %s in the working folder; make it with --shard %" PRIu64 "/%" PRIu64
+                  "there is no %s beside the other parts; make it with --shard %" PRIu64 "/%" PRIu64
                   ", or name the stores to be merged",
                   path, shard.index + 1, shard.count))) {
         return NULL;
@@ -395,10 +477,14 @@ static bool merge_study(const char *study, bool is_quiet, Err *err)
         char shard[FILE_PATH_SIZE];
         if (study_path_store(study, (Shard){0, 2}, shard, err)) {
             char *path = shell_copy_path(study);
+            Text places;
+            text_init(&places);
+            study_path_append_places(study, &places);
             err_set(err, ERR_FILE,
-                    "there are no parts of %s in the working folder, such as %s; 'jointplay "
-                    "study %s --shard 1/2' makes one",
-                    study, shard, path);
+                    "there are no parts of %s %s, such as %s; 'jointplay study %s --shard 1/2' "
+                    "makes one",
+                    study, places.data, shard, path);
+            text_finish(&places);
             free(path);
         }
         return false;
@@ -431,7 +517,7 @@ static const Arguments STUDY_MERGE_ARGUMENTS = {
     .program = "jointplay study merge",
     .usage = "FILE\nOUT.sqlite IN.sqlite...",
     .doc = "Merges the shards of a study into one store: those of a study file by their usual "
-           "names in the working folder, or those that are named."
+           "names in the working folder or beside it, or those that are named."
            "\vRuns that are there already are left alone. Stores of different studies or "
            "programs are refused, and nothing is written then.",
     .argument = {.type = OPTION_READ, .read = study_words_read},
@@ -592,7 +678,8 @@ static const OptionRow CMD_STUDY_OPTIONS[] = {
      CMD_STUDY_AT(common.jobs), .low = 1, .high = SWEEP_JOB_MAX},
     {"shard", "I/N", "Only the I-th of N parts, into a store of its own", 1, OPTION_READ,
      .read = read_shard},
-    {"store", "FILE", "Keep the runs there (default: <study>.sqlite in the working folder)", 1,
+    {"store", "FILE",
+     "Keep the runs there (default: <study>.sqlite beside FILE if it is there, else here)", 1,
      OPTION_READ, .read = read_store},
     {"fresh", NULL, "Discard the contents of the store", 1, OPTION_FLAG, CMD_STUDY_AT(is_fresh)},
     COMMON_DRIVERS(1),

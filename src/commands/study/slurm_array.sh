@@ -13,6 +13,7 @@ program=@program@
 folder=@folder@
 shards=@shards@
 study=@study@
+stem=@stem@
 requeues=@requeues@
 drivers=(@drivers@)
 
@@ -31,7 +32,7 @@ trap tell TERM
 cd "$folder" || exit 5
 say "shard $SLURM_ARRAY_TASK_ID of $shards on ${SLURMD_NODENAME:-?}, try $((restarts + 1))"
 "$program" study "$study" "${drivers[@]}" --shard "$SLURM_ARRAY_TASK_ID/$shards" \
-    --jobs "$SLURM_CPUS_PER_TASK" &
+    --store "./$stem.$SLURM_ARRAY_TASK_ID-of-$shards.sqlite" --jobs "$SLURM_CPUS_PER_TASK" &
 child=$!
 [ -z "$is_told" ] || tell
 # a signal ends the wait, but not yet the study

@@ -47,8 +47,12 @@ typedef struct StudyWords {
 
 // Where the stores of a study are, by their usual names.
 
-// The usual store of a study file or of a part of it, in the working folder: <stem>.sqlite, and
+// The usual name of the store of a study file or of a part of it: <stem>.sqlite, and
 // <stem>.2-of-3.sqlite for the second of three. Fails with ERR_FILE where the path is too long.
+bool study_path_name(const char *study, Shard shard, char name[FILE_PATH_SIZE], Err *err);
+
+// That store in its folder: the working folder, or that of the study file where it alone has stores
+// of the study. Fails as above.
 bool study_path_store(const char *study, Shard shard, char path[FILE_PATH_SIZE], Err *err);
 
 // What `jointplay study status` prints for people.
@@ -61,10 +65,10 @@ typedef struct StudyPart {
 } StudyPart;
 
 // How far the parts of one study have come: runs that are over, what became of them, the most
-// frequent reasons with an example of each, the time they took and what is left. Fails with
-// ERR_FILE.
-bool study_text_status(const StudyPart *parts, size_t part_count, const Style *style, Text *text,
-                       Err *err);
+// frequent reasons with an example of each, the time they took and what is left. The places say
+// where a store that is not there was looked for: "in the working folder". Fails with ERR_FILE.
+bool study_text_status(const StudyPart *parts, size_t part_count, const char *places,
+                       const Style *style, Text *text, Err *err);
 
 // The distribution of each result over the runs that went well: least, 5 %, median, 95 %, most.
 // Fails with ERR_FILE.

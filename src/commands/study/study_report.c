@@ -228,8 +228,16 @@ static void write_times(const Progress *progress, Text *text)
     text_append(text, "\n");
 }
 
-bool study_text_status(const StudyPart *parts, size_t part_count, const Style *style, Text *text,
-                       Err *err)
+// Which store was counted, or where the one that is not there was looked for.
+static void append_place(const StudyPart *part, const char *places, Text *text)
+{
+    text_append(text, part->store == NULL ? "There is no " : "Store ");
+    text_append_shown(text, part->path);
+    text_append(text, part->store == NULL ? " %s.\n" : "\n", places);
+}
+
+bool study_text_status(const StudyPart *parts, size_t part_count, const char *places,
+                       const Style *style, Text *text, Err *err)
 {
     static const SectionHead HEADS[] = {{"store", "", TABLE_LEFT},   {"runs", "", TABLE_RIGHT},
                                         {"over", "", TABLE_RIGHT},   {"share", "%", TABLE_RIGHT},
@@ -253,7 +261,11 @@ bool study_text_status(const StudyPart *parts, size_t part_count, const Style *s
         text_append(text, "%s%" PRIu64 " of %" PRIu64 " runs are over (%.1f %%)%s\n",
                     style->heading, progress.count.rows, progress.wanted,
                     percent(progress.count.rows, progress.wanted), style->end);
-        text_append(text, "%s", part_count > 1 ? stores.data : "");
+        if (part_count == 1) {
+            append_place(&parts[0], places, text);
+        } else {
+            text_append(text, "%s", stores.data);
+        }
         if (progress.count.rows > 0) {
             study_report_write_outcomes(&progress, style, text);
         }

@@ -98,7 +98,7 @@ static bool print_text(const StudyReport *report, Store *store, bool is_wide, Er
     const StudyPart part = {report->store, store, report->state.total};
     Text text;
     text_init(&text);
-    bool is_written = study_text_status(&part, 1, &style, &text, err);
+    bool is_written = study_text_status(&part, 1, "", &style, &text, err);
     if (is_written) {
         append_effort(report, &text);
         is_written = study_text_summary(store, &style, &text, err);

@@ -298,7 +298,7 @@ static void free_drivers(SlurmJob *job)
 // What the names of the study's stores begin with.
 static bool find_stem(const char *study, char stem[FILE_PATH_SIZE], Err *err)
 {
-    if (!study_path_store(study, (Shard){0, 1}, stem, err)) {
+    if (!study_path_name(study, (Shard){0, 1}, stem, err)) {
         return false;
     }
     *strrchr(stem, '.') = '\0';
