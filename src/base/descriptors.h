@@ -1,5 +1,5 @@
-// The descriptors 0, 1 and 2, which are standard input, output and error to every library and child
-// process, whatever file they lead to.
+// The descriptors that the caller opened, and files to be read. Those 0, 1 and 2 are standard
+// input, output and error to every library and child process, whatever file they lead to.
 #pragma once
 
 #include "base/err.h"
@@ -15,3 +15,8 @@ bool descriptors_reserve(Err *err);
 // A stream of its own on a copy of one of the three, to be closed by the caller. NULL, with errno
 // EBADF, where the descriptor cannot be read from or written to.
 FILE *descriptors_stream(int descriptor, const char *mode);
+
+// A stream on a file that is to be read, closed by the caller. NULL, with the reason in words,
+// where it cannot be opened or is no regular file: a pipe that nobody writes to would be waited for
+// for ever. What the caller opened and names by /dev/stdin or /dev/fd/N may be anything.
+FILE *descriptors_open_file(const char *path, const char **reason);

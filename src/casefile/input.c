@@ -59,9 +59,10 @@ bool input_read(const char *what, const char *path, char **text, size_t *size, E
                        "%s: %lld bytes are too large for a %s file\nallowed: at most %d bytes",
                        path, (long long)status.st_size, what, INPUT_SIZE_MAX);
     }
-    FILE *file = fopen(found, "rb");
+    const char *reason;
+    FILE *file = descriptors_open_file(found, &reason);
     if (file == NULL) {
-        return err_set(err, ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+        return err_set(err, ERR_FILE, "%s: cannot be read: %s", path, reason);
     }
     claims_note_read(what, found);
     const bool is_read = read_all(what, path, file, text, size, err);

@@ -6,12 +6,15 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE_SIZE = 256, UNIT_SIZE = 32, ALLOWED_SIZE = 256, PATH_SIZE = 1024 };
+enum { LINE_SIZE = 256, UNIT_SIZE = 32, WRONG_SIZE = 96, ALLOWED_SIZE = 256, PATH_SIZE = 1024 };
 
+// 1: of where a load jumps, how far apart the two points are that a message proposes
+static const double JUMP_SHARE = 1e-3;
 // 1: of a period, what rounding may leave
 static const double PERIOD_ROUNDING = 1e-9;
 
@@ -54,6 +57,8 @@ bool loads_apply(const SchemaRow *row, const Linkage *linkage, const Load *load)
     case offsetof(Load, direction):
     case offsetof(Load, frame):
         return load->kind == LOAD_FORCE;
+    case offsetof(Load, area):
+        return is_force;
     case offsetof(Load, over):
     case offsetof(Load, table.shape):
         return load->table.count > 1;
@@ -62,6 +67,19 @@ bool loads_apply(const SchemaRow *row, const Linkage *linkage, const Load *load)
     default:
         return (row->dimension == DIMENSION_FORCE) == is_force;
     }
+}
+
+// What the values of a load are written as: with an area those of a force are pressures on it.
+static Dimension loads_value_dimension(const SchemaRow *row, const Load *load)
+{
+    return row->dimension == DIMENSION_FORCE && load->area != 0.0 ? DIMENSION_PRESSURE
+                                                                  : row->dimension;
+}
+
+// What such a value is multiplied by.
+static double value_scale(const SchemaRow *row, const Load *load)
+{
+    return loads_value_dimension(row, load) == DIMENSION_PRESSURE ? load->area : 1.0;
 }
 
 // What the points of a load look like, for messages.
@@ -77,33 +95,54 @@ static void describe_points(const Linkage *linkage, const Load *load, const Sche
              units_example(row->dimension));
 }
 
-// One number of a point, within the range of its row where it is a value.
 static bool read_number(const Target *target, const Node *node, Dimension dimension, double *number)
 {
-    const SchemaRow *row = target->entry->row;
     Complaint complaint;
-    if (!target_check_scalar(target, node)) {
-        return false;
-    }
-    if (!quantity_parse(node->text, dimension, number, &complaint)) {
-        return source_error(target->entry->source, node->span, complaint.allowed, target->err, "%s",
-                            complaint.text);
-    }
-    if (dimension == row->dimension && !(fabs(*number) <= row->high)) {
-        char allowed[ALLOWED_SIZE];
-        snprintf(allowed, sizeof allowed, "%g to %g %s", row->low, row->high, units_si(dimension));
-        return source_error(target->entry->source, node->span, allowed, target->err,
-                            "%s is out of range: %.60s", target->path, node->text);
-    }
-    return true;
+    return target_check_scalar(target, node) &&
+           (quantity_parse(node->text, dimension, number, &complaint) ||
+            source_error(target->entry->source, node->span, complaint.allowed, target->err, "%s",
+                         complaint.text));
 }
 
-// Why a point does not go behind those that are there; NULL where it does.
-static const char *misplaced(const LoadTable *table, double at)
+// The value of a point, within the range of its row.
+static bool read_value(const Target *target, const Node *node, const Load *load, double *value)
 {
-    return table->count == LOAD_TABLE_MAX                            ? "is one too many"
-           : table->count > 0 && !(at > table->at[table->count - 1]) ? "is not in order"
-                                                                     : NULL;
+    const SchemaRow *row = target->entry->row;
+    if (!read_number(target, node, loads_value_dimension(row, load), value)) {
+        return false;
+    }
+    *value *= value_scale(row, load);
+    char allowed[ALLOWED_SIZE];
+    snprintf(allowed, sizeof allowed, "%g to %g %s", row->low, row->high, units_si(row->dimension));
+    return fabs(*value) <= row->high ||
+           source_error(target->entry->source, node->span, allowed, target->err,
+                        "%s is out of range: %.60s", target->path, node->text);
+}
+
+// Whether a point does not go behind those that are there: why, and what would be allowed.
+static bool is_misplaced(const Linkage *linkage, const Load *load, double at,
+                         char wrong[WRONG_SIZE], char allowed[ALLOWED_SIZE])
+{
+    const LoadTable *table = &load->table;
+    const double before = table->count > 0 ? table->at[table->count - 1] : -INFINITY;
+    if (table->count == LOAD_TABLE_MAX) {
+        snprintf(wrong, WRONG_SIZE, "is one too many");
+        snprintf(allowed, ALLOWED_SIZE, "at most %d points", LOAD_TABLE_MAX);
+        return true;
+    }
+    const Dimension over = loads_dimension(linkage, load);
+    const bool is_angle = over == DIMENSION_ANGLE;
+    const double scale = is_angle ? 180.0 / M_PI : 1.0;
+    const char *unit = is_angle ? "deg" : units_si(over);
+    snprintf(wrong, WRONG_SIZE, "is not in order: %.10g %s after %.10g %s", scale * at, unit,
+             scale * before, unit);
+    snprintf(allowed, ALLOWED_SIZE,
+             at == before
+                 ? "each point behind the one before; a jump is two points close together, "
+                   "such as %.10g %s and %.10g %s, or interpolation: steps"
+                 : "each point behind the one before",
+             scale * at, unit, scale * (at + JUMP_SHARE * (at != 0.0 ? fabs(at) : 1.0)), unit);
+    return !(at > before);
 }
 
 static void add_point(LoadTable *table, double at, double value)
@@ -126,13 +165,11 @@ static bool read_points(const Target *target, const Linkage *linkage, Load *load
                                 "a point of %s is two numbers", target->path);
         }
         if (!read_number(target, pair[0], loads_dimension(linkage, load), &numbers[0]) ||
-            !read_number(target, pair[1], row->dimension, &numbers[1])) {
+            !read_value(target, pair[1], load, &numbers[1])) {
             return false;
         }
-        const char *wrong = misplaced(table, numbers[0]);
-        if (wrong != NULL) {
-            snprintf(allowed, sizeof allowed, "at most %d points, each behind the one before",
-                     LOAD_TABLE_MAX);
+        char wrong[WRONG_SIZE];
+        if (is_misplaced(linkage, load, numbers[0], wrong, allowed)) {
             return source_error(target->entry->source, pair[0]->span, allowed, target->err,
                                 "this point of %s %s", target->path, wrong);
         }
@@ -168,18 +205,84 @@ static bool read_unit(const char *head, char unit[UNIT_SIZE])
     return true;
 }
 
-static bool read_head(const Target *target, char *line, Csv *csv)
+// A mistake on a line of the file; what would be allowed stands in lines of its own.
+static bool refuse_line(const Target *target, const Csv *csv, const char *allowed,
+                        const char *format, ...) __attribute__((format(printf, 4, 5)));
+static bool refuse_line(const Target *target, const Csv *csv, const char *allowed,
+                        const char *format, ...)
 {
-    char *comma = strpbrk(line, ",;");
-    bool is_head = comma != NULL;
-    if (is_head) {
-        *comma = '\0';
-        is_head = read_unit(line, csv->units[0]) && read_unit(comma + 1, csv->units[1]);
+    char words[2 * LINE_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(words, sizeof words, format, arguments);
+    va_end(arguments);
+    return allowed[0] == '\0'
+               ? err_set(target->err, ERR_CASE, "%s:%zu: %s", csv->path, csv->line, words)
+               : err_set(target->err, ERR_CASE, "%s:%zu: %s\nallowed: %s", csv->path, csv->line,
+                         words, allowed);
+}
+
+static char *skip_blanks(char *text)
+{
+    return text + strspn(text, " \t\r");
+}
+
+// Takes a cell off the line, in quotes or without: its text in place, and what stands behind the
+// comma; NULL where there is none. False where something stands behind the quote.
+static bool take_cell(char *line, char **cell, char **rest)
+{
+    char *end;
+    *cell = skip_blanks(line);
+    if (**cell != '"') {
+        end = *cell + strcspn(*cell, ",;");
+    } else {
+        char *target = ++*cell;
+        // a quote within is written twice
+        for (end = target; *end != '\0' && (*end != '"' || end[1] == '"'); end++) {
+            end += *end == '"' ? 1 : 0;
+            *target++ = *end;
+        }
+        const bool is_closed = *end == '"';
+        end = is_closed ? skip_blanks(end + 1) : end;
+        *target = '\0';
+        if (!is_closed || strchr(",;", *end) == NULL) {
+            return false;
+        }
     }
-    return is_head || err_set(target->err, ERR_CASE,
-                              "%s:%zu: expected the heads of two columns with their units\n"
-                              "allowed: crank angle [deg], force [N]",
-                              csv->path, csv->line);
+    *rest = *end == '\0' ? NULL : end + 1;
+    *end = '\0';
+    return true;
+}
+
+// The two cells of a line.
+static bool take_cells(char *line, char *cells[2])
+{
+    char *rest = NULL;
+    char *nothing = NULL;
+    // a third cell is left in the second, where it is no number
+    return take_cell(line, &cells[0], &rest) && rest != NULL &&
+           (*skip_blanks(rest) != '"' ? (cells[1] = rest) != NULL
+                                      : take_cell(rest, &cells[1], &nothing) && nothing == NULL);
+}
+
+static bool read_head(const Target *target, char *line, const Load *load, Csv *csv)
+{
+    char *cells[2];
+    if (!take_cells(line, cells) || !read_unit(cells[0], csv->units[0]) ||
+        !read_unit(cells[1], csv->units[1])) {
+        return refuse_line(target, csv, "crank angle [deg], force [kN]",
+                           "expected the heads of two columns with their units");
+    }
+    char name[UNITS_NAME_SIZE];
+    units_normalise(csv->units[1], name);
+    const Dimension wanted = loads_value_dimension(target->entry->row, load);
+    const Unit *unit = units_find(wanted, name);
+    if (wanted == DIMENSION_FORCE && unit != NULL && unit->dimension == DIMENSION_PRESSURE) {
+        return refuse_line(target, csv, "area: 12.6 cm^2 beside force, or a column of a force",
+                           "[%s] is a pressure, and the load has no area that it acts on",
+                           csv->units[1]);
+    }
+    return true;
 }
 
 // One number of a line, in the unit of its column.
@@ -196,64 +299,86 @@ static bool read_cell(const Target *target, const Csv *csv, const char *cell, si
         length--;
     }
     snprintf(text, sizeof text, "%.*s %s", length, cell, csv->units[column]);
-    if (quantity_parse(text, dimension, number, &complaint)) {
-        return true;
-    }
-    const char *lead = complaint.allowed[0] != '\0' ? "\nallowed: " : "";
-    return err_set(target->err, ERR_CASE, "%s:%zu: %s%s%s", csv->path, csv->line, complaint.text,
-                   lead, complaint.allowed);
+    return quantity_parse(text, dimension, number, &complaint) ||
+           refuse_line(target, csv, complaint.allowed, "%s", complaint.text);
 }
 
 static bool read_line(const Target *target, const Linkage *linkage, char *line, Csv *csv,
                       Load *load)
 {
     const SchemaRow *row = target->entry->row;
+    char *cells[2];
     double numbers[2];
     if (csv->units[0][0] == '\0') {
-        return read_head(target, line, csv);
+        return read_head(target, line, load, csv);
     }
-    char *comma = strpbrk(line, ",;");
-    if (comma == NULL) {
-        return err_set(target->err, ERR_CASE, "%s:%zu: expected two numbers with a comma between",
-                       csv->path, csv->line);
+    if (!take_cells(line, cells)) {
+        return refuse_line(target, csv, "", "expected two numbers with a comma between");
     }
-    *comma = '\0';
-    if (!read_cell(target, csv, line, 0, loads_dimension(linkage, load), &numbers[0]) ||
-        !read_cell(target, csv, comma + 1, 1, row->dimension, &numbers[1])) {
+    if (!read_cell(target, csv, cells[0], 0, loads_dimension(linkage, load), &numbers[0]) ||
+        !read_cell(target, csv, cells[1], 1, loads_value_dimension(row, load), &numbers[1])) {
         return false;
     }
-    const char *wrong = misplaced(&load->table, numbers[0]);
-    if (wrong != NULL || !(fabs(numbers[1]) <= row->high)) {
-        return err_set(target->err, ERR_CASE,
-                       "%s:%zu: this point %s\nallowed: at most %d points, each behind the one "
-                       "before, of %g to %g %s",
-                       csv->path, csv->line, wrong != NULL ? wrong : "is out of range",
-                       LOAD_TABLE_MAX, row->low, row->high, units_si(row->dimension));
+    numbers[1] *= value_scale(row, load);
+    char wrong[WRONG_SIZE];
+    char allowed[ALLOWED_SIZE];
+    if (!(fabs(numbers[1]) <= row->high)) {
+        snprintf(allowed, sizeof allowed, "%g to %g %s", row->low, row->high,
+                 units_si(row->dimension));
+        return refuse_line(target, csv, allowed, "this point is out of range");
+    }
+    if (is_misplaced(linkage, load, numbers[0], wrong, allowed)) {
+        return refuse_line(target, csv, allowed, "this point %s", wrong);
     }
     add_point(&load->table, numbers[0], numbers[1]);
     return true;
 }
 
+// The text of the file, to be freed by the caller; NULL where it cannot be read or is no text.
+static char *read_text(const Target *target, const Csv *csv)
+{
+    char *text = NULL;
+    size_t size = 0;
+    Err own = {ERR_NONE, ""};
+    if (!input_read("load", csv->path, &text, &size, &own)) {
+        // its first line: what would be allowed is said here
+        source_error(target->entry->source, target->entry->node->span,
+                     "a CSV file beside the case, or points", target->err, "%.*s",
+                     (int)strcspn(own.text, "\n"), own.text);
+        return NULL;
+    }
+    const size_t good = source_text_length(text, size);
+    if (good < size) {
+        err_set(target->err, ERR_CASE,
+                "%s: byte %zu (0x%02x) is not text: the file is binary, damaged or not in UTF-8",
+                csv->path, good, (unsigned)(unsigned char)text[good]);
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
 static bool read_file(const Target *target, const Linkage *linkage, Load *load)
 {
     Csv csv = {.line = 0};
-    char *text = NULL;
-    size_t size = 0;
     find_beside(target->entry->source, target->entry->node->text, csv.path);
-    Err own = {ERR_NONE, ""};
-    if (!input_read("load", csv.path, &text, &size, &own)) {
-        return source_error(target->entry->source, target->entry->node->span,
-                            "a CSV file beside the case, or points", target->err, "%s", own.text);
+    char *text = read_text(target, &csv);
+    if (text == NULL) {
+        return false;
     }
     bool is_good = true;
-    for (char *next = text; is_good && next != NULL && *next != '\0';) {
+    // a byte order mark is no part of the text
+    char *next = strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text;
+    while (is_good && next != NULL && *next != '\0') {
         char *end = strchr(next, '\n');
         char line[LINE_SIZE];
-        snprintf(line, sizeof line, "%.*s", (int)(end != NULL ? end - next : (long)strlen(next)),
-                 next);
+        const int length = snprintf(line, sizeof line, "%.*s",
+                                    (int)(end != NULL ? end - next : (long)strlen(next)), next);
         csv.line++;
         const bool is_empty = line[strspn(line, " \t\r")] == '\0' || line[0] == '#';
-        is_good = is_empty || read_line(target, linkage, line, &csv, load);
+        is_good = is_empty ||
+                  (length < LINE_SIZE || refuse_line(target, &csv, "", "the line is too long"));
+        is_good = is_good && (is_empty || read_line(target, linkage, line, &csv, load));
         next = end != NULL ? end + 1 : NULL;
     }
     free(text);
@@ -280,7 +405,7 @@ bool loads_store_value(const Target *target, const Linkage *linkage, Load *load)
         return read_file(target, linkage, load);
     }
     double value;
-    if (!read_number(target, node, target->entry->row->dimension, &value)) {
+    if (!read_value(target, node, load, &value)) {
         return false;
     }
     add_point(&load->table, 0.0, value);

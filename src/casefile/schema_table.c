@@ -256,6 +256,10 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "loads.*.period", .type = SCHEMA_LOAD_PERIOD, LOAD(table.period), .low = 0.0,
      .high = 1e6, .default_words = "a turn over crank-angle, else none",
      .doc = "after which points repeat; such as 720 deg for a four-stroke engine"},
+    {.path = "loads.*.area", LOAD(area), .dimension = DIMENSION_AREA, .low = -1e3, .high = 1e3,
+     .default_words = "none",
+     .doc = "force is then a pressure on this area, such as a CSV column `pressure [bar]`; below 0: "
+            "it acts against the coordinate"},
     {.path = "loads.*.force", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_FORCE,
      .low = -1e9, .high = 1e9,
      .doc = "constant, or up to 400 points, constant beyond the ends; a CSV file beside the case "

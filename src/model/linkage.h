@@ -247,6 +247,7 @@ typedef struct Load {
     LoadFrame frame;
     int joint; // of LOAD_ALONG: along whose coordinate it acts
     LoadOver over;
+    double area;  // m^2, of a force that was given as a pressure on it; 0: it was not
     double shift; // s or rad, by which time or the crank's angle counts more: a run that is
                   // continued has begun earlier
     LoadTable table;

@@ -153,6 +153,7 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
     shake_torque(&linkage->torque, seed);
     for (size_t i = 0; i < linkage->load_count; i++) {
         LoadTable *table = &linkage->loads[i].table;
+        // its area is in the values already
         for (size_t k = 0; k < table->count; k++) {
             shake(&table->values[k], seed);
         }

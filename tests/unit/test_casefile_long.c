@@ -4,9 +4,12 @@
 #include "close.h"
 #include "kept.h"
 #include "model/kinematics.h"
+#include "scratch.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static const char PIN[] =
     "bodies:\n"
@@ -364,6 +367,98 @@ static void the_cases_of_the_literature_load(void **state)
     assert_near(orbit.linkage.bodies[0].start.velocity.y, 0.5, 0.0);
 }
 
+// An arm with a load from a table of so many bytes, which lies in a file of its own.
+static bool load_table(const char *table, size_t size, const char *area, Scenario *scenario,
+                       Err *err)
+{
+    char path[128];
+    char text[1024];
+    scratch_path("load.csv", path, sizeof path);
+    FILE *stream = fopen(path, "w");
+    assert_non_null(stream);
+    assert_int_equal(fwrite(table, 1, size, stream), size);
+    assert_int_equal(fclose(stream), 0);
+    snprintf(text, sizeof text,
+             "bodies:\n  arm: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [50 mm, 0 mm]}\n"
+             "joints:\n  pivot: {between: [ground, arm], at: [0 mm, 0 mm]}\n"
+             "loads: {gas: {body: arm, %sforce: %s}}\n",
+             area, path);
+    *err = (Err){0};
+    const bool is_loaded = casefile_load_text("memory", text, strlen(text), NULL, 0, scenario, err);
+    unlink(path);
+    return is_loaded;
+}
+
+static void check_table(const char *table, const char *area)
+{
+    Scenario scenario;
+    Err err;
+    if (!load_table(table, strlen(table), area, &scenario, &err)) {
+        fail_msg("%s", err.text);
+    }
+    const Scenario kept = kept_instead(&scenario);
+    const LoadTable *load = &kept.linkage.loads[0].table;
+    assert_int_equal(load->count, 2);
+    assert_near(load->at[1], 0.002, 1e-15);
+    assert_near(load->values[0], -3000.0, 1e-9);
+    assert_near(load->values[1], 1500.0, 1e-9);
+}
+
+static void refuse_table(const char *table, size_t size, const char *message)
+{
+    Scenario scenario;
+    Err err;
+    assert_false(load_table(table, size, "", &scenario, &err));
+    if (strstr(err.text, message) == NULL) {
+        fail_msg("'%s' lacks '%s'", err.text, message);
+    }
+    // what would be allowed stands in a line of its own
+    assert_null(strstr(err.text, "\\n"));
+}
+
+static void loads_are_read_from_tables_as_spreadsheets_write_them(void **state)
+{
+    (void)state;
+    check_table("time [ms], force [kN]\n0, -3\n2, 1.5\n", "");
+    check_table("\xef\xbb\xbf\"time, \"\"t\"\" [ms]\";\"force [kN]\"\r\n\"0\";\"-3\"\r\n"
+                " \"2\" ; \"1.5\" \r\n",
+                "");
+    check_table("\"time [ms]\",force [kN]\n0,\"-3\"\n\"2\",1.5\n", "");
+    check_table("time [ms],pressure [bar]\n0,24\n2,-12\n", "area: -12.5 cm^2, ");
+#define REFUSE(table, message) refuse_table(table, sizeof(table) - 1, message)
+    REFUSE("time [ms],force [kN]\n\"0,-3\n", ":2: expected two numbers with a comma between");
+    REFUSE("time [ms],force [kN]\n0,-3\n2,1\n2,1.5\n",
+           ":4: this point is not in order: 0.002 s after 0.002 s\nallowed: each point behind the "
+           "one before; a jump is two points close together");
+    REFUSE("time [ms],pressure [bar]\n0,24\n",
+           ":1: [bar] is a pressure, and the load has no area that it acts on\nallowed: area: ");
+    REFUSE("time [ms],force [kN]\n0,-3\0 N\n2,1.5\n", ": byte 25 (0x00) is not text");
+}
+
+// A pipe without a writer would be waited for for ever.
+static void a_pipe_is_no_table(void **state)
+{
+    (void)state;
+    char path[128];
+    char text[512];
+    scratch_path("pipe.csv", path, sizeof path);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    snprintf(text, sizeof text, "loads.gas.force=%s", path);
+    static const char CASE[] =
+        "bodies:\n  arm: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [50 mm, 0 mm]}\n"
+        "joints:\n  pivot: {between: [ground, arm], at: [0 mm, 0 mm]}\n"
+        "loads: {gas: {body: arm, force: 1 N}}\n";
+    const char *const override = text;
+    Scenario scenario;
+    Err err = {0};
+    assert_false(casefile_load_text("memory", CASE, strlen(CASE), &override, 1, &scenario, &err));
+    assert_non_null(strstr(err.text, "cannot be read: it is no regular file"));
+    err = (Err){0};
+    assert_false(casefile_load(path, NULL, 0, &scenario, &err));
+    assert_int_equal(err.kind, ERR_FILE);
+    unlink(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -377,6 +472,8 @@ int main(void)
         cmocka_unit_test(points_stand_on_any_body),
         cmocka_unit_test(settings_tell_bodies_and_joints),
         cmocka_unit_test(the_cases_of_the_literature_load),
+        cmocka_unit_test(loads_are_read_from_tables_as_spreadsheets_write_them),
+        cmocka_unit_test(a_pipe_is_no_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

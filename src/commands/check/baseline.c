@@ -11,6 +11,7 @@
 //              no longer small, and only its distribution can be held against another. So it is
 //              then with every number of that run that is not exact.
 #include "commands/check/baseline.h"
+#include "base/descriptors.h"
 #include "base/sorted.h"
 #include "base/text.h"
 #include "base/zeroed.h"
@@ -21,7 +22,6 @@
 #include "write/json_value.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -826,10 +826,11 @@ static bool read_root(const json_t *root, Baseline *baseline, Err *err)
 bool baseline_json_read(const char *path, Baseline *baseline, Err *err)
 {
     *baseline = (Baseline){.settings = NULL};
-    FILE *stream = fopen(path, "r");
+    const char *reason;
+    FILE *stream = descriptors_open_file(path, &reason);
     if (stream == NULL) {
         return err_set(err, ERR_FILE, "there is no baseline %s: %s; --bless makes one", path,
-                       strerror(errno));
+                       reason);
     }
     json_error_t fault;
     json_t *root = json_loadf(stream, JSON_REJECT_DUPLICATES, &fault);
