@@ -33,7 +33,11 @@ static RowBase *base_of(const RowFile *file)
 static int reason_of(sqlite3 *base)
 {
     const int code = sqlite3_errcode(base) & 0xff;
-    const int reason = sqlite3_system_errno(base);
+    int reason = sqlite3_system_errno(base);
+    if (reason == 0) {
+        // after a failed commit only the file control has it
+        sqlite3_file_control(base, "main", SQLITE_FCNTL_LAST_ERRNO, &reason);
+    }
     return code == SQLITE_FULL    ? ENOSPC
            : code == SQLITE_NOMEM ? ENOMEM
            : reason != 0          ? reason

@@ -12,6 +12,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct ReportCommand {
     RunChoices choices;
@@ -172,13 +173,25 @@ static bool report_any(void *target, Err *err)
     return report_case(command, err);
 }
 
+// A page is HTML, and a name that ends otherwise asks for something else.
+static bool check_page(const char *path, Err *err)
+{
+    const char *slash = path != NULL ? strrchr(path, '/') : NULL;
+    const char *name = slash != NULL ? slash + 1 : path;
+    const char *dot = name != NULL ? strrchr(name, '.') : NULL;
+    return dot == NULL || dot == name || dot[1] == '\0' || strcasecmp(dot, ".html") == 0 ||
+           strcasecmp(dot, ".htm") == 0 ||
+           err_set(err, ERR_USAGE, "--out: %s: a page is written as HTML alone; allowed: %.*s.html",
+                   path, (int)(dot - path), path);
+}
+
 static bool check_command(void *target, Err *err)
 {
     ReportCommand *command = target;
     if (command->path_count == 0) {
         return err_set(err, ERR_USAGE, "no case given: jointplay report CASE.yaml");
     }
-    return run_choices_end(&command->choices, err);
+    return check_page(command->out, err) && run_choices_end(&command->choices, err);
 }
 
 static const Arguments REPORT_ARGUMENTS = {
