@@ -20,6 +20,20 @@ void memory_guard_end(const MemoryGuard *guard)
     innermost = guard->outer;
 }
 
+static void (*end_process)(size_t bytes);
+
+void memory_end_by(void (*end)(size_t bytes))
+{
+    end_process = end;
+}
+
+void memory_refuse(size_t bytes)
+{
+    if (innermost == NULL && end_process != NULL) {
+        end_process(bytes);
+    }
+}
+
 static void *present(void *made)
 {
     if (made == NULL && innermost != NULL) {

@@ -22,6 +22,14 @@ typedef struct MemoryGuard {
 void memory_guard_begin(MemoryGuard *guard);
 void memory_guard_end(const MemoryGuard *guard);
 
+// How the process ends where memory is refused to it outside any guard, in place of going on without:
+// with so many bytes that were wanted, on whatever thread. It allocates nothing and does not return.
+// NULL, the default, returns the refusal to whoever asked.
+void memory_end_by(void (*end)(size_t bytes));
+
+// Ends the process so; returns under a guard, or where there is no such way.
+void memory_refuse(size_t bytes);
+
 // Memory for so many elements: zeroed; as it comes; or what there was, in more room. One byte at
 // least. Where these do not return, the old memory stays as it was.
 void *memory_zeroed(size_t count, size_t size);

@@ -1,6 +1,7 @@
 // Runs the command that was asked for: the only place that prints errors and ends the program.
 #include "base/descriptors.h"
 #include "cli/arguments.h"
+#include "cli/no_memory.h"
 #include "cli/output.h"
 #include "commands/commands.h"
 #include "engine/driver.h"
@@ -98,6 +99,7 @@ static void keep_memory(void)
 int main(int argc, char **argv)
 {
     Err err = {0};
+    no_memory_begin();
     keep_memory();
     const bool is_ready = descriptors_reserve(&err);
     // a closed pipe and a file that is too large are then failed writes, which have an exit status

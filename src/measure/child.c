@@ -5,6 +5,7 @@
 // order on the same socket, and goes on until its parent closes it.
 #include "measure/child.h"
 #include "base/clock.h"
+#include "base/memory.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -45,9 +46,18 @@ const bool CHILD_CAN_LIMIT_MEMORY = true;
 const bool CHILD_CAN_LIMIT_MEMORY = true;
 #endif
 
+// A limit, or that of this process where it is lower.
+static rlim_t lower_limit(__rlimit_resource_t resource, size_t most)
+{
+    struct rlimit known;
+    const bool is_known = getrlimit(resource, &known) == 0;
+    return is_known && known.rlim_cur < (rlim_t)most ? known.rlim_cur : (rlim_t)most;
+}
+
 static void limit(__rlimit_resource_t resource, size_t most)
 {
-    const struct rlimit both = {(rlim_t)most, (rlim_t)most};
+    const rlim_t least = lower_limit(resource, most);
+    const struct rlimit both = {least, least};
     setrlimit(resource, &both);
 }
 
@@ -83,6 +93,12 @@ static void limit_memory(size_t most)
     signal(SIGBUS, die);
 }
 
+static void end_without_memory(size_t bytes)
+{
+    (void)bytes;
+    _exit(NO_MEMORY);
+}
+
 // Restores the default signals, and ends the child with its parent.
 static void settle_in(pid_t parent, ChildLimits limits)
 {
@@ -95,6 +111,7 @@ static void settle_in(pid_t parent, ChildLimits limits)
         _exit(1);
     }
     limit(RLIMIT_CORE, 0);
+    memory_end_by(end_without_memory);
     if (limits.memory_bytes > 0 && CHILD_CAN_LIMIT_MEMORY) {
         limit_memory(limits.memory_bytes);
     }
@@ -361,7 +378,7 @@ void child_describe(const Child *child, char text[CHILD_TEXT_SIZE])
         break;
     case CHILD_NO_MEMORY:
         snprintf(text, CHILD_TEXT_SIZE, "wanted more than its limit of %.4g MB of memory",
-                 1e-6 * (double)child->limits.memory_bytes);
+                 1e-6 * (double)lower_limit(RLIMIT_AS, child->limits.memory_bytes));
         break;
     case CHILD_CLOSED:
         snprintf(text, CHILD_TEXT_SIZE, "closed its pipe without a result and went on");
@@ -440,6 +457,11 @@ static bool child_take(const Pool *pool, Slots *slots, Err *err)
         }
         slot->is_busy = false;
         slots->busy--;
+        if (child->end == CHILD_NO_MEMORY && !pool->takes_no_memory) {
+            char words[CHILD_TEXT_SIZE];
+            child_describe(child, words);
+            return err_set(err, ERR_SOLVER, "a run of its own process %s", words);
+        }
         if (!pool->take(pool->owner, slot->number, slot->result, child, err)) {
             return false;
         }

@@ -95,10 +95,13 @@ typedef struct Pool {
     bool (*take)(void *owner, size_t number, const void *result, const Child *child, Err *err);
     // Called a few times a second; false: stop.
     bool (*wait)(void *owner);
+    // whether `take` takes in a piece that had no memory; else that fails, for what the others say
+    // would lack it
+    bool takes_no_memory;
     void *owner;
 } Pool;
 
 // Works until nothing is going on and nothing can begin. Where it is stopped, or something fails,
-// what is going on is ended. Fails with ERR_SOLVER where the system has no process left, and as
-// `take` does.
+// what is going on is ended. Fails with ERR_SOLVER where the system has no process left or a piece
+// had no memory, and as `take` does.
 bool pool_run(const Pool *pool, Err *err);

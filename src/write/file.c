@@ -390,11 +390,16 @@ static bool fail_to_write(const char *path, int reason, Err *err)
 // What a signal handler has to remove: the one file that is being written.
 static char pending[FILE_PATH_SIZE];
 
-static void take_away(int signal_number)
+void file_take_away_pending(void)
 {
     if (pending[0] != '\0') {
         unlink(pending);
     }
+}
+
+static void take_away(int signal_number)
+{
+    file_take_away_pending();
     signal(signal_number, SIG_DFL);
     raise(signal_number);
 }

@@ -90,6 +90,9 @@ bool file_end(WholeFile *file, Err *err);
 // Gives the file up: nothing of it is left.
 void file_abandon(WholeFile *file);
 
+// Takes away what is half-written, for a handler that ends the process; allocates nothing.
+void file_take_away_pending(void);
+
 // All of the above for text that is ready.
 bool file_write_text(FileKind kind, const char *path, const char *text, Err *err);
 

@@ -130,6 +130,7 @@ static bool check_run_make_runs(Outcomes *all, Err *err)
         .jobs = all->work->jobs,
         .work = check_run_measure,
         .result_size = sizeof(OutcomeRun),
+        .takes_no_memory = true,
         .limits = {.time_s = all->work->time_limit_s, .memory_bytes = TASK_MEMORY_LIMIT},
         .next = check_run_next,
         .take = check_run_take,
