@@ -22,9 +22,9 @@ typedef struct MemoryGuard {
 void memory_guard_begin(MemoryGuard *guard);
 void memory_guard_end(const MemoryGuard *guard);
 
-// How the process ends where memory is refused to it outside any guard, in place of going on without:
-// with so many bytes that were wanted, on whatever thread. It allocates nothing and does not return.
-// NULL, the default, returns the refusal to whoever asked.
+// How the process ends where memory is refused to it outside any guard, in place of going on
+// without: with so many bytes that were wanted, on whatever thread. It allocates nothing and does
+// not return. NULL, the default, returns the refusal to whoever asked.
 void memory_end_by(void (*end)(size_t bytes));
 
 // Ends the process so; returns under a guard, or where there is no such way.

@@ -138,7 +138,7 @@ static void a_number_edited_in_the_file_is_named(void **state)
     program_run(program, "check --baselines b --quick");
     assert_int_equal(program->status, 1);
     assert_says(program->errors, "pin.yaml: ode/hole/force_max_N was ");
-    assert_says(program->errors, " bands of ");
+    assert_says(program->errors, ", allowed ");
     // and blessing says what it moved back
     program_run(program, "check --baselines b --bless");
     assert_int_equal(program->status, 0);
@@ -287,6 +287,31 @@ static void a_baseline_that_was_stopped_goes_on_where_it_stood(void **state)
     assert_says(program->output, "1 setting changed");
 }
 
+// At 80 columns every number that is out says what it was, is and may be, and every setting is
+// named.
+static void what_moved_says_was_and_is(void **state)
+{
+    Program *program = *state;
+    program_run(program, "check --baselines b --quick --set contact.restitution=0.89 "
+                         "--set 'run.step=49 us' --junit out.xml");
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "setting contact.restitution was 0.9, is 0.89; setting run.step");
+    assert_says(program->output, "baseline              now     difference        allowed\n");
+    assert_true(strstr(program->output, "bands off") == NULL);
+    char xml[PROGRAM_OUTPUT_SIZE];
+    read_file(program, "out.xml", xml);
+    assert_says(xml, "ode/cost/steps");
+    assert_true(strstr(xml, "constraint_rows") == NULL);
+    // bands of one's own, which settings do not share
+    program_run(program, "check --baselines b --quick --rel 100%");
+    assert_int_equal(program->status, 0);
+    program_run(program, "check --baselines b --quick --rel 0.5 --set 'run.step=49.9 us' --all");
+    assert_int_equal(program->status, 1);
+    assert_says(program->errors, "setting run.step was");
+    program_fails_usage(program, "check --rel 0", "--rel is 0; allowed: a share such as 1%");
+    program_fails_usage(program, "check --bless --rel 1% pin.yaml", "goes with neither --bless");
+}
+
 // In a wrong folder, or with a forgotten --baselines, nothing else is checked in its place.
 static void the_programs_own_baselines_are_for_those_who_ask(void **state)
 {
@@ -430,7 +455,7 @@ static void junit_is_valid_and_has_the_numbers_of_a_failure(void **state)
     assert_says(text, "name=\"setting/run/step\"");
     assert_says(text, "setting run.step was 5e-06 s, is 5.5");
     assert_says(text, "<failure message=\"ode/hole/impulse_N_s was ");
-    assert_says(text, " bands of ");
+    assert_says(text, ", allowed ");
 
     // a case in error is there as well
     write_file(program, "b/a&b.json", "{}");
@@ -667,6 +692,7 @@ int main(void)
         CHECK_TEST(a_name_of_dashes_and_a_digit_ends),
         CHECK_TEST(more_jobs_than_processors_are_allowed),
         CHECK_TEST(a_baseline_that_was_stopped_goes_on_where_it_stood),
+        CHECK_TEST(what_moved_says_was_and_is),
         CHECK_TEST(the_programs_own_baselines_are_for_those_who_ask),
         CHECK_TEST(what_cannot_be_checked_never_passes),
         CHECK_TEST(a_run_that_fails_is_an_error_and_blesses_nothing),

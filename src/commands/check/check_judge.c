@@ -155,8 +155,8 @@ static void judge_hash(const Baseline *baseline, const BaselineMetric *metric,
 {
     row->hash_was = metric->hash;
     row->hash_now = hash;
-    if (evidence->is_shaken) {
-        leave_out(row, "the inputs were shaken");
+    if (evidence->is_shaken || evidence->relative > 0.0) {
+        leave_out(row, evidence->is_shaken ? "the inputs were shaken" : "numbers may move");
     } else if (strcmp(baseline->build, evidence->now->build) != 0) {
         leave_out(row, "of another build of the program");
     } else {
@@ -165,13 +165,24 @@ static void judge_hash(const Baseline *baseline, const BaselineMetric *metric,
     }
 }
 
-static void judge_number(const BaselineMetric *metric, double now, CheckRow *row)
+// The band of the baseline, or that of the user where it is wider.
+static void widen(const BaselineMetric *metric, double relative, CheckRow *row)
+{
+    const double own = relative * fabs(metric->value);
+    if (own > metric->band) {
+        row->band = own;
+        snprintf(row->why, sizeof row->why, "%g %% of it, by --rel", 100.0 * relative);
+    }
+}
+
+static void judge_number(const BaselineMetric *metric, double relative, double now, CheckRow *row)
 {
     row->now = now;
     row->deviation = now - metric->value;
+    widen(metric, relative, row);
     const double size = fabs(row->deviation);
-    row->verdict = size <= metric->band ? CHECK_WITHIN : CHECK_OUT;
-    row->severity = size == 0.0 ? 0.0 : metric->band > 0.0 ? size / metric->band : INFINITY;
+    row->verdict = size <= row->band ? CHECK_WITHIN : CHECK_OUT;
+    row->severity = size == 0.0 ? 0.0 : row->band > 0.0 ? size / row->band : INFINITY;
 }
 
 static void judge_sample(const BaselineMetric *metric, size_t number, const CheckEvidence *evidence,
@@ -194,7 +205,9 @@ static void judge_sample(const BaselineMetric *metric, size_t number, const Chec
     row->now = sorted_median(values, count);
     row->deviation = row->now - metric->value;
     row->p = rank_test_p(test, metric->sample, metric->sample_count, values, count);
-    row->verdict = row->p > evidence->rate ? CHECK_WITHIN : CHECK_OUT;
+    widen(metric, evidence->relative, row);
+    const bool is_near = evidence->relative > 0.0 && fabs(row->deviation) <= row->band;
+    row->verdict = row->p > evidence->rate || is_near ? CHECK_WITHIN : CHECK_OUT;
     row->severity = row->p > 0.0 ? log(row->p) / log(evidence->rate) : INFINITY;
 }
 
@@ -229,7 +242,7 @@ static void judge_metric(const Baseline *baseline, size_t number, const CheckEvi
     } else if (is_statistical) {
         judge_sample(metric, number, evidence, test, row);
     } else {
-        judge_number(metric, evidence->run->metrics[index].value, row);
+        judge_number(metric, evidence->relative, evidence->run->metrics[index].value, row);
     }
 }
 

@@ -47,6 +47,7 @@ typedef struct CheckEvidence {
     size_t sample_count;
     const Baseline *now; // head only: settings and fingerprint of this check
     bool is_full;        // slow metrics were measured
+    double relative;     // 1, of each number: what it may move by at least
     bool is_shaken;      // the inputs were rounded anew, so that hashes say nothing
     double rate;         // false-alarm rate of one test
 } CheckEvidence;

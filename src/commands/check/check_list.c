@@ -397,6 +397,19 @@ enum { SHAKE_MAX = 1000000 };
 
 #define AT(field) .offset = offsetof(CheckOptions, field)
 
+// "1%" or "0.01".
+static bool read_share(const char *text, void *target, Err *err)
+{
+    char *end;
+    const double number = strtod(text, &end);
+    const double unit = strcmp(end, "%") == 0 || strcmp(end, " %") == 0 ? 0.01 : 1.0;
+    const bool is_whole = end != text && (*end == '\0' || unit < 1.0);
+    ((CheckOptions *)target)->relative = unit * number;
+    return (is_whole && number > 0.0 && unit * number <= 1.0) ||
+           err_set(err, ERR_USAGE,
+                   "--rel is %s; allowed: a share such as 1%% or 0.01, above 0 to 1", text);
+}
+
 static const OptionRow OPTIONS[] = {
     {"baselines", "DIR", "Where the baselines are (default: results/baseline)", 1, OPTION_TEXT,
      AT(folder)},
@@ -404,6 +417,9 @@ static const OptionRow OPTIONS[] = {
      OPTION_FLAG, AT(is_shipped)},
     {"bless", NULL, "Write new baselines from what is measured now, and list what moved", 1,
      OPTION_FLAG, AT(is_blessing)},
+    {"rel", "SHARE",
+     "Let every number move by this share of itself at least, such as 1%: bands of your own", 1,
+     OPTION_READ, .read = read_share},
     {"quick", NULL, "One run per case: no ensembles, no orders", 1, OPTION_FLAG, AT(is_quick)},
     {"expect-only", NULL, "Judge cases by their own limits (expect:), not by baselines", 1,
      OPTION_FLAG, AT(is_expect_only)},
@@ -462,6 +478,11 @@ static bool check_together(void *target, Err *err)
                        options->is_blessing ? "--expect-only ignores baselines, and --bless "
                                               "makes one: one of them, not both"
                                             : "--expect-only takes the cases to check");
+    }
+    if (options->relative > 0.0 && (options->is_blessing || options->is_expect_only)) {
+        return err_set(err, ERR_USAGE,
+                       "--rel widens the bands of a comparison: it goes with "
+                       "neither --bless nor --expect-only");
     }
     if (options->is_blessing && options->common.override_count > 0) {
         return err_set(err, ERR_USAGE,

@@ -22,6 +22,7 @@ typedef struct CheckOptions {
     bool is_shipped;              // the program's own cases against its own baselines
     bool is_blessing;
     bool is_quick;
+    double relative; // 1, of each number: how far it may move at least; 0: as its band says
     bool is_expect_only;
     bool is_all;
     size_t shake; // seed; 0: none

@@ -157,8 +157,8 @@ static void append_out(const CheckCase *item, Text *text)
 {
     const size_t out = check_report_count(item).out;
     check_markdown_append_case(text, item);
-    text_append(text, "\n\n| metric | baseline | now | difference | band | bands off |\n"
-                      "|---|---:|---:|---:|---:|---:|\n");
+    text_append(text, "\n\n| metric | baseline | now | difference | allowed |\n"
+                      "|---|---:|---:|---:|---:|\n");
     for (size_t i = 0; i < out && i < WORST_ROWS; i++) {
         const CheckRow *row = &item->rows[i];
         const CheckCells cells = check_report_cells(row);
@@ -169,9 +169,7 @@ static void append_out(const CheckCase *item, Text *text)
         (row->verdict == CHECK_SETTING ? check_markdown_append_name
                                        : check_markdown_append_cell)(text, cells.now);
         check_markdown_append_cell(text, cells.difference);
-        check_markdown_append_cell(text, cells.band);
-        check_markdown_append_cell(
-            text, row->verdict == CHECK_OUT ? cells.severity : CHECK_VERDICT_WORDS[row->verdict]);
+        check_markdown_append_cell(text, cells.allowed);
         text_append(text, "|\n");
     }
     if (out > WORST_ROWS) {

@@ -163,8 +163,8 @@ void check_report_words(const CheckRow *row, char words[CHECK_WORDS_SIZE])
                  "median was %.9g, is %.9g: %+.3g; p = %.2g of the rank test (%s: %s)", row->was,
                  row->now, row->deviation, row->p, kind, row->why);
     } else if (isfinite(row->severity)) {
-        snprintf(words, CHECK_WORDS_SIZE, "was %.17g, is %.17g: %+.3g, %.3g bands of %.3g (%s: %s)",
-                 row->was, row->now, row->deviation, row->severity, row->band, kind, row->why);
+        snprintf(words, CHECK_WORDS_SIZE, "was %.17g, is %.17g: %+.3g, allowed %.3g (%s: %s)",
+                 row->was, row->now, row->deviation, row->band, kind, row->why);
     } else {
         snprintf(words, CHECK_WORDS_SIZE, "was %.17g, is %.17g: %+.3g (%s: %s)", row->was, row->now,
                  row->deviation, kind, row->why);
@@ -192,10 +192,10 @@ CheckCells check_report_cells(const CheckRow *row)
     }
     const bool is_number = row->verdict != CHECK_SETTING && row->kind != CHECK_HASH;
     number(cells.difference, "%+.2g", is_number ? row->deviation : NAN);
-    number(cells.band, "%.2g", is_number ? row->band : NAN);
-    number(cells.severity, "%.2g", is_number ? row->severity : NAN);
-    if (is_number && row->band_kind == BAND_STATISTICAL && isfinite(row->p)) {
-        snprintf(cells.severity, sizeof cells.severity, "p %.2g", row->p);
+    number(cells.allowed, "%.2g", is_number ? row->band : NAN);
+    // what has no band says what it is
+    if (row->verdict != CHECK_WITHIN && row->verdict != CHECK_OUT) {
+        text_copy(cells.allowed, sizeof cells.allowed, CHECK_VERDICT_WORDS[row->verdict]);
     }
     return cells;
 }
@@ -248,6 +248,7 @@ void check_report_limit(const CheckLimit *limit, char words[CHECK_WORDS_SIZE])
 enum {
     WORST_WITHIN = 5, // rows of a case in which nothing is out
     WORST_OUT = 20,   // rows that are out: twenty show what happened
+    WIDE_LEAST = 116, // columns of a terminal that has room for a row in one line
 };
 
 // Rows that are out, and of those within the worst that moved at all.
@@ -261,24 +262,29 @@ static size_t rows_to_show(const CheckCase *item, bool is_all)
     return is_all ? item->row_count : shown;
 }
 
-static void check_report_write_rows(const CheckCase *item, size_t count, const Style *style,
-                                    Text *text)
+// One line for the name and one for the numbers, which so fit into 80 columns.
+static void check_report_write_row(const CheckRow *row, Text *text)
 {
-    if (count == 0) {
-        section_heading(item->path, style, text);
-        text_append(text, "\n");
+    const CheckCells cells = check_report_cells(row);
+    char words[CHECK_WORDS_SIZE];
+    if (row->verdict == CHECK_SETTING) {
+        check_report_words(row, words);
+        text_append(text, "  %s\n", words);
         return;
     }
+    text_append(text, "  %s\n    %16s %16s %14s %14s\n", row->name, cells.was, cells.now,
+                cells.difference, cells.allowed);
+}
+
+static void check_report_write_wide(const CheckCase *item, size_t count, const Style *style,
+                                    Text *text)
+{
     static const SectionHead HEADS[] = {
-        {"metric", "", TABLE_LEFT},
-        {"baseline", "", TABLE_RIGHT | TABLE_MINOR},
-        {"now", "", TABLE_RIGHT},
-        {"difference", "", TABLE_RIGHT | TABLE_DETAIL},
-        {"band", "", TABLE_RIGHT | TABLE_DETAIL},
-        {"bands off", "", TABLE_RIGHT},
-        {"why the band", "", TABLE_LEFT | TABLE_DETAIL},
+        {"metric", "", TABLE_LEFT},   {"baseline", "", TABLE_RIGHT},
+        {"now", "", TABLE_RIGHT},     {"difference", "", TABLE_RIGHT},
+        {"allowed", "", TABLE_RIGHT}, {"why", "", TABLE_LEFT | TABLE_DETAIL},
     };
-    Table *table = section_begin(item->path, 7, HEADS, style, text);
+    Table *table = section_begin(item->path, sizeof HEADS / sizeof *HEADS, HEADS, style, text);
     for (size_t i = 0; i < count; i++) {
         const CheckRow *row = &item->rows[i];
         const CheckCells cells = check_report_cells(row);
@@ -286,15 +292,30 @@ static void check_report_write_rows(const CheckCase *item, size_t count, const S
         table_cell(table, "%s", cells.was);
         table_cell(table, "%s", cells.now);
         table_cell(table, "%s", cells.difference);
-        table_cell(table, "%s", cells.band);
-        // what has no count of bands says what it is
-        const bool is_counted =
-            row->verdict == CHECK_WITHIN || (row->verdict == CHECK_OUT && isfinite(row->severity));
-        table_cell(table, "%s", is_counted ? cells.severity : CHECK_VERDICT_WORDS[row->verdict]);
+        table_cell(table, "%s", cells.allowed);
         table_cell(table, "%s",
                    row->verdict == CHECK_SETTING ? "" : BASELINE_BAND_WORDS[row->band_kind]);
     }
     section_end(table, text);
+}
+
+static void check_report_write_rows(const CheckCase *item, size_t count, const Style *style,
+                                    Text *text)
+{
+    if (count > 0 && (style->width == 0 || style->width >= WIDE_LEAST)) {
+        check_report_write_wide(item, count, style, text);
+        return;
+    }
+    section_heading(item->path, style, text);
+    text_append(text, "\n");
+    if (count > 0) {
+        text_append(text, "  metric\n    %16s %16s %14s %14s\n", "baseline", "now", "difference",
+                    "allowed");
+        text_append(text, "  ------------------------------------------------------------------\n");
+    }
+    for (size_t i = 0; i < count; i++) {
+        check_report_write_row(&item->rows[i], text);
+    }
 }
 
 // The limits of the case itself, each with what its backends say: all of them, for whoever wrote

@@ -77,17 +77,16 @@ bool check_report_is_out(const CheckCase *item);
 size_t check_report_errors(const CheckReport *report);
 size_t check_report_differing(const CheckReport *report);
 
-// The numbers of a row as one sentence: "was 1, is 2: 1 more, 4.0 bands of 0.25 (rounding: ...)".
+// The numbers of a row as one sentence: "was 1, is 2: +1, allowed 0.25 (rounding: ...)".
 void check_report_words(const CheckRow *row, char words[CHECK_WORDS_SIZE]);
 
-// The cells of a row: baseline, now, difference, band, and by how many bands it is off.
+// The cells of a row: baseline, now, difference, and how far it may move.
 enum { CHECK_CELL_SIZE = 64 };
 typedef struct CheckCells {
     char was[CHECK_CELL_SIZE];
     char now[CHECK_CELL_SIZE];
     char difference[CHECK_CELL_SIZE];
-    char band[CHECK_CELL_SIZE];
-    char severity[CHECK_CELL_SIZE];
+    char allowed[CHECK_CELL_SIZE];
 } CheckCells;
 
 CheckCells check_report_cells(const CheckRow *row);

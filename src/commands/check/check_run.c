@@ -432,6 +432,7 @@ static void finish_item(const CheckOptions *options, const CheckItem *item, cons
         .now = &item->now,
         .is_full = !options->is_quick,
         .is_shaken = options->shake > 0,
+        .relative = options->relative,
         .rate = report->rate / (double)(report->test_count > 0 ? report->test_count : 1),
     };
     judge_item(item, &evidence, result);

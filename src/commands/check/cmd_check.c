@@ -20,6 +20,20 @@ static const ResultFile FILES[] = {
 static const Results RESULTS = {
     .json = check_json_build, .text = check_text_write, RESULT_FILES(FILES)};
 
+// The settings that are others, or, where all are as they were, the number that moved most.
+static void append_moved(const CheckCase *item, Text *text)
+{
+    char words[CHECK_WORDS_SIZE];
+    for (size_t i = 0; i < item->row_count && item->rows[i].verdict == CHECK_SETTING; i++) {
+        check_report_words(&item->rows[i], words);
+        text_append(text, "%s%s", i > 0 ? "; " : "", words);
+    }
+    if (text->length == 0) {
+        check_report_words(&item->rows[0], words);
+        text_append(text, "%s %s", item->rows[0].name, words);
+    }
+}
+
 // A limit or an outcome of the case itself comes before what its baseline says.
 static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *err)
 {
@@ -43,12 +57,13 @@ static bool refuse_case(const CheckReport *report, const CheckCase *item, Err *e
                            differing, report->case_count, item->path, outcome->name, words);
         }
     }
-    const CheckRow *worst = &item->rows[0];
-    check_report_words(worst, words);
-    return err_set(err, ERR_DIFFERS, "%zu of %zu cases differ from their baselines; %s: %s%s%s",
-                   differing, report->case_count, item->path,
-                   worst->verdict == CHECK_SETTING ? "" : worst->name,
-                   worst->verdict == CHECK_SETTING ? "" : " ", words);
+    Text moved;
+    text_init(&moved);
+    append_moved(item, &moved);
+    err_set(err, ERR_DIFFERS, "%zu of %zu cases differ from their baselines; %s: %s", differing,
+            report->case_count, item->path, moved.data);
+    text_finish(&moved);
+    return false;
 }
 
 // How it ends: a case that could not be checked weighs more than a number that moved.
