@@ -2,7 +2,8 @@
 # Does no output replace a file that it should not? Every option that writes a file, and every file
 # that a command is given a name for, taken from the help of the commands, is pointed at every input
 # of that command, under names that take turns among all that a file can have, and at files of other
-# kinds: refused before anything runs, and not a byte changed. Then each is pointed at a new file, and at its own again.
+# kinds: refused before anything runs, and not a byte changed. Then each is pointed at a new file, at its
+# own again, and where nothing can be written.
 # Prints TAP, a row of the table of pairs a line.
 set -u
 export MALLOC_PERTURB_=0 # see tests/support/program.h
@@ -148,7 +149,7 @@ run_with() {
     @) set -- "$(echo "$1" | sed "s|@|$3|")" ;;
     *) set -- "$1 $2 $3" ;;
     esac
-    "$program" $1 --quiet >"$work/output" 2>"$work/log"
+    "$program" $1 --quiet >"${sink:-$work/output}" 2>"$work/log"
 }
 
 is_in() {
@@ -254,6 +255,37 @@ try_fresh() {
     members=$(find "$target" -mindepth 1 -printf '%f ' 2>/dev/null)
 }
 
+# Where nothing can be written: a full disk behind a link, a folder in place of the file, a folder that
+# is not there, a file in place of a folder, and files that may not grow, which a full disk is to a new
+# file. Never done, and nothing of it is left.
+try_unwritable() {
+    ending=$(echo "$3" | sed -n 's/^[A-Z]*\(\.[a-z]*\)$/\1/p')
+    ways="full folder missing limit"
+    [ "$3" != DIR ] || ways="file limit"
+    : >"$work/misses"
+    for way in $ways; do
+        rm -rf "$work/fresh"
+        mkdir "$work/fresh"
+        target=$work/fresh/x$ending
+        case $way in
+        full) ln -s /dev/full "$target" ;;
+        folder) mkdir "$target" ;;
+        missing) target=$work/fresh/nowhere/x$ending ;;
+        file) : >"$target" ;;
+        esac
+        case $way in
+        # what it prints could not grow either
+        limit) (sink=/dev/null && ulimit -f 0 && run_with "$1" "$2" "$target" && exit 0) 2>/dev/null ;;
+        *) run_with "$1" "$2" "$target" ;;
+        esac
+        status=$?
+        { [ $status = 2 ] || [ $status = 5 ]; } && [ -z "$(find "$work/fresh" -type f -size +0)" ] ||
+            echo "jointplay $1 $2 ($way): status $status" >>"$work/misses"
+    done
+    mv "$work/misses" "$log"
+    [ ! -s "$log" ]
+}
+
 list_outputs >"$work/outputs"
 while read -r command option kind; do
     command=$(echo "$command" | tr _ ' ')
@@ -266,6 +298,8 @@ while read -r command option kind; do
     fi
     try_fresh "$base" "$option" "$kind"
     report "$command $option: a new $kind, and then its own" $?
+    try_unwritable "$base" "$option" "$kind"
+    report "$command $option: nothing half-written where nothing can be written" $?
     rm -rf "$work/cache"
     for input in $files; do
         [ "$(own_of "$key")" != "$input" ] || continue
