@@ -262,18 +262,23 @@ static size_t rows_to_show(const CheckCase *item, bool is_all)
     return is_all ? item->row_count : shown;
 }
 
-// One line for the name and one for the numbers, which so fit into 80 columns.
+// One line for the name and one for the numbers, which so fit into 80 columns. Names and settings
+// are text from a baseline and a case.
 static void check_report_write_row(const CheckRow *row, Text *text)
 {
     const CheckCells cells = check_report_cells(row);
     char words[CHECK_WORDS_SIZE];
     if (row->verdict == CHECK_SETTING) {
         check_report_words(row, words);
-        text_append(text, "  %s\n", words);
+        text_append(text, "  ");
+        text_append_shown(text, words);
+        text_append(text, "\n");
         return;
     }
-    text_append(text, "  %s\n    %16s %16s %14s %14s\n", row->name, cells.was, cells.now,
-                cells.difference, cells.allowed);
+    text_append(text, "  ");
+    text_append_shown(text, row->name);
+    text_append(text, "\n    %16s %16s %14s %14s\n", cells.was, cells.now, cells.difference,
+                cells.allowed);
 }
 
 static void check_report_write_wide(const CheckCase *item, size_t count, const Style *style,
