@@ -81,6 +81,8 @@ static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state
     program_fails_usage(program, "run a.yaml --tolerance=1e-5",
                         "unknown option '--tolerance'; did you mean '--set run.tolerance=1e-5' or "
                         "'--set reference.tolerance=1e-5'?");
+    program_fails_usage(program, "report case.yaml --out x.pdf",
+                        "a page is written as HTML alone; allowed: x.html");
     program_fails_usage(program, "check --contact.restitution 0.8",
                         "did you mean '--set contact.restitution=VALUE'?");
     program_fails_usage(program, "tune a.yaml --radial-clearence 9um",
