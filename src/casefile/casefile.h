@@ -43,6 +43,10 @@ bool casefile_expects_refusal(const char *path, char title[SCENARIO_TITLE_SIZE],
 void casefile_describe(Text *text);
 void casefile_describe_markdown(Text *text);
 
+// Appends one group of keys for a terminal, such as joints. Fails with ERR_USAGE where the word
+// names none.
+bool casefile_describe_group(const char *name, Text *text, Err *err);
+
 // Appends a line for each key that the case or the command line gives and that the scenario, as it
 // is now, makes no use of: where it stands, and what would. A key of the file beside which the
 // command line replaces what decides about it is left out. Returns how many.

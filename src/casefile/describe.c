@@ -336,20 +336,24 @@ static void describe_keys(const SchemaGroup *group, bool is_of_space, bool is_pa
     }
 }
 
+static void describe_group(const SchemaGroup *group, bool is_page, Text *text)
+{
+    const bool is_peak = group->path[0] == '\0';
+    if (is_page) {
+        text_append(text, is_peak ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
+                    is_peak ? "Top level" : group->path, group->doc);
+    } else {
+        text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
+        append_wrapped(group->doc, 2, text);
+    }
+    describe_keys(group, false, is_page, text);
+    describe_keys(group, true, is_page, text);
+}
+
 static void describe_groups(bool is_page, Text *text)
 {
     for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
-        const SchemaGroup *group = &SCHEMA_GROUPS[g];
-        const bool is_peak = group->path[0] == '\0';
-        if (is_page) {
-            text_append(text, is_peak ? "\n## %s\n\n%s\n\n" : "\n## `%s`\n\n%s\n\n",
-                        is_peak ? "Top level" : group->path, group->doc);
-        } else {
-            text_append(text, "\n%s\n", is_peak ? "top level" : group->path);
-            append_wrapped(group->doc, 2, text);
-        }
-        describe_keys(group, false, is_page, text);
-        describe_keys(group, true, is_page, text);
+        describe_group(&SCHEMA_GROUPS[g], is_page, text);
     }
 }
 
@@ -465,7 +469,8 @@ static void describe_expect(bool is_page, Text *text)
 
 void casefile_describe(Text *text)
 {
-    text_append(text, "A case file\n\n");
+    text_append(text, "A case file\n\n'jointplay help case joints' shows the keys of one group "
+                      "alone.\n\n");
     for (size_t i = 0; i < RULE_COUNT; i++) {
         append_wrapped(RULES[i], 0, text);
     }
@@ -473,6 +478,38 @@ void casefile_describe(Text *text)
                 EXAMPLE, SLIDER_EXAMPLE, LONG_EXAMPLE);
     describe_groups(false, text);
     describe_expect(false, text);
+}
+
+// The top level has no word of its own, and expect is no group of the schema.
+bool casefile_describe_group(const char *name, Text *text, Err *err)
+{
+    static const char EXPECT[] = "expect";
+    const char *names[SCHEMA_CHILD_MAX] = {EXPECT};
+    size_t count = 1;
+    if (strcmp(name, EXPECT) == 0) {
+        describe_expect(false, text);
+        return true;
+    }
+    Text list;
+    text_init(&list);
+    for (size_t g = 0; g < SCHEMA_GROUP_COUNT; g++) {
+        const SchemaGroup *group = &SCHEMA_GROUPS[g];
+        if (group->path[0] != '\0' && strcmp(name, group->path) == 0) {
+            describe_group(group, false, text);
+            text_finish(&list);
+            return true;
+        }
+        if (group->path[0] != '\0') {
+            names[count++] = group->path;
+            text_append(&list, "%s, ", group->path);
+        }
+    }
+    const char *nearest = text_nearest(name, names, count);
+    err_set(err, ERR_USAGE, "'jointplay help case' has no part '%s'%s%s%s\nallowed: %s%s", name,
+            nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+            nearest != NULL ? "'?" : "", list.data, EXPECT);
+    text_finish(&list);
+    return false;
 }
 
 void casefile_describe_markdown(Text *text)

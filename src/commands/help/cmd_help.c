@@ -56,6 +56,18 @@ static void print_format(void (*describe)(bool is_markdown, Text *text), bool is
     text_finish(&text);
 }
 
+// One group of the keys of a case.
+static bool print_group(const char *name, Err *err)
+{
+    Text text;
+    text_init(&text);
+    const bool is_known = casefile_describe_group(name, &text, err);
+    // without the empty line in front, which divides it from others
+    fputs(is_known ? text.data + strspn(text.data, "\n") : "", stdout);
+    text_finish(&text);
+    return is_known;
+}
+
 // A command's own --help, and the format of its file; of 'study status' the help of the second
 // word.
 static bool explain_command(const HelpOptions *options, Err *err)
@@ -134,16 +146,23 @@ static bool cmd_help_explain(void *target, Err *err)
         command_list();
         return true;
     }
-    if (options->word_count == 1 && strcmp(options->words[0], "case") == 0) {
+    if (strcmp(options->words[0], "case") == 0) {
+        if (options->word_count > 1) {
+            return print_group(options->words[1], err);
+        }
         print_format(describe_case, options->is_markdown);
         return true;
     }
-    return explain_command(options, err);
+    Err no_group = {0};
+    Err no_command = {0};
+    const bool is_command = command_find(options->words[0], &no_command) != NULL;
+    return (options->word_count == 1 && !is_command && print_group(options->words[0], &no_group)) ||
+           explain_command(options, err);
 }
 
 static const Arguments HELP_ARGUMENTS = {
     .program = "jointplay help",
-    .usage = "[case|COMMAND]\nstudy COMMAND",
+    .usage = "[case|COMMAND]\ncase GROUP\nstudy COMMAND",
     .doc = "Shows how a command is used, or how a case or study file is written.",
     .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
     OPTION_ROWS(OPTIONS),
