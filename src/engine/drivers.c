@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "engine/converse.h"
 #include "engine/protocol.h"
+#include "model/options.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -134,6 +135,17 @@ static bool ask_hello(EngineDriver *driver, Err *err)
                                driver->program, own.text);
 }
 
+// Whether a build makes the driver of that name where its engine is installed.
+static bool is_ours(const char *name)
+{
+    bool is_one = false;
+    for (int i = 0; OPTIONS_BACKENDS[i] != NULL; i++) {
+        const bool is_built = options_is_engine((BackendKind)i) && i != BACKEND_DRIVER;
+        is_one = is_one || (is_built && strcmp(OPTIONS_BACKENDS[i], name) == 0);
+    }
+    return is_one;
+}
+
 bool engine_find(const char *name, EngineDriver *driver, Err *err)
 {
     char folders[FOLDER_COUNT][ENGINE_PATH_SIZE];
@@ -148,9 +160,11 @@ bool engine_find(const char *name, EngineDriver *driver, Err *err)
     char known[ENGINE_DRIVER_MAX * ENGINE_NAME_SIZE];
     engine_list(known, sizeof known);
     return err_set(err, ERR_USAGE,
-                   "there is no driver for '%s' here: %s%s; --driver %s=PROGRAM "
-                   "names one",
-                   name, known[0] != '\0' ? "there are ode, " : "there is ode alone", known,
+                   "there is no driver for '%s' here: %s%s; %s--driver %s=PROGRAM names one", name,
+                   known[0] != '\0' ? "there are ode, " : "there is ode alone", known,
+                   is_ours(name) ? "build jointplay where the engine is installed "
+                                   "('./bootstrap packages engines' does that), or "
+                                 : "",
                    engine_is_name(name) ? name : "NAME");
 }
 

@@ -232,7 +232,9 @@ static void a_name_without_a_driver_says_which_there_are(void **state)
     assert_false(engine_find("mujoco", &driver, &err));
     assert_int_equal(err.kind, ERR_USAGE);
     assert_string_equal(err.text, "there is no driver for 'mujoco' here: there is ode alone; "
-                                  "--driver mujoco=PROGRAM names one");
+                                  "build jointplay where the engine is installed ('./bootstrap "
+                                  "packages engines' does that), or --driver mujoco=PROGRAM names "
+                                  "one");
     // a folder with one in it
     char folder[] = "/tmp/jointplay-drivers-XXXXXX";
     char link[sizeof folder + 32];
