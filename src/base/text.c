@@ -205,10 +205,13 @@ size_t text_distance(const char *a, const char *b)
 const char *text_nearest(const char *word, const char *const *choices, size_t count)
 {
     const char *best = NULL;
-    size_t best_distance = strlen(word) / 3 + 1;
+    const size_t letters = strlen(word);
+    size_t best_distance = SIZE_MAX;
     for (size_t i = 0; i < count; i++) {
         const size_t distance = text_distance(word, choices[i]);
-        if (distance < best_distance) {
+        // of two letters the third was left out
+        const bool is_short = letters == 2 && strlen(choices[i]) == 3 && distance == 1;
+        if ((distance <= letters / 3 || is_short) && distance < best_distance) {
             best_distance = distance;
             best = choices[i];
         }

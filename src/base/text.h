@@ -49,5 +49,6 @@ void text_copy(char *target, size_t size, const char *source);
 size_t text_distance(const char *a, const char *b);
 
 // The choice nearest to the word, or NULL where none is near enough to be meant
-// (at most a third of the word's letters differ, or it begins with the word).
+// (at most a third of the word's letters differ, or of three letters it lacks one, or it begins
+// with the word).
 const char *text_nearest(const char *word, const char *const *choices, size_t count);

@@ -6,8 +6,10 @@
 #include "base/descriptors.h"
 #include "base/shell.h"
 #include "base/shipped.h"
+#include "base/text.h"
 
 #include <assert.h>
+#include <dirent.h>
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -43,13 +45,57 @@ done:
     return false;
 }
 
+enum { NAMES_MOST = 256 }; // of a folder that are looked at: no user's folder of cases has more
+
+// Appends the file of the same folder whose name is nearest to a path; nothing where none is near.
+static void append_nearest(const char *path, Text *text)
+{
+    const char *slash = strrchr(path, '/');
+    const char *name = slash != NULL ? slash + 1 : path;
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(name - path) : 1,
+             slash != NULL ? path : ".");
+    DIR *opened = opendir(folder);
+    char *names[NAMES_MOST];
+    size_t count = 0;
+    for (const struct dirent *entry;
+         opened != NULL && count < NAMES_MOST && (entry = readdir(opened)) != NULL;) {
+        if (entry->d_name[0] != '.') {
+            names[count++] = strdup(entry->d_name);
+            assert(names[count - 1] != NULL);
+        }
+    }
+    if (opened != NULL) {
+        closedir(opened);
+    }
+    const char *nearest = text_nearest(name, (const char *const *)names, count);
+    if (nearest != NULL) {
+        text_append(text, "; did you mean '%.*s%s'?", (int)(name - path), path, nearest);
+    }
+    for (size_t i = 0; i < count; i++) {
+        free(names[i]);
+    }
+}
+
+static bool refuse_missing(const char *path, int reason, Err *err)
+{
+    Text nearest;
+    text_init(&nearest);
+    if (reason == ENOENT) {
+        append_nearest(path, &nearest);
+    }
+    err_set(err, ERR_FILE, "%s: cannot be read: %s%s", path, strerror(reason), nearest.data);
+    text_finish(&nearest);
+    return false;
+}
+
 bool input_read(const char *what, const char *path, char **text, size_t *size, Err *err)
 {
     struct stat status;
     char found[PATH_MAX];
     shipped_find(path, found, sizeof found);
     if (stat(found, &status) != 0) {
-        return err_set(err, ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+        return refuse_missing(path, errno, err);
     }
     if (S_ISDIR(status.st_mode)) {
         return err_set(err, ERR_CASE, "%s: is a directory\nallowed: a %s file", path, what);

@@ -8,6 +8,30 @@
 
 enum { COMMAND_MAX = 32 };
 
+// What other programs call a command, and what it is here.
+typedef struct CommandHabit {
+    const char *theirs;
+    const char *ours;
+} CommandHabit;
+
+static const CommandHabit HABITS[] = {
+    {"plot", "jointplay report"},    {"show", "jointplay report"},
+    {"simulate", "jointplay run"},   {"solve", "jointplay run"},
+    {"init", "jointplay new"},       {"create", "jointplay new"},
+    {"sweep", "jointplay study"},    {"test", "jointplay check"},
+    {"validate", "jointplay check"}, {"version", "jointplay --version"},
+};
+
+static const char *find_habit(const char *name)
+{
+    for (size_t i = 0; i < sizeof HABITS / sizeof *HABITS; i++) {
+        if (strcmp(HABITS[i].theirs, name) == 0) {
+            return HABITS[i].ours;
+        }
+    }
+    return NULL;
+}
+
 const Command *command_find(const char *name, Err *err)
 {
     return command_find_topic(name, NULL, err);
@@ -26,7 +50,8 @@ const Command *command_find_topic(const char *name, const char *topic, Err *err)
     if (topic != NULL) {
         names[count++] = topic;
     }
-    const char *nearest = text_nearest(name, names, count);
+    const char *habit = find_habit(name);
+    const char *nearest = habit != NULL ? habit : text_nearest(name, names, count);
     const char *ending = strrchr(name, '.');
     if (ending != NULL && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0)) {
         err_set(err, ERR_USAGE, "'%s' is no command; did you mean 'jointplay run %s'?", name, name);

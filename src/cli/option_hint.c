@@ -1,7 +1,8 @@
 // Finds the option that was meant by one that does not exist.
 //
 // A key of the case is often given as if it were an option: by its last part, or whole. An exact
-// key goes before an option that is only like it, and that before a key that is.
+// key goes before an option that is only like it, that before the same option of another command,
+// and that before a key that is like it.
 #include "cli/option_hint.h"
 
 #include "casefile/schema.h"
@@ -58,7 +59,8 @@ typedef struct Habit {
     const char *ours;
 } Habit;
 
-static const Habit HABITS[] = {{"format", "json"}, {"output", "out"}, {"all", "full"}};
+static const Habit HABITS[] = {
+    {"format", "json"}, {"output", "out"}, {"all", "full"}, {"tolerance", "error"}};
 
 // The option that stands for another program's, where the command has it; else NULL.
 static const char *habitual_option(const struct argp_option *options, const char *name)
@@ -87,6 +89,24 @@ static bool write_keys(const char *name, const char *value, Text *text)
     return count > 0;
 }
 
+// The command that has an option which others are often given; NULL where there is none.
+static const char *find_owner(const char *name)
+{
+    static const Habit OWNERS[] = {
+        {"error", "tune"},     {"max-cost", "tune"},   {"at-step", "tune"},  {"code", "tune"},
+        {"sdf", "tune"},       {"mjcf", "tune"},       {"erp", "map"},       {"cfm", "map"},
+        {"penalty", "map"},    {"schemes", "compare"}, {"series", "run"},    {"contacts", "run"},
+        {"columns", "run"},    {"bless", "check"},     {"quick", "check"},   {"junit", "check"},
+        {"markdown", "check"}, {"shard", "study"},     {"dry-run", "study"}, {"kind", "new"},
+    };
+    for (size_t i = 0; i < sizeof OWNERS / sizeof *OWNERS; i++) {
+        if (strcmp(OWNERS[i].theirs, name) == 0) {
+            return OWNERS[i].ours;
+        }
+    }
+    return NULL;
+}
+
 void option_hint_write(const struct argp_option *options, const char *word, Text *text)
 {
     char name[NAME_SIZE];
@@ -107,6 +127,11 @@ void option_hint_write(const struct argp_option *options, const char *word, Text
     const char *option = nearest_option(options, name);
     if (option != NULL) {
         text_append(text, "'--%s'", option);
+        return;
+    }
+    const char *owner = dashes == 2 ? find_owner(name) : NULL;
+    if (owner != NULL) {
+        text_append(text, "'jointplay %s --%s'", owner, name);
         return;
     }
     const char *part = takes_keys ? nearest_part(name) : NULL;

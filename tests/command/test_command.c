@@ -71,12 +71,18 @@ static void a_wrong_command_line_is_answered_with_what_may_be_meant(void **state
     program_fails_usage(program, "", "no command given");
     program_fails_usage(program, "-", "no command given");
     program_fails_usage(program, "rnu", "unknown command 'rnu'; did you mean 'run'?");
-    program_fails_usage(program, "simulate", "'jointplay help' lists the commands");
+    program_fails_usage(program, "rn", "did you mean 'run'?");
+    program_fails_usage(program, "simulate", "did you mean 'jointplay run'?");
+    program_fails_usage(program, "frobnicate", "'jointplay help' lists the commands");
     program_fails_usage(program, "--verison", "did you mean '--version'?");
     program_fails_usage(program, "help papre", "did you mean 'paper'?");
     program_fails_usage(program, "help run paper", "one topic at a time");
     program_fails_usage(program, "run", "no case given");
     program_fails_usage(program, "run --stepp 1us a.yaml", "did you mean '--step'?");
+    // an option of another command
+    program_fails_usage(program, "run a.yaml --error 1e-3",
+                        "did you mean 'jointplay tune --error'?");
+    program_fails_usage(program, "tune a.yaml --tolerance 1e-3", "did you mean '--error'?");
     // a key of the case, given as if it were an option
     program_fails_usage(program, "run a.yaml --tolerance=1e-5",
                         "unknown option '--tolerance'; did you mean '--set run.tolerance=1e-5' or "
@@ -116,6 +122,44 @@ static void a_wrong_setting_is_a_wrong_command_line(void **state)
     program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --backend odee",
                         "did you mean 'ode'?");
     program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --step 5kg", "5kg");
+    // a key or a joint without what stands above it
+    program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --set hole=9mm",
+                        "unknown key 'hole'; the key is joints.NAME.hole");
+    program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --set friction=0.1",
+                        "the key is joints.NAME.friction or contact.friction");
+    program_fails_usage(program, "run $cases/paper/ideal-nominal.yaml --set crank.mass=1kg",
+                        "the key is four-bar.crank");
+    program_fails_usage(program, "run $cases/mechanisms/pendulum.yaml --set pivot.backlash=1deg",
+                        "the key is joints.pivot");
+}
+
+static void a_file_that_is_missing_is_answered_with_one_that_is_there(void **state)
+{
+    Program *program = *state;
+    program_run(program, "run $cases/paper/ideal-nomnal.yaml");
+    assert_int_equal(program->status, 5);
+    assert_says(program->errors, "No such file or directory; did you mean '");
+    assert_says(program->errors, "/paper/ideal-nominal.yaml'?");
+    // the control: nothing is near
+    program_run(program, "run $cases/paper/my-linkage.yaml");
+    assert_int_equal(program->status, 5);
+    assert_null(strstr(program->errors, "did you mean"));
+}
+
+static void one_group_of_keys_is_described_alone(void **state)
+{
+    Program *program = *state;
+    program_run(program, "help case joints");
+    assert_int_equal(program->status, 0);
+    assert_int_equal(strncmp(program->output, "joints\n", 7), 0);
+    assert_says(program->output, "joints.<joint>.radial-clearance");
+    assert_null(strstr(program->output, "run.step"));
+    program_run(program, "help joints");
+    assert_says(program->output, "joints.<joint>.radial-clearance");
+    program_run(program, "help case expect");
+    assert_says(program->output, "A limit is one of");
+    program_fails_usage(program, "help case jonts", "did you mean 'joints'?");
+    program_fails_usage(program, "help case nothing", "allowed: four-bar, ");
 }
 
 static void the_paper_is_recomputed(void **state)
@@ -142,6 +186,8 @@ int main(void)
         COMMAND_TEST(the_study_format_is_described_behind_the_options),
         COMMAND_TEST(a_wrong_command_line_is_answered_with_what_may_be_meant),
         COMMAND_TEST(a_wrong_setting_is_a_wrong_command_line),
+        COMMAND_TEST(a_file_that_is_missing_is_answered_with_one_that_is_there),
+        COMMAND_TEST(one_group_of_keys_is_described_alone),
         COMMAND_TEST(the_paper_is_recomputed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

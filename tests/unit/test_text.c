@@ -80,6 +80,7 @@ static void the_nearest_word_is_found_and_a_far_one_is_not(void **state)
     assert_string_equal(text_nearest("rnu", commands, 3), "run");
     assert_string_equal(text_nearest("papre", commands, 3), "paper");
     assert_string_equal(text_nearest("hlep", commands, 3), "help");
+    assert_string_equal(text_nearest("rn", commands, 3), "run");
     assert_null(text_nearest("simulate", commands, 3));
     assert_null(text_nearest("xy", commands, 3));
     assert_null(text_nearest("run", commands, 0));
