@@ -16,6 +16,8 @@ enum { DEPTH_MAX = 8 }; // a case needs 4: document, group, link, list; a study 
 typedef struct Builder {
     yaml_parser_t parser;
     const Source *source;
+    const char *text; // that is parsed
+    size_t size;
     Err *err;
 } Builder;
 
@@ -24,19 +26,77 @@ static Span event_span(const yaml_event_t *event)
     return (Span){event->start_mark.index, event->end_mark.index};
 }
 
+// What libyaml says of the commonest slips, and what a user is told instead. Without words of ours
+// its own stay.
+typedef struct SyntaxSlip {
+    const char *problem; // part of libyaml's
+    const char *context; // part of its context; "" any
+    const char *words;   // NULL: its own
+    const char *allowed;
+    bool is_at_start; // the place is where what is not closed begins
+} SyntaxSlip;
+
+static const char TAB[] = "\t"; // in place of libyaml's problem, which is the same of any character
+
+static const SyntaxSlip SYNTAX_SLIPS[] = {
+    {TAB, "", "a tab", "blanks, where a line is indented", false},
+    {"cannot start any token", "", NULL, "quotes around text that begins with a special character",
+     false},
+    {"mapping values are not allowed", "", "a second colon, or a line that is indented too far",
+     "quotes around text that holds a colon, and keys of one mapping that begin in one column",
+     false},
+    {"did not find expected key", "block mapping", "a line is indented unlike those beside it",
+     "keys of one mapping that begin in one column", false},
+    {"unexpected end of stream", "quoted scalar", "the quote is not closed",
+     "a quote of the same kind behind the text", true},
+    {"did not find expected ',' or '}'", "flow mapping",
+     "the { is not closed, or a comma is missing", "a comma between keys, and } behind the last",
+     true},
+    {"did not find expected ',' or ']'", "flow sequence",
+     "the [ is not closed, or a comma is missing", "a comma between values, and ] behind the last",
+     true},
+};
+
+// Whether a character of the text that is parsed is a tab.
+static bool is_tab_at(const Builder *builder, size_t character)
+{
+    size_t byte = 0;
+    for (size_t i = 0; byte < builder->size; byte++) {
+        // the bytes that continue a character of UTF-8 are no characters
+        if (((unsigned char)builder->text[byte] & 0xC0) != 0x80 && i++ == character) {
+            return builder->text[byte] == '\t';
+        }
+    }
+    return false;
+}
+
+static const SyntaxSlip *find_slip(const char *context, const char *problem)
+{
+    for (size_t i = 0; i < sizeof SYNTAX_SLIPS / sizeof *SYNTAX_SLIPS; i++) {
+        const SyntaxSlip *slip = &SYNTAX_SLIPS[i];
+        if (strstr(problem, slip->problem) != NULL && strstr(context, slip->context) != NULL) {
+            return slip;
+        }
+    }
+    return NULL;
+}
+
 static bool refuse_syntax(const Builder *builder)
 {
     const yaml_parser_t *parser = &builder->parser;
     const char *context = parser->context != NULL ? parser->context : "";
     const char *problem = parser->problem != NULL ? parser->problem : "unknown problem";
-    const Span span = {parser->problem_mark.index, parser->problem_mark.index + 1};
-    const char *hint = NULL;
-    if (strstr(problem, "cannot start any token") != NULL) {
-        hint = "blanks for indentation (no tabs), and quotes around text that begins with a "
-               "special character";
+    const SyntaxSlip *slip =
+        find_slip(context, is_tab_at(builder, parser->problem_mark.index) ? TAB : problem);
+    const bool is_at_start = slip != NULL && slip->is_at_start;
+    const size_t at = is_at_start ? parser->context_mark.index : parser->problem_mark.index;
+    const Span span = {at, at + 1};
+    if (slip != NULL && slip->words != NULL) {
+        return source_error(builder->source, span, slip->allowed, builder->err,
+                            "not valid YAML: %s", slip->words);
     }
-    return source_error(builder->source, span, hint, builder->err, "not valid YAML: %s%s%s",
-                        context, context[0] != '\0' ? ": " : "", problem);
+    return source_error(builder->source, span, slip != NULL ? slip->allowed : NULL, builder->err,
+                        "not valid YAML: %s%s%s", context, context[0] != '\0' ? ": " : "", problem);
 }
 
 static bool next_event(Builder *builder, yaml_event_t *event)
@@ -199,7 +259,7 @@ done:
 
 bool document_parse(const Source *source, const char *text, size_t size, Node **root, Err *err)
 {
-    Builder builder = {.source = source, .err = err};
+    Builder builder = {.source = source, .text = text, .size = size, .err = err};
     const int is_initialised = yaml_parser_initialize(&builder.parser);
     assert(is_initialised == 1);
     yaml_parser_set_encoding(&builder.parser, YAML_UTF8_ENCODING);

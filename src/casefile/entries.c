@@ -112,6 +112,109 @@ bool entries_refuse_name(const Entries *entries, const Source *source, SchemaFam
     return false;
 }
 
+// What a key is called elsewhere, the group that it was sought in (NULL: any), and what a case has
+// for it.
+typedef struct Habit {
+    const char *group;
+    const char *theirs;
+    const char *ours;
+} Habit;
+
+static const char KINDS[] =
+    "the keys make the kind of a joint: none an ideal pivot, hole and pin one with play, along one "
+    "that slides, gears a pair of gears (of racks there is none)";
+static const char PLAY[] =
+    "the key is radial-clearance, half of the diametral clearance (hole - pin)";
+static const char RACK[] =
+    "there are no racks; a gear of very many teeth, whose pivot is far away, moves nearly straight";
+
+static const Habit HABITS[] = {
+    {NULL, "clearance", PLAY},
+    {NULL, "diametral-clearance", PLAY},
+    {NULL, "play", PLAY},
+    {"joints.*", "kind", KINDS},
+    {"joints.*", "type", KINDS},
+    {"joints.*", "rack", RACK},
+    {"joints.*", "pinion", RACK},
+    {"joints.*", "rack-and-pinion", RACK},
+    {"joints.*", "diameter", "the keys are hole and pin, both diameters"},
+    {"joints.*", "hole-diameter", "the key is hole, a diameter"},
+    {"joints.*", "pin-diameter", "the key is pin, a diameter"},
+    {"bodies.*", "length", "a body's size follows from its joints; inertia is its own"},
+    {"bodies.*", "position", "the key is at, of the centre of mass"},
+    {"bodies.*", "centre", "the key is at, of the centre of mass"},
+    {NULL, "mu", "the key is contact.friction"},
+    {NULL, "cor", "the key is contact.restitution"},
+    {NULL, "moment-of-inertia", "the key is inertia"},
+    {NULL, "dt", "the key is run.step"},
+    {NULL, "timestep", "the key is run.step"},
+    {NULL, "time", "the key is run.revolutions, or run.duration without a drive of constant speed"},
+    {"drive", "rpm", "the key is speed, such as speed: 300 rpm"},
+    {"", "links", "the key is bodies"},
+    {"", "motor", "the key is drive"},
+    {"", "4-bar", "the key is four-bar"},
+};
+
+enum { ELSEWHERE_MOST = 3 }; // paths that a message names
+
+static const char *find_habit(const char *group, const char *name)
+{
+    for (size_t i = 0; i < sizeof HABITS / sizeof *HABITS; i++) {
+        const Habit *habit = &HABITS[i];
+        const bool is_here = habit->group == NULL || strcmp(habit->group, group) == 0;
+        if (is_here && strcmp(habit->theirs, name) == 0) {
+            return habit->ours;
+        }
+    }
+    return NULL;
+}
+
+// The end of the part of a path that is the name; NULL where none is.
+static const char *find_part(const char *path, const char *name)
+{
+    const size_t length = strlen(name);
+    for (const char *part = path; part != NULL; part = strchr(part, '.')) {
+        part += *part == '.' ? 1 : 0;
+        if (strncmp(part, name, length) == 0 && (part[length] == '.' || part[length] == '\0')) {
+            return part + length;
+        }
+    }
+    return NULL;
+}
+
+// Appends where in the case a body or joint of that name stands; else where keys of that name may,
+// groups of keys among them.
+static void append_elsewhere(const Entries *entries, const char *name, Text *text)
+{
+    for (SchemaFamily family = SCHEMA_BODY; family < SCHEMA_FAMILY_COUNT; family++) {
+        if (entries->form == SCHEMA_LONG || family == SCHEMA_JOINT) {
+            if (entries_number(entries, family, name) >= 0) {
+                text_append(text, "the key is %s.%s", SCHEMA_FAMILIES[family].group, name);
+                return;
+            }
+        }
+    }
+
+    char last[SCHEMA_PATH_SIZE] = "";
+    size_t count = 0;
+    for (size_t i = 0; i < SCHEMA_ROW_COUNT && count <= ELSEWHERE_MOST; i++) {
+        char path[SCHEMA_PATH_SIZE];
+        schema_path(&SCHEMA_ROWS[i], "NAME", path);
+        const char *end = find_part(path, name);
+        if (end == NULL || !schema_is_of_form(&SCHEMA_ROWS[i], entries->form)) {
+            continue;
+        }
+        path[end - path] = '\0';
+        if (strcmp(path, last) == 0) {
+            continue;
+        }
+        text_copy(last, sizeof last, path);
+        text_append(text, "%s%s", count == 0 ? "the key is " : " or ",
+                    count == ELSEWHERE_MOST ? "another" : path);
+        count++;
+    }
+}
+
 // Refuses what is no key here: of the other form, or of none.
 static bool refuse_key(const Walk *walk, const Position *below, const char *group, const char *name,
                        Span span)
@@ -135,7 +238,16 @@ static bool refuse_key(const Walk *walk, const Position *below, const char *grou
     if (strpbrk(name, ".*") == NULL && is_of_another) {
         snprintf(what, sizeof what, "key in a case with %s:", schema_form(form)->key);
     }
-    return keys_refuse(walk->source, span, what, name, choices, count, walk->err);
+    Text elsewhere;
+    text_init(&elsewhere);
+    const char *habit = find_habit(group, name);
+    if (habit == NULL && !is_of_another && strpbrk(name, ".*") == NULL) {
+        append_elsewhere(walk->entries, name, &elsewhere);
+    }
+    const KeysHint hint = {habit != NULL ? habit : elsewhere.data, habit == NULL};
+    keys_refuse_knowing(walk->source, span, what, name, choices, count, hint, walk->err);
+    text_finish(&elsewhere);
+    return false;
 }
 
 // The number of the member of that name; where the case names the family, a new name gets the next.

@@ -18,22 +18,62 @@ size_t keys_text_start(const Node *node)
     return span.start + (span.end - span.start > length ? 1 : 0);
 }
 
+// 14,5 mm inside braces is a value 14 and a key 5 mm.
+static bool is_decimals(const char *name)
+{
+    const char *rest = name + strspn(name, "0123456789");
+    return rest != name && *rest != '-' && *rest != '_';
+}
+
+// The choice that a key begins with whose colon was forgotten; NULL where there is none.
+static const char *find_begun(const char *name, const char *const *choices, size_t count)
+{
+    const size_t length = strcspn(name, " ");
+    for (size_t i = 0; i < count && name[length] == ' '; i++) {
+        if (strncmp(name, choices[i], length) == 0 && choices[i][length] == '\0') {
+            return choices[i];
+        }
+    }
+    return NULL;
+}
+
+// What is known of a wrong word, as the end of a sentence.
+static void append_hint(const char *name, const char *const *choices, size_t count, KeysHint hint,
+                        Text *text)
+{
+    const char *nearest = text_nearest(name, choices, count);
+    const char *begun = find_begun(name, choices, count);
+    if (hint.words[0] != '\0' && (nearest == NULL || !hint.is_guess)) {
+        text_append(text, "; %s", hint.words);
+    } else if (begun != NULL) {
+        text_append(text, "; a colon is missing behind '%s'", begun);
+    } else if (nearest != NULL) {
+        text_append(text, "; did you mean '%s'?", nearest);
+    } else if (is_decimals(name)) {
+        text_append(text, "; numbers have a decimal point");
+    }
+}
+
 bool keys_refuse(const Source *source, Span span, const char *what, const char *name,
                  const char *const *choices, size_t count, Err *err)
 {
+    const KeysHint nothing = {"", true};
+    return keys_refuse_knowing(source, span, what, name, choices, count, nothing, err);
+}
+
+bool keys_refuse_knowing(const Source *source, Span span, const char *what, const char *name,
+                         const char *const *choices, size_t count, KeysHint hint, Err *err)
+{
     Text allowed;
+    Text words;
     text_init(&allowed);
+    text_init(&words);
     for (size_t i = 0; i < count; i++) {
         text_append(&allowed, "%s%s", i > 0 ? ", " : "", choices[i]);
     }
-    const char *nearest = text_nearest(name, choices, count);
-    // 14,5 mm inside braces is a value 14 and a key 5 mm
-    const bool is_number = nearest == NULL && name[0] >= '0' && name[0] <= '9';
-    source_error(source, span, allowed.data, err, "unknown %s '%.40s'%s%s%s", what, name,
-                 nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                 nearest != NULL ? "'?"
-                 : is_number     ? "; numbers have a decimal point"
-                                 : "");
+    append_hint(name, choices, count, hint, &words);
+    source_error(source, span, allowed.data, err, "unknown %s '%.40s'%s", what, name, words.data);
+    text_finish(&words);
     text_finish(&allowed);
     return false;
 }
@@ -45,7 +85,7 @@ bool keys_check_map(const Source *source, const Node *node, Err *err)
     }
     const bool is_missing = node->kind == NODE_SCALAR && node->text[0] == '\0';
     return source_error(source, is_missing ? keys_span(node) : node->span,
-                        "key: value, on lines of their own or as {key: value}", err,
+                        "key: value, indented on lines of their own, or as {key: value}", err,
                         "expected a mapping of keys here, found %s",
                         is_missing                ? "nothing"
                         : node->kind == NODE_LIST ? "a list"

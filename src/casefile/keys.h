@@ -14,6 +14,15 @@ size_t keys_text_start(const Node *node);
 bool keys_refuse(const Source *source, Span span, const char *what, const char *name,
                  const char *const *choices, size_t count, Err *err);
 
+// The same with what is known of the word: said in place of the nearest choice, or, with
+// `is_guess`, only where no choice is near. Empty: nothing.
+typedef struct KeysHint {
+    const char *words;
+    bool is_guess;
+} KeysHint;
+bool keys_refuse_knowing(const Source *source, Span span, const char *what, const char *name,
+                         const char *const *choices, size_t count, KeysHint hint, Err *err);
+
 // Whether a node is a mapping, and whether the key of one of its values stands there for the first
 // time.
 bool keys_check_map(const Source *source, const Node *node, Err *err);

@@ -170,10 +170,15 @@ static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *er
     for (int i = 0; i < 2; i++) {
         pivots[i] = &linkage->joints[joint->gear.pivots[i]];
         if (pivots[i]->kind != JOINT_REVOLUTE) {
+            // a rack is what is meant by teeth on a body that slides
+            const bool is_rack = pivots[i]->kind == JOINT_PRISMATIC;
             return entries_refuse(gears, err,
-                                  "gears turn about ideal pivots, and '%s' is none\nallowed: two "
-                                  "pivots such as [pinion, wheel]",
-                                  pivots[i]->name);
+                                  "gears turn about ideal pivots, and '%s' is none%s\nallowed: two "
+                                  "pivots such as [pinion, wheel]%s",
+                                  pivots[i]->name, is_rack ? "; there are no racks" : "",
+                                  is_rack ? "; a gear of very many teeth, whose pivot is far away, "
+                                            "moves nearly straight"
+                                          : "");
         }
     }
     const int carrier = shared_body(pivots[0], pivots[1]);
