@@ -456,6 +456,72 @@ static void nothing_half_written_stays_behind(void **state)
     assert_int_equal(system(command), 0);
 }
 
+// Runs the linkage with some of its words replaced and asks for a warning, or for silence.
+static void expect_doubt(Program *program, const char *from, const char *to, const char *said)
+{
+    static const char CASE[] =
+        "bodies:\n"
+        "  arm:   {mass: 100 g, inertia: 15 kg mm^2,   at: [0 mm, 20 mm]}\n"
+        "  link:  {mass: 200 g, inertia: 430 kg mm^2,  at: [80 mm, 40 mm]}\n"
+        "  lever: {mass: 400 g, inertia: 1200 kg mm^2, at: [160 mm, 20 mm]}\n"
+        "joints:\n"
+        "  motor: {between: [ground, arm], at: [0 mm, 0 mm]}\n"
+        "  first: {between: [arm, link], at: [0 mm, 40 mm]}\n"
+        "  second: {between: [link, lever], at: [160 mm, 40 mm], hole: 10.06 mm, pin: 10 mm,\n"
+        "           width: 12 mm}\n"
+        "  pivot: {between: [ground, lever], at: [160 mm, -40 mm]}\n"
+        "drive: {joint: motor, speed: 300 rpm}\n"
+        "gravity: 9.81 m/s^2\n"
+        "run: {revolutions: 0.06, samples: 200, start: centred, backends: [reference]}\n";
+    const char *found = strstr(CASE, from);
+    assert_non_null(found);
+    char path[PROGRAM_PATH_SIZE];
+    program_path(program, "doubt.yaml", path);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "%.*s%s%s", (int)(found - CASE), CASE, to, found + strlen(from));
+    fclose(file);
+    program_run(program, "run doubt.yaml --uncertified");
+    assert_int_equal(program->status, 0);
+    if (said == NULL) {
+        assert_string_equal(program->errors, "");
+    } else {
+        assert_says(program->errors, said);
+    }
+}
+
+static void what_nobody_can_have_meant_is_warned_of(void **state)
+{
+    Program *program = *state;
+    expect_doubt(program, "gravity", "gravity", NULL);
+    expect_doubt(program, "  pivot: {between: [ground, lever], at: [160 mm, -40 mm]}\n", "",
+                 "the mechanism can move in 3 ways (play not counted), of which 1 is driven and 0 "
+                 "held");
+    expect_doubt(program, "[80 mm, 40 mm]", "[80 cm, 40 mm]",
+                 "the centre of mass of 'link' is 0.64 m from its nearest joint, 4 times the "
+                 "distance of its joints");
+    expect_doubt(program, "400 g", "400 kg",
+                 "the mass of 'lever' is 400 kg, that of the bodies it is joined to 0.2 to 0.2 kg, "
+                 "a ratio of 2e+03");
+    expect_doubt(program, "9.81", "-9.81", "gravity is 9.81 m/s^2 along +y, which is upward");
+    expect_doubt(program, "samples: 200", "samples: 19",
+                 "the drive's torque is taken at samples, and run.samples is 19");
+    // the controls: a lever of 40 kg, a counterweight, gravity to the side, and a pendulum on what
+    // is driven, which a pivot would not hold
+    expect_doubt(program, "400 g", "40 kg", NULL);
+    expect_doubt(program, "at: [0 mm, 20 mm]", "at: [0 mm, -40 mm]", NULL);
+    expect_doubt(program, "9.81 m/s^2", "[9.81 m/s^2, 0 m/s^2]", NULL);
+    expect_doubt(program, "gravity:",
+                 "springs: {hold: {between: [ground, lever], at-a: [260 mm, 40 mm],\n"
+                 "  at-b: [160 mm, 40 mm], stiffness: 1 N/mm}}\ngravity:",
+                 NULL);
+    program_run(program, "run $cases/space/overhung-pin.yaml --uncertified --backend reference");
+    assert_string_equal(program->errors, "");
+    program_run(program, "run $cases/mechanisms/pendulum.yaml --set space=spatial "
+                         "--uncertified --backend reference");
+    assert_says(program->errors, "nothing can tilt in this case");
+}
+
 static void settings_without_effect_are_said_a_line_each(void **state)
 {
     Program *program = *state;
@@ -592,6 +658,7 @@ int main(void)
         COMMAND_TEST(backlash_under_a_torque_that_turns_back_is_a_loop),
         COMMAND_TEST(a_full_disk_ends_with_status_5),
         COMMAND_TEST(nothing_half_written_stays_behind),
+        COMMAND_TEST(what_nobody_can_have_meant_is_warned_of),
         COMMAND_TEST(settings_without_effect_are_said_a_line_each),
         COMMAND_TEST(a_stack_up_that_fails_says_so),
         COMMAND_TEST(a_reader_that_goes_away_is_no_crash),
