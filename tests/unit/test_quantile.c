@@ -7,6 +7,7 @@
 
 #include "base/lcg.h"
 #include "base/quantile.h"
+#include "base/sorted.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -100,6 +101,23 @@ static void a_share_has_its_interval(void **state)
     assert_close(none.high, 1.0 - pow(0.025, 1.0 / 64.0), 1e-9);
 }
 
+// As R gives them, quantile(c(1, 2, 4, 8), ...) of type 7.
+static void quantiles_lie_between_the_values_beside_them(void **state)
+{
+    (void)state;
+    const double values[] = {1.0, 2.0, 4.0, 8.0};
+    assert_close(sorted_quantile(values, 4, 0.05), 1.15, 1e-14);
+    assert_close(sorted_quantile(values, 4, 0.5), 3.0, 1e-14);
+    assert_close(sorted_quantile(values, 4, 0.95), 7.4, 1e-14);
+    assert_close(sorted_quantile(values, 4, 0.0), 1.0, 0.0);
+    assert_close(sorted_quantile(values, 4, 1.0), 8.0, 0.0);
+    assert_close(sorted_quantile(values, 1, 0.95), 1.0, 0.0);
+    // of infinite ones no NaN
+    const double open[] = {1.0, INFINITY, INFINITY};
+    assert_close(sorted_quantile(open, 2, 0.0), 1.0, 0.0);
+    assert_true(isinf(sorted_quantile(open, 3, 0.95)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -107,6 +125,7 @@ int main(void)
         cmocka_unit_test(intervals_of_dependent_numbers_hold_it_too),
         cmocka_unit_test(too_few_numbers_do_not_bound_it),
         cmocka_unit_test(a_share_has_its_interval),
+        cmocka_unit_test(quantiles_lie_between_the_values_beside_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -86,8 +86,8 @@ bool store_reasons(Store *store, size_t most, StoreReason *reasons, size_t *coun
 // `most` + 1 where there are more.
 bool store_values(Store *store, size_t column, size_t most, Cell *values, size_t *count, Err *err);
 
-// The distribution of a column of numbers over the successful runs that have a number there. Each
-// quantile is a value that occurs: that at rank ceil(share * count).
+// The distribution of a column of numbers over the successful runs that have a number there, with
+// quantiles as of sorted_quantile.
 typedef struct StoreSpread {
     uint64_t count;
     double least; // NAN where there is none, as are the others

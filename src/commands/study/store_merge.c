@@ -136,22 +136,15 @@ static bool prepare_values(Store *store, size_t column, size_t count, sqlite3_st
     return is_ready;
 }
 
-// The rank, from 1, of a share of `count` values.
-static uint64_t store_merge_rank_of(double share, uint64_t count)
-{
-    const double rank = ceil(share * (double)count);
-    return rank < 1.0 ? 1 : (uint64_t)rank;
-}
-
 static StoreSpread spread_of(double *values, uint64_t count)
 {
     StoreSpread spread = {count, NAN, NAN, NAN, NAN, NAN};
     if (count > 0) {
         sorted_make(values, count);
         spread.least = values[0];
-        spread.low = values[store_merge_rank_of(0.05, count) - 1];
-        spread.median = values[store_merge_rank_of(0.5, count) - 1];
-        spread.high = values[store_merge_rank_of(0.95, count) - 1];
+        spread.low = sorted_quantile(values, count, 0.05);
+        spread.median = sorted_quantile(values, count, 0.5);
+        spread.high = sorted_quantile(values, count, 0.95);
         spread.most = values[count - 1];
     }
     return spread;

@@ -297,8 +297,10 @@ static void draw_quantile(const PlotPanel *panel, const StudyPoints *points, dou
                           const char *name)
 {
     static const PlotStyle STYLE = {"#555555", 1.2, 1.0, "5 4"};
-    const double rank = fmax(1.0, ceil(share * (double)points->count));
-    const double value = points->points[(size_t)rank - 1].x;
+    const SortedPlace place = sorted_place(points->count, share);
+    const StudyPoint *below = &points->points[place.below];
+    const StudyPoint *above = place.beyond > 0.0 ? below + 1 : below;
+    const double value = sorted_between(below->x, above->x, place.beyond);
     const double x[] = {value, value};
     const double y[] = {panel->y.low, panel->y.high};
     char words[64];
@@ -438,11 +440,13 @@ static void study_plot_choose_axes(const StudyPoints *points, const StudyWords *
     }
 }
 
-// A value of rank ceil(share * count) among those of a pile, which are in order.
+// A quantile of a pile, whose points are in order.
 static double quantile(const StudyPoints *points, size_t first, size_t end, double share)
 {
-    const double rank = fmax(1.0, ceil(share * (double)(end - first)));
-    return points->points[first + (size_t)rank - 1].y;
+    const SortedPlace place = sorted_place(end - first, share);
+    const StudyPoint *below = &points->points[first + place.below];
+    const StudyPoint *above = place.beyond > 0.0 ? below + 1 : below;
+    return sorted_between(below->y, above->y, place.beyond);
 }
 
 static void study_plot_draw_band(const PlotPanel *panel, const StudyPoints *points, size_t group)

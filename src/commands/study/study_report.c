@@ -295,8 +295,8 @@ bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
                                         {"most", "", TABLE_RIGHT}};
     Text section;
     text_init(&section);
-    Table *table = section_begin("Results of the complete runs", sizeof HEADS / sizeof *HEADS,
-                                 HEADS, style, &section);
+    Table *table = section_begin("Results of the complete runs (quantiles interpolated)",
+                                 sizeof HEADS / sizeof *HEADS, HEADS, style, &section);
     const Layout *layout = store_layout(store);
     StoreSpread spreads[RECORD_RESULT_MAX];
     const bool is_read =
