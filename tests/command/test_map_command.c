@@ -331,6 +331,15 @@ static void a_law_that_no_joint_can_have_is_said(void **state)
                         "hole");
 }
 
+static void what_turns_has_its_impact_in_rad_s(void **state)
+{
+    Program *program = *state;
+    program_run(program, "map $cases/mechanisms/servo-backlash.yaml -q --maps textbook");
+    assert_int_equal(program->status, 0);
+    assert_says(program->output, "  rad/s        us\n");
+    assert_null(strstr(program->output, "  m/s  "));
+}
+
 static void the_papers_penalty_stands_beside_its_approach(void **state)
 {
     Program *program = *state;
@@ -481,6 +490,8 @@ int main(void)
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(the_velocity_level_model_has_rows_of_its_own,
                                         program_set_up, program_tear_down),
+        cmocka_unit_test_setup_teardown(what_turns_has_its_impact_in_rad_s, program_set_up,
+                                        program_tear_down),
         cmocka_unit_test_setup_teardown(a_law_that_no_joint_can_have_is_said, program_set_up,
                                         program_tear_down),
         cmocka_unit_test_setup_teardown(the_papers_penalty_stands_beside_its_approach,

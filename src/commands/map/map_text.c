@@ -523,7 +523,19 @@ void mapping_text_write(const void *of, const Style *style, Text *text)
 
 enum { SCREEN_CONTACTS = 8, SCREEN_NAME = 20 };
 
-static void map_screen_row(const MappingReport *report, const MappingContact *contact, Table *table)
+// How many of the contacts shown turn their bodies: their speeds are rad/s.
+static size_t count_turning(const MappingReport *report)
+{
+    size_t turning = 0;
+    for (size_t i = 0; i < report->mapping->contact_count && i < SCREEN_CONTACTS; i++) {
+        const Joint *joint = mapping_report_joint(&report->mapping->contacts[i]);
+        turning += linkage_is_torsional(joint) ? 1 : 0;
+    }
+    return turning;
+}
+
+static void map_screen_row(const MappingReport *report, const MappingContact *contact,
+                           bool is_in_rad, Table *table)
 {
     const MappingSettings *settings = &report->mapping->settings;
     Text words;
@@ -531,7 +543,8 @@ static void map_screen_row(const MappingReport *report, const MappingContact *co
     text_append_shown(&words, mapping_report_joint(contact)->name);
     table_cell(table, "%.*s", SCREEN_NAME, words.data);
     text_finish(&words);
-    section_finite(table, "%.3g", contact->impact.speed);
+    const bool is_turning = linkage_is_torsional(mapping_report_joint(contact));
+    section_finite(table, is_turning && !is_in_rad ? "%.3g rad/s" : "%.3g", contact->impact.speed);
     for (size_t i = 0; i < settings->map_count; i++) {
         longest_cell(table, contact->largest_s[settings->maps[i]]);
     }
@@ -543,12 +556,15 @@ static void map_screen_table(const MappingReport *report, Text *text)
     const size_t count = report->mapping->contact_count;
     Table *table = table_create(2 + settings->map_count);
     table_head(table, 0, "joint", "", TABLE_LEFT | TABLE_KEY);
-    table_head(table, 1, "impact", "m/s", TABLE_RIGHT);
+    // of both kinds the column is in m/s, and what turns has its unit beside it
+    const bool is_in_rad =
+        count_turning(report) == (count < SCREEN_CONTACTS ? count : SCREEN_CONTACTS);
+    table_head(table, 1, "impact", is_in_rad ? "rad/s" : "m/s", TABLE_RIGHT);
     for (size_t i = 0; i < settings->map_count; i++) {
         table_head(table, 2 + i, OPTIONS_ODE_MAPS[settings->maps[i]], "us", TABLE_RIGHT);
     }
     for (size_t i = 0; i < count && i < SCREEN_CONTACTS; i++) {
-        map_screen_row(report, &report->mapping->contacts[i], table);
+        map_screen_row(report, &report->mapping->contacts[i], is_in_rad, table);
     }
     table_write(table, text);
     table_destroy(table);
