@@ -171,6 +171,11 @@ static void what_they_have_not_is_said(void **state)
     program_fails_usage(program, GEARS "--quiet --sdf none.sdf", gears);
     program_fails_usage(program, GEARS "--mjcf none.xml", gears);
     assert_true(is_absent(program, "none.sdf") && is_absent(program, "none.xml"));
+    // where no constants are stable a step is named that was not tried
+    program_run(program, "tune $cases/paper/impact-k66.yaml --at-step 200us -q --sdf none.sdf");
+    assert_says(program->errors, "no contact with constants that was tried is stable; try "
+                                 "--at-step 86us or less");
+    assert_true(is_absent(program, "none.sdf"));
     // what is not asked for by name is named, and the others are written
     program_run(program, GEARS "--quiet --out all");
     assert_int_equal(program->status, 0);
@@ -178,6 +183,8 @@ static void what_they_have_not_is_said(void **state)
     assert_says(program->errors, "jointplay: warning: not written: all/gear-pair-tune.xml (Gazebo");
     assert_true(is_absent(program, "all/gear-pair-tune.sdf"));
     assert_false(is_absent(program, "all/gear-pair-tune.json"));
+    // nor is offered what would be refused
+    assert_null(strstr(program->output, "--code"));
     program_run(program, GEARS "--full");
     assert_says(program->output, "As Gazebo SDF and MuJoCo MJCF There is none: Gazebo and MuJoCo");
     // flanks without a gap: ODE's stop has them, a range of MuJoCo has not

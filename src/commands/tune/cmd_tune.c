@@ -190,12 +190,9 @@ static TuneOptions tune_options_default(void)
 // What a program against libjointplay lacks for a scheme of ODE, or NULL.
 static const char *tune_options_program_lacks(const Scenario *scenario, const Scheme *scheme)
 {
-    const Torque *torque = &scenario->linkage.torque;
-    if (scenario->linkage.load_count > 0 || torque->slope > 0.0 || torque->stiffness > 0.0) {
-        return "programs have no loads, motors or soft drives";
-    }
-    if (scenario->linkage.further_count > 0 || scenario->linkage.driver.has_angles) {
-        return "programs have one drive, of a speed";
+    const char *lacks = tune_export_lacks_case(scenario);
+    if (lacks != NULL) {
+        return lacks;
     }
     Scenario setting = *scenario;
     scheme_apply(scheme, scenario->run.step, &setting);

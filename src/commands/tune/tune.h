@@ -103,6 +103,8 @@ typedef struct TuneContact {
     double speed;       // m/s, of the hardest impact there
     double mass;        // kg, effective along the normal there
     double restitution; // 1, that the law delivers; NAN of a viscous damper
+    // what is said where no constants are stable
+    char unstable[LADDER_MESSAGE_SIZE];
 } TuneContact;
 
 // The reference as a way without ODE.

@@ -469,9 +469,24 @@ static bool tune_export_choose_step(Scenario *scenario, Err *err)
     return is_chosen;
 }
 
+const char *tune_export_lacks_case(const Scenario *scenario)
+{
+    const Torque *torque = &scenario->linkage.torque;
+    if (scenario->linkage.load_count > 0 || torque->slope > 0.0 || torque->stiffness > 0.0) {
+        return "programs have no loads, motors or soft drives";
+    }
+    const bool has_one = scenario->linkage.further_count == 0;
+    return has_one && !scenario->linkage.driver.has_angles ? NULL
+                                                           : "programs have one drive, of a speed";
+}
+
 // Whether the library steps as the setting of a trial does; in words why it does not.
 static const char *lacks_of(const TuneReport *report, const TuneTrial *trial)
 {
+    const char *lacks = tune_export_lacks_case(report->scenario);
+    if (lacks != NULL) {
+        return lacks;
+    }
     Scenario scenario = *report->scenario;
     tune_apply(&report->tune->schemes[trial->scheme], trial->value, &scenario);
     if (scenario.run.step == 0.0) {
@@ -485,6 +500,12 @@ const char *tune_export_lacks(const TuneReport *report)
 {
     const TuneTrial *trial = tune_export_trial(report);
     return trial != NULL ? lacks_of(report, trial) : NULL;
+}
+
+bool tune_export_is_writable(const TuneReport *report)
+{
+    return !report->scenario->linkage.is_spatial && tune_export_trial(report) != NULL &&
+           tune_export_lacks(report) == NULL;
 }
 
 // In order of cost, before the place of the first that costs more.
@@ -670,8 +691,10 @@ static void tune_export_write_loop(const TuneReport *report, const Style *style,
     if (tune_snippet_write(report, plain, &lines)) {
         append_indented(lines.data, text);
     } else {
-        text_append(text, "  The map needs more than a few lines; --schemes direct/plain/corrected "
-                          "--code FILE.c has them all.\n");
+        text_append(text, "  The map needs more than a few lines%s.\n",
+                    tune_export_is_writable(report)
+                        ? "; --schemes direct/plain/corrected --code FILE.c has them all"
+                        : "");
     }
     text_finish(&lines);
 }
@@ -733,7 +756,7 @@ static void write_gazebo(const TuneReport *report, const Style *style, Text *tex
     TuneGazebo gazebo;
     text_append(text, "\n%sAs Gazebo SDF%s\n\n", style->heading, style->end);
     if (!tune_gazebo_find(tune, &gazebo)) {
-        text_append(text, "  No step that was tried is stable with constants.\n");
+        text_append(text, "  There is none: %s.\n", tune_linear_lacks(report->scenario, tune));
         return;
     }
     if (!isfinite(tune->target)) {

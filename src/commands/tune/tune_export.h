@@ -18,6 +18,12 @@ bool tune_export_code(const TuneReport *report, Text *text, Err *err);
 // Why there is no program of that setting against libjointplay; NULL where there is one.
 const char *tune_export_lacks(const TuneReport *report);
 
+// Why there is none of any setting of a case in the plane, or NULL.
+const char *tune_export_lacks_case(const Scenario *scenario);
+
+// Whether --code would write a program: there is a setting, in the plane, that the library has.
+bool tune_export_is_writable(const TuneReport *report);
+
 // The settings, by the numbers of their trials, with which a program could be written: those that
 // meet the error, the cheapest first, or else the one to hand on. Returns how many there are.
 size_t tune_export_trials(const TuneReport *report, int trials[SCHEME_MAX]);

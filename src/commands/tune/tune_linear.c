@@ -20,6 +20,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // A joint with stops or backlash in Gazebo and MuJoCo.
@@ -383,7 +384,7 @@ const char *tune_linear_lacks(const Scenario *scenario, const Tune *tune)
 {
     const char *lacks = tune_linear_lacks_case(scenario);
     return lacks != NULL            ? lacks
-           : tune->contact.is_known ? "no contact with constants that was tried is stable"
+           : tune->contact.is_known ? tune->contact.unstable
                                     : "nothing touches in a joint with play";
 }
 
@@ -473,6 +474,27 @@ static void take_linear(void *tune, size_t number, const LadderRun *run)
     linear->error = tune_error(tune, run, linear->reason);
 }
 
+// What is said where none is stable. The step at which one would be is not known: between 1 and 20
+// times sqrt(m / k) was measured. That of the softest is named where it was not tried.
+static void say_unstable(Tune *tune)
+{
+    TuneContact *contact = &tune->contact;
+    double softest = INFINITY;
+    double shortest = INFINITY;
+    for (size_t i = 0; i < tune->linear_count; i++) {
+        softest = fmin(softest, tune->linears[i].stiffness);
+        shortest = fmin(shortest, tune->linears[i].step_s);
+    }
+    const double step_s = sqrt(contact->mass / softest);
+    const int length = snprintf(contact->unstable, sizeof contact->unstable,
+                                "no contact with constants that was tried is stable");
+    if (step_s > 0.0 && step_s < shortest) {
+        snprintf(contact->unstable + length, sizeof contact->unstable - (size_t)length,
+                 "; try --at-step %.2gus or less, sqrt(mass / kp) of the softest",
+                 step_s * UNITS_US);
+    }
+}
+
 bool tune_linear_run(const TuneSearch *search, Err *err)
 {
     Tune *tune = search->tune;
@@ -487,6 +509,7 @@ bool tune_linear_run(const TuneSearch *search, Err *err)
     }
     const bool is_held = tune->held_s > 0.0;
     list_linears(search, &law, tune);
+    say_unstable(tune);
     if (is_held && !tune->contact.is_limit && !tune_held_constants(search, err)) {
         return false;
     }

@@ -611,6 +611,7 @@ void tune_screen_write(const void *target, const Style *style, Text *text)
     }
     screen_truth(&tune->truth, text);
     settled_lines(report->scenario, text);
-    text_append(text,
-                "  --full: all settings tried; --code FILE.c writes the setting as a program\n");
+    text_append(text, "  --full: all settings tried%s\n",
+                tune_export_is_writable(report) ? "; --code FILE.c writes the setting as a program"
+                                                : "");
 }
