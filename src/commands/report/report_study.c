@@ -1,6 +1,7 @@
 // Writes a page of a study from its store.
 #include "commands/report/report_study.h"
 #include "base/memory.h"
+#include "base/sorted.h"
 #include "base/zeroed.h"
 #include "commands/report/report_draw.h"
 #include "commands/report/report_html.h"
@@ -409,7 +410,7 @@ static double *cell_medians(const Cells *cells, const Side *x, const Side *y)
             }
         }
         qsort(here, count, sizeof *here, compare_numbers);
-        medians[cell] = count > 0 ? here[(count - 1) / 2] : NAN;
+        medians[cell] = count > 0 ? sorted_median(here, count) : NAN;
     }
     free(here);
     return medians;
