@@ -14,6 +14,7 @@
 #include "run/drive_torque.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -238,9 +239,13 @@ static void say_masses(const Linkage *linkage)
         }
     }
     if (odd != NULL && largest >= UNEQUAL) {
+        char range[64] = "";
+        if (beside.lightest < beside.heaviest) {
+            snprintf(range, sizeof range, "%.4g to ", beside.lightest);
+        }
         output_say("jointplay: warning: the mass of '%s' is %.4g kg, that of the bodies it is "
-                   "joined to %.4g to %.4g kg, a ratio of %.3g or more; check the units\n",
-                   odd->name, odd->mass, beside.lightest, beside.heaviest, largest);
+                   "joined to %s%.4g kg, a ratio of %.3g; check the units\n",
+                   odd->name, odd->mass, range, beside.heaviest, largest);
     }
 }
 

@@ -489,7 +489,9 @@ double recorder_contact_force(const Recorder *recorder, size_t joint)
     const bool is_kept = recorder->scenario->run.keeps_contacts ||
                          of->spike_count < TRAJECTORY_SPIKE_MAX ||
                          spike->force_max > of->spikes[TRAJECTORY_SPIKE_MAX - 1].force_max;
-    return recorder->was_touching[joint] && is_kept ? spike->force_max : of->force_max.value;
+    // a contact may have been stronger before run.report-from than the joint has been since
+    return recorder->was_touching[joint] && is_kept ? fmin(spike->force_max, of->force_max.value)
+                                                    : of->force_max.value;
 }
 
 // Raises the extremes to those of a sample of a part or of all (NULL).

@@ -47,8 +47,8 @@ typedef enum RecorderSignal { RECORDER_OMEGA, RECORDER_ALPHA, RECORDER_FORCE } R
 const Extreme *recorder_extreme(const Recorder *recorder, RecorderSignal signal, size_t number,
                                 double sign);
 
-// The largest force so far of a joint's contact under way, where it is one that is reported; else
-// that of the joint.
+// The largest force so far of a joint's contact under way, where it is one that is reported, and at
+// most that of the joint; else that of the joint.
 double recorder_contact_force(const Recorder *recorder, size_t joint);
 
 // Takes in one value that lies beyond that, at a time in the last step.

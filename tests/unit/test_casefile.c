@@ -312,9 +312,9 @@ static void what_is_no_readable_file_says_so(void **state)
     refuse("no/such/case.yaml", NULL, ERR_FILE,
            "no/such/case.yaml: cannot be read: No such file or directory");
     refuse("tests/bad", NULL, ERR_CASE, "tests/bad: is a directory\nallowed: a case file");
-    refuse("/dev/zero", NULL, ERR_CASE,
-           "/dev/zero: too large for a case file\nallowed: at most 16777216 bytes");
-    refuse("/dev/null", NULL, ERR_CASE, "/dev/null: the file is empty\nallowed: a case in YAML");
+    refuse("/dev/zero", NULL, ERR_FILE,
+           "/dev/zero: cannot be read: it is no regular file");
+    refuse("/dev/null", NULL, ERR_FILE, "/dev/null: cannot be read: it is no regular file");
 }
 
 // The file has no blocks on the disk: its size alone is enough to refuse it.

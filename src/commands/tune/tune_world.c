@@ -713,12 +713,6 @@ double tune_world_every(const Scenario *scenario)
     return fmax(1.0, round(scenario_sample_time(scenario, 1) / scenario->run.step));
 }
 
-size_t tune_world_steps(const Scenario *scenario)
-{
-    // what is left of the last step is rounding
-    return (size_t)ceil(scenario_duration(scenario) / scenario->run.step - 1e-6);
-}
-
 static void write_includes(const Scenario *scenario, Text *text)
 {
     const double step_s = scenario->run.step;

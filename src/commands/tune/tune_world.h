@@ -5,6 +5,8 @@
 #include "model/linkage.h"
 #include "model/scenario.h"
 
+#include <math.h>
+
 // What programs that are written have in common.
 
 typedef struct TuneCode {
@@ -23,8 +25,11 @@ static const double TUNE_WORLD_ERP = 1.5;
 // How many steps of a program lie between two lines of its table, which are about a sample apart.
 double tune_world_every(const Scenario *scenario);
 
-// How many steps a program takes.
-size_t tune_world_steps(const Scenario *scenario);
+// How many steps a program takes: what is left of the last one is rounding.
+static inline size_t tune_world_steps(const Scenario *scenario)
+{
+    return (size_t)ceil(scenario_duration(scenario) / scenario->run.step - 1e-6);
+}
 
 // Why the library cannot do a case with its setting, as a sentence that ends without a full stop;
 // NULL where it can.
