@@ -43,20 +43,26 @@ bool status_line_is_due(StatusLine *line, double wall_s, double left_s)
     return true;
 }
 
-void status_line_append_left(Text *words, double left_s)
+void status_line_append_time(Text *words, double time_s)
 {
     const double minute = 60.0;
     const double hour = 3600.0;
-    if (!(left_s >= 0.5) || !isfinite(left_s)) {
-        return;
-    }
     // two digits: it is an estimate
-    if (left_s < 2.0 * minute) {
-        text_append(words, ", some %.0f s left", left_s);
-    } else if (left_s < 2.0 * hour) {
-        text_append(words, ", some %.0f min left", left_s / minute);
+    if (time_s < 2.0 * minute) {
+        text_append(words, "%.0f s", ceil(time_s));
+    } else if (time_s < 2.0 * hour) {
+        text_append(words, "%.0f min", time_s / minute);
     } else {
-        text_append(words, ", some %.1f h left", left_s / hour);
+        text_append(words, "%.1f h", time_s / hour);
+    }
+}
+
+void status_line_append_left(Text *words, double left_s)
+{
+    if (left_s >= 0.5 && isfinite(left_s)) {
+        text_append(words, ", some ");
+        status_line_append_time(words, left_s);
+        text_append(words, " left");
     }
 }
 

@@ -32,6 +32,9 @@ bool status_line_is_due(StatusLine *line, double wall_s, double left_s);
 // known.
 void status_line_append_left(Text *words, double left_s);
 
+// Appends an estimate of a time, s, in the unit that suits: "27 min".
+void status_line_append_time(Text *words, double time_s);
+
 // Writes the line.
 void status_line_show(StatusLine *line, const char *words);
 

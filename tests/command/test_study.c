@@ -40,6 +40,8 @@ static void a_dry_run_tells_all_and_writes_nothing(void **state)
     assert_says(program->output, "2 variables, 4 runs, 2 truths");
     assert_says(program->output, "drive_speed_rad_s");
     assert_says(program->output, "of them no valid case: 0.");
+    assert_says(program->output, "It would take some ");
+    assert_says(program->output, ", by the first ");
     run_well(program, "study s.yaml --dry-run --shard 2/2");
     assert_says(program->output, "4 runs, 2 of them in part 2 of 2");
     char path[PROGRAM_PATH_SIZE];

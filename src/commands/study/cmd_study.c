@@ -7,6 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/option_values.h"
 #include "cli/output.h"
+#include "cli/status_line.h"
 #include "cli/written.h"
 #include "commands/study/store.h"
 #include "commands/study/study.h"
@@ -14,6 +15,7 @@
 #include "commands/study/sweep.h"
 #include "write/file.h"
 #include "write/table.h"
+#include "write/units.h"
 
 #include <assert.h>
 #include <dirent.h>
@@ -685,8 +687,8 @@ static const OptionRow CMD_STUDY_OPTIONS[] = {
     COMMON_DRIVERS(1),
     {"retry-failed", NULL, "Repeat the runs that failed or whose rows are damaged", 1, OPTION_FLAG,
      CMD_STUDY_AT(is_retrying)},
-    {"dry-run", NULL, "Print what would be run, and run nothing", 2, OPTION_FLAG,
-     CMD_STUDY_AT(is_dry)},
+    {"dry-run", NULL, "Print what would be run, and how long it would take, by a few runs", 2,
+     OPTION_FLAG, CMD_STUDY_AT(is_dry)},
     COMMON_JSON(2),
     COMMON_WIDE(2),
     COMMON_QUIET(2),
@@ -889,6 +891,24 @@ static double store_bytes(const Layout *layout, uint64_t runs)
     return STORE_BYTES + (double)runs * (ROW_BYTES + cells * (NUMBER_BYTES + 1));
 }
 
+// How long it would take, by runs that are made for it.
+static void append_time(const StudyOptions *options, const Spec *spec, const Layout *layout,
+                        uint64_t runs, Text *text)
+{
+    const StudyPace pace = study_run_pace(options, spec, layout);
+    if (pace.made == 0) {
+        text_append(text, "How long it would take is not known: no run was over in %.0f s.\n",
+                    pace.wall_s);
+        return;
+    }
+    text_append(text, "It would take some ");
+    status_line_append_time(text, (double)runs * pace.wall_s / (double)pace.made);
+    text_append(text, " with %zu at a time, by the first %" PRIu64 ", which took ",
+                options->common.jobs, pace.made);
+    units_append(text, pace.wall_s, "s");
+    text_append(text, ".\n");
+}
+
 bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err)
 {
     (void)err;
@@ -912,6 +932,7 @@ bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *
     text_append_shown(&text, options->store);
     text_append(&text, " would take some %.2g MB.\n", 1e-6 * store_bytes(layout, runs));
     append_trials(options, spec, &text);
+    append_time(options, spec, layout, runs, &text);
     text_append(&text, "\n%sFirst runs%s\n", style.heading, style.end);
     append_runs(options, spec, layout, style.width, &text);
     output_text(&text, &style);

@@ -28,8 +28,19 @@ typedef struct StudyOptions {
 // wrong, with ERR_SOLVER where every run failed.
 bool study_run(void *options, Err *err);
 
-// Prints what would be run, and runs nothing.
+// Prints what would be run, and how long that would take by the first runs, which are made for it
+// and not kept.
 bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err);
+
+// What the first runs of a study took.
+typedef struct StudyPace {
+    uint64_t made;
+    double wall_s; // of all of them
+} StudyPace;
+
+// Makes runs of a study for a few seconds, or until one is over, into a store that is then removed.
+// No run is made where there is no room for such a store.
+StudyPace study_run_pace(const StudyOptions *options, const Spec *spec, const Layout *layout);
 
 extern const Command study_command_status;
 extern const Command study_command_export;

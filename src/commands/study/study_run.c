@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 enum { PRINT_SIZE = 17, UNUSED_LOOKS = 64 };
 
@@ -186,6 +187,61 @@ static bool sweep(const StudyOptions *options, const Spec *spec, const Layout *l
         prepare_store(options, order.store, err) && sweep_execute(&order, end, state, err);
     status_line_end(&line);
     return store_close(order.store, err) && is_swept;
+}
+
+// How long a study is tried for, s, and how long its first run is waited for.
+static const double PACE_S = 3.0;
+static const double PACE_MOST_S = 20.0;
+
+static void take_pace(const SweepState *state, void *pace)
+{
+    *(StudyPace *)pace = (StudyPace){.made = state->made, .wall_s = state->wall_s};
+}
+
+static bool is_pace_known(void *context)
+{
+    const StudyPace *pace = context;
+    return interrupt_number() != 0 || pace->wall_s > PACE_MOST_S ||
+           (pace->made > 0 && pace->wall_s > PACE_S);
+}
+
+StudyPace study_run_pace(const StudyOptions *options, const Spec *spec, const Layout *layout)
+{
+    StudyPace pace = {.made = 0};
+    const char *temporary = getenv("TMPDIR");
+    char folder[FILE_PATH_SIZE / 2];
+    snprintf(folder, sizeof folder, "%s/jointplay-XXXXXX", temporary != NULL ? temporary : "/tmp");
+    if (mkdtemp(folder) == NULL) {
+        return pace;
+    }
+    StudyOptions *trial = malloc(sizeof *trial);
+    assert(trial != NULL);
+    *trial = *options;
+    snprintf(trial->store, sizeof trial->store, "%s/pace.sqlite", folder);
+    Err err = {0};
+    const Sweep order = {
+        .spec = spec,
+        .layout = layout,
+        .shard = options->shard,
+        .jobs = options->common.jobs,
+        .store = open_store(trial, spec, layout, &err),
+        .report = take_pace,
+        .should_stop = is_pace_known,
+        .context = &pace,
+    };
+    SweepEnd end;
+    SweepState state = {.made = 0};
+    if (order.store != NULL) {
+        interrupt_watch();
+        if (sweep_execute(&order, &end, &state, &err)) {
+            take_pace(&state, &pace);
+        }
+        store_close(order.store, &err);
+        unlink(trial->store);
+    }
+    free(trial);
+    rmdir(folder);
+    return pace;
 }
 
 static double cpu_time(int who)
