@@ -216,6 +216,19 @@ size_t ladder_run_done(const Ladder *ladder)
     return done;
 }
 
+size_t ladder_run_made(const Ladder *ladder)
+{
+    size_t made = 0;
+    for (size_t i = 0; i < ladder->point_count; i++) {
+        const LadderPoint *point = &ladder->points[i];
+        made += point->is_measured ? 1 : 0;
+        for (size_t round = 0; round < ladder->repeats; round++) {
+            made += point->is_timed[round] ? 1 : 0;
+        }
+    }
+    return made;
+}
+
 // Time per unit of 1 / step, over the error runs of all schemes that were made.
 static double time_per_work(const Ladder *ladder)
 {

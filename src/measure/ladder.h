@@ -139,6 +139,8 @@ size_t ladder_next(const Ladder *ladder, size_t from);
 size_t ladder_run_total(const Ladder *ladder);
 // The runs that are made or need not be made any more.
 size_t ladder_run_done(const Ladder *ladder);
+// Those that are made alone.
+size_t ladder_run_made(const Ladder *ladder);
 // Kind, point and round of a run by its number.
 LadderRun ladder_run(const Ladder *ladder, size_t number);
 

@@ -317,7 +317,7 @@ static void end_stopped(const CompareOptions *options, const Ladder *ladder, Com
     if (!options->common.is_quiet) {
         output_say("stopped; %zu of %zu runs are kept in %s, and the same command%s goes on from "
                    "there\n",
-                   ladder_run_done(ladder), ladder_run_total(ladder), store->journal.path,
+                   ladder_run_made(ladder), ladder_run_total(ladder), store->journal.path,
                    options->is_fresh ? " without --fresh" : "");
     }
     compare_store_close(store);
