@@ -312,8 +312,7 @@ static void what_is_no_readable_file_says_so(void **state)
     refuse("no/such/case.yaml", NULL, ERR_FILE,
            "no/such/case.yaml: cannot be read: No such file or directory");
     refuse("tests/bad", NULL, ERR_CASE, "tests/bad: is a directory\nallowed: a case file");
-    refuse("/dev/zero", NULL, ERR_FILE,
-           "/dev/zero: cannot be read: it is no regular file");
+    refuse("/dev/zero", NULL, ERR_FILE, "/dev/zero: cannot be read: it is no regular file");
     refuse("/dev/null", NULL, ERR_FILE, "/dev/null: cannot be read: it is no regular file");
 }
 
