@@ -22,6 +22,7 @@
 enum {
     CHUNK_SIZE = 1 << 16, // bytes read at a time
     COMPLAINT_SIZE = 512, // bytes kept of what it says on standard error: the last ones
+    LINE_MOST = 1 << 24,  // bytes of a line: of some 100,000 bodies
     LOOK_MS = 200,        // between two looks at whether it is still there
 };
 
@@ -126,6 +127,9 @@ static bool take_output(Talk *talk, const char *bytes, size_t size, Err *err)
     for (size_t from = 0; from < size;) {
         const char *end = memchr(bytes + from, '\n', size - from);
         const size_t count = end != NULL ? (size_t)(end - bytes) - from : size - from;
+        if (talk->line_size + count > LINE_MOST) {
+            return err_set(err, ERR_SOLVER, "wrote a line of more than %d MB", LINE_MOST >> 20);
+        }
         if (talk->line_size + count + 1 > talk->line_room) {
             talk->line_room = 2 * (talk->line_size + count + 1);
             talk->line = memory_grown(talk->line, talk->line_room, 1);
