@@ -2,6 +2,7 @@
 #include "engine/engine_records.h"
 
 #include "base/memory.h"
+#include "engine/protocol.h"
 
 #include <assert.h>
 #include <math.h>
@@ -15,11 +16,11 @@ enum {
     RECORD_MOST = 1 << 20,  // that are believed, many times what is asked for
 };
 
+// of a run's length: where the last record ends at the latest, which may go on after the run
+static const double RUNS_MOST = 2.0;
+
 // s: of rounding, over a record's length, that one begins beside the end of the last
 static const double RECORD_ROUNDING = 1e-3;
-
-// SI: no number of a step is larger
-static const double RECORD_NUMBER_MOST = 1e15;
 
 static size_t size_of_record(const EngineRecords *records)
 {
@@ -31,9 +32,12 @@ static const double *numbers_of(const EngineRecords *records, size_t record)
     return records->numbers + record * size_of_record(records);
 }
 
-EngineRecords engine_records_start(size_t bodies, size_t joints, double record_s)
+EngineRecords engine_records_start(size_t bodies, size_t joints, double record_s, double duration_s)
 {
-    return (EngineRecords){.record_s = record_s, .body_count = bodies, .joint_count = joints};
+    return (EngineRecords){.record_s = record_s,
+                           .duration_s = duration_s,
+                           .body_count = bodies,
+                           .joint_count = joints};
 }
 
 void engine_records_finish(EngineRecords *records)
@@ -42,42 +46,57 @@ void engine_records_finish(EngineRecords *records)
     records->numbers = NULL;
 }
 
-// Reads so many numbers of an array, of which the first ones must be there and others may be null.
-static bool read_row(const json_t *row, size_t known, size_t count, double *numbers)
+// Reads a joint of which something is known: what has no direction is not negative.
+static bool read_touch(const json_t *row, const EngineRow *as, double *numbers, Err *err)
 {
-    if (!json_is_array(row) || json_array_size(row) != count) {
+    static const struct {
+        size_t number;
+        const char *name;
+    } POSITIVE[] = {{4, "largest force"}, {5, "largest depth"}, {6, "impulse"}};
+    if (!engine_read_row(row, as, numbers, err)) {
         return false;
     }
-    for (size_t i = 0; i < count; i++) {
-        const json_t *value = json_array_get(row, i);
-        numbers[i] = json_is_number(value) ? json_number_value(value) : NAN;
-        if (json_is_number(value) ? !(fabs(numbers[i]) <= RECORD_NUMBER_MOST)
-                                  : i < known || !json_is_null(value)) {
-            return false;
+    for (size_t i = 0; i < sizeof POSITIVE / sizeof *POSITIVE; i++) {
+        const double value = numbers[POSITIVE[i].number];
+        if (value < 0.0) {
+            return err_set(err, ERR_SOLVER,
+                           "its line 'step' has as '%s[%zu][%zu]', a %s, %.6g, which has to be 0 "
+                           "or more",
+                           as->field, as->index, POSITIVE[i].number, POSITIVE[i].name, value);
         }
     }
     return true;
 }
 
-static bool read_record(const EngineRecords *records, const json_t *line, double *numbers)
+static bool read_record(const EngineRecords *records, const json_t *line, double *numbers, Err *err)
 {
+    static const char LINE[] = "step";
     const json_t *bodies = json_object_get(line, "bodies");
     const json_t *joints = json_object_get(line, "joints");
-    bool is_right = read_row(json_object_get(line, "step"), RECORD_TIMES, RECORD_TIMES, numbers) &&
-                    json_array_size(bodies) == records->body_count &&
-                    json_array_size(joints) == records->joint_count;
-    numbers += RECORD_TIMES;
-    for (size_t i = 0; is_right && i < records->body_count; i++, numbers += RECORD_BODY) {
-        is_right = read_row(json_array_get(bodies, i), RECORD_BODY, RECORD_BODY, numbers);
+    const EngineRow times = {LINE, LINE, 0, RECORD_TIMES, RECORD_TIMES};
+    EngineRow body = {LINE, "bodies", 0, RECORD_BODY, RECORD_BODY};
+    EngineRow joint = {LINE, "joints", 0, RECORD_JOINT_KNOWN, RECORD_JOINT};
+    if (!engine_read_row(json_object_get(line, LINE), &times, numbers, err) ||
+        !engine_check_rows(bodies, &body, records->body_count, err) ||
+        !engine_check_rows(joints, &joint, records->joint_count, err)) {
+        return false;
     }
-    for (size_t i = 0; is_right && i < records->joint_count; i++, numbers += RECORD_JOINT) {
-        const json_t *row = json_array_get(joints, i);
+    numbers += RECORD_TIMES;
+    for (; body.index < records->body_count; body.index++, numbers += RECORD_BODY) {
+        if (!engine_read_row(json_array_get(bodies, body.index), &body, numbers, err)) {
+            return false;
+        }
+    }
+    for (; joint.index < records->joint_count; joint.index++, numbers += RECORD_JOINT) {
+        const json_t *row = json_array_get(joints, joint.index);
         for (size_t k = 0; k < RECORD_JOINT; k++) {
             numbers[k] = NAN;
         }
-        is_right = json_is_null(row) || read_row(row, RECORD_JOINT_KNOWN, RECORD_JOINT, numbers);
+        if (!json_is_null(row) && !read_touch(row, &joint, numbers, err)) {
+            return false;
+        }
     }
-    return is_right;
+    return true;
 }
 
 bool engine_records_take(EngineRecords *records, const json_t *line, Err *err)
@@ -89,12 +108,8 @@ bool engine_records_take(EngineRecords *records, const json_t *line, Err *err)
         assert(records->numbers != NULL);
     }
     double *numbers = records->numbers + records->count * size;
-    if (!read_record(records, line, numbers)) {
-        return err_set(
-            err, ERR_SOLVER,
-            "its step %zu is not of two times, %zu bodies and %zu joints, or has a number "
-            "above %.0e",
-            records->count, records->body_count, records->joint_count, RECORD_NUMBER_MOST);
+    if (!read_record(records, line, numbers, err)) {
+        return false;
     }
     const double last_s =
         records->count > 0 ? engine_records_end(records, records->count - 1) : 0.0;
@@ -103,6 +118,11 @@ bool engine_records_take(EngineRecords *records, const json_t *line, Err *err)
         return err_set(err, ERR_SOLVER,
                        "its step %zu is from %.9g to %.9g s, and the last one ended at %.9g s",
                        records->count, numbers[0], numbers[1], last_s);
+    }
+    if (numbers[1] > RUNS_MOST * records->duration_s) {
+        return err_set(err, ERR_SOLVER,
+                       "its step %zu is from %.9g to %.9g s, and the run ends at %.9g s",
+                       records->count, numbers[0], numbers[1], records->duration_s);
     }
     if (++records->count > RECORD_MOST) {
         return err_set(err, ERR_SOLVER, "has more than %d records of steps", RECORD_MOST);

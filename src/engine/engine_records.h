@@ -27,7 +27,8 @@ typedef struct EngineRates {
 } EngineRates;
 
 typedef struct EngineRecords {
-    double record_s; // the least length of one, asked for
+    double record_s;   // the least length of one, asked for
+    double duration_s; // of the run
     size_t body_count;
     size_t joint_count;
     size_t count;
@@ -35,7 +36,8 @@ typedef struct EngineRecords {
     double *numbers; // owned: times, bodies and joints of each
 } EngineRecords;
 
-EngineRecords engine_records_start(size_t bodies, size_t joints, double record_s);
+EngineRecords engine_records_start(size_t bodies, size_t joints, double record_s,
+                                   double duration_s);
 void engine_records_finish(EngineRecords *records);
 
 // Takes a line of the answer. Fails with ERR_SOLVER where it is none, or not the next one.

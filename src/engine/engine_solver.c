@@ -102,9 +102,9 @@ static bool run_way(EngineState *state, BackendKind backend, const char *way, Er
     const double asked_s = scenario->engines[backend].time_limit_s;
     trajectory_destroy(state->answer);
     engine_records_finish(&state->records);
-    state->records =
-        engine_records_start(scenario->linkage.body_count, scenario->linkage.joint_count,
-                             scenario_duration(scenario) / RECORDS_WANTED);
+    state->records = engine_records_start(
+        scenario->linkage.body_count, scenario->linkage.joint_count,
+        scenario_duration(scenario) / RECORDS_WANTED, scenario_duration(scenario));
     state->answer =
         engine_run_recorded(&state->driver, way, scenario, asked_s > 0.0 ? asked_s : RUN_LIMIT_S,
                             &state->said, &state->records);

@@ -5,6 +5,7 @@
 // that starts over or flies apart is so a run that failed, whatever it says itself.
 #include "engine/protocol.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/printable.h"
 #include "base/text.h"
@@ -28,8 +29,15 @@ static const double JUMP_FLOOR = 1e-3;
 // SI: no number of a mechanism is larger, be it a speed, a force or a count of steps
 static const double NUMBER_MOST = 1e15;
 
-// contacts that may begin in a step of the case's: engines divide it
-static const double CONTACTS_MOST = 1e3;
+// contacts that may begin in a step of the case's, and steps of the engine in it: engines divide it
+static const double SHARES_MOST = 1e3;
+
+// s: no step of an engine is calculated in less
+static const double STEP_WALL_LEAST_S = 1e-9;
+
+// of the time that a conversation has taken, and s: by how much two clocks may differ over it
+static const double CLOCK_RATIO = 1.01;
+static const double CLOCK_OFF_S = 1e-3;
 
 enum {
     BODY_NUMBERS = 6,  // x, y, angle and their rates
@@ -42,7 +50,12 @@ EngineReply engine_reply_start(const Scenario *scenario, EngineDriver *driver,
                                Trajectory *trajectory, EngineSaid *said)
 {
     EngineReply reply = {
-        .scenario = scenario, .driver = driver, .trajectory = trajectory, .said = said};
+        .scenario = scenario,
+        .driver = driver,
+        .trajectory = trajectory,
+        .said = said,
+        .began_s = clock_now_s(),
+    };
     if (scenario != NULL) {
         const Linkage *linkage = &scenario->linkage;
         reply.sample = sample_create(linkage);
@@ -92,24 +105,58 @@ static bool read_number(const json_t *object, const char *in, const char *key, d
     return true;
 }
 
-// Reads rows of so many numbers each: finite ones, for JSON has no others.
-static bool read_rows(const json_t *object, const char *key, size_t rows, size_t columns,
-                      double *numbers, Err *err)
+// What a line has in the place of a number, as a message shows it; the caller frees it.
+static char *shown_value(const json_t *value)
+{
+    char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(6));
+    if (text != NULL && strlen(text) > SHOWN_MOST) {
+        text[SHOWN_MOST] = '\0';
+    }
+    return text;
+}
+
+bool engine_read_row(const json_t *row, const EngineRow *as, double *numbers, Err *err)
+{
+    if (!json_is_array(row) || json_array_size(row) != as->count) {
+        return err_set(err, ERR_SOLVER, "its line '%s' has no '%s[%zu]' of %zu numbers", as->line,
+                       as->field, as->index, as->count);
+    }
+    for (size_t i = 0; i < as->count; i++) {
+        const json_t *value = json_array_get(row, i);
+        const bool is_number = json_is_number(value);
+        numbers[i] = is_number ? json_number_value(value) : NAN;
+        if (is_number ? fabs(numbers[i]) <= NUMBER_MOST : i >= as->known && json_is_null(value)) {
+            continue;
+        }
+        char *shown = shown_value(value);
+        err_set(err, ERR_SOLVER,
+                "its line '%s' has as '%s[%zu][%zu]' %s, which has to be a number of at most %.0e",
+                as->line, as->field, as->index, i, shown != NULL ? shown : "no value", NUMBER_MOST);
+        free(shown);
+        return false;
+    }
+    return true;
+}
+
+bool engine_check_rows(const json_t *rows, const EngineRow *as, size_t count, Err *err)
+{
+    return (json_is_array(rows) && json_array_size(rows) == count) ||
+           err_set(err, ERR_SOLVER, "its line '%s' has no '%s' of %zu rows of %zu numbers",
+                   as->line, as->field, count, as->count);
+}
+
+// Reads rows of so many numbers each.
+static bool read_rows(const json_t *object, const char *line, const char *key, size_t rows,
+                      size_t columns, double *numbers, Err *err)
 {
     const json_t *array = json_object_get(object, key);
-    bool is_right = json_is_array(array) && json_array_size(array) == rows;
-    for (size_t i = 0; is_right && i < rows; i++) {
-        const json_t *row = json_array_get(array, i);
-        is_right = json_is_array(row) && json_array_size(row) == columns;
-        for (size_t k = 0; is_right && k < columns; k++) {
-            const json_t *value = json_array_get(row, k);
-            is_right = json_is_number(value) && fabs(json_number_value(value)) <= NUMBER_MOST;
-            numbers[columns * i + k] = json_number_value(value);
-        }
+    EngineRow as = {.line = line, .field = key, .known = columns, .count = columns};
+    bool is_right = engine_check_rows(array, &as, rows, err);
+    for (; is_right && as.index < rows; as.index++) {
+        is_right = engine_read_row(json_array_get(array, as.index), &as,
+                                   numbers + columns * as.index, err);
     }
-    return is_right ||
-           err_set(err, ERR_SOLVER, "its '%s' are not %zu rows of %zu numbers of at most %.0e", key,
-                   rows, columns, NUMBER_MOST);
+    return is_right;
 }
 
 static bool take_hello(EngineReply *reply, const json_t *line, Err *err)
@@ -155,6 +202,64 @@ static double size_of(const Trajectory *run)
     return size;
 }
 
+// The same as a bound, which there is none of where bodies have no reach.
+static double size_most(const Trajectory *run)
+{
+    const double size = size_of(run);
+    return size > 0.0 ? size : NUMBER_MOST;
+}
+
+// Whether a body goes no further in a step of the case's than a thousand times the mechanism's
+// size, and turns no more than by a thousand radians: nothing that is stepped so is a motion.
+static bool check_rate(const EngineReply *reply, const char *line, double time_s, size_t body,
+                       EngineRates rates, Err *err)
+{
+    const double step_s = reply->scenario->run.step;
+    const double speed = vec2_length(rates.velocity);
+    const double speed_most = SHARES_MOST * size_most(reply->trajectory) / step_s;
+    const double omega_most = SHARES_MOST / step_s;
+    return (speed <= speed_most && fabs(rates.omega) <= omega_most) ||
+           err_set(err, ERR_SOLVER,
+                   "its line '%s' of %.6g s has as 'bodies[%zu]' one that goes at %.3g m/s and "
+                   "%.3g rad/s: at most %.3g and %.3g are believed",
+                   line, time_s, body, speed, rates.omega, speed_most, omega_most);
+}
+
+static bool check_rates(const EngineReply *reply, double time_s, Err *err)
+{
+    for (size_t i = 0; i < reply->trajectory->body_count; i++) {
+        const Motion *of = &reply->sample.bodies[i];
+        if (!check_rate(reply, "sample", time_s, i, (EngineRates){of->velocity, of->omega}, err)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Whether the last record can be.
+static bool check_record(const EngineReply *reply, Err *err)
+{
+    const EngineRecords *records = reply->records;
+    const size_t last = records->count - 1;
+    const double end_s = engine_records_end(records, last);
+    const double most = size_most(reply->trajectory);
+    for (size_t i = 0; i < records->body_count; i++) {
+        if (!check_rate(reply, "step", end_s, i, engine_records_body(records, last, i), err)) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < records->joint_count; i++) {
+        const EngineTouch touch = engine_records_joint(records, last, i);
+        if (vec2_length(touch.eccentricity) > most || touch.depth_max > most) {
+            return err_set(err, ERR_SOLVER,
+                           "its line 'step' of %.6g s has as 'joints[%zu]' an eccentricity or a "
+                           "depth above the longest reach of a body, %.3g m",
+                           end_s, i, most);
+        }
+    }
+    return true;
+}
+
 // Whether the bodies went on from the sample before.
 static bool check_jump(const EngineReply *reply, Err *err)
 {
@@ -182,6 +287,13 @@ static bool check_jump(const EngineReply *reply, Err *err)
                            "after %.6g s '%s' is suddenly %.3g m away: the engine started over, or "
                            "its motion diverged",
                            now->time_s, run->linkage.bodies[i].name, gone);
+        }
+        const double turned = now->bodies[i].angle - before->angle;
+        if (!(run->reach[i] * fabs(turned) <= most)) {
+            return err_set(err, ERR_SOLVER,
+                           "after %.6g s '%s' has suddenly turned by %.3g rad: the engine started "
+                           "over, or its motion diverged",
+                           now->time_s, run->linkage.bodies[i].name, turned);
         }
     }
     return true;
@@ -262,17 +374,24 @@ static bool take_sample(EngineReply *reply, const json_t *line, Err *err)
     }
     double *bodies = reply->bodies;
     double *joints = reply->joints;
-    if (!read_rows(line, "bodies", linkage->body_count, BODY_NUMBERS, bodies, err) ||
-        !read_rows(line, "joints", linkage->joint_count, JOINT_NUMBERS, joints, err)) {
+    if (!read_rows(line, "sample", "bodies", linkage->body_count, BODY_NUMBERS, bodies, err) ||
+        !read_rows(line, "sample", "joints", linkage->joint_count, JOINT_NUMBERS, joints, err)) {
         return false;
     }
     reply->sample.time_s = asked_s;
     fill_sample(reply, bodies, joints);
-    if (!check_jump(reply, err) || !check_drive(reply, err) || !check_joints(reply, err)) {
+    if (!check_rates(reply, time_s, err) || !check_drive(reply, err) || !check_jump(reply, err) ||
+        !check_joints(reply, err)) {
         return false;
     }
     trajectory_store(reply->trajectory, reply->samples++, &reply->sample);
     return true;
+}
+
+// How many steps of the case's length a run has.
+static double steps_of(const Scenario *scenario)
+{
+    return ceil(scenario_duration(scenario) / scenario->run.step);
 }
 
 // The totals of a joint: its largest force, N, deepest penetration, m, and contacts begun.
@@ -280,21 +399,24 @@ static bool take_totals(EngineReply *reply, const json_t *done, Err *err)
 {
     Trajectory *run = reply->trajectory;
     double *totals = reply->joints;
-    if (!read_rows(done, "joints", run->joint_count, TOTAL_NUMBERS, totals, err)) {
+    if (!read_rows(done, "done", "joints", run->joint_count, TOTAL_NUMBERS, totals, err)) {
         return false;
     }
     static const char *const NAMES[TOTAL_NUMBERS] = {"largest force", "deepest penetration",
                                                      "contacts begun"};
-    const double contacts_most =
-        CONTACTS_MOST * ceil(scenario_duration(reply->scenario) / reply->scenario->run.step);
+    const double contacts_most = SHARES_MOST * steps_of(reply->scenario);
+    const double depth_most = size_most(run);
     for (size_t i = 0; i < TOTAL_NUMBERS * run->joint_count; i++) {
         const bool is_count = i % TOTAL_NUMBERS == TOTAL_NUMBERS - 1;
-        if (!(totals[i] >= 0.0) ||
+        const bool is_depth = i % TOTAL_NUMBERS == 1;
+        if (!(totals[i] >= 0.0) || (is_depth && totals[i] > depth_most) ||
             (is_count && (totals[i] != floor(totals[i]) || totals[i] > contacts_most))) {
             return err_set(err, ERR_SOLVER, "says of '%s' that its %s is %.6g, which has to be %s",
                            reply->scenario->linkage.joints[i / TOTAL_NUMBERS].name,
                            NAMES[i % TOTAL_NUMBERS], totals[i],
-                           is_count ? "a whole number of at most 1000 a step" : "0 or more");
+                           is_count   ? "a whole number of at most 1000 a step"
+                           : is_depth ? "0 or more, and not above the longest reach of a body"
+                                      : "0 or more");
         }
     }
     for (size_t i = 0; i < run->joint_count; i++) {
@@ -303,6 +425,33 @@ static bool take_totals(EngineReply *reply, const json_t *done, Err *err)
         run->joints[i].impacts = (size_t)totals[TOTAL_NUMBERS * i + 2];
     }
     return true;
+}
+
+// Whether a run can have taken so many steps, and its time.
+static bool check_effort(const EngineReply *reply, double steps, Err *err)
+{
+    const Trajectory *run = reply->trajectory;
+    // a step may end at each sample besides
+    const double steps_most = SHARES_MOST * (steps_of(reply->scenario) + (double)run->sample_count);
+    if (!(steps >= 1.0 && steps == floor(steps) && steps <= steps_most)) {
+        return err_set(err, ERR_SOLVER,
+                       "says that its 'steps' are %g, which have to be a whole number from 1 to "
+                       "%.3g: 1000 to each step of the case's and to each sample",
+                       steps, steps_most);
+    }
+    const size_t records = reply->records != NULL ? reply->records->count : 0;
+    if ((double)records > steps + (double)run->sample_count) {
+        return err_set(err, ERR_SOLVER, "says that its 'steps' are %g, and told of %zu", steps,
+                       records);
+    }
+    const double most_s = CLOCK_RATIO * (clock_now_s() - reply->began_s) + CLOCK_OFF_S;
+    const double least_s = STEP_WALL_LEAST_S * steps;
+    return (run->wall_s >= least_s && run->wall_s <= most_s) ||
+           err_set(
+               err, ERR_SOLVER,
+               "says that its 'wall_s' is %g, which has to be from %.3g, 1 ns to a step, to the "
+               "%.3g that it took as a whole",
+               run->wall_s, least_s, most_s);
 }
 
 static bool take_done(EngineReply *reply, const json_t *done, Err *err)
@@ -317,21 +466,19 @@ static bool take_done(EngineReply *reply, const json_t *done, Err *err)
         !read_number(done, "done", "wall_s", &run->wall_s, err) || !take_totals(reply, done, err)) {
         return false;
     }
-    const bool is_count = steps >= 1.0 && steps <= NUMBER_MOST && steps == floor(steps);
-    if (!is_count || !(run->wall_s > 0.0) || !(run->wall_s <= NUMBER_MOST)) {
-        return err_set(
-            err, ERR_SOLVER,
-            "says that its 'steps' are %g and its 'wall_s' %g: a whole number from 1 and "
-            "a time above 0 are wanted, of at most %.0e",
-            steps, run->wall_s, NUMBER_MOST);
+    if (!check_effort(reply, steps, err)) {
+        return false;
     }
-    const json_t *settings = json_object_get(done, "settings");
-    if (json_is_string(settings)) {
-        read_text(done, "done", "settings", reply->said->settings, sizeof reply->said->settings,
-                  err);
+    if (json_object_get(done, "settings") != NULL &&
+        !read_text(done, "done", "settings", reply->said->settings, sizeof reply->said->settings,
+                   err)) {
+        return false;
     }
     const json_t *model = json_object_get(done, "model");
-    if (json_is_string(model) && reply->said->model != NULL && *reply->said->model == NULL) {
+    if (model != NULL && !json_is_string(model)) {
+        return refuse_key(err, "done", "model", "a text");
+    }
+    if (model != NULL && reply->said->model != NULL && *reply->said->model == NULL) {
         *reply->said->model = strdup(json_string_value(model));
     }
     run->steps = (size_t)steps;
@@ -351,7 +498,8 @@ static bool take_line(EngineReply *reply, const json_t *line, Err *err)
     }
     if ((value = json_object_get(line, "failed")) != NULL) {
         const char *why = json_string_value(value);
-        return err_set(err, ERR_SOLVER, "%s", why != NULL ? why : "it does not say why");
+        return err_set(err, ERR_SOLVER, "%s",
+                       why != NULL && why[0] != '\0' ? why : "it does not say why");
     }
     if ((value = json_object_get(line, "refused")) != NULL) {
         const char *what = json_string_value(value);
@@ -366,23 +514,46 @@ static bool take_line(EngineReply *reply, const json_t *line, Err *err)
         return take_sample(reply, line, err);
     }
     if (reply->records != NULL && json_object_get(line, "step") != NULL) {
-        return engine_records_take(reply->records, line, err);
+        return engine_records_take(reply->records, line, err) && check_record(reply, err);
     }
     if (reply->scenario != NULL && (value = json_object_get(line, "done")) != NULL) {
         return take_done(reply, value, err);
     }
-    return err_set(err, ERR_SOLVER, "wrote a line without a key that means anything here");
+    return err_set(err, ERR_SOLVER,
+                   "wrote a line that has none of the keys 'sample', 'step', 'done', 'failed' and "
+                   "'refused'%s",
+                   json_object_get(line, "step") != NULL ? ", or a 'step' that was not asked for"
+                                                         : "");
+}
+
+// The last key before a place in a line; empty where there is none.
+static void key_before(const char *text, size_t place, char key[ENGINE_NAME_SIZE])
+{
+    size_t end = place;
+    while (end > 1 && !(text[end - 1] == ':' && text[end - 2] == '"')) {
+        end--;
+    }
+    size_t length = 0;
+    while (end > 2 + length && text[end - 3 - length] != '"' && length + 1 < ENGINE_NAME_SIZE) {
+        length++;
+    }
+    memcpy(key, text + (length > 0 ? end - 2 - length : 0), length);
+    key[length] = '\0';
 }
 
 bool engine_reply_take(char *text, size_t size, void *context, Err *err)
 {
     EngineReply *reply = context;
-    json_t *line = json_loadb(text, size, 0, NULL);
+    json_error_t wrong = {.position = 0};
+    json_t *line = json_loadb(text, size, 0, &wrong);
     if (!json_is_object(line)) {
+        char key[ENGINE_NAME_SIZE];
+        key_before(text, line == NULL && wrong.position > 0 ? (size_t)wrong.position : 0, key);
         json_decref(line);
         text[size < SHOWN_MOST ? size : SHOWN_MOST] = '\0';
-        return err_set(err, ERR_SOLVER, "wrote a line that is no JSON object: '%s%s'", text,
-                       size > SHOWN_MOST ? " ..." : "");
+        return err_set(err, ERR_SOLVER, "wrote a line that is no JSON object: '%s%s'%s%s%s", text,
+                       size > SHOWN_MOST ? " ..." : "", key[0] != '\0' ? ", wrong at its '" : "",
+                       key, key[0] != '\0' ? "'" : "");
     }
     const bool is_taken = take_line(reply, line, err);
     json_decref(line);

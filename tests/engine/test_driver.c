@@ -99,9 +99,12 @@ static void what_goes_wrong_is_a_failed_run_with_its_reason(void **state)
 {
     (void)state;
     static const char *const FAULTS[][2] = {
-        {"nan", "is no JSON object"},
-        {"fast", "its 'bodies' are not 3 rows of 6 numbers of at most 1e+15"},
+        {"nan", "wrong at its 'bodies'"},
+        {"fast", "its line 'sample' has as 'bodies[1][3]' 1e308, which has to be a number of at "
+                 "most 1e+15"},
         {"far", "is suddenly 1e+06 m away"},
+        {"faster", "its line 'sample' of 0.03 s has as 'bodies[1]' one that goes at 1e+14 m/s"},
+        {"turned", "has suddenly turned by"},
         {"apart", "is suddenly 0.36"},
         {"drive", "its drive is"},
         {"starts-over", "its drive is"},
@@ -144,17 +147,21 @@ static void totals_that_cannot_be_are_refused_by_their_names(void **state)
         {"steps=1e300", "its 'steps' are 1e+300"},
         {"steps=0", "its 'steps' are 0"},
         {"steps=2.5", "its 'steps' are 2.5"},
-        {"steps=NaN", "is no JSON object"},
-        {"wall_s=1e300", "its 'wall_s' 1e+300"},
-        {"wall_s=-1", "its 'wall_s' -1"},
+        {"steps=1e15", "which have to be a whole number from 1 to "},
+        {"wall_s=1e300", "its 'wall_s' is 1e+300"},
+        {"wall_s=-1", "its 'wall_s' is -1"},
         {"force=-5", "its largest force is -5, which has to be 0 or more"},
-        {"depth=-1e300", "numbers of at most 1e+15"},
+        {"depth=-1e300", "'joints[0][1]' -1e300, which has to be a number of at most 1e+15"},
         {"depth=-1e-9", "its deepest penetration is -1e-09"},
         {"contacts=0.5",
          "its contacts begun is 0.5, which has to be a whole number of at most 1000 a step"},
+        {"depth=9", "and not above the longest reach of a body"},
+        {"settings=5", "has no 'settings', which has to be a text"},
+        {"wall_s=1e3", "that it took as a whole"},
+        {"wall_s=1e-12", "1 ns to a step"},
         {"contacts=-1", "its contacts begun is -1"},
         {"contacts=9e14", "its contacts begun is 9e+14"},
-        {"contacts=1e16", "numbers of at most 1e+15"},
+        {"contacts=1e16", "'joints[0][2]' 1e16, which has"},
     };
     const EngineDriver driver = toy();
     Scenario scenario = ideal(600e-6);

@@ -207,6 +207,8 @@ FAULTS = {
     "family-hangs": lambda samples: (leave_a_family(samples), time.sleep(600)),
     "nan": spoil(1, 3, math.nan),
     "fast": spoil(1, 3, 1e308),
+    "faster": spoil(1, 3, 1e14),
+    "turned": spoil(1, 2, 50.0),
     "far": spoil(1, 0, 1e6),
     "apart": spoil(1, 0, 0.35),
     "drive": spoil(0, 2, 0.2),
