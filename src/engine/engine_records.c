@@ -2,7 +2,7 @@
 #include "engine/engine_records.h"
 
 #include "base/memory.h"
-#include "engine/protocol.h"
+#include "engine/row.h"
 
 #include <assert.h>
 #include <math.h>
@@ -53,7 +53,7 @@ static bool read_touch(const json_t *row, const EngineRow *as, double *numbers, 
         size_t number;
         const char *name;
     } POSITIVE[] = {{4, "largest force"}, {5, "largest depth"}, {6, "impulse"}};
-    if (!engine_read_row(row, as, numbers, err)) {
+    if (!engine_row_read(row, as, numbers, err)) {
         return false;
     }
     for (size_t i = 0; i < sizeof POSITIVE / sizeof *POSITIVE; i++) {
@@ -76,14 +76,14 @@ static bool read_record(const EngineRecords *records, const json_t *line, double
     const EngineRow times = {LINE, LINE, 0, RECORD_TIMES, RECORD_TIMES};
     EngineRow body = {LINE, "bodies", 0, RECORD_BODY, RECORD_BODY};
     EngineRow joint = {LINE, "joints", 0, RECORD_JOINT_KNOWN, RECORD_JOINT};
-    if (!engine_read_row(json_object_get(line, LINE), &times, numbers, err) ||
-        !engine_check_rows(bodies, &body, records->body_count, err) ||
-        !engine_check_rows(joints, &joint, records->joint_count, err)) {
+    if (!engine_row_read(json_object_get(line, LINE), &times, numbers, err) ||
+        !engine_row_count(bodies, &body, records->body_count, err) ||
+        !engine_row_count(joints, &joint, records->joint_count, err)) {
         return false;
     }
     numbers += RECORD_TIMES;
     for (; body.index < records->body_count; body.index++, numbers += RECORD_BODY) {
-        if (!engine_read_row(json_array_get(bodies, body.index), &body, numbers, err)) {
+        if (!engine_row_read(json_array_get(bodies, body.index), &body, numbers, err)) {
             return false;
         }
     }

@@ -52,19 +52,5 @@ void engine_reply_finish(EngineReply *reply);
 // Takes a line of the answer, an EngineReply (engine/converse.h).
 bool engine_reply_take(char *line, size_t size, void *reply, Err *err);
 
-// Reads a row of so many numbers, of which the first ones, `known`, must be there and others may be
-// null, which is NAN then. A line of the answer has it as its `field`, such as "bodies[1]".
-typedef struct EngineRow {
-    const char *line; // "sample"
-    const char *field;
-    size_t index;
-    size_t known;
-    size_t count;
-} EngineRow;
-bool engine_read_row(const json_t *row, const EngineRow *as, double *numbers, Err *err);
-
-// Whether a line has as its `field` so many rows; says so where not.
-bool engine_check_rows(const json_t *rows, const EngineRow *as, size_t count, Err *err);
-
 // Whether all that belongs to an answer was there once the driver has ended.
 bool engine_reply_check(const EngineReply *reply, Err *err);

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/printable.h"
 #include "base/text.h"
+#include "engine/row.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -25,9 +26,6 @@ static const double OPENING_MOST = 0.05;
 // and of the mechanism's size, which is let go in any case: impacts change speeds in between
 static const double JUMP_MOST = 20.0;
 static const double JUMP_FLOOR = 1e-3;
-
-// SI: no number of a mechanism is larger, be it a speed, a force or a count of steps
-static const double NUMBER_MOST = 1e15;
 
 // contacts that may begin in a step of the case's, and steps of the engine in it: engines divide it
 static const double SHARES_MOST = 1e3;
@@ -105,55 +103,15 @@ static bool read_number(const json_t *object, const char *in, const char *key, d
     return true;
 }
 
-// What a line has in the place of a number, as a message shows it; the caller frees it.
-static char *shown_value(const json_t *value)
-{
-    char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(6));
-    if (text != NULL && strlen(text) > SHOWN_MOST) {
-        text[SHOWN_MOST] = '\0';
-    }
-    return text;
-}
-
-bool engine_read_row(const json_t *row, const EngineRow *as, double *numbers, Err *err)
-{
-    if (!json_is_array(row) || json_array_size(row) != as->count) {
-        return err_set(err, ERR_SOLVER, "its line '%s' has no '%s[%zu]' of %zu numbers", as->line,
-                       as->field, as->index, as->count);
-    }
-    for (size_t i = 0; i < as->count; i++) {
-        const json_t *value = json_array_get(row, i);
-        const bool is_number = json_is_number(value);
-        numbers[i] = is_number ? json_number_value(value) : NAN;
-        if (is_number ? fabs(numbers[i]) <= NUMBER_MOST : i >= as->known && json_is_null(value)) {
-            continue;
-        }
-        char *shown = shown_value(value);
-        err_set(err, ERR_SOLVER,
-                "its line '%s' has as '%s[%zu][%zu]' %s, which has to be a number of at most %.0e",
-                as->line, as->field, as->index, i, shown != NULL ? shown : "no value", NUMBER_MOST);
-        free(shown);
-        return false;
-    }
-    return true;
-}
-
-bool engine_check_rows(const json_t *rows, const EngineRow *as, size_t count, Err *err)
-{
-    return (json_is_array(rows) && json_array_size(rows) == count) ||
-           err_set(err, ERR_SOLVER, "its line '%s' has no '%s' of %zu rows of %zu numbers",
-                   as->line, as->field, count, as->count);
-}
-
 // Reads rows of so many numbers each.
 static bool read_rows(const json_t *object, const char *line, const char *key, size_t rows,
                       size_t columns, double *numbers, Err *err)
 {
     const json_t *array = json_object_get(object, key);
     EngineRow as = {.line = line, .field = key, .known = columns, .count = columns};
-    bool is_right = engine_check_rows(array, &as, rows, err);
+    bool is_right = engine_row_count(array, &as, rows, err);
     for (; is_right && as.index < rows; as.index++) {
-        is_right = engine_read_row(json_array_get(array, as.index), &as,
+        is_right = engine_row_read(json_array_get(array, as.index), &as,
                                    numbers + columns * as.index, err);
     }
     return is_right;
@@ -206,7 +164,7 @@ static double size_of(const Trajectory *run)
 static double size_most(const Trajectory *run)
 {
     const double size = size_of(run);
-    return size > 0.0 ? size : NUMBER_MOST;
+    return size > 0.0 ? size : INFINITY;
 }
 
 // Whether a body goes no further in a step of the case's than a thousand times the mechanism's
