@@ -166,20 +166,25 @@ static bool is_ranked(const Ladder *ladder, const LadderPoint *point)
     return scheme->backend == BACKEND_ODE || scheme->driver != NULL;
 }
 
-// of two error runs side by side on a busy machine the times are that uncertain
-static const double TIME_MARGIN = 2.0;
+// the times of two single runs on a busy machine are that uncertain
+static const double TIME_MARGIN = 3.0;
 
-// Whether another point is both more accurate and by far faster: no time of this one could bring it
-// to the frontier.
+// Whether another point of the same backend is both more accurate and, by the first timing runs, by
+// far faster: no time of this one could bring it to the frontier, nor make it the backend's
+// cheapest.
 static bool is_beaten(const Ladder *ladder, const LadderPoint *point)
 {
     const double error = error_of(ladder, point);
-    for (size_t i = 0; i < ladder->point_count && is_ranked(ladder, point); i++) {
+    const char *backend = scheme_backend(&ladder->schemes[point->scheme]);
+    for (size_t i = 0; i < ladder->point_count && point->is_timed[0] && is_ranked(ladder, point);
+         i++) {
         const LadderPoint *other = &ladder->points[i];
-        const double error_of_other = error_of(ladder, other);
-        if (is_ranked(ladder, other) && other->run.error.is_known && !has_failed(other) &&
-            isfinite(error_of_other) && !(error_of_other > error) &&
-            TIME_MARGIN * other->run.wall_s < point->run.wall_s) {
+        const bool is_rival = is_ranked(ladder, other) && other->run.error.is_known &&
+                              other->is_timed[0] &&
+                              strcmp(scheme_backend(&ladder->schemes[other->scheme]), backend) == 0;
+        const double error_of_other = is_rival ? error_of(ladder, other) : NAN;
+        if (isfinite(error_of_other) && !(error_of_other > error) && !has_failed(other) &&
+            TIME_MARGIN * other->wall_s[0] < point->wall_s[0]) {
             return true;
         }
     }
@@ -561,7 +566,8 @@ static void rank_points(Ladder *ladder)
     assert(times != NULL && errors != NULL && marks != NULL);
     for (size_t i = 0; i < count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        times[i] = is_ranked(ladder, point) ? point->wall_median_s : NAN;
+        times[i] =
+            is_ranked(ladder, point) && !is_beaten(ladder, point) ? point->wall_median_s : NAN;
         errors[i] = point->error;
     }
     frontier_mark(count, times, errors, marks);
