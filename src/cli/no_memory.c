@@ -10,6 +10,7 @@
 
 #include "base/err.h"
 #include "base/memory.h"
+#include "measure/child.h"
 #include "write/file.h"
 
 #include <errno.h>
@@ -19,7 +20,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 enum {
@@ -66,21 +66,10 @@ static _Noreturn void end_without_memory(size_t bytes)
 
 #ifndef HAS_OWN_MALLOC
 
-static bool is_out_of_memory(void)
-{
-    void *little =
-        mmap(NULL, LITTLE_MEMORY, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (little == MAP_FAILED) {
-        return true;
-    }
-    munmap(little, LITTLE_MEMORY);
-    return false;
-}
-
 // A stack that cannot grow ends a process by a signal.
 static void end_by_signal(int number)
 {
-    if (is_out_of_memory()) {
+    if (child_is_refused(LITTLE_MEMORY)) {
         end_without_memory(UNKNOWN);
     }
     signal(number, SIG_DFL);

@@ -12,6 +12,16 @@
 
 enum { ENDING_SIZE = 32 }; // "-compare.json"
 
+// Prints words, which are folded as the screen is wide.
+static void print_folded(const char *words, const Style *style)
+{
+    Text shown;
+    text_init(&shown);
+    text_append(&shown, "%s", words);
+    output_text(&shown, style);
+    text_finish(&shown);
+}
+
 void results_print_begin(const CommonOptions *options, ResultsText *write, const void *report,
                          Text *begun)
 {
@@ -20,11 +30,7 @@ void results_print_begin(const CommonOptions *options, ResultsText *write, const
     }
     const Style style = output_style(stdout, options->is_wide);
     write(report, &style, begun);
-    Text shown; // which is folded
-    text_init(&shown);
-    text_append(&shown, "%s", begun->data);
-    output_text(&shown, &style);
-    text_finish(&shown);
+    print_folded(begun->data, &style);
     fflush(stdout);
 }
 
@@ -42,11 +48,7 @@ void results_print_rest(const Results *results, const CommonOptions *options, co
     (is_whole ? results->text : results->screen)(report, &style, &text);
     text_append(&text, "%s", results->is_followed ? "\n" : "");
     const bool is_begun = begun->length > 0 && strncmp(text.data, begun->data, begun->length) == 0;
-    Text rest;
-    text_init(&rest);
-    text_append(&rest, "%s", text.data + (is_begun ? begun->length : 0));
-    output_text(&rest, &style);
-    text_finish(&rest);
+    print_folded(text.data + (is_begun ? begun->length : 0), &style);
     text_finish(&text);
 }
 

@@ -61,18 +61,19 @@ static void limit(__rlimit_resource_t resource, size_t most)
     setrlimit(resource, &both);
 }
 
+bool child_is_refused(size_t bytes)
+{
+    void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) {
+        return true;
+    }
+    munmap(room, bytes);
+    return false;
+}
+
 bool child_lacks_memory(void)
 {
-    if (errno == ENOMEM) {
-        return true;
-    }
-    void *little =
-        mmap(NULL, LITTLE_MEMORY, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (little == MAP_FAILED) {
-        return true;
-    }
-    munmap(little, LITTLE_MEMORY);
-    return false;
+    return errno == ENOMEM || child_is_refused(LITTLE_MEMORY);
 }
 
 // Without memory a process aborts, or writes to an address that it was not given.

@@ -77,6 +77,9 @@ void child_kill(Child *child);
 // was last set to 0.
 bool child_lacks_memory(void);
 
+// Whether the system refuses this process so many bytes, which are not kept.
+bool child_is_refused(size_t bytes);
+
 // How a child ended, in words: "ended by signal 6 (Aborted)".
 void child_describe(const Child *child, char text[CHILD_TEXT_SIZE]);
 

@@ -7,15 +7,10 @@
 
 #include <math.h>
 
-static void judge(const Tune *tune, TuneFile *file)
-{
-    file->meets = isfinite(file->error) && file->error + tune->truth.uncertainty <= tune->target;
-}
-
 static TuneFile of_program(const TuneReport *report)
 {
     const TuneProgram *program = &report->tune->program;
-    TuneFile file = {
+    return (TuneFile){
         .is_there = program->is_run,
         .option = "--code",
         .measure = "run with libjointplay",
@@ -25,8 +20,6 @@ static TuneFile of_program(const TuneReport *report)
         .steps = program->steps,
         .processor_s = program->processor_s,
     };
-    judge(report->tune, &file);
-    return file;
 }
 
 // Constants, run in ODE with the textbook map, as Gazebo runs them.
@@ -43,7 +36,6 @@ static TuneFile of_constants(const TuneReport *report, const char *option, const
         file.steps = linear->run.steps;
         file.processor_s = linear->run.processor_s;
     }
-    judge(tune, &file);
     return file;
 }
 
@@ -56,7 +48,7 @@ static TuneFile of_model(const TuneReport *report)
         file.is_there = file.is_there && tune_mujoco_find(report, &mujoco);
         return file;
     }
-    TuneFile file = {
+    return (TuneFile){
         .is_there = true,
         .option = "--mjcf",
         .measure = "the whole model, run in MuJoCo",
@@ -66,11 +58,9 @@ static TuneFile of_model(const TuneReport *report)
         .steps = model->steps,
         .processor_s = model->processor_s,
     };
-    judge(report->tune, &file);
-    return file;
 }
 
-TuneFile tune_file(const TuneReport *report, TuneFileKind kind)
+static TuneFile find_file(const TuneReport *report, TuneFileKind kind)
 {
     switch (kind) {
     case TUNE_FILE_CODE:
@@ -83,6 +73,14 @@ TuneFile tune_file(const TuneReport *report, TuneFileKind kind)
         break;
     }
     return (TuneFile){.error = NAN};
+}
+
+TuneFile tune_file(const TuneReport *report, TuneFileKind kind)
+{
+    const Tune *tune = report->tune;
+    TuneFile file = find_file(report, kind);
+    file.meets = isfinite(file.error) && file.error + tune->truth.uncertainty <= tune->target;
+    return file;
 }
 
 // That a file misses the target, and by how much.
