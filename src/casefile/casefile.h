@@ -47,6 +47,9 @@ void casefile_describe_markdown(Text *text);
 // names none.
 bool casefile_describe_group(const char *name, Text *text, Err *err);
 
+// Whether the case or the command line gives a key whose path begins so, such as "ode.".
+bool casefile_gives(const Scenario *scenario, const char *beginning);
+
 // Appends a line for each key that the case or the command line gives and that the scenario, as it
 // is now, makes no use of: where it stands, and what would. A key of the file beside which the
 // command line replaces what decides about it is left out. Returns how many.

@@ -464,6 +464,16 @@ static bool is_decided(const Scenario *scenario, const char *paths)
     return false;
 }
 
+bool casefile_gives(const Scenario *scenario, const char *beginning)
+{
+    bool gives = false;
+    for (size_t i = 0; i < scenario->key_count && !gives; i++) {
+        const char *path = SCHEMA_ROWS[scenario->keys[i].row].path;
+        gives = strncmp(path, beginning, strlen(beginning)) == 0;
+    }
+    return gives;
+}
+
 size_t casefile_unused(const Scenario *scenario, Text *lines)
 {
     const unsigned met = schema_met(scenario);

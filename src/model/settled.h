@@ -6,6 +6,8 @@
 #include "model/drive.h"
 #include "model/linkage.h"
 
+#include <stdint.h>
+
 // A number of a settled motion that each of its revolutions has one of, such as the largest force
 // of a joint. Of a motion that repeats every p revolutions all of these but `mean` are the largest
 // of the p.
@@ -55,13 +57,18 @@ typedef struct SettledGrowth {
 
 // How the start of a scenario was found (run/settle.h).
 typedef struct SettledStart {
-    size_t revolutions;     // that it took; 0: the start is as written
-    bool is_pressed;        // START_PRESSED: the pins were put on their walls
-    bool is_followed;       // it was found from that of a neighbour in a study
-    double followed_from;   // of the key that is followed, SI: the neighbour's value
-    size_t tried;           // starts that were turned
-    size_t starts;          // of them those whose motion is known
-    bool is_spent;          // run.settle-budget ended the search
+    size_t revolutions;   // that it took; 0: the start is as written
+    bool is_pressed;      // START_PRESSED: the pins were put on their walls
+    bool is_followed;     // it was found from that of a neighbour in a study
+    double followed_from; // of the key that is followed, SI: the neighbour's value
+    bool is_brief;        // it does not repeat, and was turned for too short a time to have
+                          // numbers of its own: it is a start, and no more
+    uint64_t neighbour;   // or of a block of runs: the number of the neighbour's run
+    bool is_checked;      // it was also found from a neighbour's, and its forces are then apart
+    double apart_from_followed; // by so much at most, 1; NAN: not known
+    size_t tried;               // starts that were turned
+    size_t starts;              // of them those whose motion is known
+    bool is_spent;              // run.settle-budget ended the search
     double width;           // 1: of a motion that does not repeat the half width of the interval
                             // of a joint's headline, over the headline: the widest
     double *first;          // N, by joint: its largest force in the first revolution from the

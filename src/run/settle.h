@@ -21,6 +21,25 @@ void settle_scenario(Scenario *scenario, RunWatch watch);
 // of this one; it is then settled as above.
 bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch);
 
+// The same for a study. A neighbour whose motion does not repeat, and of which too few revolutions
+// are known to bound its largest forces, lends a start and no more: from there it is turned for two
+// revolutions, so that it begins to do what it does (settled.is_brief). False, and nothing is
+// settled, where it does not repeat and these are known, or where there is no such start.
+bool settle_beside_neighbour(Scenario *scenario, const Scenario *neighbour, RunWatch watch);
+
+// Whether it is clear which motion a neighbour is to come to: it was found, and is the only one or,
+// of several, one that does not repeat, which a start near it falls into.
+bool settle_is_clear(const Scenario *scenario);
+
+// Whether two settled scenarios of one mechanism have clearly come to one motion: both repeat, to
+// forces that differ by 1e-3 at most, or neither does, and their forces are not distributed in
+// clearly different ways. The largest relative difference of a joint's largest force, 1; NAN where
+// none is known.
+bool settle_is_same(const Scenario *a, const Scenario *b, double *apart);
+
+// Gives a scenario the settled start of another that differs from it in how it is run alone.
+void settle_take(Scenario *scenario, const Scenario *settled);
+
 // What lies beside the settled motion of a scenario: nothing of one that has none.
 
 // Finds how the largest forces move when its damping is halved and doubled, to the four digits that

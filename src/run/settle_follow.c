@@ -8,6 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Revolutions from a neighbour's motion that does not repeat: its state is forgotten within one
+enum { BRIEF_TURNS = 2 };
+
+// 1: largest forces of one motion that was found twice, each repeating to no more than that
+static const double SAME_FORCES = 1e-3;
+
 // Whether a start can be handed from one linkage to the other: both have the same bodies and
 // joints, and nothing counts whole turns.
 static bool can_follow(const Scenario *scenario, const Scenario *neighbour)
@@ -86,20 +92,89 @@ static bool start_as_neighbour(const Scenario *neighbour, Scenario *scenario)
     return is_placed;
 }
 
+// Turns a scenario from the neighbour's start; brief, for so few revolutions that one that does not
+// repeat has begun to do what it does, and no more.
+static bool search_from(Scenario *scenario, const Scenario *neighbour, bool is_brief,
+                        RunWatch watch)
+{
+    Scenario first = scenario_copy(scenario);
+    const RunOptions asked = scenario->run;
+    if (is_brief) {
+        scenario->run.settle_least = scenario->run.settle_most = BRIEF_TURNS;
+    }
+    const bool is_found =
+        start_as_neighbour(neighbour, &first) && settle_search(scenario, &first, 1, watch);
+    scenario->run.settle_least = asked.settle_least;
+    scenario->run.settle_most = asked.settle_most;
+    scenario_free(&first);
+    return is_found;
+}
+
 bool settle_follow(Scenario *scenario, const Scenario *neighbour, RunWatch watch)
 {
-    bool is_followed = scenario_lacks_start(scenario) && settle_dissipates(scenario) &&
-                       can_follow(scenario, neighbour);
-    if (is_followed) {
-        Scenario first = scenario_copy(scenario);
-        is_followed =
-            start_as_neighbour(neighbour, &first) && settle_search(scenario, &first, 1, watch);
-        scenario_free(&first);
-    }
+    const bool is_followed = scenario_lacks_start(scenario) && settle_dissipates(scenario) &&
+                             can_follow(scenario, neighbour) &&
+                             search_from(scenario, neighbour, false, watch);
     if (is_followed) {
         scenario->settled.is_followed = true;
     } else {
         settle_scenario(scenario, watch);
     }
     return is_followed;
+}
+
+bool settle_beside_neighbour(Scenario *scenario, const Scenario *neighbour, RunWatch watch)
+{
+    if (!scenario_lacks_start(scenario) || !settle_dissipates(scenario) ||
+        !can_follow(scenario, neighbour)) {
+        return false;
+    }
+    const bool is_brief = neighbour->settled.motions[0].period == 0;
+    if (is_brief && isfinite(neighbour->settled.width)) {
+        return false;
+    }
+    const bool is_followed = search_from(scenario, neighbour, is_brief, watch);
+    scenario->settled.is_followed = is_followed;
+    scenario->settled.is_brief =
+        is_followed && is_brief && scenario->settled.motions[0].period == 0;
+    return is_followed;
+}
+
+bool settle_is_clear(const Scenario *scenario)
+{
+    const SettledStart *settled = &scenario->settled;
+    return settled->motion_count == 1 ||
+           (settled->motion_count > 1 && settled->motions[0].period == 0);
+}
+
+bool settle_is_same(const Scenario *a, const Scenario *b, double *apart)
+{
+    const Linkage *linkage = &a->linkage;
+    const SettledMotion *motion = &a->settled.motions[0];
+    const SettledMotion *other = &b->settled.motions[0];
+    *apart = NAN;
+    if (!settle_is_clear(a) || !settle_is_clear(b) || motion->period != other->period) {
+        return false;
+    }
+    if (motion->period == 0) {
+        return !settle_motions_differ(motion, other, linkage);
+    }
+    *apart = 0.0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const double force = motion->joints[i].force.headline;
+        const double by = fabs(force - other->joints[i].force.headline);
+        *apart =
+            by > 0.0 ? fmax(*apart, by / fmax(force, other->joints[i].force.headline)) : *apart;
+    }
+    return *apart <= SAME_FORCES;
+}
+
+void settle_take(Scenario *scenario, const Scenario *settled)
+{
+    settle_take_start(&settled->linkage, &scenario->linkage);
+    settled_start_free(&scenario->settled);
+    scenario->settled = settled_start_copy(&settled->settled, &settled->linkage);
+    scenario->run.start = settled->run.start;
+    memcpy(scenario->run.centred_because, settled->run.centred_because,
+           sizeof scenario->run.centred_because);
 }

@@ -20,6 +20,9 @@ bool settle_motions_differ(const SettledMotion *a, const SettledMotion *b, const
 // where no start came to anything: the scenario then says why.
 bool settle_search(Scenario *scenario, const Scenario *first, size_t count, RunWatch watch);
 
+// Positions, velocities and all that counts of the start of one linkage become that of another.
+void settle_take_start(const Linkage *from, Linkage *to);
+
 // The runs with other damping, in pieces. NULL where nothing is settled or damped; the watch, which
 // outlives them, then has their revolutions.
 typedef struct DampingRuns DampingRuns;

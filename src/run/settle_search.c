@@ -464,8 +464,7 @@ static void finish_known(size_t index, bool is_callers, void *context)
 
 // Puts what was found into the scenario.
 
-// Positions, velocities and all that counts of the start of one linkage become that of another.
-static void take_start(const Linkage *from, Linkage *to)
+void settle_take_start(const Linkage *from, Linkage *to)
 {
     memcpy(to->bodies, from->bodies, to->body_count * sizeof *to->bodies);
     memcpy(to->joints, from->joints, to->joint_count * sizeof *to->joints);
@@ -554,7 +553,7 @@ static void take_motions(const Search *search, Scenario *scenario)
         settled->motions[i] = found[i].motion;
     }
     settled->revolutions = found[0].settling->count;
-    take_start(&found[0].settling->scenario.linkage, &scenario->linkage);
+    settle_take_start(&found[0].settling->scenario.linkage, &scenario->linkage);
     free(found);
     settled->first = zeroed(scenario->linkage.joint_count, sizeof *settled->first);
     const Settling *first = &search->starts[0].settling;

@@ -121,9 +121,12 @@ static void shards_are_disjoint_and_make_up_the_whole(void **state)
     for (size_t i = 0; i < SIZE_COUNT * SIZE_COUNT * SIZE_COUNT; i++) {
         for (int changes = 0; changes < 2; changes++) {
             // a range of one value never is, but it counts like any other
-            const Spec spec = make_spec(SIZES[i % SIZE_COUNT], SIZES[i / SIZE_COUNT % SIZE_COUNT],
-                                        SIZES[i / SIZE_COUNT / SIZE_COUNT], changes == 1);
+            Spec spec = make_spec(SIZES[i % SIZE_COUNT], SIZES[i / SIZE_COUNT % SIZE_COUNT],
+                                  SIZES[i / SIZE_COUNT / SIZE_COUNT], changes == 1);
             for (uint64_t shards = 1; shards < 20; shards += 3) {
+                spec.has_neighbours = false;
+                assert_true(shards_are_whole(&spec, shards));
+                spec.has_neighbours = true;
                 assert_true(shards_are_whole(&spec, shards));
             }
         }
@@ -144,6 +147,23 @@ static void a_shard_keeps_groups_whole_where_there_are_enough(void **state)
     for (uint64_t index = 0; index < 13; index++) {
         assert_true(design_shard_count(&spec, (Shard){index, 13}) >= 4);
     }
+}
+
+static void a_shard_keeps_blocks_whole_where_there_are_enough(void **state)
+{
+    (void)state;
+    Spec spec = make_spec(10, 9, 3, true); // 90 groups of 3: four blocks of 60 and one of 30
+    spec.has_neighbours = true;
+    assert_int_equal(design_block_size(&spec), 60);
+    for (uint64_t index = 0; index < 4; index++) {
+        const Shard shard = {index, 4};
+        for (uint64_t run = 0; (run = design_next(&spec, shard, run)) < 270; run++) {
+            assert_int_equal(run / 60 % 4, index);
+        }
+        assert_int_equal(design_shard_count(&spec, shard), index == 0 ? 90 : 60);
+    }
+    // with no more blocks than that groups are divided
+    assert_int_equal(design_shard_count(&spec, (Shard){5, 6}), 45);
 }
 
 static void draws_that_leave_the_truth_share_one(void **state)
@@ -348,6 +368,7 @@ int main(void)
         cmocka_unit_test(ranges_have_exact_ends_and_even_steps),
         cmocka_unit_test(shards_are_disjoint_and_make_up_the_whole),
         cmocka_unit_test(a_shard_keeps_groups_whole_where_there_are_enough),
+        cmocka_unit_test(a_shard_keeps_blocks_whole_where_there_are_enough),
         cmocka_unit_test(draws_that_leave_the_truth_share_one),
         cmocka_unit_test(a_run_of_a_billion_needs_no_list),
         cmocka_unit_test(values_arrive_as_if_written_in_the_case),

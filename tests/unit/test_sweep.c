@@ -268,6 +268,25 @@ static void be_spoilt(const SweepRun *task, Record *record)
     be_well(task, record);
 }
 
+// Settling the block ends a process, by itself or by the limit.
+static void abort_over_block(const SweepRun *task, Record *record)
+{
+    if (!task->is_alone) {
+        __atomic_fetch_add(&board->spoilt, 1, __ATOMIC_SEQ_CST);
+        abort();
+    }
+    be_well(task, record);
+}
+
+static void hang_over_block(const SweepRun *task, Record *record)
+{
+    if (!task->is_alone) {
+        __atomic_fetch_add(&board->spoilt, 1, __ATOMIC_SEQ_CST);
+        pause();
+    }
+    be_well(task, record);
+}
+
 static void certify_well(const SweepTruth *task, void *packed)
 {
     __atomic_fetch_add(&board->certified, 1, __ATOMIC_SEQ_CST);
@@ -298,6 +317,8 @@ static const SweepWork HANGING = {hang, certify_well};
 static const SweepWork WITHOUT_TRUTH = {be_well, certify_badly};
 static const SweepWork COUNTED = {be_counted, certify_well};
 static const SweepWork SPOILT = {be_spoilt, certify_well};
+static const SweepWork ABORTING_OVER_BLOCK = {abort_over_block, certify_well};
+static const SweepWork HANGING_OVER_BLOCK = {hang_over_block, certify_well};
 static const SweepWork AT_LAST = {be_well, certify_at_last};
 
 static void check_row(const Study *study, uint64_t run, RunOutcome outcome, const char *reason)
@@ -314,6 +335,36 @@ static void check_row(const Study *study, uint64_t run, RunOutcome outcome, cons
     design_values(&study->spec, run, values);
     assert_near(row->settings[0].number, values[0].number, 0.0);
     assert_near(row->settings[1].number, values[1].number, 0.0);
+}
+
+static void a_block_is_made_by_one_process(void **state)
+{
+    Study *study = *state;
+    open_study(study, 4, false, "{time: 600 s, memory: 200 MB}");
+    study->spec.has_neighbours = true;
+    assert_int_equal(sweep(study, &COUNTED, 2, ALL), SWEEP_COMPLETE);
+    assert_int_equal(study->row_count, 12);
+    assert_int_equal(board->processes, 1);
+    assert_int_equal(board->at_work_max, 1);
+}
+
+// Once: the others of the block then settle by themselves.
+static void a_process_that_ends_over_its_block_takes_no_run_with_it(void **state)
+{
+    Study *study = *state;
+    const SweepWork *const works[] = {&ABORTING_OVER_BLOCK, &HANGING_OVER_BLOCK};
+    for (unsigned i = 0; i < 2; i++) {
+        open_study(study, 4, false, "{time: 500 ms, memory: 200 MB}");
+        study->spec.has_neighbours = true;
+        assert_int_equal(sweep(study, works[i], 2, ALL), SWEEP_COMPLETE);
+        assert_int_equal(study->row_count, 12);
+        for (uint64_t run = 0; run < 12; run++) {
+            check_row(study, run, RUN_OUTCOME_OK, "");
+        }
+        assert_int_equal(board->spoilt, i + 1);
+        assert_int_equal(unlink(study->store_path), 0);
+        spec_finish(&study->spec);
+    }
 }
 
 static void what_goes_wrong_is_one_row_with_its_reason(void **state)
@@ -559,6 +610,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #define SWEEP_TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
         SWEEP_TEST(what_goes_wrong_is_one_row_with_its_reason),
+        SWEEP_TEST(a_block_is_made_by_one_process),
+        SWEEP_TEST(a_process_that_ends_over_its_block_takes_no_run_with_it),
         SWEEP_TEST(a_process_makes_many_runs),
         SWEEP_TEST(a_run_is_judged_by_what_it_does_in_a_process_of_its_own),
         SWEEP_TEST(a_run_that_hangs_is_ended_at_its_limit),

@@ -909,6 +909,23 @@ static void append_time(const StudyOptions *options, const Spec *spec, const Lay
     text_append(text, ".\n");
 }
 
+// What makes the runs of a study that does not say so by a scheme.
+static void append_maker(const Spec *spec, Text *text)
+{
+    if (spec->backend == BACKEND_REFERENCE) {
+        text_append(text,
+                    "The reference makes the runs%s, and no other solver: neither the case "
+                    "nor the study names a scheme, a step or a setting of ODE, or truth: "
+                    "true.\n",
+                    spec->is_quick ? ", to a tolerance of 1e-8" : "");
+    }
+    if (spec->has_neighbours) {
+        text_append(text,
+                    "Of twenty settled runs in a row two find their motion by themselves, the "
+                    "others begin in a neighbour's; settle: each lets all find their own.\n");
+    }
+}
+
 bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *layout, Err *err)
 {
     (void)err;
@@ -928,7 +945,9 @@ bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *
     if (spec->has_truth) {
         text_append(&text, ", %" PRIu64 " truths", design_group(spec, end - 1) + 1);
     }
-    text_append(&text, ".\nThe store ");
+    text_append(&text, ".\n");
+    append_maker(spec, &text);
+    text_append(&text, "The store ");
     text_append_shown(&text, options->store);
     text_append(&text, " would take some %.2g MB.\n", 1e-6 * store_bytes(layout, runs));
     append_trials(options, spec, &text);

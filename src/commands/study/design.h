@@ -29,8 +29,18 @@ void design_values(const Spec *spec, uint64_t run, Cell values[RECORD_SETTING_MA
 // follow one another.
 uint64_t design_group(const Spec *spec, uint64_t run);
 
-// The first run of a shard from a number on, or design_run_count. A shard takes whole groups where
-// there are at least as many of them as shards, else single runs.
+// The number of runs of a group.
+uint64_t design_group_size(const Spec *spec);
+
+// Groups in a row that look for their settled motions together (commands/study/neighbours.h).
+enum { DESIGN_BLOCK_GROUPS = 20 };
+
+// The number of runs that are made by one process after another: of a block where there are such,
+// which the last run may end before, else of a group.
+uint64_t design_block_size(const Spec *spec);
+
+// The first run of a shard from a number on, or design_run_count. A shard takes whole blocks
+// where there are at least as many of them as shards, or whole groups, else single runs.
 uint64_t design_next(const Spec *spec, Shard shard, uint64_t from);
 
 // The number of runs of a shard.

@@ -35,6 +35,8 @@ typedef enum Need {
     TRIALS,      // the step was chosen for a tolerance
     CERTIFICATE, // the reference is certified
     FOLLOWED,    // the run started in the motion of its neighbour
+    NEIGHBOUR,   // likewise, in a block of runs
+    CHECKED,     // it was settled both ways
     GROWTH,      // the growth of small changes was looked for
     TURNS,       // the body does not slide on the ground
     SLIDES,      // it does
@@ -96,6 +98,12 @@ static double find_watched(const Measured *measured, size_t unused)
 {
     (void)unused;
     return (double)measured->settled->motions[0].watched;
+}
+
+static double find_neighbour(const Measured *measured, size_t unused)
+{
+    (void)unused;
+    return (double)measured->settled->neighbour;
 }
 
 static double find_order_1(const Measured *measured, size_t body)
@@ -221,6 +229,12 @@ static const Metric METRICS[] = {
     SETTLED("followed_from", REAL, FOLLOWED, followed_from,
             "value of the followed key at the run whose motion it started in",
           "value that the motion was followed from"),
+    FOUND(OF_SETTLED, "settled_from_run", WHOLE, NEIGHBOUR, find_neighbour,
+          "run in whose settled motion it started; none: it found its own",
+          "run that the motion is from"),
+    SETTLED("settled_apart", REAL, CHECKED, apart_from_followed,
+            "relative difference of forces, settled by itself and from a neighbour",
+            "difference of forces, settled both ways"),
     FORCE("settled_force_N", REAL, NOTHING, headline,
           "settled motion's largest force; 95 % quantile where it does not repeat",
           "largest force of the settled motion"),
@@ -377,14 +391,16 @@ typedef struct Lists {
     bool has_settled;
     bool is_following;
     bool has_growth;
+    bool has_neighbours;
 } Lists;
 
 // Whether a study of these lists has a number.
 static bool metrics_is_listed(const Metric *metric, Lists lists)
 {
-    return metric->need == FOLLOWED ? lists.is_following
-           : metric->need == GROWTH ? lists.has_growth
-                                    : true;
+    return metric->need == FOLLOWED                               ? lists.is_following
+           : metric->need == GROWTH                               ? lists.has_growth
+           : metric->need == NEIGHBOUR || metric->need == CHECKED ? lists.has_neighbours
+                                                                  : true;
 }
 
 // The results of one body, joint or whole.
@@ -466,7 +482,8 @@ static const char *metric_key(const Linkage *linkage, const Result *result,
 void metrics_layout(const Spec *spec, const Scenario *scenario, Layout *layout)
 {
     Result results[RECORD_RESULT_MAX];
-    const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0', spec->has_growth};
+    const Lists lists = {scenario_settles(scenario), spec->follow[0] != '\0', spec->has_growth,
+                         spec->has_neighbours};
     const size_t count = list_results(&scenario->linkage, lists, results);
     char turned[TURNED_KEY_SIZE];
     *layout = (Layout){0};
@@ -531,7 +548,8 @@ static bool is_there(const Metric *metric, const Measured *measured)
 {
     if ((metric->owner >= OF_ERROR && !measured->error.is_known) ||
         ((metric->owner == OF_SETTLED || metric->owner == OF_SETTLED_JOINT) &&
-         measured->settled->motion_count == 0)) {
+         measured->settled->motion_count == 0) ||
+        (metric->owner == OF_SETTLED_JOINT && measured->settled->is_brief)) {
         return false;
     }
     switch (metric->need) {
@@ -542,7 +560,10 @@ static bool is_there(const Metric *metric, const Measured *measured)
     case CERTIFICATE:
         return measured->truth->message[0] == '\0';
     case FOLLOWED:
+    case NEIGHBOUR:
         return measured->settled->is_followed;
+    case CHECKED:
+        return measured->settled->is_checked;
     case GROWTH:
         return measured->settled->has_growth;
     default:
@@ -607,9 +628,9 @@ bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *tr
         }
     }
     Result list[RECORD_RESULT_MAX];
-    const Lists lists = {metrics_has(layout, "settled_period"),
-                         metrics_has(layout, "followed_from"),
-                         metrics_has(layout, "settled_growth")};
+    const Lists lists = {
+        metrics_has(layout, "settled_period"), metrics_has(layout, "followed_from"),
+        metrics_has(layout, "settled_growth"), metrics_has(layout, "settled_from_run")};
     const size_t count = list_results(measured.linkage, lists, list);
     for (size_t i = 0; i < RECORD_RESULT_MAX; i++) {
         const double value = i < count ? metrics_read_result(&list[i], &measured) : NAN;

@@ -56,6 +56,12 @@ typedef struct Variable {
 typedef enum FollowDirection { FOLLOW_FORWARD, FOLLOW_BACKWARD, FOLLOW_BOTH } FollowDirection;
 static const char SPEC_DIRECTION_KEY[] = "direction";
 
+// How each run of a study finds its settled motion.
+typedef enum SpecSettle {
+    SETTLE_NEIGHBOURS, // most from a neighbour's, commands/study/neighbours.h
+    SETTLE_EACH,       // by itself
+} SpecSettle;
+
 typedef enum DrawMethod { DRAW_RANDOM, DRAW_LATIN_HYPERCUBE } DrawMethod;
 
 typedef struct Spec {
@@ -78,6 +84,10 @@ typedef struct Spec {
     char follow[CASEFILE_KEY_SIZE]; // the key along which runs start in the motion of the one
                                     // before; empty: each finds its own
     FollowDirection direction;
+    SpecSettle settle;
+    bool has_neighbours;        // runs are settled that way
+    BackendKind backend;        // that makes the runs of no scheme: the reference, or ODE
+    bool is_quick;              // it is the reference, and nobody asks for its last digits
     bool has_truth;             // each run is held against the certified reference
     bool has_growth;            // each row says how small changes of its settled motion grow
     const char *const *drivers; // of --driver, by which other engines are run; not owned

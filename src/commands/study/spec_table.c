@@ -20,6 +20,8 @@ static const char *const METHODS[] = {
     [DRAW_RANDOM] = "random", [DRAW_LATIN_HYPERCUBE] = "latin-hypercube", NULL};
 static const char *const DIRECTIONS[] = {
     [FOLLOW_FORWARD] = "forward", [FOLLOW_BACKWARD] = "backward", [FOLLOW_BOTH] = "both", NULL};
+static const char *const SETTLES[] = {
+    [SETTLE_NEIGHBOURS] = "neighbours", [SETTLE_EACH] = "each", NULL};
 static const char *const SCALES[] = {"linear", "log", NULL};
 static const char *const FLAGS[] = {"false", "true", NULL};
 
@@ -40,10 +42,15 @@ const SpecKey SPEC_KEYS[] = {
     {SPEC_TOP, "follow", SPEC_KEY_PART, .read = spec_read_follow,
      .value = "KEY under vary, or {key: KEY, direction: both}",
      .doc = "Each run starts in the settled motion of the run before it along this key"},
+    {SPEC_TOP, "settle", SPEC_KEY_CHOICE, AT(settle), .words = SETTLES, .what = "settle",
+     .doc =
+         "Whether runs without a truth start in the settled motion of a neighbour, of which each "
+         "tenth is found by itself, or each run finds its own"},
     {SPEC_TOP, "draw", SPEC_KEY_MAP, .of = SPEC_DRAW, .doc = "Random values"},
     {SPEC_TOP, "limits", SPEC_KEY_MAP, .of = SPEC_LIMITS, .doc = "Limits of one run"},
     {SPEC_TOP, "truth", SPEC_KEY_FLAG, AT(has_truth), .words = FLAGS, .what = "truth",
-     .doc = "Whether each run is compared with the certified reference for its values"},
+     .doc = "Whether each run is compared with the certified reference for its values; false where "
+            "the reference makes the runs"},
     {SPEC_TOP, "growth", SPEC_KEY_FLAG, AT(has_growth), .words = FLAGS, .what = "growth",
      .doc = "Whether each row has the growth of a small change in a revolution, which takes the "
             "reference some 30 revolutions more"},

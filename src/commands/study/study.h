@@ -35,7 +35,8 @@ bool study_run_dry(const StudyOptions *options, const Spec *spec, const Layout *
 // What the first runs of a study took.
 typedef struct StudyPace {
     uint64_t made;
-    double wall_s; // of all of them
+    double wall_s;  // of all of them
+    uint64_t least; // that say how long the others take
 } StudyPace;
 
 // Makes runs of a study for a few seconds, or until one is over, into a store that is then removed.

@@ -287,6 +287,38 @@ static void study_report_spread_row(Table *table, const char *name, const StoreS
     }
 }
 
+// The spread of a result by its name; without any number where there is no such result.
+static StoreSpread spread_of(const Layout *layout, const StoreSpread *spreads, const char *name)
+{
+    StoreSpread found = {.count = 0};
+    for (size_t i = 0; i < layout->result_count; i++) {
+        found = strcmp(layout->results[i].name, name) == 0 ? spreads[i] : found;
+    }
+    return found;
+}
+
+// Which runs found their settled motion by themselves, and what those say of the others.
+static void append_settled(const Layout *layout, const StoreSpread *spreads, Text *text)
+{
+    const StoreSpread from = spread_of(layout, spreads, "settled_from_run");
+    const StoreSpread settled = spread_of(layout, spreads, "settled_period");
+    const StoreSpread apart = spread_of(layout, spreads, "settled_apart");
+    if (from.count == 0) {
+        return;
+    }
+    text_append(text,
+                "\nOf %" PRIu64 " settled runs %" PRIu64 " began in the motion of a neighbour, the "
+                "others found theirs by themselves.\n",
+                settled.count, from.count);
+    if (apart.count > 0) {
+        text_append(text,
+                    "%" PRIu64
+                    " did both: their largest forces differ by at most %.1e. Where it is "
+                    "more than 1e-3, none of their twenty neighbours began so.\n",
+                    apart.count, apart.most);
+    }
+}
+
 bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
 {
     static const SectionHead HEADS[] = {{"result", "", TABLE_LEFT},  {"runs", "", TABLE_RIGHT},
@@ -306,6 +338,9 @@ bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
     }
     section_end(table, &section);
     text_append(text, "%s", is_read ? section.data : "");
+    if (is_read) {
+        append_settled(layout, spreads, text);
+    }
     text_finish(&section);
     return is_read;
 }

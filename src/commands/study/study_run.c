@@ -195,19 +195,23 @@ static const double PACE_MOST_S = 20.0;
 
 static void take_pace(const SweepState *state, void *pace)
 {
-    *(StudyPace *)pace = (StudyPace){.made = state->made, .wall_s = state->wall_s};
+    StudyPace *known = pace;
+    known->made = state->made;
+    known->wall_s = state->wall_s;
 }
 
 static bool is_pace_known(void *context)
 {
     const StudyPace *pace = context;
+    // the first run of a block settles all of it
     return interrupt_number() != 0 || pace->wall_s > PACE_MOST_S ||
-           (pace->made > 0 && pace->wall_s > PACE_S);
+           (pace->made >= pace->least && pace->wall_s > PACE_S);
 }
 
 StudyPace study_run_pace(const StudyOptions *options, const Spec *spec, const Layout *layout)
 {
-    StudyPace pace = {.made = 0};
+    const uint64_t blocks = spec->has_neighbours ? design_block_size(spec) : 1;
+    StudyPace pace = {.made = 0, .least = blocks > 1 ? options->common.jobs * blocks : 1};
     const char *temporary = getenv("TMPDIR");
     char folder[FILE_PATH_SIZE / 2];
     snprintf(folder, sizeof folder, "%s/jointplay-XXXXXX", temporary != NULL ? temporary : "/tmp");

@@ -4,6 +4,7 @@
 #include "base/printable.h"
 #include "commands/study/design.h"
 #include "commands/study/follow.h"
+#include "commands/study/neighbours.h"
 #include "commands/study/worker.h"
 #include "measure/chosen_run.h"
 #include "run/registry.h"
@@ -29,6 +30,8 @@ typedef struct SweepGroup {
     uint64_t next;      // its next run to be started, or end
     uint64_t end;       // number behind its last
     size_t busy;        // of its runs at work
+    bool is_block;      // one process makes them, which knows their settled motions
+    bool is_alone;      // it is one, and a process died over it: each run settles by itself
     bool has_truth;     // of SWEEP_GROUP_READY
     bool lacks_truth;   // there should be one, and it cannot be computed
     Truth truth;        // owned
@@ -134,7 +137,11 @@ static void sweep_run(const SweepRun *task, Record *record)
         // one whose start need not be found is refused as soon as it runs
         give_reason(record, RUN_OUTCOME_FAILED, err.text);
     } else {
-        follow_settle(task->spec, task->run, scenario);
+        if (task->spec->has_neighbours && !task->is_alone) {
+            neighbours_settle(task->spec, task->run, task->slot.limit_s, scenario);
+        } else {
+            follow_settle(task->spec, task->run, scenario);
+        }
         if (task->spec->has_growth) {
             settle_growth(scenario, (RunWatch){.progress = NULL});
         }
@@ -272,6 +279,15 @@ static uint64_t sweep_find_end(const Spec *spec, uint64_t run)
     return behind;
 }
 
+// The number behind the last run of a run's block.
+static uint64_t block_end(const Spec *spec, uint64_t run)
+{
+    const uint64_t size = design_block_size(spec);
+    const uint64_t left = design_run_count(spec) - run;
+    const uint64_t own = size - run % size;
+    return run + (own < left ? own : left);
+}
+
 // What the truth's process is to do. False where the values of that run make no case.
 static bool prepare_truth(const Spec *spec, uint64_t run, SweepGroup *group)
 {
@@ -300,7 +316,8 @@ static void sweep_group_open(const Sweep *sweep, uint64_t run, SweepGroup *group
     const Spec *spec = sweep->spec;
     *group = (SweepGroup){.state = SWEEP_GROUP_READY, .next = run};
     if (!spec->has_truth) {
-        group->end = design_run_count(spec);
+        group->is_block = spec->has_neighbours;
+        group->end = group->is_block ? block_end(spec, run) : design_run_count(spec);
         return;
     }
     group->end = sweep_find_end(spec, run);
@@ -368,6 +385,7 @@ static void sweep_group_close(SweepGroup *group)
 //
 // There are as many slots as jobs; in each a process works and another one, already started, waits.
 // A process lives for many runs, and ends with a run that goes wrong.
+// A block is the matter of one process, which makes its runs one after another.
 // Runs start by rising number. A truth is a process like a run, and is started early enough that no
 // run waits for it: as soon as fewer runs than jobs are ready to start. The number of open groups
 // is that of the jobs plus one, so that there is always something to start: each open group has a
@@ -379,6 +397,9 @@ enum { WORKER_RUNS_MAX = 200 };
 
 static void sweep_pool_open(const Sweep *sweep, SweepState *state, SweepPool *pool)
 {
+    // each process has a block of its own
+    const size_t group_count =
+        (sweep->spec->has_neighbours ? SWEEP_SLOT_DEPTH : 1) * sweep->jobs + 1;
     *pool = (SweepPool){
         .sweep = sweep,
         .work = sweep->work == NULL ? &SWEEP_WORK : sweep->work,
@@ -389,8 +410,8 @@ static void sweep_pool_open(const Sweep *sweep, SweepState *state, SweepPool *po
         .job_count = SWEEP_SLOT_DEPTH * sweep->jobs,
         .jobs = calloc(SWEEP_SLOT_DEPTH * sweep->jobs, sizeof *pool->jobs),
         .children = calloc(SWEEP_SLOT_DEPTH * sweep->jobs, sizeof *pool->children),
-        .group_count = sweep->jobs + 1,
-        .groups = calloc(sweep->jobs + 1, sizeof *pool->groups),
+        .group_count = group_count,
+        .groups = calloc(group_count, sizeof *pool->groups),
         .end = design_run_count(sweep->spec),
     };
     assert(pool->ended_s != NULL && pool->jobs != NULL && pool->children != NULL &&
@@ -422,17 +443,43 @@ static void sweep_pool_close(SweepPool *pool)
     free(pool->groups);
 }
 
-// The first group by number of run that has a run to start, and whether the runs to start are
-// enough for every job.
-static SweepGroup *find_ready(const SweepPool *pool, bool *are_enough)
+// Whether the process of a job knows what a group shares, and waits for a run of it.
+static bool is_served_by(const SweepPool *pool, size_t number, const SweepGroup *group)
+{
+    const SweepJob *job = &pool->jobs[number];
+    return job->serves == group->end && job->made < WORKER_RUNS_MAX &&
+           child_is_at_rest(&pool->children[number]);
+}
+
+// Whether a job may start a run of a block: no process is at work on it, and no other knows it.
+static bool is_free_for(const SweepPool *pool, size_t number, const SweepGroup *block)
+{
+    bool is_free = block->busy == 0;
+    for (size_t i = 0; i < pool->job_count && is_free; i++) {
+        is_free = i == number || pool->jobs[i].group != NULL || !is_served_by(pool, i, block);
+    }
+    return is_free;
+}
+
+// The first group by number of run that has a run for a job to start, of blocks that which its
+// process knows, and whether the runs to start are enough for every job.
+static SweepGroup *find_ready(const SweepPool *pool, size_t number, bool *are_enough)
 {
     SweepGroup *first = NULL;
+    bool is_own = false;
     uint64_t ready = 0;
     for (size_t i = 0; i < pool->group_count; i++) {
         SweepGroup *group = &pool->groups[i];
-        if (group->state == SWEEP_GROUP_READY && group->next < group->end) {
-            ready += group->end - group->next;
-            first = first == NULL || group->next < first->next ? group : first;
+        if (group->state != SWEEP_GROUP_READY || group->next >= group->end ||
+            (group->is_block && !is_free_for(pool, number, group))) {
+            continue;
+        }
+        const bool is_known = group->is_block && is_served_by(pool, number, group);
+        ready += group->is_block ? pool->slot_count : group->end - group->next;
+        if (first == NULL || (is_known && !is_own) ||
+            (is_known == is_own && group->next < first->next)) {
+            first = group;
+            is_own = is_known;
         }
     }
     *are_enough = ready >= pool->slot_count;
@@ -539,6 +586,7 @@ static bool start_run(SweepPool *pool, size_t number, SweepGroup *group, bool *i
         .layout = pool->sweep->layout,
         .truth = group->has_truth ? &group->truth : NULL,
         .run = group->next,
+        .is_alone = group->is_alone,
     };
     if (!sweep_start(pool, number, group, is_started, err)) {
         return false;
@@ -554,7 +602,7 @@ static bool start_run(SweepPool *pool, size_t number, SweepGroup *group, bool *i
 static bool sweep_fill(SweepPool *pool, size_t number, bool *is_started, Err *err)
 {
     bool are_enough;
-    SweepGroup *ready = find_ready(pool, &are_enough);
+    SweepGroup *ready = find_ready(pool, number, &are_enough);
     *is_started = false;
     while (!are_enough) {
         SweepGroup *group = sweep_find_group(pool, SWEEP_GROUP_WANTED);
@@ -568,7 +616,7 @@ static bool sweep_fill(SweepPool *pool, size_t number, bool *is_started, Err *er
             return start_truth(pool, number, group, is_started, err);
         }
         // it needs no truth, or can have none
-        ready = find_ready(pool, &are_enough);
+        ready = find_ready(pool, number, &are_enough);
     }
     return ready == NULL || start_run(pool, number, ready, is_started, err);
 }
@@ -644,7 +692,11 @@ static bool is_in_doubt(const SweepJob *job, const Child *child)
     const bool is_lost = child->end != CHILD_DONE && child->end != CHILD_TIMED_OUT;
     const bool is_starved =
         child->end == CHILD_DONE && job->record.outcome == RUN_OUTCOME_NO_MEMORY;
-    return !job->is_truth && job->made > 1 && (is_lost || is_starved);
+    const bool is_own = job->made <= 1 && (!job->group->is_block || job->run.is_alone);
+    // what settles a block is the work of all its runs
+    const bool is_blocks =
+        job->group->is_block && !job->run.is_alone && child->end == CHILD_TIMED_OUT;
+    return !job->is_truth && !is_own && (is_lost || is_starved || is_blocks);
 }
 
 // Makes the run of a job once more, in a new process. False where there is none.
@@ -655,6 +707,8 @@ static bool try_again(SweepPool *pool, size_t number)
     ChildLimits limits = pool->sweep->spec->limits;
     limits.time_s = 0.0;
     last_words_clear(job->slot.words);
+    job->group->is_alone = job->group->is_block;
+    job->run.is_alone = job->group->is_alone;
     return start_worker(job, &pool->children[number], job->group, limits, &unused);
 }
 

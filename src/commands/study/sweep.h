@@ -60,6 +60,7 @@ typedef struct SweepRun {
     const Layout *layout;
     const Truth *truth; // NULL where there is none
     uint64_t run;
+    bool is_alone; // it settles by itself: a process died over its block
 } SweepRun;
 
 // A truth as its process sees it.

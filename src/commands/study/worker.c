@@ -55,12 +55,17 @@ static void set_timer(double limit_s)
     setitimer(ITIMER_REAL, &timer, NULL);
 }
 
-void slot_enter(int slots, size_t slot, double limit_s)
+void slot_limit_again(double limit_s)
 {
-    worker_lock(slots, slot, F_WRLCK);
     if (limit_s > 0.0) {
         set_timer(limit_s);
     }
+}
+
+void slot_enter(int slots, size_t slot, double limit_s)
+{
+    worker_lock(slots, slot, F_WRLCK);
+    slot_limit_again(limit_s);
 }
 
 void slot_leave(int slots, size_t slot)

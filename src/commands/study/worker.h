@@ -16,6 +16,9 @@ void slot_close(int slots);
 // `limit_s` of wall time (0: no limit), after which SIGALRM ends it.
 void slot_enter(int slots, size_t slot, double limit_s);
 
+// In a child: lets its limit begin anew.
+void slot_limit_again(double limit_s);
+
 // In a child: releases the slot.
 void slot_leave(int slots, size_t slot);
 
