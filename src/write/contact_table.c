@@ -107,11 +107,6 @@ static void find_columns(const Linkage *linkage, ContactTable *table)
     name_columns(table);
 }
 
-static RowHead head_of(const ContactTable *table)
-{
-    return (RowHead){"contacts", table->heads, table->count};
-}
-
 // The angle of a body at any time, rad, between the samples around it.
 static double angle_at(const Trajectory *trajectory, int body, double time_s)
 {
@@ -180,21 +175,12 @@ static int compare_onsets(const void *a, const void *b)
     return (one->joint > other->joint) - (one->joint < other->joint);
 }
 
-bool contact_table_claim(const Linkage *linkage, const char *user, const char *path, Err *err)
-{
-    ContactTable table;
-    find_columns(linkage, &table);
-    const RowHead head = head_of(&table);
-    return row_file_claim(user, path, &head, err);
-}
-
 bool contact_table_write(const Trajectory *trajectory, const char *path, Err *err)
 {
     ContactTable table;
     find_columns(&trajectory->linkage, &table);
-    const RowHead head = head_of(&table);
     RowFile file;
-    if (!row_file_begin(&file, path, &head, err)) {
+    if (!row_file_begin(&file, path, table.heads, table.count, err)) {
         return false;
     }
     if (trajectory->contact_count > 0) {

@@ -201,11 +201,7 @@ static const Kind KINDS[FILE_KIND_COUNT] = {
     [FILE_COMMENT] = {"a comment of jointplay check (Markdown)", {{"### jointplay check", NULL}}},
     [FILE_BASELINE] = {"a baseline of jointplay check",
                        {{"{\"format\": \"jointplay baseline", NULL}}},
-    [FILE_ROWS] = {"rows of jointplay (JSON Lines)",
-                   {{"{\"run\":", "\"outcome\":"},
-                    {"{\"time_s\":", NULL},
-                    {"{\"joint\":", "\"onset_s\":"}}},
-    [FILE_DATABASE] = {"a table of jointplay (SQLite)", {{"SQLite format 3", "JPSR"}}},
+    [FILE_ROWS] = {"rows of jointplay (JSON Lines)", {{"{\"run\":", "\"outcome\":"}}},
     [FILE_CASE] = {"a case of jointplay new (YAML)", {{"# Written by 'jointplay new", NULL}}},
     [FILE_SCRIPT] = {"a script of jointplay study slurm",
                      {{"#!/bin/bash", "Written by 'jointplay study slurm'"}}},
@@ -232,8 +228,7 @@ static bool begins_with(const char *head, size_t size, const char *opening)
 }
 
 // Where what stands further down in a file of a kind does, in bytes; 0: anywhere.
-static const size_t FURTHER_AT[FILE_KIND_COUNT] = {
-    [FILE_DATABASE] = APPLICATION_AT, [FILE_STORE] = APPLICATION_AT};
+static const size_t FURTHER_AT[FILE_KIND_COUNT] = {[FILE_STORE] = APPLICATION_AT};
 
 static bool goes_on_with(const char *head, size_t size, const char *further, size_t at)
 {

@@ -30,7 +30,6 @@ typedef enum FileKind {
     FILE_COMMENT,  // of check: Markdown
     FILE_BASELINE, // of check: JSON
     FILE_ROWS,     // JSON Lines
-    FILE_DATABASE, // SQLite
     FILE_CASE,     // of new: YAML
     FILE_SCRIPT,   // of a study, for Slurm
     FILE_STORE,    // of a study: SQLite, written in place

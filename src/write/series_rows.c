@@ -633,16 +633,6 @@ double series_columns_value(const SeriesColumns *columns, const Trajectory *traj
     return column->find(&place);
 }
 
-bool series_columns_claim(const SeriesColumns *columns, const char *user, const char *path,
-                          Err *err)
-{
-    const char **names = names_of(columns);
-    const RowHead head = {"series", names, columns->count};
-    const bool is_claimed = row_file_claim(user, path, &head, err);
-    free(names);
-    return is_claimed;
-}
-
 static void write_rows(const SeriesColumns *columns, const Trajectory *trajectory, RowFile *file)
 {
     SeriesPlace place = {
@@ -665,9 +655,8 @@ bool series_columns_write(const SeriesColumns *columns, const Trajectory *trajec
                           const char *path, Err *err)
 {
     const char **names = names_of(columns);
-    const RowHead head = {"series", names, columns->count};
     RowFile file;
-    bool is_written = row_file_begin(&file, path, &head, err);
+    bool is_written = row_file_begin(&file, path, names, columns->count, err);
     if (is_written) {
         write_rows(columns, trajectory, &file);
         is_written = row_file_end(&file, err);

@@ -53,10 +53,7 @@ SeriesName series_columns_name(const SeriesColumns *columns, size_t number);
 double series_columns_value(const SeriesColumns *columns, const Trajectory *trajectory,
                             size_t sample, size_t number);
 
-// Claims a file for the series, and writes it with a row a sample, whole or not at all: CSV, JSON
-// Lines or SQLite, whose table is `series` (write/row_file.h). The trajectory is complete. They
-// fail as row_file_claim and row_file_end do.
-bool series_columns_claim(const SeriesColumns *columns, const char *user, const char *path,
-                          Err *err);
+// Writes the series with a row a sample, whole or not at all (write/row_file.h, where the file is
+// claimed before). The trajectory is complete. Fails as row_file_end does.
 bool series_columns_write(const SeriesColumns *columns, const Trajectory *trajectory,
                           const char *path, Err *err);

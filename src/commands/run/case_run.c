@@ -12,6 +12,7 @@
 #include "run/tracer.h"
 #include "write/contact_table.h"
 #include "write/file.h"
+#include "write/row_file.h"
 #include "write/series_rows.h"
 
 #include <assert.h>
@@ -291,15 +292,6 @@ static bool write_series(const CaseRun *run, const Trajectory *trajectory, const
            written_say(path, is_quiet);
 }
 
-static bool claim_series(const CaseRun *run, const char *user, const char *path, Err *err)
-{
-    SeriesColumns columns =
-        choose_columns(&run->scenario, run->columns, run->scenario.run.keeps_ranges);
-    const bool is_claimed = series_columns_claim(&columns, user, path, err);
-    series_columns_finish(&columns);
-    return is_claimed;
-}
-
 static bool write_contacts(const CaseRun *run, const Trajectory *trajectory, const char *path,
                            bool is_quiet, Err *err)
 {
@@ -307,22 +299,16 @@ static bool write_contacts(const CaseRun *run, const Trajectory *trajectory, con
     return contact_table_write(trajectory, path, err) && written_say(path, is_quiet);
 }
 
-static bool claim_contacts(const CaseRun *run, const char *user, const char *path, Err *err)
-{
-    return contact_table_claim(&run->scenario.linkage, user, path, err);
-}
-
 // A table of each run.
 typedef struct RunTableFile {
     const char *option;
-    bool (*claim)(const CaseRun *run, const char *user, const char *path, Err *err);
     bool (*write)(const CaseRun *run, const Trajectory *trajectory, const char *path, bool is_quiet,
                   Err *err);
 } RunTableFile;
 
 static const RunTableFile TABLES[] = {
-    [RUN_SERIES] = {"--series", claim_series, write_series},
-    [RUN_CONTACTS] = {"--contacts", claim_contacts, write_contacts},
+    [RUN_SERIES] = {"--series", write_series},
+    [RUN_CONTACTS] = {"--contacts", write_contacts},
 };
 
 // The file that a run's series goes to.
@@ -358,7 +344,7 @@ bool run_files_claim(const CaseRun *run, RunTable table, const char *path, Err *
     for (size_t i = 0; i < count && is_claimed; i++) {
         char target[FILE_PATH_SIZE];
         find_series(run, path, i, target);
-        is_claimed = of->claim(run, of->option, target, err);
+        is_claimed = row_file_claim(of->option, target, err);
     }
     return is_claimed;
 }
@@ -402,7 +388,7 @@ bool run_files_claim_folder(const CaseRun *run, const CommonOptions *options, Er
         const size_t number = i / FOLDER_FILE_COUNT;
         if (has_file(run, file, number) &&
             (!case_run_find_member(run, options, file, number, path, err) ||
-             !TABLES[file->table].claim(run, "--out", path, err))) {
+             !row_file_claim("--out", path, err))) {
             return false;
         }
     }

@@ -35,8 +35,7 @@ static const OptionRow OPTIONS[] = {
     COMMON_FULL(2),
     COMMON_WIDE(2),
     {"series", "FILE.csv",
-     "Write every sample, as JSON Lines to FILE.jsonl and as SQLite to FILE.sqlite; with several "
-     "backends to FILE-<backend>.csv each",
+     "Write every sample; with several backends to FILE-<backend>.csv each",
      2, OPTION_TEXT, AT(series)},
     {"columns", "NAME[,NAME]",
      "Write the time and these columns of the series alone, such as 'crank_deg,rod_*'", 2,
