@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
+
 LadderTruth ladder_truth_of(const Truth *truth, double wall_s)
 {
     LadderTruth known = {
@@ -57,6 +59,7 @@ Ladder *ladder_create(const Scheme *schemes, size_t scheme_count, const double *
     ladder->scheme_count = scheme_count;
     ladder->step_count = step_count;
     ladder->repeats = repeats;
+    ladder->is_whole = true;
     memcpy(ladder->schemes, schemes, scheme_count * sizeof *schemes);
     memcpy(ladder->steps, steps, step_count * sizeof *steps);
     for (size_t i = 0; i < scheme_count; i++) {
@@ -93,32 +96,6 @@ size_t ladder_find(const Ladder *ladder, const char *scheme, double step_s)
         }
     }
     return ladder->point_count;
-}
-
-bool ladder_add(Ladder *ladder, const LadderRun *run)
-{
-    if (run->point >= ladder->point_count) {
-        return false;
-    }
-    LadderPoint *point = &ladder->points[run->point];
-    if (run->kind == LADDER_ERROR) {
-        if (point->is_measured) {
-            return false;
-        }
-        point->is_measured = true;
-        point->run = *run;
-        point->run.error.against = NULL;
-        return true;
-    }
-    if (run->round >= ladder->repeats || point->is_timed[run->round]) {
-        return false;
-    }
-    point->is_timed[run->round] = true;
-    point->wall_s[run->round] = run->is_complete ? run->wall_s : NAN;
-    if (!run->is_complete && point->timing_message[0] == '\0') {
-        snprintf(point->timing_message, sizeof point->timing_message, "%s", run->message);
-    }
-    return true;
 }
 
 size_t ladder_run_total(const Ladder *ladder)
@@ -166,41 +143,234 @@ static bool is_ranked(const Ladder *ladder, const LadderPoint *point)
     return scheme->backend == BACKEND_ODE || scheme->driver != NULL;
 }
 
-// the times of two single runs on a busy machine are that uncertain
-static const double TIME_MARGIN = 3.0;
+// two solvers that agree in all but rounding are equally accurate
+static const double TIE = 0.01;
 
-// Whether another point of the same backend is both more accurate and, by the first timing runs, by
-// far faster: no time of this one could bring it to the frontier, nor make it the backend's
-// cheapest.
-static bool is_beaten(const Ladder *ladder, const LadderPoint *point)
+// Whether one error is as good as another, on the frontier and for every target.
+static bool is_as_accurate(const Ladder *ladder, double error, double other)
 {
-    const double error = error_of(ladder, point);
-    const char *backend = scheme_backend(&ladder->schemes[point->scheme]);
-    for (size_t i = 0; i < ladder->point_count && point->is_timed[0] && is_ranked(ladder, point);
-         i++) {
+    bool is_as_good = (1.0 - TIE) * error <= other;
+    for (size_t i = 0; i < LADDER_TARGET_COUNT; i++) {
+        const double most = LADDER_TARGETS[i] - ladder->truth.uncertainty;
+        is_as_good = is_as_good && (error <= most || !(other <= most));
+    }
+    return is_as_good;
+}
+
+// Points that are left out.
+//
+// From a point with error e at step h the error of the same scheme at h' < h is taken to be at
+// least
+//     e (h' / h)^p / SLACK
+// with p above any order of its stepping, and its time at least that of
+//     work = N h / h' + E / 20 + S / 4,    N world steps, E evaluations, S samples
+// at the rate of the point. A scheme ends where another point of its backend is more accurate and
+// faster than every finer step of it could be.
+
+// orders that no stepping exceeds, contacts coming and going, and by how much an error may be below
+// the trend
+static const double PLAIN_ORDER_MOST = 2.0;
+static const double LADDER_ORDER_MOST = 6.0;
+static const double LADDER_SLACK = 4.0;
+
+// what a run does beside world steps, in those, as measured
+static const double LADDER_WORK_OF_EVALUATION = 0.05;
+static const double LADDER_WORK_OF_SAMPLE = 0.25;
+
+// times of runs made side by side are uncertain by less
+static const double SIDE_BY_SIDE_MARGIN = 2.0;
+
+static bool is_same_backend(const Ladder *ladder, const LadderPoint *point,
+                            const LadderPoint *other)
+{
+    return is_ranked(ladder, other) && strcmp(scheme_backend(&ladder->schemes[other->scheme]),
+                                              scheme_backend(&ladder->schemes[point->scheme])) == 0;
+}
+
+// The time of an error run, s: of the processor, but where it comes from a store.
+static double error_run_time(const LadderPoint *point)
+{
+    return point->run.processor_s > 0.0 ? point->run.processor_s : point->run.wall_s;
+}
+
+// The error of a point that was run, NAN where it has none that counts.
+static double error_where_stable(const Ladder *ladder, const LadderPoint *point)
+{
+    const TrajectoryError *error = &point->run.error;
+    const bool has_one = point->is_measured && point->run.is_complete && error->is_known &&
+                         error_is_unstable(error, ladder->truth.is_limited) == NULL;
+    return has_one ? error_of(ladder, point) : NAN;
+}
+
+// Whether some point is better than a finer one of a scheme could be, by one that was run.
+static bool is_outdone(const Ladder *ladder, const LadderPoint *run, double finer_s)
+{
+    const Scheme *scheme = &ladder->schemes[run->scheme];
+    const bool is_plain = scheme->backend == BACKEND_ODE && scheme->stepping == ODE_PLAIN;
+    const double ratio = run->step_s / finer_s;
+    const double error =
+        error_where_stable(ladder, run) /
+        (LADDER_SLACK * pow(ratio, is_plain ? PLAIN_ORDER_MOST : LADDER_ORDER_MOST));
+    const double rest = LADDER_WORK_OF_EVALUATION * (double)run->run.evaluations +
+                        LADDER_WORK_OF_SAMPLE * (double)ladder->samples;
+    const double steps = (double)run->run.steps;
+    const double time_s = error_run_time(run) * (ratio * steps + rest) / (steps + rest);
+    for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *other = &ladder->points[i];
-        const bool is_rival = is_ranked(ladder, other) && other->run.error.is_known &&
-                              other->is_timed[0] &&
-                              strcmp(scheme_backend(&ladder->schemes[other->scheme]), backend) == 0;
-        const double error_of_other = is_rival ? error_of(ladder, other) : NAN;
-        if (isfinite(error_of_other) && !(error_of_other > error) && !has_failed(other) &&
-            TIME_MARGIN * other->wall_s[0] < point->wall_s[0]) {
+        if (other->scheme != run->scheme && is_same_backend(ladder, run, other) &&
+            SIDE_BY_SIDE_MARGIN * error_run_time(other) < time_s &&
+            is_as_accurate(ladder, error_where_stable(ladder, other), error)) {
             return true;
         }
     }
     return false;
 }
 
-// Of a point that is beaten one timing run is enough.
+// Leaves out the finer steps of schemes that have ended.
+static void leave_out(Ladder *ladder)
+{
+    if (ladder->is_whole || !ladder->truth.is_known || ladder->truth.is_limited) {
+        return;
+    }
+    for (size_t scheme = 0; scheme < ladder->scheme_count; scheme++) {
+        const size_t finest = ladder_finest(ladder, scheme);
+        const LadderPoint *run = finest < ladder->point_count ? &ladder->points[finest] : NULL;
+        bool is_over = run != NULL && run->step_s > 0.0 && is_ranked(ladder, run);
+        for (size_t i = 0; i < ladder->point_count && is_over; i++) {
+            const LadderPoint *point = &ladder->points[i];
+            is_over =
+                point->scheme != scheme || i <= finest || is_outdone(ladder, run, point->step_s);
+        }
+        for (size_t i = finest + 1; i < ladder->point_count && is_over; i++) {
+            LadderPoint *point = &ladder->points[i];
+            point->is_left_out =
+                point->is_left_out || (point->scheme == scheme && !point->is_measured);
+        }
+    }
+}
+
+bool ladder_add(Ladder *ladder, const LadderRun *run)
+{
+    if (run->point >= ladder->point_count) {
+        return false;
+    }
+    LadderPoint *point = &ladder->points[run->point];
+    if (run->kind == LADDER_ERROR) {
+        if (point->is_measured) {
+            return false;
+        }
+        point->is_measured = true;
+        point->is_left_out = false;
+        point->run = *run;
+        point->run.error.against = NULL;
+        leave_out(ladder);
+        return true;
+    }
+    if (run->round >= ladder->repeats || point->is_timed[run->round]) {
+        return false;
+    }
+    point->is_timed[run->round] = true;
+    point->wall_s[run->round] = run->is_complete ? run->wall_s : NAN;
+    if (!run->is_complete && point->timing_message[0] == '\0') {
+        snprintf(point->timing_message, sizeof point->timing_message, "%s", run->message);
+    }
+    return true;
+}
+
+// Times that are known well enough.
+
+// so many timing runs are enough where all are as long, within this share, or where no other point
+// comes near
+enum { FEW_RUNS = 3 };
+static const double ALIKE = 0.05;
+
+// by the least of so many runs each, times are uncertain by less than this on a busy machine
+static const double TIME_MARGINS[FEW_RUNS] = {3.0, 1.5, 1.25};
+
+// The least of the first timing runs of a point, s; NAN where not all of them are made.
+static double least_time(const LadderPoint *point, size_t rounds)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < rounds; i++) {
+        least = point->is_timed[i] ? fmin(least, point->wall_s[i]) : NAN;
+        if (isnan(least)) {
+            return NAN;
+        }
+    }
+    return least;
+}
+
+// Whether another point of the same backend is both as accurate and, by the first timing runs, so
+// much faster that no time of this one could bring it to the frontier, nor make it the backend's
+// cheapest.
+static bool is_beaten(const Ladder *ladder, const LadderPoint *point)
+{
+    const double error = error_of(ladder, point);
+    for (size_t i = 0; i < ladder->point_count && point->is_timed[0] && is_ranked(ladder, point);
+         i++) {
+        const LadderPoint *other = &ladder->points[i];
+        if (other == point || !is_same_backend(ladder, point, other) ||
+            !other->run.error.is_known || has_failed(other) ||
+            !is_as_accurate(ladder, error_of(ladder, other), error)) {
+            continue;
+        }
+        for (size_t k = 0; k < (ladder->is_whole ? 1 : FEW_RUNS); k++) {
+            if (TIME_MARGINS[k] * least_time(other, k + 1) < least_time(point, k + 1)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Whether the first timing runs of a point were alike: their median is that of more.
+static bool is_timed_alike(const LadderPoint *point)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < FEW_RUNS; i++) {
+        most = fmax(most, point->wall_s[i]);
+    }
+    return most <= (1.0 + ALIKE) * least_time(point, FEW_RUNS);
+}
+
+// Whether another point of the backend takes about as long, by the first timing runs.
+static bool is_contested(const Ladder *ladder, const LadderPoint *point)
+{
+    const double margin = TIME_MARGINS[FEW_RUNS - 1];
+    const double time_s = least_time(point, FEW_RUNS);
+    for (size_t i = 0; i < ladder->point_count && is_ranked(ladder, point); i++) {
+        const LadderPoint *other = &ladder->points[i];
+        const double other_s = least_time(other, FEW_RUNS);
+        if (other != point && is_same_backend(ladder, point, other) && other_s <= margin * time_s &&
+            time_s <= margin * other_s) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether the time of a point is known well enough by the timing runs before a round. Of a point
+// that is beaten one is enough.
+static bool is_timed_enough(const Ladder *ladder, const LadderPoint *point, size_t round)
+{
+    const bool is_clear = round >= FEW_RUNS && !ladder->is_whole &&
+                          isfinite(least_time(point, FEW_RUNS)) &&
+                          (is_timed_alike(point) || !is_contested(ladder, point));
+    return is_clear || (round > 0 && is_beaten(ladder, point));
+}
+
 static bool is_done(const Ladder *ladder, size_t number)
 {
     const LadderRun run = ladder_run(ladder, number);
     const LadderPoint *point = &ladder->points[run.point];
+    if (point->is_left_out) {
+        return true;
+    }
     if (run.kind == LADDER_ERROR) {
         return point->is_measured;
     }
     return point->is_timed[run.round] || has_failed(point) ||
-           (run.round > 0 && is_beaten(ladder, point));
+           is_timed_enough(ladder, point, run.round);
 }
 
 size_t ladder_next(const Ladder *ladder, size_t from)
@@ -267,6 +437,9 @@ bool ladder_has_pace(const Ladder *ladder)
 static double time_of_point(const Ladder *ladder, size_t number, double rate)
 {
     const LadderPoint *point = &ladder->points[number];
+    if (point->is_left_out) {
+        return 0.0;
+    }
     if (point->is_measured) {
         return point->run.wall_s;
     }
@@ -286,9 +459,10 @@ double ladder_time_left(const Ladder *ladder, size_t jobs)
         const LadderPoint *point = &ladder->points[i];
         const double run_s = time_of_point(ladder, i, rate);
         error_s += point->is_measured ? 0.0 : run_s;
-        const size_t rounds = is_beaten(ladder, point) ? 1 : ladder->repeats;
-        for (size_t round = 0; round < rounds && !has_failed(point); round++) {
-            timing_s += point->is_timed[round] ? 0.0 : run_s;
+        for (size_t round = 0; round < ladder->repeats && !has_failed(point); round++) {
+            const bool is_needed =
+                !point->is_timed[round] && !is_timed_enough(ladder, point, round);
+            timing_s += is_needed ? run_s : 0.0;
         }
     }
     return error_s / (double)jobs + timing_s;
@@ -406,9 +580,6 @@ Order order_fit(size_t count, const double *steps, const double *errors, double 
 // From the fastest point to the slowest, one belongs to the frontier (Pareto's) where its error is
 // below 0.99 times the least so far. Some hundred points: the next one is looked for among all.
 
-// two solvers that agree in all but rounding are equally accurate
-static const double TIE = 0.01;
-
 static bool ladder_is_point(double time, double error)
 {
     return isfinite(time) && isfinite(error);
@@ -471,8 +642,6 @@ size_t frontier_cheapest(size_t count, const double *times, const double *errors
 
 // Speed against error.
 
-const double LADDER_TARGETS[LADDER_TARGET_COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
-
 static void ladder_explain(LadderPoint *point, const char *reason)
 {
     snprintf(point->reason, sizeof point->reason, "%s", reason);
@@ -503,7 +672,9 @@ static void ladder_judge(const Ladder *ladder, LadderPoint *point)
     point->reason[0] = '\0';
     point->error = NAN;
     const char *unstable = error_is_unstable(&point->run.error, ladder->truth.is_limited);
-    if (!point->is_measured) {
+    if (point->is_left_out) {
+        ladder_fail(point, "left out: no finer step of its scheme can come to the frontier");
+    } else if (!point->is_measured) {
         ladder_fail(point, "not run");
     } else if (!point->run.is_complete) {
         ladder_fail(point, point->run.message);
@@ -547,12 +718,16 @@ static void fit_orders(Ladder *ladder)
     double errors[LADDER_STEP_MAX];
     for (size_t scheme = 0; scheme < ladder->scheme_count; scheme++) {
         size_t count = 0;
+        bool is_whole = true;
         for (size_t i = 0; i < ladder->point_count; i++) {
-            if (ladder->points[i].scheme == scheme && ladder->points[i].step_s > 0.0) {
-                errors[count++] = ladder->points[i].error;
+            const LadderPoint *point = &ladder->points[i];
+            if (point->scheme == scheme && point->step_s > 0.0) {
+                errors[count++] = point->error;
+                is_whole = is_whole && !point->is_left_out;
             }
         }
-        ladder->orders[scheme] = order_fit(count, ladder->steps, errors,
+        // the few coarse steps of one that was left out may fall alike by chance
+        ladder->orders[scheme] = order_fit(is_whole ? count : 0, ladder->steps, errors,
                                            ERROR_CLEAR_OF_TRUTH * ladder->truth.uncertainty);
     }
 }

@@ -68,6 +68,8 @@ typedef struct LadderPoint {
     bool is_first;    // of its scheme
     double step_s;    // 0 where the scheme chooses its own
     bool is_measured;
+    // whether there is no need to: neither it nor a finer one can come to the frontier
+    bool is_left_out;
     LadderRun run;                            // LADDER_ERROR, where it is measured
     bool is_timed[LADDER_REPEAT_MAX];         // by round
     double wall_s[LADDER_REPEAT_MAX];         // likewise; NAN where the run failed
@@ -108,6 +110,8 @@ typedef struct Ladder {
     size_t step_count;
     double steps[LADDER_STEP_MAX]; // s, coarse to fine
     size_t repeats;                // timing runs of each point
+    size_t samples;                // of a run; 0: not known
+    bool is_whole; // whether no point, and no timing run for it is clear, is left out
     LadderTruth truth;
     size_t point_count;
     LadderPoint *points; // owned; scheme by scheme, coarse to fine
@@ -121,7 +125,7 @@ typedef struct Ladder {
 // What a truth says of itself, and the wall time, s, that it took.
 LadderTruth ladder_truth_of(const Truth *truth, double wall_s);
 
-// A ladder with nothing run yet. Steps come coarse to fine.
+// A ladder with nothing run yet, which is whole. Steps come coarse to fine.
 Ladder *ladder_create(const Scheme *schemes, size_t scheme_count, const double *steps,
                       size_t step_count, size_t repeats);
 void ladder_destroy(Ladder *ladder);
@@ -129,12 +133,14 @@ void ladder_destroy(Ladder *ladder);
 // The point of a scheme at a step, or point_count.
 size_t ladder_find(const Ladder *ladder, const char *scheme, double step_s);
 
-// Adds a run that is over. False where the ladder has no such point, or has that run already.
+// Adds a run that is over, and leaves out the points that need not be run after it. False where the
+// ladder has no such point, or has that run already.
 bool ladder_add(Ladder *ladder, const LadderRun *run);
 
 // The next run from a number on that has not been made, or ladder_run_total: first the error runs
 // of all points, the coarsest step of every scheme first, so that the pace of each is known early;
-// then round by round the timing runs of all points that did not fail.
+// then round by round the timing runs of all points that did not fail and whose time is not yet
+// known well enough.
 size_t ladder_next(const Ladder *ladder, size_t from);
 size_t ladder_run_total(const Ladder *ladder);
 // The runs that are made or need not be made any more.

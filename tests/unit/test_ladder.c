@@ -348,6 +348,73 @@ static void a_point_that_is_beaten_is_timed_once(void **state)
     ladder_destroy(ladder);
 }
 
+// One scheme of ODE of order one, and another that at its coarsest step is as fast and nearer.
+static void add_error_run(Ladder *ladder, size_t point, double error, double time_s)
+{
+    LadderRun run = {.point = point, .is_complete = true, .steps = 1000, .processor_s = time_s};
+    run.error = (TrajectoryError){.is_known = true, .max = error};
+    assert_true(ladder_add(ladder, &run));
+}
+
+static void steps_that_cannot_come_to_the_frontier_are_left_out(void **state)
+{
+    (void)state;
+    // the finest is 4 times as fine: order two, and four times below that, leave .1 / 64 at best
+    static const struct {
+        double error; // of the other scheme
+        bool is_whole;
+        bool is_left_out;
+    } CASES[] = {{1e-3, false, true}, {1e-3, true, false}, {2e-3, false, false}};
+    for (size_t i = 0; i < 3; i++) {
+        Ladder *ladder = make_ladder();
+        ladder->is_whole = CASES[i].is_whole;
+        ladder->truth = (LadderTruth){.is_known = true, .backend = "reference"};
+        add_error_run(ladder, 0, 0.1, 1.0);
+        add_error_run(ladder, 3, CASES[i].error, 0.9);
+        assert_true(ladder->points[1].is_left_out == CASES[i].is_left_out);
+        assert_true(ladder->points[2].is_left_out == CASES[i].is_left_out);
+        // the other one goes on
+        assert_false(ladder->points[4].is_left_out);
+        ladder_conclude(ladder);
+        assert_true((strncmp(ladder->points[2].reason, "left out", 8) == 0) ==
+                    CASES[i].is_left_out);
+        ladder_destroy(ladder);
+    }
+}
+
+// Times of three runs: alike; uneven, with nothing near; uneven, with another point near.
+static void times_that_are_clear_need_no_more_runs(void **state)
+{
+    (void)state;
+    static const struct {
+        double times[3];
+        double other;
+        size_t more;
+    } CASES[] = {{{1.0, 1.01, 1.02}, 1.1, 0}, {{1.0, 1.3, 1.1}, 2.6, 0}, {{1.0, 1.3, 1.1}, 1.1, 2}};
+    for (size_t i = 0; i < 3; i++) {
+        Ladder *ladder = make_ladder();
+        ladder->is_whole = false;
+        ladder->truth = (LadderTruth){.is_known = true, .is_limited = true};
+        add_error_run(ladder, 0, 1e-3, 1.0);
+        add_error_run(ladder, 1, 1e-4, 1.0);
+        for (size_t round = 0; round < 3; round++) {
+            LadderRun run = {.kind = LADDER_TIMING, .round = round, .is_complete = true};
+            run.wall_s = CASES[i].times[round];
+            assert_true(ladder_add(ladder, &run));
+            run.point = 1;
+            run.wall_s = CASES[i].other;
+            assert_true(ladder_add(ladder, &run));
+        }
+        size_t more = 0;
+        for (size_t k = 0; k < ladder_run_total(ladder); k++) {
+            const LadderRun run = ladder_run(ladder, k);
+            more += run.kind == LADDER_TIMING && run.point == 0 && ladder_next(ladder, k) == k;
+        }
+        assert_int_equal(more, CASES[i].more);
+        ladder_destroy(ladder);
+    }
+}
+
 static void a_run_that_hangs_is_a_failed_run(void **state)
 {
     (void)state;
@@ -487,6 +554,8 @@ int main(void)
         cmocka_unit_test(a_runner_makes_what_is_missing),
         cmocka_unit_test(a_runner_that_is_stopped_goes_on_later),
         cmocka_unit_test(a_point_that_is_beaten_is_timed_once),
+        cmocka_unit_test(steps_that_cannot_come_to_the_frontier_are_left_out),
+        cmocka_unit_test(times_that_are_clear_need_no_more_runs),
         cmocka_unit_test(a_run_that_hangs_is_a_failed_run),
         cmocka_unit_test(without_a_truth_there_is_no_comparison),
         cmocka_unit_test(ensembles_are_made_beyond_a_horizon),

@@ -39,7 +39,8 @@ static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the lon
 static const OptionRow OPTIONS[] = {
     {"steps", "LIST",
      "The steps, such as '10 us, 3 us, 1 us', or all: up to eleven, of some 2000 to 1,000,000 "
-     "steps in the run (default: those of them that take a minute together)",
+     "steps in the run (default: those of them that take a minute together, but for a scheme's "
+     "finer ones that cannot come to the frontier)",
      1, OPTION_TEXT, AT(steps)},
     COMMON_SCHEMES(1),
     {"backends", "LIST",
@@ -50,8 +51,9 @@ static const OptionRow OPTIONS[] = {
      OPTION_LIST, AT(drivers), .what = "drivers",
      .count_offset = offsetof(CompareOptions, driver_count), .high = ENGINE_DRIVER_MAX},
     COMMON_SET(1),
-    {"repeats", "N", "Timing runs of each point, at least 5 (default: 5)", 2, OPTION_COUNT,
-     AT(repeats), .low = LADDER_REPEAT_LEAST, .high = LADDER_REPEAT_MAX},
+    {"repeats", "N",
+     "Timing runs of each point, at least 5 (default: 3, or 5 where times are uneven)", 2,
+     OPTION_COUNT, AT(repeats), .low = LADDER_REPEAT_LEAST, .high = LADDER_REPEAT_MAX},
     COMMON_JOBS(2,
                 "Error runs at a time (default: one per core); timing runs always go one by one"),
     COMMON_TIME_LIMIT(2, "A run that takes longer has failed (default: 600 s)"),
@@ -89,8 +91,7 @@ const Arguments COMPARE_ARGUMENTS = {
 
 static CompareOptions compare_options_default(void)
 {
-    return (CompareOptions){.repeats = LADDER_REPEAT_LEAST,
-                            .common.jobs = common_options_count_jobs(),
+    return (CompareOptions){.common.jobs = common_options_count_jobs(),
                             .common.time_limit_s = DEFAULT_TIME_LIMIT};
 }
 
@@ -121,11 +122,16 @@ static double step_factor(const Scenario *scenario)
     return pow(10.0, fmax(0.0, ceil(log10(scenario_duration(scenario) / DEFAULT_DURATION) - 0.5)));
 }
 
+static size_t repeats_of(const CompareOptions *options)
+{
+    return options->repeats > 0 ? options->repeats : LADDER_REPEAT_LEAST;
+}
+
 // World steps of all runs at a step: of each scheme one for the error and the timing runs.
 static double work_of(const CompareOptions *options, const Scenario *scenario, size_t schemes,
                       double step_s)
 {
-    return (double)(schemes * (1 + options->repeats)) * scenario_duration(scenario) / step_s;
+    return (double)(schemes * (1 + repeats_of(options))) * scenario_duration(scenario) / step_s;
 }
 
 // How many of the steps, coarse to fine, are within the work allowed; at least one. Says what the
@@ -191,7 +197,9 @@ static bool compare_options_ladder(const CompareOptions *options, const CompareE
     } else if (!cmd_compare_read_steps(options, steps, &step_count, err)) {
         return false;
     }
-    *ladder = ladder_create(schemes, scheme_count, steps, step_count, options->repeats);
+    *ladder = ladder_create(schemes, scheme_count, steps, step_count, repeats_of(options));
+    (*ladder)->samples = scenario_sample_count(scenario);
+    (*ladder)->is_whole = options->steps != NULL || options->repeats > 0;
     return true;
 }
 

@@ -52,7 +52,7 @@ typedef struct CompareOptions {
     const char *drivers[ENGINE_DRIVER_MAX]; // NAME=PROGRAM
     size_t driver_count;
     const char *steps; // as given, or NULL
-    size_t repeats;
+    size_t repeats;    // 0: as many as are needed
     const char *store; // NULL: the usual one
     bool is_fresh;
     const char *csv;

@@ -216,7 +216,8 @@ static size_t compare_plot_count_failed(const Ladder *ladder, size_t scheme)
 {
     size_t failed = 0;
     for (size_t i = 0; i < ladder->point_count; i++) {
-        failed += ladder->points[i].scheme == scheme && ladder->points[i].is_failed ? 1 : 0;
+        const LadderPoint *point = &ladder->points[i];
+        failed += point->scheme == scheme && point->is_failed && !point->is_left_out ? 1 : 0;
     }
     return failed;
 }

@@ -27,7 +27,8 @@ static const char *heading_of(const void *record)
 
 static const char *compare_report_status_of(const void *record)
 {
-    return ((const LadderPoint *)record)->is_failed ? "failed" : "ok";
+    const LadderPoint *point = record;
+    return point->is_left_out ? "left out" : point->is_failed ? "failed" : "ok";
 }
 
 // The point where it did not fail.
@@ -69,7 +70,7 @@ static const char *marks_of(const void *record)
 {
     const LadderPoint *point = record;
     if (point->is_failed) {
-        return "failed";
+        return compare_report_status_of(point);
     }
     return point->is_on_frontier
                ? (point->is_limited_by_truth ? "frontier, truth-limited" : "frontier")
@@ -295,6 +296,39 @@ static void compare_spread_write(const CompareReport *report, const Style *style
 // The text.
 
 // What a finer ladder would cost.
+// The number of schemes that ended before the finest step; adds their names and last steps to a
+// list, where there is one.
+static size_t count_ended(const Ladder *ladder, Text *list)
+{
+    size_t count = 0;
+    for (size_t i = 1; i < ladder->point_count; i++) {
+        const LadderPoint *last = &ladder->points[i - 1];
+        if (!ladder->points[i].is_left_out || last->is_left_out) {
+            continue;
+        }
+        if (list != NULL) {
+            text_append(list, "%s%s at %.4g us", count > 0 ? ", " : "", last->name,
+                        last->step_s * UNITS_US);
+        }
+        count++;
+    }
+    return count;
+}
+
+// Which schemes ended before the finest step.
+static void write_ended(const Ladder *ladder, Text *text)
+{
+    Text words;
+    text_init(&words);
+    text_append(&words, "  Ended, as no finer step could come to the frontier: ");
+    if (count_ended(ladder, &words) > 0) {
+        text_append(&words, ".");
+        screen_line(&words, text);
+    } else {
+        text_finish(&words);
+    }
+}
+
 static void compare_report_left(const CompareReport *report, Text *text)
 {
     if (report->left.finest_s > 0.0) {
@@ -330,8 +364,8 @@ static void compare_report_write_head(const CompareReport *report, const Style *
                           "errors contain the difference of the two models\n");
     }
     compare_engines_write(ladder, text);
-    text_append(text, "  times       median of %zu runs, taken in turn, on %s\n", ladder->repeats,
-                report->machine);
+    text_append(text, "  times       median of %s%zu runs, taken in turn, on %s\n",
+                ladder->is_whole ? "" : "up to ", ladder->repeats, report->machine);
 }
 
 // Why there is no error for points that did not fail: once where neighbours have the same reason.
@@ -356,7 +390,7 @@ static void compare_text_write_failures(const CompareReport *report, const Style
     const Ladder *ladder = report->ladder;
     for (size_t i = 0; i < ladder->point_count; i++) {
         const LadderPoint *point = &ladder->points[i];
-        if (point->is_failed) {
+        if (point->is_failed && !point->is_left_out) {
             text_append(text, "\n  %s%s", style->failure, point->name);
             if (point->step_s > 0.0) {
                 text_append(text, ", %.4g us", point->step_s * UNITS_US);
@@ -394,12 +428,14 @@ void compare_text_write(const void *of, const Style *style, Text *text)
     compare_text_write_failures(report, style, text);
     write_without_error(report->ladder, text);
     compare_rows_write_orders(report->ladder, style, text);
-    text_append(text, "  none: the error does not fall alike over any three steps in a row.\n");
+    text_append(text, "  none: the error does not fall alike over any three steps in a row, or the "
+                      "scheme ended.\n");
     compare_rows_write_cheapest(report->ladder, style, text);
     if (compare_engines_are_any(report->ladder)) {
         compare_engines_write_ways(report->ladder, style, text);
     }
     write_others(report->ladder, text);
+    write_ended(report->ladder, text);
     compare_report_left(report, text);
     compare_spread_write(report, style, text);
 }
@@ -420,7 +456,8 @@ static void compare_screen_orders(const Ladder *ladder, Text *text)
         }
     }
     if (count > 0) {
-        text_append(&words, "; the others none.");
+        text_append(&words, "; the others none%s.",
+                    count_ended(ladder, NULL) > 0 ? ", or they ended before it shows" : "");
     } else {
         text_append(&words, "  No scheme's error has an order: none falls alike over three steps "
                             "in a row.");
@@ -428,7 +465,7 @@ static void compare_screen_orders(const Ladder *ladder, Text *text)
     screen_line(&words, text);
     size_t failed = 0;
     for (size_t i = 0; i < ladder->point_count; i++) {
-        failed += ladder->points[i].is_failed ? 1 : 0;
+        failed += ladder->points[i].is_failed && !ladder->points[i].is_left_out ? 1 : 0;
     }
     if (failed > 0) {
         text_append(text, "  %zu of %zu settings failed: --full says why.\n", failed,
@@ -450,6 +487,11 @@ void compare_screen_write(const void *of, const Style *style, Text *text)
     compare_screen_orders(report->ladder, text);
     screen_truth(&report->ladder->truth, text);
     settled_lines(scenario, text);
+    const size_t ended = count_ended(report->ladder, NULL);
+    if (ended > 0) {
+        text_append(text, "  %zu scheme%s ended where no finer step could come to the frontier.\n",
+                    ended, ended > 1 ? "s" : "");
+    }
     compare_report_left(report, text);
     text_append(text, "  --full: every scheme at every step%s\n",
                 compare_engines_are_any(report->ladder) ? ", and the way and step of these times"
