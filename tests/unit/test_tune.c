@@ -92,6 +92,71 @@ static void only_steps_that_no_order_reaches_are_left_out(void **state)
     tune_destroy(tune);
 }
 
+// Errors of order one, at long runs: 1e-3 is met at index 50, 22 settings behind index 28.
+static double of_order_one(int index)
+{
+    return 1e-3 * tune_value(index) / tune_value(50);
+}
+
+static void take_in_order(Tune *tune, size_t scheme, double factor)
+{
+    const int index = tune->schemes[scheme].next;
+    take(tune, scheme, index, factor * of_order_one(index), (size_t)(1.0 / tune_value(index)));
+}
+
+// Control: where runs are short all settings that an order of two could reach are run.
+static void an_order_that_was_observed_stands_for_long_runs(void **state)
+{
+    (void)state;
+    const Scenario scenario = loose();
+    size_t trials[2];
+    for (int i = 0; i < 2; i++) {
+        Tune *tune = search(&scenario, "direct/plain/corrected", 1.0001e-3);
+        tune->dear_s = i == 0 ? 0.0 : INFINITY;
+        tune->schemes[0].next = 28;
+        while (tune->schemes[0].outcome == TUNE_OPEN) {
+            take_in_order(tune, 0, 1.0);
+        }
+        assert_int_equal(tune->schemes[0].outcome, TUNE_MEETS);
+        assert_int_equal(tune_best(tune, 0)->index, 50);
+        assert_true(tune->schemes[0].is_by_order == (i == 0));
+        trials[i] = tune->trial_count;
+        tune_destroy(tune);
+    }
+    assert_true(trials[0] <= 6 && trials[1] >= 10);
+}
+
+// Errors that fall faster from some index on: what the order had ruled out is run after all.
+static void a_search_goes_back_where_errors_fell_faster(void **state)
+{
+    (void)state;
+    const Scenario scenario = loose();
+    Tune *tune = search(&scenario, "direct/plain/corrected", 1.0001e-3);
+    tune->dear_s = 0.0;
+    tune->schemes[0].next = 28;
+    while (tune->schemes[0].outcome == TUNE_OPEN) {
+        take_in_order(tune, 0, tune->schemes[0].next > 42 ? 0.6 : 1.0);
+    }
+    // 0.6 e is met two settings before
+    assert_int_equal(tune_best(tune, 0)->index, 48);
+    tune_destroy(tune);
+}
+
+static void errors_without_an_order_rule_nothing_out(void **state)
+{
+    (void)state;
+    const Scenario scenario = loose();
+    Tune *tune = search(&scenario, "direct/plain/corrected", 1.0001e-3);
+    tune->dear_s = 0.0;
+    tune->schemes[0].next = 28;
+    static const double SCATTER[] = {1.0, 3.0, 1.0, 4.0, 2.0, 8.0, 1.5, 6.0};
+    for (int i = 0; i < 8; i++) {
+        take_in_order(tune, 0, SCATTER[i]);
+        assert_false(tune->schemes[0].is_by_order);
+    }
+    tune_destroy(tune);
+}
+
 static void what_is_left_goes_by_the_order_that_was_seen(void **state)
 {
     (void)state;
@@ -223,6 +288,9 @@ int main(void)
         cmocka_unit_test(values_are_preferred_numbers),
         cmocka_unit_test(a_lucky_dip_is_no_setting),
         cmocka_unit_test(only_steps_that_no_order_reaches_are_left_out),
+        cmocka_unit_test(an_order_that_was_observed_stands_for_long_runs),
+        cmocka_unit_test(a_search_goes_back_where_errors_fell_faster),
+        cmocka_unit_test(errors_without_an_order_rule_nothing_out),
         cmocka_unit_test(what_is_left_goes_by_the_order_that_was_seen),
         cmocka_unit_test(a_run_that_fails_or_is_unstable_has_no_error),
         cmocka_unit_test(the_uncertainty_of_the_truth_counts_as_error),

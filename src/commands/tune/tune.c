@@ -10,6 +10,7 @@
 #include "base/shell.h"
 #include "base/sorted.h"
 #include "casefile/input.h"
+#include "commands/tune/tune_trend.h"
 #include "write/number.h"
 #include "write/units.h"
 
@@ -179,6 +180,12 @@ static const double EQUAL_ERROR_RATIO = 1.01;
 static const double STALL_GAIN = 0.67;
 static const double STALL_S = 0.5;
 
+// a run that takes longer than this, s, is worth others before it that may rule it out
+static const double DEAR_S = 0.25;
+
+// settings between runs that an order is to be observed from
+static const int PROBE_LEAST = 3;
+
 double tune_value(int index)
 {
     const int within = ((index % TUNE_STEPS_A_DECADE) + TUNE_STEPS_A_DECADE) % TUNE_STEPS_A_DECADE;
@@ -237,6 +244,7 @@ Tune *tune_create(const Scenario *scenario, const Scheme *schemes, size_t scheme
     tune->target = target;
     tune->of = scenario->run.tolerance_of;
     tune->samples = scenario_sample_count(scenario);
+    tune->dear_s = DEAR_S;
     tune->winner = tune->plain = tune->within = TUNE_NONE;
     tune->held = tune->held_plain = tune->linear = tune->row = TUNE_NONE;
     bool has_chosen = false;
@@ -359,19 +367,104 @@ static TuneTrial *add_trial(Tune *tune, size_t scheme, int index, double value,
     return trial;
 }
 
+// Whether a setting takes so long that runs before it which may rule it out are worth theirs.
+static bool is_dear(const Tune *tune, size_t scheme, int index)
+{
+    return scheme_has_step(&tune->schemes[scheme].scheme) &&
+           tune_time(tune, scheme, index) > tune->dear_s;
+}
+
+// The index to go to from a trial that misses the target. Where that is a long run, by the order
+// that was observed, or where none was yet, half way, to observe one.
+static int index_after(const Tune *tune, TuneScheme *owner, const TuneTrial *trial)
+{
+    const int ahead = indices_ahead(tune, owner, trial->error);
+    const size_t scheme = trial->scheme;
+    if (isnan(trial->error) || !is_dear(tune, scheme, trial->index + ahead)) {
+        return trial->index + ahead;
+    }
+    const TuneTrend trend = tune_trend_of(tune, scheme);
+    const int by_order = trend.is_known ? tune_trend_ahead(tune, trend, trial->error) : 0;
+    owner->is_by_order = owner->is_by_order || by_order > ahead;
+    return trial->index + (trend.is_known            ? (int)fmax(ahead, by_order)
+                           : ahead > 2 * PROBE_LEAST ? ahead / 2
+                                                     : ahead);
+}
+
+static bool has_trial(const Tune *tune, size_t scheme, int index)
+{
+    bool is_run = false;
+    for (size_t i = 0; i < tune->trial_count && !is_run; i++) {
+        is_run = tune->trials[i].scheme == scheme && tune->trials[i].index == index;
+    }
+    return is_run;
+}
+
+// Whether the setting before a trial that meets the target was ruled out by order, and by this
+// trial's error should not have been.
+static bool goes_back(const Tune *tune, const TuneTrial *trial)
+{
+    return tune->schemes[trial->scheme].is_by_order &&
+           !has_trial(tune, trial->scheme, trial->index - 1) &&
+           tune_trend_may_precede(tune, tune_trend_of(tune, trial->scheme), trial->error);
+}
+
+static void end_scheme(TuneScheme *owner, int best)
+{
+    owner->best = best;
+    owner->outcome = TUNE_MEETS;
+}
+
+// The first that meets the target waits for its finer neighbour, but where the errors of long runs
+// fall so evenly that there is no need to.
+static void take_first(const Tune *tune, TuneScheme *owner, int number)
+{
+    const TuneTrial *trial = &tune->trials[number];
+    owner->pending = number;
+    owner->is_going_back = goes_back(tune, trial);
+    owner->next = trial->index + (owner->is_going_back ? -1 : 1);
+    if (!owner->is_going_back && is_dear(tune, trial->scheme, owner->next) &&
+        tune_trend_confirms(tune_trend_of(tune, trial->scheme))) {
+        owner->is_by_order = true;
+        end_scheme(owner, number);
+    }
+}
+
+// One before the first that met the target.
+static void take_back(const Tune *tune, TuneScheme *owner, int number)
+{
+    const TuneTrial *trial = &tune->trials[number];
+    const TuneTrial *pending = &tune->trials[owner->pending];
+    if (trial->meets) {
+        owner->pending = number;
+        owner->next = trial->index - 1;
+        if (!goes_back(tune, trial)) {
+            end_scheme(owner, number);
+        }
+        return;
+    }
+    owner->is_going_back = false;
+    owner->next = pending->index + 1;
+    if (has_trial(tune, pending->scheme, owner->next)) {
+        end_scheme(owner, owner->pending);
+    }
+}
+
 void tune_take(Tune *tune, size_t scheme, int index, const LadderRun *run)
 {
     const int number = (int)tune->trial_count;
     const TuneTrial *trial = add_trial(tune, scheme, index, tune_value(index), run);
     TuneScheme *owner = &tune->schemes[scheme];
-    // the first that meets the target waits for its finer neighbour
-    if (trial->meets && owner->pending != TUNE_NONE) {
-        owner->best = owner->pending;
-        owner->outcome = TUNE_MEETS;
+    if (owner->is_going_back) {
+        take_back(tune, owner, number);
+    } else if (trial->meets && owner->pending != TUNE_NONE) {
+        end_scheme(owner, owner->pending);
+    } else if (trial->meets) {
+        take_first(tune, owner, number);
     } else {
-        owner->pending = trial->meets ? number : TUNE_NONE;
-        owner->next = index + (trial->meets ? 1 : indices_ahead(tune, owner, trial->error));
-        owner->outcome = !trial->meets && has_stalled(tune, trial) ? TUNE_STALLED : owner->outcome;
+        owner->pending = TUNE_NONE;
+        owner->next = index_after(tune, owner, trial);
+        owner->outcome = has_stalled(tune, trial) ? TUNE_STALLED : owner->outcome;
     }
 }
 

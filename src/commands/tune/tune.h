@@ -52,7 +52,9 @@ typedef struct TuneScheme {
     int first; // index of the coarsest setting
     int next;  // index that is to be tried next
     bool is_busy;
-    int pending; // trial that meets the target and is not confirmed yet, or TUNE_NONE
+    int pending;        // trial that meets the target and is not confirmed yet, or TUNE_NONE
+    bool is_going_back; // whether settings before it, which were ruled out, are tried after all
+    bool is_by_order;   // whether an order that was observed stands for runs of settings
     TuneOutcome outcome;
     int best;  // trial: the coarsest that is confirmed; TUNE_NONE
     int least; // trial of the least error, or TUNE_NONE
@@ -156,6 +158,7 @@ typedef struct Tune {
     ToleranceOf of; // which error that is
     double held_s;  // s, the only step that its user can take; 0: any
     size_t samples; // of a run
+    double dear_s;  // s: an observed order rules out settings that take longer
     TuneCost cost;
     TuneLimit limit;
     LadderTruth truth;

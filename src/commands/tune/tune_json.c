@@ -85,6 +85,7 @@ static json_t *tune_json_scheme_object(const Tune *tune, size_t number)
     json_t *object = json_object();
     json_object_set_new(object, "scheme", json_string(scheme->scheme.name));
     json_object_set_new(object, "outcome", json_string(OUTCOMES[scheme->outcome]));
+    json_object_set_new(object, "by_order", json_boolean(scheme->is_by_order));
     json_object_set_new(object, "runs", json_integer((json_int_t)scheme->trials));
     json_object_set_new(object, "best", best != NULL ? trial_object(tune, best) : json_null());
     json_value_set(object, "processor_median_s", scheme->processor_median_s);

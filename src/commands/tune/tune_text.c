@@ -328,17 +328,20 @@ static const char *outcome_words(const Tune *tune, const TuneScheme *scheme)
 {
     switch (scheme->outcome) {
     case TUNE_MEETS:
-        return "meets it, and so does the next finer one";
+        return scheme->is_by_order ? "meets it, on an even fall of errors"
+                                   : "meets it, and so does the next finer one";
     case TUNE_COSTLIER:
         if (tune->cost == TUNE_LENGTH) {
             return "shorter ones were not tried";
         }
-        return scheme->trials > 0 ? "finer ones cost more than the best"
-                                  : "costs more than the best";
+        return scheme->trials == 0   ? "costs more than the best"
+               : scheme->is_by_order ? "finer ones cost more, by the order of its errors"
+                                     : "finer ones cost more than the best";
     case TUNE_STALLED:
         return "ten times finer is hardly better";
     case TUNE_TOO_LONG:
-        return "finer ones take longer than was allowed";
+        return scheme->is_by_order ? "finer ones take too long, by the order of its errors"
+                                   : "finer ones take longer than was allowed";
     default:
         return "";
     }
