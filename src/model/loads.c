@@ -71,11 +71,40 @@ double load_value(const Linkage *linkage, const Load *load, const Motion *motion
     return load_piece_at(&piece, clock.start + clock.rate * time_s);
 }
 
+// How fast the argument of such a load grows.
+static double argument_rate(const Linkage *linkage, const Load *load, const Motion *motions,
+                            double time_s)
+{
+    if (load->over == LOAD_OVER_CRANK) {
+        return linkage->driver.is_present
+                   ? drive_at(&linkage->driver, time_s).omega
+                   : forces_turn(linkage, linkage->torque.joint, motions).rate;
+    }
+    return forces_coordinate(linkage, load->joint, motions).rate;
+}
+
+// Of a load that is not timed: its value at the motions, or where it bends within what is passed
+// from one time to the other, its mean over that, as far as speeds tell.
+static double mean_passed(const Linkage *linkage, const Load *load, const Motion *motions,
+                          double from_s, double to_s)
+{
+    const double time_s = 0.5 * (from_s + to_s);
+    const double at = argument_of(linkage, load, motions, time_s);
+    const double half = 0.5 * (to_s - from_s) * fabs(argument_rate(linkage, load, motions, time_s));
+    if (load_table_next(&load->table, at - half, 1.0) < at + half) {
+        return load_table_mean(&load->table, at - half, at + half);
+    }
+    return load_value(linkage, load, motions, time_s, from_s);
+}
+
 double load_mean(const Linkage *linkage, const Load *load, const Motion *motions, double from_s,
                  double to_s)
 {
-    if (load->table.count <= 1 || !load_is_timed(linkage, load)) {
+    if (load->table.count <= 1) {
         return load_value(linkage, load, motions, 0.5 * (from_s + to_s), from_s);
+    }
+    if (!load_is_timed(linkage, load)) {
+        return mean_passed(linkage, load, motions, from_s, to_s);
     }
     const Clock clock = clock_of(linkage, load);
     return load_table_mean(&load->table, clock.start + clock.rate * from_s,

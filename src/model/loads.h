@@ -19,8 +19,8 @@ bool load_jumps(const Linkage *linkage, const Load *load);
 double load_value(const Linkage *linkage, const Load *load, const Motion *motions, double time_s,
                   double from_s);
 
-// Its mean from one time to another; where it is not known from these that at the motions given,
-// which are of a time in between.
+// Its mean from one time to another; where it is not known from these that about the motions given,
+// which are of a time in between: over what they pass in that time at their speeds.
 double load_mean(const Linkage *linkage, const Load *load, const Motion *motions, double from_s,
                  double to_s);
 

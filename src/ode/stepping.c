@@ -212,6 +212,14 @@ void stepping_observe_coordinate(const Linkage *linkage, int joint, const Motion
     }
 }
 
+SteppingRate stepping_beside_jump(double before, double mean, double jump_s, double step_s,
+                                  double since_s)
+{
+    const double after = (step_s * mean - jump_s * before) / (step_s - jump_s);
+    return since_s <= jump_s ? (SteppingRate){before, since_s * before}
+                             : (SteppingRate){after, step_s * mean - (step_s - since_s) * after};
+}
+
 // The smallest gap of a joint's places, m; infinite where it has none.
 static double smallest_gap(const Linkage *linkage, int joint, const Motion *motions)
 {

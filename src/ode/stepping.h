@@ -70,6 +70,18 @@ void stepping_drive_force(const Scenario *scenario, size_t drive, const Motion *
 static const double STEPPING_ROUNDING = 1e-6;
 double stepping_end(const Scenario *scenario, double start_s, double end_s, double tick_s);
 
+// A rate on one side of a jump of loads: its derivative there, and what it has gained since the
+// step began.
+typedef struct SteppingRate {
+    double slope;
+    double gain;
+} SteppingRate;
+
+// Of a rate whose derivative is `before` up to a jump, so many s after the start of the step, and
+// in the mean over the step `mean`.
+SteppingRate stepping_beside_jump(double before, double mean, double jump_s, double step_s,
+                                  double since_s);
+
 // Puts time, crank angle and number of the step in front of what went wrong there; returns false.
 bool stepping_fail(const Scenario *scenario, double time_s, size_t step, double step_s, Err *err);
 

@@ -470,6 +470,59 @@ static void a_load_that_jumps_at_a_sample_costs_no_steps(void **state)
     assert_true(steps < 10000);
 }
 
+// Plain steps, whose error is one of first order anyway. Control: half a step of a jump, which was
+// read at a sample in its step, is several times as much.
+static void plain_steps_know_where_loads_jump(void **state)
+{
+    (void)state;
+    double errors[2];
+    for (int i = 0; i < 2; i++) {
+        Scenario scenario = jumping(i == 0 ? 1000 : 997, 24.9e-6);
+        scenario.ode.stepping = ODE_PLAIN;
+        Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+        errors[i] = jumping_error(run);
+        trajectory_destroy(run);
+    }
+    assert_true(errors[0] < 1.1 * errors[1]);
+    assert_true(0.5 * 24.9e-6 * 0.6 / 0.01 > 3.0 * errors[0]);
+}
+
+// The same rotor without a spring, under a torque that jumps over its angle: two points are 1e-5
+// rad apart, which a step passes many times over. The truth is the work done to each angle,
+//     omega^2 = omega_0^2 + 2 / I  integral of M d phi
+// Control: half a step of a jump, which a step read that holds what it has at its middle.
+static void a_torque_that_jumps_over_an_angle_does_its_work(void **state)
+{
+    (void)state;
+    static const double STEP = 1e-4;
+    Scenario scenario = jumping(1000, STEP);
+    Linkage *linkage = &scenario.linkage;
+    linkage->torsion_count = 0;
+    linkage->bodies[0].start.omega = 20.0;
+    LoadTable table = {.count = 2 * JUMPS + 1, .at = {0.0}, .shape = LOAD_LINEAR};
+    for (size_t i = 0; i < JUMPS; i++) {
+        table.at[2 * i + 1] = 10.0 * JUMP_AT[i];
+        table.at[2 * i + 2] = 10.0 * JUMP_AT[i] + 1e-5;
+        table.values[2 * i + 1] = i > 0 ? JUMP_TO[i - 1] : 0.0;
+        table.values[2 * i + 2] = JUMP_TO[i];
+    }
+    linkage->loads[0].table = table;
+    linkage->loads[0].over = LOAD_OVER_POSITION;
+    load_table_settle(&linkage->loads[0].table);
+    Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+    double largest = 0.0;
+    for (size_t k = 0; k < run->sample_count; k++) {
+        const Motion *rotor = trajectory_motion(run, k, 0);
+        const double work =
+            rotor->angle > 0.0 ? rotor->angle * load_table_mean(&table, 0.0, rotor->angle) : 0.0;
+        const double truth = sqrt(400.0 + 2.0 / 0.01 * work);
+        largest = fmax(largest, fabs(rotor->omega - truth));
+    }
+    trajectory_destroy(run);
+    print_message("over an angle: off by %.2g rad/s\n", largest);
+    assert_true(100.0 * largest < 0.5 * STEP * 0.7 / 0.01);
+}
+
 // The same of teeth with play, whose contacts are integrated within the steps.
 static void teeth_under_a_load_that_jumps_cost_no_steps(void **state)
 {
@@ -514,6 +567,8 @@ int main(void)
         cmocka_unit_test(a_motor_runs_up_as_its_one_equation_says),
         cmocka_unit_test(a_soft_drive_is_an_oscillator),
         cmocka_unit_test(a_load_that_jumps_at_a_sample_costs_no_steps),
+        cmocka_unit_test(plain_steps_know_where_loads_jump),
+        cmocka_unit_test(a_torque_that_jumps_over_an_angle_does_its_work),
         cmocka_unit_test(teeth_under_a_load_that_jumps_cost_no_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,10 +4,13 @@
 //     the driven body is put on its exact path at t, contacts are looked for there,
 //     v' = v + h M^-1 (forces + J^T lambda),  x' = x + h v'      (dWorldStep or dWorldQuickStep)
 //     read at the end: positions, omega at t + h; alpha = (omega' - omega) / h
-// ODE is first order read like this. In between, positions and speeds are taken as linear.
-// Where every joint is ideal the run starts `settle_steps` early: the joint rows lag behind the
-// start by a share (1 - ERP)^n, which would stand in the accelerations at any step size.
+// ODE is first order read like this. In between, positions and speeds are taken as linear; where a
+// load jumps within a step, speeds are linear on each side, with the acceleration of the step
+// before up to the jump. Where every joint is ideal the run starts `settle_steps` early: the joint
+// rows lag behind the start by a share (1 - ERP)^n, which would stand in the accelerations at any
+// step size.
 #include "base/zeroed.h"
+#include "model/loads.h"
 #include "ode/plane/contact_rows.h"
 #include "ode/stepping.h"
 
@@ -16,6 +19,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+// The mean accelerations of a body in a step.
+typedef struct PlainRates {
+    Vec2 velocity; // m/s^2
+    double omega;  // rad/s^2
+} PlainRates;
+
 typedef struct Plain {
     const Scenario *scenario;
     World world;
@@ -23,8 +32,9 @@ typedef struct Plain {
     double step_s;
     long index; // of the next step: it starts at index times step_s
     size_t steps;
-    Snapshot *before; // at the start of the last step; owned, as are the arrays below
-    double *omega;    // at its end
+    Snapshot *before;  // at the start of the last step; owned, as are the arrays below
+    PlainRates *rates; // of the step before it
+    double *omega;     // at its end
     double *alpha;
     JointState *joints;
     double *impulse;
@@ -43,6 +53,7 @@ static void plain_close(void *state)
     contact_rows_finish(&plain->contacts);
     world_finish(&plain->world);
     free(plain->before);
+    free(plain->rates);
     free(plain->omega);
     free(plain->alpha);
     free(plain->joints);
@@ -68,13 +79,23 @@ static void read_velocities(Plain *plain)
     }
 }
 
+static PlainRates rates_between(const Snapshot *first, const Snapshot *last, double step_s)
+{
+    return (PlainRates){
+        vec2_scale(1.0 / step_s, vec2_sub(last->velocity, first->velocity)),
+        (last->omega - first->omega) / step_s,
+    };
+}
+
 static bool advance(Plain *plain, Err *err)
 {
     const double start_s = (double)plain->index * plain->step_s;
     const Linkage *linkage = &plain->scenario->linkage;
     world_place_driven(&plain->world, start_s, start_s, 1);
     for (size_t i = 0; i < linkage->body_count; i++) {
-        plain->before[i] = snapshot_of(plain->world.bodies[i]);
+        const Snapshot now = snapshot_of(plain->world.bodies[i]);
+        plain->rates[i] = rates_between(&plain->before[i], &now, plain->step_s);
+        plain->before[i] = now;
     }
     applied_push(&plain->world.applied, start_s, plain->step_s, APPLIED_AT_END, 1);
     const bool is_quick = plain->scenario->ode.solver == ODE_QUICK;
@@ -120,6 +141,7 @@ static bool settle(Plain *plain, Err *err)
 static void make_plain(const Linkage *linkage, Plain *plain)
 {
     plain->before = zeroed(linkage->body_count, sizeof *plain->before);
+    plain->rates = zeroed(linkage->body_count, sizeof *plain->rates);
     plain->omega = zeroed(linkage->body_count, sizeof *plain->omega);
     plain->alpha = zeroed(linkage->body_count, sizeof *plain->alpha);
     plain->joints = zeroed(linkage->joint_count, sizeof *plain->joints);
@@ -169,6 +191,7 @@ static bool plain_carry(void *state, Carry *carry)
     CARRY(carry, plain->index);
     CARRY(carry, plain->steps);
     CARRY_ARRAY(carry, plain->before, linkage->body_count);
+    CARRY_ARRAY(carry, plain->rates, linkage->body_count);
     CARRY_ARRAY(carry, plain->joints, linkage->joint_count);
     return true;
 }
@@ -212,18 +235,54 @@ static Motion between(const Snapshot *first, const Snapshot *last, double share,
     };
 }
 
+// When a load jumps within the last step, s after its start; 0: none does, or there is no step
+// before.
+static double plain_jump(const Plain *plain)
+{
+    const double start_s = (double)(plain->index - 1) * plain->step_s;
+    const double rounding_s = STEPPING_ROUNDING * plain->step_s;
+    const double jump_s =
+        loads_next_jump(&plain->scenario->linkage, start_s + rounding_s) - start_s;
+    return plain->steps > 1 && jump_s < plain->step_s - rounding_s ? jump_s : 0.0;
+}
+
+// Puts the rates of a body's motion onto their side of a jump.
+static void plain_set_beside_jump(const Plain *plain, size_t body, double jump_s, double since_s,
+                                  Motion *motion)
+{
+    const double step_s = plain->step_s;
+    const Snapshot *first = &plain->before[body];
+    const Snapshot last = world_snapshot(&plain->world, body);
+    const PlainRates before = plain->rates[body];
+    const PlainRates mean = rates_between(first, &last, step_s);
+    const SteppingRate x =
+        stepping_beside_jump(before.velocity.x, mean.velocity.x, jump_s, step_s, since_s);
+    const SteppingRate y =
+        stepping_beside_jump(before.velocity.y, mean.velocity.y, jump_s, step_s, since_s);
+    const SteppingRate turning =
+        stepping_beside_jump(before.omega, mean.omega, jump_s, step_s, since_s);
+    motion->velocity = vec2_add(first->velocity, (Vec2){x.gain, y.gain});
+    motion->acceleration = (Vec2){x.slope, y.slope};
+    motion->omega = first->omega + turning.gain;
+    motion->alpha = turning.slope;
+}
+
 static void plain_observe(const void *state, double time_s, Sample *sample)
 {
     const Plain *plain = state;
     const Linkage *linkage = &plain->scenario->linkage;
     const double start_s = (double)(plain->index - 1) * plain->step_s;
     const double share = (time_s - start_s) / plain->step_s;
+    const double jump_s = plain_jump(plain);
     sample->time_s = time_s;
     sample->crank_rad = linkage_crank_angle(linkage, time_s);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const Snapshot now = world_snapshot(&plain->world, i);
         Motion *motion = &sample->bodies[i];
         *motion = between(&plain->before[i], &now, share, plain->step_s);
+        if (jump_s > 0.0) {
+            plain_set_beside_jump(plain, i, jump_s, time_s - start_s, motion);
+        }
         motion->angle = world_count_turns(&plain->world, i, motion->angle);
     }
     stepping_set_driven(linkage, time_s, sample->bodies);

@@ -397,20 +397,6 @@ static Motion motion_at(const Staggered *staggered, size_t body, const StrideJum
     };
 }
 
-// A rate on one side of a jump: its derivative there, and what it has gained since the step began.
-typedef struct Gained {
-    double slope;
-    double gain;
-} Gained;
-
-static Gained gained_beside(double before, double mean, double jump_s, double step_s,
-                            double since_s)
-{
-    const double after = (step_s * mean - jump_s * before) / (step_s - jump_s);
-    return since_s <= jump_s ? (Gained){before, since_s * before}
-                             : (Gained){after, step_s * mean - (step_s - since_s) * after};
-}
-
 // Puts the rates of a body's motion onto their side of a jump.
 static void set_beside_jump(const Staggered *staggered, size_t body, double jump_s, double since_s,
                             Motion *motion)
@@ -419,10 +405,10 @@ static void set_beside_jump(const Staggered *staggered, size_t body, double jump
     const double step_s = staggered->step_s;
     const Vec2 before = centre_acceleration(staggered->before, body, step_s);
     const Vec2 mean = centre_acceleration(now, body, step_s);
-    const Gained x = gained_beside(before.x, mean.x, jump_s, step_s, since_s);
-    const Gained y = gained_beside(before.y, mean.y, jump_s, step_s, since_s);
-    const Gained turning =
-        gained_beside(staggered->before->alpha[body], now->alpha[body], jump_s, step_s, since_s);
+    const SteppingRate x = stepping_beside_jump(before.x, mean.x, jump_s, step_s, since_s);
+    const SteppingRate y = stepping_beside_jump(before.y, mean.y, jump_s, step_s, since_s);
+    const SteppingRate turning = stepping_beside_jump(staggered->before->alpha[body],
+                                                      now->alpha[body], jump_s, step_s, since_s);
     motion->velocity = vec2_add(now->middle[body].velocity, (Vec2){x.gain, y.gain});
     motion->acceleration = (Vec2){x.slope, y.slope};
     motion->omega = now->middle[body].omega + turning.gain;
