@@ -424,7 +424,7 @@ static void take_first(const Tune *tune, TuneScheme *owner, int number)
     owner->is_going_back = goes_back(tune, trial);
     owner->next = trial->index + (owner->is_going_back ? -1 : 1);
     if (!owner->is_going_back && is_dear(tune, trial->scheme, owner->next) &&
-        tune_trend_confirms(tune_trend_of(tune, trial->scheme))) {
+        tune_trend_confirms(tune, trial->scheme)) {
         owner->is_by_order = true;
         end_scheme(owner, number);
     }

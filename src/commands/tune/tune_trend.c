@@ -25,7 +25,7 @@ static const double MARGIN = 0.05;
 static const double MISS = 1.1;
 
 // of orders that agree this well the next error is known to some hundredths
-static const double EVEN = 0.05;
+static const double EVEN = 0.1;
 
 static const double TREND_STEPS_A_DECADE = 10.0; // of the grid, tune_value
 
@@ -50,22 +50,26 @@ static double order_between(const TuneTrial *coarse, const TuneTrial *fine)
 
 TuneTrend tune_trend_of(const Tune *tune, size_t scheme)
 {
-    const TuneTrial *trials[3] = {NULL};
+    // the finest first
+    const TuneTrial *trials[4] = {NULL};
     int index = INT_MAX;
-    for (int i = 2; i >= 0; i--) {
-        trials[i] = trial_before(tune, scheme, index);
-        if (trials[i] == NULL) {
-            return (TuneTrend){.is_known = false};
-        }
-        index = trials[i]->index - SETTINGS_APART;
+    size_t count = 0;
+    while (count < 4 && (trials[count] = trial_before(tune, scheme, index)) != NULL) {
+        index = trials[count++]->index - SETTINGS_APART;
     }
-    const double first = order_between(trials[0], trials[1]);
-    const double last = order_between(trials[1], trials[2]);
+    if (count < 3) {
+        return (TuneTrend){.is_known = false};
+    }
+    const double first = order_between(trials[2], trials[1]);
+    const double last = order_between(trials[1], trials[0]);
     const double spread = fabs(last - first);
+    const double before = count == 4 ? order_between(trials[3], trials[2]) : NAN;
     return (TuneTrend){
         .is_known = fmin(first, last) >= TREND_LEAST && spread <= TREND_AGREEMENT,
         .order = fmax(first, last),
         .spread = spread,
+        .is_even = fmax(first, last) - before <= EVEN && before - fmin(first, last) <= EVEN &&
+                   spread <= EVEN,
     };
 }
 
@@ -81,7 +85,8 @@ bool tune_trend_may_precede(const Tune *tune, TuneTrend trend, double error)
     return error * pow(10.0, trend.order / TREND_STEPS_A_DECADE) <= MISS * tune->target;
 }
 
-bool tune_trend_confirms(TuneTrend trend)
+bool tune_trend_confirms(const Tune *tune, size_t scheme)
 {
-    return trend.is_known && trend.spread <= EVEN;
+    const TuneTrend trend = tune_trend_of(tune, scheme);
+    return tune->schemes[scheme].scheme.stepping == ODE_PLAIN && trend.is_known && trend.is_even;
 }
