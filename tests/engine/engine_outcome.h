@@ -192,6 +192,14 @@ static inline void hold_slider_crank(const char *engine, const char *way, double
     slider.run.step = step_s;
     const Outcome ideal = outcome_of(engine, way, &slider, BACKEND_ANALYTIC);
     assert_true(ideal.error.max < most);
+    // along another line, which lies in none of the world's axes
+    static const char *const TURNED[] = {"slider-crank.angle=-60 deg"};
+    Scenario turned = load("cases/mechanisms/slider-crank.yaml", TURNED, 1);
+    turned.run.step = step_s;
+    const Outcome along = outcome_of(engine, way, &turned, BACKEND_ANALYTIC);
+    if (!(along.error.max < most)) {
+        fail_msg("%s, slider at -60 deg: %s %g", engine, along.run->message, along.error.max);
+    }
     Scenario pin = load_with("cases/mechanisms/slider-crank-pin.yaml", "run.revolutions=0.1");
     const Refined error = refined(engine, "kernel", &pin, 10e-6, 1e-6);
     if (!(error.order > 1.8) || !(error.fine < 1e-7)) {
