@@ -83,15 +83,19 @@ static double argument_rate(const Linkage *linkage, const Load *load, const Moti
     return forces_coordinate(linkage, load->joint, motions).rate;
 }
 
-// Of a load that is not timed: its value at the motions, or where it bends within what is passed
-// from one time to the other, its mean over that, as far as speeds tell.
+// Of a load that is not timed: its value at the motions, or where its slope jumps within what is
+// passed from one time to the other, its mean over that, as far as speeds tell; but not where whole
+// periods are passed. A smooth load is as right at the middle.
 static double mean_passed(const Linkage *linkage, const Load *load, const Motion *motions,
                           double from_s, double to_s)
 {
     const double time_s = 0.5 * (from_s + to_s);
     const double at = argument_of(linkage, load, motions, time_s);
     const double half = 0.5 * (to_s - from_s) * fabs(argument_rate(linkage, load, motions, time_s));
-    if (load_table_next(&load->table, at - half, 1.0) < at + half) {
+    const bool is_short =
+        isfinite(half) && (load->table.period == 0.0 || 2.0 * half < load->table.period);
+    if (load->table.shape != LOAD_SMOOTH && is_short &&
+        load_table_next(&load->table, at - half, 1.0) < at + half) {
         return load_table_mean(&load->table, at - half, at + half);
     }
     return load_value(linkage, load, motions, time_s, from_s);

@@ -10,6 +10,7 @@
 #include "base/lcg.h"
 #include "base/load_table.h"
 #include "measure/chosen_run.h"
+#include "model/loads.h"
 #include "run/drive_torque.h"
 
 #include <stdio.h>
@@ -523,6 +524,30 @@ static void a_torque_that_jumps_over_an_angle_does_its_work(void **state)
     assert_true(100.0 * largest < 0.5 * STEP * 0.7 / 0.01);
 }
 
+// A world that flies apart passes periods without number in a step: its load is that in the middle.
+static void a_load_passed_over_many_periods_is_that_in_the_middle(void **state)
+{
+    (void)state;
+    static const double OMEGAS[] = {1.0, 1e15, INFINITY};
+    Scenario scenario = jumping(1000, 1e-3);
+    Linkage *linkage = &scenario.linkage;
+    Load *load = &linkage->loads[0];
+    load->over = LOAD_OVER_POSITION;
+    load->table.shape = LOAD_LINEAR;
+    load->table.period = 2.0 * M_PI;
+    load_table_settle(&load->table);
+    for (size_t i = 0; i < 3; i++) {
+        // no point is within a step at 1 rad/s, either
+        const Motion motions[1] = {{.angle = 0.45, .omega = OMEGAS[i]}};
+        const double mean = load_mean(linkage, load, motions, 0.0, 1e-3);
+        assert_true(mean == load_value(linkage, load, motions, 5e-4, 0.0));
+    }
+    // the control: three points are
+    const Motion near[1] = {{.angle = 0.3, .omega = 700.0}};
+    assert_true(load_mean(linkage, load, near, 0.0, 1e-3) !=
+                load_value(linkage, load, near, 5e-4, 0.0));
+}
+
 // The same of teeth with play, whose contacts are integrated within the steps.
 static void teeth_under_a_load_that_jumps_cost_no_steps(void **state)
 {
@@ -569,6 +594,7 @@ int main(void)
         cmocka_unit_test(a_load_that_jumps_at_a_sample_costs_no_steps),
         cmocka_unit_test(plain_steps_know_where_loads_jump),
         cmocka_unit_test(a_torque_that_jumps_over_an_angle_does_its_work),
+        cmocka_unit_test(a_load_passed_over_many_periods_is_that_in_the_middle),
         cmocka_unit_test(teeth_under_a_load_that_jumps_cost_no_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

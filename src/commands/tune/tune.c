@@ -10,11 +10,11 @@
 #include "base/shell.h"
 #include "base/sorted.h"
 #include "casefile/input.h"
-#include "commands/tune/tune_trend.h"
 #include "write/number.h"
 #include "write/units.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -367,6 +367,106 @@ static TuneTrial *add_trial(Tune *tune, size_t scheme, int index, double value,
     return trial;
 }
 
+// The order with which the errors of one scheme have been seen to fall, and what it rules out.
+//
+//     p = log(e1 / e2) / log(v1 / v2)      of errors e1, e2 at the values v1 > v2
+// Two such orders, one after the other over three trials, have to agree. An error at a value v
+// beyond the last one is then at least
+//     e2 (v / v2)^(p + m) / MISS,   m = max(MARGIN, 2 |p' - p|)
+
+typedef struct Trend {
+    bool is_known;
+    double order;  // error ~ step^order
+    double spread; // 1: by how much the two orders differ that it is taken from
+    bool is_even;  // whether a third order before them agrees as well
+} Trend;
+
+// settings between two trials: an error taken as a maximum over samples scatters by some
+// hundredths, which over one setting would be an order of .2
+static const int SETTINGS_APART = 3;
+
+// errors above this no longer follow the step
+static const double ERROR_MOST = 1.0;
+
+// two orders that differ by more, or one that is lower, are none
+static const double TREND_AGREEMENT = 0.25;
+static const double TREND_LEAST = 0.5;
+
+// by how much a later order may be higher, and an error below the trend
+static const double MARGIN = 0.05;
+static const double MISS = 1.1;
+
+// of orders that agree this well the next error is known to some hundredths
+static const double EVEN = 0.1;
+
+// The finest trial of a scheme with an error that follows the step, at an index or a coarser one.
+static const TuneTrial *trial_before(const Tune *tune, size_t scheme, int index)
+{
+    const TuneTrial *finest = NULL;
+    for (size_t i = 0; i < tune->trial_count; i++) {
+        const TuneTrial *trial = &tune->trials[i];
+        if (trial->scheme == scheme && trial->index <= index && trial->error > 0.0 &&
+            trial->error < ERROR_MOST && (finest == NULL || trial->index > finest->index)) {
+            finest = trial;
+        }
+    }
+    return finest;
+}
+
+static double order_between(const TuneTrial *coarse, const TuneTrial *fine)
+{
+    return log(coarse->error / fine->error) / log(coarse->value / fine->value);
+}
+
+// Of the finest trials of a scheme.
+static Trend trend_of(const Tune *tune, size_t scheme)
+{
+    // the finest first
+    const TuneTrial *trials[4] = {NULL};
+    int index = INT_MAX;
+    size_t count = 0;
+    while (count < 4 && (trials[count] = trial_before(tune, scheme, index)) != NULL) {
+        index = trials[count++]->index - SETTINGS_APART;
+    }
+    if (count < 3) {
+        return (Trend){.is_known = false};
+    }
+    const double first = order_between(trials[2], trials[1]);
+    const double last = order_between(trials[1], trials[0]);
+    const double spread = fabs(last - first);
+    const double before = count == 4 ? order_between(trials[3], trials[2]) : NAN;
+    return (Trend){
+        .is_known = fmin(first, last) >= TREND_LEAST && spread <= TREND_AGREEMENT,
+        .order = fmax(first, last),
+        .spread = spread,
+        .is_even = fmax(first, last) - before <= EVEN && before - fmin(first, last) <= EVEN &&
+                   spread <= EVEN,
+    };
+}
+
+// How many settings further than one with an error the target can be met at the earliest, if the
+// errors go on as they fell.
+static int trend_ahead(const Tune *tune, Trend trend, double error)
+{
+    const double order = trend.order + fmax(MARGIN, 2.0 * trend.spread);
+    const double ahead = TUNE_STEPS_A_DECADE / order * log10(error / (MISS * tune->target));
+    return ahead > 1.0 ? (int)ceil(ahead) : 1;
+}
+
+// Whether the setting before one with an error can meet the target.
+static bool trend_may_precede(const Tune *tune, Trend trend, double error)
+{
+    return error * pow(10.0, trend.order / TUNE_STEPS_A_DECADE) <= MISS * tune->target;
+}
+
+// Whether the errors of plain steps fall so evenly that the setting behind one that meets the
+// target does, too. Of other stepping, whose errors are small, chance has its share in them.
+static bool trend_confirms(const Tune *tune, size_t scheme)
+{
+    const Trend trend = trend_of(tune, scheme);
+    return tune->schemes[scheme].scheme.stepping == ODE_PLAIN && trend.is_known && trend.is_even;
+}
+
 // Whether a setting takes so long that runs before it which may rule it out are worth theirs.
 static bool is_dear(const Tune *tune, size_t scheme, int index)
 {
@@ -383,8 +483,8 @@ static int index_after(const Tune *tune, TuneScheme *owner, const TuneTrial *tri
     if (isnan(trial->error) || !is_dear(tune, scheme, trial->index + ahead)) {
         return trial->index + ahead;
     }
-    const TuneTrend trend = tune_trend_of(tune, scheme);
-    const int by_order = trend.is_known ? tune_trend_ahead(tune, trend, trial->error) : 0;
+    const Trend trend = trend_of(tune, scheme);
+    const int by_order = trend.is_known ? trend_ahead(tune, trend, trial->error) : 0;
     owner->is_by_order = owner->is_by_order || by_order > ahead;
     return trial->index + (trend.is_known            ? (int)fmax(ahead, by_order)
                            : ahead > 2 * PROBE_LEAST ? ahead / 2
@@ -406,7 +506,7 @@ static bool goes_back(const Tune *tune, const TuneTrial *trial)
 {
     return tune->schemes[trial->scheme].is_by_order &&
            !has_trial(tune, trial->scheme, trial->index - 1) &&
-           tune_trend_may_precede(tune, tune_trend_of(tune, trial->scheme), trial->error);
+           trend_may_precede(tune, trend_of(tune, trial->scheme), trial->error);
 }
 
 static void end_scheme(TuneScheme *owner, int best)
@@ -424,7 +524,7 @@ static void take_first(const Tune *tune, TuneScheme *owner, int number)
     owner->is_going_back = goes_back(tune, trial);
     owner->next = trial->index + (owner->is_going_back ? -1 : 1);
     if (!owner->is_going_back && is_dear(tune, trial->scheme, owner->next) &&
-        tune_trend_confirms(tune, trial->scheme)) {
+        trend_confirms(tune, trial->scheme)) {
         owner->is_by_order = true;
         end_scheme(owner, number);
     }
