@@ -34,6 +34,16 @@ void results_print_begin(const CommonOptions *options, ResultsText *write, const
     fflush(stdout);
 }
 
+static bool is_whole(const Results *results, const CommonOptions *options)
+{
+    return results->screen == NULL || options->is_full || options->is_wide;
+}
+
+bool results_tell_all(const Results *results, const CommonOptions *options)
+{
+    return options->is_json || options->folder != NULL || is_whole(results, options);
+}
+
 void results_print_rest(const Results *results, const CommonOptions *options, const void *report,
                         const Text *begun)
 {
@@ -44,8 +54,7 @@ void results_print_rest(const Results *results, const CommonOptions *options, co
     Text text;
     text_init(&text);
     const Style style = output_style(stdout, options->is_wide);
-    const bool is_whole = results->screen == NULL || options->is_full || options->is_wide;
-    (is_whole ? results->text : results->screen)(report, &style, &text);
+    (is_whole(results, options) ? results->text : results->screen)(report, &style, &text);
     text_append(&text, "%s", results->is_followed ? "\n" : "");
     const bool is_begun = begun->length > 0 && strncmp(text.data, begun->data, begun->length) == 0;
     print_folded(text.data + (is_begun ? begun->length : 0), &style);

@@ -50,6 +50,9 @@ void results_print_rest(const Results *results, const CommonOptions *options, co
 // begin with CommonOptions.
 void results_print(const Results *results, const CommonOptions *options, const void *report);
 
+// Whether anybody reads more of the results than the first screen.
+bool results_tell_all(const Results *results, const CommonOptions *options);
+
 // Whether all files can be written, before the work whose results they are to hold: makes the
 // folder and claims every file. Names in the folder begin with that of the case. Fails as
 // file_claim does.

@@ -127,7 +127,8 @@ static bool has_budget(const CaseRun *run, size_t number, double *left_s)
     return *left_s > STARTS_LEAST * fmin(share, 1.0) * run->spent_s[number];
 }
 
-// Where the motion cannot be predicted, its statistics may still agree.
+// Where the motion cannot be predicted, its statistics may still agree: of the first screen those of
+// the settled motion are a part, and these are not.
 static void run_ensembles(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;
@@ -174,8 +175,16 @@ static void ask_closed_form(CaseRun *run)
     }
 }
 
-// What is watched while runs with other damping, and with small changes, are made.
-static const char BESIDE[] = "half and twice the damping, growth of small changes";
+// What lies beside the settled motion: the growth of small changes is not on the first screen.
+static void look_beside(CaseRun *run, Progress *progress)
+{
+    if (run->is_whole) {
+        const char *watched = "half and twice the damping, growth of small changes";
+        settle_beside(&run->scenario, progress_watch(progress, watched));
+    } else {
+        settle_damping(&run->scenario, progress_watch(progress, "half and twice the damping"));
+    }
+}
 
 // Hands on what the reference says, before anything else is run.
 static void hand_on_answer(CaseRun *run)
@@ -208,7 +217,7 @@ void case_run_execute(CaseRun *run, Progress *progress)
     const bool is_announced = long_work_announce(&run->scenario, progress->line.is_quiet);
     case_run_make_truth(run, progress);
     hand_on_answer(run);
-    settle_beside(&run->scenario, progress_watch(progress, BESIDE));
+    look_beside(run, progress);
     for (size_t i = 0; i < options->backend_count; i++) {
         const double began_s = clock_processor_s();
         run->runs[i] =
@@ -221,7 +230,7 @@ void case_run_execute(CaseRun *run, Progress *progress)
     ask_closed_form(run);
     if (run_report_has_truth(&run->report) && scenario_has_clearance(&run->scenario)) {
         match_contacts(run);
-        if (run->truth.is_limited) {
+        if (run->truth.is_limited && run->is_whole) {
             run_ensembles(run, progress);
         }
     }

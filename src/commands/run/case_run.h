@@ -8,6 +8,7 @@
 typedef struct CaseRun {
     Scenario scenario;
     bool is_uncertified; // whether the reference runs alone
+    bool is_whole;       // whether somebody reads more of it than the first screen
     const char *columns; // of the series, as --columns takes them; NULL: all
     Trajectory *runs[BACKEND_COUNT];
     TrajectoryError errors[BACKEND_COUNT];
@@ -28,8 +29,8 @@ typedef struct CaseRun {
 } CaseRun;
 
 // Runs the scenario that stands in it, with the reference certified unless it is to run alone, on
-// the processors that there are, and from many starts where the motion cannot be predicted; every
-// run is watched. A backend that fails is a run that is not complete, and counted.
+// the processors that there are, and, where somebody reads of it, from many starts where the motion
+// cannot be predicted; every run is watched. A backend that fails is a run that is not complete, and counted.
 void case_run_execute(CaseRun *run, Progress *progress);
 
 void case_run_finish(CaseRun *run);

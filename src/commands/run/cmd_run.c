@@ -185,6 +185,7 @@ static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
     Progress progress;
     progress_begin(&progress, command->choices.common.is_quiet);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
+        runs[i].is_whole = results_tell_all(&RESULTS, &command->choices.common);
         Printing printing = {.options = &command->choices.common, .progress = &progress};
         text_init(&printing.begun);
         runs[i].answered = print_answer;
