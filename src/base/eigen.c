@@ -3,9 +3,9 @@
 // Rows and columns are first scaled by powers of two until they are of one size (balancing; B. N.
 // Parlett, C. Reinsch, Numer. Math. 13 (1969) 293), then plane rotations make the matrix one of
 // Hessenberg, zero below the first subdiagonal. Shifted QR steps, A - s 1 = Q R and then
-// A = R Q + s 1 in complex numbers, bring the last entry of that subdiagonal to zero, with the shift
-// s the eigenvalue of the last two by two that is nearer to the last entry (J. H. Wilkinson, The
-// algebraic eigenvalue problem, 1965). A vector is found by inverse iteration.
+// A = R Q + s 1 in complex numbers, bring the last entry of that subdiagonal to zero, with the
+// shift s the eigenvalue of the last two by two that is nearer to the last entry (J. H. Wilkinson,
+// The algebraic eigenvalue problem, 1965). A vector is found by inverse iteration.
 #include "base/eigen.h"
 
 #include "base/zeroed.h"
@@ -18,6 +18,9 @@ enum { QR_STEPS = 60, QR_UNUSUAL = 10, BALANCE_PASSES = 20, INVERSE_STEPS = 3 };
 
 // 1: of its neighbours on the diagonal, an entry below it that is zero to rounding
 static const double SPLIT = 0x1p-52;
+
+// 1: of the largest, how far above the real axis one is that is real but for rounding
+static const double REAL = 0x1p-44;
 
 // 1: how far beside the eigenvalue a vector is looked for, of the matrix's size
 static const double BESIDE = 1e-13;
@@ -116,8 +119,8 @@ static double complex shift_of(size_t n, const double complex *a, size_t last)
     return d + (cabs(one) < cabs(other) ? one : other);
 }
 
-// One QR step of the rows and columns from `first` to `last`, whose eigenvalues the rest has no part
-// in. Rotations of rows come before those of columns that they share.
+// One QR step of the rows and columns from `first` to `last`, whose eigenvalues the rest has no
+// part in. Rotations of rows come before those of columns that they share.
 static void qr_step(size_t n, double complex *a, size_t first, size_t last, double complex shift)
 {
     double c[2] = {1.0, 1.0};
@@ -137,6 +140,20 @@ static void qr_step(size_t n, double complex *a, size_t first, size_t last, doub
     turn_columns(n, a, last - 1, last, last + 1, c[1], s[1]);
     for (size_t i = first; i <= last; i++) {
         a[i * n + i] += shift;
+    }
+}
+
+// Those that are real but for rounding are made so.
+static void make_real(size_t n, double complex *values)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        largest = fmax(largest, cabs(values[i]));
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (fabs(cimag(values[i])) <= REAL * largest) {
+            values[i] = creal(values[i]);
+        }
     }
 }
 
@@ -178,13 +195,14 @@ bool eigen_values(size_t n, const double *a, double complex *values)
         }
         // a cycle of steps ends where one has another shift
         const bool is_unusual = step % QR_UNUSUAL == QR_UNUSUAL - 1;
-        const double complex shift = is_unusual ? cabs(own[(left - 1) * n + left - 2])
-                                                : shift_of(n, own, left - 1);
+        const double complex shift =
+            is_unusual ? cabs(own[(left - 1) * n + left - 2]) : shift_of(n, own, left - 1);
         qr_step(n, own, first, left - 1, shift);
         is_found = ++step < QR_STEPS;
     }
     free(own);
     if (is_found) {
+        make_real(n, values);
         qsort(values, n, sizeof *values, compare_sizes);
     }
     return is_found;

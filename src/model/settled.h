@@ -48,11 +48,19 @@ typedef struct SettledMotion {
                       // owned
 } SettledMotion;
 
+enum { SETTLED_MULTIPLIERS = 8 }; // that are found at most
+
 // How fast small changes of a state grow in a settled motion.
 typedef struct SettledGrowth {
     double factor;      // 1: in a revolution, below 1 where they die out; NAN: not known
     bool is_at_most;    // they were gone before it could be told: it is not above the factor
     size_t revolutions; // that it was seen over
+    // 1: by what small changes are multiplied in a period, real and imaginary part, the largest
+    // first; none where only the factor was found
+    size_t multiplier_count;
+    double multipliers[SETTLED_MULTIPLIERS][2];
+    size_t body; // number of the one that the change of the largest moves fastest, where there are
+                 // multipliers
 } SettledGrowth;
 
 // How the start of a scenario was found (run/settle.h).

@@ -146,8 +146,12 @@ static SettledGrowth gone_growth(const Beside *starts, size_t start, double size
     if (gone == count) {
         return (SettledGrowth){.factor = NAN};
     }
+    // a drive that stands still as the revolution begins says nothing of how far the start is away
+    if (gone == 0 && !drive_is_steady(&starts[0].settling.scenario.linkage.driver)) {
+        return (SettledGrowth){.factor = NAN};
+    }
     const double before = gone == 0 ? size / START_SHARE : sections_apart(starts, start, gone - 1);
-    return (SettledGrowth){GROWTH_LEAST / before, true, 1};
+    return (SettledGrowth){.factor = GROWTH_LEAST / before, .is_at_most = true, .revolutions = 1};
 }
 
 // The mean growth of |x| in a revolution, of the start in which it is larger.

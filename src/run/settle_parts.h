@@ -32,7 +32,15 @@ SideBySideTasks damping_runs_tasks(DampingRuns *runs);
 // Puts what they have come to into the scenario, and frees them.
 void damping_runs_end(DampingRuns *runs, Scenario *scenario);
 
-// The runs from starts beside the settled one, likewise.
+// The runs of a period from starts beside the settled one, likewise, where few of them tell all.
+typedef struct MonodromyRuns MonodromyRuns;
+MonodromyRuns *monodromy_runs_begin(const Scenario *scenario, TurnWatch *watch);
+SideBySideTasks monodromy_runs_tasks(MonodromyRuns *runs);
+
+// Whether the growth could be told from them.
+bool monodromy_runs_end(MonodromyRuns *runs, Scenario *scenario);
+
+// The runs from starts beside the settled one until their changes are gone, likewise.
 typedef struct BesideRuns BesideRuns;
 BesideRuns *beside_runs_begin(const Scenario *scenario, TurnWatch *watch);
 SideBySideTasks beside_runs_tasks(BesideRuns *runs);

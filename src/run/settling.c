@@ -145,7 +145,9 @@ static double take_joint(Turn *turn, const StepRecord *record, size_t index)
         numbers[SETTLE_CONTACT] += (record->end_s - record->start_s) / turn->end_s;
         if (!turn->touches[joint]) {
             numbers[SETTLE_IMPACTS] += 1.0;
-            reach->approach = fmax(reach->approach, record->approach[index]);
+            const double approach = record->approach[index];
+            reach->approach = fmax(reach->approach, approach);
+            reach->slowest = reach->slowest > 0.0 ? fmin(reach->slowest, approach) : approach;
         }
     }
     turn->touches[joint] = state->is_touching;

@@ -51,6 +51,7 @@ typedef struct Revolution {
 typedef struct SettleReach {
     double gap;      // m, the widest; of a joint that turns its bodies rad
     double approach; // m/s or rad/s, the fastest closing speed at which a contact began
+    double slowest;  // m/s or rad/s, the slowest; 0: none began
 } SettleReach;
 
 typedef struct Settling {

@@ -196,12 +196,17 @@ static void append_other(const Scenario *scenario, const SettledMotion *motion, 
 static void append_growth(const Scenario *scenario, Text *text)
 {
     const SettledGrowth *growth = &scenario->settled.growth;
+    const Linkage *linkage = &scenario->linkage;
     if (!scenario->settled.has_growth || isnan(growth->factor)) {
         return;
     }
-    text_append(text, "              a small change of the state %s %.3g times itself each %s\n",
+    text_append(text, "              a small change of the state %s %.3g times itself each %s",
                 growth->is_at_most ? "is gone, or less than" : "becomes", growth->factor,
                 turn_word(scenario));
+    if (growth->multiplier_count > 0 && !growth->is_at_most && linkage->body_count > 1) {
+        text_append(text, ", most of it of %s", linkage->bodies[growth->body].name);
+    }
+    text_append(text, "\n");
 }
 
 static void append_search(const Scenario *scenario, Text *text)

@@ -150,6 +150,26 @@ static json_t *louder_json(const Scenario *scenario)
     return object;
 }
 
+// By what small changes are multiplied in a period, and which body the largest is of; null where
+// only the growth was found.
+static void set_multipliers(json_t *found, const Scenario *scenario)
+{
+    const SettledGrowth *growth = &scenario->settled.growth;
+    if (growth->multiplier_count == 0) {
+        json_object_set_new(found, "multipliers", json_null());
+        json_object_set_new(found, "growing_body", json_null());
+        return;
+    }
+    json_t *multipliers = json_array();
+    for (size_t i = 0; i < growth->multiplier_count; i++) {
+        const double *value = growth->multipliers[i];
+        json_array_append_new(multipliers, json_pack("[f,f]", value[0], value[1]));
+    }
+    json_object_set_new(found, "multipliers", multipliers);
+    json_object_set_new(found, "growing_body",
+                        json_string(scenario->linkage.bodies[growth->body].name));
+}
+
 // What of it is of the search and not of one motion.
 static void set_search(json_t *found, const Scenario *scenario)
 {
@@ -163,6 +183,7 @@ static void set_search(json_t *found, const Scenario *scenario)
     if (settled->has_growth) {
         json_value_set(found, "growth_per_revolution", settled->growth.factor);
         json_object_set_new(found, "growth_is_at_most", json_boolean(settled->growth.is_at_most));
+        set_multipliers(found, scenario);
     }
 }
 

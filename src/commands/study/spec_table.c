@@ -53,7 +53,7 @@ const SpecKey SPEC_KEYS[] = {
             "the reference makes the runs"},
     {SPEC_TOP, "growth", SPEC_KEY_FLAG, AT(has_growth), .words = FLAGS, .what = "growth",
      .doc = "Whether each row has the growth of a small change in a revolution, which takes the "
-            "reference some 30 revolutions more"},
+            "reference up to 30 revolutions more"},
 
     // a run of four months is a slip of the pen, and a process takes 1 ms to start
     {SPEC_LIMITS, "time", SPEC_KEY_LIMIT, AT(limits.time_s), .low = 1e-3, .high = 1e7,
