@@ -35,8 +35,9 @@ typedef struct TruthRuns TruthRuns;
 
 // The runs that make a truth.
 //
-// first, second -> third, perturbed runs beside the second. Whoever has nothing else to do goes on
-// with a perturbed run up to the samples where all of them are looked at (model/growth.c).
+// first, second -> third, perturbed runs beside the second. The first is taken on the grid as well
+// where the case's own samples are fewer: its steps are the same. Whoever has nothing else to do
+// goes on with a perturbed run up to the samples where all of them are looked at (model/growth.c).
 
 // tolerances of the second and third run over the first's
 static const double SECOND = 1.0 / 30.0;
@@ -47,6 +48,7 @@ static const double PERTURBED_SHARE = 1e-3;
 
 enum { THIRD_SEED = 1 }; // of its inputs' rounding
 
+// The last is the first on the grid, of the same steps.
 enum { RUN_FIRST, RUN_SECOND, RUN_THIRD, RUN_FINE, RUN_COUNT };
 
 // The perturbed runs, from when they begin.
@@ -62,9 +64,9 @@ typedef struct Perturbed {
 struct TruthRuns {
     Scenario scenarios[RUN_COUNT]; // the third owns its linkage, the others share the caller's
     Trajectory *trajectories[RUN_COUNT]; // owned, but where two are one
-    size_t count;
+    bool is_fine;                        // whether the case's own samples are the grid
     size_t next;
-    bool is_over[RUN_COUNT];
+    bool is_over[RUN_FINE];
     RunWatch watch;
     Perturbed perturbed;
 };
@@ -96,7 +98,7 @@ static void begin_perturbed(TruthRuns *runs)
     const Scenario *fine = &runs->scenarios[RUN_FINE];
     const Trajectory *second = runs->trajectories[RUN_SECOND];
     perturbed->is_begun = true;
-    for (size_t i = 0; i < runs->count; i++) {
+    for (size_t i = 0; i < RUN_FINE; i++) {
         if (runs->is_over[i] && !runs->trajectories[i]->is_complete) {
             return;
         }
@@ -126,7 +128,7 @@ static void begin_perturbed(TruthRuns *runs)
 static SideBySideNext next_piece(size_t *index, void *context)
 {
     TruthRuns *runs = context;
-    if (runs->next < runs->count) {
+    if (runs->next < RUN_FINE) {
         *index = runs->next++;
         return SIDE_BY_SIDE_PIECE;
     }
@@ -140,8 +142,89 @@ static SideBySideNext next_piece(size_t *index, void *context)
         return SIDE_BY_SIDE_NONE;
     }
     const SideBySideNext next = growth_next(index, runs->perturbed.runs);
-    *index += runs->count;
+    *index += RUN_FINE;
     return next;
+}
+
+// What looks at the first run: for its spikes, and for its motion on the grid.
+typedef struct Looking {
+    const Scenario *fine;
+    Trajectory *grid;
+    Sample sample; // owned
+    size_t next;   // sample of the grid
+    bool is_whole; // whether all samples up to there could be taken
+    const Solver *solver;
+    const void *state;
+    void *spikes; // of the tracer; NULL: it has nothing to look at
+} Looking;
+
+static void *looking_begin(const Scenario *scenario, const Solver *solver, const void *state,
+                           Recorder *recorder, const void *shared)
+{
+    // whoever shares it has it to write in
+    Looking *looking = *(Looking *const *)shared;
+    looking->solver = solver;
+    looking->state = state;
+    looking->spikes = TRACER_PROBE.begin(scenario, solver, state, recorder, NULL);
+    return looking;
+}
+
+// Of parts that are stepped by themselves no instant is one of all.
+static void looking_look(void *own, const StepRecord *step)
+{
+    Looking *looking = own;
+    if (looking->spikes != NULL) {
+        TRACER_PROBE.look(looking->spikes, step);
+    }
+    looking->is_whole = looking->is_whole && step->part == NULL;
+    const double near_s = RUN_ROUNDING * (step->end_s - step->start_s);
+    while (looking->is_whole && looking->next < looking->grid->sample_count) {
+        Sample *sample = &looking->sample;
+        sample->time_s = scenario_sample_time(looking->fine, looking->next);
+        if (sample->time_s > step->end_s + near_s) {
+            break;
+        }
+        Err unused = {ERR_NONE, ""};
+        solver_glance(looking->solver, looking->state, sample->time_s, sample);
+        looking->is_whole = run_check_sample(&looking->fine->linkage, NULL, sample, &unused);
+        trajectory_store_motion(looking->grid, looking->next++, sample);
+    }
+}
+
+static void looking_end(void *own, Trajectory *trajectory)
+{
+    Looking *looking = own;
+    if (looking->spikes != NULL) {
+        TRACER_PROBE.end(looking->spikes, trajectory);
+    }
+}
+
+// Makes the first run, and on the grid as well. Another run is made for that where its steps do not
+// have it.
+static void make_first(TruthRuns *runs, RunWatch watch)
+{
+    const Solver *solver = registry_solver(BACKEND_REFERENCE);
+    const Scenario *fine = &runs->scenarios[RUN_FINE];
+    Looking looking = {
+        .fine = fine,
+        .grid = trajectory_create_motion(fine, solver->name),
+        .sample = sample_create(&fine->linkage),
+        .is_whole = true,
+    };
+    Looking *const shared = &looking;
+    const RunProbe probe = {looking_begin, looking_look, looking_end, NULL, &shared};
+    Trajectory *first = run_guarded(&runs->scenarios[RUN_FIRST], solver, watch, &probe, NULL);
+    Trajectory *grid = looking.grid;
+    runs->trajectories[RUN_FIRST] = first;
+    grid->is_complete = first->is_complete && looking.next == grid->sample_count;
+    if (first->is_complete && !(looking.is_whole && grid->is_complete)) {
+        trajectory_destroy(grid);
+        grid = run_motion(fine, solver, watch);
+    } else {
+        memcpy(grid->message, first->message, sizeof grid->message);
+    }
+    runs->trajectories[RUN_FINE] = grid;
+    sample_free(&looking.sample);
 }
 
 static void make_run(TruthRuns *runs, size_t index, bool is_callers)
@@ -149,34 +232,38 @@ static void make_run(TruthRuns *runs, size_t index, bool is_callers)
     const Scenario *scenario = &runs->scenarios[index];
     const Solver *solver = registry_solver(BACKEND_REFERENCE);
     const RunWatch watch = is_callers ? runs->watch : (RunWatch){NULL, NULL};
-    // the others are there to be compared with
-    runs->trajectories[index] = index == RUN_FIRST ? tracer_run(scenario, solver, watch)
-                                                   : run_motion(scenario, solver, watch);
+    if (index != RUN_FIRST) {
+        // the others are there to be compared with
+        runs->trajectories[index] = run_motion(scenario, solver, watch);
+    } else if (runs->is_fine) {
+        runs->trajectories[index] = tracer_run(scenario, solver, watch);
+    } else {
+        make_first(runs, watch);
+    }
 }
 
 static void truth_do_piece(size_t index, bool is_callers, void *context)
 {
     TruthRuns *runs = context;
-    if (index < runs->count) {
+    if (index < RUN_FINE) {
         make_run(runs, index, is_callers);
     } else {
-        growth_walk(index - runs->count, is_callers, runs->perturbed.runs);
+        growth_walk(index - RUN_FINE, is_callers, runs->perturbed.runs);
     }
 }
 
 static void end_piece(size_t index, void *context)
 {
     TruthRuns *runs = context;
-    if (index < runs->count) {
+    if (index < RUN_FINE) {
         runs->is_over[index] = true;
     } else {
-        growth_walked(index - runs->count, runs->perturbed.runs);
+        growth_walked(index - RUN_FINE, runs->perturbed.runs);
     }
 }
 
 // Makes all of them by at most so many threads; truth_runs_finish frees it.
 //
-// The first on the case's own samples; on the fine grid itself, where these are fine enough.
 static TruthRuns *truth_runs_make(const Scenario *scenario, RunWatch watch, size_t threads)
 {
     TruthRuns *runs = calloc(1, sizeof *runs);
@@ -190,18 +277,17 @@ static TruthRuns *truth_runs_make(const Scenario *scenario, RunWatch watch, size
     const Scenario third = with_tolerance(&fine, THIRD * tolerance);
     runs->scenarios[RUN_THIRD] = scenario_copy(&third);
     shake_inputs(&runs->scenarios[RUN_THIRD], THIRD_SEED);
-    const bool is_fine = scenario_sample_count(&fine) == scenario_sample_count(scenario);
-    runs->count = is_fine ? RUN_FINE : RUN_COUNT;
+    runs->is_fine = scenario_sample_count(&fine) == scenario_sample_count(scenario);
     const SideBySideTasks tasks = {
         // most mechanisms have two starts for each joint with play
-        .most = runs->count + 2 * scenario->linkage.joint_count,
+        .most = RUN_FINE + 2 * scenario->linkage.joint_count,
         .next = next_piece,
         .work = truth_do_piece,
         .end = end_piece,
         .context = runs,
     };
     side_by_side_tasks(&tasks, threads);
-    if (is_fine) {
+    if (runs->is_fine) {
         runs->trajectories[RUN_FINE] = runs->trajectories[RUN_FIRST];
     }
     return runs;

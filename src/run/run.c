@@ -36,15 +36,12 @@ typedef struct PartSamples {
     size_t part_count;        // numbers so far
 } PartSamples;
 
-// Of a step: one that ends so little before a sample has reached it.
-static const double RUN_ROUNDING = 1e-9;
-
-// Whether the motion is determined at a sample.
+const double RUN_ROUNDING = 1e-9;
 
 // A solver marks a state that the joints do not determine by omegas that are no numbers: whether
 // there are none in a part of a sample (NULL: in all of it).
-static bool run_check_sample(const Linkage *linkage, const SolverPart *part, const Sample *sample,
-                             Err *err)
+bool run_check_sample(const Linkage *linkage, const SolverPart *part, const Sample *sample,
+                      Err *err)
 {
     const size_t count = solver_body_count(part, linkage);
     for (size_t k = 0; k < count; k++) {

@@ -46,3 +46,11 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
 // Runs the scenario for the bodies' positions and velocities at the samples alone:
 // nothing else in the trajectory is for use but whether it is complete, or why not.
 Trajectory *run_motion(const Scenario *scenario, const Solver *solver, RunWatch watch);
+
+// 1: of a step, by so little before a sample as one ends that has reached it.
+extern const double RUN_ROUNDING;
+
+// Whether the motion of a part, or of all bodies (NULL), is determined at a sample. Fails with
+// ERR_SOLVER.
+bool run_check_sample(const Linkage *linkage, const SolverPart *part, const Sample *sample,
+                      Err *err);
