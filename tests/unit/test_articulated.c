@@ -307,6 +307,64 @@ static void another_push_moves_otherwise(void **state)
     assert_true(apart(scissor(4), 1e-3) > 100.0 * ROUNDED);
 }
 
+// A parallelogram of bars of one metre on the ground, its base turned by an angle and its uprights
+// by another from that.
+static Made parallelogram(double base_rad, double upright_rad)
+{
+    Made made = start();
+    const double angle = base_rad + upright_rad;
+    const Vec2 base = {cos(base_rad), sin(base_rad)};
+    const Vec2 upright = {cos(angle), sin(angle)};
+    const Vec2 middles[] = {vec2_scale(0.5, upright), vec2_add(upright, vec2_scale(0.5, base)),
+                            vec2_add(base, vec2_scale(0.5, upright))};
+    const double angles[] = {angle, base_rad, angle};
+    const Vec2 points[] = {{0.0, 0.0}, upright, vec2_add(upright, base), base};
+    const int bodies[] = {LINKAGE_GROUND, 0, 1, 2, LINKAGE_GROUND};
+    for (int i = 0; i < 3; i++) {
+        Body *body = &made.linkage->bodies[add_body(&made)];
+        *body = (Body){.mass = 1.0, .inertia = 1.0 / 12.0};
+        body->start = (Motion){.position = middles[i], .angle = angles[i]};
+    }
+    for (int i = 0; i < 4; i++) {
+        join(&made, JOINT_REVOLUTE, bodies[i], bodies[i + 1]);
+        Joint *joint = &made.linkage->joints[i];
+        joint->anchor_a = anchor_of(made.linkage, bodies[i], points[i]);
+        joint->anchor_b = anchor_of(made.linkage, bodies[i + 1], points[i]);
+    }
+    return made;
+}
+
+// How far its rows say that it is from its change point, where all bars lie along the base.
+static double distance_of(double base_rad, double upright_rad)
+{
+    Made made = parallelogram(base_rad, upright_rad);
+    uint64_t seed = 3;
+    Solved *solved = stand(made.linkage, &seed);
+    const Tree *tree = &solved->tree;
+    const double at_start[EQUATIONS] = {0.0};
+    tree_evaluate(tree, 0.0, at_start, at_start, solved->state);
+    Articulated *articulated = articulated_create(tree, tree->loop_count, tree->loops);
+    assert_true(articulated_factor(articulated, solved->state));
+    const double distance = articulated->distance;
+    articulated_destroy(articulated);
+    finish(solved, made);
+    return distance;
+}
+
+static void the_distance_from_a_change_point_is_in_proportion_to_it(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 12; i++) {
+        const double base = 0.3 + 0.5 * i;
+        const double near = distance_of(base, 1e-4);
+        assert_near(distance_of(base, 2e-4) / near, 2.0, 0.02);
+        assert_near(distance_of(base, 4e-4) / near, 4.0, 0.08);
+        assert_true(near > 1e-5 && near < 1e-3);
+        // the control: far from it
+        assert_true(distance_of(base, 1.2) > 0.1);
+    }
+}
+
 // Two rows of four-bars on the ground, a chain that floats and a body alone.
 static Made four_parts(void)
 {
@@ -516,6 +574,7 @@ int main(void)
         cmocka_unit_test(loops_in_a_row_move_as_their_whole_matrix_says),
         cmocka_unit_test(slides_move_as_their_whole_matrix_says),
         cmocka_unit_test(another_push_moves_otherwise),
+        cmocka_unit_test(the_distance_from_a_change_point_is_in_proportion_to_it),
         cmocka_unit_test(each_part_moves_as_in_the_whole_to_the_last_bit),
         cmocka_unit_test(bodies_are_hung_up_in_passes_over_the_joints),
         cmocka_unit_test(loops_stay_with_their_neighbours_whatever_the_order_of_the_joints),

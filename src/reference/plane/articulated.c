@@ -27,6 +27,7 @@ typedef struct LoopRow {
 struct FrontRows {
     LoopRow *rows;
     double *square;    // what is left of the loops among one another, row by row
+    double *diagonal;  // of them what each row had of its own before others were taken out of it
     double *own;       // what each row had of the freedom that is eliminated
     double *along;     // and of a floating body's motion
     double *across;    //
@@ -106,6 +107,7 @@ static void front_add_child(Articulated *articulated, const PlanFront *front,
             const size_t column = child_rows[(k - left) / FRONT_LOOP_ROWS] + k % FRONT_LOOP_ROWS;
             to->square[row * front_rows_of(front) + column] += from->square[i * count + k];
         }
+        to->diagonal[row] += from->diagonal[i];
     }
 }
 
@@ -175,6 +177,20 @@ static bool front_eliminate_row(size_t count, size_t pivot, FrontRows *at, Artic
     return true;
 }
 
+// How much the pivot of a loop's row is of what the row had before others were taken out of it, or,
+// of an anchor's two, the longer of both: the square of the sine of an angle. It is small where
+// rows depend on one another, and where one depends on nothing.
+static void note_distance(Articulated *articulated, const PlanFront *front, const FrontRows *at,
+                          size_t pivot)
+{
+    const int joint = articulated->loops[articulated->plan.loops[front->first_loop]];
+    const size_t count = front_rows_of(front);
+    const bool is_anchor = articulated->tree->measures[joint] != TREE_LINE;
+    const double whole = is_anchor ? fmax(at->diagonal[0], at->diagonal[1]) : at->diagonal[pivot];
+    const double share = fabs(at->square[pivot * count + pivot]) / whole;
+    articulated->distance = fmin(articulated->distance, sqrt(share));
+}
+
 // Gathers the rows at a node, or at the ground (-1), before its freedom is eliminated, and
 // eliminates the loops whose ends come together there.
 static bool articulated_gather(Articulated *articulated, int node, const TreeState *state)
@@ -187,6 +203,7 @@ static bool articulated_gather(Articulated *articulated, int node, const TreeSta
         const size_t count = front_rows_of(front);
         for (size_t k = 0; k < count; k++) {
             at->rows[k] = (LoopRow){{0.0, 0.0}, 0.0};
+            at->diagonal[k] = 0.0;
         }
         for (size_t k = 0; k < count * count; k++) {
             at->square[k] = 0.0;
@@ -200,6 +217,9 @@ static bool articulated_gather(Articulated *articulated, int node, const TreeSta
         for (size_t pivot = 0; pivot < front_left_of(front); pivot++) {
             if (!front_eliminate_row(count, pivot, at, link)) {
                 return false;
+            }
+            if (articulated->notes_distance) {
+                note_distance(articulated, front, at, pivot);
             }
         }
     }
@@ -227,6 +247,9 @@ static void articulated_take_out(Articulated *articulated, int node)
         row->spin = link->kind == LINK_SLIDE ? row->spin - own * link->spin_share : 0.0;
     }
     take_square(count, 0, at->own, link->inverse, at->square);
+    for (size_t i = 0; i < count; i++) {
+        at->diagonal[i] += at->own[i] * at->own[i] * link->inverse;
+    }
     if (link->kind == LINK_FLOATING) {
         // its motion is free as well: along y once that along x is eliminated
         for (size_t i = 0; i < count; i++) {
@@ -236,6 +259,10 @@ static void articulated_take_out(Articulated *articulated, int node)
         }
         take_square(count, 0, at->along, 1.0 / link->xx, at->square);
         take_square(count, 0, at->across, 1.0 / link->yy, at->square);
+        for (size_t i = 0; i < count; i++) {
+            at->diagonal[i] += at->along[i] * at->along[i] / link->xx;
+            at->diagonal[i] += at->across[i] * at->across[i] / link->yy;
+        }
     }
 }
 
@@ -519,6 +546,7 @@ static void articulated_lay(Articulated *articulated, Layout *layout)
         FrontRows at;
         at.rows = layout_take(layout, count, sizeof *at.rows);
         at.square = layout_take(layout, count * count, sizeof *at.square);
+        at.diagonal = layout_take(layout, count, sizeof *at.diagonal);
         at.own = layout_take(layout, count, sizeof *at.own);
         at.along = layout_take(layout, count, sizeof *at.along);
         at.across = layout_take(layout, count, sizeof *at.across);
@@ -818,7 +846,10 @@ bool articulated_factor(Articulated *articulated, const TreeState *state)
     for (size_t i = 0; i < articulated->tree->node_count; i++) {
         articulated_start_link(articulated, i, state, &articulated->links[i]);
     }
+    articulated->notes_distance = true;
+    articulated->distance = 1.0;
     articulated->is_factored = sweep_inwards(articulated, NULL, state, false, NULL);
+    articulated->notes_distance = false;
     return articulated->is_factored;
 }
 

@@ -88,6 +88,9 @@ typedef struct Articulated {
     FrontRows *fronts;
     bool is_plain;    // whether it is a tree of hinges and floating bodies without loops
     bool is_factored; // whether the last elimination had a solution
+    bool notes_distance;
+    double distance; // 1: of the last articulated_factor, from a change point: the least sine of
+                     // the angle between a row of the loops and those eliminated before it
 } Articulated;
 
 // For the loops of some joints. The tree must outlive it. Never NULL; the caller destroys it.

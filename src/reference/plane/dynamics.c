@@ -673,7 +673,7 @@ __attribute__((noinline)) static void find_all_rates(const Dynamics *dynamics, d
     DynamicsState *state = dynamics->room.state;
     Loads loads = dynamics->room.loads;
     const double *solved = dynamics->room.solved;
-    if (dynamics->may_branch) {
+    if (dynamics->is_near_branch) {
         // with loops open by the error of a stage, the accelerations are wrong by that over the
         // distance from a change point
         double *closed = dynamics->room.closed;
@@ -682,7 +682,7 @@ __attribute__((noinline)) static void find_all_rates(const Dynamics *dynamics, d
         loops_project(&room, since_s, closed, closed + n);
         y = closed;
     }
-    if (!dynamics_find_rates(dynamics, since_s, y, dynamics->may_branch, state, &loads)) {
+    if (!dynamics_find_rates(dynamics, since_s, y, dynamics->is_near_branch, state, &loads)) {
         for (size_t i = 0; i < system_size(&dynamics->system); i++) {
             rates[i] = NAN;
         }

@@ -75,6 +75,7 @@ typedef struct Dynamics {
     Vec2 *weights;            // N, of each body
     bool has_forces;          // whether springs, dampers or a torque act
     bool may_branch;          // whether loops move freely, and may come to a change point
+    bool is_near_branch;      // whether it was near one where the present step began
     double start_energy;      // J, of such a linkage: what it has, less what it was given
     double greatest_energy;   // J, kinetic, so far
     double energy_floor;      // J, the least that is no rounding

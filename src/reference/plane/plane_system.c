@@ -59,6 +59,18 @@ static bool has_gone_astray(Dynamics *dynamics, const double *y)
                                                           dynamics->energy_floor);
 }
 
+// 1: distance from a change point within which loops are closed before each evaluation. Farther
+// away the accelerations of loops that are open by the error of a stage are as smooth as others,
+// and steps are of the method's order with them.
+static const double NEAR_BRANCH = 0.1;
+
+// Looks where a step begins, whose loops have just been closed.
+static void note_branch(Dynamics *dynamics)
+{
+    dynamics->is_near_branch =
+        dynamics->may_branch && !(dynamics->articulated->distance > NEAR_BRANCH);
+}
+
 static void plane_start(System *system, double *y)
 {
     Dynamics *dynamics = (Dynamics *)system;
@@ -68,6 +80,7 @@ static void plane_start(System *system, double *y)
     linkage_start(tree->linkage, motions);
     tree_start(tree, motions, y + tree->coordinate_count);
     loops_start(tree, &room, y, y + tree->coordinate_count);
+    note_branch(dynamics);
     if (dynamics->may_branch) {
         dynamics->energy_floor = scale_floor(system->scenario).energy;
         dynamics->start_energy = energy_balance(dynamics, y, &dynamics->greatest_energy);
@@ -79,7 +92,7 @@ static bool plane_evaluate(const System *system, double since_s, const double *y
 {
     const Dynamics *dynamics = plane_dynamics_of(system);
     DynamicsState *at = (DynamicsState *)state;
-    if (rates == NULL || !dynamics->may_branch) {
+    if (rates == NULL || !dynamics->is_near_branch) {
         return dynamics_evaluate(dynamics, since_s, y, at, rates);
     }
     // the rates are those of closed loops, as at every stage
@@ -185,6 +198,7 @@ static bool plane_rebase(System *system, double since_s, double *y)
     Tree *tree = &dynamics->tree;
     const double kink_s = linkage_next_kink(tree->linkage, tree_from(tree));
     plane_project(system, since_s, y);
+    note_branch(dynamics);
     tree_rebase(tree, since_s, y);
     system->is_astray = dynamics->may_branch && has_gone_astray(dynamics, y);
     // the rates jump at a kink of a drive's speed
@@ -199,6 +213,7 @@ static void plane_carry(System *system, Carry *carry)
     for (size_t i = 0; i < dynamics->tree.drive_count; i++) {
         CARRY(carry, dynamics->tree.drives[i].base);
     }
+    CARRY(carry, dynamics->is_near_branch);
     CARRY(carry, dynamics->start_energy);
     CARRY(carry, dynamics->greatest_energy);
 }
