@@ -107,7 +107,9 @@ static void front_add_child(Articulated *articulated, const PlanFront *front,
             const size_t column = child_rows[(k - left) / FRONT_LOOP_ROWS] + k % FRONT_LOOP_ROWS;
             to->square[row * front_rows_of(front) + column] += from->square[i * count + k];
         }
-        to->diagonal[row] += from->diagonal[i];
+        if (articulated->notes_distance) {
+            to->diagonal[row] += from->diagonal[i];
+        }
     }
 }
 
@@ -203,10 +205,12 @@ static bool articulated_gather(Articulated *articulated, int node, const TreeSta
         const size_t count = front_rows_of(front);
         for (size_t k = 0; k < count; k++) {
             at->rows[k] = (LoopRow){{0.0, 0.0}, 0.0};
-            at->diagonal[k] = 0.0;
         }
         for (size_t k = 0; k < count * count; k++) {
             at->square[k] = 0.0;
+        }
+        for (size_t k = 0; k < count && articulated->notes_distance; k++) {
+            at->diagonal[k] = 0.0;
         }
         for (size_t k = 0; k < front->child_count; k++) {
             front_add_child(articulated, front, &plan->children[front->first_child + k], at);
@@ -247,7 +251,7 @@ static void articulated_take_out(Articulated *articulated, int node)
         row->spin = link->kind == LINK_SLIDE ? row->spin - own * link->spin_share : 0.0;
     }
     take_square(count, 0, at->own, link->inverse, at->square);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count && articulated->notes_distance; i++) {
         at->diagonal[i] += at->own[i] * at->own[i] * link->inverse;
     }
     if (link->kind == LINK_FLOATING) {
@@ -259,7 +263,7 @@ static void articulated_take_out(Articulated *articulated, int node)
         }
         take_square(count, 0, at->along, 1.0 / link->xx, at->square);
         take_square(count, 0, at->across, 1.0 / link->yy, at->square);
-        for (size_t i = 0; i < count; i++) {
+        for (size_t i = 0; i < count && articulated->notes_distance; i++) {
             at->diagonal[i] += at->along[i] * at->along[i] / link->xx;
             at->diagonal[i] += at->across[i] * at->across[i] / link->yy;
         }
