@@ -127,8 +127,8 @@ static bool has_budget(const CaseRun *run, size_t number, double *left_s)
     return *left_s > STARTS_LEAST * fmin(share, 1.0) * run->spent_s[number];
 }
 
-// Where the motion cannot be predicted, its statistics may still agree: of the first screen those of
-// the settled motion are a part, and these are not.
+// Where the motion cannot be predicted, its statistics may still agree: of the first screen those
+// of the settled motion are a part, and these are not.
 static void run_ensembles(CaseRun *run, Progress *progress)
 {
     const RunOptions *options = &run->scenario.run;

@@ -30,7 +30,8 @@ typedef struct CaseRun {
 
 // Runs the scenario that stands in it, with the reference certified unless it is to run alone, on
 // the processors that there are, and, where somebody reads of it, from many starts where the motion
-// cannot be predicted; every run is watched. A backend that fails is a run that is not complete, and counted.
+// cannot be predicted; every run is watched. A backend that fails is a run that is not complete,
+// and counted.
 void case_run_execute(CaseRun *run, Progress *progress);
 
 void case_run_finish(CaseRun *run);
