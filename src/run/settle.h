@@ -43,8 +43,8 @@ void settle_take(Scenario *scenario, const Scenario *settled);
 // What lies beside the settled motion of a scenario: nothing of one that has none.
 
 // Finds how the largest forces move when its damping is halved and doubled, to the four digits that
-// are shown of them. A motion that does not repeat within 32 revolutions, or within those after
-// which run.settle-budget ended the search, has the median of half of them.
+// are shown of them. A motion that does not repeat within 32 revolutions has the median of half of
+// them.
 void settle_damping(Scenario *scenario, RunWatch watch);
 
 // Finds by what factor a small change of the state grows in a revolution.

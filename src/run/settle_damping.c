@@ -3,8 +3,7 @@
 // Both turn from the settled motion on. Their forces are shown to four digits: the reference needs
 // no tolerance and the motion no repetition beyond these. A motion that does not repeat is said by
 // the median of its later revolutions, which half of the most has to a few hundredths of its
-// spread. Where the budget ended the search for the settled motion itself, these are turned for no
-// longer than that was.
+// spread.
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "run/settle_parts.h"
@@ -26,29 +25,12 @@ static const double DAMPED_REFERENCE = 1e-9;
 // Revolutions: a change that shrinks to 0.7 of itself in one comes to 1e-5.
 static const size_t DAMPED_MOST = 32;
 
-// Revolutions, of a settled motion that the budget ended after fewer: half of them still count.
-static const size_t DAMPED_LEAST = 4;
-
 struct DampingRuns {
     Settling settlings[SCALE_COUNT];
     bool are_settled[SCALE_COUNT];
     double tolerance; // 1
-    size_t most;      // revolutions of each
     size_t next;
 };
-
-// Revolutions that each is turned for at most.
-static size_t damped_most(const Scenario *scenario)
-{
-    const SettledStart *settled = &scenario->settled;
-    size_t most = DAMPED_MOST;
-    if (settled->is_spent && settled->motions[0].period == 0) {
-        const size_t watched = settled->motions[0].watched;
-        const size_t longer = watched > DAMPED_LEAST ? watched : DAMPED_LEAST;
-        most = longer < most ? longer : most;
-    }
-    return scenario->run.settle_most < most ? scenario->run.settle_most : most;
-}
 
 DampingRuns *damping_runs_begin(const Scenario *scenario, TurnWatch *watch)
 {
@@ -69,8 +51,7 @@ DampingRuns *damping_runs_begin(const Scenario *scenario, TurnWatch *watch)
         settling->is_quick = true;
         settling->watch = watch;
     }
-    runs->most = damped_most(scenario);
-    watch->most += SCALE_COUNT * runs->most;
+    watch->most += SCALE_COUNT * DAMPED_MOST;
     return runs;
 }
 
@@ -89,9 +70,11 @@ static void damping_runs_work(size_t index, bool is_callers, void *context)
 {
     DampingRuns *runs = context;
     Settling *settling = &runs->settlings[index];
+    const size_t allowed = settling->scenario.run.settle_most;
+    const size_t most = allowed < DAMPED_MOST ? allowed : DAMPED_MOST;
     Err unused = {ERR_NONE, ""};
     settling->is_callers = is_callers;
-    runs->are_settled[index] = settling_run(settling, runs->tolerance, runs->most, &unused);
+    runs->are_settled[index] = settling_run(settling, runs->tolerance, most, &unused);
 }
 
 SideBySideTasks damping_runs_tasks(DampingRuns *runs)

@@ -172,30 +172,6 @@ static void what_does_not_repeat_has_the_median_of_many_revolutions(void **state
     scenario_free(&scenario);
 }
 
-// For how many revolutions half the damping of a case is watched that does not repeat with it,
-// where the search for its own motion is said to have ended after some by the budget, or not.
-static size_t watched_with_half(bool is_spent, size_t watched)
-{
-    Scenario scenario = settled_case(STACKUP, NULL, 0);
-    scenario.settled.is_spent = is_spent;
-    scenario.settled.motions[0].period = 0;
-    scenario.settled.motions[0].watched = watched;
-    settle_damping(&scenario, NOBODY);
-    const size_t found = scenario.settled.halved.watched;
-    assert_int_equal(scenario.settled.halved.period, 0);
-    scenario_free(&scenario);
-    return found;
-}
-
-static void other_damping_is_turned_no_longer_than_the_budget_allowed(void **state)
-{
-    (void)state;
-    assert_int_equal(watched_with_half(true, 6), 6);
-    assert_int_equal(watched_with_half(true, 2), 4);
-    // the control: where the budget was not spent
-    assert_int_equal(watched_with_half(false, 6), 32);
-}
-
 static void assert_same_motion(const Scenario *scenario, const SettledMotion *a,
                                const SettledMotion *b)
 {
@@ -248,7 +224,6 @@ int main(void)
         cmocka_unit_test(other_damping_of_random_cases_has_them_too),
         cmocka_unit_test(a_loose_tolerance_would_show_other_digits),
         cmocka_unit_test(what_does_not_repeat_has_the_median_of_many_revolutions),
-        cmocka_unit_test(other_damping_is_turned_no_longer_than_the_budget_allowed),
         cmocka_unit_test(processors_change_no_number),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
