@@ -435,8 +435,10 @@ static void search_run(Search *search, const Scenario *scenario)
     }
 }
 
-// What has repeated for a while when the search ends is taken to.
-static void decide(Search *search)
+// What has repeated for a while when the search ends is taken to. Where some starts repeat and the
+// budget has ended the search, one that was not watched for long enough may be on its way to them,
+// and is no motion of its own.
+static void decide(Search *search, const RunOptions *run)
 {
     search->live_count = 0;
     for (size_t i = 0; i < search->count; i++) {
@@ -447,6 +449,15 @@ static void decide(Search *search)
         }
     }
     take_new(search);
+    const size_t least = watch_least(search, run);
+    for (size_t i = 0; i < search->count; i++) {
+        Start *start = &search->starts[i];
+        const bool is_short = start->settling.count < least;
+        if (is_going(start) && is_short && search->known_count > 0 &&
+            atomic_load(&search->is_spent)) {
+            start->state = START_UNDECIDED;
+        }
+    }
 }
 
 // One more period of each known motion, as exact as the result, in which all of its numbers are
@@ -600,7 +611,7 @@ bool settle_search(Scenario *scenario, const Scenario *first, size_t count, RunW
     };
     search.starts[0].settling.watch = &search.watch;
     search_run(&search, scenario);
-    decide(&search);
+    decide(&search, &scenario->run);
     side_by_side_run(search.known_count, side_by_side_processors(), finish_known, &search);
     size_t tried;
     const bool is_found = decided_count(&search, &tried) > 0;

@@ -134,6 +134,16 @@ static void what_repeats_to_its_peaks_is_settled(void **state)
     assert_close(force_of(&press, 0)->headline, 29.07e3, 1e-3);
 }
 
+// Starts that a budget ends on their way to a motion are no other motion, but undecided.
+static void what_the_budget_ends_is_no_motion(void **state)
+{
+    (void)state;
+    const Scenario press = settled("tests/settled/press.yaml", "run.settle-budget=1.2 s");
+    assert_true(press.settled.is_spent);
+    assert_true(press.settled.starts < press.settled.tried);
+    assert_true(press.settled.motion_count == 1 || press.settled.motions[0].period == 0);
+}
+
 // No two starts are alike, also where there is one freedom.
 static void starts_are_different(void **state)
 {
@@ -141,7 +151,7 @@ static void starts_are_different(void **state)
     enum { STARTS = 15 };
     const Scenario cam = load("tests/settled/cam.yaml", NULL, 0);
     const int follower = linkage_find_body(&cam.linkage, "follower");
-    SettleReach reach[3] = {{0.0, 0.0}, {0.0, 0.0}, {1e-2, 2.0}};
+    SettleReach reach[3] = {[2] = {.gap = 1e-2, .approach = 2.0}};
     Motion starts[STARTS];
     for (size_t i = 0; i < STARTS; i++) {
         Scenario drawn = scenario_copy(&cam);
@@ -180,6 +190,7 @@ int main(void)
         cmocka_unit_test(a_slow_decay_repeats),
         cmocka_unit_test(what_does_not_repeat_has_the_quantile_of_long_runs),
         cmocka_unit_test(what_repeats_to_its_peaks_is_settled),
+        cmocka_unit_test(what_the_budget_ends_is_no_motion),
         cmocka_unit_test(starts_are_different),
         cmocka_unit_test(nothing_settles_without_a_loss),
     };
