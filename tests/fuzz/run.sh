@@ -32,16 +32,22 @@ copy() { # the files, each under a name of its own
         cp "$file" "$work/seeds/$(echo "${file#"$root"/}" | tr / _)"
     done
 }
+bad() { # the documents of a table of bad ones
+    ninja -C "$build" --quiet "tests/unit/test_bad_$1" >/dev/null
+    (cd "$root" && "$build/tests/unit/test_bad_$1" --files "$work/seeds")
+}
 case $target in
 case)
-    copy "$root"/cases/{paper,literature,hard,mechanisms,space}/*.yaml "$root"/tests/bad/*.yaml
+    copy "$root"/cases/{paper,literature,hard,mechanisms,space}/*.yaml
+    bad cases
     {
         cat "$root/cases/paper/impact-k66.yaml"
         printf '#--set run.step=2 us\n#--set joints.crank-coupler.hole=10.1 mm\n'
     } >"$work/seeds/overrides"
     ;;
 study)
-    copy "$root"/cases/studies/*.yaml "$root"/tests/bad_study/*.yaml
+    copy "$root"/cases/studies/*.yaml
+    bad studies
     # the broken ones name cases of other folders
     sed -i -E 's|^case: .*/(paper)/|case: ../\1/|' "$work"/seeds/*
     ;;

@@ -4,7 +4,7 @@
 # statuses byte by byte. Times, and what follows from them, are left out; so are words for people.
 #
 # tests/measure/same_output.sh OLD NEW [CASES]
-#   OLD, NEW  two programs, such as build/src/cli/jointplay
+#   OLD, NEW  two programs, such as build/src/cli/jointplay; NEW's build has its tests
 #   CASES     the folder of the cases (default: this project's), with tests/ and results/ beside it
 # Prints what differs and ends with status 1 where anything does. Some minutes.
 set -u
@@ -15,6 +15,9 @@ cases=$(realpath "${3:-$root/cases}")
 project=$(dirname "$cases")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+bad=$work/bad
+mkdir "$bad"
+(cd "$project" && "$(dirname "$new")/../../tests/unit/test_bad_cases" --files "$bad") || exit 2
 
 # Runs a command and keeps its standard output and exit status under a name.
 keep() {
@@ -69,7 +72,7 @@ run_all() {
     keep study.json "$program" study --quiet --json --jobs=1 small.yaml
     keep study.csv "$program" study export small.sqlite
     keep study.jsonl "$program" study export small.sqlite --jsonl=-
-    for wrong in "$project"/tests/bad/*.yaml; do
+    for wrong in "$bad"/*.yaml; do
         keep /dev/null "$program" run --quiet "$wrong"
         sed -i "\$s|.*|$(basename "$wrong") $(tail -n 1 status | sed 's/.* //')|" status
     done

@@ -75,9 +75,9 @@ static void wrong_overrides_are_usage_errors(void **state)
            "    --set drive.speed=0.001 rpm\n"
            "                      ^~~~~~~~~\n"
            "allowed: at most 1e+09 steps: here a step of 6e-05 s or more, or fewer revolutions");
-    refuse("tests/bad/law-needs-width.yaml", "contact.law=esdu-78035", ERR_USAGE,
+    refuse("cases/mechanisms/start-and-stop.yaml", "contact.law=esdu-78035", ERR_USAGE,
            "--set contact.law=esdu-78035: the law esdu-78035 needs the width of joint "
-           "crank-coupler\n"
+           "coupler-follower\n"
            "    --set contact.law=esdu-78035\n"
            "                      ^~~~~~~~~~\n"
            "allowed: width: 13 mm, or a law without it");
