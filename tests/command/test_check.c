@@ -247,7 +247,7 @@ static void a_baseline_that_was_stopped_goes_on_where_it_stood(void **state)
     static char first[PROGRAM_OUTPUT_SIZE];
     static char second[PROGRAM_OUTPUT_SIZE];
     char path[PROGRAM_PATH_SIZE];
-    char slow[sizeof CASE + 8];
+    char slow[sizeof CASE + 16];
     const char *step = strstr(CASE, "step: 5 us");
     snprintf(slow, sizeof slow, "%.*sstep: 0.5 us%s", (int)(step - CASE), CASE, step + 10);
     write_file(program, "slow.yaml", slow);

@@ -334,7 +334,8 @@ static void a_law_that_no_joint_can_have_is_said(void **state)
 static void what_turns_has_its_impact_in_rad_s(void **state)
 {
     Program *program = *state;
-    program_run(program, "map $cases/mechanisms/servo-backlash.yaml -q --maps textbook");
+    program_run(program, "map $cases/mechanisms/servo-backlash.yaml -q --maps textbook "
+                         "--steps '100 us'");
     assert_int_equal(program->status, 0);
     assert_says(program->output, "  rad/s        us\n");
     assert_null(strstr(program->output, "  m/s  "));

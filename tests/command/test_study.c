@@ -241,7 +241,8 @@ static void a_study_that_follows_a_key_has_the_same_rows_in_parts(void **state)
     assert_non_null(stream);
     fprintf(stream,
             "case: %s/paper/impact-k66.yaml\n"
-            "set: {run.samples: 36, run.step: 20 us, contact.resting-speed: none}\n"
+            "set: {run.samples: 36, run.step: 20 us, contact.resting-speed: none, "
+            "run.settle-starts: 2}\n"
             "vary:\n  drive.speed: [900 rpm, 950 rpm, 1000 rpm]\n"
             "follow: {key: drive.speed, direction: both}\ntruth: false\n",
             getenv("JOINTPLAY_CASES"));

@@ -16,12 +16,12 @@ static const RunWatch NOBODY = {.progress = NULL};
 enum { LINKS = 4 };
 
 // Settles a case along values of a key, each from the one before; the largest force at the last, N.
-static double force_along(const char *law, const char *const *values, bool *are_followed)
+static double force_along(const char *law, const char *const *values, int count, bool *are_followed)
 {
     Scenario before = {.point_count = 0};
     double force = 0.0;
     *are_followed = true;
-    for (int i = 0; i < LINKS; i++) {
+    for (int i = 0; i < count; i++) {
         const char *overrides[] = {law, values[i], "run.start=settled"};
         Scenario scenario = load(CASE, overrides, 3);
         if (i == 0) {
@@ -42,9 +42,8 @@ static double force_along(const char *law, const char *const *values, bool *are_
 
 static double force_alone(const char *law, const char *value)
 {
-    const char *const same[LINKS] = {value, value, value, value};
     bool are_followed;
-    return force_along(law, same, &are_followed);
+    return force_along(law, &value, 1, &are_followed);
 }
 
 static const char *const UP[LINKS] = {"drive.speed=900 rpm", "drive.speed=940 rpm",
@@ -57,8 +56,8 @@ static void force_both_ways(const char *law, double *up, double *down)
 {
     bool is_up;
     bool is_down;
-    *up = force_along(law, UP, &is_up);
-    *down = force_along(law, DOWN, &is_down);
+    *up = force_along(law, UP, LINKS, &is_up);
+    *down = force_along(law, DOWN, LINKS, &is_down);
     assert_true(is_up && is_down);
 }
 
@@ -97,10 +96,10 @@ static void a_start_is_fitted_to_other_sizes(void **state)
         "four-bar.coupler.mass=0.20 kg", "four-bar.coupler.mass=0.23 kg",
         "four-bar.coupler.mass=0.26 kg", "four-bar.coupler.mass=0.29 kg"};
     bool are_followed;
-    const double by_length = force_along(LAW, LENGTHS, &are_followed);
+    const double by_length = force_along(LAW, LENGTHS, LINKS, &are_followed);
     assert_true(are_followed);
     assert_close(by_length, force_alone(LAW, LENGTHS[LINKS - 1]), 1e-6);
-    const double by_mass = force_along(LAW, MASSES, &are_followed);
+    const double by_mass = force_along(LAW, MASSES, LINKS, &are_followed);
     assert_true(are_followed);
     assert_close(by_mass, force_alone(LAW, MASSES[LINKS - 1]), 1e-6);
     assert_true(fabs(force_alone(LAW, MASSES[LINKS - 2]) / by_mass - 1.0) > 1e-2);
@@ -115,7 +114,7 @@ static void a_start_is_fitted_to_other_play(void **state)
         "joints.crank-coupler.hole=10.05 mm", "joints.crank-coupler.hole=10.02 mm",
         "joints.crank-coupler.hole=10.035 mm", "joints.crank-coupler.hole=10.029 mm"};
     bool are_followed;
-    const double force = force_along(LAW, plays, &are_followed);
+    const double force = force_along(LAW, plays, LINKS, &are_followed);
     assert_true(are_followed);
     assert_close(force, force_alone(LAW, plays[LINKS - 1]), 1e-6);
     assert_true(fabs(force_alone(LAW, plays[LINKS - 2]) / force - 1.0) > 1e-4);
