@@ -285,11 +285,12 @@ static void analytic_extremes(const void *state, double from_s, BodyExtremes *bo
         CurveExtreme rate;
         CurveExtreme change;
         closed_form_extremes(analytic->scenario, i, first, last, &rate, &change);
+        // all of them, in the order of BODY_EXTREMES_LIST: none is 0 because it was left out
         bodies[i] = (BodyExtremes){
-            .omega_max = at_angle(linkage, rate.high, rate.high_angle),
-            .omega_min = at_angle(linkage, rate.low, rate.low_angle),
-            .alpha_max = at_angle(linkage, change.high, change.high_angle),
-            .alpha_min = at_angle(linkage, change.low, change.low_angle),
+            at_angle(linkage, rate.high, rate.high_angle),
+            at_angle(linkage, rate.low, rate.low_angle),
+            at_angle(linkage, change.high, change.high_angle),
+            at_angle(linkage, change.low, change.low_angle),
         };
     }
 }

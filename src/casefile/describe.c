@@ -372,37 +372,36 @@ static void describe_units(Text *text)
     }
 }
 
-// The paths of a group of numbers that can be limited.
-static const char *expect_path(ExpectGroup group)
+// The path of a number that can be limited.
+static void append_path(NumberId id, Text *text)
 {
-    static const char *const PATHS[EXPECT_GROUP_COUNT] = {
-        [EXPECT_BODIES] = "bodies.<body>.",
-        [EXPECT_JOINTS] = "joints.<joint>.",
-        [EXPECT_ERROR] = "error.",
-        [EXPECT_ENERGY] = "energy.",
-        [EXPECT_SECTION] = "section.",
-        [EXPECT_SETTLED] = "settled.",
-        [EXPECT_SETTLED_JOINTS] = "settled.joints.<joint>.",
-        [EXPECT_COST] = "cost.",
-    };
-    return PATHS[group];
+    static const char *const MEMBERS[] = {
+        [NUMBER_OF_WHOLE] = "", [NUMBER_OF_BODIES] = "<body>.", [NUMBER_OF_JOINTS] = "<joint>."};
+    const NumberOwnerRow *owner = &NUMBER_OWNERS[NUMBERS[id].owner];
+    text_append(text, "%s.%s%s%s", owner->path, MEMBERS[owner->members], owner->before,
+                NUMBERS[id].name);
 }
 
-static void describe_expectation(const ExpectRow *row, bool is_page, Text *text)
+static void describe_expectation(NumberId id, bool is_page, Text *text)
 {
+    const Number *number = &NUMBERS[id];
+    const bool is_sped = number->owner == NUMBER_OWNER_BODY_SPIKE;
+    const ExpectRow row = expect_row(id, is_sped ? NUMBER_SPED : NUMBER_PUSHED);
+    text_append(text, is_page ? "- `" : "    ");
+    append_path(id, text);
     if (is_page) {
-        text_append(text, "- `%s%s`: %s%s\n", expect_path(row->group), row->name, row->doc,
-                    row->needs_play ? "; of a joint with play" : "");
+        text_append(text, "`: %s%s\n", number->meaning,
+                    row.needs_play ? "; of a joint with play" : "");
         return;
     }
     Text units;
     text_init(&units);
-    units_list(row->dimension, &units);
-    const char *unit = units.length > 0 ? units.data : row->is_count ? "a whole number" : "plain";
-    text_append(text, "    %s%s\n", expect_path(row->group), row->name);
+    units_list(row.dimension, &units);
+    const char *unit = units.length > 0 ? units.data : row.is_count ? "a whole number" : "plain";
+    text_append(text, "\n");
     Text words;
     text_init(&words);
-    text_append(&words, "%s%s; %s", row->doc, row->needs_play ? ", of a joint with play" : "",
+    text_append(&words, "%s%s; %s", number->meaning, row.needs_play ? ", of a joint with play" : "",
                 unit);
     append_wrapped(words.data, DESCRIBE_INDENT, text);
     text_finish(&words);
@@ -461,8 +460,10 @@ static void describe_expect(bool is_page, Text *text)
         append_wrapped(EXPECT_FORMS, 4, text);
         text_append(text, "\n%s\n", EXPECT_EXAMPLE);
     }
-    for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {
-        describe_expectation(&EXPECT_ROWS[i], is_page, text);
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        if ((NUMBERS[id].places & NUMBER_EXPECT) != 0) {
+            describe_expectation(id, is_page, text);
+        }
     }
     describe_outcomes(is_page, text);
 }

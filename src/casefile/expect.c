@@ -1,10 +1,11 @@
 // Reads the numbers that a case sets limits for.
 //
 //     path = [backend .] bodies . NAME . number | [backend .] joints . NAME . number
-//          | [backend .] error . number | [backend .] energy . number | [backend .] section .
-//          number | [backend .] cost . number | settled . number
-//          | settled . joints . NAME . number
+//          | [backend .] part . number | settled . number
+//          | settled . bodies . NAME . number | settled . joints . NAME . number
 //
+// The parts are those of NUMBER_OWNER_LIST, the numbers those of NUMBER_LIST that have
+// NUMBER_EXPECT (model/number_list.h).
 // How its runs end is read in expect_outcome.c.
 #include "casefile/expect.h"
 
@@ -16,112 +17,62 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SEGMENT_MAX = 4, CHOICE_MAX = EXPECTED_NUMBER_COUNT };
+enum { SEGMENT_MAX = 4, CHOICE_MAX = NUMBER_COUNT };
 
-const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT] = {
-    [EXPECT_BODIES] = "bodies",
-    [EXPECT_JOINTS] = "joints",
-    [EXPECT_ERROR] = "error",
-    [EXPECT_ENERGY] = "energy",
-    [EXPECT_SECTION] = "section",
-    [EXPECT_SETTLED] = "settled",
-    [EXPECT_SETTLED_JOINTS] = "settled.joints",
-    [EXPECT_COST] = "cost",
-};
+static Dimension dimension_of(NumberKind kind, NumberTurn turn)
+{
+    const bool is_turned = turn == NUMBER_TURNED;
+    switch (kind) {
+    case NUMBER_OF_COUNT:
+    case NUMBER_OF_EFFORT:
+    case NUMBER_OF_SHARE:
+    case NUMBER_OF_RATIO:
+    case NUMBER_OF_MICROSECONDS:
+        return DIMENSION_NONE;
+    case NUMBER_OF_FORCE:
+        return is_turned ? DIMENSION_TORQUE : DIMENSION_FORCE;
+    case NUMBER_OF_IMPULSE:
+        return is_turned ? DIMENSION_ANGULAR_IMPULSE : DIMENSION_IMPULSE;
+    case NUMBER_OF_DEPTH:
+        return is_turned ? DIMENSION_ANGLE : DIMENSION_LENGTH;
+    case NUMBER_OF_APPROACH:
+        return is_turned ? DIMENSION_ANGULAR_SPEED : DIMENSION_SPEED;
+    case NUMBER_OF_SIGNAL:
+        return turn == NUMBER_SPED ? DIMENSION_ANGULAR_ACCELERATION
+                                   : dimension_of(NUMBER_OF_FORCE, turn);
+    case NUMBER_OF_SIGNAL_IMPULSE:
+        return turn == NUMBER_SPED ? DIMENSION_ANGULAR_SPEED
+                                   : dimension_of(NUMBER_OF_IMPULSE, turn);
+    case NUMBER_OF_LENGTH:
+        return DIMENSION_LENGTH;
+    case NUMBER_OF_ANGLE:
+        return DIMENSION_ANGLE;
+    case NUMBER_OF_SPEED:
+        return DIMENSION_SPEED;
+    case NUMBER_OF_ANGULAR_SPEED:
+        return DIMENSION_ANGULAR_SPEED;
+    case NUMBER_OF_ANGULAR_ACCELERATION:
+        return DIMENSION_ANGULAR_ACCELERATION;
+    case NUMBER_OF_ENERGY:
+        return DIMENSION_ENERGY;
+    case NUMBER_OF_TIME:
+    case NUMBER_OF_SPAN:
+        return DIMENSION_TIME;
+    case NUMBER_KIND_COUNT:
+        break;
+    }
+    return DIMENSION_NONE;
+}
 
-// clang-format off
-#define NUMBER(id, of, word, unit, words) \
-    [id] = {.group = of, .name = word, .number = id, .dimension = unit, .doc = words}
-#define WHOLE(id, of, word, words) \
-    [id] = {.group = of, .name = word, .number = id, .is_count = true, .doc = words}
-#define OF_SETTLED_JOINT(id, word, words) \
-    [id] = {.group = EXPECT_SETTLED_JOINTS, .name = word, .number = id, .dimension = DIMENSION_FORCE, \
-            .needs_play = true, .doc = words}
-// by the kind of a number of a joint
-#define DIMENSION_OF_COUNT   DIMENSION_NONE
-#define DIMENSION_OF_SHARE   DIMENSION_NONE
-#define DIMENSION_OF_FORCE   DIMENSION_FORCE
-#define DIMENSION_OF_IMPULSE DIMENSION_IMPULSE
-#define DIMENSION_OF_DEPTH   DIMENSION_LENGTH
-#define OF_JOINT(id, word, of, words, play) \
-    [EXPECTED_##id] = {.group = EXPECT_JOINTS, .name = word, .number = EXPECTED_##id, \
-                       .dimension = DIMENSION_OF_##of, .is_count = JOINT_NUMBER_OF_##of == JOINT_NUMBER_OF_COUNT, \
-                       .needs_play = play, .doc = words},
-#define OF_ANY_JOINT(id, word, of, title, turned, format, detail, timed, value, words) \
-    OF_JOINT(id, word, of, words, false)
-#define OF_JOINT_WITH_PLAY(id, word, of, title, turned, format, detail, timed, value, words) \
-    OF_JOINT(id, word, of, words, true)
-
-const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT] = {
-    NUMBER(EXPECTED_OMEGA_MAX, EXPECT_BODIES, "omega_max", DIMENSION_ANGULAR_SPEED,
-           "largest angular velocity"),
-    NUMBER(EXPECTED_OMEGA_MIN, EXPECT_BODIES, "omega_min", DIMENSION_ANGULAR_SPEED,
-           "smallest angular velocity"),
-    NUMBER(EXPECTED_ALPHA_MAX, EXPECT_BODIES, "alpha_max", DIMENSION_ANGULAR_ACCELERATION,
-           "largest angular acceleration"),
-    NUMBER(EXPECTED_ALPHA_MIN, EXPECT_BODIES, "alpha_min", DIMENSION_ANGULAR_ACCELERATION,
-           "smallest angular acceleration"),
-    WHOLE(EXPECTED_ALPHA_SPIKES, EXPECT_BODIES, "alpha_spikes",
-          "number of spikes of the angular acceleration"),
-    NUMBER(EXPECTED_OMEGA_ORDER_1, EXPECT_BODIES, "omega_order_1", DIMENSION_ANGULAR_SPEED,
-           "amplitude of the angular velocity at once the crank's speed"),
-    NUMBER(EXPECTED_OMEGA_ORDER_2, EXPECT_BODIES, "omega_order_2", DIMENSION_ANGULAR_SPEED,
-           "the same at twice its speed"),
-    NUMBER(EXPECTED_OMEGA_BETWEEN_ORDERS, EXPECT_BODIES, "omega_between_orders",
-           DIMENSION_ANGULAR_SPEED,
-           "its largest amplitude between whole multiples of the crank's speed"),
-    NUMBER(EXPECTED_OMEGA_SECTION, EXPECT_BODIES, "omega_section", DIMENSION_ANGULAR_SPEED,
-           "angular velocity at the end of the last whole revolution"),
-    JOINT_NUMBERS_OF_ANY_LIST(OF_ANY_JOINT)
-    WHOLE(EXPECTED_FORCE_SPIKES, EXPECT_JOINTS, "force_spikes", "number of spikes of the force"),
-    JOINT_NUMBERS_OF_PLAY_LIST(OF_JOINT_WITH_PLAY)
-    NUMBER(EXPECTED_ERROR_MAX, EXPECT_ERROR, "max", DIMENSION_NONE,
-           "largest error of any velocity of bodies and pins, over its own largest"),
-    NUMBER(EXPECTED_ERROR_OMEGA_MAX, EXPECT_ERROR, "omega_max", DIMENSION_NONE,
-           "largest error of omega, over each body's largest omega"),
-    NUMBER(EXPECTED_ERROR_OMEGA_RMS, EXPECT_ERROR, "omega_rms", DIMENSION_NONE,
-           "root mean square of the errors of omega"),
-    NUMBER(EXPECTED_ERROR_ALPHA_MAX, EXPECT_ERROR, "alpha_max", DIMENSION_NONE,
-           "largest error of alpha, relative to each body's largest alpha"),
-    NUMBER(EXPECTED_ERROR_FORCE_MAX, EXPECT_ERROR, "force_max", DIMENSION_NONE,
-           "largest error of a contact force at samples, over the joint's largest"),
-    NUMBER(EXPECTED_ERROR_PEAK_FORCE_MAX, EXPECT_ERROR, "peak_force_max", DIMENSION_NONE,
-           "largest error of the peak force of a contact, over the joint's largest"),
-    NUMBER(EXPECTED_ERROR_PEAK_ALPHA_MAX, EXPECT_ERROR, "peak_alpha_max", DIMENSION_NONE,
-           "largest error of a body's extremes of alpha, over the larger of them"),
-    NUMBER(EXPECTED_DRIVE_WORK, EXPECT_ENERGY, "drive_work", DIMENSION_ENERGY,
-           "work of the drive"),
-    NUMBER(EXPECTED_DISSIPATED, EXPECT_ENERGY, "dissipated", DIMENSION_ENERGY,
-           "lost in the damping of contacts and dampers"),
-    NUMBER(EXPECTED_CHANGE, EXPECT_ENERGY, "change", DIMENSION_ENERGY,
-           "change of kinetic, potential and elastic energy"),
-    NUMBER(EXPECTED_RESIDUAL, EXPECT_ENERGY, "residual", DIMENSION_ENERGY,
-           "what the balance leaves unexplained: the solver's error"),
-    WHOLE(EXPECTED_SECTION_PERIOD, EXPECT_SECTION, "period",
-          "revolutions after which the run repeats; 0: it has not"),
-    NUMBER(EXPECTED_SECTION_CHANGE, EXPECT_SECTION, "change", DIMENSION_NONE,
-           "by how much the sections of the last period differ from those before, of the fastest "
-           "point"),
-    WHOLE(EXPECTED_SETTLED_PERIOD, EXPECT_SETTLED, "period",
-          "revolutions after which the settled motion repeats; 0: it does not"),
-    WHOLE(EXPECTED_SETTLED_MOTIONS, EXPECT_SETTLED, "motions",
-          "different motions that starts settle in"),
-    NUMBER(EXPECTED_SETTLED_SHARE, EXPECT_SETTLED, "share", DIMENSION_NONE,
-           "share of the starts that come to the settled motion, of those whose motion is known"),
-    NUMBER(EXPECTED_SETTLED_GROWTH, EXPECT_SETTLED, "growth", DIMENSION_NONE,
-           "by what a small change of the settled motion is multiplied in a revolution, or its "
-           "bound where it is gone"),
-    OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_MAX, "force_max",
-                     "settled motion's largest force; 95 % quantile where it does not repeat"),
-    OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_MEDIAN, "force_median",
-                     "median of the largest force in a revolution of the settled motion"),
-    OF_SETTLED_JOINT(EXPECTED_SETTLED_FORCE_LARGEST, "force_largest",
-                     "largest force in all revolutions that were counted"),
-    WHOLE(EXPECTED_STEPS, EXPECT_COST, "steps", "steps of the solver"),
-    WHOLE(EXPECTED_EVALUATIONS, EXPECT_COST, "evaluations",
-          "evaluations of the equations of motion"),
-};
-// clang-format on
+ExpectRow expect_row(NumberId id, NumberTurn turn)
+{
+    const Number *number = &NUMBERS[id];
+    ExpectRow row = {.dimension = dimension_of(number->kind, turn),
+                     .is_count = number_is_whole(number),
+                     .needs_play = number_needs_play(number)};
+    snprintf(row.name, sizeof row.name, "%s%s", NUMBER_OWNERS[number->owner].before, number->name);
+    return row;
+}
 
 // A path cut at its dots, and where it stands.
 typedef struct Path {
@@ -145,9 +96,9 @@ static bool refuse_path(const Path *path, Err *err)
 {
     return source_error(
         path->source, keys_span(path->node),
-        "joints.NAME.NUMBER, bodies.NAME.NUMBER, error.NUMBER, energy.NUMBER, "
+        "joints.NAME.NUMBER, bodies.NAME.NUMBER, run.NUMBER, error.NUMBER, energy.NUMBER, "
         "section.NUMBER, cost.NUMBER, outcome, each with a backend before it or none; "
-        "settled.NUMBER, settled.joints.NAME.NUMBER",
+        "settled.NUMBER, settled.bodies.NAME.NUMBER, settled.joints.NAME.NUMBER",
         err, "'%.60s' is not the path of a number", path->node->key->text);
 }
 
@@ -187,13 +138,24 @@ static void take_backend(Path *path, Expectation *expectation)
     path->first = expectation->backend >= 0 ? 1 : 0;
 }
 
+// The first owner whose paths begin with a word; NUMBER_OWNER_COUNT: none.
+static NumberOwner owner_of(const char *word)
+{
+    NumberOwner owner = 0;
+    while (owner < NUMBER_OWNER_COUNT && strcmp(NUMBER_OWNERS[owner].path, word) != 0) {
+        owner++;
+    }
+    return owner;
+}
+
 // The words that a path can begin with.
-static size_t first_words(bool has_backend, const char *choices[EXPECT_GROUP_COUNT + BACKEND_COUNT])
+static size_t first_words(bool has_backend, const char *choices[NUMBER_OWNER_COUNT + BACKEND_COUNT])
 {
     size_t count = 0;
-    for (int i = 0; i < EXPECT_GROUP_COUNT; i++) {
-        if (i != EXPECT_SETTLED_JOINTS) {
-            choices[count++] = EXPECT_GROUPS[i];
+    for (NumberOwner owner = 0; owner < NUMBER_OWNER_COUNT; owner++) {
+        const char *path = NUMBER_OWNERS[owner].path;
+        if (owner_of(path) == owner && strchr(path, '.') == NULL) {
+            choices[count++] = path;
         }
     }
     for (int i = 0; !has_backend && i < BACKEND_COUNT; i++) {
@@ -202,39 +164,42 @@ static size_t first_words(bool has_backend, const char *choices[EXPECT_GROUP_COU
     return count;
 }
 
-static bool find_group(Path *path, ExpectGroup *group, Err *err)
+// Whose numbers a path is of: the words of a NumberOwner.
+static bool find_owner(Path *path, NumberOwner *owner, Err *err)
 {
     if (path->first == path->count) {
         return refuse_path(path, err);
     }
-    const int found = find_word(path->segments[path->first], EXPECT_GROUPS, EXPECT_GROUP_COUNT);
-    if (found < 0) {
-        const char *choices[EXPECT_GROUP_COUNT + BACKEND_COUNT];
+    *owner = owner_of(path->segments[path->first]);
+    if (*owner == NUMBER_OWNER_COUNT) {
+        const char *choices[NUMBER_OWNER_COUNT + BACKEND_COUNT];
         const size_t count = first_words(path->first > 0, choices);
         return keys_refuse(path->source, segment_span(path, path->first), "part of a path",
                            path->segments[path->first], choices, count, err);
     }
-    *group = (ExpectGroup)found;
     path->member = path->first + 1;
-    if (*group == EXPECT_SETTLED && path->first > 0) {
+    if (*owner == NUMBER_OWNER_SETTLED && path->first > 0) {
         return refuse_path(path, err);
     }
-    if (*group == EXPECT_SETTLED && path->count > 2 && strcmp(path->segments[1], "joints") == 0) {
-        *group = EXPECT_SETTLED_JOINTS;
-        path->member++;
+    if (*owner == NUMBER_OWNER_SETTLED && path->count > 2) {
+        char words[2 * LINKAGE_NAME_SIZE];
+        snprintf(words, sizeof words, "%s.%s", path->segments[0], path->segments[1]);
+        const NumberOwner of_members = owner_of(words);
+        *owner = of_members < NUMBER_OWNER_COUNT ? of_members : *owner;
+        path->member += of_members < NUMBER_OWNER_COUNT ? 1 : 0;
     }
-    return path->count == path->member + (expect_has_member(*group) ? 2 : 1) ||
-           refuse_path(path, err);
+    const bool has_member = NUMBER_OWNERS[*owner].members != NUMBER_OF_WHOLE;
+    return path->count == path->member + (has_member ? 2 : 1) || refuse_path(path, err);
 }
 
-static bool find_member(const Path *path, const Entries *entries, ExpectGroup group,
+static bool find_member(const Path *path, const Entries *entries, NumberMembers members,
                         Expectation *expectation, Err *err)
 {
-    if (!expect_has_member(group)) {
+    if (members == NUMBER_OF_WHOLE) {
         expectation->member = 0;
         return true;
     }
-    const SchemaFamily family = group == EXPECT_BODIES ? SCHEMA_BODY : SCHEMA_JOINT;
+    const SchemaFamily family = members == NUMBER_OF_BODIES ? SCHEMA_BODY : SCHEMA_JOINT;
     const EntryNames *names = &entries->names[family];
     const char *name = path->segments[path->member];
     expectation->member = entries_number(entries, family, name);
@@ -251,51 +216,52 @@ static bool find_member(const Path *path, const Entries *entries, ExpectGroup gr
     return false;
 }
 
-static bool has_joint(ExpectGroup group)
+// The unit of a number is that of a torque where the limits of its joint turn it.
+static NumberTurn turn_of(const Linkage *linkage, NumberOwner owner, int member)
 {
-    return expect_has_member(group) && group != EXPECT_BODIES;
+    return owner == NUMBER_OWNER_BODY_SPIKE ? NUMBER_SPED
+           : NUMBER_OWNERS[owner].members == NUMBER_OF_JOINTS &&
+                   linkage_is_torsional(&linkage->joints[member])
+               ? NUMBER_TURNED
+               : NUMBER_PUSHED;
 }
 
-static bool find_number(const Path *path, ExpectGroup group, const Scenario *scenario,
-                        Expectation *expectation, Err *err)
+// Finds the number in the last segment among those of a path.
+static bool find_number(const Path *path, const char *words, const Scenario *scenario,
+                        Expectation *expectation, ExpectRow *found, Err *err)
 {
     const size_t last = path->count - 1;
-    const bool is_ideal =
-        has_joint(group) && !linkage_has_play(&scenario->linkage.joints[expectation->member]);
     const char *choices[CHOICE_MAX];
+    ExpectRow rows[CHOICE_MAX];
     size_t count = 0;
-    for (int i = 0; i < EXPECTED_NUMBER_COUNT; i++) {
-        const ExpectRow *row = &EXPECT_ROWS[i];
-        const bool is_it = row->group == group && strcmp(row->name, path->segments[last]) == 0;
-        if (row->group == group && !(row->needs_play && is_ideal)) {
-            choices[count++] = row->name;
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        const NumberOwner owner = NUMBERS[id].owner;
+        if ((NUMBERS[id].places & NUMBER_EXPECT) == 0 ||
+            strcmp(NUMBER_OWNERS[owner].path, words) != 0) {
+            continue;
         }
-        if (is_it && !(row->needs_play && is_ideal)) {
-            expectation->number = row->number;
-            return true;
-        }
-        if (is_it) {
+        ExpectRow *row = &rows[count];
+        *row = expect_row(id, turn_of(&scenario->linkage, owner, expectation->member));
+        const bool lacks_play =
+            row->needs_play && !linkage_has_play(&scenario->linkage.joints[expectation->member]);
+        const bool is_it = strcmp(row->name, path->segments[last]) == 0;
+        if (is_it && lacks_play) {
             return source_error(
                 path->source, segment_span(path, last),
-                group == EXPECT_JOINTS ? "force_max, force_spikes" : "a joint with play", err,
+                owner == NUMBER_OWNER_JOINT ? "force_max, force_spikes" : "a joint with play", err,
                 "%s has no play, and so no %s", path->segments[last - 1], row->name);
+        }
+        if (is_it) {
+            expectation->number = id;
+            *found = *row;
+            return true;
+        }
+        if (!lacks_play) {
+            choices[count++] = row->name;
         }
     }
     return keys_refuse(path->source, segment_span(path, last), "number", path->segments[last],
                        choices, count, err);
-}
-
-// The row of a number: of a joint whose limits turn it forces are torques and lengths angles.
-static ExpectRow row_of(const Scenario *scenario, ExpectGroup group, const Expectation *expectation)
-{
-    ExpectRow row = EXPECT_ROWS[expectation->number];
-    if (has_joint(group) && linkage_is_torsional(&scenario->linkage.joints[expectation->member])) {
-        row.dimension = row.dimension == DIMENSION_FORCE     ? DIMENSION_TORQUE
-                        : row.dimension == DIMENSION_IMPULSE ? DIMENSION_ANGULAR_IMPULSE
-                        : row.dimension == DIMENSION_LENGTH  ? DIMENSION_ANGLE
-                                                             : row.dimension;
-    }
-    return row;
 }
 
 // A limit; what is wrong with it is shown where it stands, if the text is that of the file.
@@ -327,16 +293,17 @@ static bool read_one(const Entries *entries, const Entry *entry, const Node *nod
 {
     Path path = {.source = entry->source, .node = node};
     Expectation read = {.backend = EXPECTATION_ANY_BACKEND};
-    ExpectGroup group = EXPECT_BODIES;
+    NumberOwner owner = NUMBER_OWNER_COUNT;
+    ExpectRow row = {.is_count = false};
     if (!cut_path(&path, err)) {
         return false;
     }
     take_backend(&path, &read);
-    if (!find_group(&path, &group, err) || !find_member(&path, entries, group, &read, err) ||
-        !find_number(&path, group, scenario, &read, err)) {
+    if (!find_owner(&path, &owner, err) ||
+        !find_member(&path, entries, NUMBER_OWNERS[owner].members, &read, err) ||
+        !find_number(&path, NUMBER_OWNERS[owner].path, scenario, &read, &row, err)) {
         return false;
     }
-    const ExpectRow row = row_of(scenario, group, &read);
     if (!read_limit(&path, &row, &read, err)) {
         return false;
     }

@@ -4,8 +4,8 @@
 #include "casefile/entries.h"
 #include "casefile/expect_limit.h"
 
-extern const char *const EXPECT_GROUPS[EXPECT_GROUP_COUNT];
-extern const ExpectRow EXPECT_ROWS[EXPECTED_NUMBER_COUNT]; // by number
+// What a number is to a limit; of a joint whose limits turn it forces are torques.
+ExpectRow expect_row(NumberId id, NumberTurn turn);
 
 // Reads the mapping of an entry into the scenario, whose bodies and joints have their names. Fails
 // on a path that names no number of this case, and on a limit that cannot be understood.

@@ -4,34 +4,14 @@
 #include "casefile/quantity.h"
 #include "model/expectation.h"
 
-// What kind of thing a number belongs to: the first word of its path.
-typedef enum ExpectGroup {
-    EXPECT_BODIES,
-    EXPECT_JOINTS,
-    EXPECT_ERROR,
-    EXPECT_ENERGY,
-    EXPECT_SECTION,
-    EXPECT_SETTLED,        // of the case, not of a run
-    EXPECT_SETTLED_JOINTS, // likewise; two words
-    EXPECT_COST,
-    EXPECT_GROUP_COUNT,
-} ExpectGroup;
-
-// Whether its paths have the name of a body or joint.
-static inline bool expect_has_member(ExpectGroup group)
-{
-    return group == EXPECT_BODIES || group == EXPECT_JOINTS || group == EXPECT_SETTLED_JOINTS;
-}
+enum { EXPECT_NAME_SIZE = 64 };
 
 // A number that can be limited.
 typedef struct ExpectRow {
-    ExpectGroup group;
-    const char *name; // the last word of its path
-    ExpectedNumber number;
+    char name[EXPECT_NAME_SIZE]; // the last word of its path
     Dimension dimension;
     bool is_count;   // a whole number
     bool needs_play; // of a joint
-    const char *doc;
 } ExpectRow;
 
 // The ways to write a limit, in one line.

@@ -11,6 +11,7 @@
 #include "measure/estimate.h"
 
 #include <math.h>
+#include <stdio.h>
 
 // The numbers that the paper prints.
 //
@@ -103,19 +104,29 @@ const PrintedExtremes PRINTED_EXTREMES[PRINTED_ROW_COUNT] = {
 };
 // clang-format on
 
-const char *const PRINTED_QUANTITY_NAMES[PRINTED_QUANTITY_COUNT] = {
-    "coupler omega max", "coupler omega min", "follower omega max", "follower omega min",
-    "coupler alpha max", "coupler alpha min", "follower alpha max", "follower alpha min",
+const PrintedColumn PRINTED_COLUMNS[PRINTED_QUANTITY_COUNT] = {
+    {"coupler", NUMBER_BODY_OMEGA_MAX, 3},  {"coupler", NUMBER_BODY_OMEGA_MIN, 3},
+    {"follower", NUMBER_BODY_OMEGA_MAX, 3}, {"follower", NUMBER_BODY_OMEGA_MIN, 3},
+    {"coupler", NUMBER_BODY_ALPHA_MAX, 0},  {"coupler", NUMBER_BODY_ALPHA_MIN, 0},
+    {"follower", NUMBER_BODY_ALPHA_MAX, 0}, {"follower", NUMBER_BODY_ALPHA_MIN, 0},
 };
+
+void printed_column_key(size_t column, char key[PRINTED_WORDS_SIZE])
+{
+    const PrintedColumn *of = &PRINTED_COLUMNS[column];
+    snprintf(key, PRINTED_WORDS_SIZE, "%s_%s", of->body, NUMBERS[of->number].keys[NUMBER_PUSHED]);
+}
+
+void printed_column_title(size_t column, char title[PRINTED_WORDS_SIZE])
+{
+    const PrintedColumn *of = &PRINTED_COLUMNS[column];
+    snprintf(title, PRINTED_WORDS_SIZE, "%s %s", of->body,
+             NUMBERS[of->number].titles[NUMBER_PUSHED]);
+}
 
 double printed_speed_rpm(int row)
 {
     return 100.0 * (row + 1);
-}
-
-int printed_decimals(int quantity)
-{
-    return quantity < PRINTED_QUANTITY_COUNT / 2 ? 3 : 0;
 }
 
 bool printed_agrees(double value, double printed, int decimals)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact/penalty.h"
+#include "model/numbers.h"
 
 #include <stdbool.h>
 
@@ -41,18 +42,29 @@ typedef enum PrintedRow {
     PRINTED_ROW_COUNT,
 } PrintedRow;
 
-// One row of Tables VII and VIII together: coupler omega max, min, follower omega max, min, rad/s
-// (Table VII, 3 decimals), then the same of alpha, rad/s^2 (Table VIII, none).
+// A column of Tables VII and VIII together: a number of a body, and the digits behind the point of
+// its cells.
+typedef struct PrintedColumn {
+    const char *body;
+    NumberId number;
+    int decimals;
+} PrintedColumn;
+
+extern const PrintedColumn PRINTED_COLUMNS[PRINTED_QUANTITY_COUNT];
+
+enum { PRINTED_WORDS_SIZE = 64 };
+
+// The key of a column, "coupler_omega_max_rad_s", and its heading, "coupler omega max".
+void printed_column_key(size_t column, char key[PRINTED_WORDS_SIZE]);
+void printed_column_title(size_t column, char title[PRINTED_WORDS_SIZE]);
+
+// A row of them, SI.
 typedef struct PrintedExtremes {
     const char *name;
     double values[PRINTED_QUANTITY_COUNT];
 } PrintedExtremes;
 
 extern const PrintedExtremes PRINTED_EXTREMES[PRINTED_ROW_COUNT];
-extern const char *const PRINTED_QUANTITY_NAMES[PRINTED_QUANTITY_COUNT];
-
-// Digits behind the point of a quantity's cells.
-int printed_decimals(int quantity);
 
 // Whether a value rounded to so many decimals is the number printed.
 bool printed_agrees(double value, double printed, int decimals);

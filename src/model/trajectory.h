@@ -56,11 +56,20 @@ typedef struct Extreme {
     double crank_rad; // not wrapped
 } Extreme;
 
+// What a body reaches in every step: name, signal (rad/s, rad/s^2), whether it is the largest value
+// or the smallest. A closed form (solver.h, extremes) has them of its own.
+// clang-format off
+#define BODY_EXTREMES_LIST(member) \
+    member(omega_max, omega, raise_to) \
+    member(omega_min, omega, lower_to) \
+    member(alpha_max, alpha, raise_to) \
+    member(alpha_min, alpha, lower_to)
+// clang-format on
+
+#define BODY_EXTREMES_MEMBER(name, ...) Extreme name;
+
 typedef struct BodyExtremes {
-    Extreme omega_max; // rad/s
-    Extreme omega_min;
-    Extreme alpha_max; // rad/s^2
-    Extreme alpha_min;
+    BODY_EXTREMES_LIST(BODY_EXTREMES_MEMBER)
 } BodyExtremes;
 
 // One contact from its onset to its end.

@@ -357,10 +357,8 @@ static void recorder_add_contact(Recorder *recorder, const StepRecord *step, siz
 static inline void raise_body(BodyExtremes *body, bool is_first, double omega, double alpha,
                               double time_s)
 {
-    raise_to(&body->omega_max, is_first, omega, time_s);
-    lower_to(&body->omega_min, is_first, omega, time_s);
-    raise_to(&body->alpha_max, is_first, alpha, time_s);
-    lower_to(&body->alpha_min, is_first, alpha, time_s);
+#define MOVE_EXTREME(name, signal, how) how(&body->name, is_first, signal, time_s);
+    BODY_EXTREMES_LIST(MOVE_EXTREME)
 }
 
 // The tilt is that of a block between guides.
@@ -600,10 +598,8 @@ void recorder_finish(Recorder *recorder)
     recorder_ranges_finish(&recorder->ranges);
     report_cut_finish(&recorder->cut);
     for (size_t i = 0; i < trajectory->body_count; i++) {
-        set_crank(linkage, &trajectory->bodies[i].omega_max);
-        set_crank(linkage, &trajectory->bodies[i].omega_min);
-        set_crank(linkage, &trajectory->bodies[i].alpha_max);
-        set_crank(linkage, &trajectory->bodies[i].alpha_min);
+#define SET_CRANK(name, ...) set_crank(linkage, &trajectory->bodies[i].name);
+        BODY_EXTREMES_LIST(SET_CRANK)
     }
     for (size_t i = 0; i < trajectory->joint_count; i++) {
         if (recorder->was_touching[i]) {

@@ -464,10 +464,8 @@ static void show_extremes(const Scenario *scenario, Trajectory *trajectory)
         const BodyExtremes *body = &trajectory->bodies[i];
         const size_t omega = ranges_of_body(i, RANGES_OMEGA);
         const size_t alpha = ranges_of_body(i, RANGES_ALPHA);
-        show_extreme(scenario, trajectory, omega, &body->omega_max);
-        show_extreme(scenario, trajectory, omega, &body->omega_min);
-        show_extreme(scenario, trajectory, alpha, &body->alpha_max);
-        show_extreme(scenario, trajectory, alpha, &body->alpha_min);
+#define SHOW(name, signal, how) show_extreme(scenario, trajectory, signal, &body->name);
+        BODY_EXTREMES_LIST(SHOW)
     }
 }
 

@@ -1,6 +1,7 @@
 // Writes the contacts of a run as rows: when each began, how long it lasted, how hard it pressed.
 #include "write/contact_table.h"
 #include "base/hermite.h"
+#include "measure/number_values.h"
 #include "write/row_file.h"
 #include "write/units.h"
 
@@ -9,87 +10,64 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-// The numbers that have the units of what touches: N and m, or N m and rad where limits turn.
-
-typedef double SpikeValue(const Spike *spike);
-
-static double force_max(const Spike *spike)
-{
-    return spike->force_max;
-}
-
-static double impulse(const Spike *spike)
-{
-    return spike->impulse;
-}
-
-static double approach_speed(const Spike *spike)
-{
-    return spike->approach_speed;
-}
-
-static double penetration_max(const Spike *spike)
-{
-    return spike->penetration_max;
-}
-
-typedef struct ContactColumn {
-    const char *name;
-    size_t unit; // offset in JointUnits
-    SpikeValue *find;
-} ContactColumn;
-
-static const ContactColumn COLUMNS[] = {
-    {"force_max", offsetof(JointUnits, force_key), force_max},
-    {"impulse", offsetof(JointUnits, impulse_key), impulse},
-    {"approach_speed", offsetof(JointUnits, speed_key), approach_speed},
-    {"penetration_max", offsetof(JointUnits, length_key), penetration_max},
-};
-enum { COLUMN_COUNT = sizeof COLUMNS / sizeof *COLUMNS };
+#include <string.h>
 
 enum {
-    NAMES_MOST = 6 + 2 * COLUMN_COUNT,
+    NAMES_MOST = 3 + 2 * NUMBER_COUNT,
     NAME_SIZE = 40, // of a quantity and its unit
 };
 
-// Which columns the contacts of a linkage have.
+// Which columns the contacts of a linkage have: those of model/number_list.h with NUMBER_CSV, of
+// which those that are forces or lengths stand twice where some joints have torques and angles.
 typedef struct ContactTable {
     char names[NAMES_MOST][NAME_SIZE];
     const char *heads[NAMES_MOST]; // these
     size_t count;
     bool has_crank;
-    const Joint *kinds[2]; // a joint with play of lengths, and one of angles; NULL without
+    bool has_turns[2]; // a joint with play of lengths, and one of angles
     bool has_pins;
 } ContactTable;
 
-static void add_name(ContactTable *table, const char *name, const char *unit)
+static bool is_column(const Number *number)
+{
+    return number->owner == NUMBER_OWNER_JOINT_CONTACT && (number->places & NUMBER_CSV) != 0;
+}
+
+// Whether all joints have a number in one unit.
+static bool is_of_all(const Number *number)
+{
+    return strcmp(number->keys[NUMBER_PUSHED], number->keys[NUMBER_TURNED]) == 0;
+}
+
+static void add_name(ContactTable *table, const char *name)
 {
     assert(table->count < NAMES_MOST);
     char *head = table->names[table->count];
-    snprintf(head, NAME_SIZE, "%s%s%s", name, unit[0] != '\0' ? "_" : "", unit);
+    snprintf(head, NAME_SIZE, "%s", name);
     table->heads[table->count++] = head;
 }
 
 // The names point into the table, which is not to be moved.
 static void name_columns(ContactTable *table)
 {
-    static const char *const OF_ALL[] = {"joint", "onset_s", "duration_s", "peak_s"};
-    for (size_t i = 0; i < sizeof OF_ALL / sizeof *OF_ALL; i++) {
-        add_name(table, OF_ALL[i], "");
+    add_name(table, "joint");
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        if (is_column(&NUMBERS[id]) && is_of_all(&NUMBERS[id])) {
+            add_name(table, NUMBERS[id].keys[NUMBER_PUSHED]);
+        }
     }
     if (table->has_crank) {
-        add_name(table, "onset_crank_deg", "");
+        add_name(table, "onset_crank_deg");
     }
-    for (size_t kind = 0; kind < 2; kind++) {
-        const Joint *joint = table->kinds[kind];
-        for (size_t i = 0; joint != NULL && i < COLUMN_COUNT; i++) {
-            const char *units = (const char *)joint_units(joint);
-            add_name(table, COLUMNS[i].name, *(const char *const *)(units + COLUMNS[i].unit));
+    for (int turn = NUMBER_PUSHED; turn <= NUMBER_TURNED; turn++) {
+        for (NumberId id = 0; table->has_turns[turn] && id < NUMBER_COUNT; id++) {
+            if (is_column(&NUMBERS[id]) && !is_of_all(&NUMBERS[id])) {
+                add_name(table, NUMBERS[id].keys[turn]);
+            }
         }
     }
     if (table->has_pins) {
-        add_name(table, "wall_deg", "");
+        add_name(table, "wall_deg");
     }
 }
 
@@ -99,7 +77,7 @@ static void find_columns(const Linkage *linkage, ContactTable *table)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         if (linkage_has_play(joint)) {
-            table->kinds[linkage_is_torsional(joint) ? 1 : 0] = joint;
+            table->has_turns[linkage_is_torsional(joint) ? NUMBER_TURNED : NUMBER_PUSHED] = true;
         }
         table->has_pins =
             table->has_pins || (joint->kind == JOINT_CLEARANCE && !linkage->is_spatial);
@@ -144,19 +122,24 @@ static double wall_deg(const Trajectory *trajectory, const JointSpike *contact)
 static void write_row(const ContactTable *table, const Trajectory *trajectory,
                       const JointSpike *contact, RowFile *file)
 {
-    const Joint *joint = &trajectory->linkage.joints[contact->joint];
-    const Spike *spike = &contact->spike;
-    row_file_word(file, joint->name);
-    row_file_number(file, spike->onset_s);
-    row_file_number(file, spike->duration_s);
-    row_file_number(file, spike->peak_s);
-    if (table->has_crank) {
-        row_file_number(file, spike->crank_rad * UNITS_DEG);
+    const NumberSource source = {.run = trajectory, .contact = &contact->spike};
+    const NumberTurn own =
+        number_turn(NUMBER_OWNER_JOINT_CONTACT, &trajectory->linkage, contact->joint);
+    row_file_word(file, trajectory->linkage.joints[contact->joint].name);
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        if (is_column(&NUMBERS[id]) && is_of_all(&NUMBERS[id])) {
+            row_file_number(file, number_find(id, &source, contact->joint).value);
+        }
     }
-    for (size_t kind = 0; kind < 2; kind++) {
-        const bool is_own = linkage_is_torsional(joint) == (kind == 1);
-        for (size_t i = 0; table->kinds[kind] != NULL && i < COLUMN_COUNT; i++) {
-            row_file_number(file, is_own ? COLUMNS[i].find(spike) : NAN);
+    if (table->has_crank) {
+        row_file_number(file, contact->spike.crank_rad * UNITS_DEG);
+    }
+    for (int turn = NUMBER_PUSHED; turn <= NUMBER_TURNED; turn++) {
+        for (NumberId id = 0; table->has_turns[turn] && id < NUMBER_COUNT; id++) {
+            if (is_column(&NUMBERS[id]) && !is_of_all(&NUMBERS[id])) {
+                const double value = number_find(id, &source, contact->joint).value;
+                row_file_number(file, turn == (int)own ? value : NAN);
+            }
         }
     }
     if (table->has_pins) {

@@ -30,7 +30,7 @@ static bool is_in_file(const Field *field, unsigned where)
 
 static bool is_number(const Field *field)
 {
-    return field->type >= FIELD_NUMBER && field->type <= FIELD_WRAPPED;
+    return field->type >= FIELD_NUMBER && field->type <= FIELD_WHOLE;
 }
 
 static bool has_inner(const Field *field)
@@ -102,6 +102,8 @@ static json_t *json_of(const Field *field, const void *record)
     case FIELD_TEXT:
     case FIELD_CHOICE:
         return value.word == NULL ? json_null() : json_value_text(value.word);
+    case FIELD_WHOLE:
+        return isfinite(value.number) ? json_integer((json_int_t)value.number) : json_null();
     default:
         assert(is_number(field));
         return json_value_real(file_number(field, value.number));
@@ -329,6 +331,8 @@ static void number_cell(const Field *field, double value, Table *table)
     const double shown = field->type == FIELD_WRAPPED ? units_wrapped_deg(value) : value * per_si;
     if (!isfinite(shown)) {
         absent_cell(field, table);
+    } else if (field->type == FIELD_WHOLE) {
+        table_cell(table, "%.0f", shown);
     } else if (field->format == NULL) {
         section_number(table, shown);
     } else {

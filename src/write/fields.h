@@ -17,6 +17,7 @@ typedef enum FieldType {
     FIELD_STEP,    // double, s; a store holds none that is negative or not known
     FIELD_DEGREES, // double, rad; files have degrees too
     FIELD_WRAPPED, // the same from 0 to 360 degrees
+    FIELD_WHOLE,   // double, a whole number; not known where it is not finite
     FIELD_COUNT,   // size_t
     FIELD_FLAG,    // bool
     FIELD_NAME,    // const char *; NULL: not known

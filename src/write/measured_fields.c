@@ -9,31 +9,34 @@
 #define SPREAD(member)   .offset = offsetof(Distribution, member)
 #define METRIC(number)   .offset = sizeof(Distribution) * (number)
 
-enum { KEPT = FIELD_JSON | FIELD_STORE, SHOWN = KEPT | FIELD_CSV };
+enum { KEPT = FIELD_JSON | FIELD_STORE };
+
+// Where a number of model/number_list.h stands, and how its column is set.
+#define IN_TABLE(traits)                                                                           \
+    (((traits) & (NUMBER_OF_FORCES | NUMBER_OF_PEAKS)) != 0 ? ERROR_OF_CONTACTS : FIELD_TABLE)
+#define WHERE(places, traits)                                                                      \
+    (((places)&NUMBER_JSON) != 0 ? KEPT : 0) | (((places)&NUMBER_CSV) != 0 ? FIELD_CSV : 0) |      \
+        (((places)&NUMBER_TEXT) != 0 ? IN_TABLE(traits) : 0)
+#define ALIGN(traits)                                                                              \
+    (((traits)&NUMBER_DETAIL) != 0 ? TABLE_DETAIL : 0) |                                           \
+        (((traits)&NUMBER_MINOR) != 0 ? TABLE_MINOR : 0)
+#define FIRST_KEY(...)                FIRST_KEY_OF(__VA_ARGS__)
+#define FIRST_KEY_OF(key, unit, ...)  key
+#define FIRST_UNIT(...)               FIRST_UNIT_OF(__VA_ARGS__)
+#define FIRST_UNIT_OF(key, unit, ...) unit
 
 // clang-format off
+#define ERROR_ROW(owner, id, name, kind, title, turned, format, places, traits, member, ...) \
+    {name FIRST_KEY(NUMBER_UNITS_##kind), FIELD_NUMBER, WHERE(places, traits), title, \
+     FIRST_UNIT(NUMBER_UNITS_##kind), format, ERROR(member), .align = ALIGN(traits)},
+#define ERROR_WORDS(name, title, places, traits, member) \
+    {name, FIELD_TEXT, WHERE(places, traits), title, "", ERROR(member), \
+     .size = sizeof(((TrajectoryError *)NULL)->member), .align = TABLE_WRAP | ALIGN(traits)},
+
 const Field ERROR_FIELDS[] = {
     {"is_known", FIELD_FLAG, FIELD_STORE, ERROR(is_known)},
-    {"max", FIELD_NUMBER, SHOWN, ERROR(max)},
-    {"max_time_s", FIELD_NUMBER, KEPT, ERROR(max_time_s)},
-    {"max_in_horizon", FIELD_NUMBER, KEPT, ERROR(max_in_horizon)},
-    {"in", FIELD_TEXT, SHOWN, ERROR(in), .size = sizeof(((TrajectoryError *)NULL)->in)},
     {"in_is_floor", FIELD_FLAG, KEPT, ERROR(is_floor)},
-    {"omega_max", FIELD_NUMBER, SHOWN, ERROR(omega_max)},
-    {"omega_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(omega_max_in_horizon)},
-    {"omega_rms", FIELD_NUMBER, SHOWN, ERROR(omega_rms)},
-    {"alpha_max", FIELD_NUMBER, SHOWN, ERROR(alpha_max)},
-    {"angle_max_rad", FIELD_NUMBER, SHOWN, ERROR(angle_max_rad)},
-    {"energy_lost", FIELD_NUMBER, KEPT, ERROR(energy_lost)},
-    {"force_max", FIELD_NUMBER, KEPT, ERROR(force_max)},
-    {"force_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(force_max_in_horizon)},
-    {"force_in", FIELD_TEXT, KEPT, ERROR(force_in), .size = LINKAGE_NAME_SIZE},
-    {"peak_force_max", FIELD_NUMBER, KEPT, ERROR(peak_force_max)},
-    {"peak_force_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(peak_force_max_in_horizon)},
-    {"peak_force_in", FIELD_TEXT, KEPT, ERROR(peak_force_in), .size = LINKAGE_NAME_SIZE},
-    {"peak_alpha_max", FIELD_NUMBER, KEPT, ERROR(peak_alpha_max)},
-    {"peak_alpha_max_in_horizon", FIELD_NUMBER, KEPT, ERROR(peak_alpha_max_in_horizon)},
-    {"peak_alpha_in", FIELD_TEXT, KEPT, ERROR(peak_alpha_in), .size = LINKAGE_NAME_SIZE},
+    NUMBERS_OF_ERROR_LIST(ERROR_ROW, ERROR_WORDS)
     {0},
 };
 

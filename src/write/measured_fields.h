@@ -7,6 +7,8 @@
 #include "write/fields.h"
 
 // Of a TrajectoryError.
+// Errors of contacts are in a table of their own.
+enum { ERROR_OF_CONTACTS = FIELD_OWN << 12 }; // no bit of those who have groups of them
 extern const Field ERROR_FIELDS[];
 extern const Field ERROR_JOINT_FIELDS[];
 extern const Field ERROR_BODY_FIELDS[];

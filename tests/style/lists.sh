@@ -16,7 +16,9 @@ log=$work/log
 compiles() {
     source=$1
     shift
-    ${CC:-cc} -std=gnu17 -fsyntax-only -Werror=switch -I"$work/src" -I"$root/src" \
+    ${CC:-cc} -std=gnu17 -fsyntax-only -Werror=switch \
+        -Werror=implicit-function-declaration -Wmissing-field-initializers \
+        -Werror=missing-field-initializers -I"$work/src" -I"$root/src" \
         -I"$root/include" -I"$generated" "$@" "$root/src/$source" 2>"$log"
 }
 
@@ -65,4 +67,17 @@ forget 'kind of joint' model/linkage.h 'member(JOINT_GUIDE,' \
 forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
     ode/plane/impulse_step.c reference/plane/dynamics_slopes.c
 forget dimension casefile/units.h 'member(DIMENSION_MASS,' 'member(DIMENSION_NEW)' casefile/units.c
+numbers=model/number_list.h
+row='"new", COUNT, "new", NULL, NULL, NUMBER_EVERYWHERE, 0, new_number(of), "new")'
+forget 'number of a body' $numbers 'row(BODY, OMEGA_MAX,' "row(BODY, NEW, $row" \
+    measure/number_values.c
+forget 'number of a run' $numbers 'row(RUN, IMPACTS,' "row(RUN, NEW, $row" measure/number_values.c
+forget 'number of a spike' $numbers 'row(owner, ONSET,' "row(owner, NEW, $row" \
+    measure/number_values.c
+forget 'kind of number' $numbers 'kind(COUNT)' 'kind(NEW)' casefile/expect.c \
+    commands/check/check_measure.c commands/run/run_fields.c
+forget 'owner of numbers' $numbers 'owner(BODY, ' 'owner(NEW, WHOLE, "new", "", "new")' \
+    measure/number_values.c
+forget 'extreme of a body' model/trajectory.h 'member(omega_max,' 'member(new_max, new, raise_to)' \
+    run/recorder.c run/run.c analytic/analytic.c analytic/driven_extremes.c
 echo "1..$number"

@@ -122,14 +122,14 @@ static size_t run_row(ForceLaw law, double closing, bool is_divided, bool is_cut
     return blocks;
 }
 
-enum { STEPS = 4, NUMBERS = STEPS * PINS * 2 };
+enum { STEPS = 4, KEPT_NUMBERS = STEPS * PINS * 2 };
 
 // The largest difference of impulses, relative to the largest one.
 static double apart(const double *a, const double *b)
 {
     double largest = 0.0;
     double size = 0.0;
-    for (size_t i = 0; i < NUMBERS; i++) {
+    for (size_t i = 0; i < KEPT_NUMBERS; i++) {
         largest = fmax(largest, fabs(a[i] - b[i]));
         size = fmax(size, fabs(a[i]));
     }
@@ -138,8 +138,8 @@ static double apart(const double *a, const double *b)
 
 static void check_row(ForceLaw law, double closing, double tolerance)
 {
-    static double whole[NUMBERS];
-    static double blocks[NUMBERS];
+    static double whole[KEPT_NUMBERS];
+    static double blocks[KEPT_NUMBERS];
     assert_int_equal(run_row(law, closing, false, false, whole, STEPS), 1);
     assert_true(run_row(law, closing, true, false, blocks, STEPS) > PINS / 8);
     print_message("# blocks and whole are apart by %.2g\n", apart(whole, blocks));

@@ -136,7 +136,9 @@ static void settled_forces_are_those_of_the_motion(void **state)
     SettledJoint joints[8] = {{.force = {.headline = 0.0}}};
     joints[1].force = (SettledNumber){
         .headline = 5.0, .low = 4.0, .high = INFINITY, .median = 3.0, .largest = 7.0};
-    SettledMotion motion = {.starts = 1, .watched = 200, .joints = joints};
+    SettledNumber alpha[8] = {{.headline = 0.0}};
+    alpha[1] = (SettledNumber){.headline = 50.0, .median = 30.0, .largest = 70.0};
+    SettledMotion motion = {.starts = 1, .watched = 200, .joints = joints, .alpha = alpha};
     scenario.settled.motions = &motion;
     scenario.settled.motion_count = 1;
     double results[RECORD_RESULT_MAX];
@@ -148,6 +150,9 @@ static void settled_forces_are_those_of_the_motion(void **state)
     assert_true(results[column(&layout, "crank_coupler_settled_force_median_N")] == 3.0);
     assert_true(results[column(&layout, "crank_coupler_settled_force_largest_N")] == 7.0);
     assert_true(results[column(&layout, "settled_watched")] == 200.0);
+    assert_true(results[column(&layout, "coupler_settled_alpha_size_max_rad_s2")] == 50.0);
+    assert_true(results[column(&layout, "coupler_settled_alpha_size_median_rad_s2")] == 30.0);
+    assert_true(results[column(&layout, "coupler_settled_alpha_size_largest_rad_s2")] == 70.0);
     assert_true(results[column(&layout, "crank_coupler_force_max_N")] ==
                 run->joints[1].force_max.value);
     assert_true(run->joints[1].force_max.value != 5.0);

@@ -136,8 +136,7 @@ static SettledLimits settled_limits(const Scenario *scenario)
     for (size_t i = 0; i < scenario->expectation_count; i++) {
         const Expectation *expectation = &scenario->expectations[i];
         limits.are_any = limits.are_any || expect_value_is_settled(expectation);
-        limits.are_of_growth =
-            limits.are_of_growth || expectation->number == EXPECTED_SETTLED_GROWTH;
+        limits.are_of_growth = limits.are_of_growth || expectation->number == NUMBER_SETTLED_GROWTH;
     }
     return limits;
 }

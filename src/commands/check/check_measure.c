@@ -7,13 +7,10 @@
 #include "base/room.h"
 #include "base/text.h"
 #include "base/zeroed.h"
-#include "casefile/expect.h"
 #include "contact/law.h"
 #include "measure/chosen_run.h"
-#include "measure/section.h"
-#include "measure/spectrum.h"
+#include "measure/number_values.h"
 #include "measure/truth.h"
-#include "model/joint_numbers.h"
 #include "model/perturb.h"
 #include "model/shake.h"
 #include "run/registry.h"
@@ -25,71 +22,23 @@
 
 // The number of a run that a limit of its case means.
 
-static double spikes(const SignalSpikes *found)
-{
-    return found->is_known ? (double)found->count : NAN;
-}
-
-static double error_number(const TrajectoryError *error, ExpectedNumber number)
-{
-    if (error == NULL || !error->is_known) {
-        return NAN;
-    }
-    switch (number) {
-    case EXPECTED_ERROR_MAX:
-        return error->max;
-    case EXPECTED_ERROR_OMEGA_MAX:
-        return error->omega_max;
-    case EXPECTED_ERROR_OMEGA_RMS:
-        return error->omega_rms;
-    case EXPECTED_ERROR_ALPHA_MAX:
-        return error->alpha_max;
-    case EXPECTED_ERROR_FORCE_MAX:
-        return error->force_max;
-    case EXPECTED_ERROR_PEAK_FORCE_MAX:
-        return error->peak_force_max;
-    case EXPECTED_ERROR_PEAK_ALPHA_MAX:
-        return error->peak_alpha_max;
-    default:
-        return NAN;
-    }
-}
-
 bool expect_value_is_error(const Expectation *expectation)
 {
-    return EXPECT_ROWS[expectation->number].group == EXPECT_ERROR;
+    const NumberOwner owner = NUMBERS[expectation->number].owner;
+    return owner == NUMBER_OWNER_ERROR || owner == NUMBER_OWNER_TRUTH;
 }
 
 bool expect_value_is_settled(const Expectation *expectation)
 {
-    const ExpectGroup group = EXPECT_ROWS[expectation->number].group;
-    return group == EXPECT_SETTLED || group == EXPECT_SETTLED_JOINTS;
+    const NumberOwner owner = NUMBERS[expectation->number].owner;
+    return owner == NUMBER_OWNER_SETTLED || owner == NUMBER_OWNER_SETTLED_JOINT ||
+           owner == NUMBER_OWNER_SETTLED_BODY;
 }
 
 double expect_value_of_settled(const Expectation *expectation, const Scenario *scenario)
 {
-    const SettledStart *settled = &scenario->settled;
-    if (settled->motion_count == 0) {
-        return NAN;
-    }
-    const SettledMotion *motion = &settled->motions[0];
-    const SettledNumber *force = &motion->joints[expectation->member].force;
-    switch (expectation->number) {
-    case EXPECTED_SETTLED_PERIOD:
-        return (double)motion->period;
-    case EXPECTED_SETTLED_SHARE:
-        return (double)motion->starts / (double)settled->starts;
-    case EXPECTED_SETTLED_FORCE_MAX:
-        return force->headline;
-    case EXPECTED_SETTLED_FORCE_MEDIAN:
-        return force->median;
-    case EXPECTED_SETTLED_FORCE_LARGEST:
-        return force->largest;
-    case EXPECTED_SETTLED_MOTIONS:
-        return (double)settled->motion_count;
-    default:
-        return settled->has_growth ? settled->growth.factor : NAN;
-    }
+    const NumberSource source = {.scenario = scenario};
+    return number_find(expectation->number, &source, (size_t)expectation->member).value;
 }
 
 bool expect_value_concerns(const Expectation *expectation, const Scenario *scenario,
@@ -104,59 +53,6 @@ bool expect_value_concerns(const Expectation *expectation, const Scenario *scena
     return OPTIONS_BACKEND_HAS_PLAY[backend] || !scenario_has_clearance(scenario);
 }
 
-// The number of a complete run, SI; of an error from the error given, which is NULL where there is
-// none. NAN where the run does not have it.
-static double expect_value_of(const Expectation *expectation, const Trajectory *run,
-                              const TrajectoryError *error)
-{
-    const BodyExtremes *body = &run->bodies[expectation->member];
-    switch (expectation->number) {
-    case EXPECTED_OMEGA_MAX:
-        return body->omega_max.value;
-    case EXPECTED_OMEGA_MIN:
-        return body->omega_min.value;
-    case EXPECTED_ALPHA_MAX:
-        return body->alpha_max.value;
-    case EXPECTED_ALPHA_MIN:
-        return body->alpha_min.value;
-    case EXPECTED_ALPHA_SPIKES:
-        return spikes(&run->alpha_spikes[expectation->member]);
-    case EXPECTED_OMEGA_ORDER_1:
-        return spectrum_body_order(run, (size_t)expectation->member, 1);
-    case EXPECTED_OMEGA_ORDER_2:
-        return spectrum_body_order(run, (size_t)expectation->member, 2);
-    case EXPECTED_OMEGA_BETWEEN_ORDERS:
-        return spectrum_body_between(run, (size_t)expectation->member);
-    case EXPECTED_OMEGA_SECTION:
-        return section_omega(run, (size_t)expectation->member, 0);
-    case EXPECTED_SECTION_PERIOD:
-        return section_period(run);
-    case EXPECTED_SECTION_CHANGE:
-        return section_find(run).change;
-    case EXPECTED_FORCE_SPIKES:
-        return spikes(&run->force_spikes[expectation->member]);
-#define EXPECTED_OF_JOINT(id, ...)                                                                 \
-    case EXPECTED_##id:                                                                            \
-        return joint_numbers_find(JOINT_NUMBER_##id, run, (size_t)expectation->member).value;
-        JOINT_NUMBERS_OF_ANY_LIST(EXPECTED_OF_JOINT)
-        JOINT_NUMBERS_OF_PLAY_LIST(EXPECTED_OF_JOINT)
-    case EXPECTED_DRIVE_WORK:
-        return run->energy.drive_work;
-    case EXPECTED_DISSIPATED:
-        return run->energy.dissipated;
-    case EXPECTED_CHANGE:
-        return run->energy.change;
-    case EXPECTED_RESIDUAL:
-        return run->energy.residual;
-    case EXPECTED_STEPS:
-        return (double)run->steps;
-    case EXPECTED_EVALUATIONS:
-        return (double)run->evaluations;
-    default:
-        return error_number(error, expectation->number);
-    }
-}
-
 double expect_value_off(const Expectation *expectation, double value)
 {
     const double low = expectation->low;
@@ -168,9 +64,7 @@ double expect_value_off(const Expectation *expectation, double value)
 
 // The numbers of one run.
 //
-// Extremes of omega and alpha of each moving body; of each joint the force, of those with play the
-// impulse, the contacts, the penetration, the time in contact; the spikes of accelerations and
-// forces; the energy and its residual; the error; what the run cost; the order of convergence
+// Those of model/number_list.h that have NUMBER_CHECK; the order of convergence
 // p = log2(e(h) / e(h/2)); the hash.
 //
 // Rounding: a number of a run is known to some 1e-12 of its scale, and an acceleration, as the
@@ -240,8 +134,11 @@ static double alpha_rounding(const Trajectory *run, double omega)
 }
 
 static void add_alpha(CheckAdd *work, const Trajectory *run, size_t number, const char *name,
-                      double value, const BodyExtremes *extremes)
+                      double value, bool is_at_samples)
 {
+    const BodyExtremes found =
+        is_at_samples ? number_extremes_at_samples(run, number) : run->bodies[number];
+    const BodyExtremes *extremes = &found;
     const double omega = fmax(work->speeds.turning[number], fmax(fabs(extremes->omega_max.value),
                                                                  fabs(extremes->omega_min.value)));
     const double scale = fmax(work->speeds.speeding[number],
@@ -261,144 +158,6 @@ static bool is_by_samples(BackendKind backend)
     return backend == BACKEND_REFERENCE;
 }
 
-static BodyExtremes extremes_of_samples(const Trajectory *run, size_t body)
-{
-    const Motion *start = trajectory_motion(run, 0, body);
-    BodyExtremes extremes = {.omega_max.value = start->omega,
-                             .omega_min.value = start->omega,
-                             .alpha_max.value = start->alpha,
-                             .alpha_min.value = start->alpha};
-    for (size_t k = 1; k < run->sample_count; k++) {
-        const Motion *motion = trajectory_motion(run, k, body);
-        extremes.omega_max.value = fmax(extremes.omega_max.value, motion->omega);
-        extremes.omega_min.value = fmin(extremes.omega_min.value, motion->omega);
-        extremes.alpha_max.value = fmax(extremes.alpha_max.value, motion->alpha);
-        extremes.alpha_min.value = fmin(extremes.alpha_min.value, motion->alpha);
-    }
-    return extremes;
-}
-
-static void check_measure_add_bodies(CheckAdd *work, const Trajectory *run, BackendKind backend)
-{
-    static const char *const NAMES[2][4] = {
-        {"omega_max_rad_s", "omega_min_rad_s", "alpha_max_rad_s2", "alpha_min_rad_s2"},
-        {"omega_max_at_samples_rad_s", "omega_min_at_samples_rad_s", "alpha_max_at_samples_rad_s2",
-         "alpha_min_at_samples_rad_s2"},
-    };
-    const char *const *names = NAMES[is_by_samples(backend) ? 1 : 0];
-    for (size_t i = 0; i < run->body_count; i++) {
-        if (linkage_is_driven(&run->linkage, (int)i)) {
-            continue;
-        }
-        const char *name = work->scenario->linkage.bodies[i].name;
-        const BodyExtremes body =
-            is_by_samples(backend) ? extremes_of_samples(run, i) : run->bodies[i];
-        const double scale = work->speeds.turning[i];
-        add_real(work, run, name, names[0], body.omega_max.value, scale);
-        add_real(work, run, name, names[1], body.omega_min.value, scale);
-        add_alpha(work, run, i, names[2], body.alpha_max.value, &body);
-        add_alpha(work, run, i, names[3], body.alpha_min.value, &body);
-    }
-}
-
-static double force_at_samples(const Trajectory *run, size_t joint)
-{
-    double force = 0.0;
-    for (size_t k = 0; k < run->sample_count; k++) {
-        force = fmax(force, trajectory_state(run, k, joint)->force);
-    }
-    return force;
-}
-
-// One number of a joint; the largest force of one without play as often from its samples.
-static void add_joint_number(CheckAdd *work, const Trajectory *run, BackendKind backend,
-                             JointNumberId id, size_t joint)
-{
-    const JointNumber *number = &JOINT_NUMBERS[id];
-    const Joint *of = &work->scenario->linkage.joints[joint];
-    const double value = joint_numbers_find(id, run, joint).value;
-    char name[CHECK_NAME_SIZE];
-    snprintf(name, sizeof name, "%s%s", number->keys[linkage_is_torsional(of)], number->check_end);
-    // the reference looks for the peak of a contact between its steps
-    if (id == JOINT_NUMBER_FORCE_MAX && is_by_samples(backend) && !linkage_has_play(of)) {
-        check_measure_add_force(work, run, of, "force_max_at_samples_N",
-                                force_at_samples(run, joint), 0.0);
-    } else if (number->kind == JOINT_NUMBER_OF_COUNT) {
-        add_count(work, run, of->name, name, (size_t)value);
-    } else if (number->kind == JOINT_NUMBER_OF_FORCE) {
-        check_measure_add_force(work, run, of, name, value, 0.0);
-    } else {
-        add_real(work, run, of->name, name, value, 0.0);
-    }
-}
-
-static void add_joints(CheckAdd *work, const Trajectory *run, BackendKind backend)
-{
-    for (size_t i = 0; i < run->joint_count; i++) {
-        const bool has_play = linkage_has_play(&work->scenario->linkage.joints[i]) &&
-                              OPTIONS_BACKEND_HAS_PLAY[backend];
-        for (JointNumberId id = 0; id < JOINT_NUMBER_COUNT; id++) {
-            if (has_play || !JOINT_NUMBERS[id].is_of_play) {
-                add_joint_number(work, run, backend, id, i);
-            }
-        }
-    }
-}
-
-// Of the signals that were looked at for spikes: how many there are, and the mean size of the
-// strongest. Widths and impulses come from a history that is thinned where it is nearly straight,
-// so that rounding now and then moves them by what the thinning allows.
-static double mean_size(const SignalSpikes *found)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < found->kept; i++) {
-        sum += fabs(found->spikes[i].value) / (double)found->kept;
-    }
-    return sum;
-}
-
-static void add_spikes(CheckAdd *work, const Trajectory *run, BackendKind backend)
-{
-    const Linkage *linkage = &work->scenario->linkage;
-    // the reference's chosen steps meet the peak of a spike at varying distances
-    for (size_t i = 0; !is_by_samples(backend) && i < run->body_count; i++) {
-        const char *name = linkage->bodies[i].name;
-        const SignalSpikes *found = &run->alpha_spikes[i];
-        if (!linkage_is_driven(&run->linkage, (int)i) && found->is_known) {
-            add_count(work, run, name, "alpha_spikes", found->count);
-            add_real(work, run, name, "alpha_spikes_mean_rad_s2", mean_size(found),
-                     found->threshold);
-        }
-    }
-    for (size_t i = 0; !is_by_samples(backend) && i < run->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const SignalSpikes *found = &run->force_spikes[i];
-        if (found->is_known) {
-            add_count(work, run, joint->name, "force_spikes", found->count);
-            check_measure_add_force(work, run, joint,
-                                    linkage_is_torsional(joint) ? "force_spikes_mean_N_m"
-                                                                : "force_spikes_mean_N",
-                                    mean_size(found), found->threshold);
-        }
-    }
-}
-
-static void add_energy(CheckAdd *work, const Trajectory *run)
-{
-    const Energy *energy = &run->energy;
-    const double scale = fmax(fabs(energy->drive_work), work->energy);
-    add_real(work, run, "energy", "drive_work_J", energy->drive_work, scale);
-    if (work->scenario->linkage.load_count > 0) {
-        add_real(work, run, "energy", "load_work_J", energy->load_work, scale);
-    }
-    add_real(work, run, "energy", "dissipated_J", energy->dissipated, scale);
-    add_real(work, run, "energy", "change_J", energy->change, scale);
-    add_real(work, run, "energy", "residual_J", energy->residual, scale);
-    if (law_has_friction(work->scenario)) {
-        add_real(work, run, "energy", "friction_J", energy->friction, scale);
-    }
-}
-
 // Steps that a solver chooses by itself differ by a percent or so after a rounding.
 static void add_effort(CheckAdd *work, const Trajectory *run, const char *name, size_t value)
 {
@@ -409,51 +168,141 @@ static void add_effort(CheckAdd *work, const Trajectory *run, const char *name, 
             .kind = CHECK_EFFORT, .value = (double)value, .scale = (double)value, .floor = floor});
 }
 
-static void add_cost(CheckAdd *work, const Trajectory *run)
+// What a number is measured in, where that is more than the number itself.
+static double scale_of(const CheckAdd *work, const Trajectory *run, NumberId id, size_t member)
 {
-    add_effort(work, run, "steps", run->steps);
-    add_effort(work, run, "evaluations", run->evaluations);
-    add_count(work, run, "cost", "constraint_rows", run->constraint_rows);
-    add_count(work, run, "cost", "contact_rows", run->contact_rows);
-    add_count(work, run, "cost", "fallback_rows", run->fallback_rows);
-    check_measure_add(work, run, "", "hash", (CheckMetric){.kind = CHECK_HASH, .hash = run->hash});
+    if (id == NUMBER_BODY_ALPHA_SPIKES_MEAN) {
+        return run->alpha_spikes[member].threshold;
+    }
+    if (id == NUMBER_JOINT_FORCE_SPIKES_MEAN) {
+        return run->force_spikes[member].threshold;
+    }
+    switch (NUMBERS[id].kind) {
+    case NUMBER_OF_SPEED:
+        return work->speeds.moving;
+    case NUMBER_OF_ANGULAR_SPEED:
+        return number_members(&NUMBERS[id]) == NUMBER_OF_BODIES ? work->speeds.turning[member]
+                                                                : 0.0;
+    case NUMBER_OF_ENERGY:
+        return fmax(fabs(run->energy.drive_work), work->energy);
+    case NUMBER_OF_COUNT:
+    case NUMBER_OF_EFFORT:
+    case NUMBER_OF_SHARE:
+    case NUMBER_OF_RATIO:
+    case NUMBER_OF_FORCE:
+    case NUMBER_OF_IMPULSE:
+    case NUMBER_OF_DEPTH:
+    case NUMBER_OF_APPROACH:
+    case NUMBER_OF_SIGNAL:
+    case NUMBER_OF_SIGNAL_IMPULSE:
+    case NUMBER_OF_LENGTH:
+    case NUMBER_OF_ANGLE:
+    case NUMBER_OF_ANGULAR_ACCELERATION:
+    case NUMBER_OF_TIME:
+    case NUMBER_OF_SPAN:
+    case NUMBER_OF_MICROSECONDS:
+    case NUMBER_KIND_COUNT:
+        break;
+    }
+    return 0.0;
 }
 
-// Errors are shares already: what rounding may change of them is a share of 1, and the truth that
-// they are against may itself be off by its uncertainty.
-static void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
-                            double uncertainty)
+// Whether a check of a run has a number of a member that it is of.
+static bool is_checked(const CheckAdd *work, const Number *number, BackendKind backend)
 {
-    const double values[] = {error->max, error->omega_max, error->omega_rms, error->alpha_max};
-    static const char *const NAMES[] = {"max_1", "omega_max_1", "omega_rms_1", "alpha_max_1"};
-    for (int i = 0; i < 4; i++) {
-        check_measure_add(work, run, "error", NAMES[i],
-                          (CheckMetric){.kind = CHECK_REAL,
-                                        .value = values[i],
-                                        .scale = values[i],
-                                        .floor = ROUNDING + uncertainty +
-                                                 (i == 3 ? alpha_rounding(run, 1.0) : 0.0)});
+    const bool is_felt = !number_needs_play(number) || OPTIONS_BACKEND_HAS_PLAY[backend];
+    const bool is_rubbed =
+        (number->traits & NUMBER_RUBBED) == 0 || law_has_friction(work->scenario);
+    return (number->places & NUMBER_CHECK) != 0 && is_felt && is_rubbed;
+}
+
+// One number of a member, by what the source says.
+static void add_number(CheckAdd *work, const NumberSource *source, NumberId id, size_t member)
+{
+    const Trajectory *run = source->run;
+    const Linkage *linkage = &work->scenario->linkage;
+    const Number *number = &NUMBERS[id];
+    const NumberOwnerRow *owner = &NUMBER_OWNERS[number->owner];
+    const bool is_of_joint = owner->members == NUMBER_OF_JOINTS;
+    const bool is_at_samples = source->is_at_samples && (number->traits & NUMBER_STEPS) != 0 &&
+                               !(is_of_joint && linkage_has_play(&linkage->joints[member]));
+    const double value = number_find(id, source, member).value;
+    if (isnan(value) && (number->traits & NUMBER_LACKED) != 0) {
+        return;
+    }
+    const char *part =
+        owner->part[0] != '\0' ? owner->part : number_member(number->owner, linkage, member);
+    char name[CHECK_NAME_SIZE];
+    snprintf(name, sizeof name, "%s%s%s%s%s", owner->before, number->name,
+             is_at_samples ? "_at_samples" : "",
+             number->unit_keys[number_turn(number->owner, linkage, member)], number->check_end);
+    const double scale = scale_of(work, run, id, member);
+    if (number->kind == NUMBER_OF_COUNT && isfinite(value)) {
+        add_count(work, run, part, name, (size_t)value);
+    } else if (number->kind == NUMBER_OF_EFFORT && isfinite(value)) {
+        add_effort(work, run, name, (size_t)value);
+    } else if (number->kind == NUMBER_OF_FORCE && is_of_joint) {
+        check_measure_add_force(work, run, &linkage->joints[member], name, value, scale);
+    } else if ((number->traits & NUMBER_OF_ALPHA) != 0 && owner->members == NUMBER_OF_BODIES) {
+        add_alpha(work, run, member, name, value, source->is_at_samples);
+    } else {
+        add_real(work, run, part, name, value, scale);
     }
 }
 
-// The errors that the tolerance of a case is of, where they are not those of the motion.
-static void add_error_of_kind(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
-                              double uncertainty)
+// All numbers of a run but errors.
+static void add_numbers(CheckAdd *work, const Trajectory *run, BackendKind backend)
 {
-    const ToleranceOf kind = work->scenario->run.tolerance_of;
-    static const char *const NAMES[] = {"force_max_1", "peak_force_max_1", "peak_alpha_max_1"};
-    const double values[] = {error->force_max, error->peak_force_max, error->peak_alpha_max};
-    for (int i = 0; kind != TOLERANCE_OF_MOTION && i < 3; i++) {
-        const bool is_its = (kind == TOLERANCE_OF_FORCES) == (i == 0);
-        // without play there are no forces of contacts
-        if (is_its && !isnan(values[i])) {
-            check_measure_add(work, run, "error", NAMES[i],
-                              (CheckMetric){.kind = CHECK_REAL,
-                                            .value = values[i],
-                                            .scale = values[i],
-                                            .floor = ROUNDING + uncertainty +
-                                                     (i == 2 ? alpha_rounding(run, 1.0) : 0.0)});
+    const Linkage *linkage = &work->scenario->linkage;
+    const NumberSource source = {
+        .scenario = work->scenario, .run = run, .is_at_samples = is_by_samples(backend)};
+    for (NumberOwner owner = 0; owner < NUMBER_OWNER_COUNT; owner++) {
+        for (size_t i = 0; i < number_member_count(owner, linkage); i++) {
+            for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+                if (NUMBERS[id].owner == owner && owner != NUMBER_OWNER_ERROR &&
+                    is_checked(work, &NUMBERS[id], backend) &&
+                    number_is_of(&NUMBERS[id], linkage, i)) {
+                    add_number(work, &source, id, i);
+                }
+            }
         }
+    }
+    check_measure_add(work, run, "", "hash", (CheckMetric){.kind = CHECK_HASH, .hash = run->hash});
+}
+
+// Whether an error is one that a tolerance of the case may be of: that of the motion always, of
+// forces or peaks where it is of those.
+static bool is_of_tolerance(const Number *number, ToleranceOf kind)
+{
+    const bool is_of_forces = (number->traits & NUMBER_OF_FORCES) != 0;
+    const bool is_of_peaks = (number->traits & NUMBER_OF_PEAKS) != 0;
+    return (!is_of_forces && !is_of_peaks) ||
+           (kind != TOLERANCE_OF_MOTION && (kind == TOLERANCE_OF_FORCES) == is_of_forces);
+}
+
+// Errors are shares already: what rounding may change of them is a share of 1, and the truth that
+// they are against may itself be off by its uncertainty. Without play there are none of forces.
+static void check_add_error(CheckAdd *work, const Trajectory *run, const TrajectoryError *error,
+                            double uncertainty)
+{
+    const NumberSource source = {.scenario = work->scenario, .run = run, .error = error};
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        const Number *number = &NUMBERS[id];
+        const double value = number_find(id, &source, 0).value;
+        if (number->owner != NUMBER_OWNER_ERROR || (number->places & NUMBER_CHECK) == 0 ||
+            !is_of_tolerance(number, work->scenario->run.tolerance_of) ||
+            ((number->traits & NUMBER_LACKED) != 0 && isnan(value))) {
+            continue;
+        }
+        char name[CHECK_NAME_SIZE];
+        snprintf(name, sizeof name, "%s%s", number->keys[NUMBER_PUSHED], number->check_end);
+        const bool is_of_alpha = (number->traits & NUMBER_OF_ALPHA) != 0;
+        check_measure_add(work, run, NUMBER_OWNERS[number->owner].part, name,
+                          (CheckMetric){.kind = CHECK_REAL,
+                                        .value = value,
+                                        .scale = value,
+                                        .floor = ROUNDING + uncertainty +
+                                                 (is_of_alpha ? alpha_rounding(run, 1.0) : 0.0)});
     }
 }
 
@@ -488,16 +337,6 @@ static CheckAdd check_add_begin(const Scenario *scenario, const char *group, Che
 static void check_add_end(CheckAdd *work)
 {
     scale_free(&work->speeds);
-}
-
-// Adds extremes, spikes, contacts, energy and cost of a run.
-static void check_add_run(CheckAdd *work, const Trajectory *run, BackendKind backend)
-{
-    check_measure_add_bodies(work, run, backend);
-    add_joints(work, run, backend);
-    add_spikes(work, run, backend);
-    add_energy(work, run);
-    add_cost(work, run);
 }
 
 enum { HALVINGS = 2 }; // of the step, for the order
@@ -562,7 +401,9 @@ static void measure_expected(CheckAdd *work, BackendKind backend, const Trajecto
     for (size_t i = 0; i < work->scenario->expectation_count; i++) {
         const Expectation *expectation = &work->scenario->expectations[i];
         if (expect_value_is_error(expectation) ? error != NULL : is_whole && error == NULL) {
-            work->measure->expected[i][backend] = expect_value_of(expectation, run, error);
+            const NumberSource source = {.scenario = work->scenario, .run = run, .error = error};
+            work->measure->expected[i][backend] =
+                number_find(expectation->number, &source, (size_t)expectation->member).value;
         }
     }
 }
@@ -570,7 +411,7 @@ static void measure_expected(CheckAdd *work, BackendKind backend, const Trajecto
 static void measure_run(CheckAdd *work, BackendKind backend, Trajectory *run,
                         const Trajectory *truth, const CheckPlan *plan)
 {
-    check_add_run(work, run, backend);
+    add_numbers(work, run, backend);
     measure_expected(work, backend, run, NULL);
     if (truth == NULL || run == truth) {
         return;
@@ -584,7 +425,6 @@ static void measure_run(CheckAdd *work, BackendKind backend, Trajectory *run,
         return;
     }
     check_add_error(work, run, &error, plan->uncertainty);
-    add_error_of_kind(work, run, &error, plan->uncertainty);
     measure_expected(work, backend, run, &error);
     if (plan->is_full && backend == BACKEND_ODE && work->scenario->run.step > 0.0) {
         add_orders(work, run, truth, plan);
@@ -724,11 +564,12 @@ CheckMeasure check_measure_copy(const CheckMeasure *measure)
 
 size_t check_measure_packed_size(const Scenario *scenario)
 {
-    // in the same order: extremes and spikes; forces, contacts and spikes; energy, cost,
-    // errors and orders
-    enum { OF_BODY = 6, OF_JOINT = JOINT_NUMBER_COUNT + 2, OF_RUN = 18, GROUPS = 2 };
-    const Linkage *linkage = &scenario->linkage;
-    const size_t count = OF_BODY * linkage->body_count + OF_JOINT * linkage->joint_count + OF_RUN;
+    enum { GROUPS = 2 };
+    size_t count = HALVINGS + 1; // the orders and the hash
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        const bool is_there = (NUMBERS[id].places & NUMBER_CHECK) != 0;
+        count += is_there ? number_member_count(NUMBERS[id].owner, &scenario->linkage) : 0;
+    }
     return sizeof(CheckMeasure) +
            GROUPS * scenario->run.backend_count * count * sizeof(CheckMetric);
 }

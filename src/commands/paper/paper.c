@@ -7,6 +7,7 @@
 #include "casefile/casefile.h"
 #include "contact/law.h"
 #include "contact/penalty.h"
+#include "measure/number_values.h"
 #include "run/registry.h"
 #include "run/tracer.h"
 
@@ -86,7 +87,7 @@ static void finish_row(ExtremesRow *row)
         const double difference = fabs(row->ours[i] - row->printed[i]) / fabs(row->printed[i]);
         row->difference_max = fmax(row->difference_max, difference);
         row->as_printed +=
-            printed_agrees(row->ours[i], row->printed[i], printed_decimals(i)) ? 1 : 0;
+            printed_agrees(row->ours[i], row->printed[i], PRINTED_COLUMNS[i].decimals) ? 1 : 0;
     }
 }
 
@@ -102,17 +103,15 @@ static void take_joint(const Scenario *scenario, const Trajectory *run, Extremes
 
 static void take_bodies(const Scenario *scenario, const Trajectory *run, ExtremesRow *row)
 {
-    for (int i = 0; i < 2; i++) {
-        const int body = linkage_find_body(&scenario->linkage, BODY_NAMES[i]);
+    const NumberSource source = {.scenario = scenario, .run = run};
+    for (size_t i = 0; i < PRINTED_QUANTITY_COUNT; i++) {
+        const PrintedColumn *column = &PRINTED_COLUMNS[i];
+        const int body = linkage_find_body(&scenario->linkage, column->body);
         if (body < 0) {
-            snprintf(row->message, sizeof row->message, "the case has no body %s", BODY_NAMES[i]);
+            snprintf(row->message, sizeof row->message, "the case has no body %s", column->body);
             return;
         }
-        const BodyExtremes *extremes = &run->bodies[body];
-        row->ours[2 * i] = extremes->omega_max.value;
-        row->ours[2 * i + 1] = extremes->omega_min.value;
-        row->ours[2 * i + 4] = extremes->alpha_max.value;
-        row->ours[2 * i + 5] = extremes->alpha_min.value;
+        row->ours[i] = number_find(column->number, &source, (size_t)body).value;
     }
     finish_row(row);
 }

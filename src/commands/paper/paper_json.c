@@ -13,13 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// The keys of Tables VII and VIII, in the order of printed.h.
-static const char *const EXTREMES_KEYS[PRINTED_QUANTITY_COUNT] = {
-    "coupler_omega_max_rad_s",   "coupler_omega_min_rad_s",   "follower_omega_max_rad_s",
-    "follower_omega_min_rad_s",  "coupler_alpha_max_rad_s2",  "coupler_alpha_min_rad_s2",
-    "follower_alpha_max_rad_s2", "follower_alpha_min_rad_s2",
-};
-
 static const char *const PLACE_WORDS[] = {
     [TYPO_TABLE_1] = "Table I",   [TYPO_TABLE_2] = "Table II",
     [TYPO_TABLE_3] = "Table III", [TYPO_TABLES_7_8] = "Tables VII and VIII",
@@ -102,8 +95,10 @@ static json_t *physics_object(const Physical *physical)
 static json_t *values_object(const double values[PRINTED_QUANTITY_COUNT])
 {
     json_t *object = json_object();
-    for (int i = 0; i < PRINTED_QUANTITY_COUNT; i++) {
-        json_object_set_new(object, EXTREMES_KEYS[i], packed(json_real(values[i])));
+    for (size_t i = 0; i < PRINTED_QUANTITY_COUNT; i++) {
+        char key[PRINTED_WORDS_SIZE];
+        printed_column_key(i, key);
+        json_object_set_new(object, key, packed(json_real(values[i])));
     }
     return object;
 }

@@ -123,16 +123,19 @@ static void write_laws(const PaperResult *result, const Style *style, Text *text
 // One of Tables VII (first = 0) and VIII (first = 4).
 static void write_extremes(const PaperResult *result, int first, size_t width, Text *text)
 {
-    const int decimals = printed_decimals(first);
-    const char *unit = first == 0 ? "rad/s" : "rad/s^2";
-    static const char *const TITLES[] = {"coupler max", "coupler min", "follower max",
-                                         "follower min"};
+    const int decimals = PRINTED_COLUMNS[first].decimals;
     Table *table = table_create(6);
     table_fit(table, width);
     table_head(table, 0, "row", "", TABLE_LEFT);
     table_head(table, 1, "", "", TABLE_LEFT);
-    for (int i = 0; i < 4; i++) {
-        table_head(table, 2 + (size_t)i, TITLES[i], unit, TABLE_RIGHT);
+    for (size_t i = 0; i < 4; i++) {
+        const PrintedColumn *column = &PRINTED_COLUMNS[(size_t)first + i];
+        const Number *number = &NUMBERS[column->number];
+        // the heading of the table has the quantity: "omega max" is "max" in it
+        char title[PRINTED_WORDS_SIZE];
+        snprintf(title, sizeof title, "%s%s", column->body,
+                 strchr(number->titles[NUMBER_PUSHED], ' '));
+        table_head(table, 2 + i, title, number->units[NUMBER_PUSHED], TABLE_RIGHT);
     }
     for (int row = 0; row < PRINTED_ROW_COUNT; row++) {
         const ExtremesRow *extremes = &result->extremes[row];

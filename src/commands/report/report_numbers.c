@@ -1,4 +1,5 @@
-// Writes what of a run is best read as a table: where its energy went, and how its motion repeats.
+// Writes what of a run is best read as a table: its numbers, where its energy went, and how its
+// motion repeats.
 #include "commands/report/report_numbers.h"
 #include "commands/report/report_html.h"
 #include "measure/section.h"
@@ -8,48 +9,124 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Where the energy went.
+// Numbers by member and run: those of model/number_list.h that have NUMBER_REPORT.
 
-static void energy_row(const Trajectory *run, const RunFloor *floor, bool has_loads, Text *html)
+static bool is_reported(const Number *number, NumberOwner owner, const Linkage *linkage)
 {
-    const Energy shown = run_floor_energy(&run->energy, floor);
-    const Energy *energy = &shown;
-    const double largest = fmax(fmax(fabs(energy->drive_work), fabs(energy->load_work)),
-                                fmax(fabs(energy->dissipated), fabs(energy->change)));
-    text_append(html, "<tr>");
-    html_words("th scope=\"row\"", run->backend, html);
-    html_cell_units(energy->drive_work, "J", html);
-    if (has_loads) {
-        html_cell_units(energy->load_work, "J", html);
-    }
-    html_cell_units(energy->dissipated, "J", html);
-    html_cell_units(energy->friction, "J", html);
-    html_cell_units(energy->change, "J", html);
-    html_cell_units(energy->residual, "J", html);
-    html_cell_number("%.2g", largest > 0.0 ? fabs(energy->residual) / largest : NAN, html);
-    text_append(html, "</tr>\n");
+    return number->owner == owner && (number->places & NUMBER_REPORT) != 0 &&
+           (number->traits & number_fields_lacked(linkage)) == 0;
 }
 
-static void append_energy(const RunReport *report, Text *html)
+static void append_head(const char *title, const char *unit, Text *html)
 {
-    const bool has_loads = report->scenario->linkage.load_count > 0;
-    text_append(html,
-                "<section id=\"energy\">\n<h2>Where the energy went</h2>\n<div class=\"wide\">"
-                "<table class=\"numbers\">\n<caption>Over the whole run. The residual is what the "
-                "balance leaves unexplained: the solver's own error.</caption>\n<thead><tr>"
-                "<th scope=\"col\">run</th><th scope=\"col\">work of the drive</th>%s"
-                "<th scope=\"col\">lost in damping</th><th scope=\"col\">in friction</th>"
-                "<th scope=\"col\">stored</th><th scope=\"col\">residual</th>"
-                "<th scope=\"col\">of the largest</th></tr></thead>\n<tbody>\n",
-                has_loads ? "<th scope=\"col\">of the loads</th>" : "");
-    RunFloor *floors = run_floor_list(report);
-    for (size_t i = 0; i < report->run_count; i++) {
-        if (report->runs[i]->is_complete) {
-            energy_row(report->runs[i], &floors[i], has_loads, html);
+    Text words;
+    text_init(&words);
+    text_append(&words, "%s%s%s", title, unit[0] != '\0' ? ", " : "", unit);
+    html_words("th scope=\"col\"", words.data, html);
+    text_finish(&words);
+}
+
+static void append_heads(const RunReport *report, NumberOwner owner, NumberTurn turn, Text *html)
+{
+    const bool has_crank = run_report_has_crank(report);
+    if (NUMBER_OWNERS[owner].members != NUMBER_OF_WHOLE) {
+        append_head(NUMBER_OWNERS[owner].members == NUMBER_OF_BODIES ? "body" : "joint", "", html);
+    }
+    append_head("run", "", html);
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        if (is_reported(&NUMBERS[id], owner, &report->scenario->linkage)) {
+            append_head(NUMBERS[id].titles[turn], NUMBERS[id].units[turn], html);
+            if ((NUMBERS[id].traits & NUMBER_TIMED) != 0) {
+                append_head(has_crank ? "at crank" : "at time", has_crank ? "deg" : "ms", html);
+            }
         }
     }
+}
+
+static void append_cells(const RunReport *report, NumberOwner owner, NumberTurn turn,
+                         const NumberRecord *record, Text *html)
+{
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        const Number *number = &NUMBERS[id];
+        if (!is_reported(number, owner, &report->scenario->linkage)) {
+            continue;
+        }
+        const Extreme *value = &record->values[id];
+        const double per_si =
+            number->kind == NUMBER_OF_MICROSECONDS ? 1.0 : units_per_si(number->units[turn]);
+        html_cell_number(number_is_whole(number) ? "%.0f" : "%.5g", value->value * per_si, html);
+        if ((number->traits & NUMBER_TIMED) != 0 && run_report_has_crank(report)) {
+            html_cell_number("%.1f", value->crank_rad * UNITS_DEG, html);
+        } else if ((number->traits & NUMBER_TIMED) != 0) {
+            html_cell_number("%.4f", value->time_s * UNITS_MS, html);
+        }
+    }
+}
+
+// A table of the members of an owner whose units are of a kind; none where there is none.
+static void append_numbers(const RunReport *report, const RunFloor *floors, NumberOwner owner,
+                           NumberTurn turn, const char *caption, Text *html)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    const NumberMembers members = NUMBER_OWNERS[owner].members;
+    bool is_begun = false;
+    for (size_t member = 0; member < number_member_count(owner, linkage); member++) {
+        const bool is_its =
+            number_turn(owner, linkage, member) == turn &&
+            !(members == NUMBER_OF_BODIES && linkage_is_driven(linkage, (int)member));
+        for (size_t i = 0; is_its && i < report->run_count; i++) {
+            if (!report->runs[i]->is_complete) {
+                continue;
+            }
+            if (!is_begun) {
+                text_append(html,
+                            "<div class=\"wide\"><table class=\"numbers\">\n<caption>%s</caption>"
+                            "\n<thead><tr>",
+                            caption);
+                append_heads(report, owner, turn, html);
+                text_append(html, "</tr></thead>\n<tbody>\n");
+                is_begun = true;
+            }
+            const NumberRecord shown = run_floor_record(report, i, &floors[i], owner, member);
+            text_append(html, "<tr>");
+            if (members != NUMBER_OF_WHOLE) {
+                html_words("th scope=\"row\"", number_member(owner, linkage, member), html);
+            }
+            html_words(members != NUMBER_OF_WHOLE ? "td" : "th scope=\"row\"",
+                       report->runs[i]->backend, html);
+            append_cells(report, owner, turn, &shown, html);
+            text_append(html, "</tr>\n");
+        }
+    }
+    text_append(html, "%s", is_begun ? "</tbody></table></div>\n" : "");
+}
+
+static void append_all_numbers(const RunReport *report, Text *html)
+{
+    static const struct {
+        NumberOwner owner;
+        NumberTurn turn;
+        const char *caption;
+    } TABLES[] = {
+        {NUMBER_OWNER_BODY, NUMBER_PUSHED, "Bodies"},
+        {NUMBER_OWNER_BODY_SPIKE, NUMBER_SPED, "The strongest spike of each acceleration"},
+        {NUMBER_OWNER_JOINT, NUMBER_PUSHED, "Joints, those without play too"},
+        {NUMBER_OWNER_JOINT, NUMBER_TURNED, "Joints whose limits turn them"},
+        {NUMBER_OWNER_RUN, NUMBER_PUSHED, "All bodies and joints together"},
+        {NUMBER_OWNER_COST, NUMBER_PUSHED, "What the runs took"},
+    };
+    RunFloor *floors = run_floor_list(report);
+    text_append(html, "<section id=\"numbers\">\n<h2>Numbers of the runs</h2>\n");
+    for (size_t i = 0; i < sizeof TABLES / sizeof *TABLES; i++) {
+        append_numbers(report, floors, TABLES[i].owner, TABLES[i].turn, TABLES[i].caption, html);
+    }
+    text_append(html, "</section>\n<section id=\"energy\">\n<h2>Where the energy went</h2>\n");
+    append_numbers(report, floors, NUMBER_OWNER_ENERGY, NUMBER_PUSHED,
+                   "Over the whole run. The residual is what the balance leaves unexplained: the "
+                   "solver's own error.",
+                   html);
+    text_append(html, "</section>\n");
     free(floors);
-    text_append(html, "</tbody></table></div>\n</section>\n");
 }
 
 // How the motion repeats.
@@ -226,6 +303,6 @@ static void append_repeating(const RunReport *report, Text *html)
 
 void report_numbers_write(const RunReport *report, Text *html)
 {
-    append_energy(report, html);
+    append_all_numbers(report, html);
     append_repeating(report, html);
 }

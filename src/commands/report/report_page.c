@@ -18,20 +18,6 @@
 
 // The answer.
 
-static void answer_row(const OverviewRow *row, bool has_crank, Text *html)
-{
-    text_append(html, "<tr>");
-    html_words("th scope=\"row\"", row->name, html);
-    html_cell_units(row->largest, row->unit, html);
-    html_cell_number(has_crank ? "%.1f deg" : "%.4g ms",
-                     has_crank ? units_wrapped_deg(row->crank_rad) : row->time_s * UNITS_MS, html);
-    html_cell_number("%.3g", row->ratio, html);
-    html_cell_number("%.3g", row->impacts, html);
-    html_cell_number("%.1f %%", row->contact * UNITS_PERCENT, html);
-    html_cell_units(row->deepest, row->depth, html);
-    text_append(html, "</tr>\n");
-}
-
 enum { JOINTS_MOST = 10, BODIES_MOST = 6 }; // rows of a large mechanism
 
 static size_t least(size_t a, size_t b)
@@ -39,37 +25,32 @@ static size_t least(size_t a, size_t b)
     return a < b ? a : b;
 }
 
-// A row of a motion that does not repeat.
-static void spread_row(const OverviewRow *row, Text *html)
+static void write_rows(const OverviewRow *rows, size_t row_count, const OverviewColumn *columns,
+                       size_t column_count, Text *html)
 {
-    text_append(html, "<tr>");
-    html_words("th scope=\"row\"", row->name, html);
-    for (OverviewCell cell = 0; cell < OVERVIEW_CELL_COUNT; cell++) {
-        Text words;
-        text_init(&words);
-        run_overview_cell(row, cell, &words);
-        html_words("td", words.data, html);
-        text_finish(&words);
-    }
-    text_append(html, "</tr>\n");
-}
-
-static void write_row(const Overview *overview, const OverviewRow *row, bool has_crank, Text *html)
-{
-    if (run_overview_is_random(overview)) {
-        spread_row(row, html);
-    } else {
-        answer_row(row, has_crank, html);
+    for (size_t i = 0; i < row_count; i++) {
+        text_append(html, "<tr>");
+        html_words("th scope=\"row\"", rows[i].name, html);
+        for (size_t k = 0; k < column_count; k++) {
+            Text words;
+            text_init(&words);
+            run_overview_cell(&rows[i], columns[k].quantity, &words);
+            html_words("td", words.data != NULL ? words.data : "", html);
+            text_finish(&words);
+        }
+        text_append(html, "</tr>\n");
     }
 }
 
-static void overview_head(const Overview *overview, bool has_crank, Text *html)
+static void overview_head(const Overview *overview, bool has_crank, const OverviewColumn *columns,
+                          size_t column_count, Text *html)
 {
     const bool is_random = run_overview_is_random(overview);
     text_append(html,
                 "<div class=\"wide\"><table class=\"numbers\">\n<caption>%sargest angular "
                 "acceleration of each body, ",
-                overview->joint_count > 0 ? "Largest force of each joint with play, l" : "L");
+                overview->joint_count + overview->ideal_count > 0 ? "Largest force of each joint, l"
+                                                                  : "L");
     if (is_random) {
         text_append(html, "of %zu %s of the settled motion", overview->motion->counted,
                     has_crank ? "revolutions" : "periods");
@@ -77,15 +58,11 @@ static void overview_head(const Overview *overview, bool has_crank, Text *html)
         text_append(html, "by ");
         xml_append(overview->run->backend, html);
     }
-    text_append(html,
-                "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>%s"
-                "<th scope=\"col\">x ideal</th><th scope=\"col\">impacts%s</th>"
-                "<th scope=\"col\">contact</th><th scope=\"col\">deepest</th></tr></thead>\n"
-                "<tbody>\n",
-                is_random ? "<th scope=\"col\">95 %</th><th scope=\"col\">+- %</th>"
-                            "<th scope=\"col\">median</th><th scope=\"col\">most</th>"
-                          : "<th scope=\"col\">largest</th><th scope=\"col\">at</th>",
-                has_crank ? " a turn" : "");
+    text_append(html, "</caption>\n<thead><tr><th scope=\"col\">joint, body</th>");
+    for (size_t i = 0; i < column_count; i++) {
+        html_words("th scope=\"col\"", columns[i].page_title, html);
+    }
+    text_append(html, "</tr></thead>\n<tbody>\n");
 }
 
 // The table of the first screen, with more of its rows.
@@ -94,18 +71,17 @@ static void append_overview(const RunReport *report, Text *html)
     Overview overview = run_overview_make(report);
     const bool has_crank = drive_is_steady(&report->scenario->linkage.driver);
     const size_t joints = least(overview.joint_count, JOINTS_MOST);
+    const size_t ideals =
+        run_overview_has_ideal(&overview) ? least(overview.ideal_count, JOINTS_MOST) : 0;
     const size_t bodies = least(overview.body_count, BODIES_MOST);
-    if (joints + bodies > 0) {
-        overview_head(&overview, has_crank, html);
-        for (size_t i = 0; i < joints; i++) {
-            write_row(&overview, &overview.joints[i], has_crank, html);
-        }
-        for (size_t i = 0; i < bodies; i++) {
-            write_row(&overview, &overview.bodies[i], has_crank, html);
-        }
-        for (size_t i = 0; i < overview.drive_count; i++) {
-            write_row(&overview, &overview.drives[i], has_crank, html);
-        }
+    if (joints + ideals + bodies > 0) {
+        OverviewColumn columns[OVERVIEW_COLUMN_MAX];
+        const size_t count = run_overview_columns(&overview, has_crank, columns);
+        overview_head(&overview, has_crank, columns, count, html);
+        write_rows(overview.joints, joints, columns, count, html);
+        write_rows(overview.ideal_joints, ideals, columns, count, html);
+        write_rows(overview.bodies, bodies, columns, count, html);
+        write_rows(overview.drives, overview.drive_count, columns, count, html);
         text_append(html, "</tbody></table></div>\n");
     }
     const size_t more = overview.joint_count - joints + overview.body_count - bodies;

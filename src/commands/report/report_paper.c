@@ -3,6 +3,7 @@
 #include "commands/report/report_draw.h"
 #include "commands/report/report_html.h"
 #include "commands/report/report_result.h"
+#include "measure/estimate.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -220,8 +221,10 @@ static void say_variation(const CurveFigure *figure, const json_t *result, const
     const json_t *nominal = json_object_get(row_named(result, "Ideal Nominal"), "recomputed");
     for (int i = 0; json_is_object(nominal) && i < 2; i++) {
         char key[64];
-        snprintf(key, sizeof key, "%s_%s", CURVE_BODIES[i],
-                 strstr(figure->keys[i], "omega") != NULL ? "omega_max_rad_s" : "alpha_max_rad_s2");
+        const bool is_speed = strstr(figure->keys[i], "omega") != NULL;
+        snprintf(
+            key, sizeof key, "%s_%s", CURVE_BODIES[i],
+            NUMBERS[is_speed ? NUMBER_BODY_OMEGA_MAX : NUMBER_BODY_ALPHA_MAX].keys[NUMBER_PUSHED]);
         const double ours = html_number_of(json_object_get(row, "recomputed"), key);
         const double printed = html_number_of(json_object_get(row, "printed"), key);
         text_append(words,
@@ -265,37 +268,33 @@ static void append_curves(const CurveFigure *figure, const json_t *result, Text 
 
 static void extreme_row(const json_t *row, const char *which, const char *key, Text *html)
 {
-    static const char *const KEYS[] = {"coupler_omega_max_rad_s",   "coupler_omega_min_rad_s",
-                                       "follower_omega_max_rad_s",  "follower_omega_min_rad_s",
-                                       "coupler_alpha_max_rad_s2",  "coupler_alpha_min_rad_s2",
-                                       "follower_alpha_max_rad_s2", "follower_alpha_min_rad_s2"};
     text_append(html, "<tr>");
     html_words("th scope=\"row\"", html_text_of(row, "row"), html);
     html_words("td", which, html);
-    for (size_t i = 0; i < sizeof KEYS / sizeof *KEYS; i++) {
-        html_cell_number_of(json_object_get(row, key), KEYS[i], "%.6g", html);
+    for (size_t i = 0; i < PRINTED_QUANTITY_COUNT; i++) {
+        char column[PRINTED_WORDS_SIZE];
+        printed_column_key(i, column);
+        html_cell_number_of(json_object_get(row, key), column, "%.6g", html);
     }
     text_append(html, "</tr>\n");
 }
 
 static void append_extremes(const json_t *result, Text *html)
 {
-    static const char *const HEADS[] = {"case",
-                                        "which",
-                                        "coupler omega max",
-                                        "min",
-                                        "follower omega max",
-                                        "min",
-                                        "coupler alpha max",
-                                        "min",
-                                        "follower alpha max",
-                                        "min"};
+    enum { BEFORE = 2 };
+    char titles[PRINTED_QUANTITY_COUNT][PRINTED_WORDS_SIZE];
+    const char *heads[BEFORE + PRINTED_QUANTITY_COUNT] = {"case", "which"};
+    for (size_t k = 0; k < PRINTED_QUANTITY_COUNT; k++) {
+        printed_column_title(k, titles[k]);
+        heads[BEFORE + k] = titles[k];
+    }
     text_append(html,
                 "<section>\n<h2>Tables VII and VIII: the extremes</h2>\n<p>The curves with the "
                 "paper's bands and the forces beside them are in the pages of <code>jointplay "
                 "report cases/paper/stackup-poisson.yaml</code> and "
                 "<code>stackup-impact.yaml</code>.</p>\n");
-    html_table_begin("Tables VII and VIII, rad/s and rad/s^2", 10, HEADS, html);
+    html_table_begin("Tables VII and VIII, rad/s and rad/s^2", BEFORE + PRINTED_QUANTITY_COUNT,
+                     heads, html);
     size_t i;
     json_t *row;
     json_array_foreach(json_object_get(result, "extremes"), i, row)

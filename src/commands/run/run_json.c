@@ -79,15 +79,15 @@ static json_t *run_truth_json_error(const RunReport *report, size_t run)
         return json_null();
     }
     const bool is_certified = run_report_is_certified(report, error);
-    const Truth *truth = report->truth;
     json_t *object = json_object();
     json_object_set_new(object, "against", json_string(error->against));
     fields_json_set(ERROR_FIELDS, FIELD_JSON, error, object);
     set_error_members(object, report, run);
     json_object_set_new(object, "includes_play",
                         json_boolean(run_report_includes_play(report, run)));
-    json_value_set(object, "horizon_s", is_certified ? truth->horizon_s : NAN);
-    json_value_set(object, "reference_uncertainty", is_certified ? truth->uncertainty : NAN);
+    NumberSource source = run_report_source(report, run);
+    source.truth = is_certified ? source.truth : NULL;
+    number_fields_json(object, NUMBER_OWNER_TRUTH, &source, &report->scenario->linkage, 0);
     json_object_set_new(object, "limited_by_reference",
                         json_boolean(run_report_is_limited_by_reference(report, error)));
     return object;
@@ -286,26 +286,32 @@ static void set_in(json_t *object, const char *name, const char *unit, double va
     json_value_set(object, key, value);
 }
 
-static json_t *bodies_object(const Linkage *linkage, const Trajectory *run)
+static json_t *bodies_object(const Linkage *linkage, const NumberSource *of)
 {
+    const Trajectory *run = of->run;
     json_t *bodies = json_object();
     for (size_t i = 0; i < linkage->body_count; i++) {
         if (!linkage_is_driven(linkage, (int)i)) {
-            json_t *body = fields_json(RUN_BODY_FIELDS, FIELD_JSON, &run->bodies[i]);
-            spike_json_set(body, RUN_ALPHA, linkage, &run->alpha_spikes[i]);
+            json_t *body = json_object();
+            number_fields_json(body, NUMBER_OWNER_BODY, of, linkage, i);
+            spike_json_set(body, NUMBER_OWNER_BODY_SPIKE, run, i);
             json_object_set_new(bodies, linkage->bodies[i].name, body);
         }
     }
     return bodies;
 }
 
-static json_t *contacts_array(const Joint *joint, const JointExtremes *extremes, bool is_felt)
+static json_t *contacts_array(const Linkage *linkage, const NumberSource *of, size_t joint,
+                              bool is_felt)
 {
-    const unsigned where = FIELD_JSON | run_report_contact(joint);
+    const JointExtremes *extremes = &of->run->joints[joint];
     json_t *contacts = json_array();
     for (size_t i = 0; is_felt && i < extremes->spike_count; i++) {
-        json_array_append_new(contacts,
-                              fields_json(RUN_CONTACT_FIELDS, where, &extremes->spikes[i]));
+        NumberSource source = *of;
+        source.contact = &extremes->spikes[i];
+        json_t *contact = json_object();
+        number_fields_json(contact, NUMBER_OWNER_JOINT_CONTACT, &source, linkage, joint);
+        json_array_append_new(contacts, contact);
     }
     return contacts;
 }
@@ -350,35 +356,33 @@ static void set_limits(json_t *object, const Linkage *linkage, const Trajectory 
     set_in(object, "coordinate_max", unit, most);
 }
 
-static json_t *joint_object(const Linkage *linkage, const Trajectory *run, size_t number)
+static json_t *joint_object(const Linkage *linkage, const NumberSource *of, size_t number)
 {
-    const Joint *of = &linkage->joints[number];
-    const bool has_play = linkage_has_play(of);
-    const RunJoint numbers = run_fields_joint(linkage, run, number);
-    const unsigned where =
-        FIELD_JSON | run_report_contact(of) | (linkage->is_spatial ? RUN_SPATIAL : 0);
-    RunJointFields fields;
-    run_fields_of_joint(linkage_is_torsional(of), &fields);
-    json_t *joint = fields_json(fields.rows, where, &numbers);
-    if (slide_range_has(of)) {
-        set_slide(joint, linkage, run, number, numbers.is_felt);
+    const Trajectory *run = of->run;
+    const Joint *joint = &linkage->joints[number];
+    const bool has_play = linkage_has_play(joint);
+    const bool is_felt = trajectory_feels_play(run, joint);
+    json_t *object = json_object();
+    number_fields_json(object, NUMBER_OWNER_JOINT, of, linkage, number);
+    if (slide_range_has(joint)) {
+        set_slide(object, linkage, run, number, is_felt);
     }
-    json_object_set_new(joint, "has_play", json_boolean(has_play));
-    if (of->limits.kind != LIMIT_NONE) {
-        set_limits(joint, linkage, run, number);
-    } else if (has_play && of->kind != JOINT_STOP) {
-        json_value_set(joint, "radial_clearance_m", linkage_radial_clearance(of));
+    json_object_set_new(object, "has_play", json_boolean(has_play));
+    if (joint->limits.kind != LIMIT_NONE) {
+        set_limits(object, linkage, run, number);
+    } else if (has_play && joint->kind != JOINT_STOP) {
+        json_value_set(object, "radial_clearance_m", linkage_radial_clearance(joint));
     }
-    json_object_set_new(joint, "spikes", contacts_array(of, &run->joints[number], numbers.is_felt));
-    spike_json_set(joint, run_report_force(of), linkage, &run->force_spikes[number]);
-    return joint;
+    json_object_set_new(object, "spikes", contacts_array(linkage, of, number, is_felt));
+    spike_json_set(object, NUMBER_OWNER_JOINT_SPIKE, run, number);
+    return object;
 }
 
-static json_t *joints_object(const Linkage *linkage, const Trajectory *run)
+static json_t *joints_object(const Linkage *linkage, const NumberSource *of)
 {
     json_t *joints = json_object();
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        json_object_set_new(joints, linkage->joints[i].name, joint_object(linkage, run, i));
+        json_object_set_new(joints, linkage->joints[i].name, joint_object(linkage, of, i));
     }
     return joints;
 }
@@ -403,13 +407,19 @@ static json_t *run_object(const RunReport *report, size_t index)
     if (!run->is_complete) {
         return object;
     }
+    const NumberSource source = run_report_source(report, index);
+    number_fields_json(object, NUMBER_OWNER_COST, &source, linkage, 0);
+    json_object_set_new(object, "tolerance_held",
+                        run->trials > 0 ? json_boolean(!run->is_short && !run->estimate_is_cut)
+                                        : json_null());
+    number_fields_json(object, NUMBER_OWNER_RUN, &source, linkage, 0);
     json_object_set_new(object, "engine", engine_object(&run->engine));
-    json_object_set_new(object, "bodies", bodies_object(linkage, run));
-    json_object_set_new(object, "joints", joints_object(linkage, run));
+    json_object_set_new(object, "bodies", bodies_object(linkage, &source));
+    json_object_set_new(object, "joints", joints_object(linkage, &source));
     json_object_set_new(object, "error", run_truth_json_error(report, index));
-    json_object_set_new(
-        object, "energy",
-        fields_json(RUN_ENERGY_FIELDS, FIELD_JSON | run_loaded(linkage), &run->energy));
+    json_t *energy = json_object();
+    number_fields_json(energy, NUMBER_OWNER_ENERGY, &source, linkage, 0);
+    json_object_set_new(object, "energy", energy);
     run_signals_json(object, report->scenario, run);
     json_object_set_new(object, "spike_bands", spike_json_bands(report, run));
     json_object_set_new(object, "spike_match", run_truth_json_matches(report, index));

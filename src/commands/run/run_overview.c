@@ -37,9 +37,27 @@ static const Trajectory *overview_run(const RunReport *report)
     return shown;
 }
 
-static double ratio_of(double value, double ideal)
+// Gives a row a quantity whose key is made of a stem and a part.
+static OverviewCell *set_cell(OverviewRow *row, OverviewQuantity quantity, const char *stem,
+                              const char *part, const char *unit_key, const char *unit,
+                              double value)
 {
-    return ideal > 0.0 ? value / ideal : NAN;
+    OverviewCell *cell = &row->cells[quantity];
+    *cell = (OverviewCell){.is_there = true, .unit_key = unit_key, .unit = unit, .value = value};
+    snprintf(cell->key, sizeof cell->key, "%s%s", stem, part);
+    return cell;
+}
+
+// What stands at a time: its size, where and when that was, and how it is to that with ideal
+// joints, NAN where that is not known.
+static void set_largest(OverviewRow *row, const char *stem, const char *unit_key, const char *unit,
+                        Extreme largest, double ideal)
+{
+    set_cell(row, OVERVIEW_LARGEST, stem, "_max", unit_key, unit, largest.value);
+    set_cell(row, OVERVIEW_CRANK, stem, "_max_crank", "deg", NULL, largest.crank_rad);
+    set_cell(row, OVERVIEW_TIME, stem, "_max_time", "s", NULL, largest.time_s);
+    set_cell(row, OVERVIEW_RATIO, "ratio_to_ideal", "", NULL, NULL,
+             ideal > 0.0 ? largest.value / ideal : NAN);
 }
 
 static OverviewRow joint_row(const RunReport *report, const Trajectory *run, size_t number,
@@ -55,42 +73,31 @@ static OverviewRow joint_row(const RunReport *report, const Trajectory *run, siz
         drive_is_steady(&scenario->linkage.driver)
             ? (run->duration_s - run->report_from_s) / linkage_period(&scenario->linkage)
             : 1.0;
-    return (OverviewRow){
-        .name = joint->name,
-        .stem = is_turn ? "torque" : "force",
-        .unit = units->force,
-        .unit_key = units->force_key,
-        .largest = extremes->force_max.value,
-        .crank_rad = extremes->force_max.crank_rad,
-        .time_s = extremes->force_max.time_s,
-        .ratio = is_ideal ? ratio_of(extremes->force_max.value, ideal->force_max[number]) : NAN,
-        .impacts = (double)extremes->impacts / turns,
-        .contact = trajectory_contact_share(run, number),
-        .deepest = extremes->penetration_max.value,
-        .depth = units->length_key,
-    };
+    OverviewRow row = {.name = joint->name};
+    set_largest(&row, is_turn ? "torque" : "force", units->force_key, units->force,
+                extremes->force_max, is_ideal ? ideal->force_max[number] : NAN);
+    if (trajectory_feels_play(run, joint)) {
+        set_cell(&row, OVERVIEW_IMPACTS, "impacts_per_revolution", "", NULL, NULL,
+                 (double)extremes->impacts / turns);
+        set_cell(&row, OVERVIEW_CONTACT, "contact_fraction", "", NULL, NULL,
+                 trajectory_contact_share(run, number));
+        set_cell(&row, OVERVIEW_DEEPEST, "penetration", "_max", units->length_key,
+                 units->length_key, extremes->penetration_max.value);
+    }
+    return row;
 }
 
 static OverviewRow body_row(const Trajectory *run, size_t number, const IdealSizes *ideal)
 {
     const BodyExtremes *extremes = &run->bodies[number];
-    const Extreme *largest = fabs(extremes->alpha_min.value) > fabs(extremes->alpha_max.value)
-                                 ? &extremes->alpha_min
-                                 : &extremes->alpha_max;
-    const double size = fabs(largest->value);
-    return (OverviewRow){
-        .name = run->linkage.bodies[number].name,
-        .stem = "alpha_size",
-        .unit = "rad/s^2",
-        .unit_key = "rad_s2",
-        .largest = size,
-        .crank_rad = largest->crank_rad,
-        .time_s = largest->time_s,
-        .ratio = ideal->is_known ? ratio_of(size, ideal->alpha_max[number]) : NAN,
-        .impacts = NAN,
-        .contact = NAN,
-        .deepest = NAN,
-    };
+    Extreme largest = fabs(extremes->alpha_min.value) > fabs(extremes->alpha_max.value)
+                          ? extremes->alpha_min
+                          : extremes->alpha_max;
+    largest.value = fabs(largest.value);
+    OverviewRow row = {.name = run->linkage.bodies[number].name};
+    set_largest(&row, "alpha_size", "rad_s2", "rad/s^2", largest,
+                ideal->is_known ? ideal->alpha_max[number] : NAN);
+    return row;
 }
 
 // 1: the peak of a motion is another than that of the run where it is larger by so much: the same
@@ -104,23 +111,16 @@ static OverviewRow drive_row(const Scenario *scenario, const Trajectory *run, si
     const Linkage *linkage = &scenario->linkage;
     const bool is_alone = linkage_drive_count(linkage) <= 1;
     OverviewRow row = {
-        .name = is_alone ? "drive" : linkage->joints[linkage_drive(linkage, drive)->joint].name,
-        .stem = "torque",
-        .unit = "N m",
-        .unit_key = "N_m",
-        .crank_rad = NAN,
-        .impacts = NAN,
-        .contact = NAN,
-        .deepest = NAN};
+        .name = is_alone ? "drive" : linkage->joints[linkage_drive(linkage, drive)->joint].name};
+    Extreme largest = {.value = 0.0, .time_s = 0.0, .crank_rad = NAN};
     for (size_t k = 0; k < run->sample_count; k++) {
         const double size = fabs(drive_torque_at(scenario, run, drive, k));
-        if (run->times[k] >= run->report_from_s && size > row.largest) {
-            row.largest = size;
-            row.crank_rad = run->crank_angles[k];
-            row.time_s = run->times[k];
+        if (run->times[k] >= run->report_from_s && size > largest.value) {
+            largest = (Extreme){size, run->times[k], run->crank_angles[k]};
         }
     }
-    row.ratio = ideal->is_known ? ratio_of(row.largest, ideal->torque_max[drive]) : NAN;
+    set_largest(&row, "torque", "N_m", "N m", largest,
+                ideal->is_known ? ideal->torque_max[drive] : NAN);
     return row;
 }
 
@@ -133,53 +133,101 @@ static const SettledMotion *overview_motion(const Scenario *scenario, const Traj
     return is_there && settled->motions[0].period != 1 ? &settled->motions[0] : NULL;
 }
 
+static void set_interval(OverviewCell *cell, double value, double low, double high)
+{
+    cell->value = value;
+    cell->has_interval = true;
+    cell->low = low;
+    cell->high = high;
+}
+
+// 1: half the width of the interval of the 95 % quantile, to its wider side, over that.
+static double width_of(const SettledNumber *of)
+{
+    return fmax(of->high - of->headline, of->headline - of->low) / of->headline;
+}
+
+// Makes a cell that of the distribution of a motion that does not repeat, with cells of its median
+// and its largest.
+static void spread_cell(OverviewRow *row, OverviewQuantity quantity, OverviewQuantity median,
+                        OverviewQuantity most, const SettledNumber *number)
+{
+    OverviewCell *cell = &row->cells[quantity];
+    char stem[OVERVIEW_KEY_SIZE / 2];
+    snprintf(stem, sizeof stem, "%.*s", (int)(strlen(cell->key) - strlen("_max")), cell->key);
+    set_interval(cell, number->headline, number->low, number->high);
+    set_interval(set_cell(row, median, stem, "_median", cell->unit_key, cell->unit, NAN),
+                 number->median, number->median_low, number->median_high);
+    set_cell(row, most, stem, "_largest", cell->unit_key, cell->unit, number->largest);
+}
+
 // Makes the largest of a row that of the motion: over its period, of which the run may be a part,
 // or of the distribution of one that does not repeat.
 static void take_largest(const SettledMotion *motion, const SettledNumber *number, OverviewRow *row)
 {
-    const double ideal = row->largest / row->ratio;
+    OverviewCell *largest = &row->cells[OVERVIEW_LARGEST];
+    OverviewCell *ratio = &row->cells[OVERVIEW_RATIO];
+    const double ideal = largest->value / ratio->value;
+    if (motion->period == 0 || number->headline > largest->value * (1.0 + OTHER_PEAK)) {
+        row->cells[OVERVIEW_CRANK].value = NAN;
+        row->cells[OVERVIEW_TIME].value = NAN;
+    }
     if (motion->period == 0) {
-        row->spread = number;
+        spread_cell(row, OVERVIEW_LARGEST, OVERVIEW_MEDIAN, OVERVIEW_MOST, number);
+        set_cell(row, OVERVIEW_WIDTH, "width", "", NULL, NULL, width_of(number));
+        set_interval(ratio, NAN, number->low / ideal, number->high / ideal);
+    } else {
+        largest->value = fmax(largest->value, number->headline);
     }
-    if (motion->period == 0 || number->headline > row->largest * (1.0 + OTHER_PEAK)) {
-        row->crank_rad = NAN;
-        row->time_s = NAN;
-    }
-    row->largest = motion->period == 0 ? number->headline : fmax(row->largest, number->headline);
-    row->ratio = row->largest / ideal;
+    ratio->value = largest->value / ideal;
 }
 
 static void take_joint(const SettledMotion *motion, const SettledJoint *did, OverviewRow *row)
 {
+    OverviewCell *cells = row->cells;
     const bool is_random = motion->period == 0;
     take_largest(motion, &did->force, row);
-    row->settled = is_random ? did : NULL;
-    row->impacts = is_random ? did->impacts.median : did->impacts.mean;
-    row->contact = is_random ? did->contact.median : did->contact.mean;
-    row->deepest = is_random ? did->depth.headline : fmax(row->deepest, did->depth.headline);
+    cells[OVERVIEW_IMPACTS].value = is_random ? did->impacts.median : did->impacts.mean;
+    if (is_random) {
+        set_interval(&cells[OVERVIEW_CONTACT], did->contact.median, did->contact.median_low,
+                     did->contact.median_high);
+        spread_cell(row, OVERVIEW_DEEPEST, OVERVIEW_DEEPEST_MEDIAN, OVERVIEW_DEEPEST_MOST,
+                    &did->depth);
+    } else {
+        cells[OVERVIEW_CONTACT].value = did->contact.mean;
+        cells[OVERVIEW_DEEPEST].value = fmax(cells[OVERVIEW_DEEPEST].value, did->depth.headline);
+    }
 }
 
 static int by_size(const void *a, const void *b)
 {
-    const OverviewRow *first = a;
-    const OverviewRow *second = b;
-    return (first->largest < second->largest) - (first->largest > second->largest);
+    const double first = ((const OverviewRow *)a)->cells[OVERVIEW_LARGEST].value;
+    const double second = ((const OverviewRow *)b)->cells[OVERVIEW_LARGEST].value;
+    return (first < second) - (first > second);
 }
 
 static void add_joints(const RunReport *report, const IdealSizes *ideal, Overview *overview)
 {
     const Linkage *linkage = &report->scenario->linkage;
     overview->joints = zeroed(linkage->joint_count, sizeof *overview->joints);
+    overview->ideal_joints = zeroed(linkage->joint_count, sizeof *overview->ideal_joints);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (trajectory_feels_play(overview->run, &linkage->joints[i])) {
-            OverviewRow row = joint_row(report, overview->run, i, ideal);
-            if (overview->motion != NULL) {
-                take_joint(overview->motion, &overview->motion->joints[i], &row);
+        OverviewRow row = joint_row(report, overview->run, i, ideal);
+        if (!trajectory_feels_play(overview->run, &linkage->joints[i])) {
+            // what the limits of a pivot would bear is not what the pivot does
+            if (!linkage_is_torsional(&linkage->joints[i]) &&
+                isfinite(row.cells[OVERVIEW_LARGEST].value)) {
+                overview->ideal_joints[overview->ideal_count++] = row;
             }
-            overview->joints[overview->joint_count++] = row;
+            continue;
         }
+        if (overview->motion != NULL) {
+            take_joint(overview->motion, &overview->motion->joints[i], &row);
+        }
+        overview->joints[overview->joint_count++] = row;
     }
     qsort(overview->joints, overview->joint_count, sizeof *overview->joints, by_size);
+    qsort(overview->ideal_joints, overview->ideal_count, sizeof *overview->ideal_joints, by_size);
 }
 
 static void add_bodies(const Linkage *linkage, const IdealSizes *ideal, Overview *overview)
@@ -187,7 +235,7 @@ static void add_bodies(const Linkage *linkage, const IdealSizes *ideal, Overview
     overview->bodies = zeroed(linkage->body_count, sizeof *overview->bodies);
     for (size_t i = 0; i < linkage->body_count; i++) {
         OverviewRow row = body_row(overview->run, i, ideal);
-        if (linkage_is_driven(linkage, (int)i) || !(row.largest > 0.0)) {
+        if (linkage_is_driven(linkage, (int)i) || !(row.cells[OVERVIEW_LARGEST].value > 0.0)) {
             continue;
         }
         if (overview->motion != NULL) {
@@ -223,37 +271,21 @@ Overview run_overview_make(const RunReport *report)
 void run_overview_free(Overview *overview)
 {
     free(overview->joints);
+    free(overview->ideal_joints);
     free(overview->bodies);
 }
 
 // The table.
 
-enum { NAME_MOST = 17, JOINTS_MOST = 5, JOINTS_LEAST = 3, BODIES_MOST = 3 };
+enum { NAME_MOST = 17, JOINTS_MOST = 5, JOINTS_LEAST = 3, IDEALS_MOST = 4, BODIES_MOST = 3 };
 
 // How many of each are shown, and on how wide a screen.
 typedef struct OverviewRows {
     size_t joints;
+    size_t ideals;
     size_t bodies;
     size_t width; // characters; 0: any number
 } OverviewRows;
-
-static void cell_units(Table *table, double value, const char *unit)
-{
-    Text text;
-    text_init(&text);
-    if (isfinite(value)) {
-        units_append(&text, value, unit);
-    }
-    table_cell(table, "%s", text.data != NULL ? text.data : "");
-    text_finish(&text);
-}
-
-static void cell_number(Table *table, const char *format, double value)
-{
-    char words[32];
-    snprintf(words, sizeof words, format, value);
-    table_cell(table, "%s", isfinite(value) ? words : "");
-}
 
 static void cell_name(const char *name, Table *table)
 {
@@ -266,164 +298,160 @@ static void cell_name(const char *name, Table *table)
     text_finish(&shown);
 }
 
-static void overview_row(const OverviewRow *row, bool has_crank, Table *table)
+static void append_unless_unknown(Text *text, const char *format, double value)
 {
-    cell_name(row->name, table);
-    cell_units(table, row->largest, row->unit);
-    cell_number(table, has_crank ? "%.1f" : "%.4g",
-                has_crank ? units_wrapped_deg(row->crank_rad) : row->time_s * UNITS_MS);
-    cell_number(table, "%.3g", row->ratio);
-    cell_number(table, "%.3g", row->impacts);
-    cell_number(table, "%.1f %%", row->contact * UNITS_PERCENT);
-    cell_units(table, row->deepest, row->depth);
+    char words[32];
+    snprintf(words, sizeof words, format, value);
+    text_append(text, "%s", isfinite(value) ? words : "");
 }
 
-// 1: half the width of the interval of the 95 % quantile, to its wider side, over that.
-static double width_of(const SettledNumber *of)
+// With its unit; of a quantile of which only the low end is known, that.
+static void append_with_unit(const OverviewCell *cell, Text *text)
 {
-    return fmax(of->high - of->headline, of->headline - of->low) / of->headline;
-}
-
-static void append_width(const SettledNumber *of, Text *text)
-{
-    const double percent = width_of(of) * UNITS_PERCENT;
-    if (isfinite(percent)) {
-        text_append(text, percent < 1.0 ? "<1" : "%.0f", percent);
-    }
-}
-
-// The median or the largest, in the unit of the headline.
-static void append_in_its_unit(const SettledNumber *of, double value, double low, double high,
-                               Text *text)
-{
-    units_append_beside(text, value, low, high, of->headline, of->low, of->high);
-}
-
-static void append_headline(const SettledNumber *of, const char *unit, Text *text)
-{
-    if (isinf(of->high)) {
+    if (cell->has_interval && isinf(cell->high)) {
         text_append(text, "> ");
-        units_append(text, of->low, unit);
-    } else {
-        units_append_within(text, of->headline, of->low, of->high, unit);
+        units_append(text, cell->low, cell->unit);
+    } else if (cell->has_interval) {
+        units_append_within(text, cell->value, cell->low, cell->high, cell->unit);
+    } else if (isfinite(cell->value)) {
+        units_append(text, cell->value, cell->unit);
     }
 }
 
-// Times what it is with ideal joints; nothing where that is not known.
-static void append_ratio(const SettledNumber *of, double ideal, Text *text)
+// In the unit of the largest.
+static void append_beside(const OverviewCell *cell, const OverviewCell *largest, Text *text)
 {
-    if (!isfinite(of->headline / ideal)) {
-        return;
-    }
-    if (isinf(of->high)) {
+    const double low = cell->has_interval ? cell->low : cell->value;
+    const double high = cell->has_interval ? cell->high : cell->value;
+    units_append_beside(text, cell->value, low, high, largest->value, largest->low, largest->high);
+}
+
+// A number without a unit, by a format where it has no interval.
+static void append_plain(const OverviewCell *cell, const char *format, double per_si, Text *text)
+{
+    if (!cell->has_interval || !isfinite(cell->value)) {
+        append_unless_unknown(text, format, cell->value * per_si);
+    } else if (isinf(cell->high)) {
         text_append(text, "> ");
-        units_append_digits(text, of->low / ideal, of->low / ideal, of->low / ideal);
+        units_append_digits(text, cell->low * per_si, cell->low * per_si, cell->low * per_si);
     } else {
-        units_append_digits(text, of->headline / ideal, of->low / ideal, of->high / ideal);
+        units_append_digits(text, cell->value * per_si, cell->low * per_si, cell->high * per_si);
     }
 }
 
-static void append_share(const SettledNumber *share, Text *text)
+void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *text)
 {
-    units_append_digits(text, share->median * UNITS_PERCENT, share->median_low * UNITS_PERCENT,
-                        share->median_high * UNITS_PERCENT);
-    text_append(text, " %%");
-}
-
-void run_overview_cell(const OverviewRow *row, OverviewCell cell, Text *text)
-{
-    const SettledNumber *of = row->spread;
-    const SettledJoint *joint = row->settled;
-    switch (cell) {
-    case OVERVIEW_HEADLINE:
-        append_headline(of, row->unit, text);
+    const OverviewCell *cell = &row->cells[quantity];
+    if (!cell->is_there) {
         return;
-    case OVERVIEW_WIDTH:
-        append_width(of, text);
-        return;
+    }
+    switch (quantity) {
+    case OVERVIEW_LARGEST:
+    case OVERVIEW_DEEPEST:
+        append_with_unit(cell, text);
+        break;
     case OVERVIEW_MEDIAN:
-        append_in_its_unit(of, of->median, of->median_low, of->median_high, text);
-        return;
     case OVERVIEW_MOST:
-        append_in_its_unit(of, of->largest, of->largest, of->largest, text);
-        return;
+        append_beside(cell, &row->cells[OVERVIEW_LARGEST], text);
+        break;
+    case OVERVIEW_DEEPEST_MEDIAN:
+    case OVERVIEW_DEEPEST_MOST:
+        append_beside(cell, &row->cells[OVERVIEW_DEEPEST], text);
+        break;
+    case OVERVIEW_WIDTH:
+        append_unless_unknown(text, cell->value * UNITS_PERCENT < 1.0 ? "<1" : "%.0f",
+                              cell->value * UNITS_PERCENT);
+        break;
+    case OVERVIEW_CRANK:
+        append_unless_unknown(text, "%.1f", units_wrapped_deg(cell->value));
+        break;
+    case OVERVIEW_TIME:
+        append_unless_unknown(text, "%.4g", cell->value * UNITS_MS);
+        break;
     case OVERVIEW_RATIO:
-        append_ratio(of, of->headline / row->ratio, text);
-        return;
+        append_plain(cell, "%.3g", 1.0, text);
+        break;
     case OVERVIEW_IMPACTS:
-        if (joint != NULL) {
-            text_append(text, "%.3g", joint->impacts.median);
-        }
-        return;
+        append_unless_unknown(text, "%.3g", cell->value);
+        break;
     case OVERVIEW_CONTACT:
-        if (joint != NULL) {
-            append_share(&joint->contact, text);
-        }
-        return;
-    case OVERVIEW_DEPTH:
-        if (joint != NULL) {
-            append_headline(&joint->depth, row->depth, text);
-        }
-        return;
-    case OVERVIEW_CELL_COUNT:
-        return;
+        append_plain(cell, "%.1f", UNITS_PERCENT, text);
+        text_append(text, "%s", isfinite(cell->value) ? " %" : "");
+        break;
+    case OVERVIEW_QUANTITY_COUNT:
+        break;
     }
 }
 
-static void spread_row(const OverviewRow *row, Table *table)
+size_t run_overview_columns(const Overview *overview, bool has_crank,
+                            OverviewColumn columns[OVERVIEW_COLUMN_MAX])
 {
-    cell_name(row->name, table);
-    for (OverviewCell cell = 0; cell < OVERVIEW_CELL_COUNT; cell++) {
-        Text words;
-        text_init(&words);
-        run_overview_cell(row, cell, &words);
-        table_cell(table, "%s", words.data);
-        text_finish(&words);
-    }
-}
-
-// The table of a run, or of a motion that repeats.
-static Table *run_table(const Overview *overview, bool has_crank)
-{
-    const SectionHead heads[] = {
-        {overview->joint_count > 0 ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY},
-        {"largest", "", TABLE_RIGHT},
-        {"at", has_crank ? "deg" : "ms", TABLE_RIGHT},
-        {"x ideal", "", TABLE_RIGHT},
-        {"impacts", has_crank ? "a turn" : "", TABLE_RIGHT},
-        {"contact", "", TABLE_RIGHT},
-        {"deepest", "", TABLE_RIGHT},
+    const bool is_random = run_overview_is_random(overview);
+    const char *turn = has_crank ? "a turn" : "";
+    const char *impacts = has_crank ? "impacts a turn" : "impacts";
+    const OverviewColumn of_run[] = {
+        {OVERVIEW_LARGEST, "largest", "", "largest", false},
+        {has_crank ? OVERVIEW_CRANK : OVERVIEW_TIME, "at", has_crank ? "deg" : "ms",
+         has_crank ? "at, deg" : "at, ms", false},
+        {OVERVIEW_RATIO, "x ideal", "", "x ideal", false},
+        {OVERVIEW_IMPACTS, "impacts", turn, impacts, false},
+        {OVERVIEW_CONTACT, "contact", "", "contact", false},
+        {OVERVIEW_DEEPEST, "deepest", "", "deepest", false},
     };
-    return table_headed(sizeof heads / sizeof *heads, heads);
-}
-
-// That of a motion that does not repeat.
-static Table *spread_table(const Overview *overview, bool has_crank, size_t width)
-{
-    const SectionHead heads[] = {
-        {overview->joint_count > 0 ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY},
-        {"95 %", has_crank ? "of turns" : "", TABLE_RIGHT},
-        {"+-", "%", TABLE_RIGHT},
-        {"50 %", "", TABLE_RIGHT},
-        {"most", "", TABLE_RIGHT},
-        {"times", "ideal", TABLE_RIGHT | TABLE_MINOR},
-        {"impacts", has_crank ? "a turn" : "", TABLE_RIGHT},
-        {"contact", "", TABLE_RIGHT},
-        {"deepest", "", TABLE_RIGHT},
+    const OverviewColumn of_spread[] = {
+        {OVERVIEW_LARGEST, "95 %", has_crank ? "of turns" : "", "95 %", false},
+        {OVERVIEW_WIDTH, "+-", "%", "+- %", false},
+        {OVERVIEW_MEDIAN, "50 %", "", "median", false},
+        {OVERVIEW_MOST, "most", "", "most", false},
+        {OVERVIEW_RATIO, "times", "ideal", "x ideal", true},
+        {OVERVIEW_IMPACTS, "impacts", turn, impacts, false},
+        {OVERVIEW_CONTACT, "contact", "", "contact", false},
+        {OVERVIEW_DEEPEST, "deepest", "", "deepest", false},
     };
-    Table *table = table_headed(sizeof heads / sizeof *heads, heads);
-    table_fit(table, width);
-    return table;
+    const size_t count = (is_random ? sizeof of_spread : sizeof of_run) / sizeof *columns;
+    memcpy(columns, is_random ? of_spread : of_run, count * sizeof *columns);
+    return count;
 }
 
-static void write_row(const Overview *overview, const OverviewRow *row, bool has_crank,
-                      Table *table)
+// A table of some of its rows.
+typedef struct OverviewTable {
+    Table *table;
+    size_t column_count;
+    OverviewColumn columns[OVERVIEW_COLUMN_MAX];
+} OverviewTable;
+
+static OverviewTable begin_table(const Overview *overview, bool has_crank, bool has_joints,
+                                 size_t width)
 {
-    if (run_overview_is_random(overview)) {
-        spread_row(row, table);
-    } else {
-        overview_row(row, has_crank, table);
+    OverviewTable made = {.table = NULL};
+    made.column_count = run_overview_columns(overview, has_crank, made.columns);
+    made.table = table_create(1 + made.column_count);
+    table_head(made.table, 0, has_joints ? "joint, body" : "body", "", TABLE_LEFT | TABLE_KEY);
+    for (size_t i = 0; i < made.column_count; i++) {
+        table_head(made.table, 1 + i, made.columns[i].title, made.columns[i].unit,
+                   TABLE_RIGHT | (made.columns[i].is_minor ? TABLE_MINOR : 0));
     }
+    table_fit(made.table, run_overview_is_random(overview) ? width : 0);
+    return made;
+}
+
+static void add_rows(const OverviewTable *made, const OverviewRow *rows, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        cell_name(rows[i].name, made->table);
+        for (size_t k = 0; k < made->column_count; k++) {
+            Text words;
+            text_init(&words);
+            run_overview_cell(&rows[i], made->columns[k].quantity, &words);
+            table_cell(made->table, "%s", words.data != NULL ? words.data : "");
+            text_finish(&words);
+        }
+    }
+}
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
 }
 
 // Returns whether --full is said to have what there is no room for.
@@ -431,24 +459,20 @@ static bool write_table(const Overview *overview, const Scenario *scenario, Over
                         Text *text)
 {
     const bool has_crank = drive_is_steady(&scenario->linkage.driver);
-    const size_t joints = overview->joint_count < rows.joints ? overview->joint_count : rows.joints;
-    const size_t bodies = overview->body_count < rows.bodies ? overview->body_count : rows.bodies;
-    if (joints + bodies == 0) {
+    const size_t joints = least(overview->joint_count, rows.joints);
+    const size_t ideals =
+        run_overview_has_ideal(overview) ? least(overview->ideal_count, rows.ideals) : 0;
+    const size_t bodies = least(overview->body_count, rows.bodies);
+    if (joints + ideals + bodies == 0) {
         return false;
     }
-    Table *table = run_overview_is_random(overview) ? spread_table(overview, has_crank, rows.width)
-                                                    : run_table(overview, has_crank);
-    for (size_t i = 0; i < joints; i++) {
-        write_row(overview, &overview->joints[i], has_crank, table);
-    }
-    for (size_t i = 0; i < bodies; i++) {
-        write_row(overview, &overview->bodies[i], has_crank, table);
-    }
-    for (size_t i = 0; i < overview->drive_count; i++) {
-        write_row(overview, &overview->drives[i], has_crank, table);
-    }
-    table_write(table, text);
-    table_destroy(table);
+    const OverviewTable made = begin_table(overview, has_crank, joints + ideals > 0, rows.width);
+    add_rows(&made, overview->joints, joints);
+    add_rows(&made, overview->ideal_joints, ideals);
+    add_rows(&made, overview->bodies, bodies);
+    add_rows(&made, overview->drives, overview->drive_count);
+    table_write(made.table, text);
+    table_destroy(made.table);
     const size_t more_joints = overview->joint_count - joints;
     const size_t more_bodies = overview->body_count - bodies;
     if (more_joints > 0) {
@@ -734,7 +758,7 @@ static size_t lines_of_rest(const Scenario *scenario)
 static bool append_answer(const RunReport *report, size_t width, Text *text)
 {
     Overview overview = run_overview_make(report);
-    OverviewRows rows = {JOINTS_MOST, BODIES_MOST, width};
+    OverviewRows rows = {JOINTS_MOST, IDEALS_MOST, BODIES_MOST, width};
     const size_t most = RUN_OVERVIEW_LINES - TITLE_LINES;
     bool is_full_named = false;
     for (;;) {
@@ -742,14 +766,16 @@ static bool append_answer(const RunReport *report, size_t width, Text *text)
         text_init(&own);
         is_full_named = write_table_and_answer(report, &overview, rows, &own);
         const bool fits = count_lines(own.data) + lines_of_rest(report->scenario) <= most;
-        // bodies first, then joints: what is left out is said, and --full has it
-        if (fits || (rows.bodies == 0 && rows.joints == JOINTS_LEAST)) {
+        // ideal joints first, then bodies, then joints: --full has what is left out
+        if (fits || (rows.ideals == 0 && rows.bodies == 0 && rows.joints == JOINTS_LEAST)) {
             text_append(text, "%s", own.data);
             text_finish(&own);
             break;
         }
         text_finish(&own);
-        if (rows.bodies > 0) {
+        if (rows.ideals > 0) {
+            rows.ideals--;
+        } else if (rows.bodies > 0) {
             rows.bodies--;
         } else {
             rows.joints--;
@@ -784,51 +810,43 @@ void run_overview_screen(const void *of, const Style *style, Text *text)
     run_overview_write(report, style->width, true, text);
 }
 
-static void largest_json(json_t *object, const OverviewRow *row)
+// The numbers of a cell: of force_max and N force_max_N, and with an interval that JSON has
+// force_max_low_N and force_max_high_N.
+static void cell_json(json_t *object, const OverviewCell *cell, OverviewQuantity quantity)
 {
-    char key[64];
-    snprintf(key, sizeof key, "%s_max_%s", row->stem, row->unit_key);
-    json_value_set(object, key, row->largest);
-    if (row->spread != NULL) {
-        settled_json_number(object, row->stem, row->unit_key, row->spread);
-        json_value_set(object, "width", width_of(row->spread));
+    static const char *const PARTS[] = {"", "_low", "_high"};
+    const double values[] = {quantity == OVERVIEW_CRANK ? units_wrapped_deg(cell->value)
+                                                        : cell->value,
+                             cell->low, cell->high};
+    // of shares and ratios the interval decides on digits alone
+    const bool has_ends = cell->has_interval && cell->unit_key != NULL;
+    for (size_t i = 0; i < (has_ends ? 3 : 1); i++) {
+        char key[2 * OVERVIEW_KEY_SIZE];
+        snprintf(key, sizeof key, "%s%s%s%s", cell->key, PARTS[i],
+                 cell->unit_key != NULL ? "_" : "", cell->unit_key != NULL ? cell->unit_key : "");
+        json_value_set(object, key, values[i]);
     }
-    snprintf(key, sizeof key, "%s_max_crank_deg", row->stem);
-    json_value_set(object, key, units_wrapped_deg(row->crank_rad));
-    snprintf(key, sizeof key, "%s_max_time_s", row->stem);
-    json_value_set(object, key, row->time_s);
-    json_value_set(object, "ratio_to_ideal", row->ratio);
 }
 
-static json_t *row_json(const OverviewRow *row)
+static json_t *rows_json(const OverviewRow *rows, size_t count)
 {
-    json_t *object = json_object();
-    json_object_set_new(object, "name", json_value_text(row->name));
-    largest_json(object, row);
-    if (row->depth != NULL) {
-        json_value_set(object, "impacts_per_revolution", row->impacts);
-        json_value_set(object, "contact_fraction", row->contact);
-        char key[64];
-        snprintf(key, sizeof key, "penetration_max_%s", row->depth);
-        json_value_set(object, key, row->deepest);
-        if (row->settled != NULL) {
-            settled_json_number(object, "penetration", row->depth, &row->settled->depth);
+    json_t *array = json_array();
+    for (size_t i = 0; i < count; i++) {
+        json_t *object = json_object();
+        json_object_set_new(object, "name", json_value_text(rows[i].name));
+        for (OverviewQuantity k = 0; k < OVERVIEW_QUANTITY_COUNT; k++) {
+            if (rows[i].cells[k].is_there) {
+                cell_json(object, &rows[i].cells[k], k);
+            }
         }
+        json_array_append_new(array, object);
     }
-    return object;
+    return array;
 }
 
 void run_overview_json(json_t *object, const RunReport *report)
 {
     Overview overview = run_overview_make(report);
-    json_t *joints = json_array();
-    json_t *bodies = json_array();
-    for (size_t i = 0; i < overview.joint_count; i++) {
-        json_array_append_new(joints, row_json(&overview.joints[i]));
-    }
-    for (size_t i = 0; i < overview.body_count; i++) {
-        json_array_append_new(bodies, row_json(&overview.bodies[i]));
-    }
     json_t *made = json_object();
     json_object_set_new(made, "backend",
                         overview.run != NULL ? json_string(overview.run->backend) : json_null());
@@ -837,17 +855,17 @@ void run_overview_json(json_t *object, const RunReport *report)
                             json_integer((json_int_t)overview.motion->counted));
         json_value_set(made, "quantile", SETTLED_QUANTILE);
     }
-    json_object_set_new(made, "joints", joints);
-    json_object_set_new(made, "bodies", bodies);
-    json_object_set_new(made, "drive",
-                        overview.drive_count > 0 ? row_json(&overview.drives[0]) : json_null());
+    json_object_set_new(made, "joints", rows_json(overview.joints, overview.joint_count));
+    json_object_set_new(made, "ideal_joints",
+                        rows_json(overview.ideal_joints, overview.ideal_count));
+    json_object_set_new(made, "bodies", rows_json(overview.bodies, overview.body_count));
+    json_t *drives = rows_json(overview.drives, overview.drive_count);
+    json_t *first = json_array_get(drives, 0);
+    json_object_set_new(made, "drive", first != NULL ? json_incref(first) : json_null());
     if (overview.drive_count > 1) {
-        json_t *drives = json_array();
-        for (size_t i = 0; i < overview.drive_count; i++) {
-            json_array_append_new(drives, row_json(&overview.drives[i]));
-        }
-        json_object_set_new(made, "drives", drives);
+        json_object_set(made, "drives", drives);
     }
+    json_decref(drives);
     Rebound rebound;
     const bool is_other = find_rebound(report->scenario, &rebound);
     json_value_set(made, "restitution_delivered", is_other ? rebound.delivered : NAN);

@@ -5,32 +5,51 @@
 
 enum { RUN_OVERVIEW_LINES = 24 };
 
+// What a cell of a row is. Keys, intervals and words of each are in run_overview.c.
+typedef enum OverviewQuantity {
+    OVERVIEW_LARGEST, // N, N m, rad/s^2; of a motion that does not repeat the 95 % quantile of its
+                      // revolutions
+    OVERVIEW_MEDIAN,  // of these, as the next: of such a motion alone
+    OVERVIEW_MOST,
+    OVERVIEW_WIDTH,   // 1: half the interval of the quantile, to its wider side, over that
+    OVERVIEW_CRANK,   // rad, where the largest was; NAN without a crank
+    OVERVIEW_TIME,    // s, when
+    OVERVIEW_RATIO,   // 1, to that with ideal joints
+    OVERVIEW_IMPACTS, // a revolution, or in the run; as all below of joints with play
+    OVERVIEW_CONTACT, // 1, share of the time
+    OVERVIEW_DEEPEST, // m or rad
+    OVERVIEW_DEEPEST_MEDIAN,
+    OVERVIEW_DEEPEST_MOST,
+    OVERVIEW_QUANTITY_COUNT,
+} OverviewQuantity;
+
+enum { OVERVIEW_KEY_SIZE = 48 };
+
+// A quantity of a row: what JSON and the screen have of it.
+typedef struct OverviewCell {
+    bool is_there;               // the row has it, though it may not be known
+    char key[OVERVIEW_KEY_SIZE]; // in JSON, without the unit
+    const char *unit_key;        // in JSON, NULL without one
+    const char *unit;            // for people, SI; NULL without one
+    double value;                // SI; NAN: not known
+    bool has_interval;           // it lies from `low` to `high`, INFINITY where that is not known
+    double low;
+    double high;
+} OverviewCell;
+
 // One line: a joint, a body or a drive.
 typedef struct OverviewRow {
     const char *name;
-    const char *stem;     // what is the largest, in keys: "force" of force_max_N
-    const char *unit;     // of that
-    const char *unit_key; // in keys
-    double largest;       // its size
-    double crank_rad;     // where that was; NAN without a crank
-    double time_s;        // and when
-    double ratio;         // 1, to that with ideal joints; NAN: not known
-    double impacts;       // a revolution, or in the run; NAN of what is no joint with play
-    double contact;       // 1, share of the time
-    double deepest;       // m or rad
-    const char *depth;    // unit of that
-    // of a motion that does not repeat, of which the numbers above are then, but for angle and
-    // time: the largest is the 95 % quantile of its revolutions, as is the deepest, impacts and
-    // contact are medians
-    const SettledNumber *spread; // of the largest; NULL: the numbers are those of a run
-    const SettledJoint *settled; // of a joint
+    OverviewCell cells[OVERVIEW_QUANTITY_COUNT];
 } OverviewRow;
 
 typedef struct Overview {
     const Trajectory *run;       // NULL: none is complete
     const SettledMotion *motion; // that its rows are of; NULL: they are of the run alone
     size_t joint_count;
-    OverviewRow *joints; // the largest first; owned, as the next
+    OverviewRow *joints; // with play, the largest first; owned, as the two below
+    size_t ideal_count;
+    OverviewRow *ideal_joints; // those without, of the run
     size_t body_count;
     OverviewRow *bodies;
     size_t drive_count; // 0 where no torque turns a body
@@ -41,7 +60,7 @@ typedef struct Overview {
 Overview run_overview_make(const RunReport *report);
 void run_overview_free(Overview *overview);
 
-// Whether its rows are of a motion that does not repeat: each then has a spread.
+// Whether its rows are of a motion that does not repeat: each then has intervals.
 static inline bool run_overview_is_random(const Overview *overview)
 {
     return overview->motion != NULL && overview->motion->period == 0;
@@ -51,22 +70,30 @@ static inline bool run_overview_is_random(const Overview *overview)
 // Each sentence on a line of its own, not folded.
 void run_overview_sentences(const RunReport *report, Text *text);
 
-// Cells of a row of a motion that does not repeat, with no more digits than their intervals leave:
-// the 95 % quantile; half the width of its interval, %; the median and the largest, without their
-// unit; x ideal; impacts; the share of contact; depth. Empty where there is none.
-typedef enum OverviewCell {
-    OVERVIEW_HEADLINE,
-    OVERVIEW_WIDTH,
-    OVERVIEW_MEDIAN,
-    OVERVIEW_MOST,
-    OVERVIEW_RATIO,
-    OVERVIEW_IMPACTS,
-    OVERVIEW_CONTACT,
-    OVERVIEW_DEPTH,
-    OVERVIEW_CELL_COUNT,
-} OverviewCell;
+// The columns of its rows, with a title for a screen, and one for a page.
+typedef struct OverviewColumn {
+    OverviewQuantity quantity;
+    const char *title;
+    const char *unit;
+    const char *page_title;
+    bool is_minor;
+} OverviewColumn;
 
-void run_overview_cell(const OverviewRow *row, OverviewCell cell, Text *text);
+enum { OVERVIEW_COLUMN_MAX = 8 };
+
+size_t run_overview_columns(const Overview *overview, bool has_crank,
+                            OverviewColumn columns[OVERVIEW_COLUMN_MAX]);
+
+// Whether ideal joints stand among the rows of a screen or page: not where these are of a motion
+// that is more than the run.
+static inline bool run_overview_has_ideal(const Overview *overview)
+{
+    return overview->motion == NULL;
+}
+
+// Appends a cell of a row as people read it, with no more digits than its interval leaves. Nothing
+// where it is not known.
+void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *text);
 
 // Of the run that is taken for the truth, or the last that is complete, or of the settled motion
 // where that is more than the run shows: of each joint with play its largest force, of each body

@@ -7,9 +7,8 @@
 #include "measure/ensemble.h"
 #include "measure/error.h"
 #include "measure/truth.h"
-#include "model/joint_numbers.h"
 #include "model/trajectory.h"
-#include "write/fields.h"
+#include "write/number_fields.h"
 #include "write/table.h"
 
 #include <math.h>
@@ -104,72 +103,23 @@ static inline bool run_report_has_body_spikes(const RunReport *report, const Tra
            !linkage_is_driven(&report->scenario->linkage, (int)body);
 }
 
-// Besides the places of write/fields.h: columns of mechanisms with a driven crank and of those
-// without, and keys of spikes by the unit of their signal.
-enum {
-    RUN_DRIVEN = FIELD_OWN,
-    RUN_FREE = FIELD_OWN << 1,
-    RUN_ALPHA = FIELD_OWN << 2,
-    RUN_FORCE = FIELD_OWN << 3,
-    RUN_NO_CRANK = FIELD_OWN << 4, // in JSON: there is no angle of a crank
-    RUN_TORQUE = FIELD_OWN << 5,   // of spikes of a torque
-    RUN_PUSHED = FIELD_OWN << 6,   // of contacts: forces and lengths,
-    RUN_TURNED = FIELD_OWN << 7,   // or torques and angles
-    RUN_SPATIAL = FIELD_OWN << 8,  // of joints in space
-    RUN_LOADED = FIELD_OWN << 9,   // of mechanisms with loads
-};
-
-// Where fields of loads have their places, of a linkage that has any.
-static inline unsigned run_loaded(const Linkage *linkage)
+// What the numbers of a run of a report are taken from.
+static inline NumberSource run_report_source(const RunReport *report, size_t index)
 {
-    return linkage->load_count > 0 ? RUN_LOADED : 0U;
+    return (NumberSource){.scenario = report->scenario,
+                          .run = report->runs[index],
+                          .error = report->errors != NULL ? &report->errors[index] : NULL,
+                          .truth = report->truth};
 }
 
-// What a joint did in a run. Without play that is felt there are no contacts to count: null, not 0.
-typedef struct RunJoint {
-    bool is_felt;
-    size_t counts[JOINT_NUMBER_COUNT]; // of the numbers of model/joint_number_list.h that are whole
-    Extreme numbers[JOINT_NUMBER_COUNT];
-    double tilt_max;  // rad, in space
-    double axial_max; // m, likewise
-} RunJoint;
-
-RunJoint run_fields_joint(const Linkage *linkage, const Trajectory *run, size_t number);
-
-// The columns of a table of this mechanism.
-static inline unsigned run_report_columns(const RunReport *report)
+// Whether tables say by the crank's angle when something was, or by the time.
+static inline bool run_report_has_crank(const RunReport *report)
 {
-    return FIELD_TABLE |
-           (drive_is_steady(&report->scenario->linkage.driver) ? RUN_DRIVEN : RUN_FREE);
+    return drive_is_steady(&report->scenario->linkage.driver);
 }
 
-// What contacts of a joint are in, and the signal of its spikes.
-static inline unsigned run_report_contact(const Joint *joint)
-{
-    return linkage_is_torsional(joint) ? RUN_TURNED : RUN_PUSHED;
-}
-
-static inline unsigned run_report_force(const Joint *joint)
-{
-    return linkage_is_torsional(joint) ? RUN_TORQUE : RUN_FORCE;
-}
-
-// The fields of a RunJoint, made of the rows of model/joint_number_list.h. Not to be copied.
-enum { RUN_JOINT_FIELD_MAX = 3 * JOINT_NUMBER_COUNT + 8 };
-
-typedef struct RunJointFields {
-    Field rows[RUN_JOINT_FIELD_MAX];
-    Field counts[JOINT_NUMBER_COUNT + 1];
-} RunJointFields;
-
-void run_fields_of_joint(bool is_torsional, RunJointFields *fields);
-
-// The fields of Trajectory, BodyExtremes, Spike, SignalSpike and Energy.
+// What a run is called, and how it ended: fields of a Trajectory.
 extern const Field RUN_FIELDS[];
-extern const Field RUN_BODY_FIELDS[];
-extern const Field RUN_CONTACT_FIELDS[];
-extern const Field RUN_SPIKE_FIELDS[];
-extern const Field RUN_ENERGY_FIELDS[];
 
 enum { RUN_TEXT_SPIKES = 5 }; // contacts listed of each joint, spikes of each body
 
@@ -184,10 +134,12 @@ void run_when_head(Table *table, size_t column, const RunReport *report);
 void run_when_cell(Table *table, const RunReport *report, double time_s, double crank_rad);
 
 // The parts of the text, each of which appends nothing where it has nothing to say. Extremes of
-// each body that is not driven; how sliders move along their lines; the contacts of each joint
-// with play, how its pin tilts and slides in space, how its block tilts, and at most `limit` of the
-// strongest, of the last backend that has any; steps and time, and why runs failed.
+// each body that is not driven; how sliders move along their lines; the forces of joints without
+// play; the contacts of each joint with play, how its pin tilts and slides in space, how its block
+// tilts, and at most `limit` of the strongest, of the last backend that has any; numbers of all
+// bodies and joints together; steps and time, and why runs failed.
 void run_tables_extremes(const RunReport *report, const Style *style, Text *text);
+void run_tables_forces(const RunReport *report, const Style *style, Text *text);
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text);
 void run_tables_pins(const RunReport *report, const Style *style, Text *text);
 // Where joints have axes that are not z, the largest angular velocity and acceleration of each body
@@ -196,6 +148,7 @@ void run_turns_write(const RunReport *report, const Style *style, Text *text);
 void run_slides_motion(const RunReport *report, const Style *style, Text *text);
 void run_slides_blocks(const RunReport *report, const Style *style, Text *text);
 void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text);
+void run_tables_whole(const RunReport *report, const Style *style, Text *text);
 void run_tables_cost(const RunReport *report, const Style *style, Text *text);
 
 // The spikes of accelerations and forces: how many, and at most `limit` of the strongest of each
@@ -219,10 +172,9 @@ json_t *spike_json_bands(const RunReport *report, const Trajectory *run);
 // its signals by order; null where nothing that acts has a period, or for less than one.
 void run_signals_json(json_t *object, const Scenario *scenario, const Trajectory *run);
 
-// Puts the spikes of a signal into an object: <name>_spikes, their count, threshold and resolution.
-// `where` is RUN_ALPHA or RUN_FORCE.
-void spike_json_set(json_t *object, unsigned where, const Linkage *linkage,
-                    const SignalSpikes *spikes);
+// Puts the spikes of a body or joint into an object: <name>_spikes, their count, threshold and
+// resolution. The owner is NUMBER_OWNER_BODY_SPIKE or NUMBER_OWNER_JOINT_SPIKE.
+void spike_json_set(json_t *object, NumberOwner owner, const Trajectory *run, size_t member);
 
 enum { SPIKE_BAND_COUNT = 2 }; // of the crank angle, in which the paper saw its spikes
 
@@ -257,10 +209,9 @@ RunFloor *run_floor_list(const RunReport *report);
 // The value, or 0 where it is below the floor.
 double run_floor_cut(double value, double floor);
 
-// The numbers of a body, a joint and of the energy of a run as tables show them.
-BodyExtremes run_floor_body(const BodyExtremes *body, const RunFloor *floor);
-RunJoint run_floor_joint(const RunJoint *joint, bool is_torsional, const RunFloor *floor);
-Energy run_floor_energy(const Energy *energy, const RunFloor *floor);
+// The numbers of a member of a run as tables show them.
+NumberRecord run_floor_record(const RunReport *report, size_t run, const RunFloor *floor,
+                              NumberOwner owner, size_t member);
 
 // How far and how fast the slider of a prismatic joint or of a block between guides went along its
 // line, at the samples of a run.

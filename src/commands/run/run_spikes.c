@@ -178,21 +178,39 @@ static size_t count_kept(const RunReport *report, const Trajectory *run)
     return count;
 }
 
+// The numbers of a spike; a linkage without a drive has no angle of a crank.
+static NumberRecord record_of(NumberOwner owner, const Trajectory *run, size_t member,
+                              const SignalSpike *spike)
+{
+    const NumberSource source = {.run = run, .spike = spike};
+    NumberRecord record = number_record(owner, &source, member);
+    for (NumberId id = 0; !run->linkage.driver.is_present && id < NUMBER_COUNT; id++) {
+        record.values[id].crank_rad = NAN;
+    }
+    return record;
+}
+
 static void run_spikes_write_strongest(const RunReport *report, const Trajectory *run, size_t limit,
                                        const Style *style, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    const unsigned where = run_report_columns(report);
+    NumberFields fields = {.count = 0};
+    number_fields_label(&fields, "body", "", TABLE_LEFT);
+    number_fields_add(&fields, NUMBER_OWNER_BODY_SPIKE, NUMBER_SPED, 0,
+                      run_report_has_crank(report));
+    number_fields_label(&fields, "joint", "", TABLE_LEFT);
     char heading[128];
     snprintf(heading, sizeof heading, "Strongest spikes of the accelerations, %s", run->backend);
-    Table *table = fields_table(heading, RUN_SPIKE_FIELDS, where, style, text);
+    Table *table = fields_table(heading, fields.rows, FIELD_TABLE, style, text);
     for (size_t body = 0; body < linkage->body_count; body++) {
         const SignalSpikes *spikes = &run->alpha_spikes[body];
         for (size_t i = 0;
              run_report_has_body_spikes(report, run, body) && i < spikes->kept && i < limit; i++) {
             const int joint = spikes->spikes[i].joint;
+            const NumberRecord record =
+                record_of(NUMBER_OWNER_BODY_SPIKE, run, body, &spikes->spikes[i]);
             table_cell(table, "%s", linkage->bodies[body].name);
-            fields_table_row(RUN_SPIKE_FIELDS, where, &spikes->spikes[i], table);
+            fields_table_row(fields.rows, FIELD_TABLE, &record, table);
             table_cell(table, "%s", joint >= 0 ? linkage->joints[joint].name : "-");
         }
     }
@@ -223,19 +241,21 @@ static void set_with_unit(json_t *object, const char *name, const char *unit, do
     json_value_set(object, key, value);
 }
 
-void spike_json_set(json_t *object, unsigned where, const Linkage *linkage,
-                    const SignalSpikes *spikes)
+void spike_json_set(json_t *object, NumberOwner owner, const Trajectory *run, size_t member)
 {
-    const bool is_alpha = where == RUN_ALPHA;
+    const Linkage *linkage = &run->linkage;
+    const bool is_alpha = owner == NUMBER_OWNER_BODY_SPIKE;
+    const SignalSpikes *spikes = is_alpha ? &run->alpha_spikes[member] : &run->force_spikes[member];
     const char *name = is_alpha ? "alpha" : "force";
-    const char *unit = is_alpha ? "rad_s2" : where == RUN_FORCE ? "N" : "N_m";
-    const unsigned columns =
-        where | FIELD_JSON | (linkage->driver.is_present ? RUN_DRIVEN : RUN_NO_CRANK);
+    const char *unit = is_alpha ? "rad_s2" : joint_units(&linkage->joints[member])->force_key;
+    NumberFields fields = {.count = 0};
+    number_fields_add(&fields, owner, number_turn(owner, linkage, member), 0, true);
     char key[64];
     json_t *array = spikes->is_known ? json_array() : json_null();
     for (size_t i = 0; spikes->is_known && i < spikes->kept; i++) {
         const int joint = spikes->spikes[i].joint;
-        json_t *spike = fields_json(RUN_SPIKE_FIELDS, columns, &spikes->spikes[i]);
+        const NumberRecord record = record_of(owner, run, member, &spikes->spikes[i]);
+        json_t *spike = fields_json(fields.rows, FIELD_JSON, &record);
         json_object_set_new(spike, "joint",
                             joint >= 0 ? json_string(linkage->joints[joint].name) : json_null());
         json_array_append_new(array, spike);

@@ -33,33 +33,85 @@ void run_when_cell(Table *table, const RunReport *report, double time_s, double 
 // Of the clearance: a pin that moves less is at rest in its hole.
 static const double UNTOUCHED_STILL = 1e-3;
 
-void run_tables_extremes(const RunReport *report, const Style *style, Text *text)
+// Whether a table of an owner has a row of a member in a run.
+typedef bool RowIsShown(const RunReport *report, const Trajectory *run, size_t member);
+
+// A table of the numbers of the members of an owner that are shown, backend by backend; the name of
+// a member is headed by `what`, or there is none. Returns whether there is a row.
+static bool write_numbers(const RunReport *report, NumberOwner owner, NumberTurn turn,
+                          unsigned without, const char *heading, const char *what,
+                          RowIsShown *is_shown, const Style *style, Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    const unsigned where = run_report_columns(report);
+    NumberFields fields = {.count = 0};
+    if (what != NULL) {
+        number_fields_label(&fields, what, "", TABLE_LEFT);
+    }
+    number_fields_label(&fields, "backend", "", TABLE_LEFT);
+    number_fields_add(&fields, owner, turn, without | number_fields_lacked(linkage),
+                      run_report_has_crank(report));
     RunFloor *floors = run_floor_list(report);
     Table *table = NULL;
-    for (size_t body = 0; body < linkage->body_count; body++) {
+    for (size_t member = 0; member < number_member_count(owner, linkage); member++) {
         for (size_t i = 0; i < report->run_count; i++) {
-            const Trajectory *run = report->runs[i];
-            if (!run->is_complete || linkage_is_driven(linkage, (int)body)) {
+            if (!report->runs[i]->is_complete || !is_shown(report, report->runs[i], member)) {
                 continue;
             }
             if (table == NULL) {
-                table = fields_table(linkage->is_spatial ? "Extremes of the motion about z"
-                                                         : "Extremes of the motion",
-                                     RUN_BODY_FIELDS, where, style, text);
+                table = fields_table(heading, fields.rows, FIELD_TABLE, style, text);
             }
-            table_cell(table, "%s", linkage->bodies[body].name);
-            table_cell(table, "%s", run->backend);
-            const BodyExtremes shown = run_floor_body(&run->bodies[body], &floors[i]);
-            fields_table_row(RUN_BODY_FIELDS, where, &shown, table);
+            if (what != NULL) {
+                table_cell(table, "%s", number_member(owner, linkage, member));
+            }
+            table_cell(table, "%s", report->runs[i]->backend);
+            const NumberRecord shown = run_floor_record(report, i, &floors[i], owner, member);
+            fields_table_row(fields.rows, FIELD_TABLE, &shown, table);
         }
     }
     free(floors);
     if (table != NULL) {
         section_end(table, text);
     }
+    return table != NULL;
+}
+
+static bool is_moving(const RunReport *report, const Trajectory *run, size_t body)
+{
+    (void)run;
+    return !linkage_is_driven(&report->scenario->linkage, (int)body);
+}
+
+void run_tables_extremes(const RunReport *report, const Style *style, Text *text)
+{
+    const char *heading = report->scenario->linkage.is_spatial ? "Extremes of the motion about z"
+                                                               : "Extremes of the motion";
+    write_numbers(report, NUMBER_OWNER_BODY, NUMBER_PUSHED, 0, heading, "body", is_moving, style,
+                  text);
+}
+
+static bool is_any(const RunReport *report, const Trajectory *run, size_t member)
+{
+    (void)report, (void)run, (void)member;
+    return true;
+}
+
+void run_tables_whole(const RunReport *report, const Style *style, Text *text)
+{
+    write_numbers(report, NUMBER_OWNER_RUN, NUMBER_PUSHED, 0, "All bodies and joints", NULL, is_any,
+                  style, text);
+}
+
+// What an ideal joint carries, or one whose play a solver does not model.
+static bool is_without_play(const RunReport *report, const Trajectory *run, size_t joint)
+{
+    const Joint *of = &report->scenario->linkage.joints[joint];
+    return !linkage_is_torsional(of) && !trajectory_feels_play(run, of);
+}
+
+void run_tables_forces(const RunReport *report, const Style *style, Text *text)
+{
+    write_numbers(report, NUMBER_OWNER_JOINT, NUMBER_PUSHED, NUMBER_PLAY,
+                  "Reactions in the joints without play", "joint", is_without_play, style, text);
 }
 
 // The farthest that a pin was from the centre of its hole at the samples, m.
@@ -120,46 +172,28 @@ static void write_untouched(const RunReport *report, bool is_torsional, size_t w
     }
 }
 
-// The contacts of joints that push, or of those that turn.
-static void write_contacts(const RunReport *report, bool is_torsional, const Style *style,
-                           Text *text)
+static bool is_pushed(const RunReport *report, const Trajectory *run, size_t joint)
 {
-    const unsigned where = run_report_columns(report);
-    const Linkage *linkage = &report->scenario->linkage;
-    RunJointFields fields;
-    run_fields_of_joint(is_torsional, &fields);
-    RunFloor *floors = run_floor_list(report);
-    Table *table = NULL;
-    for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-        for (size_t i = 0; i < report->run_count; i++) {
-            const Trajectory *run = report->runs[i];
-            if (!trajectory_feels_play(run, &linkage->joints[joint]) ||
-                linkage_is_torsional(&linkage->joints[joint]) != is_torsional) {
-                continue;
-            }
-            if (table == NULL) {
-                table = fields_table(is_torsional ? "Contacts at the limits of pivots"
-                                                  : "Contacts in the joints with play",
-                                     fields.rows, where, style, text);
-            }
-            const RunJoint numbers = run_fields_joint(linkage, run, joint);
-            table_cell(table, "%s", linkage->joints[joint].name);
-            table_cell(table, "%s", run->backend);
-            const RunJoint shown = run_floor_joint(&numbers, is_torsional, &floors[i]);
-            fields_table_row(fields.rows, where, &shown, table);
-        }
-    }
-    free(floors);
-    if (table != NULL) {
-        section_end(table, text);
-        write_untouched(report, is_torsional, style->width, text);
-    }
+    const Joint *of = &report->scenario->linkage.joints[joint];
+    return trajectory_feels_play(run, of) && !linkage_is_torsional(of);
+}
+
+static bool is_turned(const RunReport *report, const Trajectory *run, size_t joint)
+{
+    const Joint *of = &report->scenario->linkage.joints[joint];
+    return trajectory_feels_play(run, of) && linkage_is_torsional(of);
 }
 
 void run_tables_contacts(const RunReport *report, const Style *style, Text *text)
 {
-    write_contacts(report, false, style, text);
-    write_contacts(report, true, style, text);
+    if (write_numbers(report, NUMBER_OWNER_JOINT, NUMBER_PUSHED, 0,
+                      "Contacts in the joints with play", "joint", is_pushed, style, text)) {
+        write_untouched(report, false, style->width, text);
+    }
+    if (write_numbers(report, NUMBER_OWNER_JOINT, NUMBER_TURNED, 0,
+                      "Contacts at the limits of pivots", "joint", is_turned, style, text)) {
+        write_untouched(report, true, style->width, text);
+    }
 }
 
 static void pin_row(Table *table, const RunReport *report, const Trajectory *run, size_t number)
@@ -209,34 +243,40 @@ void run_tables_pins(const RunReport *report, const Style *style, Text *text)
     }
 }
 
-// The contacts that were kept of all joints with play that are of one kind.
-static size_t count_spikes(const Linkage *linkage, const Trajectory *run, unsigned kind)
+// The contacts that were kept of all joints with play that push, or turn.
+static size_t count_spikes(const Linkage *linkage, const Trajectory *run, NumberTurn turn)
 {
     size_t count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const bool is_its = trajectory_feels_play(run, joint) && run_report_contact(joint) == kind;
+        const bool is_its = trajectory_feels_play(run, &linkage->joints[i]) &&
+                            number_turn(NUMBER_OWNER_JOINT_CONTACT, linkage, i) == turn;
         count += is_its ? run->joints[i].spike_count : 0;
     }
     return count;
 }
 
 static void run_tables_write_strongest(const RunReport *report, const Trajectory *run,
-                                       unsigned kind, size_t limit, const Style *style, Text *text)
+                                       NumberTurn turn, size_t limit, const Style *style,
+                                       Text *text)
 {
     const Linkage *linkage = &report->scenario->linkage;
-    const unsigned where = run_report_columns(report) | kind;
+    const NumberOwner owner = NUMBER_OWNER_JOINT_CONTACT;
+    NumberFields fields = {.count = 0};
+    number_fields_label(&fields, "joint", "", TABLE_LEFT);
+    number_fields_add(&fields, owner, turn, 0, run_report_has_crank(report));
     char heading[128];
     snprintf(heading, sizeof heading, "Strongest contacts%s, %s",
-             kind == RUN_TURNED ? " at the limits of pivots" : "", run->backend);
-    Table *table = fields_table(heading, RUN_CONTACT_FIELDS, where, style, text);
+             turn == NUMBER_TURNED ? " at the limits of pivots" : "", run->backend);
+    Table *table = fields_table(heading, fields.rows, FIELD_TABLE, style, text);
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         const JointExtremes *extremes = &run->joints[joint];
         const Joint *of = &linkage->joints[joint];
-        const bool is_its = linkage_has_play(of) && run_report_contact(of) == kind;
+        const bool is_its = linkage_has_play(of) && number_turn(owner, linkage, joint) == turn;
         for (size_t k = 0; is_its && k < extremes->spike_count && k < limit; k++) {
+            const NumberSource source = {.run = run, .contact = &extremes->spikes[k]};
+            const NumberRecord record = number_record(owner, &source, joint);
             table_cell(table, "%s", of->name);
-            fields_table_row(RUN_CONTACT_FIELDS, where, &extremes->spikes[k], table);
+            fields_table_row(fields.rows, FIELD_TABLE, &record, table);
         }
     }
     section_end(table, text);
@@ -244,12 +284,12 @@ static void run_tables_write_strongest(const RunReport *report, const Trajectory
 
 void run_tables_spikes(const RunReport *report, size_t limit, const Style *style, Text *text)
 {
-    static const unsigned KINDS[] = {RUN_PUSHED, RUN_TURNED};
-    for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
+    static const NumberTurn TURNS[] = {NUMBER_PUSHED, NUMBER_TURNED};
+    for (size_t k = 0; k < sizeof TURNS / sizeof *TURNS; k++) {
         for (size_t i = report->run_count; i-- > 0;) {
             const Trajectory *run = report->runs[i];
-            if (count_spikes(&report->scenario->linkage, run, KINDS[k]) > 0) {
-                run_tables_write_strongest(report, run, KINDS[k], limit, style, text);
+            if (count_spikes(&report->scenario->linkage, run, TURNS[k]) > 0) {
+                run_tables_write_strongest(report, run, TURNS[k], limit, style, text);
                 break;
             }
         }
@@ -284,9 +324,20 @@ static void write_chosen(const RunReport *report, const Trajectory *run, Text *t
 
 void run_tables_cost(const RunReport *report, const Style *style, Text *text)
 {
-    Table *table = fields_table("Cost", RUN_FIELDS, FIELD_TABLE, style, text);
+    NumberFields fields = {.count = 0};
+    number_fields_add(&fields, NUMBER_OWNER_COST, NUMBER_PUSHED, 0, false);
+    const size_t words = fields_table_width(RUN_FIELDS, FIELD_TABLE);
+    section_heading("Cost", style, text);
+    text_append(text, "\n");
+    Table *table = table_create(words + fields_table_width(fields.rows, FIELD_TABLE));
+    table_fit(table, style->width);
+    fields_table_heads(RUN_FIELDS, FIELD_TABLE, 0, table);
+    fields_table_heads(fields.rows, FIELD_TABLE, words, table);
     for (size_t i = 0; i < report->run_count; i++) {
+        const NumberSource source = run_report_source(report, i);
+        const NumberRecord record = number_record(NUMBER_OWNER_COST, &source, 0);
         fields_table_row(RUN_FIELDS, FIELD_TABLE, report->runs[i], table);
+        fields_table_row(fields.rows, FIELD_TABLE, &record, table);
     }
     section_end(table, text);
     for (size_t i = 0; i < report->run_count; i++) {
@@ -474,48 +525,37 @@ void run_turns_write(const RunReport *report, const Style *style, Text *text)
 // 1: a reference that is less sure than this holds nowhere
 static const double HOLDS = 1e-3;
 
-static void error_row(Table *table, const RunReport *report, size_t run)
+// An error as tables have it: up to a horizon only where that is certified.
+static TrajectoryError error_shown(const RunReport *report, size_t run)
 {
-    const TrajectoryError *error = &report->errors[run];
-    const bool is_certified = run_report_is_certified(report, error);
-    table_cell(table, "%s", report->runs[run]->backend);
-    table_cell(table, "%s", error->against);
-    section_number(table, error->max);
-    section_number(table, error->max_time_s * UNITS_MS);
-    section_number_or_dash(table, is_certified && isfinite(error->max_in_horizon),
-                           error->max_in_horizon);
-    section_number_or_dash(table, is_certified, is_certified ? report->truth->uncertainty : 0.0);
-    table_cell(table, "%s%s", error->in, error->is_floor ? " (floor)" : "");
-    section_number(table, error->omega_max);
-    section_number(table, error->omega_rms);
-    section_number(table, error->alpha_max);
-    section_number(table, error->angle_max_rad * UNITS_DEG);
-    table_cell(table,
-               run_report_is_limited_by_reference(report, error) ? "limited by the reference" : "");
+    TrajectoryError shown = report->errors[run];
+    if (!run_report_is_certified(report, &report->errors[run])) {
+        shown.max_in_horizon = NAN;
+    }
+    if (shown.is_floor) {
+        snprintf(shown.in, sizeof shown.in, "%.*s (floor)", (int)(sizeof shown.in - 9),
+                 report->errors[run].in);
+    }
+    return shown;
 }
 
-static void peak_cells(Table *table, double whole, double in_horizon, const char *in)
+static void error_row(Table *table, const RunReport *report, size_t run)
 {
-    section_number_or_dash(table, isfinite(whole), whole);
-    section_number_or_dash(table, isfinite(in_horizon), in_horizon);
-    table_cell(table, "%s", in);
+    const TrajectoryError shown = error_shown(report, run);
+    const bool is_certified = run_report_is_certified(report, &report->errors[run]);
+    table_cell(table, "%s", report->runs[run]->backend);
+    table_cell(table, "%s", shown.against);
+    section_number_or_dash(table, is_certified, is_certified ? report->truth->uncertainty : 0.0);
+    fields_table_row(ERROR_FIELDS, FIELD_TABLE, &shown, table);
+    table_cell(table, run_report_is_limited_by_reference(report, &shown)
+                          ? "limited by the reference"
+                          : "");
 }
 
 // The errors that the motion's says nothing of.
 static void write_force_errors(const RunReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"backend", "", TABLE_LEFT},
-        {"forces", "1", TABLE_RIGHT},
-        {"in horizon", "1", TABLE_RIGHT},
-        {"in", "", TABLE_WRAP},
-        {"peak forces", "1", TABLE_RIGHT},
-        {"in horizon", "1", TABLE_RIGHT | TABLE_MINOR},
-        {"in", "", TABLE_WRAP | TABLE_MINOR},
-        {"peak alpha", "1", TABLE_RIGHT},
-        {"in horizon", "1", TABLE_RIGHT | TABLE_MINOR},
-        {"in", "", TABLE_WRAP | TABLE_MINOR},
-    };
+    const size_t columns = 1 + fields_table_width(ERROR_FIELDS, ERROR_OF_CONTACTS);
     Table *table = NULL;
     for (size_t i = 0; i < report->run_count; i++) {
         const TrajectoryError *error = &report->errors[i];
@@ -523,15 +563,15 @@ static void write_force_errors(const RunReport *report, const Style *style, Text
             continue;
         }
         if (table == NULL) {
-            table = section_begin("Error of contact forces at the samples, and of peaks", 10, HEADS,
-                                  style, text);
+            section_heading("Error of contact forces at the samples, and of peaks", style, text);
+            text_append(text, "\n");
+            table = table_create(columns);
+            table_fit(table, style->width);
+            table_head(table, 0, "backend", "", TABLE_LEFT);
+            fields_table_heads(ERROR_FIELDS, ERROR_OF_CONTACTS, 1, table);
         }
         table_cell(table, "%s", report->runs[i]->backend);
-        peak_cells(table, error->force_max, error->force_max_in_horizon, error->force_in);
-        peak_cells(table, error->peak_force_max, error->peak_force_max_in_horizon,
-                   error->peak_force_in);
-        peak_cells(table, error->peak_alpha_max, error->peak_alpha_max_in_horizon,
-                   error->peak_alpha_in);
+        fields_table_row(ERROR_FIELDS, ERROR_OF_CONTACTS, error, table);
     }
     if (table != NULL) {
         section_end(table, text);
@@ -609,22 +649,24 @@ static void write_truth_alone(const RunReport *report, const Style *style, Text 
     }
 }
 
+static Table *begin_errors(const Style *style, Text *text)
+{
+    enum { BEFORE = 3 }; // columns that are no errors; one is behind them
+    const size_t width = fields_table_width(ERROR_FIELDS, FIELD_TABLE);
+    section_heading("Error at the samples, over the reference's largest value", style, text);
+    text_append(text, "\n");
+    Table *table = table_create(BEFORE + width + 1);
+    table_fit(table, style->width);
+    table_head(table, 0, "backend", "", TABLE_LEFT);
+    table_head(table, 1, "against", "", TABLE_LEFT | TABLE_MINOR);
+    table_head(table, 2, "reference +-", "1", TABLE_RIGHT);
+    fields_table_heads(ERROR_FIELDS, FIELD_TABLE, BEFORE, table);
+    table_head(table, BEFORE + width, "", "", TABLE_LEFT);
+    return table;
+}
+
 void run_truth_errors(const RunReport *report, const Style *style, Text *text)
 {
-    static const SectionHead HEADS[] = {
-        {"backend", "", TABLE_LEFT},
-        {"against", "", TABLE_LEFT | TABLE_MINOR},
-        {"largest", "1", TABLE_RIGHT},
-        {"at time", "ms", TABLE_RIGHT | TABLE_DETAIL},
-        {"in horizon", "1", TABLE_RIGHT},
-        {"reference +-", "1", TABLE_RIGHT},
-        {"in", "", TABLE_WRAP},
-        {"omega max", "1", TABLE_RIGHT | TABLE_MINOR},
-        {"omega rms", "1", TABLE_RIGHT | TABLE_DETAIL},
-        {"alpha max", "1", TABLE_RIGHT | TABLE_DETAIL},
-        {"angle max", "deg", TABLE_RIGHT | TABLE_DETAIL},
-        {"", "", TABLE_LEFT},
-    };
     Table *table = NULL;
     bool includes_play = false;
     bool has_floor = false;
@@ -634,8 +676,7 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
             continue;
         }
         if (table == NULL) {
-            table = section_begin("Error at the samples, over the reference's largest value", 12,
-                                  HEADS, style, text);
+            table = begin_errors(style, text);
         }
         error_row(table, report, i);
         includes_play = includes_play || run_report_includes_play(report, i);
@@ -665,23 +706,26 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
 
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
 {
+    NumberFields fields = {.count = 0};
+    number_fields_label(&fields, "backend", "", TABLE_LEFT);
+    number_fields_add(&fields, NUMBER_OWNER_ENERGY, NUMBER_PUSHED,
+                      number_fields_lacked(&report->scenario->linkage), false);
+    number_fields_label(&fields, "residual", "of energy", TABLE_RIGHT);
     Table *table = NULL;
     RunFloor *floors = run_floor_list(report);
-    const unsigned places = FIELD_TABLE | run_loaded(&report->scenario->linkage);
     for (size_t i = 0; i < report->run_count; i++) {
-        const Energy *energy = &report->runs[i]->energy;
         if (!report->runs[i]->is_complete) {
             continue;
         }
         if (table == NULL) {
-            table = fields_table("Energy", RUN_ENERGY_FIELDS, places, style, text);
+            table = fields_table("Energy", fields.rows, FIELD_TABLE, style, text);
         }
         table_cell(table, "%s", report->runs[i]->backend);
-        const Energy shown = run_floor_energy(energy, &floors[i]);
-        fields_table_row(RUN_ENERGY_FIELDS, places, &shown, table);
+        const NumberRecord shown = run_floor_record(report, i, &floors[i], NUMBER_OWNER_ENERGY, 0);
+        fields_table_row(fields.rows, FIELD_TABLE, &shown, table);
+        const double residual = shown.values[NUMBER_ENERGY_RESIDUAL].value;
         const double scale = error_energy(report->runs[i]);
-        section_number_or_dash(table, scale > 0.0 && isfinite(shown.residual),
-                               fabs(shown.residual / scale));
+        section_number_or_dash(table, scale > 0.0 && isfinite(residual), fabs(residual / scale));
     }
     free(floors);
     if (table != NULL) {

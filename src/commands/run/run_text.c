@@ -821,11 +821,13 @@ void run_text_write(const void *of, const Style *style, Text *text)
     run_tables_extremes(report, style, text);
     run_turns_write(report, style, text);
     run_slides_motion(report, style, text);
+    run_tables_forces(report, style, text);
     run_tables_contacts(report, style, text);
     run_tables_pins(report, style, text);
     run_slides_blocks(report, style, text);
     run_tables_spikes(report, RUN_TEXT_SPIKES, style, text);
     spike_tables_write(report, RUN_TEXT_SPIKES, style, text);
+    run_tables_whole(report, style, text);
     run_truth_matches(report, style, text);
     run_truth_ensembles(report, style, text);
     run_truth_energy(report, style, text);
