@@ -84,6 +84,12 @@ static double alpha_peak(const NumberSource *of)
     return peak;
 }
 
+static double residual_share(const Trajectory *run)
+{
+    const double scale = error_energy(run);
+    return scale > 0.0 ? fabs(run->energy.residual) / scale : NAN;
+}
+
 BodyExtremes number_extremes_at_samples(const Trajectory *run, size_t body)
 {
     const Motion *start = trajectory_motion(run, 0, body);
@@ -165,30 +171,42 @@ static bool has_owner(NumberOwner owner, const NumberSource *of, size_t member)
     const BodyExtremes *extremes = &found; \
     (void)run, (void)extremes;
 #define LOCALS_BODY_SPIKE \
-    const SignalSpike *spike = strongest_spike(of, &of->run->alpha_spikes[member]);
+    const SignalSpike *spike = strongest_spike(of, &of->run->alpha_spikes[member]); \
+    (void)spike;
 #define LOCALS_JOINT \
     const Trajectory *run = of->run; \
     const JointExtremes *extremes = &run->joints[member]; \
     (void)run, (void)extremes;
 #define LOCALS_JOINT_SPIKE \
-    const SignalSpike *spike = strongest_spike(of, &of->run->force_spikes[member]);
-#define LOCALS_JOINT_CONTACT const Spike *contact = strongest_contact(of, member);
+    const SignalSpike *spike = strongest_spike(of, &of->run->force_spikes[member]); \
+    (void)spike;
+#define LOCALS_JOINT_CONTACT \
+    const Spike *contact = strongest_contact(of, member); \
+    (void)contact;
 #define LOCALS_RUN \
     const Trajectory *run = of->run; \
     (void)run;
-#define LOCALS_ENERGY const Energy *energy = &of->run->energy;
-#define LOCALS_COST const Trajectory *run = of->run;
-#define LOCALS_SECTION const Trajectory *run = of->run;
+#define LOCALS_ENERGY \
+    const Energy *energy = &of->run->energy; \
+    (void)energy;
+#define LOCALS_COST LOCALS_RUN
+#define LOCALS_SECTION LOCALS_RUN
 #define LOCALS_SETTLED \
     const SettledStart *settled = &of->scenario->settled; \
     const SettledMotion *motion = &settled->motions[0]; \
     (void)settled, (void)motion;
 #define LOCALS_SETTLED_JOINT \
-    const SettledJoint *did = &of->scenario->settled.motions[0].joints[member];
+    const SettledJoint *did = &of->scenario->settled.motions[0].joints[member]; \
+    (void)did;
 #define LOCALS_SETTLED_BODY \
-    const SettledNumber *alpha = &of->scenario->settled.motions[0].alpha[member];
-#define LOCALS_ERROR const TrajectoryError *error = of->error;
-#define LOCALS_TRUTH const Truth *truth = of->truth;
+    const SettledNumber *alpha = &of->scenario->settled.motions[0].alpha[member]; \
+    (void)alpha;
+#define LOCALS_ERROR \
+    const TrajectoryError *error = of->error; \
+    (void)error;
+#define LOCALS_TRUTH \
+    const Truth *truth = of->truth; \
+    (void)truth;
 
 #define VALUE_BODY(value)          value
 #define VALUE_BODY_SPIKE(value)    value

@@ -287,7 +287,11 @@ enum {
     row(ENERGY, RESIDUAL, "residual", ENERGY, "residual", NULL, NULL, \
         NUMBER_EVERYWHERE, 0, energy->residual, \
         "what the balance leaves unexplained: the solver's error", \
-        "residual of the energy balance")
+        "residual of the energy balance") \
+    row(ENERGY, RESIDUAL_SHARE, "residual_share", RATIO, "residual/energy", NULL, NULL, \
+        NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, residual_share(of->run), \
+        "size of that over the largest energy of the run: drive work, loss or kinetic", \
+        "residual over the largest energy")
 
 // Of what a run took: `run`.
 #define NUMBERS_OF_COST_LIST(row) \

@@ -263,7 +263,7 @@ static void an_error_is_told_with_what_limits_it(void **state)
         "crank-coupler  deepest, um    ode        250000  500000  750000  562500    31250",
         "reference: 16 starts\n",
         "ode: 14 starts, and 2 that failed: a member broke\n",
-        "ode                 2    1.25         0.5     0.125    0.0625    0.03125",
+        "ode                 2    1.25         0.5     0.125    0.0625          0.03125",
         "54321",
         NULL,
     };
@@ -280,8 +280,8 @@ static void a_truth_that_holds_is_told_in_one_line(void **state)
     TruthFixture *own = *state;
     static const char *const WORDS[] = {
         "holds through the whole run, 62.83 ms",
-        "reference       4e-14       0           0         0     1e-14  1.274e-11\n",
-        "ode                 0    1.25         0.5     0.125    0.0625       0.05\n",
+        "reference       4e-14       0           0         0     1e-14        1.274e-11\n",
+        "ode                 0    1.25         0.5     0.125    0.0625             0.05\n",
         NULL,
     };
     own->truth.is_limited = false;

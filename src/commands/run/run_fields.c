@@ -185,6 +185,9 @@ NumberRecord run_floor_record(const RunReport *report, size_t run, const RunFloo
         number->value = run_floor_cut(number->value, floor_of(NUMBERS[id].kind, turn, floor));
     }
     const bool is_unloaded = record.values[NUMBER_JOINT_FORCE_MAX].value == 0.0;
+    if (record.values[NUMBER_ENERGY_RESIDUAL].value == 0.0) {
+        record.values[NUMBER_ENERGY_RESIDUAL_SHARE].value *= 0.0;
+    }
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
         const NumberKind kind = NUMBERS[id].kind;
         if ((NUMBERS[id].traits & NUMBER_TIMED) != 0 && is_nothing(&record, owner, kind)) {

@@ -50,7 +50,7 @@ static bool write_numbers(const RunReport *report, NumberOwner owner, NumberTurn
     number_fields_label(&fields, "backend", "", TABLE_LEFT);
     number_fields_add(&fields, owner, turn, without | number_fields_lacked(linkage),
                       run_report_has_crank(report));
-    RunFloor *floors = run_floor_list(report);
+    RunFloor *floors = NULL;
     Table *table = NULL;
     for (size_t member = 0; member < number_member_count(owner, linkage); member++) {
         for (size_t i = 0; i < report->run_count; i++) {
@@ -58,6 +58,7 @@ static bool write_numbers(const RunReport *report, NumberOwner owner, NumberTurn
                 continue;
             }
             if (table == NULL) {
+                floors = run_floor_list(report);
                 table = fields_table(heading, fields.rows, FIELD_TABLE, style, text);
             }
             if (what != NULL) {
@@ -706,31 +707,8 @@ void run_truth_errors(const RunReport *report, const Style *style, Text *text)
 
 void run_truth_energy(const RunReport *report, const Style *style, Text *text)
 {
-    NumberFields fields = {.count = 0};
-    number_fields_label(&fields, "backend", "", TABLE_LEFT);
-    number_fields_add(&fields, NUMBER_OWNER_ENERGY, NUMBER_PUSHED,
-                      number_fields_lacked(&report->scenario->linkage), false);
-    number_fields_label(&fields, "residual", "of energy", TABLE_RIGHT);
-    Table *table = NULL;
-    RunFloor *floors = run_floor_list(report);
-    for (size_t i = 0; i < report->run_count; i++) {
-        if (!report->runs[i]->is_complete) {
-            continue;
-        }
-        if (table == NULL) {
-            table = fields_table("Energy", fields.rows, FIELD_TABLE, style, text);
-        }
-        table_cell(table, "%s", report->runs[i]->backend);
-        const NumberRecord shown = run_floor_record(report, i, &floors[i], NUMBER_OWNER_ENERGY, 0);
-        fields_table_row(fields.rows, FIELD_TABLE, &shown, table);
-        const double residual = shown.values[NUMBER_ENERGY_RESIDUAL].value;
-        const double scale = error_energy(report->runs[i]);
-        section_number_or_dash(table, scale > 0.0 && isfinite(residual), fabs(residual / scale));
-    }
-    free(floors);
-    if (table != NULL) {
-        section_end(table, text);
-    }
+    write_numbers(report, NUMBER_OWNER_ENERGY, NUMBER_PUSHED, 0, "Energy", NULL, is_any, style,
+                  text);
 }
 
 static void match_rows(Table *table, const Joint *joint, const JointExtremes *truth,
