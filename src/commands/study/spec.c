@@ -290,46 +290,6 @@ static bool leaves_truth(const char *key)
            strcmp(key, "run.step") == 0 || strcmp(key, "run.tolerance") == 0;
 }
 
-static const char *const OF_ENGINES[] = {"ode.", "engines.", "run.step", "run.tolerance",
-                                         "run.budget"};
-
-static bool has_reference(const RunOptions *run)
-{
-    bool has = false;
-    for (size_t i = 0; i < run->backend_count; i++) {
-        has = has || run->backends[i] == BACKEND_REFERENCE;
-    }
-    return has;
-}
-
-// Whether runs of no scheme are of the reference: nobody speaks of a step or setting of ODE, or
-// asks how far it is off.
-static bool is_of_reference(const Spec *spec)
-{
-    bool speaks = spec->has_truth || !has_reference(&spec->base->run);
-    for (size_t i = 0; i < sizeof OF_ENGINES / sizeof *OF_ENGINES; i++) {
-        speaks = speaks || casefile_gives(spec->base, OF_ENGINES[i]);
-    }
-    for (size_t i = 0; i < spec->variable_count; i++) {
-        speaks = speaks || !spec->variables[i].changes_truth;
-    }
-    return !speaks;
-}
-
-// What makes the runs, and what is asked of it, where the file does not say so.
-static void decide_backend(const Node *root, Spec *spec)
-{
-    const bool is_said = spec_read_child(root, "truth") != NULL;
-    spec->has_truth = spec->has_truth && is_said;
-    spec->backend = is_of_reference(spec) ? BACKEND_REFERENCE : BACKEND_ODE;
-    spec->has_truth = spec->has_truth || (!is_said && spec->backend == BACKEND_ODE);
-    spec->is_quick = spec->backend == BACKEND_REFERENCE &&
-                     !casefile_gives(spec->base, "reference.tolerance") &&
-                     spec_variable(spec, "reference.tolerance") == NULL;
-    spec->has_neighbours = spec->settle == SETTLE_NEIGHBOURS && !spec->has_truth &&
-                           spec->follow[0] == '\0' && scenario_settles(spec->base);
-}
-
 // Begins a new variable of the spec, for the key of a value. False where the key is none of the
 // case, the spec has no room, or the study names the key a second time.
 static bool spec_read_variable(Reading *reading, const Node *value)
@@ -483,7 +443,7 @@ static bool read_parts(Reading *reading, const Node *root)
     }
     set_joint_kinds(reading);
     order_variables(reading->spec);
-    decide_backend(root, reading->spec);
+    spec_decide_backend(spec_read_child(root, "truth") != NULL, reading->spec);
     return probe_is_whole(reading->probe, reading->err) && spec_read_check_schemes(reading) &&
            check_count(reading);
 }

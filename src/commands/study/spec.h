@@ -203,6 +203,11 @@ bool spec_read_log_uniform(Reading *reading, const Node *value);
 bool spec_read_normal(Reading *reading, const Node *value);
 bool spec_read_triangular(Reading *reading, const Node *value);
 
+// What makes the runs where no scheme does: the reference where neither the case nor the study,
+// which are read, speaks of ODE, and whether each is compared with a truth where the file does not
+// say.
+void spec_decide_backend(bool is_truth_said, Spec *spec);
+
 // A number that the variable's key takes: of its unit and, where `is_checked`, in its range.
 bool spec_read_number(Reading *reading, const Node *node, bool is_checked, double *number);
 
