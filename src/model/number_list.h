@@ -216,8 +216,8 @@ enum {
         NUMBER_EVERYWHERE, NUMBER_PLAY, trajectory_contact_share(run, member), \
         "share of the time in contact")
 
-// Of a spike of a signal, of a body or of a joint: `spike`. In studies, checks and limits that of
-// the strongest, with alpha_spike_ or force_spike_ before the name.
+// Of a spike of a signal, of a body or of a joint: `spike`. In checks and limits that of the
+// strongest, with alpha_spike_ or force_spike_ before the name; studies look for no spikes.
 #define NUMBERS_OF_SPIKE_LIST(row, owner) \
     row(owner, ONSET, "onset", TIME, "onset", NULL, "%.4f", NUMBER_JSON, NUMBER_LACKED, \
         spike->onset_s, "when a spike begins") \
