@@ -382,6 +382,21 @@ static void append_path(NumberId id, Text *text)
                 NUMBERS[id].name);
 }
 
+// Those whose meanings the page of results has.
+static void list_known(Text *text)
+{
+    const char *before = "- with the meanings in [numbers](output.md#numbers): ";
+    for (NumberId id = 0; id < NUMBER_COUNT; id++) {
+        if ((NUMBERS[id].places & NUMBER_EXPECT) != 0 && (NUMBERS[id].places & NUMBER_JSON) != 0) {
+            text_append(text, "%s`", before);
+            append_path(id, text);
+            text_append(text, "`");
+            before = ", ";
+        }
+    }
+    text_append(text, "\n");
+}
+
 static void describe_expectation(NumberId id, bool is_page, Text *text)
 {
     const Number *number = &NUMBERS[id];
@@ -460,8 +475,12 @@ static void describe_expect(bool is_page, Text *text)
         append_wrapped(EXPECT_FORMS, 4, text);
         text_append(text, "\n%s\n", EXPECT_EXAMPLE);
     }
+    if (is_page) {
+        list_known(text);
+    }
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
-        if ((NUMBERS[id].places & NUMBER_EXPECT) != 0) {
+        const bool is_known = is_page && (NUMBERS[id].places & NUMBER_JSON) != 0;
+        if ((NUMBERS[id].places & NUMBER_EXPECT) != 0 && !is_known) {
             describe_expectation(id, is_page, text);
         }
     }

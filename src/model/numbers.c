@@ -14,7 +14,8 @@ const NumberOwnerRow NUMBER_OWNERS[NUMBER_OWNER_COUNT] = {NUMBER_OWNER_LIST(OWNE
 // clang-format off
 #define ROW_UNITS(word, column, units)  ROW_UNITS_OF(word, column, units)
 #define ROW_UNITS_OF(word, column, ...) ROW_UNITS_SPLIT(word, column, __VA_ARGS__)
-#define ROW_UNITS_SPLIT(word, column, key, unit, turned_key, turned_unit, sped_key, sped_unit, end) \
+#define ROW_UNITS_SPLIT(word, column, key, unit, turned_key, turned_unit, sped_key, sped_unit, \
+                        end) \
     .keys = {word key, word turned_key, word sped_key}, \
     .columns = {column key, column turned_key, column sped_key}, \
     .unit_keys = {key, turned_key, sped_key}, \

@@ -14,9 +14,11 @@ CASES = [
     "literature/pin-in-hole-drop", "mechanisms/gear-pair", "mechanisms/slider-crank-both",
     "mechanisms/servo-backlash", "mechanisms/bouncing-ball", "mechanisms/run-up", "space/overhung-pin",
 ]
-BASELINES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "results", "baseline")
-MACHINE = re.compile(r"wall|^store$|^study$|_cpu|cpu_|version|^tool$|per_s$|us_per_step|real_time_factor|processor|inside"
-                     r"|on_frontier|cheapest|^build$|^created|^machine")
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+BASELINES = os.path.join(ROOT, "results", "baseline")
+MACHINE = re.compile(r"wall|^store$|^study$|_cpu|cpu_|version|^tool$|per_s$|us_per_step"
+                     r"|real_time_factor|processor|inside|on_frontier|cheapest|^build$|^created"
+                     r"|^machine")
 
 
 def flatten(value, path, into):
@@ -48,8 +50,8 @@ def commands(case, work):
     store = os.path.join(work, "small.sqlite")
     return [
         ("run", ["run", "-q", "--json", "--budget=none", case]),
-        ("series", ["run", "-q", "--backend=ode", "--series=-", case]),
-        ("contacts", ["run", "-q", "--backend=ode", "--contacts=-", case]),
+        ("series", ["run", "-q", "--budget=none", "--backend=ode", "--series=-", case]),
+        ("contacts", ["run", "-q", "--budget=none", "--backend=ode", "--contacts=-", case]),
         ("auto", ["run", "-q", "--json", "--budget=none", "--backend=ode", "--step=auto", case]),
         ("map", ["map", "-q", "--json", case]),
         ("map csv", ["map", "-q", "--csv=-", case]),
@@ -89,11 +91,10 @@ def main():
     parser.add_argument("--but", action="append", default=[])
     parser.add_argument("cases", nargs="*", default=CASES)
     asked = parser.parse_args()
-    root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cases")
     compared = 0
     found = {}
     for name in asked.cases:
-        case = os.path.abspath(os.path.join(root, name + ".yaml"))
+        case = os.path.abspath(os.path.join(ROOT, "cases", name + ".yaml"))
         old, new = (told(os.path.abspath(p), case) for p in (asked.old, asked.new))
         print(f"{name}: {len(old)} and {len(new)} values", file=sys.stderr, flush=True)
         for path in old.keys() | new.keys():
@@ -106,7 +107,8 @@ def main():
                 example = f"{name}: {old.get(path)!r} -> {new.get(path)!r}"
                 found.setdefault((how, path[0], path[-1]), []).append((words, example))
     for (how, command, key), places in sorted(found.items()):
-        print(f"{how:5} {command:9} {key:40} {len(places):5} times, as {places[0][0]} of {places[0][1]}")
+        words, example = places[0]
+        print(f"{how:5} {command:9} {key:40} {len(places):5} times, as {words} of {example}")
     print(f"{compared} values of {len(asked.cases)} cases compared, {len(found)} keys differ")
     return 1 if found else 0
 

@@ -255,17 +255,18 @@ static const char *column_of(const Number *number)
     return number->columns[number->owner == NUMBER_OWNER_BODY_SPIKE ? NUMBER_SPED : NUMBER_PUSHED];
 }
 
-// Whether a number of a study has its meaning on the page of a case.
+// Whether a number of a study is described; on its page not if another page has the meaning.
 static bool is_described(const Number *number, bool is_markdown)
 {
     return (number->places & NUMBER_STUDY) != 0 &&
-           !(is_markdown && (number->places & NUMBER_EXPECT) != 0);
+           !(is_markdown && (number->places & (NUMBER_EXPECT | NUMBER_JSON)) != 0);
 }
 
-// The columns whose meanings the page of a case has.
+// The columns whose meanings other pages have.
 static void list_expectable(Text *text)
 {
-    text_append(text, "- with the meanings in [`expect`](case-format.md#expect)");
+    text_append(text, "- with the meanings in [numbers](output.md#numbers) and "
+                      "[`expect`](case-format.md#expect)");
     for (NumberId id = 0; id < NUMBER_COUNT; id++) {
         const Number *number = &NUMBERS[id];
         if (is_described(number, false) && !is_described(number, true)) {
@@ -291,7 +292,7 @@ static void append_meaning(const char *meaning, Text *text)
     text_finish(&words);
 }
 
-// On the page those of one meaning are a range, and those of `expect` stand before.
+// On the page those of one meaning are a range, and those that other pages have stand before.
 void metrics_describe(bool is_markdown, Text *text)
 {
     if (is_markdown) {
