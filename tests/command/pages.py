@@ -31,7 +31,7 @@ def parts(text):
 
 
 def shorter(command):
-    word = shlex.split(command)[1]
+    word = shlex.split(command, comments=True)[1]
     less = LESS.get(word, "")
     if not quick or not less or less.split()[0] in command or "--bless" in command:
         return command
