@@ -504,7 +504,7 @@ enum {
     NUMBERS_OF_TRUTH_LIST(row)
 
 #define NUMBERS_ID(owner, id, ...) NUMBER_##owner##_##id,
-#define NUMBERS_KIND(id, ...)      NUMBER_OF_##id,
+#define NUMBERS_KIND(id)           NUMBER_OF_##id,
 #define NUMBERS_OWNER(id, ...)     NUMBER_OWNER_##id,
 
 typedef enum NumberId { NUMBER_LIST(NUMBERS_ID) NUMBER_COUNT } NumberId;
