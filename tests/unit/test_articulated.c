@@ -53,6 +53,7 @@ static void join(Made *made, JointKind kind, int body_a, int body_b)
     Linkage *linkage = made->linkage;
     const Vec2 point = {lcg_draw(&made->seed), lcg_draw(&made->seed)};
     const double angle_a = body_a == LINKAGE_GROUND ? 0.0 : linkage->bodies[body_a].start.angle;
+    const double angle_b = body_b == LINKAGE_GROUND ? 0.0 : linkage->bodies[body_b].start.angle;
     linkage->joints[linkage->joint_count++] = (Joint){
         .kind = kind,
         .body_a = body_a,
@@ -60,7 +61,7 @@ static void join(Made *made, JointKind kind, int body_a, int body_b)
         .anchor_a = anchor_of(linkage, body_a, point),
         .anchor_b = anchor_of(linkage, body_b, point),
         .direction = 3.0 * lcg_draw(&made->seed),
-        .held_angle = linkage->bodies[body_b].start.angle - angle_a,
+        .held_angle = angle_b - angle_a,
     };
 }
 
