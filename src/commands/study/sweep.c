@@ -451,14 +451,15 @@ static bool is_served_by(const SweepPool *pool, size_t number, const SweepGroup 
            child_is_at_rest(&pool->children[number]);
 }
 
-// Whether a job may start a run of a block: no process is at work on it, and no other knows it.
+// Whether a job may start a run of a block: no process is at work on it, and none but its own knows
+// it. Where nothing is at work at all any may, so that the sweep always goes on.
 static bool is_free_for(const SweepPool *pool, size_t number, const SweepGroup *block)
 {
-    bool is_free = block->busy == 0;
-    for (size_t i = 0; i < pool->job_count && is_free; i++) {
-        is_free = i == number || pool->jobs[i].group != NULL || !is_served_by(pool, i, block);
+    bool is_others = false;
+    for (size_t i = 0; i < pool->job_count; i++) {
+        is_others = is_others || (pool->jobs[i].group == NULL && is_served_by(pool, i, block));
     }
-    return is_free;
+    return block->busy == 0 && (!is_others || is_served_by(pool, number, block) || pool->busy == 0);
 }
 
 // The first group by number of run that has a run for a job to start, of blocks that which its
