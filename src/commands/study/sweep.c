@@ -451,15 +451,14 @@ static bool is_served_by(const SweepPool *pool, size_t number, const SweepGroup 
            child_is_at_rest(&pool->children[number]);
 }
 
-// Whether a job may start a run of a block: no process is at work on it, and none but its own knows
-// it. Where nothing is at work at all any may, so that the sweep always goes on.
+// Whether a job may start a run of a block: no process is at work on it, and no other knows it.
 static bool is_free_for(const SweepPool *pool, size_t number, const SweepGroup *block)
 {
-    bool is_others = false;
-    for (size_t i = 0; i < pool->job_count; i++) {
-        is_others = is_others || (pool->jobs[i].group == NULL && is_served_by(pool, i, block));
+    bool is_free = block->busy == 0;
+    for (size_t i = 0; i < pool->job_count && is_free; i++) {
+        is_free = i == number || pool->jobs[i].group != NULL || !is_served_by(pool, i, block);
     }
-    return block->busy == 0 && (!is_others || is_served_by(pool, number, block) || pool->busy == 0);
+    return is_free;
 }
 
 // The first group by number of run that has a run for a job to start, of blocks that which its
@@ -634,12 +633,13 @@ static size_t count_slot(const SweepPool *pool, size_t slot)
 // Starts a process for every free job, as far as there is work. Fails with ERR_FILE where the store
 // does, with ERR_SOLVER where the system has no process at all.
 //
-// Empty slots come first, then those with nothing ready.
+// Empty slots come first, then those with nothing ready. Where there is nothing for one job there
+// may be for the next: the block that its process knows.
 static bool sweep_pool_fill(SweepPool *pool, Err *err)
 {
-    bool is_started = true;
+    bool is_started;
     for (size_t depth = 0; depth < SWEEP_SLOT_DEPTH; depth++) {
-        for (size_t i = 0; i < pool->job_count && is_started; i++) {
+        for (size_t i = 0; i < pool->job_count; i++) {
             if (pool->jobs[i].group == NULL &&
                 count_slot(pool, pool->jobs[i].slot.number) <= depth &&
                 !sweep_fill(pool, i, &is_started, err)) {
