@@ -396,6 +396,7 @@ static SolverModel engine_model(const void *of)
     SolverModel model = {
         .step_s = state->answer->step_s,
         .steps = state->answer->steps,
+        .stepped_s = state->answer->duration_s,
         .wall_s = state->answer->wall_s,
         .engine = engine,
     };

@@ -7,6 +7,9 @@
 // the ones before; it is made only where as much is left afterwards, so that a run of that step can
 // always be had whole. The last trial is as fine as what is left allows, and is not given up: it is
 // the result, up to where it held.
+//
+// Another engine runs the whole motion before its first sample is seen. Its trials all cost what a
+// run does, so its steps fall faster.
 #include "measure/chosen_run.h"
 #include "base/clock.h"
 #include "base/zeroed.h"
@@ -85,6 +88,7 @@ typedef struct Trial {
 // work of a step over that of the next one, where it missed at once and where it missed at the end
 static const double DEARER_EARLY = 0.8;
 static const double DEARER_LATE = 0.7;
+static const double DEARER_WHOLE = 0.4; // where every trial is a whole run
 
 // in evaluations of the contacts' forces, as instructions of the paper's case have it
 static const double WORLD_STEP_WORK = 16.0;
@@ -221,10 +225,14 @@ static Scenario step_choice_scenario(const StepChoice *choice, double step_s)
     return scenario_with_step(choice->scenario, step_s);
 }
 
-// After one that missed the tolerance when it had come through a share of the run, 0 to 1.
-static double step_choice_dearer(Work work, double step_s, double share)
+// Of one that missed the tolerance when it had come through a share of the run, 0 to 1.
+static double dearer_after(double share)
 {
-    const double dearer = DEARER_EARLY + (DEARER_LATE - DEARER_EARLY) * fmin(1.0, share);
+    return DEARER_EARLY + (DEARER_LATE - DEARER_EARLY) * fmin(1.0, share);
+}
+
+static double step_choice_dearer(Work work, double step_s, double dearer)
+{
     const double next_s =
         work.stepped / ((work.fixed + work.stepped / step_s) / dearer - work.fixed);
     return fmax(next_s, LEAST_SHARE * step_s);
@@ -293,7 +301,8 @@ static bool chosen_run_look(const Trajectory *trajectory, size_t sample, void *c
     const bool is_of_interest =
         !is_behind || (rule->kind == TOLERANCE_OF_MOTION && rule->window.is_uncertain &&
                        time_s <= rule->window.horizon_s);
-    if (!is_of_interest || (watcher->is_over && !rule->is_smooth)) {
+    const bool runs_on = rule->is_last || rule->is_smooth;
+    if (!is_of_interest || (watcher->is_over && !runs_on)) {
         return true;
     }
     const double apart = apart_at(watcher, trajectory, sample);
@@ -312,7 +321,6 @@ static bool chosen_run_look(const Trajectory *trajectory, size_t sample, void *c
     }
     watcher->is_over = true;
     trial->error = bound;
-    const bool runs_on = rule->is_last || rule->is_smooth;
     trial->is_given_up = !runs_on;
     return runs_on || err_set(err, ERR_SOLVER, "the step is too coarse");
 }
@@ -439,6 +447,14 @@ static const double NEAR_STEP = 1.2;
 // 1: of the budget, which has to be spent before the trials show what a step takes
 static const double BUDGET_KNOWN = 0.05;
 
+// What the last two trials that were whole runs took: its time is a + b times its steps, a being
+// what an engine's contacts take, which are integrated in steps of their own.
+typedef struct Pace {
+    size_t count;
+    double steps[2]; // the last one's first
+    double time_s[2];
+} Pace;
+
 typedef struct Chosen {
     const Scenario *scenario;
     BackendKind backend;
@@ -452,10 +468,12 @@ typedef struct Chosen {
     double computed_s; // of processor time, when the trials began
     TrialWindow window;
     double cost; // world steps to a step
+    Pace pace;
     size_t trials;
     size_t steps; // of all trials so far
     size_t evaluations;
-    double moved_s; // of motion
+    double moved_s;  // of motion
+    double engine_s; // that other processes took
     double wall_s;
     double best_step_s; // of the trial that held longest; 0: none did at all
     double best_held_s;
@@ -481,6 +499,11 @@ static Trajectory *chosen_run_fail(const Chosen *chosen, const char *message)
     return none;
 }
 
+static bool is_of_engine(const Chosen *chosen)
+{
+    return chosen->backend != BACKEND_ODE;
+}
+
 static void pass_progress(double share, double wall_s, void *context)
 {
     (void)wall_s;
@@ -488,10 +511,12 @@ static void pass_progress(double share, double wall_s, void *context)
     chosen->watch.run.progress(share, clock_now_s() - chosen->started_s, chosen->watch.run.context);
 }
 
-// What watches a run goes by the time of all.
+// What watches a run goes by the time of all. How far another engine has come is not known before
+// its run is over.
 static RunWatch watch_of(Chosen *chosen)
 {
-    return (RunWatch){chosen->watch.run.progress != NULL ? pass_progress : NULL, chosen};
+    const bool is_shown = chosen->watch.run.progress != NULL && !is_of_engine(chosen);
+    return (RunWatch){is_shown ? pass_progress : NULL, chosen};
 }
 
 // Reports what begins.
@@ -544,19 +569,56 @@ static bool lacks_truth(const Chosen *chosen, char *message, size_t size)
     return false;
 }
 
+static void pace_take(Pace *pace, double steps, double time_s)
+{
+    pace->steps[1] = pace->steps[0];
+    pace->time_s[1] = pace->time_s[0];
+    pace->steps[0] = steps;
+    pace->time_s[0] = time_s;
+    pace->count++;
+}
+
+// b, s; at most all that the last one took.
+static double pace_of_step(const Pace *pace)
+{
+    const double all = pace->time_s[0] / pace->steps[0];
+    const double slope = (pace->time_s[0] - pace->time_s[1]) / (pace->steps[0] - pace->steps[1]);
+    return pace->count > 1 && slope > 0.0 ? fmin(slope, all) : all;
+}
+
+static double pace_time(const Pace *pace, double steps)
+{
+    return pace->time_s[0] + pace_of_step(pace) * (steps - pace->steps[0]);
+}
+
+static double pace_steps(const Pace *pace, double time_s)
+{
+    return pace->steps[0] + (time_s - pace->time_s[0]) / pace_of_step(pace);
+}
+
+// s of processor time so far, by the trials.
+static double spent_of(const Chosen *chosen)
+{
+    return clock_processor_s() - chosen->computed_s + chosen->engine_s;
+}
+
 // What the trial was made for, and what it cost, is known.
 static void chosen_run_count(Chosen *chosen, const Trial *trial)
 {
     const Trajectory *run = trial->run;
     chosen->steps += run->steps;
     chosen->evaluations += run->evaluations;
-    chosen->moved_s += run->duration_s;
+    chosen->moved_s += run->stepped_s;
     chosen->wall_s += run->wall_s;
     const bool is_failed = !run->is_complete && !trial->is_given_up;
     // where one of several mechanisms fails, it may be far ahead of what all have reached
-    if (!is_failed && run->duration_s > 0.0) {
+    if (!is_failed && run->stepped_s > 0.0) {
         // what a short trial costs need not be what the rest of the run would have
-        chosen->cost = fmax(chosen->cost, (double)run->steps * trial->step_s / run->duration_s);
+        chosen->cost = fmax(chosen->cost, (double)run->steps * trial->step_s / run->stepped_s);
+    }
+    if (is_of_engine(chosen)) {
+        chosen->engine_s += run->wall_s;
+        pace_take(&chosen->pace, (double)run->steps, run->wall_s);
     }
     if (!is_failed && trial->held_s > chosen->best_held_s) {
         chosen->best_held_s = trial->held_s;
@@ -582,12 +644,13 @@ static double cost_of(const Chosen *chosen, double step_s)
 // World steps that the budget has left, by what those of the trials took.
 static double steps_in_budget(const Chosen *chosen)
 {
-    const double spent_s = clock_processor_s() - chosen->computed_s;
+    const double spent_s = spent_of(chosen);
     const double budget_s = chosen->watch.budget_s;
     if (budget_s == 0.0 || chosen->steps == 0 || !(spent_s > BUDGET_KNOWN * budget_s)) {
         return INFINITY;
     }
-    return (budget_s - spent_s) * (double)chosen->steps / spent_s;
+    return is_of_engine(chosen) ? pace_steps(&chosen->pace, budget_s - spent_s)
+                                : (budget_s - spent_s) * (double)chosen->steps / spent_s;
 }
 
 static double steps_left(const Chosen *chosen)
@@ -611,10 +674,10 @@ static double budget_wanted(const Chosen *chosen, const Trial *trial)
     if (!is_of_budget(chosen)) {
         return 0.0;
     }
-    const double excess = trial->error / chosen->scenario->run.tolerance;
-    const double spent_s = clock_processor_s() - chosen->computed_s;
-    return spent_s / (double)chosen->steps * cost_of(chosen, trial->step_s) *
-           sqrt(fmax(excess, 1.0));
+    const double excess = trial->worst / chosen->scenario->run.tolerance;
+    const double steps = cost_of(chosen, trial->step_s) * sqrt(fmax(excess, 1.0));
+    return is_of_engine(chosen) ? pace_time(&chosen->pace, steps)
+                                : spent_of(chosen) / (double)chosen->steps * steps;
 }
 
 static Trajectory *finish(const Chosen *chosen, Trial *trial)
@@ -719,8 +782,9 @@ static double step_after(const Chosen *chosen, const Trial *trial)
     if (!trial->is_given_up) {
         return step_choice_after_failure(trial->step_s);
     }
-    const double dearer_s = step_choice_dearer(work_of(chosen), trial->step_s,
-                                               trial->held_s / scenario_duration(chosen->scenario));
+    const double share = trial->held_s / scenario_duration(chosen->scenario);
+    const double dearer_s = step_choice_dearer(
+        work_of(chosen), trial->step_s, is_of_engine(chosen) ? DEARER_WHOLE : dearer_after(share));
     return trial->held_s == 0.0 && options->tolerance_of == TOLERANCE_OF_MOTION
                ? fmin(dearer_s, step_choice_after_first_sample(trial->step_s, excess))
                : dearer_s;

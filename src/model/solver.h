@@ -72,6 +72,8 @@ typedef struct SolverModel {
     size_t constraint_rows; // of the ideal joints
     size_t contact_rows;    // most so far; of the reference its joints with play
     size_t steps;           // taken so far
+    double stepped_s;     // of motion, that they took: more than was asked for where a solver runs
+                          // the whole motion at once; 0: as far as it was asked
     size_t evaluations;   // of the equations of motion so far, or of the forces of contacts that it
                           // integrates by itself; 0 where it does not count them
     size_t fallback_rows; // of contacts, to which a map was applied that the case does not ask for

@@ -174,6 +174,7 @@ typedef struct Trajectory {
     TrajectoryEngine engine;
     double step_s;          // 0 where the solver has no fixed step
     size_t steps;           // every step taken, settling and rejected ones included
+    double stepped_s;       // that they took: duration_s, or more where another engine had gone on
     size_t evaluations;     // of the equations of motion, where the solver counts them
     double wall_s;          // spent in the stepping loop
     size_t constraint_rows; // of the ideal joints, where the solver builds rows

@@ -436,6 +436,7 @@ static void fill_model(const Loop *loop, Trajectory *trajectory)
     snprintf(trajectory->label, sizeof trajectory->label, "%s", model.label);
     trajectory->step_s = model.step_s;
     trajectory->steps = model.steps;
+    trajectory->stepped_s = fmax(model.stepped_s, trajectory->duration_s);
     trajectory->evaluations = model.evaluations;
     trajectory->constraint_rows = model.constraint_rows;
     trajectory->contact_rows = model.contact_rows;
@@ -520,8 +521,8 @@ Trajectory *run_guarded(const Scenario *scenario, const Solver *solver, RunWatch
     const bool is_done = run_samples(&loop, trajectory, &err);
     trajectory->wall_s = clock_now_s() - loop.started_s;
     recorder_finish(&loop.recorder);
-    fill_model(&loop, trajectory);
     trajectory->duration_s = loop.reached_s;
+    fill_model(&loop, trajectory);
     if (is_done && solver->extremes != NULL) {
         solver->extremes(loop.state, trajectory->report_from_s, trajectory->bodies);
         show_extremes(scenario, trajectory);
