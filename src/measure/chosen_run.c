@@ -838,14 +838,8 @@ static void take_uncertainty(Chosen *chosen)
     }
 }
 
-Trajectory *chosen_run_make(const Scenario *scenario, const Truth *truth, ChosenWatch watch,
-                            const RunProbe *probe)
-{
-    return chosen_run_make_on(BACKEND_ODE, scenario, truth, watch, probe);
-}
-
-Trajectory *chosen_run_make_on(BackendKind backend, const Scenario *scenario, const Truth *truth,
-                               ChosenWatch watch, const RunProbe *probe)
+static Trajectory *run_at_chosen_step(const Scenario *scenario, BackendKind backend,
+                                      const Truth *truth, ChosenWatch watch, const RunProbe *probe)
 {
     Chosen chosen = {
         .scenario = scenario,
@@ -892,7 +886,7 @@ Trajectory *backend_run(const Scenario *scenario, BackendKind backend, const Tru
                         ChosenWatch watch, const RunProbe *probe)
 {
     if (backend_run_is_chosen(scenario, backend)) {
-        return chosen_run_make_on(backend, scenario, truth, watch, probe);
+        return run_at_chosen_step(scenario, backend, truth, watch, probe);
     }
     return run_guarded(scenario, registry_solver(backend), watch.run, probe, NULL);
 }

@@ -132,8 +132,8 @@ void task_spread(const void *context, void *result)
     }
     // a step that was chosen once is good for starts beside this one
     Ensemble *ensemble = result;
-    Trajectory *run = chosen_run_make_on(task->backend, &task->scenario, task->truth,
-                                         (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *run = backend_run(&task->scenario, task->backend, task->truth,
+                                  (ChosenWatch){.begin = NULL}, NULL);
     if (run->is_complete) {
         const Scenario scenario = chosen_run_scenario(&task->scenario, run->step_s);
         ensemble_run(&scenario, solver, 0.0, NOBODY, ensemble);

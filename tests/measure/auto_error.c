@@ -74,7 +74,7 @@ static bool load(const Work *work, Scenario *scenario, Err *err)
 static void run_auto(const Scenario *scenario, const Truth *truth, const Trajectory *judge,
                      Run *result)
 {
-    Trajectory *run = chosen_run_make(scenario, truth, (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *run = backend_run(scenario, BACKEND_ODE, truth, (ChosenWatch){.begin = NULL}, NULL);
     result->is_complete = run->is_complete;
     snprintf(result->message, sizeof result->message, "%.150s", run->message);
     result->trials = run->trials;

@@ -190,7 +190,8 @@ static void judge_fixed(Scenario scenario, Draw *draw, const Truth *truth, Resul
 static void judge_auto(Scenario scenario, const Truth *truth, Result *result)
 {
     scenario.run.tolerance = TOLERANCE;
-    Trajectory *run = chosen_run_make(&scenario, truth, (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *run =
+        backend_run(&scenario, BACKEND_ODE, truth, (ChosenWatch){.begin = NULL}, NULL);
     if (!run->is_complete) {
         tell(result, ODE_AUTO, DETECTED, run->message, 0.0);
     } else {

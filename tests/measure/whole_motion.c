@@ -79,7 +79,8 @@ static void judge_runs(const Work *work, Scenario *scenario, const Truth *truth,
     for (int i = 0; i < work->tolerance_count; i++) {
         const double tolerance = work->tolerances[i];
         scenario->run.tolerance = tolerance;
-        Trajectory *run = chosen_run_make(scenario, truth, (ChosenWatch){.begin = NULL}, NULL);
+        Trajectory *run =
+            backend_run(scenario, BACKEND_ODE, truth, (ChosenWatch){.begin = NULL}, NULL);
         result->errors[i] = NAN;
         if (run->is_complete) {
             result->runs++;

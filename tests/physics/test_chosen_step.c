@@ -45,7 +45,7 @@ static Scenario uneven(void)
 
 static Trajectory *chosen(const Scenario *scenario)
 {
-    Trajectory *run = chosen_run_make(scenario, NULL, NOBODY, NULL);
+    Trajectory *run = backend_run(scenario, BACKEND_ODE, NULL, NOBODY, NULL);
     if (!run->is_complete) {
         fail_msg("%s", run->message);
     }
@@ -145,7 +145,7 @@ static void where_motion_cannot_be_predicted_the_error_holds_up_to_there(void **
     scenario.run.revolutions = 0.5;
     Truth truth = truth_make(&scenario, NOBODY.run);
     assert_true(truth.is_limited);
-    Trajectory *run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, &truth, NOBODY, NULL);
     assert_true(run->is_complete);
     const TrajectoryError error = error_against(run, truth.trajectory, truth.horizon_s);
     assert_true(error.max_in_horizon <= 1e-3);
@@ -179,7 +179,7 @@ static void one_truth_or_another_of_the_same_case_is_one_run(void **state)
     (void)state;
     const Scenario scenario = loose(1e-4, 2);
     Truth truth = truth_make(&scenario, NOBODY.run);
-    Trajectory *given = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    Trajectory *given = backend_run(&scenario, BACKEND_ODE, &truth, NOBODY, NULL);
     Trajectory *own = chosen(&scenario);
     assert_true(given->hash == own->hash);
     assert_true(given->steps == own->steps);
@@ -216,7 +216,7 @@ static void a_budget_that_does_not_suffice_says_what_would(void **state)
     (void)state;
     const Scenario scenario = loose(1e-6, 3);
     const ChosenWatch watch = {.budget_s = 1e-9};
-    Trajectory *run = chosen_run_make(&scenario, NULL, watch, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, NULL, watch, NULL);
     assert_true(run->is_complete && run->is_short);
     assert_true(run->trials <= 2);
     assert_true(run->wanted_s > 1e-9);
@@ -260,7 +260,7 @@ static void trials_tell_when_they_begin(void **state)
     const Scenario scenario = loose(1e-5, 1);
     Told told = {.trials = 0};
     const ChosenWatch watch = {.run = {ignore_progress, &told}, .begin = take_trial};
-    Trajectory *run = chosen_run_make(&scenario, NULL, watch, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, NULL, watch, NULL);
     assert_true(run->is_complete);
     assert_int_equal(told.truths, 1);
     assert_int_equal(told.trials, run->trials);
@@ -270,7 +270,7 @@ static void trials_tell_when_they_begin(void **state)
 
 static void assert_refused(const Scenario *scenario, const Truth *truth, const char *words)
 {
-    Trajectory *run = chosen_run_make(scenario, truth, NOBODY, NULL);
+    Trajectory *run = backend_run(scenario, BACKEND_ODE, truth, NOBODY, NULL);
     assert_false(run->is_complete);
     if (strstr(run->message, words) == NULL) {
         fail_msg("no '%s' in '%s'", words, run->message);
@@ -287,7 +287,7 @@ static void where_the_reference_is_not_sure_enough_the_window_ends(void **state)
     Truth truth = truth_make(&scenario, NOBODY.run);
     // the reference is surer than this; less sure it grows to more than a tenth of the tolerance
     truth.uncertainty = 3e-6;
-    Trajectory *run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, &truth, NOBODY, NULL);
     assert_true(run->is_complete);
     assert_true(run->estimate_s > 0.0 && run->estimate_s < scenario_duration(&scenario));
     assert_true(run->estimate_is_cut);
@@ -296,7 +296,7 @@ static void where_the_reference_is_not_sure_enough_the_window_ends(void **state)
     trajectory_destroy(run);
     // the control: as sure as it is, it holds to the end
     truth.uncertainty = 1e-8;
-    run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    run = backend_run(&scenario, BACKEND_ODE, &truth, NOBODY, NULL);
     assert_near(run->estimate_s, scenario_duration(&scenario), 1e-12);
     assert_false(run->estimate_is_cut);
     trajectory_destroy(run);
@@ -336,7 +336,7 @@ static void trials_that_fail_at_one_place_are_few(void **state)
     Truth truth = truth_make(&scenario, NOBODY.run);
     scenario.contact.stiffness = 1e6;
     scenario.run.tolerance = 10.0; // none is given up for its error
-    Trajectory *run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, &truth, NOBODY, NULL);
     assert_false(run->is_complete);
     assert_non_null(strstr(run->message, "no step can be chosen"));
     assert_in_range(run->trials, 2, 20);
@@ -344,7 +344,7 @@ static void trials_that_fail_at_one_place_are_few(void **state)
     trajectory_destroy(run);
     // the control: the contact as it was has a step
     scenario.contact.stiffness = loose(1e-4, 1).contact.stiffness;
-    run = chosen_run_make(&scenario, &truth, NOBODY, NULL);
+    run = backend_run(&scenario, BACKEND_ODE, &truth, NOBODY, NULL);
     assert_true(run->is_complete);
     trajectory_destroy(run);
     truth_finish(&truth);
@@ -388,7 +388,7 @@ static double error_held(ToleranceOf asked, ToleranceOf kind, double tolerance)
     Scenario scenario = loose(tolerance, 1);
     scenario.run.tolerance_of = asked;
     // peaks are those within steps
-    Trajectory *run = chosen_run_make(&scenario, NULL, NOBODY, &TRACER_PROBE);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, NULL, NOBODY, &TRACER_PROBE);
     Scenario other = kept_copy(&scenario);
     other.reference.tolerance = JUDGE;
     Trajectory *exact =
@@ -421,7 +421,7 @@ static void forces_that_the_reference_does_not_know_so_well_are_refused(void **s
     Scenario scenario = loose(1e-8, 1);
     scenario.run.tolerance_of = TOLERANCE_OF_PEAKS;
     scenario.reference.tolerance = 1e-9;
-    Trajectory *run = chosen_run_make(&scenario, NULL, NOBODY, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, NULL, NOBODY, NULL);
     assert_false(run->is_complete);
     assert_non_null(strstr(run->message, "ten times the uncertainty of the reference"));
     trajectory_destroy(run);
@@ -477,7 +477,7 @@ static void trials_cost_less_than_the_run_that_they_choose(void **state)
         Tried tried = {.count = 0};
         scenario.run.tolerance = TOLERANCES[i];
         const ChosenWatch watch = {.run = {NULL, &tried}, .begin = note_step};
-        Trajectory *run = chosen_run_make(&scenario, NULL, watch, NULL);
+        Trajectory *run = backend_run(&scenario, BACKEND_ODE, NULL, watch, NULL);
         assert_true(run->is_complete && run->error_estimate <= scenario.run.tolerance);
         Trajectory *alone = run_at(&scenario, run->step_s);
         assert_int_equal(alone->hash, run->hash);

@@ -96,15 +96,15 @@ static void every_trial_of_a_chosen_step_is_watched(void **state)
     scenario.ode.stepping = ODE_STAGGERED;
     scenario.ode.map = ODE_MAP_IMPULSE;
     Heard heard = {0};
-    Trajectory *run = chosen_run_make(
-        &scenario, NULL, (ChosenWatch){.run = {hear, &heard}, .begin = hear_trial}, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, NULL,
+                                  (ChosenWatch){.run = {hear, &heard}, .begin = hear_trial}, NULL);
     assert_true(run->is_complete);
     // the reference, and two trials at least
     assert_true(heard.trials >= 3);
     assert_true(heard.words > heard.trials);
     // control: who is not asked to is not called
     const ChosenWatch nobody = {.begin = NULL};
-    Trajectory *silent = chosen_run_make(&scenario, NULL, nobody, NULL);
+    Trajectory *silent = backend_run(&scenario, BACKEND_ODE, NULL, nobody, NULL);
     assert_true(silent->hash == run->hash);
     trajectory_destroy(silent);
     trajectory_destroy(run);

@@ -443,7 +443,7 @@ static double jumping_error_of(size_t samples, BackendKind backend, double step_
 
 static size_t steps_for_tolerance(const Scenario *scenario)
 {
-    Trajectory *run = chosen_run_make(scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *run = backend_run(scenario, BACKEND_ODE, NULL, (ChosenWatch){.begin = NULL}, NULL);
     if (!run->is_complete || run->is_short) {
         fail_msg("%s", run->message);
     }

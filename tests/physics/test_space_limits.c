@@ -304,7 +304,7 @@ static void a_step_is_chosen_for_limits_in_space(void **state)
     scenario.run.step = 0.0;
     scenario.run.tolerance = 1e-4;
     assert_int_equal(scenario_with_step(&scenario, 1e-5).ode.map, ODE_MAP_IMPULSE);
-    Trajectory *run = chosen_run_make(&scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *run = backend_run(&scenario, BACKEND_ODE, NULL, (ChosenWatch){.begin = NULL}, NULL);
     if (!run->is_complete) {
         fail_msg("%s", run->message);
     }

@@ -460,7 +460,7 @@ const TuneTrial *tune_export_trial(const TuneReport *report)
 // The code makes no trials: it gets the step that they choose.
 static bool tune_export_choose_step(Scenario *scenario, Err *err)
 {
-    Trajectory *run = chosen_run_make(scenario, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    Trajectory *run = backend_run(scenario, BACKEND_ODE, NULL, (ChosenWatch){.begin = NULL}, NULL);
     const bool is_chosen = run->is_complete || err_set(err, ERR_SOLVER, "%s", run->message);
     if (is_chosen) {
         *scenario = chosen_run_scenario(scenario, run->step_s);
