@@ -14,7 +14,8 @@ enum {
     NUMBER_CHECK = 8,
     NUMBER_EXPECT = 16,
     NUMBER_REPORT = 32,
-    NUMBER_CSV = 64, // of `compare` and of contacts, which write a table of their own
+    NUMBER_CSV = 64,   // of `compare` and of contacts, which write a table of their own
+    NUMBER_MAIN = 128, // with NUMBER_STUDY: at the end of a study without --full
     NUMBER_SHOWN = NUMBER_JSON | NUMBER_TEXT | NUMBER_REPORT,
     NUMBER_JUDGED = NUMBER_STUDY | NUMBER_EXPECT,
     NUMBER_EVERYWHERE = NUMBER_SHOWN | NUMBER_JUDGED | NUMBER_CHECK,
@@ -190,9 +191,9 @@ enum {
 // Of a joint: `run`, `member`, and `extremes` of it.
 #define NUMBERS_OF_JOINT_LIST(row) \
     row(JOINT, IMPACTS, "impacts", COUNT, "impacts", NULL, NULL, \
-        NUMBER_EVERYWHERE, NUMBER_PLAY, (double)extremes->impacts, "contacts begun") \
+        NUMBER_EVERYWHERE | NUMBER_MAIN, NUMBER_PLAY, (double)extremes->impacts, "contacts begun") \
     row(JOINT, FORCE_MAX, "force_max", FORCE, "force max", "torque max", NULL, \
-        NUMBER_EVERYWHERE, NUMBER_TIMED | NUMBER_STEPS, force_max(of, member), \
+        NUMBER_EVERYWHERE | NUMBER_MAIN, NUMBER_TIMED | NUMBER_STEPS, force_max(of, member), \
         "largest force") \
     row(JOINT, FORCE_SPIKES, "force_spikes", COUNT, "spikes", NULL, NULL, \
         NUMBER_CHECK | NUMBER_EXPECT, NUMBER_STEPS | NUMBER_LACKED, \
@@ -205,7 +206,7 @@ enum {
         NUMBER_EVERYWHERE, NUMBER_PLAY | NUMBER_DETAIL, extremes->impulse, \
         "impulse of all contacts") \
     row(JOINT, PENETRATION_MAX, "penetration_max", DEPTH, "deepest", NULL, NULL, \
-        NUMBER_EVERYWHERE, NUMBER_PLAY, extremes->penetration_max.value, "deepest penetration") \
+        NUMBER_EVERYWHERE | NUMBER_MAIN, NUMBER_PLAY, extremes->penetration_max.value, "deepest penetration") \
     row(JOINT, TILT_MAX, "tilt_max", ANGLE, "tilt max", NULL, NULL, \
         NUMBER_JSON, NUMBER_PLAY | NUMBER_SPATIAL, extremes->tilt_max.value, \
         "largest angle between the axes of pin and hole") \
@@ -265,7 +266,7 @@ enum {
         NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_LACKED, impacts_of_all(run), \
         "contacts begun in all joints") \
     row(RUN, ALPHA_PEAK, "alpha_peak", ANGULAR_ACCELERATION, "alpha peak", NULL, "%.6g", \
-        NUMBER_SHOWN | NUMBER_JUDGED, NUMBER_STEPS | NUMBER_OF_ALPHA, alpha_peak(of), \
+        NUMBER_SHOWN | NUMBER_JUDGED | NUMBER_MAIN, NUMBER_STEPS | NUMBER_OF_ALPHA, alpha_peak(of), \
         "largest magnitude of any body's angular acceleration", \
         "largest angular acceleration of any body")
 
@@ -385,7 +386,7 @@ enum {
 // Of a joint in it: `did`.
 #define NUMBERS_OF_SETTLED_JOINT_LIST(row) \
     row(SETTLED_JOINT, FORCE_MAX, "force_max", FORCE, "force max", NULL, NULL, \
-        NUMBER_JUDGED, NUMBER_LACKED | NUMBER_PLAY, did->force.headline, \
+        NUMBER_JUDGED | NUMBER_MAIN, NUMBER_LACKED | NUMBER_PLAY, did->force.headline, \
         "settled motion's largest force; 95 % quantile where it does not repeat", \
         "largest force of the settled motion", "settled_force") \
     row(SETTLED_JOINT, FORCE_LOW, "force_low", FORCE, "low", NULL, NULL, \
@@ -421,7 +422,7 @@ enum {
 
 // Errors against the reference: members of a TrajectoryError, and among them words of one.
 #define NUMBERS_OF_ERROR_LIST(row, words) \
-    row(ERROR, MAX, "max", RATIO, "largest", NULL, NULL, NUMBER_EVERYWHERE | NUMBER_CSV, 0, max, \
+    row(ERROR, MAX, "max", RATIO, "largest", NULL, NULL, NUMBER_EVERYWHERE | NUMBER_MAIN | NUMBER_CSV, 0, max, \
         "largest error of any velocity of bodies and pins, over its own largest", \
         "largest error of the velocities") \
     row(ERROR, MAX_TIME, "max_time", TIME, "at time", NULL, NULL, NUMBER_SHOWN, NUMBER_DETAIL, \
@@ -446,7 +447,7 @@ enum {
         NUMBER_SHOWN | NUMBER_CSV, NUMBER_DETAIL, angle_max_rad, "largest error of an angle") \
     row(ERROR, ENERGY_LOST, "energy_lost", RATIO, "energy", NULL, NULL, NUMBER_JSON, 0, \
         energy_lost, "residual of the energy over the largest energy of the reference") \
-    row(ERROR, FORCE_MAX, "force_max", RATIO, "forces", NULL, NULL, NUMBER_EVERYWHERE, \
+    row(ERROR, FORCE_MAX, "force_max", RATIO, "forces", NULL, NULL, NUMBER_EVERYWHERE | NUMBER_MAIN, \
         NUMBER_LACKED | NUMBER_OF_FORCES, force_max, \
         "largest error of a contact force at samples, over the joint's largest", \
         "largest error of contact forces") \

@@ -205,11 +205,27 @@ static void the_summary_has_a_row_a_result(void **state)
     text_init(&text);
     make_store(RUNS);
     Store *store = view();
-    assert_true(study_text_summary(store, &STYLE_PLAIN, &text, &err));
+    assert_true(study_text_summary(store, true, &STYLE_PLAIN, &text, &err));
     assert_true(store_spread(store, 4, &spread, &err));
     snprintf(words, sizeof words, "%.4g", spread.median);
     assert_has(text, words);
     assert_has(text, "evaluations");
+    store_close(store, &err);
+    text_finish(&text);
+}
+
+// The main numbers alone; those that no run has are left out everywhere.
+static void the_summary_has_the_main_results(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Text text;
+    text_init(&text);
+    make_store(RUNS);
+    Store *store = view();
+    assert_true(study_text_summary(store, false, &STYLE_PLAIN, &text, &err));
+    assert_null(strstr(text.data, "evaluations"));
+    assert_has(text, "--full shows them");
     store_close(store, &err);
     text_finish(&text);
 }
@@ -313,6 +329,7 @@ int main(void)
         WRITER_TEST(an_export_never_writes_over_its_store),
         WRITER_TEST(status_counts_outcomes_and_reasons),
         WRITER_TEST(the_summary_has_a_row_a_result),
+        WRITER_TEST(the_summary_has_the_main_results),
         WRITER_TEST(a_picture_has_lines_on_a_grid_and_dots_elsewhere),
         WRITER_TEST(a_picture_of_one_column_is_its_distribution),
         WRITER_TEST(what_cannot_be_drawn_is_told),

@@ -690,6 +690,7 @@ static const OptionRow CMD_STUDY_OPTIONS[] = {
     {"dry-run", NULL, "Print what would be run, and how long it would take, by a few runs", 2,
      OPTION_FLAG, CMD_STUDY_AT(is_dry)},
     COMMON_JSON(2),
+    COMMON_FULL(2),
     COMMON_WIDE(2),
     COMMON_QUIET(2),
 };

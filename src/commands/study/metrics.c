@@ -176,9 +176,11 @@ static bool has_key(const char *column, const char *key, bool has_owner, size_t 
                      : strcmp(column, key) == 0;
 }
 
-// The longest key, so that one which ends as another does is not taken for it.
-bool metrics_title(const char *column, const char **title, const char **key, size_t *owner_length)
+// The number of a column and how it turns, NULL where it is none: that of the longest key, so that
+// one which ends as another does is not taken for it. Tells how long the owner's name is.
+static const Number *number_of(const char *column, NumberTurn *turned, size_t *owner_length)
 {
+    const Number *found = NULL;
     size_t longest = 0;
     for (size_t i = 0; i < NUMBER_TURN_COUNT * NUMBER_COUNT; i++) {
         const Number *number = &NUMBERS[i / NUMBER_TURN_COUNT];
@@ -186,18 +188,37 @@ bool metrics_title(const char *column, const char **title, const char **key, siz
         const bool has_owner = number_members(number) != NUMBER_OF_WHOLE;
         const char *name = number->columns[turn];
         size_t length;
-        if ((number->places & NUMBER_STUDY) == 0 || strlen(name) <= longest ||
-            !has_key(column, name, has_owner, &length)) {
-            continue;
+        if ((number->places & NUMBER_STUDY) != 0 && strlen(name) > longest &&
+            has_key(column, name, has_owner, &length)) {
+            longest = strlen(name);
+            found = number;
+            *turned = turn;
+            *owner_length = length;
         }
-        const bool is_torque = number->owner == NUMBER_OWNER_JOINT && turn == NUMBER_TURNED &&
-                               number->kind == NUMBER_OF_FORCE;
-        longest = strlen(name);
-        *title = is_torque ? "largest torque" : number->axis;
-        *key = name;
-        *owner_length = length;
     }
-    return longest > 0;
+    return found;
+}
+
+bool metrics_title(const char *column, const char **title, const char **key, size_t *owner_length)
+{
+    NumberTurn turn;
+    const Number *number = number_of(column, &turn, owner_length);
+    if (number == NULL) {
+        return false;
+    }
+    const bool is_torque = number->owner == NUMBER_OWNER_JOINT && turn == NUMBER_TURNED &&
+                           number->kind == NUMBER_OF_FORCE;
+    *title = is_torque ? "largest torque" : number->axis;
+    *key = number->columns[turn];
+    return true;
+}
+
+bool metrics_is_main(const char *column)
+{
+    NumberTurn turn;
+    size_t owner_length;
+    const Number *number = number_of(column, &turn, &owner_length);
+    return number != NULL && (number->places & NUMBER_MAIN) != 0;
 }
 
 // Whether the columns of a study have one of a name.

@@ -21,5 +21,8 @@ bool metrics_take(const Layout *layout, const Scenario *scenario, Trajectory *tr
 // where the column is no result.
 bool metrics_title(const char *column, const char **title, const char **key, size_t *owner_length);
 
+// Whether the end of a study shows that column of the results without being asked for all.
+bool metrics_is_main(const char *column);
+
 // Appends what each result is, for people: a line or more each, or the rows of a Markdown table.
 void metrics_describe(bool is_markdown, Text *text);

@@ -82,9 +82,9 @@ typedef struct StudyPart {
 bool study_text_status(const StudyPart *parts, size_t part_count, const char *places,
                        const Style *style, Text *text, Err *err);
 
-// The distribution of each result over the runs that went well: least, 5 %, median, 95 %, most.
-// Fails with ERR_FILE.
-bool study_text_summary(Store *store, const Style *style, Text *text, Err *err);
+// The distribution over the runs that went well, least, 5 %, median, 95 %, most, of the main
+// results, or of all that any run has. Fails with ERR_FILE.
+bool study_text_summary(Store *store, bool is_full, const Style *style, Text *text, Err *err);
 
 // The rows of a study's store, for other programs: a row a run, by rising number of run.
 

@@ -1,4 +1,5 @@
 // Reports a study: progress and distributions as text, its runs as CSV and JSON.
+#include "commands/study/metrics.h"
 #include "commands/study/study.h"
 #include "write/csv.h"
 #include "write/fields.h"
@@ -319,12 +320,13 @@ static void append_settled(const Layout *layout, const StoreSpread *spreads, Tex
     }
 }
 
-bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
+bool study_text_summary(Store *store, bool is_full, const Style *style, Text *text, Err *err)
 {
-    static const SectionHead HEADS[] = {{"result", "", TABLE_LEFT},  {"runs", "", TABLE_RIGHT},
-                                        {"least", "", TABLE_RIGHT},  {"5 %", "", TABLE_RIGHT},
-                                        {"median", "", TABLE_RIGHT}, {"95 %", "", TABLE_RIGHT},
-                                        {"most", "", TABLE_RIGHT}};
+    static const SectionHead HEADS[] = {
+        {"result", "", TABLE_LEFT},  {"runs", "", TABLE_RIGHT | TABLE_DETAIL},
+        {"least", "", TABLE_RIGHT},  {"5 %", "", TABLE_RIGHT | TABLE_DETAIL},
+        {"median", "", TABLE_RIGHT}, {"95 %", "", TABLE_RIGHT | TABLE_MINOR},
+        {"most", "", TABLE_RIGHT}};
     Text section;
     text_init(&section);
     Table *table = section_begin("Results of the complete runs (quantiles interpolated)",
@@ -333,10 +335,22 @@ bool study_text_summary(Store *store, const Style *style, Text *text, Err *err)
     StoreSpread spreads[RECORD_RESULT_MAX];
     const bool is_read =
         store_spreads(store, layout->setting_count, layout->result_count, spreads, err);
+    size_t others = 0;
     for (size_t i = 0; i < layout->result_count && is_read; i++) {
-        study_report_spread_row(table, layout->results[i].name, &spreads[i]);
+        const char *name = layout->results[i].name;
+        if (spreads[i].count > 0 && (is_full || metrics_is_main(name))) {
+            study_report_spread_row(table, name, &spreads[i]);
+        } else {
+            others += spreads[i].count > 0 ? 1 : 0;
+        }
     }
     section_end(table, &section);
+    if (others > 0) {
+        text_append(
+            &section,
+            "  And %zu more: --full shows them, 'jointplay study export' has every run's.\n",
+            others);
+    }
     text_append(text, "%s", is_read ? section.data : "");
     if (is_read) {
         append_settled(layout, spreads, text);

@@ -93,16 +93,17 @@ static void append_effort(const StudyReport *report, Text *text)
     }
 }
 
-static bool print_text(const StudyReport *report, Store *store, bool is_wide, Err *err)
+static bool print_text(const StudyReport *report, Store *store, const CommonOptions *options,
+                       Err *err)
 {
-    const Style style = output_style(stdout, is_wide);
+    const Style style = output_style(stdout, options->is_wide);
     const StudyPart part = {report->store, store, report->state.total};
     Text text;
     text_init(&text);
     bool is_written = study_text_status(&part, 1, "", &style, &text, err);
     if (is_written) {
         append_effort(report, &text);
-        is_written = study_text_summary(store, &style, &text, err);
+        is_written = study_text_summary(store, options->is_full, &style, &text, err);
     }
     if (is_written) {
         output_text(&text, &style);
@@ -118,7 +119,7 @@ static bool print_report(StudyReport *report, const CommonOptions *options, Err 
     if (is_printed && options->is_json) {
         output_json(study_json_build(report));
     } else {
-        is_printed = is_printed && print_text(report, store, options->is_wide, err);
+        is_printed = is_printed && print_text(report, store, options, err);
     }
     return store_close(store, err) && is_printed;
 }
