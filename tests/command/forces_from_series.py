@@ -2,6 +2,7 @@
 import csv, itertools, json, math, sys
 
 FLOOR, KEPT = 1e-3, 12
+AT_REST = 1e-6  # rad/s^2: bodies of these cases that turn at all have more than 1, others rounding
 truth, run = json.load(open(sys.argv[1]))["runs"]
 rows = [[{k: float(v or 0) for k, v in row.items()} for row in csv.DictReader(open(path))] for path in sys.argv[2:4]]
 horizon = float(sys.argv[4])
@@ -38,5 +39,5 @@ until = [max((e for time, e in errors if time <= horizon * (1 + 1e-9)), default=
 whole = [max((e for _, e in errors), default=0) for errors in (apart, peak)]
 alpha = max((abs(body[key] - run["bodies"][n][key]) / max(abs(body["alpha_max_rad_s2"]), abs(body["alpha_min_rad_s2"]))
             for n, body in truth["bodies"].items() for key in ("alpha_max_rad_s2", "alpha_min_rad_s2")
-            if body["alpha_max_rad_s2"] or body["alpha_min_rad_s2"]), default=0)
+            if max(abs(body["alpha_max_rad_s2"]), abs(body["alpha_min_rad_s2"])) > AT_REST), default=0)
 print(whole[0], until[0], whole[1], until[1], alpha)
