@@ -73,14 +73,13 @@ broken_walls() {
 }
 
 long_files() {
-    find "$1" -name '*.[ch]' -exec awk 'END { if (NR > 1000) print FILENAME ": " NR " lines" }' {} \;
+    find "$1" -name '*.[ch]' | xargs awk 'FNR == 1001 { print FILENAME ": more than 1000 lines" }'
 }
 
 # Sources whose first line is no sentence that says what the file does: none, or a question.
 unopened_sources() {
-    find "$1" -name '*.c' | while read -r file; do
-        head -n 1 "$file" | grep -qE '^// [A-Z][^?]*$' || echo "$file"
-    done
+    find "$1" -name '*.c' -empty
+    find "$1" -name '*.c' | xargs awk 'FNR == 1 && !/^\/\/ [A-Z][^?]*$/ { print FILENAME }'
 }
 
 unguarded_headers() {
@@ -133,9 +132,13 @@ caught() {
 mkdir -p "$control/opening"
 printf '// Where does it stand?\n' >"$control/opening/a.c"
 printf '#include <stdio.h>\n' >"$control/opening/b.c"
+printf '' >"$control/opening/d.c"
+mkdir -p "$control/long"
+yes ';' | head -n 1001 >"$control/long/long.c"
+yes ';' | head -n 1000 >"$control/long/short.c"
 printf '// Finds where it stands.\n' >"$control/opening/c.c"
 
-echo 1..17
+echo 1..18
 report "a file includes only its own folder and those above it" "$(broken_layers "$root/src")"
 report "each library is included in its own place alone" "$(broken_walls "$root/src")"
 report "no two files need each other" "$(cycles "$root/src")"
@@ -162,5 +165,8 @@ found=$(loud_library "$control/loud" | grep -o '[fg]\.c' | sort | tr -d '\n')
 report "a library that prints is caught" "$([ "$found" = f.cg.c ] || echo "found: $found")"
 found=$(unopened_sources "$control/opening" | sed 's|.*/||' | sort | tr -d '\n')
 report "a source that opens with a question, or with nothing, is caught" \
-    "$([ "$found" = a.cb.c ] || echo "found: $found")"
+    "$([ "$found" = a.cb.cd.c ] || echo "found: $found")"
+found=$(long_files "$control/long" | sed 's|.*/||')
+report "a file of more than 1000 lines is caught" \
+    "$([ "$found" = 'long.c: more than 1000 lines' ] || echo "found: $found")"
 report "files without a circle are not caught" "$(cycles "$control/rooms")"
