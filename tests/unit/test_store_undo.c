@@ -12,7 +12,7 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-enum { FILE_MAX = 1 << 22, NAME_SIZE = PATH_SIZE + 32, VARIANTS = 60, HEADER = 28, PAGES = 16 };
+enum { FILE_MAX = 1 << 18, NAME_SIZE = PATH_SIZE + 32, VARIANTS = 60, HEADER = 28, PAGES = 16 };
 
 // A store or its journal, as the killed process left it.
 typedef struct Content {
