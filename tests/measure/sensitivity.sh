@@ -15,7 +15,7 @@ else
     trap 'rm -rf "$work"' EXIT
 fi
 mkdir -p "$work/tree"
-for part in meson.build meson_options.txt LICENSE include src cases results docs tests; do
+for part in meson.build meson_options.txt README.md CHANGELOG.md LICENSE include src cases results docs tests; do
     cp -r "$root/$part" "$work/tree/"
 done
 cd "$work/tree" || exit 1

@@ -27,7 +27,7 @@ cd "$root" || exit 1
 # the sources as they are now, so that they may be worked on meanwhile
 rm -rf "$work/tree"
 mkdir -p "$work/tree"
-for part in meson.build meson_options.txt src cases results docs tests; do
+for part in meson.build meson_options.txt README.md CHANGELOG.md LICENSE include src cases results docs tests; do
     cp -r "$part" "$work/tree/"
 done
 
