@@ -9,6 +9,7 @@
 
 #include "close.h"
 #include "load_case.h"
+#include "sample.h"
 
 #include "base/lcg.h"
 #include "run/registry.h"
@@ -491,6 +492,7 @@ static void lies_are_refused_by_name_or_do_no_harm(void **state)
 int main(int argc, char **argv)
 {
     lie_count = argc > 1 ? (unsigned)strtoul(argv[1], NULL, 10) : lie_count;
+    lie_count = (unsigned)sample_size(lie_count);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lies_are_refused_by_name_or_do_no_harm),
     };

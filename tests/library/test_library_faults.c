@@ -3,6 +3,7 @@
 // ODE's dWorldStep ends the program in each of these; that it does so is the control, in a child
 // process.
 #include "close.h"
+#include "sample.h"
 
 #include "base/lcg.h"
 #include "ode_group.h"
@@ -273,11 +274,11 @@ static void random_worlds_at_long_steps_end_in_a_sentence(void **state)
     (void)state;
     for (int stepping = JP_STEPPING_PLAIN; stepping <= JP_STEPPING_IMPULSE; stepping++) {
         size_t failed = 0;
-        for (unsigned seed = 0; seed < WORLDS; seed++) {
+        for (unsigned seed = 0; seed < sample_size(WORLDS); seed++) {
             failed += play_random_world((JpStepping)stepping, seed);
         }
         // the control: some are beyond what ODE can step, most are not
-        assert_true(failed > 0 && failed < WORLDS / 2);
+        assert_true(failed > 0 && failed < sample_size(WORLDS) / 2);
     }
 }
 
@@ -419,11 +420,11 @@ static void joints_with_any_numbers_end_in_finite_numbers_or_a_sentence(void **s
     // not with contacts within the step, of which the worst take a hundred thousand local steps
     for (int stepping = JP_STEPPING_PLAIN; stepping <= JP_STEPPING_STAGGERED; stepping++) {
         size_t stepped = 0;
-        for (unsigned seed = 0; seed < HOSTILE_WORLDS; seed++) {
+        for (unsigned seed = 0; seed < sample_size(HOSTILE_WORLDS); seed++) {
             stepped += play_hostile_world((JpStepping)stepping, seed, &messages);
         }
         // the control: many were let in, and stepped
-        assert_true(stepped > HOSTILE_WORLDS / 4);
+        assert_true(stepped > sample_size(HOSTILE_WORLDS) / 4);
     }
     // what ODE would have printed is in the sentences of steps; other messages are handed on
     assert_true(messages > 0);

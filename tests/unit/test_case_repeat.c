@@ -5,6 +5,7 @@
 // right, out of range, of another unit or kind, or that YAML takes for more than themselves. Runs
 // in the source root.
 #include "same_scenario.h"
+#include "sample.h"
 
 #include "base/lcg.h"
 
@@ -83,7 +84,8 @@ static void a_repeated_case_is_the_case_read_anew(void **state)
     CasefileRepeat *repeat = casefile_repeat_open("stackup.yaml", text, size);
     uint64_t seed = 37;
     size_t keys[MOST], count = 0, good = 0, wrong = 0;
-    for (size_t round = 0; round < ROUNDS; round++) {
+    const size_t rounds = sample_size(ROUNDS);
+    for (size_t round = 0; round < rounds; round++) {
         char overrides[MOST][TEXT_SIZE];
         draw(&seed, round, keys, &count, overrides);
         const char *const all[MOST] = {overrides[0], overrides[1], overrides[2], overrides[3]};
@@ -103,7 +105,7 @@ static void a_repeated_case_is_the_case_read_anew(void **state)
         wrong += is_good ? 0 : 1;
     }
     // both ends were met often
-    assert_true(good > ROUNDS / 10 && wrong > ROUNDS / 10);
+    assert_true(good > rounds / 10 && wrong > rounds / 10);
     casefile_repeat_close(repeat);
 }
 

@@ -4,6 +4,7 @@
 #include "casefile/casefile.h"
 
 #include "close.h"
+#include "sample.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,7 +56,7 @@ static int read_good(void **state)
 static void a_case_cut_anywhere_does_no_harm(void **state)
 {
     (void)state;
-    for (size_t size = 0; size <= good_size; size++) {
+    for (size_t size = 0; size <= good_size; size += sample_stride()) {
         load(good, size, NULL, 0);
     }
 }
@@ -64,7 +65,7 @@ static void one_wrong_byte_does_no_harm(void **state)
 {
     (void)state;
     uint64_t seed = 1;
-    for (int i = 0; i < MUTATION_COUNT; i++) {
+    for (size_t i = 0; i < sample_size(MUTATION_COUNT); i++) {
         char text[CASE_SIZE];
         memcpy(text, good, good_size);
         const size_t at = next_random(&seed) % good_size;
@@ -78,7 +79,7 @@ static void two_swapped_pieces_do_no_harm(void **state)
 {
     (void)state;
     uint64_t seed = 2;
-    for (int i = 0; i < MUTATION_COUNT; i++) {
+    for (size_t i = 0; i < sample_size(MUTATION_COUNT); i++) {
         char text[CASE_SIZE];
         memcpy(text, good, good_size);
         const size_t from = next_random(&seed) % good_size;
@@ -109,7 +110,7 @@ static void any_override_does_no_harm(void **state)
         "#",
     };
     uint64_t seed = 3;
-    for (int i = 0; i < OVERRIDE_COUNT; i++) {
+    for (size_t i = 0; i < sample_size(OVERRIDE_COUNT); i++) {
         char override[256] = "";
         const unsigned pieces = next_random(&seed) % 12;
         for (unsigned j = 0; j < pieces; j++) {

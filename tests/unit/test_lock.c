@@ -7,6 +7,7 @@
 #include "kept.h"
 #include "model/kinematics.h"
 #include "model/lock.h"
+#include "sample.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -103,7 +104,7 @@ static void four_bars_lock_where_the_closed_form_says(void **state)
     uint64_t draw = 7;
     int locked = 0;
     int turning = 0;
-    for (int i = 0; i < 400; i++) {
+    for (size_t i = 0; i < sample_size(400); i++) {
         double lengths[4];
         for (int k = 0; k < 4; k++) {
             lengths[k] = 0.25 + 0.2 * lcg_draw(&draw);
@@ -134,7 +135,7 @@ static void four_bars_lock_where_the_closed_form_says(void **state)
             locked++;
         }
     }
-    assert_true(locked > 100 && turning > 30);
+    assert_true((size_t)locked > sample_size(100) && (size_t)turning > sample_size(30));
 }
 
 static void parallelogram_and_kite_pass_their_change_points(void **state)

@@ -1,5 +1,6 @@
 // Is the gap between a pin and its hole what geometry says, seen without the same formula?
 #include "close.h"
+#include "sample.h"
 
 #include "kernel/pin_hole.h"
 
@@ -59,7 +60,7 @@ static void a_hundred_thousand_poses_agree_with_a_search_over_the_circles(void *
     (void)state;
     uint64_t seed = 1;
     const double clearance = HOLE_RADIUS - PIN_RADIUS;
-    for (int i = 0; i < POSE_COUNT; i++) {
+    for (size_t i = 0; i < sample_size(POSE_COUNT); i++) {
         const Vec2 hole = {draw(&seed) - 0.5, draw(&seed) - 0.5};
         // every scale from a nanometre to ten times the clearance
         const double size = 1e-9 * pow(1.45e5, draw(&seed));
@@ -88,7 +89,7 @@ static void the_approach_speed_is_the_rate_of_the_penetration(void **state)
     (void)state;
     uint64_t seed = 2;
     const double clearance = HOLE_RADIUS - PIN_RADIUS;
-    for (int i = 0; i < POSE_COUNT; i++) {
+    for (size_t i = 0; i < sample_size(POSE_COUNT); i++) {
         const Vec2 hole = {0.0, 0.0};
         const Vec2 pin = {4e-5 * (draw(&seed) - 0.5), 4e-5 * (draw(&seed) - 0.5)};
         const Vec2 velocity = {2.0 * draw(&seed) - 1.0, 2.0 * draw(&seed) - 1.0};

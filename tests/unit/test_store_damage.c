@@ -1,6 +1,7 @@
 // Does a store that cannot be read or written say so, and never give a wrong number?
 #include "commands/study/store.h"
 
+#include "sample.h"
 #include "study_store.h"
 
 #include <fcntl.h>
@@ -79,7 +80,7 @@ static void a_byte_that_turned_never_makes_a_number(void **state)
     size_t told = 0;
     size_t harmless = 0;
     // every byte of the header, and then some of all pages
-    for (size_t i = 0; i < content_size; i += i < 128 ? 1 : STRIDE) {
+    for (size_t i = 0; i < content_size; i += i < 128 ? 1 : STRIDE * sample_stride()) {
         const unsigned char former = content[i];
         content[i] ^= (unsigned char)(1u << i % 8);
         write_content(content_size);
