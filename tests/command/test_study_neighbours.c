@@ -215,16 +215,20 @@ static void the_reference_makes_runs_that_nobody_asks_of_ode(void **state)
     assert_true(step[0] == 50e-6);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    const bool is_whole = argc > 1 && strcmp(argv[1], "--whole") == 0;
     const struct CMUnitTest tests[] = {
 #define STUDY_TEST(name) cmocka_unit_test_setup_teardown(name, program_set_up, program_tear_down)
         STUDY_TEST(rows_are_those_of_runs_that_find_their_own),
         STUDY_TEST(rows_are_the_same_in_parts),
-        STUDY_TEST(what_does_not_repeat_has_numbers_in_each_run),
         STUDY_TEST(what_is_too_dear_has_a_start_alone),
         STUDY_TEST(the_reference_makes_runs_that_nobody_asks_of_ode),
+        // a third of the time, and left out without --whole
+        STUDY_TEST(what_does_not_repeat_has_numbers_in_each_run),
 #undef STUDY_TEST
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const size_t count = sizeof tests / sizeof *tests;
+    return _cmocka_run_group_tests("study_neighbours", tests, is_whole ? count : count - 1, NULL,
+                                   NULL);
 }
