@@ -39,13 +39,6 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
     return JOINT_REVOLUTE;
 }
 
-static const char *describe_kind(JointKind kind)
-{
-#define JOINT_KIND_WORDS(id, words, ...) words,
-    static const char *const WORDS[] = {LINKAGE_JOINT_KIND_LIST(JOINT_KIND_WORDS)};
-    return WORDS[kind];
-}
-
 // Whether a key says how bodies touch, which those of an ideal joint do at its limits alone.
 static bool is_of_play(const SchemaRow *row)
 {
@@ -68,7 +61,7 @@ static bool refuse_key(const Entries *entries, const Entry *entry, JointKind kin
     }
     entries_refuse(entry, err, "'%s' is no key of joint '%s', %s\nallowed: %s",
                    strrchr(entry->row->path, '.') + 1,
-                   entries_name(entries, entry->row, entry->index), describe_kind(kind),
+                   entries_name(entries, entry->row, entry->index), joint_words(kind),
                    allowed.data);
     text_finish(&allowed);
     return false;

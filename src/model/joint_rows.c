@@ -61,19 +61,33 @@ double joint_rows_size(const Linkage *linkage, int joint, Vec2 rows)
 
 Vec2 joint_rows_start(const Joint *joint)
 {
-    switch (joint->kind) {
-    case JOINT_CLEARANCE:
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
         return joint->clearance.start;
-    case JOINT_GUIDE:
+    case JOINT_TOUCHES_GUIDES:
         return joint->guide.start;
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
-    case JOINT_STOP:
-    case JOINT_GEAR:
-    case JOINT_KIND_COUNT:
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_DISC:
+    case JOINT_TOUCHES_TEETH:
         break;
     }
     return (Vec2){0.0, 0.0};
+}
+
+void joint_rows_set_start(Joint *joint, Vec2 rows)
+{
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
+        joint->clearance.start = rows;
+        break;
+    case JOINT_TOUCHES_GUIDES:
+        joint->guide.start = rows;
+        break;
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_DISC:
+    case JOINT_TOUCHES_TEETH:
+        break;
+    }
 }
 
 // From the anchor on body a to that on body b, its rate, and the rate's without accelerations.
@@ -131,10 +145,14 @@ void joint_rows_find(const Linkage *linkage, const Motion *motions, int joint, J
     const Joint *of = &linkage->joints[joint];
     Ends ends;
     find_ends(linkage, motions, joint, &ends);
-    if (joint_rows_is_angle(of->kind, 1)) {
+    switch (joint_held_by(of->kind)) {
+    case JOINT_HOLDS_LINE:
         find_prismatic(of, &ends, rows);
-    } else {
+        break;
+    case JOINT_HOLDS_POINT:
+    case JOINT_HOLDS_NOTHING: // the distance of its anchors
         find_revolute(&ends, rows);
+        break;
     }
 }
 

@@ -29,17 +29,13 @@ typedef struct JointRows {
 // The number of rows of a kind of joint: JOINT_ROWS, or 0 of stops and gears.
 static inline size_t joint_rows_count(JointKind kind)
 {
-#define JOINT_ROWS_COUNT(id, words, is_ideal, rows, has_angle) rows,
-    static const size_t COUNTS[] = {LINKAGE_JOINT_KIND_LIST(JOINT_ROWS_COUNT)};
-    return COUNTS[kind];
+    return joint_holds(kind) ? JOINT_ROWS : 0;
 }
 
 // Whether a row of a kind of joint is an angle rather than a length.
 static inline bool joint_rows_is_angle(JointKind kind, size_t row)
 {
-#define JOINT_ROWS_HAS_ANGLE(id, words, is_ideal, rows, has_angle) has_angle,
-    static const bool HAVE_ANGLES[] = {LINKAGE_JOINT_KIND_LIST(JOINT_ROWS_HAS_ANGLE)};
-    return row == 1 && HAVE_ANGLES[kind];
+    return row == 1 && joint_slides(kind);
 }
 
 // The number of rows of all joints, the drive's apart.
@@ -51,6 +47,9 @@ double joint_rows_size(const Linkage *linkage, int joint, Vec2 rows);
 
 // Where a joint starts, in its rows: 0 of an ideal one.
 Vec2 joint_rows_start(const Joint *joint);
+
+// Lets a joint start there; nothing of one that has no play in its rows.
+void joint_rows_set_start(Joint *joint, Vec2 rows);
 
 // Writes the rows of a joint where the bodies are and as they move.
 void joint_rows_find(const Linkage *linkage, const Motion *motions, int joint, JointRows *rows);

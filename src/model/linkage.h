@@ -11,6 +11,7 @@
 #include "base/vec3.h"
 #include "kernel/contact_state.h"
 #include "model/drive.h"
+#include "model/joint.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -64,33 +65,6 @@ typedef struct Body {
     BodySpace space;
 } Body;
 
-// The kinds of joints: a line each, its enumerator, what a message calls it, whether it is ideal,
-// that is whether it holds its bodies in its rows without play, how many rows it has, and whether
-// the second of them is an angle rather than a length (model/joint_rows.h). Every other table of
-// kinds is made from this list, and a switch over kinds has no default.
-//
-// Revolute: the two anchors coincide.
-// Clearance: a pin on body b in a hole of body a, with play between them.
-// Prismatic: the anchor on body b stays on the line of body a (Joint.direction), and the two bodies
-// keep their angle to one another.
-// Guide: a block on body b between two guides of body a, or a sleeve on body b round a rod of body
-// a, with play between them.
-// Stop: a disc on body b that touches a line or a disc of body a from outside; it holds nothing
-// while apart.
-// Gear: two gears, bodies a and b, on pivots of one carrier, with play between their teeth; the
-// pivots are joints of their own.
-// clang-format off
-#define LINKAGE_JOINT_KIND_LIST(member) \
-    member(JOINT_REVOLUTE, "which has no play", true, JOINT_ROWS, false) \
-    member(JOINT_CLEARANCE, "a pin in a hole", false, JOINT_ROWS, false) \
-    member(JOINT_PRISMATIC, "a prismatic joint without play", true, JOINT_ROWS, true) \
-    member(JOINT_GUIDE, "a block between guides", false, JOINT_ROWS, true) \
-    member(JOINT_STOP, "a stop", false, 0, false) \
-    member(JOINT_GEAR, "a pair of gears", false, 0, false)
-// clang-format on
-#define LINKAGE_JOINT_KIND(id, ...) id,
-typedef enum JointKind { LINKAGE_JOINT_KIND_LIST(LINKAGE_JOINT_KIND) JOINT_KIND_COUNT } JointKind;
-
 // The sizes of a pin in its hole.
 typedef struct Clearance {
     double hole_radius; // m
@@ -125,9 +99,8 @@ typedef enum LimitKind {
     LIMIT_STOPS,    // stops at two values, or at one
 } LimitKind;
 
-// What limits the coordinate of a joint (model/coordinate.h): the angle of a JOINT_REVOLUTE, the
-// position of a JOINT_PRISMATIC, the way along the pitch circles of a JOINT_GEAR. Beyond the limits
-// flanks or stops press it back.
+// What limits the coordinate of a joint (model/coordinate.h). Beyond the limits flanks or stops
+// press it back.
 typedef struct Limits {
     LimitKind kind;
     double backlash; // rad or m, from flank to flank, 0 or more
@@ -179,13 +152,12 @@ typedef struct Joint {
     Vec2 anchor_a;       // hole centre in body a's frame, m
     Vec2 anchor_b;       // pin centre in body b's frame, m
     double direction;    // rad, in body a's frame: of the line or the guides; of a stop's normal
-    double held_angle;   // rad: angle of body b less that of body a where a JOINT_PRISMATIC holds
-                         // it and a JOINT_GUIDE is not tilted
-    Clearance clearance; // of a JOINT_CLEARANCE
-    Guide guide;         // of a JOINT_GUIDE
-    Stop stop;           // of a JOINT_STOP
-    Gear gear;           // of a JOINT_GEAR
-    Limits limits;       // of a JOINT_REVOLUTE or JOINT_PRISMATIC, and of every JOINT_GEAR
+    double held_angle;   // rad: angle of body b less that of body a where what slides is not tilted
+    Clearance clearance; // of what touches in a joint: joint_touches
+    Guide guide;
+    Stop stop;
+    Gear gear;
+    Limits limits; // of a joint with a coordinate; teeth always have some
     JointContact contact;
     // what its contacts bring along at time zero, in the order of its places (contact/touch.h; in
     // space contact/pin_space.h and the ends of an angle); all zero: none touches yet
@@ -308,9 +280,7 @@ static inline JointEnd linkage_end(const Joint *joint, int side)
 // have limits all the same.
 static inline bool linkage_kind_is_ideal(JointKind kind)
 {
-#define LINKAGE_IS_IDEAL(id, words, is_ideal, rows, has_angle) is_ideal,
-    static const bool ARE_IDEAL[] = {LINKAGE_JOINT_KIND_LIST(LINKAGE_IS_IDEAL)};
-    return ARE_IDEAL[kind];
+    return joint_is_ideal(kind);
 }
 
 // Whether bodies touch in a joint: a pin in its hole, a block between its guides, a stop, teeth, or
@@ -334,7 +304,7 @@ static inline bool linkage_starts_touching(const Joint *joint)
 // and angles, rad, in place of forces and lengths.
 static inline bool linkage_is_torsional(const Joint *joint)
 {
-    return joint->kind == JOINT_REVOLUTE && joint->limits.kind != LIMIT_NONE;
+    return joint_has_angle(joint->kind) && joint->limits.kind != LIMIT_NONE;
 }
 
 // The least gap of a block's corners to the guides (of a sleeve's to the rod), m, negative inside

@@ -60,10 +60,9 @@ forget stepping $options 'member(ODE_STAGGERED,' 'member(ODE_NEW, "new", STEPPIN
 forget solver $options 'member(ODE_QUICK,' 'member(ODE_NEW, "new")' ode/plane/world.c
 forget collider $options 'member(ODE_COLLIDER_STAVES,' \
     'member(ODE_COLLIDER_NEW, "new", collider_new)' contact/facets.c
-forget 'kind of joint' model/linkage.h 'member(JOINT_GUIDE,' \
-    'member(JOINT_NEW, "new", false, JOINT_ROWS, false)' model/linkage.c model/linkage_check.c \
-    model/joint_rows.c contact/touch.c contact/law_depth.c casefile/check_joints.c \
-    casefile/joint_kind.c commands/tune/tune_world.c
+forget 'kind of joint' model/joint.h 'member(with, JOINT_GUIDE,' \
+    'member(with, JOINT_NEW, LINE, DISC, NONE, 2, false, "new", "new")' casefile/joint_kind.c \
+    commands/tune/tune_world.c
 forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
     ode/plane/impulse_step.c reference/plane/dynamics_slopes.c
 forget dimension casefile/units.h 'member(DIMENSION_MASS,' 'member(DIMENSION_NEW)' casefile/units.c
