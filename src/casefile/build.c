@@ -98,19 +98,19 @@ static Linkage shift_holes(const Linkage *linkage, const Motion *motions)
     Linkage shifted = linkage_copy(linkage);
     for (size_t i = 0; i < shifted.joint_count; i++) {
         Joint *joint = &shifted.joints[i];
-        if (joint->kind == JOINT_GUIDE) {
+        if (joint_has_guides(joint->kind)) {
             // the ideal joint whose line goes through the block's middle and is tilted as the block
             const Vec2 across = vec2_perp(vec2_rotate(joint->direction, (Vec2){1.0, 0.0}));
             joint->anchor_a = vec2_add(joint->anchor_a, vec2_scale(joint->guide.start.x, across));
             joint->held_angle += joint->guide.start.y;
-            joint->kind = JOINT_PRISMATIC;
         }
-        if (joint->kind != JOINT_CLEARANCE) {
-            continue;
+        if (joint_has_hole(joint->kind)) {
+            const double angle =
+                joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].angle;
+            joint->anchor_a =
+                vec2_add(joint->anchor_a, vec2_rotate(-angle, joint->clearance.start));
         }
-        const double angle = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].angle;
-        joint->anchor_a = vec2_add(joint->anchor_a, vec2_rotate(-angle, joint->clearance.start));
-        joint->kind = JOINT_REVOLUTE;
+        joint->kind = joint_without_play(joint->kind);
     }
     return shifted;
 }
@@ -204,10 +204,10 @@ static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
         const Vec2 point = joint->anchor_a;
-        if (joint->kind == JOINT_GEAR) {
+        if (joint_has_carrier(joint->kind)) {
             continue; // its anchors are those of its pivots
         }
-        const Vec2 other = joint->kind == JOINT_STOP ? joint->anchor_b : point;
+        const Vec2 other = joint_has_disc(joint->kind) ? joint->anchor_b : point;
         joint->anchor_a = to_body(motions, joint->body_a, point);
         joint->anchor_b = to_body(motions, joint->body_b, other);
         joint->direction -= angle_of(motions, joint->body_a);

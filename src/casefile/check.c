@@ -267,17 +267,16 @@ static bool check_collider(const Entries *entries, const Scenario *scenario, Err
     for (int i = 0; i < (int)scenario->linkage.joint_count; i++) {
         Err own = {0};
         const Joint *joint = &scenario->linkage.joints[i];
-        if (linkage_has_play(joint) && joint->kind != JOINT_CLEARANCE) {
+        if (linkage_has_play(joint) && !joint_has_hole(joint->kind)) {
             return entries_refuse(entries_blame(entries, "ode.collider", 0), err,
-                                  "collider %s is for pins in their holes only, and '%s' is a %s\n"
+                                  "collider %s is for pins in their holes only, and '%s' is %s\n"
                                   "allowed: pin-hole",
                                   OPTIONS_ODE_COLLIDERS[ode->collider], joint->name,
-                                  joint->kind == JOINT_GUIDE             ? "block between guides"
-                                  : joint->kind == JOINT_GEAR            ? "pair of gears"
-                                  : joint->limits.kind == LIMIT_BACKLASH ? "joint with backlash"
-                                                                         : "stop");
+                                  !joint_is_ideal(joint->kind)           ? joint_words(joint->kind)
+                                  : joint->limits.kind == LIMIT_BACKLASH ? "a joint with backlash"
+                                                                         : "a stop");
         }
-        if (joint->kind == JOINT_CLEARANCE && !facets_check(scenario, i, &own)) {
+        if (joint_has_hole(joint->kind) && !facets_check(scenario, i, &own)) {
             return entries_refuse(entries_blame(entries, "ode.facets ode.collider", 0), err,
                                   "%s\nallowed: pin-hole, which is exact, or staves", own.text);
         }

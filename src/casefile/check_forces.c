@@ -49,7 +49,7 @@ static bool check_turns(const Entries *entries, const Linkage *linkage, Err *err
 {
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const Joint *joint = &linkage->joints[linkage->torsions[i].joint];
-        if (joint->kind == JOINT_PRISMATIC) {
+        if (joint_is_ideal(joint->kind) && joint_slides(joint->kind)) {
             return entries_refuse(entries_find(entries, "torsion-springs.*.joint", i), err,
                                   "the bodies of the prismatic joint '%s' do not turn against each "
                                   "other\nallowed: a joint that turns, or springs along the line",

@@ -84,7 +84,7 @@ static bool check_stiffness(const Entries *entries, size_t index, const Scenario
 {
     const Joint *joint = &scenario->linkage.joints[index];
     const EntryGroup *group = entries_group(entries, "joints.*", index);
-    const char *what = joint->kind == JOINT_GUIDE ? "a block between guides" : "a stop";
+    const char *what = joint_words(joint->kind);
     if (scenario->contact.model != CONTACT_IMPACT) {
         return entries_refuse(entries_find(entries, "contact.model", 0), err,
                               "the poisson model is for pins in holes, and joint '%s' is "
@@ -142,24 +142,22 @@ static bool check_restitution(const Entries *entries, size_t index, const Scenar
 static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[index];
-    if (joint->kind == JOINT_GEAR || joint->limits.kind != LIMIT_NONE) {
+    if (joint_has_teeth(joint->kind) || joint->limits.kind != LIMIT_NONE) {
         return limits_check(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
     }
-    switch (joint->kind) {
-    case JOINT_CLEARANCE:
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
         return check_pin(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
-    case JOINT_GUIDE:
+    case JOINT_TOUCHES_GUIDES:
         return check_guide(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
-    case JOINT_STOP:
+    case JOINT_TOUCHES_DISC:
         return check_stiffness(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
-    case JOINT_GEAR:
-    case JOINT_KIND_COUNT:
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_TEETH:
         break;
     }
     return true;

@@ -30,14 +30,14 @@ bool check_space(const Entries *entries, const Scenario *scenario, Err *err)
     }
     for (size_t i = 0; linkage->is_spatial && i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE &&
-            joint->kind != JOINT_GEAR) {
+        // limits_check refuses teeth
+        if (!joint_is_spatial(joint->kind) && !joint_has_teeth(joint->kind)) {
             return entries_refuse_group(entries_group(entries, "joints.*", i), err,
                                         "joint '%s' slides or stops, which is not available in "
                                         "space\nallowed: space: planar, or pins in holes",
                                         joint->name);
         }
-        if (joint->kind == JOINT_CLEARANCE && joint->clearance.width == 0.0) {
+        if (joint_has_hole(joint->kind) && joint->clearance.width == 0.0) {
             return entries_refuse_group(entries_group(entries, "joints.*", i), err,
                                         "in space the joint '%s' needs a width\nallowed: width: "
                                         "13 mm, or space: planar",

@@ -359,7 +359,7 @@ static bool check_play(const Entries *entries, const Scenario *scenario, const B
     const Joint *joint = &scenario->linkage.joints[number];
     const double shortest = shortest_link(entries, scenario, ends, number);
     const double radial = linkage_radial_clearance(joint);
-    if (joint->kind != JOINT_CLEARANCE || radial < shortest) {
+    if (!joint_has_hole(joint->kind) || radial < shortest) {
         return true;
     }
     return entries_refuse(

@@ -89,18 +89,19 @@ static void describe_range(const SchemaRow *row, Text *text)
 // Of which joints a key is required.
 static void append_kinds(const SchemaRow *row, Text *text)
 {
-    const bool is_of_hinges = schema_is_of_kind(row, JOINT_REVOLUTE);
-    const bool is_of_stops = schema_is_of_kind(row, JOINT_STOP);
+    const bool is_of_hinges = schema_is_of_any(row, JOINTS_WITH_ANGLE);
+    const bool is_of_stops = schema_is_of_any(row, JOINTS_WITH_DISC);
     if (row->family != SCHEMA_JOINT || row->rivalry != SCHEMA_NO_RIVAL ||
         (is_of_hinges && is_of_stops)) {
         return;
     }
-    text_append(text, schema_is_of_kind(row, JOINT_GEAR)        ? " of gears"
-                      : is_of_hinges                            ? " but of a stop"
-                      : is_of_stops                             ? " of a stop"
-                      : schema_is_of_kind(row, JOINT_PRISMATIC) ? " of a prismatic joint or guide"
-                      : schema_is_of_kind(row, JOINT_GUIDE)     ? " of a guide"
-                                                                : "");
+    text_append(text, schema_is_of_any(row, JOINTS_WITH_TEETH) ? " of gears"
+                      : is_of_hinges                           ? " but of a stop"
+                      : is_of_stops                            ? " of a stop"
+                      : schema_is_of_any(row, JOINTS_WITH_POSITION)
+                          ? " of a prismatic joint or guide"
+                      : schema_is_of_any(row, JOINTS_WITH_GUIDES) ? " of a guide"
+                                                                  : "");
 }
 
 // The default, as the program's own default scenario has it.

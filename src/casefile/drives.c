@@ -180,7 +180,7 @@ static bool check_joint(const Entries *entries, const DriveKeys *keys, size_t in
                         const Joint *driven, Err *err)
 {
     const bool has_play = linkage_has_play(driven);
-    const bool turns = driven->kind == JOINT_REVOLUTE;
+    const bool turns = joint_has_angle(driven->kind);
     if (turns && has_play) {
         return refuse(entries, keys, index, err, "a torque, or another joint",
                       "the drive prescribes the motion of joint '%s', so nothing can "
@@ -268,13 +268,13 @@ bool drives_check(const Entries *entries, const Linkage *linkage, Err *err)
     }
     const Joint *driven = &linkage->joints[linkage->driver.joint];
     if (entry != NULL && entries_find(entries, "drive.force", 0) != NULL) {
-        return driven->kind == JOINT_PRISMATIC ||
+        return joint_has_position(driven->kind) ||
                entries_refuse(entry, err,
                               "a force cannot push along joint '%s', which %s\nallowed: an ideal "
                               "prismatic joint",
                               driven->name, linkage_has_play(driven) ? "has play" : "has no line");
     }
-    const bool is_torque = driven->kind == JOINT_REVOLUTE && linkage->torque.table.count > 0;
+    const bool is_torque = joint_has_angle(driven->kind) && linkage->torque.table.count > 0;
     bool is_good = entry == NULL || is_torque || check_joint(entries, &CRANK_KEYS, 0, driven, err);
     for (size_t i = 0; is_good && i < linkage->further_count; i++) {
         is_good = check_further(entries, linkage, i, err);

@@ -84,9 +84,9 @@ SchemaRow limits_row(const SchemaRow *row, JointKind kind, const Node *value)
 {
     const bool is_force = row->family == SCHEMA_JOINT &&
                           (row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_DAMPER);
-    const bool is_of_gears = kind == JOINT_GEAR && is_length(row->type) && is_angle(value);
+    const bool is_of_gears = joint_has_teeth(kind) && is_length(row->type) && is_angle(value);
     const bool is_turned =
-        is_of_gears || (kind == JOINT_REVOLUTE && (is_force || is_length(row->type)));
+        is_of_gears || (joint_has_angle(kind) && (is_force || is_length(row->type)));
     SchemaRow own = is_turned ? as_angle(row) : *row;
     own.type = is_length(row->type) ? SCHEMA_QUANTITY : own.type;
     return own;
@@ -96,7 +96,7 @@ bool limits_store(const Target *target, Joint *joint)
 {
     const SchemaRow *row = target->entry->row;
     const Node *node = target->entry->node;
-    const bool is_of_gears = joint->kind == JOINT_GEAR && is_length(row->type) && is_angle(node);
+    const bool is_of_gears = joint_has_teeth(joint->kind) && is_length(row->type) && is_angle(node);
     if (row->type == SCHEMA_START && node->kind == NODE_SCALAR &&
         strcmp(node->text, row->default_words) == 0) {
         return true;
@@ -169,9 +169,9 @@ static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *er
     const Joint *pivots[2];
     for (int i = 0; i < 2; i++) {
         pivots[i] = &linkage->joints[joint->gear.pivots[i]];
-        if (pivots[i]->kind != JOINT_REVOLUTE) {
+        if (!joint_has_angle(pivots[i]->kind)) {
             // a rack is what is meant by teeth on a body that slides
-            const bool is_rack = pivots[i]->kind == JOINT_PRISMATIC;
+            const bool is_rack = joint_has_position(pivots[i]->kind);
             return entries_refuse(gears, err,
                                   "gears turn about ideal pivots, and '%s' is none%s\nallowed: two "
                                   "pivots such as [pinion, wheel]%s",
@@ -203,7 +203,7 @@ static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *er
 bool limits_join_gears(const Entries *entries, Linkage *linkage, Err *err)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_GEAR && !join(entries, i, linkage, err)) {
+        if (joint_has_carrier(linkage->joints[i].kind) && !join(entries, i, linkage, err)) {
             return false;
         }
     }
@@ -215,7 +215,7 @@ void limits_place_gears(Linkage *linkage, const Motion *motions)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
         Gear *gear = &joint->gear;
-        if (joint->kind != JOINT_GEAR) {
+        if (!joint_has_teeth(joint->kind)) {
             continue;
         }
         const Joint *first = &linkage->joints[gear->pivots[0]];

@@ -8,7 +8,7 @@
 
 static const char *describe(const Joint *joint)
 {
-    return joint->kind == JOINT_GEAR              ? "a pair of gears"
+    return joint_has_teeth(joint->kind)           ? joint_words(joint->kind)
            : joint->limits.kind == LIMIT_BACKLASH ? "one with backlash"
                                                   : "one with stops";
 }
@@ -16,7 +16,7 @@ static const char *describe(const Joint *joint)
 // In which unit a stiffness, and a damping, of a joint's limits stand.
 static const char *stiffness_example(const Joint *joint)
 {
-    return joint->kind == JOINT_REVOLUTE ? "500 N m/rad here" : "1e8 N/m here or in contact";
+    return joint_has_angle(joint->kind) ? "500 N m/rad here" : "1e8 N/m here or in contact";
 }
 
 static bool check_order(const Entries *entries, size_t index, const Joint *joint, Err *err)
@@ -41,7 +41,7 @@ static bool check_contact(const Entries *entries, size_t index, const Scenario *
 {
     const Joint *joint = &scenario->linkage.joints[index];
     const EntryGroup *group = entries_group(entries, "joints.*", index);
-    const bool is_turning = joint->kind == JOINT_REVOLUTE;
+    const bool is_turning = joint_has_angle(joint->kind);
     if (scenario->contact.model != CONTACT_IMPACT) {
         return entries_refuse(entries_find(entries, "contact.model", 0), err,
                               "the poisson model is for pins in holes, and joint '%s' is "
@@ -65,13 +65,13 @@ static bool check_contact(const Entries *entries, size_t index, const Scenario *
 bool limits_check(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[index];
-    if (scenario->linkage.is_spatial && joint->kind != JOINT_REVOLUTE) {
+    if (scenario->linkage.is_spatial && !joint_is_spatial(joint->kind)) {
         return entries_refuse_group(entries_group(entries, "joints.*", index), err,
                                     "joint '%s' is %s, which is not available in space\nallowed: "
                                     "space: planar, or pivots and pins in holes",
                                     joint->name, describe(joint));
     }
-    if (joint->kind == JOINT_GEAR && joint->limits.kind == LIMIT_NONE) {
+    if (joint_has_teeth(joint->kind) && joint->limits.kind == LIMIT_NONE) {
         return entries_refuse_group(entries_group(entries, "joints.*", index), err,
                                     "joints.%s.backlash is missing\nallowed: a length at the pitch "
                                     "circle such as 0.1 mm, or an angle of the second gear",
@@ -94,7 +94,7 @@ bool limits_check_starts(const Entries *entries, const Linkage *linkage, Err *er
         const double at = linkage->is_spatial ? space_coordinate_start(linkage, (int)i)
                                               : coordinate_position(linkage, motions, (int)i);
         const double rounding = LINKAGE_SEATED * fmin(limits->high - limits->low, 1.0);
-        const bool is_turning = joint->kind == JOINT_REVOLUTE;
+        const bool is_turning = joint_has_angle(joint->kind);
         is_right =
             (at >= limits->low - rounding && at <= limits->high + rounding) ||
             entries_refuse(entries_blame(entries, "joints.*.low joints.*.high", i), err,

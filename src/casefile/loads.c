@@ -465,7 +465,7 @@ static bool check_kind(const Entries *entries, const Linkage *linkage, size_t i,
                       "over: time or crank-angle, or a load along a joint");
     }
     const JointKind kind = linkage->joints[load->joint].kind;
-    if (kind == JOINT_STOP || kind == JOINT_GEAR) {
+    if (!joint_holds(kind)) {
         return refuse(entries, "loads.*.joint", i, err,
                       "a stop or a pair of gears has no coordinate to push along",
                       "a pivot, a pin, a slider or guides");

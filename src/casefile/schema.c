@@ -176,7 +176,12 @@ bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other)
 
 bool schema_is_of_kind(const SchemaRow *row, JointKind kind)
 {
-    return row->kinds == 0 || (row->kinds & SCHEMA_OF(kind)) != 0;
+    return row->kinds == 0 || joint_is_among(kind, row->kinds);
+}
+
+bool schema_is_of_any(const SchemaRow *row, JointKinds kinds)
+{
+    return row->kinds == 0 || (row->kinds & kinds) != 0;
 }
 
 bool schema_knows(const char *path, SchemaForm form)

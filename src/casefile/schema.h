@@ -92,9 +92,6 @@ typedef enum SchemaRivalry {
     SCHEMA_LIMITING,   // backlash against low and high
 } SchemaRivalry;
 
-// The bit of a kind of joint.
-#define SCHEMA_OF(kind) (1U << (kind))
-
 // The bit of a backend, and those of all that take steps of run.step.
 #define SCHEMA_WITH(backend)        (1U << (backend))
 #define SCHEMA_WITH_ENGINE(id, ...) | SCHEMA_WITH(id)
@@ -121,7 +118,7 @@ typedef struct SchemaRow {
     const char *zero_word;     // what may be written for the number 0; NULL: nothing
     const char *excused_by;    // the path beside which a required key may miss; NULL: none
     const char *default_words; // in place of the default's number; NULL: the number says it
-    unsigned kinds;            // of joints: SCHEMA_OF each kind that has the key; 0: all
+    JointKinds kinds;          // of joints, that have the key; 0: all
     unsigned needs;            // what a scenario must have for the key to be among its settings
     unsigned backends;         // of which one must run, SCHEMA_WITH each; 0: any
     unsigned wants;            // and, besides, for its value to change anything
@@ -170,6 +167,9 @@ bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other);
 
 // Whether a row is of joints of that kind; of all other rows that is true as well.
 bool schema_is_of_kind(const SchemaRow *row, JointKind kind);
+
+// The same of any of several kinds.
+bool schema_is_of_any(const SchemaRow *row, JointKinds kinds);
 
 // What rows may ask of a scenario as a whole that it has: bits of schema_needs.h.
 unsigned schema_met(const Scenario *scenario);

@@ -134,8 +134,7 @@ static bool limits_apply(const SchemaRow *row, const Joint *joint, const void *f
         return kind == (row->side == 0 ? LIMIT_BACKLASH : LIMIT_STOPS) &&
                isfinite(*(const double *)field);
     }
-    return row->type != SCHEMA_START || kind == LIMIT_BACKLASH || joint->kind == JOINT_CLEARANCE ||
-           joint->kind == JOINT_GUIDE;
+    return row->type != SCHEMA_START || kind == LIMIT_BACKLASH || joint_is_loose(joint->kind);
 }
 
 // The form in which a case of the scenario is written.
@@ -150,7 +149,7 @@ static unsigned drive_bits(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     const Joint *pushed = schema_member(scenario, SCHEMA_JOINT, (size_t)linkage->torque.joint);
-    const bool is_force = pushed->kind == JOINT_PRISMATIC;
+    const bool is_force = joint_has_position(pushed->kind);
     const bool is_torque = linkage->torque.table.count > 0;
     const bool is_steady = drive_is_steady(&linkage->driver);
     const bool is_soft = linkage->torque.followed.is_present;
@@ -278,7 +277,7 @@ static unsigned shared_bits(const Scenario *scenario)
             bit(COMMON_DAMPING, joint->contact.viscous == 0.0) |
             bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
             bit(REBOUND, (is_restored(damping) || is_poisson) && !joint->contact.has_restitution) |
-            bit(PIN, joint->kind == JOINT_CLEARANCE);
+            bit(PIN, joint_has_hole(joint->kind));
     }
     return met;
 }
@@ -290,8 +289,7 @@ static unsigned row_bits(const Scenario *scenario)
     bool is_held = false;
     bool is_smoothed = scenario->ode.solver != ODE_QUICK;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        const JointKind kind = scenario->linkage.joints[i].kind;
-        is_held = is_held || kind == JOINT_REVOLUTE || kind == JOINT_PRISMATIC;
+        is_held = is_held || joint_is_ideal(scenario->linkage.joints[i].kind);
     }
     for (size_t i = 0; i < run->backend_count; i++) {
         is_smoothed = is_smoothed || run->backends[i] == BACKEND_REFERENCE;

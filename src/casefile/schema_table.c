@@ -93,18 +93,13 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define BODY .family = SCHEMA_BODY, .form = SCHEMA_LONG
 #define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
 #define JOINT(field) .family = SCHEMA_JOINT, AT_JOINT(field)
-#define PIN(field) JOINT(clearance.field), .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_CLEARANCE)
+#define PIN(field) JOINT(clearance.field), .needs = MEMBER, .kinds = JOINTS_WITH_HOLE
 #define GUIDE(field) \
     JOINT(guide.field), .form = SCHEMA_LONG | SCHEMA_SLIDER_CRANK, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
-    .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_GUIDE)
-#define SLIDING (SCHEMA_OF(JOINT_PRISMATIC) | SCHEMA_OF(JOINT_GUIDE))
-#define STOP .form = SCHEMA_LONG, .needs = MEMBER, .kinds = SCHEMA_OF(JOINT_STOP)
-#define PIVOT (SCHEMA_OF(JOINT_REVOLUTE) | SCHEMA_OF(JOINT_CLEARANCE))
-#define HELD (PIVOT | SLIDING)
-#define LIMITED (SCHEMA_OF(JOINT_REVOLUTE) | SCHEMA_OF(JOINT_PRISMATIC))
-#define GEAR SCHEMA_OF(JOINT_GEAR)
-#define TOUCHING \
-    (SCHEMA_OF(JOINT_CLEARANCE) | SCHEMA_OF(JOINT_GUIDE) | SCHEMA_OF(JOINT_STOP) | LIMITED | GEAR)
+    .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = JOINTS_WITH_GUIDES
+#define STOP .form = SCHEMA_LONG, .needs = MEMBER, .kinds = JOINTS_WITH_DISC
+#define LIMITED (JOINTS_WITH_ANGLE | JOINTS_WITH_POSITION)
+#define TOUCHING (JOINTS_WITH_PLAY | JOINTS_WITH_COORDINATE)
 #define SPRING(field) \
     .family = SCHEMA_SPRING, \
     .holder = SCHEMA_SPRING, .offset = offsetof(Spring, field), .needs = MEMBER

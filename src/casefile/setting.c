@@ -141,7 +141,7 @@ static void set_gravity(CasefileSetting *setting, const Scenario *scenario)
 // Where a pin starts in its hole, or a block between its guides.
 static void set_start(CasefileSetting *setting, const Joint *joint)
 {
-    const bool is_guide = joint->kind == JOINT_GUIDE;
+    const bool is_guide = joint_has_guides(joint->kind);
     if (joint->limits.kind != LIMIT_NONE) {
         set_number(setting, joint->limits.start);
         set_turning(setting, joint, DIMENSION_ANGLE);

@@ -181,7 +181,7 @@ static bool store_start(const Target *target, Joint *joint)
     if (joint->limits.kind != LIMIT_NONE) {
         return limits_store(target, joint);
     }
-    if (joint->kind != JOINT_GUIDE) {
+    if (!joint_has_guides(joint->kind)) {
         const bool is_stored = store_vector(target);
         seat_pin(&joint->clearance);
         return is_stored;
