@@ -174,7 +174,7 @@ static void find_sources(const Scenario *scenario, Stackup *stackup)
     }
     for (int i = 0; i < STACKUP_PLAYS; i++) {
         const int joint = linkage_find_joint(&scenario->linkage, PLAY_JOINTS[i]);
-        const bool is_loose = joint >= 0 && scenario->linkage.joints[joint].kind == JOINT_CLEARANCE;
+        const bool is_loose = joint >= 0 && joint_has_hole(scenario->linkage.joints[joint].kind);
         stackup->play[i] =
             is_loose ? linkage_radial_clearance(&scenario->linkage.joints[joint]) : 0.0;
         stackup->is_source[STACKUP_LENGTHS + i] = is_loose;

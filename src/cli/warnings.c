@@ -104,7 +104,7 @@ static void say_plays(const Linkage *linkage)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const double share = linkage_radial_clearance(joint) / (2.0 * joint->clearance.pin_radius);
-        if (joint->kind == JOINT_CLEARANCE && share > LOOSE) {
+        if (joint_has_hole(joint->kind) && share > LOOSE) {
             output_say("jointplay: warning: the radial clearance of '%s' is %.3g %% of its pin's "
                        "diameter; check hole, pin and radial-clearance\n",
                        joint->name, 100.0 * share);

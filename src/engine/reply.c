@@ -280,7 +280,7 @@ static double fill_place(EngineReply *reply, size_t joint)
     const Vec2 gap = linkage_joint_gap(linkage, motions, (int)joint).position;
     JointState *state = &reply->sample.joints[joint];
     state->eccentricity = gap;
-    if (linkage->joints[joint].kind != JOINT_PRISMATIC) {
+    if (!joint_slides(linkage->joints[joint].kind)) {
         return vec2_length(gap);
     }
     JointRows rows;

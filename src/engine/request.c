@@ -27,26 +27,38 @@ static bool refuse_joint(const char *engine, const char *what, const Joint *join
     return engine_refuse(engine, words, err);
 }
 
-static bool check_joint(const char *engine, const Joint *joint, Err *err)
+// What the protocol calls a kind of joint; or NULL, and what it has not.
+typedef struct KindWords {
+    const char *word;
+    const char *lacks;
+} KindWords;
+
+static KindWords words_of(JointKind kind)
 {
-    if (joint->limits.kind != LIMIT_NONE) {
-        return refuse_joint(engine, "limits of a joint", joint, err);
-    }
-    switch (joint->kind) {
+    switch (kind) {
     case JOINT_REVOLUTE:
+        return (KindWords){"revolute", NULL};
     case JOINT_CLEARANCE:
+        return (KindWords){"pin-in-hole", NULL};
     case JOINT_PRISMATIC:
-        return true;
+        return (KindWords){"prismatic", NULL};
     case JOINT_GUIDE:
-        return refuse_joint(engine, "a block between guides", joint, err);
+        return (KindWords){NULL, "a block between guides"};
     case JOINT_STOP:
-        return refuse_joint(engine, "stops", joint, err);
+        return (KindWords){NULL, "stops"};
     case JOINT_GEAR:
-        return refuse_joint(engine, "gears", joint, err);
+        return (KindWords){NULL, "gears"};
     case JOINT_KIND_COUNT:
         break;
     }
-    return false;
+    return (KindWords){NULL, "this kind of joint"};
+}
+
+static bool check_joint(const char *engine, const Joint *joint, Err *err)
+{
+    const char *lacks =
+        joint->limits.kind != LIMIT_NONE ? "limits of a joint" : words_of(joint->kind).lacks;
+    return lacks == NULL || refuse_joint(engine, lacks, joint, err);
 }
 
 bool engine_check(const char *engine, const Scenario *scenario, Err *err)
@@ -68,7 +80,7 @@ bool engine_check(const char *engine, const Scenario *scenario, Err *err)
         return engine_refuse(engine, "a soft drive whose speed changes over time", err);
     }
     const Torque *torque = &linkage->torque;
-    if (torque->table.count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC &&
+    if (torque->table.count > 0 && joint_has_position(linkage->joints[torque->joint].kind) &&
         (torque->slope > 0.0 || torque->followed.is_present)) {
         return engine_refuse(engine, "a motor or soft drive along a line", err);
     }
@@ -125,20 +137,15 @@ static json_t *contact_object(const ContactState *state)
 
 static json_t *joint_object(const Scenario *scenario, const Joint *joint, Err *err)
 {
-    static const char *const KINDS[JOINT_KIND_COUNT] = {
-        [JOINT_REVOLUTE] = "revolute",
-        [JOINT_CLEARANCE] = "pin-in-hole",
-        [JOINT_PRISMATIC] = "prismatic",
-    };
-    json_t *object =
-        json_pack("{s:s, s:s, s:i, s:i, s:o, s:o}", "name", joint->name, "kind", KINDS[joint->kind],
-                  "body_a", joint->body_a, "body_b", joint->body_b, "anchor_a_m",
-                  engine_pair(joint->anchor_a), "anchor_b_m", engine_pair(joint->anchor_b));
-    if (joint->kind == JOINT_PRISMATIC) {
+    json_t *object = json_pack("{s:s, s:s, s:i, s:i, s:o, s:o}", "name", joint->name, "kind",
+                               words_of(joint->kind).word, "body_a", joint->body_a, "body_b",
+                               joint->body_b, "anchor_a_m", engine_pair(joint->anchor_a),
+                               "anchor_b_m", engine_pair(joint->anchor_b));
+    if (joint_slides(joint->kind)) {
         json_object_set_new(object, "direction_rad", json_real(joint->direction));
         json_object_set_new(object, "held_angle_rad", json_real(joint->held_angle));
     }
-    if (joint->kind == JOINT_CLEARANCE) {
+    if (joint_has_hole(joint->kind)) {
         ForceLaw law;
         if (!law_of_joint(scenario, joint, &law, err)) {
             json_decref(object);

@@ -136,7 +136,7 @@ static double contact_depth(const Scenario *scenario, const Touch *place, double
 {
     static const double DEPTH = 0.1;
     const Joint *joint = &scenario->linkage.joints[place->joint];
-    if (joint->kind == JOINT_CLEARANCE || joint->kind == JOINT_GUIDE) {
+    if (joint_is_loose(joint->kind)) {
         return fmin(DEPTH * linkage_radial_clearance(joint),
                     0.5 * force_law_depth_limit(&place->law));
     }

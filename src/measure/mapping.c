@@ -267,7 +267,7 @@ static void mapping_make_rows(Mapping *mapping, MappingWatch watch)
 static const char *pin_that_could_have_play(const Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_REVOLUTE && linkage_is_ideal(linkage, i)) {
+        if (joint_pivots(linkage->joints[i].kind) && linkage_is_ideal(linkage, i)) {
             return linkage->joints[i].name;
         }
     }

@@ -683,7 +683,7 @@ static Joint single_joint(const Joint *from, double play)
         .clearance = from->clearance,
         .contact = from->contact,
     };
-    if (from->kind != JOINT_CLEARANCE) {
+    if (!joint_has_hole(from->kind)) {
         const double radius = law_touching_radius(from);
         joint.kind = JOINT_STOP;
         joint.stop.radius_b = isfinite(radius) ? radius : 0.0;
@@ -701,7 +701,7 @@ static double single_play(const Joint *from)
     if (from->limits.kind != LIMIT_NONE) {
         return coordinate_play(from);
     }
-    return from->kind == JOINT_STOP ? INFINITY : linkage_radial_clearance(from);
+    return joint_has_disc(from->kind) ? INFINITY : linkage_radial_clearance(from);
 }
 
 // The scenario's world with nothing in it but the pin; for scenario_free.

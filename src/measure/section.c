@@ -138,8 +138,8 @@ int section_slider(const Linkage *linkage, size_t body)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        const bool slides = joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE;
-        if (slides && joint->body_a == LINKAGE_GROUND && joint->body_b == (int)body) {
+        if (joint_slides(joint->kind) && joint->body_a == LINKAGE_GROUND &&
+            joint->body_b == (int)body) {
             return (int)i;
         }
     }

@@ -79,8 +79,7 @@ static void find_columns(const Linkage *linkage, ContactTable *table)
         if (linkage_has_play(joint)) {
             table->has_turns[linkage_is_torsional(joint) ? NUMBER_TURNED : NUMBER_PUSHED] = true;
         }
-        table->has_pins =
-            table->has_pins || (joint->kind == JOINT_CLEARANCE && !linkage->is_spatial);
+        table->has_pins = table->has_pins || (joint_has_hole(joint->kind) && !linkage->is_spatial);
     }
     name_columns(table);
 }
@@ -111,7 +110,7 @@ static double angle_at(const Trajectory *trajectory, int body, double time_s)
 static double wall_deg(const Trajectory *trajectory, const JointSpike *contact)
 {
     const Joint *joint = &trajectory->linkage.joints[contact->joint];
-    if (joint->kind != JOINT_CLEARANCE) {
+    if (!joint_has_hole(joint->kind)) {
         return NAN;
     }
     const double angle = angle_at(trajectory, joint->body_a, contact->spike.peak_s);

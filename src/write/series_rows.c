@@ -60,18 +60,17 @@ static const Joint *joint_of(const Scenario *scenario, size_t joint)
 
 static bool slides(const Scenario *scenario, size_t joint)
 {
-    const JointKind kind = joint_of(scenario, joint)->kind;
-    return kind == JOINT_PRISMATIC || kind == JOINT_GUIDE;
+    return joint_slides(joint_of(scenario, joint)->kind);
 }
 
 static bool is_guide(const Scenario *scenario, size_t joint)
 {
-    return joint_of(scenario, joint)->kind == JOINT_GUIDE;
+    return joint_has_guides(joint_of(scenario, joint)->kind);
 }
 
 static bool is_pin(const Scenario *scenario, size_t joint)
 {
-    return joint_of(scenario, joint)->kind == JOINT_CLEARANCE;
+    return joint_has_hole(joint_of(scenario, joint)->kind);
 }
 
 static bool has_limits(const Scenario *scenario, size_t joint)
@@ -98,8 +97,8 @@ static bool turns(const Scenario *scenario, size_t joint)
 {
     const Joint *of = joint_of(scenario, joint);
     const double friction = scenario_friction(scenario, of);
-    const bool is_circle = of->kind == JOINT_CLEARANCE || of->kind == JOINT_STOP;
-    return linkage_is_torsional(of) || of->kind == JOINT_GEAR || (is_circle && friction > 0.0);
+    const bool is_circle = joint_has_hole(of->kind) || joint_has_disc(of->kind);
+    return linkage_is_torsional(of) || joint_has_teeth(of->kind) || (is_circle && friction > 0.0);
 }
 
 // Numbers of the run, of bodies and of points.
