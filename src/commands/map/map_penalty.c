@@ -30,7 +30,7 @@ bool penalty_map_fits(const Scenario *scenario, PrintedPin *pin)
 {
     for (int i = 0; i < PRINTED_PIN_COUNT && drive_is_steady(&scenario->linkage.driver); i++) {
         const int joint = linkage_find_joint(&scenario->linkage, PRINTED_PIN_NAMES[i]);
-        if (joint >= 0 && scenario->linkage.joints[joint].kind == JOINT_CLEARANCE) {
+        if (joint >= 0 && joint_has_hole(scenario->linkage.joints[joint].kind)) {
             *pin = (PrintedPin)i;
             return true;
         }

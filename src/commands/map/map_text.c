@@ -300,7 +300,7 @@ static bool has_lines(const Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (linkage_has_play(joint) && joint->kind != JOINT_CLEARANCE) {
+        if (linkage_has_play(joint) && !joint_has_hole(joint->kind)) {
             return true;
         }
     }
@@ -337,9 +337,9 @@ static void map_text_write_head(const MappingReport *report, const Style *style,
 // Where else than in one position a joint's mass was looked up.
 static const char *mass_words(const Joint *joint)
 {
-    return joint->kind == JOINT_GUIDE       ? " and all corners"
-           : joint->kind == JOINT_CLEARANCE ? " and all directions"
-                                            : "";
+    return joint_has_guides(joint->kind) ? " and all corners"
+           : joint_has_hole(joint->kind) ? " and all directions"
+                                         : "";
 }
 
 static const char *source_words(MappingSource source)

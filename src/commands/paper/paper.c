@@ -94,7 +94,7 @@ static void finish_row(ExtremesRow *row)
 static void take_joint(const Scenario *scenario, const Trajectory *run, ExtremesRow *row)
 {
     for (size_t i = 0; i < run->joint_count; i++) {
-        if (scenario->linkage.joints[i].kind == JOINT_CLEARANCE) {
+        if (joint_has_hole(scenario->linkage.joints[i].kind)) {
             row->impacts += run->joints[i].impacts;
             row->force_max = fmax(row->force_max, run->joints[i].force_max.value);
         }

@@ -39,45 +39,32 @@ static json_t *bodies_json(const Linkage *linkage)
     return bodies;
 }
 
-static const char *kind_word(JointKind kind)
-{
-    switch (kind) {
-    case JOINT_REVOLUTE:
-        return "revolute";
-    case JOINT_CLEARANCE:
-        return "clearance";
-    case JOINT_PRISMATIC:
-        return "prismatic";
-    case JOINT_GUIDE:
-        return "guide";
-    case JOINT_STOP:
-        return "stop";
-    case JOINT_GEAR:
-    case JOINT_KIND_COUNT:
-        break;
-    }
-    return "gear";
-}
-
 // The sizes that a kind of joint is drawn with, m.
 static void set_sizes(json_t *object, const Joint *joint)
 {
     json_value_set(object, "clearance_m", linkage_radial_clearance(joint));
-    if (joint->kind == JOINT_CLEARANCE) {
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_NOTHING:
+        break;
+    case JOINT_TOUCHES_HOLE:
         json_value_set(object, "pin_radius_m", joint->clearance.pin_radius);
-    } else if (joint->kind == JOINT_GUIDE) {
+        break;
+    case JOINT_TOUCHES_GUIDES:
         json_value_set(object, "height_m", joint->guide.height);
         json_value_set(object, "opening_m", joint->guide.opening);
         json_value_set(object, "length_m", joint->guide.length);
-    } else if (joint->kind == JOINT_STOP) {
+        break;
+    case JOINT_TOUCHES_DISC:
         json_object_set_new(object, "is_disc", json_boolean(joint->stop.is_disc));
         json_value_set(object, "radius_a_m", joint->stop.radius_a);
         json_value_set(object, "radius_b_m", joint->stop.radius_b);
-    } else if (joint->kind == JOINT_GEAR) {
+        break;
+    case JOINT_TOUCHES_TEETH:
         json_value_set(object, "radius_a_m", joint->gear.radius_a);
         json_value_set(object, "radius_b_m", joint->gear.radius_b);
         json_value_set(object, "teeth_a", joint->gear.teeth[0]);
         json_value_set(object, "teeth_b", joint->gear.teeth[1]);
+        break;
     }
 }
 
@@ -104,7 +91,7 @@ static json_t *joints_json(const Linkage *linkage)
         const Joint *joint = &linkage->joints[i];
         json_t *object = json_object();
         json_object_set_new(object, "name", json_value_text(joint->name));
-        json_object_set_new(object, "kind", json_string(kind_word(joint->kind)));
+        json_object_set_new(object, "kind", json_string(joint_name(joint->kind)));
         json_object_set_new(object, "has_play", json_boolean(linkage_has_play(joint)));
         json_object_set_new(object, "is_torsional", json_boolean(linkage_is_torsional(joint)));
         json_object_set_new(object, "body_a", json_integer(joint->body_a));

@@ -26,7 +26,7 @@ static const PlotQuantity PIN_TILT = {"tilt, mrad", true, -1, plot_pins_tilt_of}
 static bool plot_pins_shows(const PlotView *view, size_t run, size_t joint)
 {
     return !view->joints.is_left_out[joint] &&
-           view->report->scenario->linkage.joints[joint].kind == JOINT_CLEARANCE &&
+           joint_has_hole(view->report->scenario->linkage.joints[joint].kind) &&
            trajectory_feels_play(view->report->runs[run],
                                  &view->report->scenario->linkage.joints[joint]);
 }
@@ -64,7 +64,7 @@ void plot_pins_tilts(const PlotView *view, PlotPanel panel)
     panel.y.title = "tilt, mrad";
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         const bool has_play =
-            linkage->joints[joint].kind == JOINT_CLEARANCE && !view->joints.is_left_out[joint];
+            joint_has_hole(linkage->joints[joint].kind) && !view->joints.is_left_out[joint];
         const double limit = has_play ? plot_pins_tilt_limit(&linkage->joints[joint]) : 0.0;
         panel.y.high = fmax(panel.y.high, 1.08 * limit);
         for (size_t run = 0; run < report->run_count; run++) {
@@ -78,7 +78,7 @@ void plot_pins_tilts(const PlotView *view, PlotPanel panel)
     plot_enter(&panel);
     plot_look_shade(view, &panel);
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
-        if (linkage->joints[joint].kind == JOINT_CLEARANCE && !view->joints.is_left_out[joint]) {
+        if (joint_has_hole(linkage->joints[joint].kind) && !view->joints.is_left_out[joint]) {
             const double limit = plot_pins_tilt_limit(&linkage->joints[joint]);
             const PlotStyle style = {"#222222", 1.2, 1.0, "6 4"};
             plot_line(&panel, 2, (const double[]){panel.x.low, panel.x.high},
@@ -324,7 +324,7 @@ static bool plot_joints_find_path(const PlotView *view, size_t run, size_t joint
                                   PlotPath *path)
 {
     const Joint *shape = &view->report->scenario->linkage.joints[joint];
-    if (view->joints.is_left_out[joint] || shape->kind != JOINT_CLEARANCE ||
+    if (view->joints.is_left_out[joint] || !joint_has_hole(shape->kind) ||
         !trajectory_feels_play(view->report->runs[run], shape)) {
         return false;
     }
@@ -374,7 +374,7 @@ void plot_joints_paths(const PlotView *view, PlotPanel panel)
     size_t joints_with_play = 0;
     double clearance = 0.0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+        if (joint_has_hole(linkage->joints[i].kind)) {
             joints_with_play++;
             clearance = linkage_radial_clearance(&linkage->joints[i]);
         }
@@ -539,7 +539,7 @@ static double plot_joints_length_of(const RunReport *report, const Trajectory *r
     const double length = trajectory_state(run, sample, joint)->eccentricity.x;
     const Joint *of = plot_limits_joint_of(report, joint);
     // that of gears is from the middle already
-    return (length - (of->kind == JOINT_GEAR ? 0.0 : origin_of(of))) * UNITS_MM;
+    return (length - (joint_has_teeth(of->kind) ? 0.0 : origin_of(of))) * UNITS_MM;
 }
 
 // A panel of all coordinates with backlash or with stops that are angles, or that are lengths.
@@ -755,11 +755,11 @@ static const Joint *plot_slides_joint_of(const RunReport *report, size_t joint)
     return &report->scenario->linkage.joints[joint];
 }
 
-// Whether a run shows the play of a joint of that kind.
-static bool plot_slides_shows(const PlotView *view, size_t run, size_t joint, JointKind kind)
+// Whether a run shows the play of a joint that is of some kinds.
+static bool plot_slides_shows(const PlotView *view, size_t run, size_t joint, JointKinds kinds)
 {
     const Joint *of = plot_slides_joint_of(view->report, joint);
-    return of->kind == kind && !view->joints.is_left_out[joint] &&
+    return joint_is_among(of->kind, kinds) && !view->joints.is_left_out[joint] &&
            trajectory_feels_play(view->report->runs[run], of);
 }
 
@@ -825,21 +825,21 @@ typedef struct SlidePanel {
     const char *title;
     const char *axis;
     PlotQuantity quantity;
-    JointKind kind;
+    JointKinds kinds;
     double (*limit)(const Joint *joint);                           // NULL: none
-    bool (*shows)(const PlotView *view, size_t run, size_t joint); // NULL: those of the kind
+    bool (*shows)(const PlotView *view, size_t run, size_t joint); // NULL: those of the kinds
 } SlidePanel;
 
 static const SlidePanel SLIDE_PANELS[] = {
     [PLOT_SLIDE_OFFSET] = {.title = "Block across its guides; dashed: not tilted",
                            .axis = "off the middle line, um",
                            .quantity = {"offset, um", true, -1, offset_of},
-                           .kind = JOINT_GUIDE,
+                           .kinds = JOINTS_WITH_GUIDES,
                            .limit = offset_limit},
     [PLOT_SLIDE_TILT] = {.title = "Tilt of the block; dashed: opposite corners touch",
                          .axis = "tilt, mrad",
                          .quantity = {"tilt, mrad", true, -1, plot_slides_tilt_of},
-                         .kind = JOINT_GUIDE,
+                         .kinds = JOINTS_WITH_GUIDES,
                          .limit = plot_slides_tilt_limit},
     [PLOT_SLIDE_POSITION] = {.title = "Position of the slider on its line",
                              .axis = "position, mm",
@@ -857,13 +857,13 @@ static const SlidePanel SLIDE_PANELS[] = {
     [PLOT_SLIDE_STOP] = {.title = "Distance from the stop",
                          .axis = "gap, mm",
                          .quantity = {"gap, mm", true, -1, gap_of},
-                         .kind = JOINT_STOP},
+                         .kinds = JOINTS_WITH_DISC},
 };
 
 static bool panel_shows(const SlidePanel *slide, const PlotView *view, size_t run, size_t joint)
 {
     return slide->shows != NULL ? slide->shows(view, run, joint)
-                                : plot_slides_shows(view, run, joint, slide->kind);
+                                : plot_slides_shows(view, run, joint, slide->kinds);
 }
 
 static void plot_slides_widen(const SlidePanel *slide, const PlotView *view, PlotPanel *panel)
@@ -895,8 +895,9 @@ static void plot_slides_draw_limits(const SlidePanel *slide, const PlotView *vie
 {
     const RunReport *report = view->report;
     for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-        for (int side = -1; slide->limit != NULL && !view->joints.is_left_out[joint] &&
-                            plot_slides_joint_of(report, joint)->kind == slide->kind && side <= 1;
+        for (int side = -1;
+             slide->limit != NULL && !view->joints.is_left_out[joint] &&
+             joint_is_among(plot_slides_joint_of(report, joint)->kind, slide->kinds) && side <= 1;
              side += 2) {
             const double limit = side * slide->limit(plot_slides_joint_of(report, joint));
             plot_line(panel, 2, (const double[]){panel->x.low, panel->x.high},
@@ -945,8 +946,8 @@ static double plot_slides_farthest(const PlotView *view)
         const Trajectory *trajectory = report->runs[run];
         for (size_t joint = 0; joint < trajectory->joint_count; joint++) {
             const Joint *of = plot_slides_joint_of(report, joint);
-            for (size_t i = 0;
-                 plot_slides_shows(view, run, joint, JOINT_GUIDE) && i < trajectory->sample_count;
+            for (size_t i = 0; plot_slides_shows(view, run, joint, JOINTS_WITH_GUIDES) &&
+                               i < trajectory->sample_count;
                  i++) {
                 const double offset = fabs(offset_of(report, trajectory, i, joint));
                 const double tilt = fabs(plot_slides_tilt_of(report, trajectory, i, joint));
@@ -968,7 +969,7 @@ void plot_slides_paths(const PlotView *view, PlotPanel panel)
     plot_enter(&panel);
     for (size_t run = 0; run < report->run_count; run++) {
         for (size_t joint = 0; joint < report->scenario->linkage.joint_count; joint++) {
-            if (plot_slides_shows(view, run, joint, JOINT_GUIDE)) {
+            if (plot_slides_shows(view, run, joint, JOINTS_WITH_GUIDES)) {
                 plot_look_path(view, &panel, run, &(PlotPath){.joint = joint, .at = block_at});
             }
         }

@@ -168,7 +168,7 @@ static void choose_joints(PlotView *view)
     const Linkage *linkage = &scenario->linkage;
     const bool has_clearance = scenario_has_clearance(scenario);
     Ranked *ranked = zeroed(linkage->joint_count, sizeof *ranked);
-    for (JointKind kind = 0; kind <= JOINT_GEAR; kind++) {
+    for (JointKind kind = 0; kind < JOINT_KIND_COUNT; kind++) {
         size_t count = 0;
         for (size_t i = 0; i < linkage->joint_count; i++) {
             if (linkage->joints[i].kind == kind) {

@@ -77,7 +77,7 @@ static Vec2 pin_load_at(const RunReport *report, const Trajectory *run, size_t s
 static bool shows_load(const PlotView *view, size_t run, size_t joint)
 {
     return view->report->runs[run]->is_complete && !view->joints.is_left_out[joint] &&
-           view->report->scenario->linkage.joints[joint].kind == JOINT_CLEARANCE;
+           joint_has_hole(view->report->scenario->linkage.joints[joint].kind);
 }
 
 // What the load of a pin spans, N: the window of the panel.

@@ -450,11 +450,11 @@ enum {
     FIRST_PANELS = 3, // those of motion and the one of forces
 };
 
-static bool plot_run_has_joint(const RunReport *report, JointKind kind)
+static bool plot_run_has_joint(const RunReport *report, JointKinds kinds)
 {
     const Linkage *linkage = &report->scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == kind) {
+        if (joint_is_among(linkage->joints[i].kind, kinds)) {
             return true;
         }
     }
@@ -466,23 +466,23 @@ static size_t choose_panels(const PlotView *view, PanelChoice panels[PANEL_MAX])
 {
     const RunReport *report = view->report;
     size_t count = 0;
-    if (plot_run_has_joint(report, JOINT_CLEARANCE)) {
+    if (plot_run_has_joint(report, JOINTS_WITH_HOLE)) {
         panels[count++].draw = plot_joints_paths;
     }
-    if (plot_run_has_joint(report, JOINT_CLEARANCE) && report->scenario->linkage.is_spatial) {
+    if (plot_run_has_joint(report, JOINTS_WITH_HOLE) && report->scenario->linkage.is_spatial) {
         panels[count++].draw = plot_pins_tilts;
         panels[count++].draw = plot_pins_ends;
     }
-    if (plot_run_has_joint(report, JOINT_GUIDE)) {
+    if (plot_run_has_joint(report, JOINTS_WITH_GUIDES)) {
         panels[count++].draw = plot_slides_paths;
         panels[count++].slide = PLOT_SLIDE_OFFSET;
         panels[count++].slide = PLOT_SLIDE_TILT;
     }
     const bool is_planar = !report->scenario->linkage.is_spatial;
-    if (is_planar && plot_run_has_joint(report, JOINT_CLEARANCE)) {
+    if (is_planar && plot_run_has_joint(report, JOINTS_WITH_HOLE)) {
         panels[count++].draw = plot_loads_pins;
     }
-    if (plot_run_has_joint(report, JOINT_GUIDE) || plot_run_has_joint(report, JOINT_PRISMATIC)) {
+    if (plot_run_has_joint(report, JOINTS_THAT_SLIDE)) {
         panels[count++].slide = PLOT_SLIDE_POSITION;
         panels[count++].slide = PLOT_SLIDE_SPEED;
         panels[count++].slide = PLOT_SLIDE_ACCELERATION;
@@ -490,7 +490,7 @@ static size_t choose_panels(const PlotView *view, PanelChoice panels[PANEL_MAX])
     if (plot_loads_has_torque(&report->scenario->linkage)) {
         panels[count++].draw = plot_loads_torque;
     }
-    if (plot_run_has_joint(report, JOINT_STOP)) {
+    if (plot_run_has_joint(report, JOINTS_WITH_DISC)) {
         panels[count++].slide = PLOT_SLIDE_STOP;
     }
     static const struct {

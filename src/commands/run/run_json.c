@@ -328,7 +328,7 @@ static void set_slide(json_t *object, const Linkage *linkage, const Trajectory *
     json_value_set(object, "slide_velocity_max_m_s", range.velocity[1].value);
     json_value_set(object, "slide_acceleration_min_m_s2", range.acceleration[0].value);
     json_value_set(object, "slide_acceleration_max_m_s2", range.acceleration[1].value);
-    if (joint->kind == JOINT_GUIDE) {
+    if (joint_has_guides(joint->kind)) {
         json_value_set(object, "tilt_max_rad", is_felt ? run->joints[number].tilt_max.value : NAN);
         json_value_set(object, "tilt_limit_rad", linkage_guide_tilt(&joint->guide));
         json_value_set(object, "resultant_max_N", is_felt ? range.resultant.value : NAN);
@@ -370,7 +370,7 @@ static json_t *joint_object(const Linkage *linkage, const NumberSource *of, size
     json_object_set_new(object, "has_play", json_boolean(has_play));
     if (joint->limits.kind != LIMIT_NONE) {
         set_limits(object, linkage, run, number);
-    } else if (has_play && joint->kind != JOINT_STOP) {
+    } else if (has_play && !joint_has_disc(joint->kind)) {
         json_value_set(object, "radial_clearance_m", linkage_radial_clearance(joint));
     }
     json_object_set_new(object, "spikes", contacts_array(linkage, of, number, is_felt));

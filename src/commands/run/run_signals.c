@@ -139,7 +139,7 @@ static json_t *section_json(const Scenario *scenario, const Trajectory *run,
     json_t *joints = json_object();
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (trajectory_feels_play(run, &linkage->joints[i]) &&
-            linkage->joints[i].kind == JOINT_CLEARANCE) {
+            joint_has_hole(linkage->joints[i].kind)) {
             json_object_set_new(joints, linkage->joints[i].name,
                                 section_members(sections, SECTION_OF_JOINT,
                                                 COUNT_OF(SECTION_OF_JOINT),

@@ -130,7 +130,7 @@ static void write_still(const RunReport *report, const Trajectory *run, size_t j
 {
     const Joint *of = &report->scenario->linkage.joints[joint];
     text_append(text, "no contact in the whole run.");
-    if (of->kind != JOINT_CLEARANCE) {
+    if (!joint_has_hole(of->kind)) {
         return;
     }
     const double clearance = linkage_radial_clearance(of) * UNITS_UM;
@@ -227,7 +227,7 @@ void run_tables_pins(const RunReport *report, const Style *style, Text *text)
     for (size_t joint = 0; linkage->is_spatial && joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (linkage->joints[joint].kind != JOINT_CLEARANCE ||
+            if (!joint_has_hole(linkage->joints[joint].kind) ||
                 !trajectory_feels_play(run, &linkage->joints[joint])) {
                 continue;
             }
@@ -444,7 +444,7 @@ void run_slides_blocks(const RunReport *report, const Style *style, Text *text)
     for (size_t joint = 0; joint < linkage->joint_count; joint++) {
         for (size_t i = 0; i < report->run_count; i++) {
             const Trajectory *run = report->runs[i];
-            if (linkage->joints[joint].kind != JOINT_GUIDE ||
+            if (!joint_has_guides(linkage->joints[joint].kind) ||
                 !trajectory_feels_play(run, &linkage->joints[joint])) {
                 continue;
             }

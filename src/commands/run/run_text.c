@@ -94,7 +94,7 @@ static void run_text_write_torque(const Linkage *linkage, Text *text)
         return;
     }
     const Joint *joint = &linkage->joints[linkage->torque.joint];
-    const bool is_force = joint->kind == JOINT_PRISMATIC;
+    const bool is_force = joint_has_position(joint->kind);
     const char *unit = is_force ? "N" : "N m";
     const Range values = range_of(table->values, table->count);
     text_append(text, "  drive       %s ", is_force ? "force" : "torque");
@@ -479,7 +479,7 @@ static void run_text_write_limits(const Joint *joint, Text *text)
     const bool is_turning = linkage_is_torsional(joint);
     const double scale = is_turning ? UNITS_DEG : UNITS_MM;
     const char *unit = is_turning ? "deg" : "mm";
-    if (joint->kind == JOINT_GEAR) {
+    if (joint_has_teeth(joint->kind)) {
         text_append(text, "%.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n",
                     joint->gear.teeth[0], joint->gear.teeth[1], joint->gear.radius_a * UNITS_MM,
                     joint->gear.radius_b * UNITS_MM);
@@ -503,19 +503,21 @@ static void run_text_write_limits(const Joint *joint, Text *text)
 static const char *play_word(const Joint *joint)
 {
     if (joint->limits.kind != LIMIT_NONE) {
-        return joint->kind == JOINT_GEAR              ? "gears"
+        return joint_has_teeth(joint->kind)           ? "gears"
                : joint->limits.kind == LIMIT_BACKLASH ? "backlash"
                                                       : "stops";
     }
-    switch (joint->kind) {
-    case JOINT_CLEARANCE:
-    case JOINT_GUIDE:
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
+    case JOINT_TOUCHES_GUIDES:
         return "play";
-    case JOINT_STOP:
+    case JOINT_TOUCHES_DISC:
         return "stop";
-    default:
-        return NULL;
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_TEETH:
+        break;
     }
+    return NULL;
 }
 
 // What play it is, of a joint that has some.
@@ -523,12 +525,21 @@ static void run_text_write_joint(const Joint *joint, bool is_spatial, Text *text
 {
     if (joint->limits.kind != LIMIT_NONE) {
         run_text_write_limits(joint, text);
-    } else if (joint->kind == JOINT_CLEARANCE) {
+        return;
+    }
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
         run_text_write_pin(joint, is_spatial, text);
-    } else if (joint->kind == JOINT_GUIDE) {
+        break;
+    case JOINT_TOUCHES_GUIDES:
         write_guide(joint, text);
-    } else {
+        break;
+    case JOINT_TOUCHES_DISC:
         run_text_write_stop(joint, text);
+        break;
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_TEETH: // at its limits alone
+        break;
     }
 }
 

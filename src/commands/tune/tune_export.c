@@ -344,7 +344,7 @@ static void tune_export_write_stop(const Joint *joint, const ForceLaw *law, OdeM
                                    "dJointSetHingeParam(hinge, dParamStopCFM, ", ")"};
     static const RowLines SLIDER = {"dJointSetSliderParam(slider, dParamStopERP, ",
                                     "dJointSetSliderParam(slider, dParamStopCFM, ", ")"};
-    const bool is_hinge = joint->kind == JOINT_REVOLUTE;
+    const bool is_hinge = joint_has_angle(joint->kind);
     const char *name = is_hinge ? "hinge" : "slider";
     text_append(text,
                 "// %s: between dParamLoStop and dParamHiStop of ODE's %s;\n"
@@ -362,7 +362,7 @@ static void tune_snippet_write_surface(const Joint *joint, const ForceLaw *law, 
                                        Text *text)
 {
     static const RowLines SURFACE = {"surface->soft_erp = ", "surface->soft_cfm = ", ""};
-    if (joint->kind == JOINT_GEAR) {
+    if (joint_has_teeth(joint->kind)) {
         text_append(
             text,
             "// %s: a contact of yours where the pitch circles touch, along their tangent;\n"
@@ -376,7 +376,7 @@ static void tune_snippet_write_surface(const Joint *joint, const ForceLaw *law, 
     text_append(text, "(\n    dSurfaceParameters *surface, double depth, double v0)\n{\n");
     write_elastic(law, false, text);
     tune_export_write_damping(law, false, text);
-    if (law->friction > 0.0 && joint->kind != JOINT_GEAR) {
+    if (law->friction > 0.0 && !joint_has_teeth(joint->kind)) {
         text_append(text,
                     "    surface->mode = dContactSoftERP | dContactSoftCFM | dContactApprox1;\n"
                     "    surface->mu = %s;\n",

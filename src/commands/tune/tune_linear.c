@@ -79,7 +79,7 @@ static const char *tune_limit_lacks(const Scenario *scenario, size_t number)
     }
     const bool is_beyond =
         (isfinite(range.low) && range.low < -M_PI) || (isfinite(range.high) && range.high > M_PI);
-    return joint->kind == JOINT_REVOLUTE && is_beyond
+    return joint_has_angle(joint->kind) && is_beyond
                ? "ODE's hinge has its stops within half a turn of where it starts"
                : NULL;
 }
@@ -159,11 +159,11 @@ static Vec2 tune_linear_axis_of(const Limited *limited, size_t number)
 
 static void write_axis(const Limited *limited, size_t number, Text *text)
 {
-    const Vec2 along = limited->joint->kind == JOINT_PRISMATIC
+    const Vec2 along = joint_has_position(limited->joint->kind)
                            ? tune_linear_axis_of(limited, number)
                            : (Vec2){0.0, 0.0};
     text_append(text, "%s %s %d", number_shortest(along.x).text, number_shortest(along.y).text,
-                limited->joint->kind == JOINT_PRISMATIC ? 0 : 1);
+                joint_has_position(limited->joint->kind) ? 0 : 1);
 }
 
 void tune_limit_sdf(const TuneReport *report, ErpCfm row, Text *text)
@@ -172,7 +172,7 @@ void tune_limit_sdf(const TuneReport *report, ErpCfm row, Text *text)
     text_append(text, "<joint name=\"");
     xml_append(limited.joint->name, text);
     text_append(text, "\" type=\"%s\">\n",
-                limited.joint->kind == JOINT_PRISMATIC ? "prismatic" : "revolute");
+                joint_has_position(limited.joint->kind) ? "prismatic" : "revolute");
     tune_linear_write_body(limited.linkage, "parent", limited.bodies[1], text);
     tune_linear_write_body(limited.linkage, "child", limited.bodies[0], text);
     text_append(text, "  <axis>\n    <xyz expressed_in=\"__model__\">");
@@ -211,7 +211,7 @@ void tune_limit_mjcf(const TuneReport *report, const double solref[2], double im
     text_append(text, "<joint name=\"");
     xml_append(limited.joint->name, text);
     text_append(text, "\" type=\"%s\" axis=\"",
-                limited.joint->kind == JOINT_PRISMATIC ? "slide" : "hinge");
+                joint_has_position(limited.joint->kind) ? "slide" : "hinge");
     write_axis(&limited, report->tune->contact.joint, text);
     text_append(text,
                 "\" limited=\"true\" margin=\"0\"\n"
@@ -304,7 +304,7 @@ static void find_pin(const Scenario *scenario, const Trajectory *truth, TuneCont
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const JointExtremes *joint = &truth->joints[i];
-        if (linkage->joints[i].kind != JOINT_CLEARANCE ||
+        if (!joint_has_hole(linkage->joints[i].kind) ||
             !(joint->penetration_max.value > contact->depth)) {
             continue;
         }
@@ -355,7 +355,7 @@ const char *tune_linear_lacks_case(const Scenario *scenario)
     size_t number = 0;
     bool has_pin = false;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
-        has_pin = has_pin || scenario->linkage.joints[i].kind == JOINT_CLEARANCE;
+        has_pin = has_pin || joint_has_hole(scenario->linkage.joints[i].kind);
     }
     if (!scenario_has_clearance(scenario)) {
         return "no joint of the case has play";

@@ -79,7 +79,7 @@ static void tune_program_make_ideal(LibraryWorld *world, int number, const Motio
     }
     linkage_turning(linkage, number, &turned, &against);
     dJointID made;
-    if (joint->kind == JOINT_PRISMATIC) {
+    if (joint_slides(joint->kind)) {
         const Vec2 along =
             vec2_scale(coordinate_sense(joint), joint_rows_along(linkage, motions, number));
         made = dJointCreateSlider(world->world, 0);
@@ -204,7 +204,7 @@ static void tune_program_push(dWorldID pushed, void *data)
         const double middle_s = ((double)world->steps + 0.5) * world->scenario->run.step;
         const double value = time_table_at(&torque->table, middle_s);
         const dJointID joint = world->joints[torque->joint];
-        if (linkage->joints[torque->joint].kind == JOINT_REVOLUTE) {
+        if (joint_has_angle(linkage->joints[torque->joint].kind)) {
             dJointAddHingeTorque(joint, value);
         } else {
             dJointAddSliderForce(joint, value);
@@ -363,7 +363,7 @@ static bool make_play(LibraryWorld *world, const Motion *motions, Err *err)
         accept(jp_world_create(world->world, &options, &world->play, &error), &error, err);
     for (int i = 0; i < (int)linkage->joint_count && is_made; i++) {
         const Joint *joint = &linkage->joints[i];
-        is_made = joint->kind == JOINT_CLEARANCE     ? make_pin(world, i, err)
+        is_made = joint_has_hole(joint->kind)        ? make_pin(world, i, err)
                   : joint->limits.kind != LIMIT_NONE ? make_limits(world, i, motions, err)
                                                      : true;
     }

@@ -187,7 +187,7 @@ static void tune_world_ideal(const Linkage *linkage, int number, Text *text)
     text_append(text, "    ");
     tune_world_joint(linkage, number, text);
     text_append(text, " = ");
-    if (joint->kind == JOINT_PRISMATIC) {
+    if (joint_slides(joint->kind)) {
         const Vec2 along = joint_rows_along(linkage, motions, number);
         write_call(linkage, "make_slider", bodies, vec2_scale(coordinate_sense(joint), along),
                    text);
@@ -354,7 +354,7 @@ static bool tune_world_write_limits(const Scenario *scenario, int number, Text *
     const Joint *joint = &linkage->joints[number];
     const bool is_backlash = joint->limits.kind == LIMIT_BACKLASH;
     const char *what = is_backlash ? "backlash" : "stops";
-    const char *unit = joint->kind == JOINT_REVOLUTE ? "rad" : "m";
+    const char *unit = joint_has_angle(joint->kind) ? "rad" : "m";
     Motion *motions = motions_of(linkage);
     const double start = coordinate_position(linkage, motions, number);
     free(motions);
@@ -379,7 +379,7 @@ static bool tune_world_write_limits(const Scenario *scenario, int number, Text *
 static bool tune_world_play(const Scenario *scenario, int joint, Text *text, Err *err)
 {
     const Joint *of = &scenario->linkage.joints[joint];
-    if (of->kind == JOINT_CLEARANCE) {
+    if (joint_has_hole(of->kind)) {
         return tune_world_write_pin(scenario, joint, text, err);
     }
     return of->limits.kind == LIMIT_NONE || tune_world_write_limits(scenario, joint, text, err);
@@ -524,7 +524,7 @@ static void tune_world_write_torque(const Linkage *linkage, Text *text)
     if (torque->table.count == 0) {
         return;
     }
-    const bool is_hinge = linkage->joints[torque->joint].kind == JOINT_REVOLUTE;
+    const bool is_hinge = joint_has_angle(linkage->joints[torque->joint].kind);
     text_append(text, "    %s(", is_hinge ? "dJointAddHingeTorque" : "dJointAddSliderForce");
     tune_world_joint(linkage, torque->joint, text);
     text_append(text, ", at(DRIVE, sizeof DRIVE / sizeof *DRIVE, middle));\n");
@@ -539,7 +539,7 @@ static void tune_world_push(const Linkage *linkage, Text *text)
         tune_world_write_table("DRIVE", speeds, "rad/s", text);
     }
     if (torques->count > 0) {
-        const bool is_hinge = linkage->joints[linkage->torque.joint].kind == JOINT_REVOLUTE;
+        const bool is_hinge = joint_has_angle(linkage->joints[linkage->torque.joint].kind);
         tune_world_write_table("DRIVE", torques, is_hinge ? "N m" : "N", text);
         text_append(text, "static double middle; // s, of the step under way\n");
     }
@@ -701,7 +701,7 @@ const char *tune_world_lacks(const Scenario *scenario)
         lacks = lacks_joint(scenario, &linkage->joints[i]);
     }
     for (size_t i = 0; i < linkage->torsion_count && lacks == NULL; i++) {
-        if (linkage->joints[linkage->torsions[i].joint].kind != JOINT_REVOLUTE) {
+        if (!joint_has_angle(linkage->joints[linkage->torsions[i].joint].kind)) {
             lacks = "the program has springs that turn the two sides of a hinge alone";
         }
     }
@@ -746,11 +746,11 @@ static void tune_world_write_names(const Linkage *linkage, Text *text)
     text_append(text, "%s", is_first ? "" : ";\n");
 }
 
-// Whether the program makes a joint of ODE of a kind.
-static bool makes(const Linkage *linkage, JointKind kind)
+// Whether the program makes a joint of ODE of one of some kinds.
+static bool makes(const Linkage *linkage, JointKinds kinds)
 {
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == kind && tune_world_is_ideal(linkage, i)) {
+        if (joint_is_among(linkage->joints[i].kind, kinds) && tune_world_is_ideal(linkage, i)) {
             return true;
         }
     }
@@ -809,8 +809,8 @@ static void write_functions(const Scenario *scenario, Text *text)
 {
     const Linkage *linkage = &scenario->linkage;
     text_append(text, "%s", MAKE_BODY);
-    text_append(text, "%s", makes(linkage, JOINT_REVOLUTE) ? MAKE_HINGE : "");
-    text_append(text, "%s", makes(linkage, JOINT_PRISMATIC) ? MAKE_SLIDER : "");
+    text_append(text, "%s", makes(linkage, JOINTS_THAT_PIVOT) ? MAKE_HINGE : "");
+    text_append(text, "%s", makes(linkage, JOINTS_THAT_SLIDE) ? MAKE_SLIDER : "");
     tune_world_push(linkage, text);
     text_append(text, "%s%s", CHECK, PRINT_ROW);
 }
@@ -934,7 +934,7 @@ static void write_loop(const Linkage *linkage, Text *text)
 static void write_state(const Linkage *linkage, int number, Text *text)
 {
     const Joint *joint = &linkage->joints[number];
-    const bool is_pin = joint->kind == JOINT_CLEARANCE;
+    const bool is_pin = joint_has_hole(joint->kind);
     const size_t play = tune_world_number(linkage, number);
     text_append(text, "    %s state_%zu;\n    check(%s(plays[%zu], &state_%zu, &error), &error);\n",
                 is_pin ? "JpPinState" : "JpJointState", play,
