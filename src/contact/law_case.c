@@ -73,7 +73,7 @@ double law_reference_tolerance(const Scenario *scenario)
 bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, Err *err)
 {
     const ContactOptions own = law_options(&scenario->contact, joint);
-    if (joint->kind != JOINT_CLEARANCE && own.stiffness == 0.0) {
+    if (!joint_has_hole(joint->kind) && own.stiffness == 0.0) {
         return err_set(err, ERR_CASE,
                        "joint '%s' needs a stiffness: the law %s is for a pin in its hole",
                        joint->name, OPTIONS_LAWS[own.law]);

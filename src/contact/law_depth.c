@@ -14,18 +14,16 @@ double law_touching_radius(const Joint *joint)
 {
     const Stop *stop = &joint->stop;
     const double other = stop->is_disc && stop->radius_a > 0.0 ? stop->radius_a : INFINITY;
-    switch (joint->kind) {
-    case JOINT_GUIDE:
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_GUIDES:
         return 0.5 * fmin(joint->guide.height, joint->guide.opening);
-    case JOINT_GEAR:
+    case JOINT_TOUCHES_TEETH:
         return fmin(fabs(joint->gear.radius_a), fabs(joint->gear.radius_b));
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
+    case JOINT_TOUCHES_NOTHING:
         return INFINITY; // at its limits
-    case JOINT_STOP:
+    case JOINT_TOUCHES_DISC:
         return fmin(stop->radius_b > 0.0 ? stop->radius_b : INFINITY, other);
-    case JOINT_CLEARANCE:
-    case JOINT_KIND_COUNT:
+    case JOINT_TOUCHES_HOLE:
         break;
     }
     return joint->clearance.pin_radius;
@@ -39,17 +37,15 @@ typedef struct Parts {
 
 static Parts parts_of(JointKind kind)
 {
-    switch (kind) {
-    case JOINT_CLEARANCE:
+    switch (joint_touches(kind)) {
+    case JOINT_TOUCHES_HOLE:
         return (Parts){"pin", "the wall of its hole"};
-    case JOINT_GUIDE:
+    case JOINT_TOUCHES_GUIDES:
         return (Parts){"block", "its guide"};
-    case JOINT_GEAR:
+    case JOINT_TOUCHES_TEETH:
         return (Parts){"second gear", "the first one"};
-    case JOINT_STOP:
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
-    case JOINT_KIND_COUNT:
+    case JOINT_TOUCHES_DISC:
+    case JOINT_TOUCHES_NOTHING:
         break;
     }
     return (Parts){"second body", "what stops it"};

@@ -36,7 +36,7 @@ PinSpace *pin_space_list(const Scenario *scenario, size_t *count, Err *err)
     *count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->kind != JOINT_CLEARANCE) {
+        if (!joint_has_hole(joint->kind)) {
             continue;
         }
         const int last = joint->space.axial_clearance > 0.0 ? PIN_SPACE_PLACES : PIN_SPACE_ENDS;
@@ -55,7 +55,7 @@ double pin_space_stored(const Scenario *scenario, size_t joint, const SpaceJoint
     const Joint *data = &scenario->linkage.joints[joint];
     ForceLaw law;
     Err unused;
-    if (data->kind != JOINT_CLEARANCE || scenario->contact.model != CONTACT_IMPACT ||
+    if (!joint_has_hole(data->kind) || scenario->contact.model != CONTACT_IMPACT ||
         !law_of_joint(scenario, data, &law, &unused)) {
         return 0.0;
     }

@@ -53,16 +53,13 @@ static Touch place_stop(const Joint *joint, int number)
 // What the ends of a limited coordinate are; of the kinds that have none a turn's.
 static TouchShape shape_of_end(JointKind kind)
 {
-    switch (kind) {
-    case JOINT_PRISMATIC:
+    switch (joint_coordinate(kind)) {
+    case JOINT_COORDINATE_POSITION:
         return TOUCH_LINE;
-    case JOINT_GEAR:
+    case JOINT_COORDINATE_TEETH:
         return TOUCH_TEETH;
-    case JOINT_REVOLUTE:
-    case JOINT_CLEARANCE:
-    case JOINT_GUIDE:
-    case JOINT_STOP:
-    case JOINT_KIND_COUNT:
+    case JOINT_COORDINATE_ANGLE:
+    case JOINT_COORDINATE_NONE:
         break;
     }
     return TOUCH_TURN;
@@ -106,8 +103,8 @@ size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
     if (joint->limits.kind != LIMIT_NONE) {
         return place_ends(joint, number, places);
     }
-    switch (joint->kind) {
-    case JOINT_CLEARANCE:
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
         places[0] = (Touch){
             .joint = number,
             .shape = TOUCH_HOLE,
@@ -118,16 +115,14 @@ size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
             .radius_b = joint->clearance.pin_radius,
         };
         return 1;
-    case JOINT_GUIDE:
+    case JOINT_TOUCHES_GUIDES:
         place_corners(joint, number, places);
         return TOUCH_CORNERS;
-    case JOINT_STOP:
+    case JOINT_TOUCHES_DISC:
         places[0] = place_stop(joint, number);
         return 1;
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
-    case JOINT_GEAR:
-    case JOINT_KIND_COUNT:
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_TEETH:
         break;
     }
     return 0;

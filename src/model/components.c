@@ -63,7 +63,7 @@ static void renumber_gears(const int *own_body, const int *own_joint, Linkage *l
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Gear *gear = &linkage->joints[i].gear;
-        if (linkage->joints[i].kind == JOINT_GEAR) {
+        if (joint_has_carrier(linkage->joints[i].kind)) {
             gear->carrier = renumber(own_body, gear->carrier);
             gear->pivots[0] = own_joint[gear->pivots[0]];
             gear->pivots[1] = own_joint[gear->pivots[1]];

@@ -51,13 +51,18 @@ double coordinate_position(const Linkage *linkage, const Motion *motions, int jo
     const Joint *of = &linkage->joints[joint];
     const double a = angle_of(motions, of->body_a);
     const double b = angle_of(motions, of->body_b);
-    if (of->kind == JOINT_PRISMATIC) {
+    switch (joint_coordinate(of->kind)) {
+    case JOINT_COORDINATE_POSITION: {
         const Vec2 gap = linkage_joint_gap(linkage, motions, joint).position;
         return vec2_dot(joint_rows_along(linkage, motions, joint), gap);
     }
-    if (of->kind == JOINT_GEAR) {
+    case JOINT_COORDINATE_TEETH: {
         const double carrier = angle_of(motions, of->gear.carrier);
         return -(of->gear.radius_a * (a - carrier) + of->gear.radius_b * (b - carrier));
+    }
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_ANGLE:
+        break;
     }
     return coordinate_sense(of) * (b - a);
 }
@@ -67,14 +72,19 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
     const Joint *of = &linkage->joints[joint];
     const double a = omega_of(motions, of->body_a);
     const double b = omega_of(motions, of->body_b);
-    if (of->kind == JOINT_PRISMATIC) {
+    switch (joint_coordinate(of->kind)) {
+    case JOINT_COORDINATE_POSITION: {
         const JointGap gap = linkage_joint_gap(linkage, motions, joint);
         const Vec2 along = joint_rows_along(linkage, motions, joint);
         return vec2_dot(along, gap.velocity) + a * vec2_dot(vec2_perp(along), gap.position);
     }
-    if (of->kind == JOINT_GEAR) {
+    case JOINT_COORDINATE_TEETH: {
         const double carrier = omega_of(motions, of->gear.carrier);
         return -(of->gear.radius_a * (a - carrier) + of->gear.radius_b * (b - carrier));
+    }
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_ANGLE:
+        break;
     }
     return coordinate_sense(of) * (b - a);
 }
@@ -102,15 +112,22 @@ static void push_at(const Linkage *linkage, const Motion *motions, int joint, Ve
 void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, JointRow *row)
 {
     const Joint *of = &linkage->joints[joint];
-    *row = (JointRow){.turn = {-coordinate_sense(of), coordinate_sense(of)}};
-    if (of->kind == JOINT_PRISMATIC) {
+    switch (joint_coordinate(of->kind)) {
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_ANGLE:
+        *row = (JointRow){.turn = {-coordinate_sense(of), coordinate_sense(of)}};
+        break;
+    case JOINT_COORDINATE_POSITION:
         push_at(linkage, motions, joint, joint_rows_along(linkage, motions, joint),
                 linkage_point(motions, of->body_b, of->anchor_b), row);
-    } else if (of->kind == JOINT_GEAR) {
+        break;
+    case JOINT_COORDINATE_TEETH: {
         const Vec2 along = coordinate_along_teeth(linkage, motions, joint);
         const Vec2 centre = linkage_point(motions, of->body_a, of->anchor_a);
         // from centre a to centre b is the direction turned back
         const Vec2 outward = vec2_scale(-of->gear.radius_a, vec2_perp(along));
         push_at(linkage, motions, joint, along, vec2_add(centre, outward), row);
+        break;
+    }
     }
 }

@@ -26,7 +26,7 @@ static double size_of(Vec3 v)
 
 static bool is_tilting(const Linkage *linkage, const Joint *joint)
 {
-    return joint->kind == JOINT_GUIDE || (linkage->is_spatial && joint->kind == JOINT_CLEARANCE);
+    return joint_has_guides(joint->kind) || (linkage->is_spatial && joint_has_hole(joint->kind));
 }
 
 // The reach of the body that a joint turns.
@@ -228,7 +228,7 @@ void distance_name(const Linkage *linkage, const DistanceRate *rate, char name[D
                        : rate->kind == DISTANCE_MOVING    ? "velocity of"
                        : rate->kind == DISTANCE_TILT      ? "tilt rate in"
                        : joint->limits.kind != LIMIT_NONE ? "coordinate rate of"
-                       : joint->kind == JOINT_CLEARANCE   ? "pin velocity in"
+                       : joint_has_hole(joint->kind)      ? "pin velocity in"
                                                           : "relative velocity in";
     snprintf(name, DISTANCE_NAME_SIZE, "%s %s", what, of);
 }

@@ -151,8 +151,7 @@ static JointLine joint_line(const Linkage *linkage, int number, const Motion *mo
 
 bool forces_is_along_line(const Linkage *linkage, int joint)
 {
-    const JointKind kind = linkage->joints[joint].kind;
-    return kind == JOINT_PRISMATIC || kind == JOINT_GUIDE;
+    return joint_slides(linkage->joints[joint].kind);
 }
 
 JointTurn forces_coordinate(const Linkage *linkage, int joint, const Motion *motions)

@@ -6,16 +6,14 @@
 
 double linkage_radial_clearance(const Joint *joint)
 {
-    switch (joint->kind) {
-    case JOINT_CLEARANCE:
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
         return joint->clearance.hole_radius - joint->clearance.pin_radius;
-    case JOINT_GUIDE:
+    case JOINT_TOUCHES_GUIDES:
         return 0.5 * fabs(joint->guide.opening - joint->guide.height);
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
-    case JOINT_STOP:
-    case JOINT_GEAR:
-    case JOINT_KIND_COUNT:
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_DISC:
+    case JOINT_TOUCHES_TEETH:
         break;
     }
     return 0.0;
@@ -122,11 +120,15 @@ double linkage_period(const Linkage *linkage)
 // How far a body goes beyond its anchor in a joint that slides or stops, m.
 static double size_beyond(const Joint *joint, int side)
 {
-    if (joint->kind == JOINT_GUIDE && side == 1) {
-        return 0.5 * hypot(joint->guide.height, joint->guide.length);
-    }
-    if (joint->kind == JOINT_STOP) {
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_GUIDES:
+        return side == 1 ? 0.5 * hypot(joint->guide.height, joint->guide.length) : 0.0;
+    case JOINT_TOUCHES_DISC:
         return side == 0 ? joint->stop.radius_a : joint->stop.radius_b;
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_HOLE:
+    case JOINT_TOUCHES_TEETH:
+        break;
     }
     return 0.0;
 }

@@ -90,7 +90,7 @@ static bool check_limits(const Linkage *linkage, const Joint *joint, Err *err)
     if (limits->kind == LIMIT_NONE) {
         return true;
     }
-    if (linkage->is_spatial && joint->kind != JOINT_REVOLUTE) {
+    if (linkage->is_spatial && !joint_is_spatial(joint->kind)) {
         return err_set(err, ERR_CASE,
                        "joint '%s': backlash and stops of sliders, and gears, are for the plane",
                        joint->name);
@@ -103,7 +103,7 @@ static bool check_limits(const Linkage *linkage, const Joint *joint, Err *err)
                        "first no higher than the second",
                        joint->name, low, high);
     }
-    return joint->contact.stiffness > 0.0 || joint->kind != JOINT_REVOLUTE ||
+    return joint->contact.stiffness > 0.0 || !joint_has_angle(joint->kind) ||
            err_set(err, ERR_CASE, "joint '%s': its limits need a torsional stiffness", joint->name);
 }
 
@@ -113,7 +113,7 @@ static bool check_gear(const Linkage *linkage, const Joint *joint, Err *err)
     for (int i = 0; i < 2; i++) {
         const int pivot = gear->pivots[i];
         if (pivot < 0 || pivot >= (int)linkage->joint_count ||
-            linkage->joints[pivot].kind != JOINT_REVOLUTE) {
+            !joint_has_angle(linkage->joints[pivot].kind)) {
             return err_set(err, ERR_CASE, "joint '%s': its gears need ideal pivots", joint->name);
         }
     }
@@ -137,25 +137,23 @@ static bool check_joint(const Linkage *linkage, size_t number, Err *err)
     if (!isfinite(joint->direction + joint->held_angle)) {
         return err_set(err, ERR_CASE, "joint '%s': its direction is no number", joint->name);
     }
-    if (linkage->is_spatial && joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+    if (linkage->is_spatial && !joint_is_spatial(joint->kind)) {
         return err_set(err, ERR_CASE, "joint '%s': guides, stops and gears are for the plane",
                        joint->name);
     }
     if (!check_limits(linkage, joint, err)) {
         return false;
     }
-    switch (joint->kind) {
-    case JOINT_CLEARANCE:
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
         return check_pin(joint, err) && check_own_contact(joint, err);
-    case JOINT_GUIDE:
+    case JOINT_TOUCHES_GUIDES:
         return check_guide(joint, err) && check_own_contact(joint, err);
-    case JOINT_STOP:
+    case JOINT_TOUCHES_DISC:
         return check_stop(joint, err) && check_own_contact(joint, err);
-    case JOINT_GEAR:
+    case JOINT_TOUCHES_TEETH:
         return check_gear(linkage, joint, err) && check_own_contact(joint, err);
-    case JOINT_REVOLUTE:
-    case JOINT_PRISMATIC:
-    case JOINT_KIND_COUNT:
+    case JOINT_TOUCHES_NOTHING:
         break;
     }
     return joint->limits.kind == LIMIT_NONE || check_own_contact(joint, err);
@@ -168,7 +166,7 @@ static bool check_driver(const Linkage *linkage, size_t number, Err *err)
         return err_set(err, ERR_CASE, "the driver's joint does not exist");
     }
     const Joint *joint = &linkage->joints[driver->joint];
-    if (joint->kind != JOINT_REVOLUTE || joint->body_a != LINKAGE_GROUND) {
+    if (!joint_has_angle(joint->kind) || joint->body_a != LINKAGE_GROUND) {
         return err_set(err, ERR_CASE,
                        "the driver turns a body about joint '%s', which must be an ideal joint "
                        "with the ground",

@@ -46,7 +46,7 @@ static Linkage idealised(const Linkage *linkage, LockJoints joints)
         }
         Joint *kept = &ideal.joints[ideal.joint_count++];
         *kept = *joint;
-        kept->kind = joint_rows_is_angle(joint->kind, 1) ? JOINT_PRISMATIC : JOINT_REVOLUTE;
+        kept->kind = joint_without_play(joint->kind);
         kept->clearance = (Clearance){0};
     }
     return ideal;

@@ -225,7 +225,7 @@ void response_openings(const Response *response, const Motion *motions, double *
     const Linkage *linkage = response->linkage;
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
         const Joint *of = &linkage->joints[response->joint_of[row]];
-        if (of->kind == JOINT_PRISMATIC) {
+        if (joint_slides(of->kind)) {
             JointRows joint;
             joint_rows_find(linkage, motions, response->joint_of[row], &joint);
             memcpy(positions + row, joint.position, sizeof joint.position);

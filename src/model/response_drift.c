@@ -20,7 +20,7 @@
 static bool is_point(const Response *response, size_t row)
 {
     if (row < response->ideal_rows) {
-        return response->linkage->joints[response->joint_of[row]].kind != JOINT_PRISMATIC;
+        return !joint_slides(response->linkage->joints[response->joint_of[row]].kind);
     }
     const ResponsePlace *place = &response->places[response->place_of[row]];
     return !place->is_line && place->sign == 0.0;

@@ -77,7 +77,7 @@ void response_init(const Linkage *linkage, bool with_turns, Response *response)
     size_t count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->kind == JOINT_CLEARANCE) {
+        if (joint_has_hole(joint->kind)) {
             places[count++] = (ResponsePlace){
                 .joint = (int)i,
                 .has_turns = with_turns,

@@ -114,11 +114,16 @@ static void place_turn(Response *response, size_t row, int end)
 void response_rows_place_ideal(Response *response, size_t row, const Motion *motions)
 {
     const Joint *joint = &response->linkage->joints[response->joint_of[row]];
-    if (joint->kind == JOINT_PRISMATIC) {
+    switch (joint_held_by(joint->kind)) {
+    case JOINT_HOLDS_LINE:
         place_prismatic(response, row, response->joint_of[row], motions);
-        return;
+        break;
+    case JOINT_HOLDS_POINT:
+    case JOINT_HOLDS_NOTHING: // has no ideal rows
+        place_point(response, row, (JointEnd[]){linkage_end(joint, 0), linkage_end(joint, 1)},
+                    motions);
+        break;
     }
-    place_point(response, row, (JointEnd[]){linkage_end(joint, 0), linkage_end(joint, 1)}, motions);
 }
 
 void response_rows_place_play(Response *response, size_t number, const Motion *motions)
@@ -227,12 +232,19 @@ static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
     const Joint *joint = &linkage->joints[place->joint];
     const double a = free_turning(linkage, motions, joint->body_a, loads);
     const double b = free_turning(linkage, motions, joint->body_b, loads);
-    gamma[0] = place->sign * coordinate_sense(joint) * (b - a);
     gamma[1] = 0.0;
-    if (joint->kind == JOINT_GEAR) {
+    switch (joint_coordinate(joint->kind)) {
+    case JOINT_COORDINATE_TEETH: {
         const Vec2 along = coordinate_along_teeth(linkage, motions, place->joint);
         gamma[0] = place->sign * (vec2_dot(along, relative) - joint->gear.radius_a * a -
                                   joint->gear.radius_b * b);
+        break;
+    }
+    case JOINT_COORDINATE_ANGLE:
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_POSITION: // the places of which are lines
+        gamma[0] = place->sign * coordinate_sense(joint) * (b - a);
+        break;
     }
 }
 
@@ -271,7 +283,7 @@ void response_rows_loose(const Response *response, const Motion *motions, Vec2 g
     for (; row < response->ideal_rows; row += 2) {
         const int number = response->joint_of[row];
         const Joint *joint = &linkage->joints[number];
-        if (joint->kind == JOINT_PRISMATIC) {
+        if (joint_slides(joint->kind)) {
             prismatic_free(linkage, number, motions, gravity, loads, gamma + row);
             continue;
         }

@@ -39,7 +39,7 @@ static double pushed_speed(const Linkage *linkage, double reach)
     }
     // a force works along a line
     const Torque *torque = &linkage->torque;
-    if (torque->table.count > 0 && linkage->joints[torque->joint].kind == JOINT_PRISMATIC) {
+    if (torque->table.count > 0 && joint_has_position(linkage->joints[torque->joint].kind)) {
         largest *= reach;
     }
     for (size_t i = 0; i < linkage->load_count; i++) {

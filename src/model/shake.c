@@ -58,7 +58,7 @@ static void shake_body(Body *body, uint64_t *seed)
 // that counts.
 static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
 {
-    if (joint->kind != JOINT_REVOLUTE && joint->kind != JOINT_CLEARANCE) {
+    if (!joint_pivots(joint->kind)) {
         shake(&joint->direction, seed);
         shake(&joint->held_angle, seed);
         shake(&joint->guide.opening, seed);

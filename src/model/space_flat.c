@@ -78,7 +78,7 @@ static bool is_even_joint(const Linkage *linkage, const Joint *joint, const bool
         }
     }
     // the two ends of a pin, and a collar; those of an angle have turns to count
-    return joint->kind != JOINT_CLEARANCE ||
+    return !joint_has_hole(joint->kind) ||
            (are_same(&joint->contacts[0], &joint->contacts[1]) && !joint->contacts[2].is_touching);
 }
 
@@ -151,7 +151,7 @@ SpaceJointState space_flat_joint(const Joint *joint, const JointState *planar)
         .force_on_b = lifted(planar->force_on_b, 0.0),
         .offset = lifted(planar->eccentricity, 0.0),
     };
-    for (int end = 0; end < 2 && joint->kind == JOINT_CLEARANCE; end++) {
+    for (int end = 0; end < 2 && joint_has_hole(joint->kind); end++) {
         state.ends[end] = state.offset;
         state.end_gaps[end] = planar->gap;
         state.end_forces[end] = 0.5 * planar->force;

@@ -50,7 +50,7 @@ static void keep_joints(const Linkage *linkage, bool with_play, SpaceMotion *mot
     bool *is_asked = zeroed(linkage->joint_count, sizeof *is_asked);
     SpaceResponse response = {.linkage = NULL};
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const bool has_play = linkage->joints[i].kind == JOINT_CLEARANCE;
+        const bool has_play = joint_has_hole(linkage->joints[i].kind);
         is_asked[i] = has_play ? with_play : linkage_is_ideal(linkage, i);
     }
     space_response_init_joints(linkage, motions, is_asked, choose, &response);

@@ -335,7 +335,7 @@ size_t space_rows_mobility(const Linkage *linkage, const SpaceMotion *motions, b
     bool *is_asked = zeroed(linkage->joint_count, sizeof *is_asked);
     unsigned *chosen = zeroed(linkage->joint_count, sizeof *chosen);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        is_asked[i] = !ideal_only || linkage->joints[i].kind == JOINT_REVOLUTE;
+        is_asked[i] = !ideal_only || joint_is_ideal(linkage->joints[i].kind);
     }
     const size_t rows = space_rows_choose(&undriven, motions, is_asked, chosen);
     free(chosen);

@@ -82,7 +82,7 @@ static void turn_back_joint(const Linkage *linkage, int number, const double *ba
     const double a = joint->body_a == LINKAGE_GROUND ? 0.0 : back_rad[joint->body_a];
     const double b = joint->body_b == LINKAGE_GROUND ? 0.0 : back_rad[joint->body_b];
     joint->held_angle -= b - a;
-    if (joint->limits.kind == LIMIT_NONE || joint->kind == JOINT_PRISMATIC) {
+    if (joint->limits.kind == LIMIT_NONE || joint_has_position(joint->kind)) {
         return;
     }
     const double before = coordinate_position(linkage, motions, number);
@@ -142,11 +142,9 @@ static double start_in_plane(const RunState *state, Linkage *linkage)
 // Where pins and blocks stand in their play, to more digits than the bodies' positions have.
 static void start_in_play(const JointState *state, Joint *joint)
 {
-    if (joint->kind == JOINT_CLEARANCE) {
-        joint->clearance.start = state->eccentricity;
-    } else if (joint->kind == JOINT_GUIDE) {
-        joint->guide.start = (Vec2){state->eccentricity.y, state->tilt};
-    }
+    joint_rows_set_start(joint, joint_slides(joint->kind)
+                                    ? (Vec2){state->eccentricity.y, state->tilt}
+                                    : state->eccentricity);
 }
 
 // What time and the crank's angle, which begin anew, count more for the loads.
