@@ -16,7 +16,7 @@ double joint_moment(const Linkage *linkage, const Motion *motions, size_t joint,
                     const JointState *state)
 {
     const JointKind kind = linkage->joints[joint].kind;
-    if (kind != JOINT_CLEARANCE && kind != JOINT_STOP) {
+    if (!joint_has_hole(kind) && !joint_has_disc(kind)) {
         return state->moment_on_b;
     }
     Touch touches[TOUCH_CORNERS];
@@ -34,7 +34,7 @@ bool drive_torque_exists(const Linkage *linkage)
         linkage->torque.table.count > 0 && !forces_is_along_line(linkage, linkage->torque.joint);
     return !linkage->is_spatial &&
            (is_pushed || (linkage->driver.is_present &&
-                          linkage->joints[linkage->driver.joint].kind == JOINT_REVOLUTE));
+                          joint_has_angle(linkage->joints[linkage->driver.joint].kind)));
 }
 
 // The moment of springs and dampers on a body about a point, N m.
@@ -57,7 +57,7 @@ static double moment_of_loads(const Linkage *linkage, const Motion *motions, dou
 // through the pin's centre.
 static bool has_moment(const Scenario *scenario, const Joint *joint)
 {
-    return joint->kind != JOINT_CLEARANCE || scenario_friction(scenario, joint) > 0.0;
+    return !joint_has_hole(joint->kind) || scenario_friction(scenario, joint) > 0.0;
 }
 
 double drive_torque_of(const Scenario *scenario, const Motion *motions, const JointState *states,

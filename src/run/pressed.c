@@ -19,12 +19,20 @@ static void press_joint(const Joint *joint, const Motion *motions, Vec2 reaction
     if (!(size > 0.0)) {
         return;
     }
-    if (joint->kind == JOINT_CLEARANCE) {
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
         pressed->clearance.start = vec2_scale(-clearance / size, reaction);
-    } else if (joint->kind == JOINT_GUIDE) {
+        break;
+    case JOINT_TOUCHES_GUIDES: {
         const double angle = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].angle;
         const Vec2 across = vec2_perp(vec2_rotate(angle + joint->direction, (Vec2){1.0, 0.0}));
         pressed->guide.start = (Vec2){-copysign(clearance, vec2_dot(reaction, across)), 0.0};
+        break;
+    }
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_DISC:
+    case JOINT_TOUCHES_TEETH:
+        break;
     }
 }
 

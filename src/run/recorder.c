@@ -367,7 +367,7 @@ static inline void raise_joint(JointExtremes *extremes, bool is_first, const Joi
 {
     raise_to(&extremes->force_max, is_first, top->force, top->force_s);
     raise_to(&extremes->penetration_max, is_first, top->depth, top->depth_s);
-    if (joint->kind == JOINT_GUIDE) {
+    if (joint_has_guides(joint->kind)) {
         raise_to(&extremes->tilt_max, is_first, fabs(tilt), time_s);
     }
 }

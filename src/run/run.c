@@ -321,7 +321,7 @@ static double stored_energy(const Scenario *scenario, const Sample *sample)
         Touch places[TOUCH_CORNERS];
         const size_t count = touch_places(joint, (int)i, places);
         for (size_t k = 0; k < count; k++) {
-            const double gap = joint->kind == JOINT_CLEARANCE
+            const double gap = joint_has_hole(joint->kind)
                                    ? sample->joints[i].gap
                                    : touch_pose(&scenario->linkage, &places[k], sample->bodies).gap;
             sum += gap < 0.0 ? force_law_energy(&law, -gap) : 0.0;

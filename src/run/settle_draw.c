@@ -82,7 +82,7 @@ static double next_coordinate(Draw *draw)
 // How many coordinates a joint takes.
 static size_t joint_coordinates(const Joint *joint)
 {
-    const bool is_placed = joint->kind == JOINT_CLEARANCE || joint->kind == JOINT_GUIDE;
+    const bool is_placed = joint_is_loose(joint->kind);
     return is_placed ? 2 : linkage_has_play(joint) ? 1 : 0;
 }
 
@@ -101,7 +101,7 @@ static void place_in_play(Draw *draw, Joint *joint)
     const double first = next_coordinate(draw);
     const double second = next_coordinate(draw);
     const double play = INSIDE * linkage_radial_clearance(joint);
-    if (joint->kind == JOINT_CLEARANCE) {
+    if (joint_has_hole(joint->kind)) {
         const double distance = play * sqrt(first);
         const double angle = 2.0 * M_PI * second;
         joint->clearance.start = (Vec2){distance * cos(angle), distance * sin(angle)};
@@ -127,7 +127,7 @@ static double gap_at(const Draw *draw, int joint)
 static double gap_width(const Draw *draw, int number)
 {
     const Joint *joint = &draw->linkage->joints[number];
-    if (joint->kind != JOINT_STOP) {
+    if (!joint_has_disc(joint->kind)) {
         const double width = coordinate_high(joint) - coordinate_low(joint);
         if (isfinite(width)) {
             return width;
@@ -261,7 +261,7 @@ static double relative_rate(const Linkage *linkage, const Motion *changed, int n
         return fabs(coordinate_rate(linkage, changed, number));
     }
     const double moving = vec2_length(linkage_joint_gap(linkage, changed, number).velocity);
-    if (joint->kind != JOINT_GUIDE) {
+    if (!joint_has_guides(joint->kind)) {
         return moving;
     }
     const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : changed[joint->body_a].omega;

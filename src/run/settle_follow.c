@@ -25,7 +25,7 @@ static bool can_follow(const Scenario *scenario, const Scenario *neighbour)
                own->body_count == other->body_count && own->joint_count == other->joint_count;
     for (size_t i = 0; can && i < own->joint_count; i++) {
         can = own->joints[i].kind == other->joints[i].kind &&
-              own->joints[i].limits.kind == LIMIT_NONE && own->joints[i].kind != JOINT_GEAR;
+              own->joints[i].limits.kind == LIMIT_NONE && !joint_has_teeth(own->joints[i].kind);
     }
     return can;
 }
@@ -46,15 +46,24 @@ static void follow_joint(const Joint *from, Joint *to)
     const double play = linkage_radial_clearance(from);
     const double own_play = linkage_radial_clearance(to);
     memcpy(to->contacts, from->contacts, sizeof to->contacts);
-    if (to->kind == JOINT_CLEARANCE) {
+    switch (joint_touches(to->kind)) {
+    case JOINT_TOUCHES_HOLE: {
         const Vec2 at = from->clearance.start;
         const double distance = vec2_length(at);
         to->clearance.start =
             distance > 0.0 ? vec2_scale(in_other_play(distance, play, own_play) / distance, at)
                            : at;
-    } else if (to->kind == JOINT_GUIDE) {
+        break;
+    }
+    case JOINT_TOUCHES_GUIDES: {
         const Vec2 at = from->guide.start;
         to->guide.start = (Vec2){copysign(in_other_play(fabs(at.x), play, own_play), at.x), at.y};
+        break;
+    }
+    case JOINT_TOUCHES_NOTHING:
+    case JOINT_TOUCHES_DISC:
+    case JOINT_TOUCHES_TEETH:
+        break;
     }
 }
 

@@ -20,6 +20,7 @@
 #include "base/eigen.h"
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "model/joint_rows.h"
 #include "model/kinematics.h"
 #include "model/nearest.h"
 #include "run/settle_parts.h"
@@ -255,13 +256,10 @@ static void move_play(const Linkage *from, const Motion *motions, const Motion *
 {
     for (size_t i = 0; i < to->joint_count; i++) {
         Joint *joint = &to->joints[i];
-        Vec2 *start = joint->kind == JOINT_CLEARANCE ? &joint->clearance.start
-                      : joint->kind == JOINT_GUIDE   ? &joint->guide.start
-                                                     : NULL;
-        if (start != NULL) {
+        if (joint_is_loose(joint->kind)) {
             const Vec2 by = vec2_sub(kinematics_opening(from, moved, (int)i),
                                      kinematics_opening(from, motions, (int)i));
-            *start = vec2_add(*start, by);
+            joint_rows_set_start(joint, vec2_add(joint_rows_start(joint), by));
         }
     }
 }
@@ -363,8 +361,8 @@ static void find_sizes(MonodromyRuns *runs)
         }
         if (reach->slowest > 0.0) {
             const Joint *joint = &linkage->joints[i];
-            const bool is_angle = joint->kind == JOINT_REVOLUTE && joint->limits.kind != LIMIT_NONE;
-            const double arm = is_angle ? linkage_reach(linkage, joint->body_b) : 1.0;
+            const double arm =
+                linkage_is_torsional(joint) ? linkage_reach(linkage, joint->body_b) : 1.0;
             slowest = fmin(slowest, arm * reach->slowest);
         }
         if (reach->approach > 0.0 && depth > 0.0) {
