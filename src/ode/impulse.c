@@ -222,7 +222,7 @@ void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
         const int joint = kernel->contacts[i].joint;
         states[joint][place] = kernel->contacts[i].state;
         if (impulse->view.is_flat &&
-            impulse->view.scenario->linkage.joints[joint].kind == JOINT_CLEARANCE) {
+            joint_has_hole(impulse->view.scenario->linkage.joints[joint].kind)) {
             states[joint][1] = states[joint][0];
         }
     }

@@ -487,7 +487,7 @@ void impulse_islands_next(ImpulseIslands *islands, ImpulsePart *part)
 // A pin has its rows along x and y, wherever its bodies are.
 static bool impulse_islands_is_pin(const Joint *joint)
 {
-    return joint->kind == JOINT_CLEARANCE && joint->limits.kind == LIMIT_NONE;
+    return joint_has_hole(joint->kind) && joint->limits.kind == LIMIT_NONE;
 }
 
 // Adds what an acceleration of a body comes from: the places that press on its group, and where

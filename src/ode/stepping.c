@@ -100,7 +100,7 @@ void stepping_offsets(const Linkage *linkage, const Motion *motions, int body, V
 {
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        const bool is_elsewhere = joint->kind == JOINT_PRISMATIC && joint->body_a == body;
+        const bool is_elsewhere = joint_has_position(joint->kind) && joint->body_a == body;
         offsets[i] =
             is_elsewhere ? linkage_joint_gap(linkage, motions, i).position : (Vec2){0.0, 0.0};
     }
@@ -204,11 +204,21 @@ void stepping_observe_coordinate(const Linkage *linkage, int joint, const Motion
                                  JointState *state)
 {
     const Joint *data = &linkage->joints[joint];
-    if (data->kind == JOINT_GEAR) {
+    if (data->limits.kind == LIMIT_NONE) {
+        return;
+    }
+    switch (joint_coordinate(data->kind)) {
+    case JOINT_COORDINATE_TEETH: {
         const double position = coordinate_position(linkage, motions, joint);
         state->eccentricity = (Vec2){position - data->limits.middle, 0.0};
-    } else if (data->kind == JOINT_REVOLUTE && data->limits.kind != LIMIT_NONE) {
+        break;
+    }
+    case JOINT_COORDINATE_ANGLE:
         state->tilt = coordinate_position(linkage, motions, joint);
+        break;
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_POSITION: // stepping_observe_line has it
+        break;
     }
 }
 
@@ -241,11 +251,11 @@ void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample
     const bool is_ideal = linkage_kind_is_ideal(data->kind) && !is_limited;
     JointState *state = &sample->joints[joint];
     state->eccentricity = vec2_sub(pin, hole);
-    if (data->kind == JOINT_PRISMATIC || data->kind == JOINT_GUIDE) {
+    if (joint_slides(data->kind)) {
         stepping_observe_line(linkage, (int)joint, sample->bodies, state);
     }
     stepping_observe_coordinate(linkage, (int)joint, sample->bodies, state);
-    if (data->kind == JOINT_GUIDE || data->kind == JOINT_STOP || is_limited) {
+    if (joint_has_guides(data->kind) || joint_has_disc(data->kind) || is_limited) {
         state->gap = smallest_gap(linkage, (int)joint, sample->bodies);
     } else {
         state->gap =

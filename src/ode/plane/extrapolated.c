@@ -57,7 +57,7 @@ static void set_force(const Linkage *linkage, const Motion *motions, int number,
 {
     joint->force_on_b = (Vec2){lambda[0], lambda[1]};
     joint->moment_on_b = 0.0;
-    if (linkage->joints[number].kind == JOINT_PRISMATIC) {
+    if (joint_slides(linkage->joints[number].kind)) {
         const Vec2 across = vec2_perp(joint_rows_along(linkage, motions, number));
         joint->force_on_b = vec2_scale(lambda[0], across);
         joint->moment_on_b = lambda[1];

@@ -146,7 +146,7 @@ static void find_some_accelerations(const ImpulseStep *step, const ImpulseScope 
 static JointState place_on_line(const Linkage *linkage, const Motion *motions, int joint)
 {
     JointState state = {.gap = INFINITY};
-    if (linkage->joints[joint].kind == JOINT_GUIDE) {
+    if (joint_has_guides(linkage->joints[joint].kind)) {
         stepping_observe_line(linkage, joint, motions, &state);
     } else {
         state.eccentricity = linkage_joint_gap(linkage, motions, joint).position;
@@ -198,7 +198,7 @@ static void add_line(const Linkage *linkage, const Touch *place, const KernelPos
     state->force_on_b = vec2_add(state->force_on_b, force);
     state->force += vec2_length(force);
     state->is_touching = state->is_touching || pose->is_touching;
-    if (joint->kind == JOINT_GUIDE) {
+    if (joint_has_guides(joint->kind)) {
         const Vec2 arm = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
                                   linkage_point(motions, joint->body_b, joint->anchor_b));
         state->moment_on_b += vec2_cross(arm, force);
@@ -348,7 +348,7 @@ static void find_joints(const ImpulseStep *step, const ImpulseScope *scope, Impu
     find_ideal(step, scope, sums, motions, joints);
     for (size_t n = 0; step->has_coordinates && n < scope->joint_count; n++) {
         const size_t i = scope->joints[n];
-        if (linkage->joints[i].kind == JOINT_PRISMATIC) {
+        if (joint_has_position(linkage->joints[i].kind)) {
             stepping_observe_line(linkage, (int)i, motions, &joints[i]);
         }
         stepping_observe_coordinate(linkage, (int)i, motions, &joints[i]);

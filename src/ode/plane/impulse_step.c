@@ -68,7 +68,7 @@ static void make_arrays(ImpulseStep *step)
     for (size_t i = 0; i < joints; i++) {
         const Joint *joint = &step->scenario->linkage.joints[i];
         step->mean[i].is_touching = !linkage_has_play(joint);
-        step->has_coordinates = step->has_coordinates || joint->kind == JOINT_PRISMATIC ||
+        step->has_coordinates = step->has_coordinates || joint_has_position(joint->kind) ||
                                 joint->limits.kind != LIMIT_NONE;
     }
     work->motions = zeroed(bodies, sizeof *work->motions);
@@ -165,7 +165,7 @@ static KernelContact joint_of(const ImpulseStep *step, const Touch *place)
     const KernelShape shape = kernel_shape_of(place->shape);
     const double sign = shape == KERNEL_DISC ? -1.0 : 1.0;
     const bool is_line = shape == KERNEL_LINE;
-    const bool has_corners = step->scenario->linkage.joints[place->joint].kind == JOINT_GUIDE;
+    const bool has_corners = joint_has_guides(step->scenario->linkage.joints[place->joint].kind);
     return (KernelContact){
         .law = place->law,
         .shape = shape,

@@ -97,7 +97,7 @@ static inline void impulse_step_add_ideal(const ImpulseStep *step, size_t row, c
     const Linkage *linkage = &step->scenario->linkage;
     const int number = step->response.joint_of[row];
     const Joint *joint = &linkage->joints[number];
-    if (joint->kind == JOINT_PRISMATIC) {
+    if (joint_slides(joint->kind)) {
         impulse_step_add_sliding(linkage, number, values, motions, state);
     } else {
         state->force_on_b = vec2_add(state->force_on_b, (Vec2){values[0], values[1]});

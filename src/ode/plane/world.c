@@ -43,7 +43,7 @@ struct WorldEnds {
 
 static bool has_angles(const Joint *joint)
 {
-    return joint->limits.kind != LIMIT_NONE && joint->kind != JOINT_PRISMATIC;
+    return joint->limits.kind != LIMIT_NONE && !joint_has_position(joint->kind);
 }
 
 static void follow(WorldEnds *ends, int body, const Motion *motions)
@@ -79,7 +79,8 @@ static WorldEnds *ends_make(const Linkage *linkage, const dBodyID *bodies, const
             is_any = true;
             follow(ends, joint->body_a, motions);
             follow(ends, joint->body_b, motions);
-            follow(ends, joint->kind == JOINT_GEAR ? joint->gear.carrier : LINKAGE_GROUND, motions);
+            follow(ends, joint_has_carrier(joint->kind) ? joint->gear.carrier : LINKAGE_GROUND,
+                   motions);
         }
     }
     if (!is_any) {
@@ -120,7 +121,7 @@ static const Motion *ends_look(WorldEnds *ends, int joint)
     const Joint *of = &ends->linkage->joints[joint];
     look_at(ends, of->body_a);
     look_at(ends, of->body_b);
-    if (of->kind == JOINT_GEAR) {
+    if (joint_has_carrier(of->kind)) {
         look_at(ends, of->gear.carrier);
     }
     return ends->motions;
@@ -184,10 +185,10 @@ static bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyI
                        "collider %s is for pins in their holes only, and joint '%s' is a %s; use "
                        "collider pin-hole",
                        OPTIONS_ODE_COLLIDERS[scenario->ode.collider], joint->name,
-                       joint->kind == JOINT_GUIDE ? "block between guides" : "stop");
+                       joint_has_guides(joint->kind) ? "block between guides" : "stop");
     }
     place_line_of(joint, pair);
-    pair->is_corner = joint->kind == JOINT_GUIDE;
+    pair->is_corner = joint_has_guides(joint->kind);
     return true;
 }
 
@@ -471,7 +472,7 @@ static void fill_freedoms(const Linkage *linkage, const Motion *motions, int joi
         freedoms[1][k] = rows.rows[k].y[side];
         freedoms[5][k] = rows.rows[k].turn[side];
     }
-    if (of->kind != JOINT_PRISMATIC) {
+    if (!joint_slides(of->kind)) {
         const double sign = side == 0 ? -1.0 : 1.0;
         const Vec2 arm = vec2_rotate(motions[end.body].angle, end.anchor);
         freedoms[2][2] = sign;
@@ -500,7 +501,7 @@ static void start_rows(const Linkage *linkage, const Motion *motions, Rows *rows
     rows->joints = zeroed(linkage->joint_count, sizeof *rows->joints);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (linkage_is_ideal(linkage, i)) {
-            const bool slides = linkage->joints[i].kind == JOINT_PRISMATIC;
+            const bool slides = joint_slides(linkage->joints[i].kind);
             sizes[count] = slides ? (size_t)JOINT_ROWS : (size_t)BALL_ROWS;
             rows->joints[count++] = (int)i;
         }
@@ -680,7 +681,7 @@ static void make_pair_room(const Linkage *linkage, World *world)
         Touch places[TOUCH_CORNERS];
         const Joint *joint = &linkage->joints[i];
         pairs += linkage_has_play(joint) ? touch_places(joint, (int)i, places) : 0;
-        slidings += joint->kind == JOINT_PRISMATIC ? 1 : 0;
+        slidings += joint_is_ideal(joint->kind) && joint_slides(joint->kind) ? 1 : 0;
     }
     world->sliding = zeroed(slidings, sizeof *world->sliding);
     world->pairs = zeroed(pairs, sizeof *world->pairs);
@@ -702,9 +703,10 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
     world->ends = ends_make(&scenario->linkage, world->bodies, motions);
     const Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_PRISMATIC && world->hold == NULL) {
+        const bool is_made = linkage_is_ideal(linkage, i) && world->hold == NULL;
+        if (is_made && joint_slides(linkage->joints[i].kind)) {
             make_sliding(linkage, (int)i, &scenario->ode, world);
-        } else if (linkage_is_ideal(linkage, i) && world->hold == NULL) {
+        } else if (is_made) {
             make_ball(scenario, motions, i, world);
         }
         if (linkage_has_play(&linkage->joints[i]) && !make_pairs(scenario, (int)i, world, err)) {
@@ -803,7 +805,7 @@ void world_joint_forces(const World *world, JointState *joints)
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint->kind == JOINT_REVOLUTE) {
+        if (joint_is_ideal(joint->kind) && joint_pivots(joint->kind)) {
             // ODE gives the force on the first body attached: a, if it is no ground
             const double sign = joint->body_a != LINKAGE_GROUND ? -1.0 : 1.0;
             const dReal *force = world->feedback[i].f1;

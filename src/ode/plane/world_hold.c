@@ -111,7 +111,7 @@ bool world_hold_push(WorldHold *hold, const dBodyID *bodies, double step_s, Err 
     response_openings(response, hold->loose, hold->openings, hold->impulses);
     for (size_t row = 0; row < response->ideal_rows; row++) {
         const bool is_tilt =
-            row % 2 == 1 && hold->linkage->joints[response->joint_of[row]].kind == JOINT_PRISMATIC;
+            row % 2 == 1 && joint_slides(hold->linkage->joints[response->joint_of[row]].kind);
         // ODE's angles are known in one turn
         const double opening =
             is_tilt ? remainder(hold->openings[row], 2.0 * M_PI) : hold->openings[row];
@@ -139,7 +139,7 @@ void world_hold_forces(const WorldHold *hold, JointState *joints)
         const double forces[2] = {hold->impulses[row] / hold->step_s,
                                   hold->impulses[row + 1] / hold->step_s};
         joint->force_on_b = (Vec2){forces[0], forces[1]};
-        if (hold->linkage->joints[number].kind == JOINT_PRISMATIC) {
+        if (joint_slides(hold->linkage->joints[number].kind)) {
             const Vec2 across = vec2_perp(joint_rows_along(hold->linkage, hold->motions, number));
             joint->force_on_b = vec2_scale(forces[0], across);
             joint->moment_on_b = forces[1];
@@ -152,7 +152,7 @@ void world_hold_offsets(const WorldHold *hold, int body, Vec2 *offsets)
 {
     for (int i = 0; i < (int)hold->linkage->joint_count; i++) {
         const Joint *joint = &hold->linkage->joints[i];
-        if (joint->kind == JOINT_PRISMATIC && joint->body_a == body) {
+        if (joint_has_position(joint->kind) && joint->body_a == body) {
             offsets[i] = linkage_joint_gap(hold->linkage, hold->motions, i).position;
         }
     }

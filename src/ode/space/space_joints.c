@@ -49,7 +49,7 @@ static void place_joint(const SpaceResponse *response, const SpaceMotion *motion
     }
     plane->gap = 0.0;
     plane->is_touching = true;
-    if (joint->kind != JOINT_CLEARANCE) {
+    if (!joint_has_hole(joint->kind)) {
         return;
     }
     const double clearance = linkage_radial_clearance(joint);
