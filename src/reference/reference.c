@@ -395,7 +395,7 @@ static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_P
     }
     for (size_t i = 0; system->flat != NULL && i < system->contact_count; i++) {
         const Contact *contact = &system->contacts[i];
-        if (system->scenario->linkage.joints[contact->joint].kind == JOINT_CLEARANCE) {
+        if (joint_has_hole(system->scenario->linkage.joints[contact->joint].kind)) {
             // both ends of a pin touch alike
             states[contact->joint][1] = states[contact->joint][0];
         }

@@ -151,12 +151,12 @@ static double flight_of(const Linkage *linkage, const double *reaches, const Tou
     if (joint->limits.kind != LIMIT_NONE) {
         const double half = coordinate_play(joint);
         const double beyond =
-            joint->kind == JOINT_PRISMATIC
+            joint_has_position(joint->kind)
                 ? reaches[joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b]
                 : 1.0;
         return isfinite(half) ? half : beyond;
     }
-    if (joint->kind != JOINT_STOP) {
+    if (!joint_has_disc(joint->kind)) {
         return linkage_radial_clearance(joint);
     }
     const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;

@@ -478,8 +478,7 @@ static bool is_hinged(const Dynamics *dynamics)
     bool is_plain =
         dynamics->articulated->is_plain && !dynamics->has_forces && dynamics->tree.drive_count <= 1;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const JointKind kind = linkage->joints[i].kind;
-        is_plain = is_plain && (kind == JOINT_REVOLUTE || kind == JOINT_CLEARANCE);
+        is_plain = is_plain && joint_pivots(linkage->joints[i].kind);
     }
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
         const PlaneSite *site = &dynamics->sites[i];

@@ -38,8 +38,7 @@ void loops_pair_row(const Tree *tree, const TreeState *state, int pair, Vec2 *ro
 // Whether the rows of a joint are a distance from a line and a tilt.
 static bool is_on_line(const Tree *tree, int joint)
 {
-    const JointKind kind = tree->linkage->joints[joint].kind;
-    return kind == JOINT_PRISMATIC || kind == JOINT_GUIDE;
+    return joint_slides(tree->linkage->joints[joint].kind);
 }
 
 Vec2 loops_bias(const Tree *tree, const TreeState *state, size_t loop)
@@ -123,7 +122,7 @@ double loops_project(const LoopsRoom *room, double since_s, double *q, double *u
 static bool starts_rounded(Tree *tree, int joint)
 {
     const Joint *of = &tree->linkage->joints[joint];
-    if (of->kind == JOINT_GUIDE) {
+    if (joint_has_guides(of->kind)) {
         tree->base_distances[joint] -= of->guide.start.x;
         tree->base_tilts[joint] -= of->guide.start.y;
         return hypot(tree->base_distances[joint], tree->base_tilts[joint]) <= LOOPS_CLOSED_SHARE;
@@ -146,7 +145,7 @@ static bool loops_bring(Tree *tree, const LoopsRoom *of, double *q)
     memcpy(loops, of->loops, of->loop_count * sizeof *loops);
     bool are_near = true;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_CLEARANCE || linkage->joints[i].kind == JOINT_GUIDE) {
+        if (joint_is_loose(linkage->joints[i].kind)) {
             loops[pinned.loop_count++] = i;
             are_near = starts_rounded(tree, i) && are_near;
         }

@@ -269,10 +269,16 @@ static void fill_limited(const Dynamics *dynamics, const DynamicsState *at, int 
                          JointState *to)
 {
     const Joint *of = &dynamics->tree.linkage->joints[joint];
-    if (of->kind == JOINT_GEAR) {
+    switch (joint_coordinate(of->kind)) {
+    case JOINT_COORDINATE_TEETH:
         *to = (JointState){.eccentricity = {tree_coordinate(&dynamics->tree, &at->tree, joint), 0}};
-    } else if (of->kind == JOINT_REVOLUTE) {
+        break;
+    case JOINT_COORDINATE_ANGLE:
         to->tilt = tree_coordinate_origin(of) + tree_coordinate(&dynamics->tree, &at->tree, joint);
+        break;
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_POSITION:
+        break;
     }
     to->gap = INFINITY;
     to->force = 0.0;
@@ -327,7 +333,7 @@ static void plane_joints(const System *system, const SystemState *state, JointSt
         }
         if (linkage->joints[i].limits.kind != LIMIT_NONE) {
             fill_limited(dynamics, at, (int)i, &joints[i]);
-        } else if (linkage->joints[i].kind == JOINT_GUIDE) {
+        } else if (joint_has_guides(linkage->joints[i].kind)) {
             joints[i] = (JointState){.gap = INFINITY};
             place_on_line(&dynamics->tree, &at->tree, (int)i, &joints[i]);
         }
@@ -335,7 +341,7 @@ static void plane_joints(const System *system, const SystemState *state, JointSt
     for (size_t i = 0; i < system->contact_count; i++) {
         const ContactForce *force = &at->contacts[i];
         JointState *joint = &joints[system->contacts[i].joint];
-        if (linkage->joints[system->contacts[i].joint].kind == JOINT_GUIDE) {
+        if (joint_has_guides(linkage->joints[system->contacts[i].joint].kind)) {
             add_corner(dynamics, at, i, joint);
             continue;
         }

@@ -389,18 +389,27 @@ void tree_point_row(const Tree *tree, const TreeState *state, int body, Vec2 arm
 void tree_coordinate_parts(const Joint *joint, TreeCoordinatePart parts[TREE_COORDINATE_PARTS])
 {
     const Gear *gear = &joint->gear;
-    const bool is_gear = joint->kind == JOINT_GEAR;
     const double sense = coordinate_sense(joint);
-    parts[0] = (TreeCoordinatePart){joint->body_a, is_gear ? -gear->radius_a : -sense};
-    parts[1] = (TreeCoordinatePart){joint->body_b, is_gear ? -gear->radius_b : sense};
-    parts[2] = (TreeCoordinatePart){is_gear ? gear->carrier : LINKAGE_GROUND,
-                                    is_gear ? gear->radius_a + gear->radius_b : 0.0};
+    switch (joint_coordinate(joint->kind)) {
+    case JOINT_COORDINATE_TEETH:
+        parts[0] = (TreeCoordinatePart){joint->body_a, -gear->radius_a};
+        parts[1] = (TreeCoordinatePart){joint->body_b, -gear->radius_b};
+        parts[2] = (TreeCoordinatePart){gear->carrier, gear->radius_a + gear->radius_b};
+        break;
+    case JOINT_COORDINATE_ANGLE:
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_POSITION:
+        parts[0] = (TreeCoordinatePart){joint->body_a, -sense};
+        parts[1] = (TreeCoordinatePart){joint->body_b, sense};
+        parts[2] = (TreeCoordinatePart){LINKAGE_GROUND, 0.0};
+        break;
+    }
 }
 
 double tree_coordinate_origin(const Joint *joint)
 {
-    return joint->kind == JOINT_GEAR ? joint->limits.middle
-                                     : coordinate_sense(joint) * joint->held_angle;
+    return joint_has_teeth(joint->kind) ? joint->limits.middle
+                                        : coordinate_sense(joint) * joint->held_angle;
 }
 
 // Works it out at the base.
@@ -562,7 +571,7 @@ static void measure(Tree *tree)
     }
     for (int i = 0; i < (int)tree->linkage->joint_count; i++) {
         const Joint *joint = &tree->linkage->joints[i];
-        if (joint->limits.kind != LIMIT_NONE && joint->kind != JOINT_PRISMATIC) {
+        if (joint->limits.kind != LIMIT_NONE && !joint_has_position(joint->kind)) {
             tree_coordinate_settle(tree, i);
         }
     }
@@ -689,7 +698,7 @@ static void tree_add_node(Tree *tree, int body, int joint, int parent)
         const bool is_own_b = of->body_b == body;
         node->own_end = 2 * joint + (is_own_b ? 1 : 0);
         node->parent_end = 2 * joint + (is_own_b ? 0 : 1);
-        node->is_sliding = of->kind == JOINT_PRISMATIC;
+        node->is_sliding = joint_slides(of->kind);
         node->parent_node = parent == LINKAGE_GROUND ? -1 : tree->node_of[parent];
         node->depth = node->parent_node >= 0 ? tree->nodes[node->parent_node].depth + 1 : 1;
         if (node->is_sliding) {
@@ -758,7 +767,7 @@ static void tree_list_ends(Tree *tree)
 
 size_t tree_own_pairs(const Joint *joint, int number, Touch sites[TOUCH_CORNERS])
 {
-    const bool has_own = joint->kind == JOINT_GUIDE || joint->kind == JOINT_PRISMATIC;
+    const bool has_own = joint_slides(joint->kind);
     return has_own ? touch_places(joint, number, sites) : 0;
 }
 
@@ -775,10 +784,10 @@ static void set_pairs(Tree *tree)
             .direction = joint->direction + 0.5 * M_PI,
         };
         TreeMeasure measure = TREE_POINTS;
-        if (joint->kind == JOINT_STOP) {
+        if (joint_has_disc(joint->kind)) {
             touch_places(joint, i, sites);
             measure = sites[0].shape == TOUCH_LINE ? TREE_LINE : TREE_DISC;
-        } else if (joint->kind == JOINT_PRISMATIC || joint->kind == JOINT_GUIDE) {
+        } else if (joint_slides(joint->kind)) {
             measure = TREE_LINE;
         }
         set_pair(tree, i, joint, &sites[0], measure);

@@ -598,7 +598,7 @@ static void space_loops_bring(SpaceTree *tree, double *q, SpaceTreeState *scratc
     memcpy(joints, tree->loops, count * sizeof *joints);
     bool are_near = true;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_CLEARANCE) {
+        if (joint_has_hole(linkage->joints[i].kind)) {
             const Vec2 start = linkage->joints[i].clearance.start;
             joints[count++] = i;
             tree->base_gaps[i] = vec3_sub(tree->base_gaps[i], (Vec3){start.x, start.y, 0.0});

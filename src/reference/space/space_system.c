@@ -281,7 +281,7 @@ static void space_joints(const System *system, const SystemState *state, JointSt
     const Linkage *linkage = &system->scenario->linkage;
     const SpaceState *at = space_state_of(state);
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage->joints[i].kind == JOINT_REVOLUTE) {
+        if (joint_is_ideal(linkage->joints[i].kind)) {
             const Vec3 gap = space_tree_gap(&space_dynamics_of(system)->tree, &at->tree, i);
             fill_ideal_joint(&at->reactions[i], gap, &joints[i], &space_joints[i]);
         }

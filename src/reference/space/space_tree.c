@@ -657,7 +657,7 @@ static void space_tree_list_loops(SpaceTree *tree, const bool *is_used)
 {
     for (int i = 0; i < (int)tree->linkage->joint_count; i++) {
         const Joint *joint = &tree->linkage->joints[i];
-        if (joint->kind == JOINT_REVOLUTE && !is_used[i]) {
+        if (joint_is_ideal(joint->kind) && !is_used[i]) {
             tree->loops[tree->loop_count++] = i;
             tree->is_driven_hung_on = tree->is_driven_hung_on ||
                                       space_tree_is_driven(tree, joint->body_a) ||
