@@ -75,6 +75,20 @@ static bool is_angle(const Node *node)
            quantity_parse(node->text, DIMENSION_ANGLE, &value, &unused);
 }
 
+// Whether a length along its coordinate may be given as an angle of body b.
+static bool may_be_angle(JointKind kind)
+{
+    switch (joint_coordinate(kind)) {
+    case JOINT_COORDINATE_TEETH:
+        return true;
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_ANGLE:
+    case JOINT_COORDINATE_POSITION:
+        break;
+    }
+    return false;
+}
+
 static bool is_length(SchemaType type)
 {
     return type == SCHEMA_COORDINATE || type == SCHEMA_START;
@@ -84,7 +98,7 @@ SchemaRow limits_row(const SchemaRow *row, JointKind kind, const Node *value)
 {
     const bool is_force = row->family == SCHEMA_JOINT &&
                           (row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_DAMPER);
-    const bool is_of_gears = joint_has_teeth(kind) && is_length(row->type) && is_angle(value);
+    const bool is_of_gears = may_be_angle(kind) && is_length(row->type) && is_angle(value);
     const bool is_turned =
         is_of_gears || (joint_has_angle(kind) && (is_force || is_length(row->type)));
     SchemaRow own = is_turned ? as_angle(row) : *row;
@@ -96,7 +110,7 @@ bool limits_store(const Target *target, Joint *joint)
 {
     const SchemaRow *row = target->entry->row;
     const Node *node = target->entry->node;
-    const bool is_of_gears = joint_has_teeth(joint->kind) && is_length(row->type) && is_angle(node);
+    const bool is_of_gears = may_be_angle(joint->kind) && is_length(row->type) && is_angle(node);
     if (row->type == SCHEMA_START && node->kind == NODE_SCALAR &&
         strcmp(node->text, row->default_words) == 0) {
         return true;
@@ -210,25 +224,36 @@ bool limits_join_gears(const Entries *entries, Linkage *linkage, Err *err)
     return true;
 }
 
+// The pitch circles share the distance of the pivots.
+static void place_gears(Linkage *linkage, const Motion *motions, int number)
+{
+    Joint *joint = &linkage->joints[number];
+    Gear *gear = &joint->gear;
+    const Joint *first = &linkage->joints[gear->pivots[0]];
+    const Joint *second = &linkage->joints[gear->pivots[1]];
+    joint->anchor_a = first->body_a == joint->body_a ? first->anchor_a : first->anchor_b;
+    joint->anchor_b = second->body_a == joint->body_b ? second->anchor_a : second->anchor_b;
+    const double distance = vec2_length(linkage_joint_gap(linkage, motions, number).position);
+    const double sum = gear->teeth[0] + gear->teeth[1];
+    gear->radius_a = distance * gear->teeth[0] / sum;
+    gear->radius_b = distance * gear->teeth[1] / sum;
+    joint->limits.backlash *= gear->is_backlash_angle ? fabs(gear->radius_b) : 1.0;
+    joint->limits.start *= gear->is_start_angle ? fabs(gear->radius_b) : 1.0;
+    gear->is_backlash_angle = gear->is_start_angle = false;
+}
+
 void limits_place_gears(Linkage *linkage, const Motion *motions)
 {
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        Joint *joint = &linkage->joints[i];
-        Gear *gear = &joint->gear;
-        if (!joint_has_teeth(joint->kind)) {
-            continue;
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        switch (joint_coordinate(linkage->joints[i].kind)) {
+        case JOINT_COORDINATE_TEETH:
+            place_gears(linkage, motions, i);
+            break;
+        case JOINT_COORDINATE_NONE:
+        case JOINT_COORDINATE_ANGLE:
+        case JOINT_COORDINATE_POSITION:
+            break;
         }
-        const Joint *first = &linkage->joints[gear->pivots[0]];
-        const Joint *second = &linkage->joints[gear->pivots[1]];
-        joint->anchor_a = first->body_a == joint->body_a ? first->anchor_a : first->anchor_b;
-        joint->anchor_b = second->body_a == joint->body_b ? second->anchor_a : second->anchor_b;
-        const double distance = vec2_length(linkage_joint_gap(linkage, motions, (int)i).position);
-        const double sum = gear->teeth[0] + gear->teeth[1];
-        gear->radius_a = distance * gear->teeth[0] / sum;
-        gear->radius_b = distance * gear->teeth[1] / sum;
-        joint->limits.backlash *= gear->is_backlash_angle ? fabs(gear->radius_b) : 1.0;
-        joint->limits.start *= gear->is_start_angle ? fabs(gear->radius_b) : 1.0;
-        gear->is_backlash_angle = gear->is_start_angle = false;
     }
 }
 

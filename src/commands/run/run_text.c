@@ -472,30 +472,46 @@ static void run_text_write_stop(const Joint *joint, Text *text)
     }
 }
 
+static void write_teeth(const Joint *joint, Text *text)
+{
+    const double backlash = joint->limits.backlash;
+    text_append(text, "%.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n", joint->gear.teeth[0],
+                joint->gear.teeth[1], joint->gear.radius_a * UNITS_MM,
+                joint->gear.radius_b * UNITS_MM);
+    text_append(text, "              backlash %.4g um, %.4g deg of the second", backlash * UNITS_UM,
+                backlash / fabs(joint->gear.radius_b) * UNITS_DEG);
+}
+
+static void write_ends(const Limits *limits, double scale, const char *unit, Text *text)
+{
+    if (limits->kind == LIMIT_BACKLASH) {
+        text_append(text, "%.6g %s", limits->backlash * scale, unit);
+        return;
+    }
+    if (isfinite(limits->low)) {
+        text_append(text, "low %.6g %s%s", limits->low * scale, unit,
+                    isfinite(limits->high) ? ", " : "");
+    }
+    if (isfinite(limits->high)) {
+        text_append(text, "high %.6g %s", limits->high * scale, unit);
+    }
+}
+
 // What limits a coordinate: in degrees of a pivot, mm of a slider, and um of teeth.
 static void run_text_write_limits(const Joint *joint, Text *text)
 {
-    const Limits *limits = &joint->limits;
-    const bool is_turning = linkage_is_torsional(joint);
-    const double scale = is_turning ? UNITS_DEG : UNITS_MM;
-    const char *unit = is_turning ? "deg" : "mm";
-    if (joint_has_teeth(joint->kind)) {
-        text_append(text, "%.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n",
-                    joint->gear.teeth[0], joint->gear.teeth[1], joint->gear.radius_a * UNITS_MM,
-                    joint->gear.radius_b * UNITS_MM);
-        text_append(text, "              backlash %.4g um, %.4g deg of the second",
-                    limits->backlash * UNITS_UM,
-                    limits->backlash / fabs(joint->gear.radius_b) * UNITS_DEG);
-    } else if (limits->kind == LIMIT_BACKLASH) {
-        text_append(text, "%.6g %s", limits->backlash * scale, unit);
-    } else {
-        if (isfinite(limits->low)) {
-            text_append(text, "low %.6g %s%s", limits->low * scale, unit,
-                        isfinite(limits->high) ? ", " : "");
-        }
-        if (isfinite(limits->high)) {
-            text_append(text, "high %.6g %s", limits->high * scale, unit);
-        }
+    switch (joint_coordinate(joint->kind)) {
+    case JOINT_COORDINATE_ANGLE:
+        write_ends(&joint->limits, UNITS_DEG, "deg", text);
+        break;
+    case JOINT_COORDINATE_POSITION:
+        write_ends(&joint->limits, UNITS_MM, "mm", text);
+        break;
+    case JOINT_COORDINATE_TEETH:
+        write_teeth(joint, text);
+        break;
+    case JOINT_COORDINATE_NONE:
+        break;
     }
 }
 
