@@ -1,8 +1,7 @@
 // Has the words of the kinds of joints, and which kind another is without its play.
 #include "model/joint.h"
 
-#define JOINT_NAME(with, id, holds, touches, coordinate, bodies, in_space, name, words)  name,
-#define JOINT_WORDS(with, id, holds, touches, coordinate, bodies, in_space, name, words) words,
+#define JOINT_WORDS(with, id, holds, touches, coordinate, bodies, in_space, words) words,
 
 JointKind joint_without_play(JointKind kind)
 {
@@ -13,12 +12,6 @@ JointKind joint_without_play(JointKind kind)
         }
     }
     return kind;
-}
-
-const char *joint_name(JointKind kind)
-{
-    static const char *const NAMES[] = {JOINT_KIND_LIST(JOINT_NAME, _)};
-    return NAMES[kind];
 }
 
 const char *joint_words(JointKind kind)

@@ -39,16 +39,16 @@ typedef enum JointCoordinate {
 
 // The kinds: a row each, its enumerator; by what it holds its bodies, what touches, and its
 // coordinate; how many bodies it has, the third of which carries the other two; whether it is
-// available in space; its name for other programs, and what a message calls it. What is made of the
-// list gets `with` beside each row.
+// available in space; and what a message calls it. What is made of the list gets `with` beside each
+// row.
 // clang-format off
 #define JOINT_KIND_LIST(member, with) \
-    member(with, JOINT_REVOLUTE,  POINT,   NOTHING, ANGLE,    2, true,  "revolute",  "which has no play") \
-    member(with, JOINT_CLEARANCE, POINT,   HOLE,    NONE,     2, true,  "clearance", "a pin in a hole") \
-    member(with, JOINT_PRISMATIC, LINE,    NOTHING, POSITION, 2, false, "prismatic", "a prismatic joint without play") \
-    member(with, JOINT_GUIDE,     LINE,    GUIDES,  NONE,     2, false, "guide",     "a block between guides") \
-    member(with, JOINT_STOP,      NOTHING, DISC,    NONE,     2, false, "stop",      "a stop") \
-    member(with, JOINT_GEAR,      NOTHING, TEETH,   TEETH,    3, false, "gear",      "a pair of gears")
+    member(with, JOINT_REVOLUTE,  POINT,   NOTHING, ANGLE,    2, true,  "which has no play") \
+    member(with, JOINT_CLEARANCE, POINT,   HOLE,    NONE,     2, true,  "a pin in a hole") \
+    member(with, JOINT_PRISMATIC, LINE,    NOTHING, POSITION, 2, false, "a prismatic joint without play") \
+    member(with, JOINT_GUIDE,     LINE,    GUIDES,  NONE,     2, false, "a block between guides") \
+    member(with, JOINT_STOP,      NOTHING, DISC,    NONE,     2, false, "a stop") \
+    member(with, JOINT_GEAR,      NOTHING, TEETH,   TEETH,    3, false, "a pair of gears")
 // clang-format on
 #define JOINT_KIND(with, id, ...) id,
 typedef enum JointKind { JOINT_KIND_LIST(JOINT_KIND, _) JOINT_KIND_COUNT } JointKind;
@@ -194,6 +194,5 @@ static inline JointCoordinate joint_coordinate(JointKind kind)
 // The ideal kind that holds its bodies by the same; itself of one that holds nothing.
 JointKind joint_without_play(JointKind kind);
 
-// Its name for other programs: "revolute"; and what a message calls it: "a pin in a hole".
-const char *joint_name(JointKind kind);
+// What a message calls it: "a pin in a hole".
 const char *joint_words(JointKind kind);

@@ -40,7 +40,7 @@ static double pace_turn_of(const System *system)
                                                       : scenario_duration(scenario);
 }
 
-static const char *stepper_joint_name(const System *system, size_t contact)
+static const char *joint_name(const System *system, size_t contact)
 {
     return system->scenario->linkage.joints[system->contacts[contact].joint].name;
 }
@@ -55,7 +55,7 @@ static bool refuse_steps(const Pace *pace, const System *system, double time_s, 
                 "%d steps advanced the motion by only %.3g s: the contact of %s is too stiff "
                 "or too strongly damped; use a higher restitution, another damping or a "
                 "lower stiffness",
-                STEPS_COUNTED, width_s, stepper_joint_name(system, i));
+                STEPS_COUNTED, width_s, joint_name(system, i));
         }
     }
     return err_set(
@@ -75,7 +75,7 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
     if (pace->events > EVENTS_MOST * system->contact_count) {
         return err_set(err, ERR_SOLVER,
                        "the contact of %s keeps beginning and ending: %zu changes within %.3g s",
-                       stepper_joint_name(system, events->events[0].contact), pace->events,
+                       joint_name(system, events->events[0].contact), pace->events,
                        time_s - pace->instant_s);
     }
     pace->steps++;

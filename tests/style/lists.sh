@@ -61,7 +61,7 @@ forget solver $options 'member(ODE_QUICK,' 'member(ODE_NEW, "new")' ode/plane/wo
 forget collider $options 'member(ODE_COLLIDER_STAVES,' \
     'member(ODE_COLLIDER_NEW, "new", collider_new)' contact/facets.c
 forget 'kind of joint' model/joint.h 'member(with, JOINT_GUIDE,' \
-    'member(with, JOINT_NEW, LINE, DISC, NONE, 2, false, "new", "new")' casefile/joint_kind.c \
+    'member(with, JOINT_NEW, LINE, DISC, NONE, 2, false, "new")' casefile/joint_kind.c \
     engine/request.c commands/tune/tune_world.c
 forget 'way to hold' model/joint.h '    JOINT_HOLDS_LINE,' 'JOINT_HOLDS_NEW,' model/joint_rows.c \
     model/response_rows.c
@@ -70,8 +70,8 @@ forget 'way to touch' model/joint.h '    JOINT_TOUCHES_DISC,' 'JOINT_TOUCHES_NEW
     casefile/check_joints.c run/pressed.c run/settle_follow.c commands/run/run_text.c \
     commands/report/report_data.c
 forget coordinate model/joint.h '    JOINT_COORDINATE_TEETH,' 'JOINT_COORDINATE_NEW,' \
-    model/coordinate.c model/response_rows.c contact/touch.c ode/stepping.c \
-    reference/plane/tree.c reference/plane/plane_system.c
+    model/coordinate.c model/response_rows.c contact/touch.c casefile/limits.c \
+    commands/run/run_text.c ode/stepping.c reference/plane/tree.c reference/plane/plane_system.c
 forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
     ode/plane/impulse_step.c reference/plane/dynamics_slopes.c
 forget dimension casefile/units.h 'member(DIMENSION_MASS,' 'member(DIMENSION_NEW)' casefile/units.c

@@ -39,27 +39,35 @@ static json_t *bodies_json(const Linkage *linkage)
     return bodies;
 }
 
-// The sizes that a kind of joint is drawn with, m.
-static void set_sizes(json_t *object, const Joint *joint)
+// What a joint is drawn by: whether it pivots or slides, what touches in it, and the sizes of that,
+// m.
+static void set_shape(json_t *object, const Joint *joint)
 {
+    json_object_set_new(object, "pivots", json_boolean(joint_pivots(joint->kind)));
+    json_object_set_new(object, "slides", json_boolean(joint_slides(joint->kind)));
     json_value_set(object, "clearance_m", linkage_radial_clearance(joint));
     switch (joint_touches(joint->kind)) {
     case JOINT_TOUCHES_NOTHING:
+        json_object_set_new(object, "touches", json_string("nothing"));
         break;
     case JOINT_TOUCHES_HOLE:
+        json_object_set_new(object, "touches", json_string("hole"));
         json_value_set(object, "pin_radius_m", joint->clearance.pin_radius);
         break;
     case JOINT_TOUCHES_GUIDES:
+        json_object_set_new(object, "touches", json_string("guides"));
         json_value_set(object, "height_m", joint->guide.height);
         json_value_set(object, "opening_m", joint->guide.opening);
         json_value_set(object, "length_m", joint->guide.length);
         break;
     case JOINT_TOUCHES_DISC:
+        json_object_set_new(object, "touches", json_string("disc"));
         json_object_set_new(object, "is_disc", json_boolean(joint->stop.is_disc));
         json_value_set(object, "radius_a_m", joint->stop.radius_a);
         json_value_set(object, "radius_b_m", joint->stop.radius_b);
         break;
     case JOINT_TOUCHES_TEETH:
+        json_object_set_new(object, "touches", json_string("teeth"));
         json_value_set(object, "radius_a_m", joint->gear.radius_a);
         json_value_set(object, "radius_b_m", joint->gear.radius_b);
         json_value_set(object, "teeth_a", joint->gear.teeth[0]);
@@ -91,7 +99,6 @@ static json_t *joints_json(const Linkage *linkage)
         const Joint *joint = &linkage->joints[i];
         json_t *object = json_object();
         json_object_set_new(object, "name", json_value_text(joint->name));
-        json_object_set_new(object, "kind", json_string(joint_name(joint->kind)));
         json_object_set_new(object, "has_play", json_boolean(linkage_has_play(joint)));
         json_object_set_new(object, "is_torsional", json_boolean(linkage_is_torsional(joint)));
         json_object_set_new(object, "body_a", json_integer(joint->body_a));
@@ -100,7 +107,7 @@ static json_t *joints_json(const Linkage *linkage)
         json_object_set_new(object, "anchor_b_m", vector_json(joint->anchor_b));
         json_value_set(object, "direction_rad", joint->direction);
         json_value_set(object, "held_angle_rad", joint->held_angle);
-        set_sizes(object, joint);
+        set_shape(object, joint);
         if (linkage->is_spatial) {
             set_space(object, linkage, i);
         }

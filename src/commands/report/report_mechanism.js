@@ -76,11 +76,11 @@ class Poses {
     play(number) {
         const joint = this.data.joints[number];
         const [x, y] = [this.value(this.joints[number].ex), this.value(this.joints[number].ey)];
-        if (joint.kind === "clearance") {
+        if (joint.touches === "hole") {
             return [x, y];
         }
         // of a block the part across its guides
-        return joint.kind === "guide"
+        return joint.touches === "guides"
             ? rotate([0, y], this.angle(joint.body_a) + joint.direction_rad)
             : [0, 0];
     }
@@ -154,10 +154,10 @@ class Mechanism {
             }
         };
         for (const joint of this.data.joints) {
-            if (joint.kind === "gear") {
+            if (joint.touches === "teeth") {
                 continue;
             }
-            if (joint.kind !== "stop" || !joint.is_disc) {
+            if (joint.touches !== "disc" || !joint.is_disc) {
                 add(joint.body_a, joint.anchor_a_m);
             }
             add(joint.body_b, joint.anchor_b_m);
@@ -175,7 +175,7 @@ class Mechanism {
             }
             // what turns about its centre is shown by a hand
             const isGear = this.data.joints.some(
-                (joint) => joint.kind === "gear" && (joint.body_a === i || joint.body_b === i),
+                (joint) => joint.touches === "teeth" && (joint.body_a === i || joint.body_b === i),
             );
             if (outline.length < 2 && !isGear) {
                 add(i, [this.data.bodies[i].gyration_m, 0]);
@@ -200,7 +200,7 @@ class Mechanism {
             const reach = Math.abs(joint.radius_a_m || joint.pin_radius_m || 0);
             yield [x - reach, y - reach];
             yield [x + reach, y + reach];
-            if (joint.kind === "stop" || joint.kind === "gear") {
+            if (joint.touches === "disc" || joint.touches === "teeth") {
                 const other = poses.point(joint.body_b, joint.anchor_b_m);
                 const radius = Math.abs(joint.radius_b_m || 0);
                 yield [other[0] - radius, other[1] - radius];
@@ -411,12 +411,12 @@ class Mechanism {
     drawRails(poses) {
         const { context } = this;
         this.data.joints.forEach((joint, i) => {
-            if (joint.kind === "prismatic" || joint.kind === "guide") {
+            if (joint.slides) {
                 const angle = poses.angle(joint.body_a) + joint.direction_rad;
                 const from = poses.point(joint.body_a, joint.anchor_a_m);
                 const reach = 0.03 * this.extent;
                 const sides =
-                    joint.kind === "guide"
+                    joint.touches === "guides"
                         ? this.pin / this.scale + joint.clearance_m * this.page.magnification
                         : 0;
                 for (const side of sides > 0 ? [-sides, sides] : [0]) {
@@ -429,7 +429,7 @@ class Mechanism {
                     this.line(ends, false);
                     context.stroke();
                 }
-            } else if (joint.kind !== "stop" && joint.kind !== "gear") {
+            } else if (joint.pivots) {
                 const grounded =
                     joint.body_a === GROUND
                         ? joint.anchor_a_m
@@ -489,13 +489,13 @@ class Mechanism {
     drawJoints(poses, isMain) {
         const colour = isMain ? colourOf("ink") : colourOf(poses.run.backend);
         this.data.joints.forEach((joint, i) => {
-            if (joint.kind === "clearance") {
+            if (joint.touches === "hole") {
                 this.drawPin(poses, joint, i, isMain, colour);
-            } else if (joint.kind === "prismatic" || joint.kind === "guide") {
+            } else if (joint.slides) {
                 this.drawBlock(poses, joint, i, isMain, colour);
-            } else if (joint.kind === "stop") {
+            } else if (joint.touches === "disc") {
                 this.drawStop(poses, joint, isMain, colour);
-            } else if (joint.kind === "gear") {
+            } else if (joint.touches === "teeth") {
                 this.drawGear(
                     poses,
                     joint.body_a,
@@ -512,7 +512,7 @@ class Mechanism {
                     joint.teeth_b,
                     colour,
                 );
-            } else if (isMain) {
+            } else if (isMain && joint.pivots) {
                 this.drawPivot(this.toScreen(poses.point(joint.body_a, joint.anchor_a_m)));
             }
         });
@@ -565,7 +565,7 @@ class Mechanism {
         const at = this.toScreen(this.drawn(poses, joint.body_b, [...joint.anchor_b_m]));
         const tilt =
             poses.value(poses.joints[number].tilt) *
-            (joint.kind === "guide" ? this.page.magnification : 0);
+            (joint.touches === "guides" ? this.page.magnification : 0);
         const angle =
             poses.angle(joint.body_a) + joint.direction_rad + Math.max(-0.5, Math.min(0.5, tilt));
         context.save();

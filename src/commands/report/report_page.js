@@ -617,7 +617,7 @@ class Page {
         const felt = this.data.runs
             .map((run) => new JointSignals(this.data, run, number))
             .filter((one) => one.isThere);
-        if (joint.kind === "clearance" && felt.length > 0 && this.data.has_plane) {
+        if (joint.touches === "hole" && felt.length > 0 && this.data.has_plane) {
             const round = felt.flatMap((signals) => this.addPlot(new OrbitPlot(this, signals)));
             round.push(...this.addPlot(new LoadPlot(this, felt)));
             rows.push(element("div", { className: "plots" }, ...round));
