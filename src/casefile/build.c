@@ -243,7 +243,7 @@ static bool check_redundancy(const Entries *entries, const Linkage *linkage, con
 {
     bool *is_ideal = zeroed(linkage->joint_count, sizeof *is_ideal);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        is_ideal[i] = linkage_kind_is_ideal(linkage->joints[i].kind);
+        is_ideal[i] = joint_is_ideal(linkage->joints[i].kind);
     }
     size_t rows;
     const size_t rank = kinematics_rank(linkage, motions, is_ideal, true, INDEPENDENT, &rows);

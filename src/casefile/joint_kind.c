@@ -81,7 +81,7 @@ bool joint_kind_check(const Entries *entries, Err *err)
         if (entry->index != joint) {
             joint = entry->index;
             kind = joint_kind_find(entries, joint);
-            is_firm = linkage_kind_is_ideal(kind) && !limits_are_given(entries, joint);
+            is_firm = joint_is_ideal(kind) && !limits_are_given(entries, joint);
         }
         if (!schema_is_of_kind(entry->row, kind) || (is_firm && is_of_play(entry->row))) {
             return refuse_key(entries, entry, kind, err);

@@ -701,7 +701,7 @@ static double typical_pivot(const Trajectory *run)
 static bool has_ideal_joints_alone(const Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (!linkage_kind_is_ideal(linkage->joints[i].kind)) {
+        if (!joint_is_ideal(linkage->joints[i].kind)) {
             return false;
         }
     }

@@ -129,7 +129,7 @@ size_t kinematics_mobility(const Linkage *linkage, const Motion *motions, bool i
 {
     bool *include = zeroed(linkage->joint_count, sizeof *include);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        include[i] = !ideal_only || linkage_kind_is_ideal(linkage->joints[i].kind);
+        include[i] = !ideal_only || joint_is_ideal(linkage->joints[i].kind);
     }
     size_t rows;
     const size_t rank = kinematics_rank(linkage, motions, include, false, LOOP_INDEPENDENT, &rows);

@@ -39,7 +39,7 @@ double linkage_guide_tilt(const Guide *guide)
 
 bool linkage_is_ideal(const Linkage *linkage, size_t joint)
 {
-    return linkage_kind_is_ideal(linkage->joints[joint].kind) &&
+    return joint_is_ideal(linkage->joints[joint].kind) &&
            linkage_drive_of_joint(linkage, joint) < 0;
 }
 

@@ -147,13 +147,14 @@ typedef struct JointSpace {
 typedef struct Joint {
     char name[LINKAGE_NAME_SIZE];
     JointKind kind;
-    int body_a;          // carries the hole; number of a body or LINKAGE_GROUND
-    int body_b;          // carries the pin
-    Vec2 anchor_a;       // hole centre in body a's frame, m
-    Vec2 anchor_b;       // pin centre in body b's frame, m
-    double direction;    // rad, in body a's frame: of the line or the guides; of a stop's normal
-    double held_angle;   // rad: angle of body b less that of body a where what slides is not tilted
-    Clearance clearance; // of what touches in a joint: joint_touches
+    int body_a;        // carries the hole; number of a body or LINKAGE_GROUND
+    int body_b;        // carries the pin
+    Vec2 anchor_a;     // hole centre in body a's frame, m
+    Vec2 anchor_b;     // pin centre in body b's frame, m
+    double direction;  // rad, in body a's frame: of the line or the guides; of a stop's normal
+    double held_angle; // rad: angle of body b less that of body a where what slides is not tilted
+    // sizes of what touches in it (joint_touches)
+    Clearance clearance;
     Guide guide;
     Stop stop;
     Gear gear;
@@ -276,18 +277,11 @@ static inline JointEnd linkage_end(const Joint *joint, int side)
                      : (JointEnd){joint->body_b, joint->anchor_b};
 }
 
-// Whether a joint of that kind holds its bodies in its rows without play; its own coordinate may
-// have limits all the same.
-static inline bool linkage_kind_is_ideal(JointKind kind)
-{
-    return joint_is_ideal(kind);
-}
-
 // Whether bodies touch in a joint: a pin in its hole, a block between its guides, a stop, teeth, or
 // what limits the coordinate of an ideal joint.
 static inline bool linkage_has_play(const Joint *joint)
 {
-    return !linkage_kind_is_ideal(joint->kind) || joint->limits.kind != LIMIT_NONE;
+    return !joint_is_ideal(joint->kind) || joint->limits.kind != LIMIT_NONE;
 }
 
 // Whether a contact of a joint is under way at time zero.

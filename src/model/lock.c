@@ -37,7 +37,7 @@ static Linkage idealised(const Linkage *linkage, LockJoints joints)
     ideal.joint_count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        const bool is_ideal = linkage_kind_is_ideal(joint->kind);
+        const bool is_ideal = joint_is_ideal(joint->kind);
         if (joint_rows_count(joint->kind) == 0 || (!is_ideal && joints == LOCK_IDEAL_ONLY)) {
             continue;
         }

@@ -169,7 +169,7 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
         const Vec2 a = linkage_point_velocity(motions, joint->body_a, joint->anchor_a);
         const Vec2 b = linkage_point_velocity(motions, joint->body_b, joint->anchor_b);
         demand->include[i] =
-            joint_rows_count(joint->kind) > 0 && (with_play || linkage_kind_is_ideal(joint->kind));
+            joint_rows_count(joint->kind) > 0 && (with_play || joint_is_ideal(joint->kind));
         largest = fmax(largest, fmax(vec2_length(a), vec2_length(b)));
         Vec2 missing = vec2_sub(a, b);
         if (joint_rows_is_angle(joint->kind, 1)) {

@@ -248,7 +248,7 @@ void stepping_observe_joint(const Linkage *linkage, size_t joint, Sample *sample
     const Vec2 hole = linkage_point(sample->bodies, data->body_a, data->anchor_a);
     const Vec2 pin = linkage_point(sample->bodies, data->body_b, data->anchor_b);
     const bool is_limited = data->limits.kind != LIMIT_NONE;
-    const bool is_ideal = linkage_kind_is_ideal(data->kind) && !is_limited;
+    const bool is_ideal = joint_is_ideal(data->kind) && !is_limited;
     JointState *state = &sample->joints[joint];
     state->eccentricity = vec2_sub(pin, hole);
     if (joint_slides(data->kind)) {

@@ -90,7 +90,7 @@ static Waiting waiting_create(const Linkage *linkage)
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < linkage->joint_count; i++) {
             const int bodies[2] = {linkage->joints[i].body_a, linkage->joints[i].body_b};
-            for (int k = 0; linkage_kind_is_ideal(linkage->joints[i].kind) && k < 2; k++) {
+            for (int k = 0; joint_is_ideal(linkage->joints[i].kind) && k < 2; k++) {
                 if (pass == 0) {
                     waiting.firsts[bodies[k] + 3]++;
                 } else {
@@ -224,7 +224,7 @@ static size_t loop_length(const Span *span)
     size_t sum = 0;
     for (size_t i = 0; i < span->linkage->joint_count; i++) {
         const Joint *joint = &span->linkage->joints[i];
-        if (span->is_used[i] || !linkage_kind_is_ideal(joint->kind)) {
+        if (span->is_used[i] || !joint_is_ideal(joint->kind)) {
             continue;
         }
         int a = joint->body_a;

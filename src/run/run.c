@@ -314,7 +314,7 @@ static double stored_energy(const Scenario *scenario, const Sample *sample)
             continue;
         }
         // what the contacts of the velocity-level model press with, they never store
-        if (linkage_kind_is_ideal(joint->kind) || scenario->contact.model != CONTACT_IMPACT ||
+        if (joint_is_ideal(joint->kind) || scenario->contact.model != CONTACT_IMPACT ||
             !(sample->joints[i].gap < 0.0) || !law_of_joint(scenario, joint, &law, &unused)) {
             continue;
         }

@@ -35,7 +35,7 @@ static size_t *tracer_connect(const Linkage *linkage)
     union_find_start(parents, linkage->body_count);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (linkage_kind_is_ideal(joint->kind) && hands_on(linkage, joint->body_a) &&
+        if (joint_is_ideal(joint->kind) && hands_on(linkage, joint->body_a) &&
             hands_on(linkage, joint->body_b)) {
             union_find_join(parents, (size_t)joint->body_a, (size_t)joint->body_b);
         }

@@ -226,7 +226,7 @@ static size_t list_rows(const Plane *plane, View view, bool with_play, Row *rows
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool has_play = joint->kind == JOINT_CLEARANCE || joint->kind == JOINT_GUIDE;
-        if ((linkage_kind_is_ideal(joint->kind) || (with_play && has_play)) &&
+        if ((joint_is_ideal(joint->kind) || (with_play && has_play)) &&
             (is_free(plane, joint->body_a) || is_free(plane, joint->body_b))) {
             rows_of(view, joint, rows + count);
             count += ROW_MOST;

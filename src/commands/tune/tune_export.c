@@ -392,7 +392,7 @@ static void tune_snippet_write_surface(const Joint *joint, const ForceLaw *law, 
 // Whether the ends of a joint are stops of ODE's own hinge or slider.
 static bool has_stops(const Joint *joint)
 {
-    return linkage_kind_is_ideal(joint->kind) && joint->limits.kind != LIMIT_NONE;
+    return joint_is_ideal(joint->kind) && joint->limits.kind != LIMIT_NONE;
 }
 
 static void tune_snippet_write_loop(const Scenario *scenario, Text *text)

@@ -45,7 +45,7 @@ static bool tune_limit_alone(const Linkage *linkage, size_t *joint)
             count++;
         }
     }
-    return count == 1 && linkage_kind_is_ideal(linkage->joints[*joint].kind);
+    return count == 1 && joint_is_ideal(linkage->joints[*joint].kind);
 }
 
 // Of the coordinate as the bodies stand at the start.

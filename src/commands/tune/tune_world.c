@@ -151,7 +151,7 @@ bool tune_world_is_ideal(const Linkage *linkage, int joint)
 {
     const bool is_led = linkage->driver.is_present && drive_is_steady(&linkage->driver) &&
                         linkage->driver.joint == joint;
-    return linkage_kind_is_ideal(linkage->joints[joint].kind) && !is_led;
+    return joint_is_ideal(linkage->joints[joint].kind) && !is_led;
 }
 
 // The positions at the start.

@@ -328,7 +328,7 @@ static void plane_joints(const System *system, const SystemState *state, JointSt
     const Dynamics *dynamics = plane_dynamics_of(system);
     const DynamicsState *at = plane_state_of(state);
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (linkage_kind_is_ideal(linkage->joints[i].kind)) {
+        if (joint_is_ideal(linkage->joints[i].kind)) {
             fill_ideal(dynamics, at, (int)i, &joints[i]);
         }
         if (linkage->joints[i].limits.kind != LIMIT_NONE) {

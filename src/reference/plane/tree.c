@@ -858,7 +858,7 @@ static void tree_list_loops(Tree *tree, const bool *is_used)
 {
     const Linkage *linkage = tree->linkage;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
-        if (linkage_kind_is_ideal(linkage->joints[i].kind) && !is_used[i]) {
+        if (joint_is_ideal(linkage->joints[i].kind) && !is_used[i]) {
             tree->loops[tree->loop_count++] = i;
             tree->is_driven_hung_on = tree->is_driven_hung_on ||
                                       tree_drive_of(tree, linkage->joints[i].body_a) >= 0 ||
