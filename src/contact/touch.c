@@ -153,15 +153,23 @@ bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *er
 TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 line, double omega_a)
 {
     TouchPose pose = {.offset = offset, .velocity = velocity};
-    if (place->shape == TOUCH_LINE) {
+    double outside = -1.0;
+    switch (place->shape) {
+    case TOUCH_LINE:
         pose.has_normal = true;
         pose.normal = line;
         pose.gap = vec2_dot(line, offset) - place->clearance;
         pose.approach_speed =
             -vec2_dot(line, velocity) - omega_a * vec2_dot(vec2_perp(line), offset);
         return pose;
+    case TOUCH_DISC:
+        outside = 1.0;
+        break;
+    case TOUCH_HOLE:
+    case TOUCH_TURN: // pose_of_end has these
+    case TOUCH_TEETH:
+        break;
     }
-    const double outside = place->shape == TOUCH_DISC ? 1.0 : -1.0;
     const double distance = vec2_length(offset);
     pose.gap = outside * (distance - place->clearance);
     pose.has_normal = distance > 0.0;
@@ -171,20 +179,32 @@ TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 lin
     return pose;
 }
 
+// Along what an end pushes on body b; zero of an angle.
+static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion *motions)
+{
+    switch (place->shape) {
+    case TOUCH_TEETH:
+        return vec2_scale(place->sign, coordinate_along_teeth(linkage, motions, place->joint));
+    case TOUCH_TURN:
+    case TOUCH_HOLE: // which are no ends
+    case TOUCH_DISC:
+    case TOUCH_LINE:
+        break;
+    }
+    return (Vec2){0.0, 0.0};
+}
+
 // An angle or teeth at one end.
 static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const Motion *motions,
                              Vec2 offset, Vec2 velocity)
 {
     const double position = coordinate_position(linkage, motions, place->joint);
-    const bool has_direction = place->shape == TOUCH_TEETH;
     return (TouchPose){
         .offset = offset,
         .velocity = velocity,
         .gap = place->sign * position - place->clearance,
         .has_normal = true,
-        .normal = has_direction ? vec2_scale(place->sign,
-                                             coordinate_along_teeth(linkage, motions, place->joint))
-                                : (Vec2){0.0, 0.0},
+        .normal = push_of_end(linkage, place, motions),
         .approach_speed = -place->sign * coordinate_rate(linkage, motions, place->joint),
     };
 }

@@ -133,6 +133,21 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     return is_on_a ? -work : work;
 }
 
+// How fast the coordinate of an end goes as one of the bodies turns, m or rad per rad.
+static double turning_share(const Joint *joint, const Touch *place, bool is_on_a)
+{
+    switch (place->shape) {
+    case TOUCH_TEETH:
+        return -(is_on_a ? place->radius_a : place->radius_b);
+    case TOUCH_TURN:
+    case TOUCH_HOLE: // which are no ends
+    case TOUCH_DISC:
+    case TOUCH_LINE:
+        break;
+    }
+    return coordinate_sense(joint) * (is_on_a ? -1.0 : 1.0);
+}
+
 // Likewise of an end of an angle, or of teeth: a driven body turns about the ground.
 static double work_at_end(const ImpulseStep *step, size_t number, const Motion *driven,
                           bool is_on_a)
@@ -141,10 +156,7 @@ static double work_at_end(const ImpulseStep *step, size_t number, const Motion *
     const Joint *joint = &step->scenario->linkage.joints[place->joint];
     const size_t row = step->kernel.contacts[number].first_row;
     const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
-    const double turn = place->shape == TOUCH_TEETH
-                            ? -(is_on_a ? place->radius_a : place->radius_b)
-                            : coordinate_sense(joint) * (is_on_a ? -1.0 : 1.0);
-    return early * place->sign * turn * driven->alpha;
+    return early * place->sign * turning_share(joint, place, is_on_a) * driven->alpha;
 }
 
 // The bodies at mid-step with the means of their speeds.

@@ -85,8 +85,15 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
         .has_normal = true,
         .approach_speed = -sign * tree_coordinate_rate(tree, state, joint),
     };
-    if (site->touch.shape == TOUCH_TEETH) {
+    switch (site->touch.shape) {
+    case TOUCH_TEETH:
         pose.normal = vec2_scale(sign / sqrt(vec2_dot(offset, offset)), vec2_perp(offset));
+        break;
+    case TOUCH_TURN:
+    case TOUCH_HOLE: // which are no ends
+    case TOUCH_DISC:
+    case TOUCH_LINE:
+        break;
     }
     return pose;
 }
@@ -94,27 +101,40 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
 static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeState *state,
                          const PlaneSite *site)
 {
-    if (site->touch.shape == TOUCH_HOLE) {
+    switch (site->touch.shape) {
+    case TOUCH_HOLE:
         return pose_in_hole(contact, tree, state, site->pair);
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+        return pose_of_end(tree, state, site);
+    case TOUCH_DISC:
+    case TOUCH_LINE:
+        break;
     }
-    return dynamics_contact_is_turn(site) ? pose_of_end(tree, state, site)
-                                          : pose_outside(tree, state, site);
+    return pose_outside(tree, state, site);
 }
 
 double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
                                const TouchPose *pose)
 {
     const PlaneSite *site = &dynamics->sites[number];
-    if (site->touch.shape == TOUCH_LINE) {
+    bool is_inside = false;
+    switch (site->touch.shape) {
+    case TOUCH_LINE:
         return tree_line_second(&dynamics->tree, state, site->pair);
-    }
-    if (dynamics_contact_is_turn(site)) {
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
         return site->touch.sign * tree_coordinate_second(&dynamics->tree, state, site->touch.joint);
+    case TOUCH_HOLE:
+        is_inside = true;
+        break;
+    case TOUCH_DISC:
+        break;
     }
     const double across = vec2_cross(pose->normal, pose->velocity);
     const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
     return vec2_dot(pose->normal, tree_pair_acceleration(&dynamics->tree, state, site->pair)) +
-           (site->touch.shape == TOUCH_HOLE ? -turning : turning);
+           (is_inside ? -turning : turning);
 }
 
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
@@ -185,6 +205,22 @@ static int find_partner(const Scenario *scenario, const Touch *touches, size_t c
     return is_low ? 1 : is_high ? -1 : 0;
 }
 
+// Whether the force of a site has a moment about the anchors.
+static bool acts_beside(const Touch *touch)
+{
+    switch (touch->shape) {
+    case TOUCH_LINE:
+    case TOUCH_TEETH:
+        return true;
+    case TOUCH_TURN:
+        return false;
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+        break;
+    }
+    return touch->law.friction > 0.0;
+}
+
 static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of_joint)
 {
     const Joint *joint = &dynamics->tree.linkage->joints[touch->joint];
@@ -193,8 +229,7 @@ static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of
     return (PlaneSite){
         .touch = *touch,
         .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,
-        .acts_beside = touch->shape == TOUCH_LINE || touch->shape == TOUCH_TEETH ||
-                       (touch->law.friction > 0.0 && touch->shape != TOUCH_TURN),
+        .acts_beside = acts_beside(touch),
         .end = touch->clearance - touch->sign * tree_coordinate_origin(joint),
     };
 }
@@ -639,14 +674,21 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
     return true;
 }
 
+// Whether a third body counts beside the two that touch.
+static bool is_carried(const Dynamics *dynamics, size_t contact)
+{
+    const int joint = dynamics->sites[contact].touch.joint;
+    return joint_has_carrier(dynamics->tree.linkage->joints[joint].kind);
+}
+
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y)
 {
     const Tree *tree = &dynamics->tree;
     TreeState *state = &dynamics->room.state->tree;
     const double *u = y + tree->coordinate_count;
-    if (dynamics->sites[contact].touch.shape == TOUCH_TEETH) {
-        tree_evaluate(tree, since_s, y, u, state); // their carrier counts, too
+    if (is_carried(dynamics, contact)) {
+        tree_evaluate(tree, since_s, y, u, state);
     } else {
         tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
     }
@@ -658,10 +700,9 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
 size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates)
 {
     const Dynamics *dynamics = (const Dynamics *)system;
-    const PlaneSite *site = &dynamics->sites[contact];
-    return site->touch.shape == TOUCH_TEETH
+    return is_carried(dynamics, contact)
                ? 0
-               : tree_pair_coordinates(&dynamics->tree, site->pair, coordinates);
+               : tree_pair_coordinates(&dynamics->tree, dynamics->sites[contact].pair, coordinates);
 }
 
 // The rates of any mechanism; apart from the shorter way, so that this sets up nothing for it.
