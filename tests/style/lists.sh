@@ -73,7 +73,8 @@ forget coordinate model/joint.h '    JOINT_COORDINATE_TEETH,' 'JOINT_COORDINATE_
     model/coordinate.c model/response_rows.c contact/touch.c casefile/limits.c \
     commands/run/run_text.c ode/stepping.c reference/plane/tree.c reference/plane/plane_system.c
 forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
-    ode/plane/impulse_step.c reference/plane/dynamics_slopes.c
+    ode/plane/impulse_step.c ode/plane/impulse_work.c reference/plane/dynamics.c \
+    reference/plane/dynamics_slopes.c
 forget dimension casefile/units.h 'member(DIMENSION_MASS,' 'member(DIMENSION_NEW)' casefile/units.c
 numbers=model/number_list.h
 row='"new", COUNT, "new", NULL, NULL, NUMBER_EVERYWHERE, 0, new_number(of), "new")'
