@@ -444,6 +444,9 @@ static const double ONE_PLACE = 0.01;
 // a step this near to that of a good trial is not tried instead
 static const double NEAR_STEP = 1.2;
 
+// 1: of what is left for the last trial, whose cost is known by those before
+static const double LAST_SHARE = 0.95;
+
 // 1: of the budget, which has to be spent before the trials show what a step takes
 static const double BUDGET_KNOWN = 0.05;
 
@@ -724,10 +727,11 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
 }
 
 // The step of the last trial: as fine as can be had, unless that is no finer than the best known.
-static double last_step(const Chosen *chosen, double wanted_s)
+static double last_step(const Chosen *chosen)
 {
-    const double finest_s = chosen->cost * scenario_duration(chosen->scenario) / steps_left(chosen);
-    const double step_s = fmin(fmax(wanted_s, finest_s), chosen->choice.first_step_s);
+    const double steps = LAST_SHARE * steps_left(chosen);
+    const double finest_s = chosen->cost * scenario_duration(chosen->scenario) / steps;
+    const double step_s = fmin(finest_s, chosen->choice.first_step_s);
     const bool is_near = chosen->best_step_s > 0.0 && step_s * NEAR_STEP >= chosen->best_step_s;
     return is_near ? chosen->best_step_s : step_s;
 }
@@ -795,7 +799,7 @@ static Trajectory *walk_to_step(Chosen *chosen)
     double step_s = chosen->choice.first_step_s;
     for (;;) {
         const bool is_last = 2.0 * cost_of(chosen, step_s) > steps_left(chosen);
-        step_s = is_last ? last_step(chosen, step_s) : step_s;
+        step_s = is_last ? last_step(chosen) : step_s;
         Trial trial = make_trial(chosen, step_s, is_last);
         if (trial.holds || is_last || chosen->failures == FAILURES_ALIKE) {
             return end_trials(chosen, &trial);
