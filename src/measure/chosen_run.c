@@ -447,6 +447,9 @@ static const double NEAR_STEP = 1.2;
 // 1: of what is left for the last trial, whose cost is known by those before
 static const double LAST_SHARE = 0.95;
 
+// steps for the last trial from one to its half
+static const double LAST_RUNGS = 3.0;
+
 // 1: of the budget, which has to be spent before the trials show what a step takes
 static const double BUDGET_KNOWN = 0.05;
 
@@ -727,11 +730,15 @@ static Trial make_trial(Chosen *chosen, double step_s, bool is_last)
 }
 
 // The step of the last trial: as fine as can be had, unless that is no finer than the best known.
+// It is one of few, so that a budget of time, which is never quite the same, mostly leads to the
+// same.
 static double last_step(const Chosen *chosen)
 {
+    const double first_s = chosen->choice.first_step_s;
     const double steps = LAST_SHARE * steps_left(chosen);
     const double finest_s = chosen->cost * scenario_duration(chosen->scenario) / steps;
-    const double step_s = fmin(finest_s, chosen->choice.first_step_s);
+    const double halvings = floor(LAST_RUNGS * log2(first_s / finest_s)) / LAST_RUNGS;
+    const double step_s = first_s * exp2(-fmax(halvings, 0.0));
     const bool is_near = chosen->best_step_s > 0.0 && step_s * NEAR_STEP >= chosen->best_step_s;
     return is_near ? chosen->best_step_s : step_s;
 }
