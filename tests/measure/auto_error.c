@@ -140,6 +140,7 @@ static void measure(const void *context, void *target)
     if (!judge->is_complete) {
         snprintf(result->message, sizeof result->message, "judge: %.140s", judge->message);
     }
+    move_back(judge);
     started_s = clock_now_s();
     for (int i = 0; result->message[0] == '\0' && i < TOLERANCE_COUNT; i++) {
         scenario.run.tolerance = TOLERANCES[i];
@@ -237,10 +238,17 @@ static void print_summary(const Summary *summaries)
 
 int main(int argc, char **argv)
 {
-    const CaseKind *kind =
-        argc > 1 && strcmp(argv[1], CASE_BODIES.name) == 0 ? &CASE_BODIES : &CASE_FOUR_BAR;
-    if (argc < 4) {
-        fprintf(stderr, "usage: auto_error KIND FIRST LAST [LADDER]\n");
+    static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR, &CASE_BODIES,   &CASE_SPRUNG,
+                                            &CASE_SLIDERS,  &CASE_LIMITS,   &CASE_BALLS,
+                                            &CASE_PENDULA,  &CASE_FOUR_BARS};
+    const CaseKind *kind = NULL;
+    for (size_t i = 0; argc > 3 && i < sizeof KINDS / sizeof *KINDS; i++) {
+        kind = strcmp(argv[1], KINDS[i]->name) == 0 ? KINDS[i] : kind;
+    }
+    if (kind == NULL) {
+        fprintf(stderr, "usage: auto_error KIND FIRST LAST [LADDER]\n"
+                        "kinds: four-bar, bodies, sprung, sliders, limits, balls, pendula, "
+                        "four-bars\n");
         return 2;
     }
     static Summary summaries[TOLERANCE_COUNT];

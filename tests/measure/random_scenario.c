@@ -35,9 +35,10 @@ static void move_anchor(int body, Vec2 *anchor, Vec2 by)
     }
 }
 
+static const Vec2 BY = {0.0721, -0.0413}; // m
+
 Scenario moved_scenario(const Scenario *scenario, double tolerance)
 {
-    static const Vec2 BY = {0.0721, -0.0413}; // m
     Scenario other = kept_copy(scenario);
     Linkage *linkage = &other.linkage;
     for (size_t i = 0; i < linkage->body_count; i++) {
@@ -58,6 +59,13 @@ Scenario moved_scenario(const Scenario *scenario, double tolerance)
     other.has_slidercrank = false;
     other.reference.tolerance = tolerance;
     return other;
+}
+
+void move_back(Trajectory *moved)
+{
+    for (size_t i = 0; i < moved->sample_count * moved->body_count; i++) {
+        moved->motions[i].position = vec2_sub(moved->motions[i].position, BY);
+    }
 }
 
 double apart_until(const Trajectory *run, const Trajectory *judge, const Trajectory *scale,

@@ -13,6 +13,10 @@ bool random_scenario(const CaseKind *kind, uint64_t seed, const char *const *set
 // numbers, and so is their rounding. The tolerance is the reference's.
 Scenario moved_scenario(const Scenario *scenario, double tolerance);
 
+// Takes the bodies of its run to where those of the mechanism itself are: the velocity of a pin in
+// a hole of the ground is told by where it is.
+void move_back(Trajectory *moved);
+
 // The largest distance of a run from its judge at the samples up to a time, s, in the rates and
 // scales of a third trajectory (model/distance.h): past the horizon the judge may move faster.
 double apart_until(const Trajectory *run, const Trajectory *judge, const Trajectory *scale,
