@@ -32,6 +32,7 @@ static Scenario settled_at(const char *tolerance)
                                     "ode.stepping=staggered",
                                     tolerance};
     Scenario scenario = load(CASE, settings, 9);
+    scenario.run.settle_budget = 1000.0; // s: a build with sanitizers takes longer
     settle_scenario(&scenario, (RunWatch){.progress = NULL});
     kept_settled(&scenario);
     assert_true(scenario.settled.motion_count > 0);

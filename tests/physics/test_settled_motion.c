@@ -68,6 +68,7 @@ static void every_start_comes_to_one_motion(void **state)
 static Scenario settled(const char *const *overrides, size_t count)
 {
     Scenario scenario = load(CASE, overrides, count);
+    scenario.run.settle_budget = 1000.0; // s: a build with sanitizers takes longer
     settle_scenario(&scenario, (RunWatch){.progress = NULL});
     kept_settled(&scenario);
     return scenario;
@@ -97,6 +98,7 @@ static void a_mode_that_dies_out_is_no_motion_of_its_own(void **state)
 {
     (void)state;
     Scenario scenario = sprung_slider(NULL, 0);
+    scenario.run.settle_budget = 1000.0; // s: a build with sanitizers takes longer
     settle_scenario(&scenario, (RunWatch){.progress = NULL});
     kept_settled(&scenario);
     assert_int_equal(scenario.settled.motion_count, 1);

@@ -88,8 +88,10 @@ static inline void kept_settled(const Scenario *scenario)
     kept_hold(scenario->settled.first);
     kept_hold(scenario->settled.motions);
     kept_hold(scenario->settled.halved.joints);
+    kept_hold(scenario->settled.halved.alpha);
     kept_hold(scenario->settled.halved.sections);
     kept_hold(scenario->settled.doubled.joints);
+    kept_hold(scenario->settled.doubled.alpha);
     kept_hold(scenario->settled.doubled.sections);
 }
 
