@@ -505,11 +505,6 @@ static Trajectory *chosen_run_fail(const Chosen *chosen, const char *message)
     return none;
 }
 
-static bool is_of_engine(const Chosen *chosen)
-{
-    return chosen->backend != BACKEND_ODE;
-}
-
 static void pass_progress(double share, double wall_s, void *context)
 {
     (void)wall_s;
@@ -521,7 +516,7 @@ static void pass_progress(double share, double wall_s, void *context)
 // its run is over.
 static RunWatch watch_of(Chosen *chosen)
 {
-    const bool is_shown = chosen->watch.run.progress != NULL && !is_of_engine(chosen);
+    const bool is_shown = chosen->watch.run.progress != NULL && !options_is_engine(chosen->backend);
     return (RunWatch){is_shown ? pass_progress : NULL, chosen};
 }
 
@@ -622,7 +617,8 @@ static void chosen_run_count(Chosen *chosen, const Trial *trial)
         // what a short trial costs need not be what the rest of the run would have
         chosen->cost = fmax(chosen->cost, (double)run->steps * trial->step_s / run->stepped_s);
     }
-    if (is_of_engine(chosen)) {
+    // one that did not begin has no steps
+    if (options_is_engine(chosen->backend) && run->steps > 0) {
         chosen->engine_s += run->wall_s;
         pace_take(&chosen->pace, (double)run->steps, run->wall_s);
     }
@@ -655,8 +651,9 @@ static double steps_in_budget(const Chosen *chosen)
     if (budget_s == 0.0 || chosen->steps == 0 || !(spent_s > BUDGET_KNOWN * budget_s)) {
         return INFINITY;
     }
-    return is_of_engine(chosen) ? pace_steps(&chosen->pace, budget_s - spent_s)
-                                : (budget_s - spent_s) * (double)chosen->steps / spent_s;
+    return options_is_engine(chosen->backend)
+               ? pace_steps(&chosen->pace, budget_s - spent_s)
+               : (budget_s - spent_s) * (double)chosen->steps / spent_s;
 }
 
 static double steps_left(const Chosen *chosen)
@@ -680,10 +677,10 @@ static double budget_wanted(const Chosen *chosen, const Trial *trial)
     if (!is_of_budget(chosen)) {
         return 0.0;
     }
-    const double excess = trial->worst / chosen->scenario->run.tolerance;
+    const double excess = fmax(trial->worst, trial->error) / chosen->scenario->run.tolerance;
     const double steps = cost_of(chosen, trial->step_s) * sqrt(fmax(excess, 1.0));
-    return is_of_engine(chosen) ? pace_time(&chosen->pace, steps)
-                                : spent_of(chosen) / (double)chosen->steps * steps;
+    return options_is_engine(chosen->backend) ? pace_time(&chosen->pace, steps)
+                                              : spent_of(chosen) / (double)chosen->steps * steps;
 }
 
 static Trajectory *finish(const Chosen *chosen, Trial *trial)
@@ -794,8 +791,9 @@ static double step_after(const Chosen *chosen, const Trial *trial)
         return step_choice_after_failure(trial->step_s);
     }
     const double share = trial->held_s / scenario_duration(chosen->scenario);
-    const double dearer_s = step_choice_dearer(
-        work_of(chosen), trial->step_s, is_of_engine(chosen) ? DEARER_WHOLE : dearer_after(share));
+    const double dearer_s =
+        step_choice_dearer(work_of(chosen), trial->step_s,
+                           options_is_engine(chosen->backend) ? DEARER_WHOLE : dearer_after(share));
     return trial->held_s == 0.0 && options->tolerance_of == TOLERANCE_OF_MOTION
                ? fmin(dearer_s, step_choice_after_first_sample(trial->step_s, excess))
                : dearer_s;

@@ -182,10 +182,10 @@ static bool pair_make(const Scenario *scenario, const Touch *touch, const dBodyI
     }
     if (scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) {
         return err_set(err, ERR_SOLVER,
-                       "collider %s is for pins in their holes only, and joint '%s' is a %s; use "
+                       "collider %s is for pins in their holes only, and joint '%s' is %s; use "
                        "collider pin-hole",
                        OPTIONS_ODE_COLLIDERS[scenario->ode.collider], joint->name,
-                       joint_has_guides(joint->kind) ? "block between guides" : "stop");
+                       joint_words(joint->kind));
     }
     place_line_of(joint, pair);
     pair->is_corner = joint_has_guides(joint->kind);
