@@ -12,6 +12,7 @@
 #include "casefile/loads.h"
 #include "casefile/slider.h"
 #include "casefile/store.h"
+#include "casefile/teeth.h"
 #include "casefile/unused.h"
 #include "model/common_period.h"
 #include "model/space.h"
@@ -207,7 +208,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     }
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
     complete_motor(entries, &scenario->linkage);
-    if (!limits_join_gears(entries, &scenario->linkage, err) ||
+    if (!teeth_join(entries, &scenario->linkage, err) ||
         !drives_complete(entries, &scenario->linkage, err) ||
         !loads_complete(entries, &scenario->linkage, err)) {
         return false;

@@ -11,6 +11,7 @@
 #include "casefile/keys.h"
 #include "casefile/limits.h"
 #include "casefile/speeds.h"
+#include "casefile/teeth.h"
 #include "model/forces.h"
 #include "model/joint_rows.h"
 #include "model/kinematics.h"
@@ -204,8 +205,8 @@ static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Joint *joint = &linkage->joints[i];
         const Vec2 point = joint->anchor_a;
-        if (joint_has_carrier(joint->kind)) {
-            continue; // its anchors are those of its pivots
+        if (joint_has_teeth(joint->kind)) {
+            continue; // its anchors are those of the joints that guide it
         }
         const Vec2 other = joint_has_disc(joint->kind) ? joint->anchor_b : point;
         joint->anchor_a = to_body(motions, joint->body_a, point);
@@ -217,7 +218,7 @@ static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
         start_drive(linkage, motions, i == 0 ? &linkage->driver : &linkage->further[i - 1]);
     }
-    limits_place_gears(linkage, motions);
+    teeth_place(linkage, motions);
 }
 
 // The first of the further drives that prescribes what others do already; their number where there

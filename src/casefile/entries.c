@@ -122,11 +122,11 @@ typedef struct Habit {
 
 static const char KINDS[] =
     "the keys make the kind of a joint: none an ideal pivot, hole and pin one with play, along one "
-    "that slides, gears a pair of gears (of racks there is none)";
+    "that slides, gears a pair of gears, rack a rack and pinion";
 static const char PLAY[] =
     "the key is radial-clearance, half of the diametral clearance (hole - pin)";
 static const char RACK[] =
-    "there are no racks; a gear of very many teeth, whose pivot is far away, moves nearly straight";
+    "the key is rack, with the rack's guide and the pinion's pivot: rack: [guide, pivot]";
 
 static const Habit HABITS[] = {
     {NULL, "clearance", PLAY},
@@ -134,7 +134,6 @@ static const Habit HABITS[] = {
     {NULL, "play", PLAY},
     {"joints.*", "kind", KINDS},
     {"joints.*", "type", KINDS},
-    {"joints.*", "rack", RACK},
     {"joints.*", "pinion", RACK},
     {"joints.*", "rack-and-pinion", RACK},
     {"joints.*", "diameter", "the keys are hole and pin, both diameters"},

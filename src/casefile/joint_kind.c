@@ -19,6 +19,7 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         {JOINT_STOP, "joints.*.at-a joints.*.at-b joints.*.normal joints.*.radius joints.*.discs"},
         {JOINT_GUIDE, "joints.*.guide joints.*.block joints.*.length"},
         {JOINT_PRISMATIC, "joints.*.along"},
+        {JOINT_RACK, "joints.*.rack"},
         {JOINT_GEAR, "joints.*.gears joints.*.teeth"},
         {JOINT_REVOLUTE, "joints.*.backlash joints.*.low joints.*.high"},
         {JOINT_CLEARANCE, "joints.*.hole joints.*.pin joints.*.radial-clearance joints.*.width "

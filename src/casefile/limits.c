@@ -1,8 +1,8 @@
-// Reads what limits the coordinate of a joint, and which gears mesh.
+// Reads what limits the coordinate of a joint.
 //
-// A pivot's coordinate is an angle, that of a slider and of gears a length; a backlash of gears may
-// be given as the angle of the second gear with the first one held, and becomes a length once the
-// pitch radii are known: r = a z / (z_1 + z_2), a the distance of the pivots, z numbers of teeth.
+// A pivot's coordinate is an angle, that of a slider and of teeth a length; a backlash of teeth may
+// be given as the angle of the second body with the first one held, and becomes a length once the
+// pitch radii are known (casefile/teeth.c).
 #include "casefile/limits.h"
 
 #include "base/zeroed.h"
@@ -66,7 +66,7 @@ static void put(const Target *target, const TargetNumber *number, Joint *joint)
     }
 }
 
-// Whether a number of gears stands as an angle.
+// Whether a number of teeth stands as an angle.
 static bool is_angle(const Node *node)
 {
     double value;
@@ -80,6 +80,7 @@ static bool may_be_angle(JointKind kind)
 {
     switch (joint_coordinate(kind)) {
     case JOINT_COORDINATE_TEETH:
+    case JOINT_COORDINATE_RACK:
         return true;
     case JOINT_COORDINATE_NONE:
     case JOINT_COORDINATE_ANGLE:
@@ -98,9 +99,8 @@ SchemaRow limits_row(const SchemaRow *row, JointKind kind, const Node *value)
 {
     const bool is_force = row->family == SCHEMA_JOINT &&
                           (row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_DAMPER);
-    const bool is_of_gears = may_be_angle(kind) && is_length(row->type) && is_angle(value);
-    const bool is_turned =
-        is_of_gears || (joint_has_angle(kind) && (is_force || is_length(row->type)));
+    const bool is_turn = may_be_angle(kind) && is_length(row->type) && is_angle(value);
+    const bool is_turned = is_turn || (joint_has_angle(kind) && (is_force || is_length(row->type)));
     SchemaRow own = is_turned ? as_angle(row) : *row;
     own.type = is_length(row->type) ? SCHEMA_QUANTITY : own.type;
     return own;
@@ -110,7 +110,7 @@ bool limits_store(const Target *target, Joint *joint)
 {
     const SchemaRow *row = target->entry->row;
     const Node *node = target->entry->node;
-    const bool is_of_gears = may_be_angle(joint->kind) && is_length(row->type) && is_angle(node);
+    const bool is_turn = may_be_angle(joint->kind) && is_length(row->type) && is_angle(node);
     if (row->type == SCHEMA_START && node->kind == NODE_SCALAR &&
         strcmp(node->text, row->default_words) == 0) {
         return true;
@@ -123,138 +123,11 @@ bool limits_store(const Target *target, Joint *joint)
     if (!target_number(&of_own, node, &number)) {
         return false;
     }
-    joint->gear.is_start_angle =
-        row->type == SCHEMA_START ? is_of_gears : joint->gear.is_start_angle;
+    joint->gear.is_start_angle = row->type == SCHEMA_START ? is_turn : joint->gear.is_start_angle;
     joint->gear.is_backlash_angle =
-        row->type == SCHEMA_COORDINATE ? is_of_gears : joint->gear.is_backlash_angle;
+        row->type == SCHEMA_COORDINATE ? is_turn : joint->gear.is_backlash_angle;
     put(target, &number, joint);
     return true;
-}
-
-bool limits_store_teeth(const Target *target, Gear *gear)
-{
-    const Node *pair[2];
-    const Node *node = target->entry->node;
-    TargetNumber teeth[2] = {{.value = 0.0}, {.value = 0.0}};
-    if (!target_pair(node, pair)) {
-        return target_refuse(target, node->span, "%s takes two numbers of teeth", target->path);
-    }
-    for (int i = 0; i < 2; i++) {
-        if (!target_number(target, pair[i], &teeth[i])) {
-            return false;
-        }
-        if (teeth[i].value != trunc(teeth[i].value)) {
-            return source_error(target->entry->source, pair[i]->span,
-                                "a whole number; for a ratio alone two whole numbers in it, such "
-                                "as [41, 80] for 20.5 to 40",
-                                target->err, "%.12g is no number of teeth", teeth[i].value);
-        }
-    }
-    const bool is_internal = teeth[0].value < 0.0 || teeth[1].value < 0.0;
-    const double sum = teeth[0].value + teeth[1].value;
-    if (teeth[0].value == 0.0 || teeth[1].value == 0.0 || sum == 0.0 ||
-        (is_internal && teeth[0].value * teeth[1].value > 0.0)) {
-        return source_error(target->entry->source, node->span,
-                            "two numbers above 0, or one below 0 of an internal gear, which is the "
-                            "larger one",
-                            target->err, "no gears have these numbers of teeth");
-    }
-    gear->teeth[0] = teeth[0].value;
-    gear->teeth[1] = teeth[1].value;
-    return true;
-}
-
-// The body that two pivots share; -2 where they share none.
-static int shared_body(const Joint *first, const Joint *second)
-{
-    const int bodies[2] = {first->body_a, first->body_b};
-    for (int i = 0; i < 2; i++) {
-        if (bodies[i] == second->body_a || bodies[i] == second->body_b) {
-            return bodies[i];
-        }
-    }
-    return LINKAGE_GROUND - 1;
-}
-
-static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *err)
-{
-    Joint *joint = &linkage->joints[index];
-    const Entry *gears = entries_find(entries, "joints.*.gears", index);
-    const Joint *pivots[2];
-    for (int i = 0; i < 2; i++) {
-        pivots[i] = &linkage->joints[joint->gear.pivots[i]];
-        if (!joint_has_angle(pivots[i]->kind)) {
-            // a rack is what is meant by teeth on a body that slides
-            const bool is_rack = joint_has_position(pivots[i]->kind);
-            return entries_refuse(gears, err,
-                                  "gears turn about ideal pivots, and '%s' is none%s\nallowed: two "
-                                  "pivots such as [pinion, wheel]%s",
-                                  pivots[i]->name, is_rack ? "; there are no racks" : "",
-                                  is_rack ? "; a gear of very many teeth, whose pivot is far away, "
-                                            "moves nearly straight"
-                                          : "");
-        }
-    }
-    const int carrier = shared_body(pivots[0], pivots[1]);
-    const double distance = vec2_length(vec2_sub(pivots[0]->anchor_a, pivots[1]->anchor_a));
-    if (pivots[0] == pivots[1] || carrier < LINKAGE_GROUND || !(distance > 0.0)) {
-        return entries_refuse(gears, err,
-                              "the pivots '%s' and '%s' %s\nallowed: two pivots of one body, or of "
-                              "the ground, at a distance",
-                              pivots[0]->name, pivots[1]->name,
-                              pivots[0] == pivots[1]     ? "are one"
-                              : carrier < LINKAGE_GROUND ? "are on no common body"
-                                                         : "are at the same position");
-    }
-    joint->gear.carrier = carrier;
-    joint->body_a = pivots[0]->body_a == carrier ? pivots[0]->body_b : pivots[0]->body_a;
-    joint->body_b = pivots[1]->body_a == carrier ? pivots[1]->body_b : pivots[1]->body_a;
-    return joint->body_a != joint->body_b ||
-           entries_refuse(gears, err,
-                          "both pivots turn one body\nallowed: two pivots of two bodies");
-}
-
-bool limits_join_gears(const Entries *entries, Linkage *linkage, Err *err)
-{
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        if (joint_has_carrier(linkage->joints[i].kind) && !join(entries, i, linkage, err)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-// The pitch circles share the distance of the pivots.
-static void place_gears(Linkage *linkage, const Motion *motions, int number)
-{
-    Joint *joint = &linkage->joints[number];
-    Gear *gear = &joint->gear;
-    const Joint *first = &linkage->joints[gear->pivots[0]];
-    const Joint *second = &linkage->joints[gear->pivots[1]];
-    joint->anchor_a = first->body_a == joint->body_a ? first->anchor_a : first->anchor_b;
-    joint->anchor_b = second->body_a == joint->body_b ? second->anchor_a : second->anchor_b;
-    const double distance = vec2_length(linkage_joint_gap(linkage, motions, number).position);
-    const double sum = gear->teeth[0] + gear->teeth[1];
-    gear->radius_a = distance * gear->teeth[0] / sum;
-    gear->radius_b = distance * gear->teeth[1] / sum;
-    joint->limits.backlash *= gear->is_backlash_angle ? fabs(gear->radius_b) : 1.0;
-    joint->limits.start *= gear->is_start_angle ? fabs(gear->radius_b) : 1.0;
-    gear->is_backlash_angle = gear->is_start_angle = false;
-}
-
-void limits_place_gears(Linkage *linkage, const Motion *motions)
-{
-    for (int i = 0; i < (int)linkage->joint_count; i++) {
-        switch (joint_coordinate(linkage->joints[i].kind)) {
-        case JOINT_COORDINATE_TEETH:
-            place_gears(linkage, motions, i);
-            break;
-        case JOINT_COORDINATE_NONE:
-        case JOINT_COORDINATE_ANGLE:
-        case JOINT_COORDINATE_POSITION:
-            break;
-        }
-    }
 }
 
 void limits_settle(Linkage *linkage)

@@ -1,5 +1,4 @@
-// What a case says about the coordinate of a joint: its backlash or stops, their contact, and pairs
-// of gears.
+// What a case says about the coordinate of a joint: its backlash or stops, and their contact.
 #pragma once
 
 #include "casefile/target.h"
@@ -17,16 +16,6 @@ SchemaRow limits_row(const SchemaRow *row, JointKind kind, const Node *value);
 // Stores a value of a key that depends on what the coordinate of its joint is: an angle or a
 // length. Of the kinds SCHEMA_COORDINATE, SCHEMA_DAMPER, SCHEMA_STIFFNESS and SCHEMA_START.
 bool limits_store(const Target *target, Joint *joint);
-
-// Stores the teeth of a pair of gears.
-bool limits_store_teeth(const Target *target, Gear *gear);
-
-// Finds the bodies and the carrier of every pair of gears from their pivots, once the joints'
-// bodies are known.
-bool limits_join_gears(const Entries *entries, Linkage *linkage, Err *err);
-
-// Gives gears their pitch radii and anchors, once anchors are those of the bodies' frames.
-void limits_place_gears(Linkage *linkage, const Motion *motions);
 
 // Centres gaps about where the bodies start, once that is known.
 void limits_settle(Linkage *linkage);

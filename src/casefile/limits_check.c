@@ -74,8 +74,9 @@ bool limits_check(const Entries *entries, size_t index, const Scenario *scenario
     if (joint_has_teeth(joint->kind) && joint->limits.kind == LIMIT_NONE) {
         return entries_refuse_group(entries_group(entries, "joints.*", index), err,
                                     "joints.%s.backlash is missing\nallowed: a length at the pitch "
-                                    "circle such as 0.1 mm, or an angle of the second gear",
-                                    joint->name);
+                                    "circle such as 0.1 mm, or an angle of the %s",
+                                    joint->name,
+                                    joint_has_rack(joint->kind) ? "pinion" : "second gear");
     }
     return check_order(entries, index, joint, err) && check_contact(entries, index, scenario, err);
 }

@@ -112,7 +112,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                           "centred, or [x, y] such as [5 um, 0 um]"},
         [SCHEMA_COORDINATE] = {"an angle, or a length", "an angle such as 0.6 deg, or a length "
                                                         "such as 0.2 mm"},
-        [SCHEMA_PIVOTS] = {"[joint, joint]", "two pivots such as [pinion, wheel]"},
+        [SCHEMA_PIVOTS] = {"[joint, joint]",
+                           "two joints such as [pinion, wheel], or [guide, pinion] of a rack"},
         [SCHEMA_TEETH] = {"[whole number, whole number]", "two whole numbers such as [20, 60]"},
         [SCHEMA_DISCS] = {"[length, length]", "two diameters such as [20 mm, 20 mm]"},
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},

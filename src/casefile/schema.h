@@ -28,7 +28,7 @@ typedef enum SchemaType {
                        // or `centred`
     SCHEMA_COORDINATE, // angle of a hinge, length of a slider or of gears -> double of a Limits
     SCHEMA_DAMPER,     // damping of a joint's contact -> double
-    SCHEMA_PIVOTS,     // [joint, joint] -> the pivots of a Gear
+    SCHEMA_PIVOTS,     // [joint, joint] -> the joints that guide teeth: pivots of a Gear
     SCHEMA_TEETH,      // [number, number] -> the teeth of a Gear
     SCHEMA_DISCS,      // [diameter, diameter] -> the radii of a Stop
     SCHEMA_HEADING,    // angle of the world -> Joint.direction, of body a once it is placed

@@ -18,7 +18,7 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                "radial-clearance, a pin with play; along an ideal prismatic joint, with guide, block "
                "and length as well a block with play between guides, or a sleeve round a rod; at-a and "
                "at-b a stop, where two bodies touch that are not joined; gears and teeth a pair of "
-               "gears. An ideal pivot or prismatic joint with backlash, or with low and high, has "
+               "gears; rack a rack and pinion. An ideal pivot or prismatic joint with backlash, or with low and high, has "
                "flanks or stops at the ends of its coordinate. With space: spatial there are only pins, "
                "and pivots with or without limits."},
     {"springs", "Springs with dampers along the line between two points, in the plane."},

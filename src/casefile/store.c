@@ -6,6 +6,7 @@
 #include "casefile/loads.h"
 #include "casefile/over_time.h"
 #include "casefile/target.h"
+#include "casefile/teeth.h"
 
 #include <float.h>
 #include <math.h>
@@ -307,14 +308,14 @@ static bool find_name(const Target *target, const Node *node, SchemaFamily famil
     return true; // the ground is LINKAGE_GROUND, which is what an unknown name has
 }
 
-// The two pivots of a pair of gears.
+// The two joints that guide teeth.
 static bool store_pivots(const Target *target, Gear *gear)
 {
     const Node *pair[2];
     return target_pair(target->entry->node, pair)
                ? find_name(target, pair[0], SCHEMA_JOINT, false, &gear->pivots[0]) &&
                      find_name(target, pair[1], SCHEMA_JOINT, false, &gear->pivots[1])
-               : target_refuse(target, target->entry->node->span, "%s takes the two pivots",
+               : target_refuse(target, target->entry->node->span, "%s takes two joints",
                                target->path);
 }
 
@@ -382,7 +383,7 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_PIVOTS:
         return store_pivots(&target, target.field);
     case SCHEMA_TEETH:
-        return limits_store_teeth(&target, &scenario->linkage.joints[entry->index].gear);
+        return teeth_store(&target, &scenario->linkage.joints[entry->index].gear);
     case SCHEMA_DISCS:
         return store_discs(&target, target.field);
     case SCHEMA_GRAVITY:

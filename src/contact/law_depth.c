@@ -43,7 +43,8 @@ static Parts parts_of(JointKind kind)
     case JOINT_TOUCHES_GUIDES:
         return (Parts){"block", "its guide"};
     case JOINT_TOUCHES_TEETH:
-        return (Parts){"second gear", "the first one"};
+        return joint_has_rack(kind) ? (Parts){"pinion", "its rack"}
+                                    : (Parts){"second gear", "the first one"};
     case JOINT_TOUCHES_DISC:
     case JOINT_TOUCHES_NOTHING:
         break;

@@ -58,6 +58,8 @@ static TouchShape shape_of_end(JointKind kind)
         return TOUCH_LINE;
     case JOINT_COORDINATE_TEETH:
         return TOUCH_TEETH;
+    case JOINT_COORDINATE_RACK:
+        return TOUCH_RACK;
     case JOINT_COORDINATE_ANGLE:
     case JOINT_COORDINATE_NONE:
         break;
@@ -91,6 +93,7 @@ static size_t place_ends(const Joint *joint, int number, Touch places[TOUCH_CORN
             continue;
         }
         end->sign = sign;
+        end->direction = joint->direction;
         end->clearance = sign * ends[i];
         end->radius_a = joint->gear.radius_a;
         end->radius_b = joint->gear.radius_b;
@@ -168,6 +171,7 @@ TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 lin
     case TOUCH_HOLE:
     case TOUCH_TURN: // pose_of_end has these
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         break;
     }
     const double distance = vec2_length(offset);
@@ -184,6 +188,7 @@ static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion
 {
     switch (place->shape) {
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         return vec2_scale(place->sign, coordinate_along_teeth(linkage, motions, place->joint));
     case TOUCH_TURN:
     case TOUCH_HOLE: // which are no ends
@@ -246,6 +251,11 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
         *from_b = vec2_sub(*from_a, pose->offset);
         break;
     }
+    case TOUCH_RACK:
+        // where the pinion's pitch circle is nearest to the pitch line
+        *from_b = vec2_scale(-place->radius_b * place->sign, vec2_perp(pose->normal));
+        *from_a = vec2_add(pose->offset, *from_b);
+        break;
     case TOUCH_LINE:
     case TOUCH_TURN:
         // on body b: the circle's lowest point; of body a the point beside it

@@ -12,6 +12,7 @@
 // of the coordinate q itself (model/coordinate.h):
 //     turn    gap = s q - c,      no n               a torque s N on body b, in the sense of q
 //     teeth   gap = s q - c,      n = s t            t the pitch circles' tangent
+//     rack    gap = s q - c,      n = s t            t the pitch line's direction
 // s is 1 at the low end and c its value, -1 at the high end and c less its value. Lengths are
 // angles at a turn, and forces torques.
 #pragma once
@@ -30,6 +31,7 @@ typedef enum TouchShape {
     TOUCH_LINE,  // a circle or point of body b at a line of body a
     TOUCH_TURN,  // an end of a revolute joint's angle
     TOUCH_TEETH, // a flank of a pair of gears
+    TOUCH_RACK,  // a flank of a rack on body a and a pinion
 } TouchShape;
 
 enum { TOUCH_CORNERS = 4 };
@@ -40,10 +42,11 @@ typedef struct Touch {
     TouchShape shape;
     Vec2 anchor_a;    // in body a's frame, m: centre of hole or disc, a point of the line
     Vec2 anchor_b;    // in body b's frame, m: centre of the circle
-    double direction; // rad, in body a's frame: of a line's normal, away from the wall
+    double direction; // rad, in body a's frame: of a line's normal, away from the wall; of a rack's
+                      // pitch line
     double clearance; // m, or rad at a turn: c above
     double sign;      // s above; 0 of other shapes
-    double radius_a;  // m, of hole, disc or pitch circle; 0 of a line
+    double radius_a;  // m, of hole, disc or pitch circle; 0 of a line, infinite of a rack
     double radius_b;  // m
     ForceLaw law;     // of this place alone
 } Touch;
@@ -70,6 +73,7 @@ static inline bool touch_is_scalar(const Touch *place)
     case TOUCH_LINE:
     case TOUCH_TURN:
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         break;
     }
     return true;
@@ -81,6 +85,7 @@ static inline bool touch_is_end(const Touch *place)
     switch (place->shape) {
     case TOUCH_TURN:
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         return true;
     case TOUCH_HOLE:
     case TOUCH_DISC:

@@ -48,6 +48,8 @@ static KindWords words_of(JointKind kind)
         return (KindWords){NULL, "stops"};
     case JOINT_GEAR:
         return (KindWords){NULL, "gears"};
+    case JOINT_RACK:
+        return (KindWords){NULL, "a rack and pinion"};
     case JOINT_KIND_COUNT:
         break;
     }

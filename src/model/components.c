@@ -58,13 +58,15 @@ static int renumber(const int *own, int body)
     return body == LINKAGE_GROUND ? LINKAGE_GROUND : own[body];
 }
 
-// Gives a component's gears the numbers that their carriers and pivots have there.
+// Gives a component's teeth the numbers that their carriers and pivots have there.
 static void renumber_gears(const int *own_body, const int *own_joint, Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Gear *gear = &linkage->joints[i].gear;
         if (joint_has_carrier(linkage->joints[i].kind)) {
             gear->carrier = renumber(own_body, gear->carrier);
+        }
+        if (joint_has_teeth(linkage->joints[i].kind)) {
             gear->pivots[0] = own_joint[gear->pivots[0]];
             gear->pivots[1] = own_joint[gear->pivots[1]];
         }

@@ -1,14 +1,17 @@
 // Finds where the coordinate of a joint stands that flanks or stops limit.
 //
-//     revolute     q = phi_b - phi_a                          (the other sign where b is the
-//     ground) prismatic    q = t . d gears        q = -(r_a (phi_a - phi_c) + r_b (phi_b - phi_c))
+//     revolute     q = phi_b - phi_a        (the other sign where b is the ground)
+//     prismatic    q = t . d
+//     gears        q = -(r_a (phi_a - phi_c) + r_b (phi_b - phi_c))
+//     rack         q = t . d + r_b (phi_b - phi_a)
 // t the line's direction on body a, d from anchor a to anchor b; r pitch radii, r_a + r_b the
 // distance of the centres, c the carrier of both pivots. With u from centre a to centre b and t =
 // perp u the pitch circles touch at P = centre a + r_a u, and
 //     q' = t . (v_b(P) - v_a(P))
 // while the pivots hold: a force t on body b at P, and the other way on body a, is the push along
 // q. What bears the gears answers in the pivots. The pressure angle's part of the force, along u,
-// does no work and is left out.
+// does no work and is left out. Of a rack P = centre b - r_b perp t, wherever its guide and the
+// pinion's pivot let the bodies be.
 #include "model/coordinate.h"
 
 #include <math.h>
@@ -46,20 +49,35 @@ static double omega_of(const Motion *motions, int body)
     return body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
 }
 
+// How far anchor b is along the line of body a, and the rate of that.
+static double along_line(const Linkage *linkage, const Motion *motions, int joint)
+{
+    const Vec2 gap = linkage_joint_gap(linkage, motions, joint).position;
+    return vec2_dot(joint_rows_along(linkage, motions, joint), gap);
+}
+
+static double along_line_rate(const Linkage *linkage, const Motion *motions, int joint)
+{
+    const JointGap gap = linkage_joint_gap(linkage, motions, joint);
+    const Vec2 along = joint_rows_along(linkage, motions, joint);
+    const double a = omega_of(motions, linkage->joints[joint].body_a);
+    return vec2_dot(along, gap.velocity) + a * vec2_dot(vec2_perp(along), gap.position);
+}
+
 double coordinate_position(const Linkage *linkage, const Motion *motions, int joint)
 {
     const Joint *of = &linkage->joints[joint];
     const double a = angle_of(motions, of->body_a);
     const double b = angle_of(motions, of->body_b);
     switch (joint_coordinate(of->kind)) {
-    case JOINT_COORDINATE_POSITION: {
-        const Vec2 gap = linkage_joint_gap(linkage, motions, joint).position;
-        return vec2_dot(joint_rows_along(linkage, motions, joint), gap);
-    }
+    case JOINT_COORDINATE_POSITION:
+        return along_line(linkage, motions, joint);
     case JOINT_COORDINATE_TEETH: {
         const double carrier = angle_of(motions, of->gear.carrier);
         return -(of->gear.radius_a * (a - carrier) + of->gear.radius_b * (b - carrier));
     }
+    case JOINT_COORDINATE_RACK:
+        return along_line(linkage, motions, joint) + of->gear.radius_b * (b - a);
     case JOINT_COORDINATE_NONE:
     case JOINT_COORDINATE_ANGLE:
         break;
@@ -73,11 +91,10 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
     const double a = omega_of(motions, of->body_a);
     const double b = omega_of(motions, of->body_b);
     switch (joint_coordinate(of->kind)) {
-    case JOINT_COORDINATE_POSITION: {
-        const JointGap gap = linkage_joint_gap(linkage, motions, joint);
-        const Vec2 along = joint_rows_along(linkage, motions, joint);
-        return vec2_dot(along, gap.velocity) + a * vec2_dot(vec2_perp(along), gap.position);
-    }
+    case JOINT_COORDINATE_POSITION:
+        return along_line_rate(linkage, motions, joint);
+    case JOINT_COORDINATE_RACK:
+        return along_line_rate(linkage, motions, joint) + of->gear.radius_b * (b - a);
     case JOINT_COORDINATE_TEETH: {
         const double carrier = omega_of(motions, of->gear.carrier);
         return -(of->gear.radius_a * (a - carrier) + of->gear.radius_b * (b - carrier));
@@ -91,6 +108,9 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
 
 Vec2 coordinate_along_teeth(const Linkage *linkage, const Motion *motions, int joint)
 {
+    if (joint_has_rack(linkage->joints[joint].kind)) {
+        return joint_rows_along(linkage, motions, joint);
+    }
     const Vec2 between = linkage_joint_gap(linkage, motions, joint).position;
     return vec2_perp(vec2_scale(1.0 / vec2_length(between), between));
 }
@@ -127,6 +147,13 @@ void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, Jo
         // from centre a to centre b is the direction turned back
         const Vec2 outward = vec2_scale(-of->gear.radius_a, vec2_perp(along));
         push_at(linkage, motions, joint, along, vec2_add(centre, outward), row);
+        break;
+    }
+    case JOINT_COORDINATE_RACK: {
+        const Vec2 along = coordinate_along_teeth(linkage, motions, joint);
+        const Vec2 centre = linkage_point(motions, of->body_b, of->anchor_b);
+        const Vec2 inward = vec2_scale(-of->gear.radius_b, vec2_perp(along));
+        push_at(linkage, motions, joint, along, vec2_add(centre, inward), row);
         break;
     }
     }

@@ -2,7 +2,8 @@
 //
 // Of a revolute joint the angle, rad, as linkage_turning has it; of a prismatic joint the position
 // of body b's anchor along the line, m; of a pair of gears how far the pitch circle of body b has
-// come round against that of body a where they touch, m. Angles count beyond a turn.
+// come round against that of body a where they touch, m; of a rack and pinion how far the pinion's
+// pitch circle has come along the rack's pitch line, m. Angles count beyond a turn.
 #pragma once
 
 #include "model/joint_rows.h"
@@ -18,17 +19,19 @@ double coordinate_play(const Joint *joint);
 double coordinate_position(const Linkage *linkage, const Motion *motions, int joint);
 
 // Its rate, rad/s or m/s, in the bodies' velocities: that of gears holds while their pivots do.
+// That of a rack holds wherever the two bodies are.
 double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint);
 
 // The sign with which the coordinate of a revolute joint follows the angle of body b less that of
 // body a: -1 where b is the ground.
 double coordinate_sense(const Joint *joint);
 
-// The direction in which the teeth of gear b move against those of gear a as the coordinate grows:
-// the line from the centre of gear a to that of gear b, turned by a quarter turn; unit.
+// The direction in which the teeth of body b move against those of body a as the coordinate grows,
+// unit: of gears the line from the centre of gear a to that of gear b, turned by a quarter turn; of
+// a rack that of its pitch line.
 Vec2 coordinate_along_teeth(const Linkage *linkage, const Motion *motions, int joint);
 
 // What the rate is made of. A push along the coordinate acts on the bodies with the same
 // coefficients: on a hinge torques, between gears forces at the point where their pitch circles
-// touch, along their common tangent.
+// touch, along their common tangent, and of a rack where the pinion's pitch circle is nearest.
 void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, JointRow *row);

@@ -25,8 +25,8 @@ typedef enum JointTouches {
                           // round a rod of body a
     JOINT_TOUCHES_DISC,   // a disc on body b and a line or a disc of body a, from outside; nothing
                           // while apart
-    JOINT_TOUCHES_TEETH,  // of two gears, bodies a and b, on pivots of one carrier, which are
-                          // joints of their own: the ends of its coordinate
+    JOINT_TOUCHES_TEETH,  // of two gears on pivots, or of a rack on its guide and a pinion on its
+                          // pivot, which are joints of their own: the ends of its coordinate
 } JointTouches;
 
 // The coordinate of a joint, which limits, drives and loads are for (model/coordinate.h).
@@ -35,6 +35,7 @@ typedef enum JointCoordinate {
     JOINT_COORDINATE_ANGLE,    // rad, of body b against body a
     JOINT_COORDINATE_POSITION, // m, of the anchor on body b along the line of body a
     JOINT_COORDINATE_TEETH,    // m, along the pitch circles
+    JOINT_COORDINATE_RACK,     // m, of the pitch circle of body b along the pitch line of body a
 } JointCoordinate;
 
 // The kinds: a row each, its enumerator; by what it holds its bodies, what touches, and its
@@ -48,7 +49,8 @@ typedef enum JointCoordinate {
     member(with, JOINT_PRISMATIC, LINE,    NOTHING, POSITION, 2, false, "a prismatic joint without play") \
     member(with, JOINT_GUIDE,     LINE,    GUIDES,  NONE,     2, false, "a block between guides") \
     member(with, JOINT_STOP,      NOTHING, DISC,    NONE,     2, false, "a stop") \
-    member(with, JOINT_GEAR,      NOTHING, TEETH,   TEETH,    3, false, "a pair of gears")
+    member(with, JOINT_GEAR,      NOTHING, TEETH,   TEETH,    3, false, "a pair of gears") \
+    member(with, JOINT_RACK,      NOTHING, TEETH,   RACK,     2, false, "a rack and pinion")
 // clang-format on
 #define JOINT_KIND(with, id, ...) id,
 typedef enum JointKind { JOINT_KIND_LIST(JOINT_KIND, _) JOINT_KIND_COUNT } JointKind;
@@ -80,6 +82,7 @@ typedef enum JointKinds {
     JOINTS_WITH_COORDINATE = JOINTS_ALL - (0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, NONE)),
     JOINTS_WITH_ANGLE = 0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, ANGLE),
     JOINTS_WITH_POSITION = 0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, POSITION),
+    JOINTS_WITH_RACK = 0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, RACK),
     JOINTS_WITH_CARRIER = 0 JOINT_KIND_LIST(JOINT_IF_BODIES, 3),
     JOINTS_IN_SPACE = 0 JOINT_KIND_LIST(JOINT_IF_SPATIAL, true),
 } JointKinds;
@@ -139,7 +142,7 @@ static inline bool joint_has_disc(JointKind kind)
     return joint_is_among(kind, JOINTS_WITH_DISC);
 }
 
-// Whether the teeth of two gears touch.
+// Whether teeth touch; the joints by which it is known where they are stand in Joint.gear.
 static inline bool joint_has_teeth(JointKind kind)
 {
     return joint_is_among(kind, JOINTS_WITH_TEETH);
@@ -155,6 +158,12 @@ static inline bool joint_has_angle(JointKind kind)
 static inline bool joint_has_position(JointKind kind)
 {
     return joint_is_among(kind, JOINTS_WITH_POSITION);
+}
+
+// Whether teeth touch along a line that one of its bodies carries.
+static inline bool joint_has_rack(JointKind kind)
+{
+    return joint_is_among(kind, JOINTS_WITH_RACK);
 }
 
 // Whether it has a third body, which carries the other two.

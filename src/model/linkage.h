@@ -112,11 +112,17 @@ typedef struct Limits {
 
 // A pair of gears. Their pitch circles touch on the line of their centres; the radius of an
 // internal gear is negative, and both together are the distance of the centres.
+//
+// Of a rack body a is the rack and body b the pinion. The pitch line goes through the anchor on the
+// rack, along Joint.direction; the pinion's radius is the distance of its centre from the line,
+// negative to the right of it.
 typedef struct Gear {
-    int pivots[2];          // numbers of the joints about which body a and body b turn
-    int carrier;            // the body that has both pivots, or LINKAGE_GROUND
-    double teeth[2];        // numbers of teeth, or in their ratio; of an internal gear negative
-    double radius_a;        // m, of the pitch circles; set where bodies are placed
+    int pivots[2];          // numbers of the joints about which body a (a rack: on which it slides)
+                            // and body b turn
+    int carrier;            // of gears the body that has both pivots, or LINKAGE_GROUND
+    double teeth[2];        // of gears, or in their ratio; of an internal gear negative
+    double radius_a;        // m, of the pitch circles; set where bodies are placed; of a rack
+                            // infinite
     double radius_b;        // m
     bool is_backlash_angle; // until then: whether Limits.backlash is an angle of body b, rad
     bool is_start_angle;    // likewise Limits.start

@@ -107,13 +107,37 @@ static bool check_limits(const Linkage *linkage, const Joint *joint, Err *err)
            err_set(err, ERR_CASE, "joint '%s': its limits need a torsional stiffness", joint->name);
 }
 
+// A joint that says where teeth are; NULL where there is none of the number.
+static const Joint *guide_of_teeth(const Linkage *linkage, const Joint *joint, int side)
+{
+    const int number = joint->gear.pivots[side];
+    return number < 0 || number >= (int)linkage->joint_count ? NULL : &linkage->joints[number];
+}
+
+static bool check_rack(const Linkage *linkage, const Joint *joint, Err *err)
+{
+    const Joint *guide = guide_of_teeth(linkage, joint, 0);
+    const Joint *pivot = guide_of_teeth(linkage, joint, 1);
+    const double radius = joint->gear.radius_b;
+    if (guide == NULL || pivot == NULL || !joint_slides(guide->kind) ||
+        !joint_pivots(pivot->kind)) {
+        return err_set(err, ERR_CASE, "joint '%s': a rack slides, and its pinion turns on a pivot",
+                       joint->name);
+    }
+    return (radius != 0.0 && isfinite(radius)) ||
+           err_set(err, ERR_CASE, "joint '%s': pitch radius %.9g m, allowed: any but 0",
+                   joint->name, radius);
+}
+
 static bool check_gear(const Linkage *linkage, const Joint *joint, Err *err)
 {
     const Gear *gear = &joint->gear;
+    if (joint_has_rack(joint->kind)) {
+        return check_rack(linkage, joint, err);
+    }
     for (int i = 0; i < 2; i++) {
-        const int pivot = gear->pivots[i];
-        if (pivot < 0 || pivot >= (int)linkage->joint_count ||
-            !joint_has_angle(linkage->joints[pivot].kind)) {
+        const Joint *pivot = guide_of_teeth(linkage, joint, i);
+        if (pivot == NULL || !joint_has_angle(pivot->kind)) {
             return err_set(err, ERR_CASE, "joint '%s': its gears need ideal pivots", joint->name);
         }
     }

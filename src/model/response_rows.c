@@ -224,7 +224,7 @@ static void line_free(const Linkage *linkage, const ResponsePlace *place, const 
 
 // The rate of the rate of a coordinate's row, from the relative acceleration of the anchors:
 // between gears the pivots' distance is fixed, and its direction turns with what the teeth push
-// along.
+// along. Of a rack it is that of a line across, and of the turns.
 static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
                             const Motion *motions, const BodyLoad *loads, Vec2 relative,
                             double *gamma)
@@ -240,6 +240,11 @@ static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
                                   joint->gear.radius_b * b);
         break;
     }
+    case JOINT_COORDINATE_RACK:
+        line_free(linkage, place, motions, loads, relative, gamma);
+        gamma[0] = place->sign * (gamma[0] + joint->gear.radius_b * (b - a));
+        gamma[1] = 0.0;
+        break;
     case JOINT_COORDINATE_ANGLE:
     case JOINT_COORDINATE_NONE:
     case JOINT_COORDINATE_POSITION: // the places of which are lines

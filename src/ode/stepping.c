@@ -208,7 +208,8 @@ void stepping_observe_coordinate(const Linkage *linkage, int joint, const Motion
         return;
     }
     switch (joint_coordinate(data->kind)) {
-    case JOINT_COORDINATE_TEETH: {
+    case JOINT_COORDINATE_TEETH:
+    case JOINT_COORDINATE_RACK: {
         const double position = coordinate_position(linkage, motions, joint);
         state->eccentricity = (Vec2){position - data->limits.middle, 0.0};
         break;

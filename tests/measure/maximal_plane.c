@@ -377,6 +377,16 @@ static Real coordinate_of(const Plane *plane, View view, const Touch *place, boo
     return joint->body_b == LINKAGE_GROUND ? a - b : b - a;
 }
 
+// How far the pitch circle of a rack's pinion has come along the rack, from how far its centre has
+// and how far it has turned on the rack.
+static Real way_on_rack(const Plane *plane, View view, const Touch *place, const Ends *ends)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Vec along = along_of(view, joint->body_a, place->direction);
+    const Real turned = angle_of(view, joint->body_b) - angle_of(view, joint->body_a);
+    return vec_dot(along, ends->apart) + place->radius_b * turned;
+}
+
 // Where the force acts: on the wall of body a, or on the circle of body b.
 static void place_force(const Touch *place, const Ends *ends, Pose *pose)
 {
@@ -391,6 +401,11 @@ static void place_force(const Touch *place, const Ends *ends, Pose *pose)
     case TOUCH_TEETH:
         from_a =
             vec_times(place->radius_a / ((Real)place->radius_a + place->radius_b), ends->apart);
+        break;
+    case TOUCH_RACK:
+        // towards the rack, square to its line
+        from_a = vec_sub(ends->apart,
+                         vec_times(place->radius_b * (Real)place->sign, vec_perp(pose->normal)));
         break;
     default:
         from_a = vec_sub(ends->apart, vec_times(place->radius_b, pose->normal));
@@ -411,6 +426,16 @@ static Pose pose_of(const Plane *plane, View view, const Touch *place)
             pose.normal = vec_times(place->sign / vec_length(ends.apart), vec_perp(ends.apart));
             place_force(place, &ends, &pose);
         }
+        return pose;
+    }
+    if (place->shape == TOUCH_RACK) {
+        pose.normal = vec_times(place->sign, along_of(view, joint->body_a, place->direction));
+        place_force(place, &ends, &pose);
+        pose.gap.depth = place->clearance - place->sign * way_on_rack(plane, view, place, &ends);
+        // by the two points of the bodies at which teeth push
+        pose.gap.closing =
+            -vec_dot(pose.normal, vec_sub(velocity_of(view, joint->body_b, pose.at[1]),
+                                          velocity_of(view, joint->body_a, pose.at[0])));
         return pose;
     }
     if (place->shape == TOUCH_LINE) {
@@ -482,7 +507,7 @@ static void add_contacts(const Plane *plane, View view, Real *accelerations)
             turn_joint(plane, place->joint, place->sign * force, accelerations);
             continue;
         }
-        const bool rolls = place->shape == TOUCH_TEETH;
+        const bool rolls = place->shape == TOUCH_TEETH || place->shape == TOUCH_RACK;
         const Real held =
             rolls ? 0.0L
                   : options->friction * force * tanhl(pose.sliding / options->friction_speed);

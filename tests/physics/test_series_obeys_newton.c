@@ -241,6 +241,7 @@ static void the_shipped_cases_obey(void **state)
         "cases/mechanisms/gear-pair.yaml",
         "cases/mechanisms/newtons-cradle.yaml",
         "cases/mechanisms/planetary-gear.yaml",
+        "cases/mechanisms/rack-and-pinion.yaml",
         "cases/mechanisms/servo-backlash.yaml",
         "cases/mechanisms/slider-crank-both.yaml",
         "cases/mechanisms/slider-crank-guide.yaml",

@@ -14,7 +14,7 @@ table=model/joint.h
 permitted='
 casefile/joint_kind.c          which keys make which kind, in the order in which they count
 commands/map/map_inverse.c     makes a pin in a hole
-commands/tune/tune_world.c     a switch: what the library lacks of each kind, in a sentence
+commands/tune/tune_world_lacks.c  a switch: what the library lacks of each kind, in a sentence
 engine/request.c               a switch: the word of the protocol for each kind, or what it lacks
 measure/mapping_contact.c      makes a pin in a hole, or a stop
 '

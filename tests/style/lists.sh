@@ -62,7 +62,7 @@ forget collider $options 'member(ODE_COLLIDER_STAVES,' \
     'member(ODE_COLLIDER_NEW, "new", collider_new)' contact/facets.c
 forget 'kind of joint' model/joint.h 'member(with, JOINT_GUIDE,' \
     'member(with, JOINT_NEW, LINE, DISC, NONE, 2, false, "new")' casefile/joint_kind.c \
-    engine/request.c commands/tune/tune_world.c
+    engine/request.c commands/tune/tune_world_lacks.c
 forget 'way to hold' model/joint.h '    JOINT_HOLDS_LINE,' 'JOINT_HOLDS_NEW,' model/joint_rows.c \
     model/response_rows.c
 forget 'way to touch' model/joint.h '    JOINT_TOUCHES_DISC,' 'JOINT_TOUCHES_NEW,' model/linkage.c \

@@ -1,7 +1,8 @@
 // What does an impact on a flank or stop of a joint's coordinate give back in ODE?
 //
 // The law is integrated by itself (contact/map_impact.h), with the inertia of the coordinate: of a
-// hinge, beside its body's centre, I + m r^2; of gears 1 / (r_a^2 / I_a + r_b^2 / I_b).
+// hinge, beside its body's centre, I + m r^2; of gears 1 / (r_a^2 / I_a + r_b^2 / I_b), of a rack
+// 1 / (1 / m + r^2 / I).
 #include "limited_joint.h"
 
 #include "contact/law.h"
@@ -43,7 +44,7 @@ LimitedImpact limited_impact_draw(uint64_t *random, LimitedKind kind, double few
     impact.step = contact_of(&impact) / (fewest * pow(ratio, share(random)));
     // some degrees a step: what turns further is another linkage at its end
     impact.speed = fmin(0.1 + 5.0 * share(random), TURN / impact.step);
-    if (kind == LIMITED_GEARS) {
+    if (kind >= LIMITED_GEARS) {
         impact.speed = fmin(impact.speed, GEAR_DEPTH * M_PI / contact_of(&impact));
     }
     impact.flight = (3.0 + share(random)) * impact.step * impact.speed;
@@ -89,6 +90,27 @@ static Joint *add_gears(const LimitedImpact *impact, double speed, Linkage *link
         .radius_b = RADII[1],
     };
     return gears;
+}
+
+// A rack that slides towards the right and down, and its pinion, which is to the right of that and
+// stands.
+static Joint *add_rack(const LimitedImpact *impact, double speed, Linkage *linkage)
+{
+    const double along = -0.6;
+    Body *rack = add_body(linkage, "rack", 2.0 * impact->inertia, impact->inertia);
+    // q' = -v
+    rack->start.velocity = vec2_rotate(along, (Vec2){-speed, 0.0});
+    Body *pinion = add_body(linkage, "pinion", 0.1, 2.0 * impact->inertia * RADII[0] * RADII[0]);
+    pinion->start.position = vec2_rotate(along, (Vec2){0.03, -RADII[0]});
+    Joint *line = add_joint(linkage, "line", JOINT_PRISMATIC, LINKAGE_GROUND, 0);
+    line->direction = along;
+    Joint *pivot = add_joint(linkage, "pivot", JOINT_REVOLUTE, LINKAGE_GROUND, 1);
+    pivot->anchor_a = pinion->start.position;
+    Joint *mesh = add_joint(linkage, "mesh", JOINT_RACK, 0, 1);
+    mesh->direction = along;
+    mesh->anchor_a = vec2_rotate(along, (Vec2){0.03, 0.0});
+    mesh->gear = (Gear){.pivots = {0, 1}, .radius_a = INFINITY, .radius_b = -RADII[0]};
+    return mesh;
 }
 
 static Joint *add_hinge(const LimitedImpact *impact, double speed, Linkage *linkage)
@@ -139,7 +161,8 @@ Scenario limited_impact_scenario(const LimitedImpact *impact, OdeStepping steppi
     *linkage = linkage_create((LinkageRoom){.bodies = 2, .joints = 3});
     Joint *joint = impact->kind <= LIMITED_HINGE_BACKLASH    ? add_hinge(impact, speed, linkage)
                    : impact->kind <= LIMITED_SLIDER_BACKLASH ? add_slider(impact, speed, linkage)
-                                                             : add_gears(impact, speed, linkage);
+                   : impact->kind == LIMITED_GEARS           ? add_gears(impact, speed, linkage)
+                                                             : add_rack(impact, speed, linkage);
     joint->limits = limits_of(impact);
     joint->contact = (JointContact){
         .stiffness = impact->stiffness,

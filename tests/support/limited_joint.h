@@ -1,5 +1,5 @@
-// One impact of a body, or of a pair of gears, on a flank or stop of a joint's coordinate in ODE:
-// how far it is off the law.
+// One impact of a body, a pair of gears or a rack on a flank or stop of a joint's coordinate in
+// ODE: how far it is off the law.
 #pragma once
 
 #include "base/lcg.h"
@@ -12,6 +12,7 @@ typedef enum LimitedKind {
     LIMITED_SLIDER_STOP,
     LIMITED_SLIDER_BACKLASH,
     LIMITED_GEARS,
+    LIMITED_RACK,
     LIMITED_KINDS,
 } LimitedKind;
 

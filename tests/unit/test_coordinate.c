@@ -1,15 +1,16 @@
-// Does the coordinate of a pivot, a slider and a pair of gears go as its row says, and answer a
-// push?
+// Does the coordinate of a pivot, a slider, a pair of gears and a rack go as its row says, and
+// answer a push?
 #include "complete_run.h"
 #include "kept.h"
 
 #include "contact/touch.h"
 #include "model/coordinate.h"
 
-enum { PLACES = 8, ROWS = 2 * PLACES };
+enum { PLACES = 10, ROWS = 2 * PLACES };
 
 // Two gears on an arm that flies, a pivot with backlash from the second gear to a lever, and
-// another that is written the other way round, and a slider on the lever.
+// another that is written the other way round, a slider on the lever, and a rack that slides on the
+// arm and meshes with the first gear.
 static Scenario geared(void)
 {
     Scenario scenario = kept_default();
@@ -19,8 +20,9 @@ static Scenario geared(void)
     scenario.contact.exponent = 1.0;
     scenario.contact.stiffness = 1e3;
     Linkage *linkage = &scenario.linkage;
-    static const Vec2 AT[] = {{0.0, 0.0}, {0.06, 0.0}, {0.03, 0.01}, {0.06, 0.02}, {0.06, 0.05}};
-    linkage->body_count = 5;
+    static const Vec2 AT[] = {{0.0, 0.0},   {0.06, 0.0},  {0.03, 0.01},
+                              {0.06, 0.02}, {0.06, 0.05}, {0.01, -0.03}};
+    linkage->body_count = 6;
     for (size_t i = 0; i < linkage->body_count; i++) {
         linkage->bodies[i] = (Body){
             .mass = 0.2 + 0.1 * (double)i,
@@ -29,7 +31,7 @@ static Scenario geared(void)
         };
     }
     // all turn with the arm about its centre but the gears, which turn faster
-    const double omega[] = {50.0, -20.0, 7.0, 7.0, 7.0};
+    const double omega[] = {50.0, -20.0, 7.0, 7.0, 7.0, 7.0};
     for (size_t i = 0; i < linkage->body_count; i++) {
         Motion *start = &linkage->bodies[i].start;
         start->omega = omega[i];
@@ -38,11 +40,12 @@ static Scenario geared(void)
     }
     const JointContact contact = {.stiffness = 1e3, .exponent = 1.0};
     const Limits wide = {.kind = LIMIT_STOPS, .low = -10.0, .high = 10.0};
-    const int bodies[][2] = {{2, 0}, {2, 1}, {0, 1}, {1, 3}, {3, 4}};
-    static const JointKind KINDS[] = {JOINT_REVOLUTE, JOINT_REVOLUTE, JOINT_GEAR, JOINT_REVOLUTE,
-                                      JOINT_PRISMATIC};
-    static const Vec2 PIVOTS[] = {{0.0, 0.0}, {0.06, 0.0}, {0.0, 0.0}, {0.06, 0.0}, {0.06, 0.04}};
-    linkage->joint_count = 5;
+    const int bodies[][2] = {{2, 0}, {2, 1}, {0, 1}, {1, 3}, {3, 4}, {2, 5}, {5, 0}};
+    static const JointKind KINDS[] = {JOINT_REVOLUTE,  JOINT_REVOLUTE,  JOINT_GEAR, JOINT_REVOLUTE,
+                                      JOINT_PRISMATIC, JOINT_PRISMATIC, JOINT_RACK};
+    static const Vec2 PIVOTS[] = {{0.0, 0.0},   {0.06, 0.0},  {0.0, 0.0},  {0.06, 0.0},
+                                  {0.06, 0.04}, {0.0, -0.02}, {0.0, -0.02}};
+    linkage->joint_count = 7;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const int a = bodies[i][0];
         const int b = bodies[i][1];
@@ -52,13 +55,17 @@ static Scenario geared(void)
             .body_a = a,
             .body_b = b,
             .anchor_a = vec2_sub(PIVOTS[i], AT[a]),
-            .anchor_b = vec2_sub(i == 2 ? AT[1] : PIVOTS[i], AT[b]),
-            .direction = 0.4,
-            .limits = i == 0 ? (Limits){.kind = LIMIT_NONE} : wide,
+            .anchor_b = vec2_sub(i == 2   ? AT[1]
+                                 : i == 6 ? AT[0]
+                                          : PIVOTS[i],
+                                 AT[b]),
+            .direction = i < 5 ? 0.4 : 0.0,
+            .limits = i == 0 || i == 5 ? (Limits){.kind = LIMIT_NONE} : wide,
             .contact = contact,
         };
     }
     linkage->joints[2].gear = (Gear){{0, 1}, 2, {20.0, 40.0}, 0.02, 0.04, false, false};
+    linkage->joints[6].gear = (Gear){.pivots = {5, 0}, .radius_a = INFINITY, .radius_b = 0.02};
     return scenario;
 }
 
@@ -152,6 +159,8 @@ static void a_push_at_an_end_moves_it_by_the_mobility_and_keeps_the_momentum(voi
     }
     // control: the flanks of the gears do move what stands at the pivot
     assert_true(fabs(mobility[ROWS * 0 + 2 * 2]) > 1e-3);
+    // and those of the rack the gears
+    assert_true(fabs(mobility[ROWS * 0 + 2 * 8]) > 1e-3);
     response_finish(&response);
     free(places);
 }
@@ -188,12 +197,48 @@ static void gears_on_the_ground_have_the_mass_of_the_formula(void **state)
     free(places);
 }
 
+// A rack and its pinion on the ground answer with 1 / (1 / m + r^2 / I).
+static void a_rack_on_the_ground_has_the_mass_of_the_formula(void **state)
+{
+    (void)state;
+    Scenario scenario = geared();
+    Linkage *linkage = &scenario.linkage;
+    const Vec2 pivot = linkage->bodies[0].start.position;
+    const Joint guide = linkage->joints[5];
+    linkage->bodies[1] = linkage->bodies[5];
+    linkage->body_count = 2;
+    linkage->joints[1] = guide;
+    linkage->joints[2] = linkage->joints[6];
+    linkage->joint_count = 3;
+    linkage->joints[0].body_a = linkage->joints[1].body_a = LINKAGE_GROUND;
+    linkage->joints[0].anchor_a = pivot;
+    linkage->joints[1].anchor_a = (Vec2){0.0, -0.02};
+    linkage->joints[1].body_b = linkage->joints[2].body_a = 1;
+    linkage->joints[2].gear.pivots[0] = 1;
+    Touch *places;
+    size_t count;
+    Err err = {0};
+    Response response;
+    Motion motions[8];
+    assert_true(touch_list(&scenario, &places, &count, &err));
+    assert_int_equal(count, 2);
+    touch_response(linkage, places, count, false, &response);
+    linkage_start(linkage, motions);
+    assert_true(response_place(&response, motions));
+    const double mass =
+        1.0 / (1.0 / linkage->bodies[1].mass + 0.02 * 0.02 / linkage->bodies[0].inertia);
+    assert_near(response_mass(&response, 0, (Vec2){1.0, 0.0}) / mass, 1.0, 1e-14);
+    response_finish(&response);
+    free(places);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ends_go_as_their_rows_say),
         cmocka_unit_test(a_push_at_an_end_moves_it_by_the_mobility_and_keeps_the_momentum),
         cmocka_unit_test(gears_on_the_ground_have_the_mass_of_the_formula),
+        cmocka_unit_test(a_rack_on_the_ground_has_the_mass_of_the_formula),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

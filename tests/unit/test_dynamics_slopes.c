@@ -139,13 +139,13 @@ static void derivatives_are_those_of_the_contacts_forces(void **state)
 }
 
 // A gear on the ground and one on an arm that another gear's carrier is, the arm's hinge with
-// backlash, and a slider with stops on the arm.
+// backlash, a slider with stops on the arm, and a rack on the arm that the sun turns.
 static Scenario geared(void)
 {
     Scenario scenario = kept_default();
     Linkage *linkage = &scenario.linkage;
-    linkage->body_count = 4;
-    for (size_t i = 0; i < 4; i++) {
+    linkage->body_count = 5;
+    for (size_t i = 0; i < 5; i++) {
         linkage->bodies[i] = (Body){
             .mass = 0.5,
             .inertia = 1e-3,
@@ -155,7 +155,7 @@ static Scenario geared(void)
     const JointContact contact = {.stiffness = 1e5, .exponent = 1.5};
     const Limits gap = {.kind = LIMIT_BACKLASH, .backlash = 1e-3};
     // the sun and the arm (body 2) about the origin, the planet on the arm, the slider on the arm
-    linkage->joint_count = 5;
+    linkage->joint_count = 7;
     linkage->joints[0] = (Joint){.name = "sun", .body_a = LINKAGE_GROUND, .body_b = 0};
     linkage->joints[1] = (Joint){.name = "arm",
                                  .body_a = 0,
@@ -177,6 +177,20 @@ static Scenario geared(void)
                                  .body_b = 3,
                                  .anchor_a = {0.08, -0.02},
                                  .limits = gap};
+    linkage->joints[5] = (Joint){.name = "line",
+                                 .kind = JOINT_PRISMATIC,
+                                 .body_a = 2,
+                                 .body_b = 4,
+                                 .anchor_a = {0.0, -0.04},
+                                 .anchor_b = {0.0, -0.02},
+                                 .direction = 0.0};
+    linkage->joints[6] = (Joint){.name = "rack",
+                                 .kind = JOINT_RACK,
+                                 .body_a = 4,
+                                 .body_b = 0,
+                                 .anchor_a = {0.0, -0.02},
+                                 .gear = {.pivots = {5, 0}, .radius_a = INFINITY, .radius_b = 0.02},
+                                 .limits = gap};
     return scenario;
 }
 
@@ -186,7 +200,7 @@ static void derivatives_are_those_of_angles_and_teeth(void **state)
     const Scenario scenario = geared();
     Pressed pressed;
     press(&pressed, &scenario);
-    assert_int_equal(pressed.dynamics.system.contact_count, 6);
+    assert_int_equal(pressed.dynamics.system.contact_count, 8);
     assert_true(worst(&pressed) < 1e-3);
     dynamics_finish(&pressed.dynamics);
 }

@@ -70,6 +70,7 @@ static void set_shape(json_t *object, const Joint *joint)
         json_object_set_new(object, "touches", json_string("teeth"));
         json_value_set(object, "radius_a_m", joint->gear.radius_a);
         json_value_set(object, "radius_b_m", joint->gear.radius_b);
+        json_object_set_new(object, "is_rack", json_boolean(joint_has_rack(joint->kind)));
         json_value_set(object, "teeth_a", joint->gear.teeth[0]);
         json_value_set(object, "teeth_b", joint->gear.teeth[1]);
         break;

@@ -495,6 +495,8 @@ class Mechanism {
                 this.drawBlock(poses, joint, i, isMain, colour);
             } else if (joint.touches === "disc") {
                 this.drawStop(poses, joint, isMain, colour);
+            } else if (joint.touches === "teeth" && joint.is_rack) {
+                this.drawRack(poses, joint, colour);
             } else if (joint.touches === "teeth") {
                 this.drawGear(
                     poses,
@@ -630,6 +632,31 @@ class Mechanism {
             context.lineTo(at[0] + size * Math.cos(angle), at[1] + size * Math.sin(angle));
         }
         context.stroke();
+    }
+
+    // The pitch line of a rack with as many teeth as the pinion has that is drawn on it, two turns
+    // long.
+    drawRack(poses, joint, colour) {
+        const { context } = this;
+        const count = 24;
+        const radius = Math.abs(joint.radius_b_m);
+        const pitch = (2 * Math.PI * radius) / count;
+        const angle = poses.angle(joint.body_a) + joint.direction_rad;
+        const from = poses.point(joint.body_a, joint.anchor_a_m);
+        const at = (along, across) => {
+            const [x, y] = rotate([along, across], angle);
+            return [from[0] + x, from[1] + y];
+        };
+        this.drawGear(poses, joint.body_b, joint.anchor_b_m, radius, count, colour);
+        context.strokeStyle = colour;
+        context.lineWidth = 1.2;
+        this.line([at(-count * pitch, 0), at(count * pitch, 0)], false);
+        context.stroke();
+        for (let i = -count; i <= count; i++) {
+            const depth = -0.08 * joint.radius_b_m;
+            this.line([at(i * pitch, 0), at(i * pitch, depth)], false);
+            context.stroke();
+        }
     }
 
     // The force on body b of each joint with play, from its pin; logarithmic over three decades.

@@ -472,14 +472,27 @@ static void run_text_write_stop(const Joint *joint, Text *text)
     }
 }
 
-static void write_teeth(const Joint *joint, Text *text)
+// That between teeth, also as the angle of what turns.
+static void write_backlash(const Joint *joint, const char *turned, Text *text)
 {
     const double backlash = joint->limits.backlash;
+    text_append(text, "backlash %.4g um, %.4g deg of the %s", backlash * UNITS_UM,
+                backlash / fabs(joint->gear.radius_b) * UNITS_DEG, turned);
+}
+
+static void write_teeth(const Joint *joint, Text *text)
+{
     text_append(text, "%.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n", joint->gear.teeth[0],
                 joint->gear.teeth[1], joint->gear.radius_a * UNITS_MM,
                 joint->gear.radius_b * UNITS_MM);
-    text_append(text, "              backlash %.4g um, %.4g deg of the second", backlash * UNITS_UM,
-                backlash / fabs(joint->gear.radius_b) * UNITS_DEG);
+    text_append(text, "              ");
+    write_backlash(joint, "second", text);
+}
+
+static void write_rack(const Joint *joint, Text *text)
+{
+    text_append(text, "pitch radius %.6g mm, ", fabs(joint->gear.radius_b) * UNITS_MM);
+    write_backlash(joint, "pinion", text);
 }
 
 static void write_ends(const Limits *limits, double scale, const char *unit, Text *text)
@@ -510,6 +523,9 @@ static void run_text_write_limits(const Joint *joint, Text *text)
     case JOINT_COORDINATE_TEETH:
         write_teeth(joint, text);
         break;
+    case JOINT_COORDINATE_RACK:
+        write_rack(joint, text);
+        break;
     case JOINT_COORDINATE_NONE:
         break;
     }
@@ -519,7 +535,8 @@ static void run_text_write_limits(const Joint *joint, Text *text)
 static const char *play_word(const Joint *joint)
 {
     if (joint->limits.kind != LIMIT_NONE) {
-        return joint_has_teeth(joint->kind)           ? "gears"
+        return joint_has_rack(joint->kind)            ? "rack"
+               : joint_has_teeth(joint->kind)         ? "gears"
                : joint->limits.kind == LIMIT_BACKLASH ? "backlash"
                                                       : "stops";
     }
@@ -581,7 +598,7 @@ static void run_text_write_play(const Linkage *linkage, const char *word, size_t
 
 static void write_mechanism(const RunReport *report, size_t width, Text *text)
 {
-    static const char *const WORDS[] = {"play", "gears", "backlash", "stops", "stop"};
+    static const char *const WORDS[] = {"play", "gears", "rack", "backlash", "stops", "stop"};
     const Scenario *scenario = report->scenario;
     write_freedoms(&scenario->linkage, scenario_has_clearance(scenario), text);
     if (scenario->has_fourbar) {

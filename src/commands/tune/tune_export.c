@@ -363,11 +363,13 @@ static void tune_snippet_write_surface(const Joint *joint, const ForceLaw *law, 
 {
     static const RowLines SURFACE = {"surface->soft_erp = ", "surface->soft_cfm = ", ""};
     if (joint_has_teeth(joint->kind)) {
-        text_append(
-            text,
-            "// %s: a contact of yours where the pitch circles touch, along their tangent;\n"
-            "// depth > 0 in metres of the pitch circles beyond the backlash\n",
-            joint->name);
+        text_append(text,
+                    "// %s: a contact of yours where the %s, along %s;\n"
+                    "// depth > 0 in metres there beyond the backlash\n",
+                    joint->name,
+                    joint_has_rack(joint->kind) ? "pitch circle meets the pitch line"
+                                                : "pitch circles touch",
+                    joint_has_rack(joint->kind) ? "that line" : "their tangent");
     } else {
         text_append(text, "// %s: depth > 0 in metres, as dContactGeom has it\n", joint->name);
     }

@@ -153,6 +153,7 @@ static KernelShape kernel_shape_of(TouchShape shape)
     case TOUCH_LINE:
     case TOUCH_TURN:
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         break;
     }
     return KERNEL_LINE;

@@ -2,8 +2,8 @@
 //
 // The mean forces of the step do theirs at the speeds of mid-step. With P a place's impulse and Q
 // its integral, its force does beyond that (h/2 P - Q) times the rate at which the speed of a
-// driven body changes along the row. Of a pin that is the acceleration of its point; of a line with
-// directions e, which turn with body a, and touching point X,
+// driven body changes along the row. Of a pin that is the acceleration of its point; of a line or a
+// rack with directions e, which turn with body a, and touching point X,
 //     (e . v(X))' = e' . v(X) + e . (acc(X) + w perp (X' - v(X)))
 #include "ode/plane/impulse_step.h"
 
@@ -104,7 +104,7 @@ static double work_of_turn(const ImpulseStep *step, size_t number, const Motion 
     return at->row_count == RESPONSE_ROWS_A_JOINT ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
 }
 
-// Likewise of a line.
+// Likewise of a line, or of a rack.
 static double work_at_line(const ImpulseStep *step, size_t number, const Motion *motions,
                            const Motion *driven, bool is_on_a)
 {
@@ -115,10 +115,12 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
     const TouchPose pose = touch_pose(linkage, place, motions);
     const Vec2 directions[2] = {pose.normal, vec2_perp(pose.normal)};
-    const Vec2 point = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
-                                vec2_scale(place->radius_b, pose.normal));
-    const Vec2 moving = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
-                                 vec2_scale(place->radius_b * omega_a, directions[1]));
+    Vec2 from_a;
+    Vec2 from_b;
+    touch_points(place, &pose, &from_a, &from_b);
+    const Vec2 point = vec2_add(linkage_point(motions, joint->body_b, place->anchor_b), from_b);
+    const Vec2 moving = vec2_add(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
+                                 vec2_scale(omega_a, vec2_perp(from_b)));
     const Vec2 arm = vec2_sub(point, driven->position);
     const Vec2 speed = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
     const Vec2 pushed = vec2_add(arm_acceleration(driven, arm),
@@ -143,6 +145,7 @@ static double turning_share(const Joint *joint, const Touch *place, bool is_on_a
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
+    case TOUCH_RACK: // work_at_line has it
         break;
     }
     return coordinate_sense(joint) * (is_on_a ? -1.0 : 1.0);
@@ -199,13 +202,20 @@ static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middl
         if (!is_on_a && joint->body_b != body) {
             continue;
         }
-        if (step->places[i].shape == TOUCH_LINE) {
+        switch (step->places[i].shape) {
+        case TOUCH_LINE:
+        case TOUCH_RACK:
             work -= work_at_line(step, i, motions, &motions[body], is_on_a);
-        } else if (touch_is_scalar(&step->places[i])) {
+            break;
+        case TOUCH_TURN:
+        case TOUCH_TEETH:
             work -= work_at_end(step, i, driven, is_on_a);
-        } else {
+            break;
+        case TOUCH_HOLE:
+        case TOUCH_DISC:
             work -= work_at_point(step, i, driven, is_on_a);
             work -= work_of_turn(step, i, driven, is_on_a);
+            break;
         }
     }
     const BodyLoad load = applied_on(&step->world.applied, body);

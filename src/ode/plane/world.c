@@ -305,6 +305,9 @@ Vec2 pair_point(const WorldPair *pair, Vec2 normal)
         return vec2_add(anchor_of(pair, 0), vec2_scale(touch->radius_a, normal));
     case TOUCH_TEETH:
         return pitch_point(pair);
+    case TOUCH_RACK:
+        return vec2_sub(anchor_of(pair, 1),
+                        vec2_scale(touch->radius_b * touch->sign, vec2_perp(normal)));
     case TOUCH_LINE:
     case TOUCH_TURN:
         break;

@@ -69,7 +69,7 @@ typedef struct WorldPair {
     dGeomID hole;      // of a TOUCH_HOLE that a collider is asked about, else NULL, as the next two
     dGeomID pin;
     void *collision; // what the world's collider keeps of the joint; owned
-    WorldEnds *ends; // of a TOUCH_TURN or TOUCH_TEETH, else NULL: the world's
+    WorldEnds *ends; // of an angle, teeth or a rack, else NULL: the world's
     dJointID row;    // of a TOUCH_TURN, else NULL
 } WorldPair;
 

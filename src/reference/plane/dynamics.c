@@ -89,6 +89,9 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
     case TOUCH_TEETH:
         pose.normal = vec2_scale(sign / sqrt(vec2_dot(offset, offset)), vec2_perp(offset));
         break;
+    case TOUCH_RACK:
+        pose.normal = vec2_scale(sign, tree_normal(tree, state, site->pair));
+        break;
     case TOUCH_TURN:
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
@@ -106,6 +109,7 @@ static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeSta
         return pose_in_hole(contact, tree, state, site->pair);
     case TOUCH_TURN:
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         return pose_of_end(tree, state, site);
     case TOUCH_DISC:
     case TOUCH_LINE:
@@ -124,6 +128,7 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
         return tree_line_second(&dynamics->tree, state, site->pair);
     case TOUCH_TURN:
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         return site->touch.sign * tree_coordinate_second(&dynamics->tree, state, site->touch.joint);
     case TOUCH_HOLE:
         is_inside = true;
@@ -211,6 +216,7 @@ static bool acts_beside(const Touch *touch)
     switch (touch->shape) {
     case TOUCH_LINE:
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         return true;
     case TOUCH_TURN:
         return false;

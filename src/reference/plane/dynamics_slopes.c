@@ -9,8 +9,9 @@
 //     dn = +-t (t de) / |e|,   dN = (1 + chi d'/v0) k dd + (chi F_el / v0 + c) dd'
 // + of discs, - of a pin in its hole; a line's normal turns as slowly as the mechanism moves.
 //
-// A limited angle or teeth push along a coordinate q with steady shares w of the bodies' turns, and
-// hold no friction: dA = -M^-1 w ((1 + chi d'/v0) k w dq + (chi F_el / v0 + c) w du).
+// A limited angle or teeth push along a coordinate q with steady shares w of the bodies' turns (of
+// a rack and of the ways along its pitch line), and hold no friction: dA = -M^-1 w ((1 + chi d'/v0)
+// k w dq + (chi F_el / v0 + c) w du).
 #include "reference/plane/dynamics.h"
 
 #include "reference/plane/articulated.h"
@@ -52,6 +53,7 @@ static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
     case TOUCH_LINE:
     case TOUCH_TURN:
     case TOUCH_TEETH:
+    case TOUCH_RACK:
         break;
     }
     return side == 0 ? -touch->radius_b : touch->radius_b;
@@ -77,12 +79,25 @@ static void find_friction(const Dynamics *dynamics, const TreeState *state, int 
     pressing->grip = tanh(sliding / pressing->law->friction_speed);
 }
 
+// Zeroes what is found for each coordinate of some parts.
+static void slopes_clear(const Dynamics *dynamics, const CouplingJoint *parts)
+{
+    const Coupling *coupling = dynamics->system.coupling;
+    for (size_t i = 0; i < parts->count; i++) {
+        const size_t part = parts->parts[i];
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            dynamics->room.row[coupling->coordinates[k]] = (Vec2){0.0, 0.0};
+            dynamics->room.arms[coupling->coordinates[k]] = 0.0;
+        }
+    }
+}
+
 static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *state,
                                      size_t number)
 {
     const Contact *contact = &dynamics->system.contacts[number];
     const PlaneSite *site = &dynamics->sites[number];
-    const Coupling *coupling = dynamics->system.coupling;
     SlopesPressing pressing = {
         .touch = &site->touch,
         .law = &contact->law,
@@ -90,16 +105,9 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
         .centre = dynamics->room.row,
         .arms = dynamics->room.arms,
         .pair = site->pair,
-        .parts = &coupling->joints[contact->joint],
+        .parts = &dynamics->system.coupling->joints[contact->joint],
     };
-    for (size_t i = 0; i < pressing.parts->count; i++) {
-        const size_t part = pressing.parts->parts[i];
-        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
-             k++) {
-            pressing.centre[coupling->coordinates[k]] = (Vec2){0.0, 0.0};
-            pressing.arms[coupling->coordinates[k]] = 0.0;
-        }
-    }
+    slopes_clear(dynamics, pressing.parts);
     dynamics_contact_find(dynamics, number, state, &pressing.force);
     const TouchPose *pose = &pressing.force.pose;
     pressing.velocity = pose->velocity;
@@ -272,6 +280,28 @@ static void slopes_add_turn_column(const Dynamics *dynamics, const CouplingJoint
     }
 }
 
+// What the way along a rack's pitch line adds to the loads of a unit force along it, and to how
+// each coordinate moves its own: by the turns of bodies alone until then.
+static void slopes_add_way(const Dynamics *dynamics, const TreeState *state, int joint,
+                           const CouplingJoint *parts, Loads *loads)
+{
+    const Tree *tree = &dynamics->tree;
+    const Coupling *coupling = dynamics->system.coupling;
+    const Vec2 along = tree_normal(tree, state, joint);
+    const Vec2 under = tree_pair_gap(tree, state, joint);
+    dynamics_load_end(tree, state, 2 * joint + 1, (Vec2){0.0, 0.0}, along, loads);
+    dynamics_load_end(tree, state, 2 * joint, under, vec2_scale(-1.0, along), loads);
+    loops_pair_row(tree, state, joint, dynamics->room.row);
+    for (size_t i = 0; i < parts->count; i++) {
+        const size_t part = parts->parts[i];
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            const size_t column = coupling->coordinates[k];
+            dynamics->room.arms[column] += vec2_dot(along, dynamics->room.row[column]);
+        }
+    }
+}
+
 // The same of a contact at an end of an angle or of teeth.
 static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *state, size_t number,
                                    double *by_position, double *by_rate)
@@ -285,23 +315,35 @@ static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *st
     Loads loads = {.pushes = dynamics->room.zeros};
     dynamics_contact_find(dynamics, number, state, &force);
     tree_coordinate_parts(&tree->linkage->joints[contact->joint], parts);
+    slopes_clear(dynamics, coupled);
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
-        dynamics_load_couple(tree, state, parts[i].body, parts[i].share, &loads);
+        const int body = parts[i].body;
+        dynamics_load_couple(tree, state, body, parts[i].share, &loads);
+        if (body != LINKAGE_GROUND && tree->angle_column[body] >= 0) {
+            dynamics->room.arms[tree->angle_column[body]] += parts[i].share;
+        }
+    }
+    if (joint_has_rack(tree->linkage->joints[contact->joint].kind)) {
+        slopes_add_way(dynamics, state, contact->joint, coupled, &loads);
     }
     slopes_solve_parts(dynamics, coupled, &loads, dynamics->room.pushed[0]);
     const double stiffness = (1.0 + contact->damping_rate * force.pose.approach_speed) *
                              force_law_tangent(&contact->law, fabs(force.pose.gap));
     const double damping = press_damping(contact, &force.press);
     for (int part = 0; part < TREE_COORDINATE_PARTS; part++) {
-        const int body = parts[part].body;
-        if (body == LINKAGE_GROUND) {
-            continue;
+        if (parts[part].body != LINKAGE_GROUND) {
+            loads.pushes[parts[part].body] = (ArticulatedPush){{0.0, 0.0}, 0.0};
         }
-        loads.pushes[body] = (ArticulatedPush){{0.0, 0.0}, 0.0};
-        const int column = tree->angle_column[body];
-        if (column >= 0) {
-            const TurnColumn of = {(size_t)column, parts[part].share, stiffness, damping};
-            slopes_add_turn_column(dynamics, coupled, &of, by_position, by_rate);
+    }
+    for (size_t i = 0; i < coupled->count; i++) {
+        const size_t part = coupled->parts[i];
+        for (size_t k = coupling->first_coordinate[part]; k < coupling->first_coordinate[part + 1];
+             k++) {
+            const size_t column = coupling->coordinates[k];
+            const TurnColumn of = {column, dynamics->room.arms[column], stiffness, damping};
+            if (of.share != 0.0) {
+                slopes_add_turn_column(dynamics, coupled, &of, by_position, by_rate);
+            }
         }
     }
 }

@@ -271,6 +271,7 @@ static void fill_limited(const Dynamics *dynamics, const DynamicsState *at, int 
     const Joint *of = &dynamics->tree.linkage->joints[joint];
     switch (joint_coordinate(of->kind)) {
     case JOINT_COORDINATE_TEETH:
+    case JOINT_COORDINATE_RACK:
         *to = (JointState){.eccentricity = {tree_coordinate(&dynamics->tree, &at->tree, joint), 0}};
         break;
     case JOINT_COORDINATE_ANGLE:

@@ -28,15 +28,22 @@ static inline void tree_set_centre(const Tree *tree, int body, Vec2 moved, TreeS
 
 // Distances of a point from a line, and of a disc from a disc.
 
+// By how much the distance from a line has changed since the base.
+static double line_moved(const Tree *tree, const TreeState *state, int pair)
+{
+    const Vec2 normal = tree_normal(tree, state, pair);
+    const Vec2 turned = tree_normal_turned(tree, state, pair);
+    return vec2_dot(normal, tree_pair_moved(tree, state, pair)) +
+           vec2_dot(turned, tree->base_gaps[pair]);
+}
+
 double tree_distance(const Tree *tree, const TreeState *state, int pair)
 {
+    if (tree->measures[pair] == TREE_LINE) {
+        return tree->base_distances[pair] + line_moved(tree, state, pair);
+    }
     const Vec2 moved = tree_pair_moved(tree, state, pair);
     const Vec2 before = tree->base_gaps[pair];
-    if (tree->measures[pair] == TREE_LINE) {
-        const Vec2 normal = tree_normal(tree, state, pair);
-        const Vec2 turned = tree_normal_turned(tree, state, pair);
-        return tree->base_distances[pair] + (vec2_dot(normal, moved) + vec2_dot(turned, before));
-    }
     const Vec2 now = vec2_add(before, moved);
     const double sum = vec2_length(now) + vec2_length(before);
     return tree->base_distances[pair] +
@@ -396,6 +403,11 @@ void tree_coordinate_parts(const Joint *joint, TreeCoordinatePart parts[TREE_COO
         parts[1] = (TreeCoordinatePart){joint->body_b, -gear->radius_b};
         parts[2] = (TreeCoordinatePart){gear->carrier, gear->radius_a + gear->radius_b};
         break;
+    case JOINT_COORDINATE_RACK: // beside the way along the pitch line
+        parts[0] = (TreeCoordinatePart){joint->body_a, -gear->radius_b};
+        parts[1] = (TreeCoordinatePart){joint->body_b, gear->radius_b};
+        parts[2] = (TreeCoordinatePart){LINKAGE_GROUND, 0.0};
+        break;
     case JOINT_COORDINATE_ANGLE:
     case JOINT_COORDINATE_NONE:
     case JOINT_COORDINATE_POSITION:
@@ -412,19 +424,10 @@ double tree_coordinate_origin(const Joint *joint)
                                         : coordinate_sense(joint) * joint->held_angle;
 }
 
-// Works it out at the base.
-static void tree_coordinate_settle(Tree *tree, int joint)
+// Whether the way along a pair's line is part of a joint's coordinate.
+static bool has_way(const Tree *tree, int joint)
 {
-    const Joint *of = &tree->linkage->joints[joint];
-    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
-    tree_coordinate_parts(of, parts);
-    long double sum = -(long double)tree_coordinate_origin(of);
-    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
-        if (parts[i].body != LINKAGE_GROUND) {
-            sum += parts[i].share * tree->base_angle[parts[i].body];
-        }
-    }
-    tree->base_coordinates[joint] = (double)sum;
+    return joint_has_rack(tree->linkage->joints[joint].kind);
 }
 
 double tree_coordinate(const Tree *tree, const TreeState *state, int joint)
@@ -435,6 +438,7 @@ double tree_coordinate(const Tree *tree, const TreeState *state, int joint)
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
         sum += parts[i].body == LINKAGE_GROUND ? 0.0 : parts[i].share * state->turn[parts[i].body];
     }
+    sum += has_way(tree, joint) ? line_moved(tree, state, joint) : 0.0;
     return tree->base_coordinates[joint] + sum;
 }
 
@@ -446,7 +450,7 @@ double tree_coordinate_rate(const Tree *tree, const TreeState *state, int joint)
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
         sum += parts[i].share * tree_omega(state, parts[i].body);
     }
-    return sum;
+    return has_way(tree, joint) ? sum + tree_line_rate(tree, state, joint) : sum;
 }
 
 double tree_coordinate_second(const Tree *tree, const TreeState *state, int joint)
@@ -457,7 +461,7 @@ double tree_coordinate_second(const Tree *tree, const TreeState *state, int join
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
         sum += parts[i].share * tree_alpha(state, parts[i].body);
     }
-    return sum;
+    return has_way(tree, joint) ? sum + tree_line_second(tree, state, joint) : sum;
 }
 
 void tree_coordinate_sizes(const Tree *tree, const TreeState *state, int joint, double *position,
@@ -472,6 +476,10 @@ void tree_coordinate_sizes(const Tree *tree, const TreeState *state, int joint, 
             *position += fabs(parts[i].share * state->turn[parts[i].body]);
             *speed += fabs(parts[i].share * tree_omega(state, parts[i].body));
         }
+    }
+    if (has_way(tree, joint)) {
+        *position += fabs(line_moved(tree, state, joint));
+        *speed += fabs(tree_line_rate(tree, state, joint));
     }
 }
 
@@ -547,6 +555,27 @@ static void settle_sliding(Tree *tree, const TreeNode *node)
 static long double base_angle_of(const Tree *tree, int body)
 {
     return body == LINKAGE_GROUND ? 0.0L : tree->base_angle[body];
+}
+
+// A limited coordinate.
+static void tree_coordinate_settle(Tree *tree, int joint)
+{
+    const Joint *of = &tree->linkage->joints[joint];
+    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
+    tree_coordinate_parts(of, parts);
+    long double sum = -(long double)tree_coordinate_origin(of);
+    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
+        if (parts[i].body != LINKAGE_GROUND) {
+            sum += parts[i].share * tree->base_angle[parts[i].body];
+        }
+    }
+    if (has_way(tree, joint)) {
+        const TreePoint gap = subtract(tree_base_end_point(tree, 2 * joint + 1),
+                                       tree_base_end_point(tree, 2 * joint));
+        const TreePoint along = normal_of(tree, joint);
+        sum += along.x * gap.x + along.y * gap.y;
+    }
+    tree->base_coordinates[joint] = (double)sum;
 }
 
 // Distances from lines and between discs, and tilts.
@@ -787,6 +816,10 @@ static void set_pairs(Tree *tree)
         if (joint_has_disc(joint->kind)) {
             touch_places(joint, i, sites);
             measure = sites[0].shape == TOUCH_LINE ? TREE_LINE : TREE_DISC;
+        } else if (joint_has_rack(joint->kind)) {
+            // the way along the line is part of the coordinate
+            sites[0].direction = joint->direction;
+            measure = TREE_LINE;
         } else if (joint_slides(joint->kind)) {
             measure = TREE_LINE;
         }

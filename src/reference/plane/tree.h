@@ -346,8 +346,9 @@ void tree_point_row(const Tree *tree, const TreeState *state, int body, Vec2 arm
 
 // The limited coordinate of a joint that turns or meshes (model/coordinate.h) in a tree, counted
 // from an origin in its play: the angle that the joint's bodies were placed with, the middle of a
-// gap between teeth. What it has changed since the base has all the digits of a double, and that at
-// the base comes from long double, however many turns the bodies have made.
+// gap between teeth. Of a rack the way along the pitch line, which its pair has, is part of it
+// beside what its bodies turn. What it has changed since the base has all the digits of a double,
+// and that at the base comes from long double, however many turns the bodies have made.
 
 // The parts that bodies' turns have in a coordinate, rad or m per rad: of body a, body b and the
 // carrier of gears.
