@@ -531,26 +531,44 @@ static void run_text_write_limits(const Joint *joint, Text *text)
     }
 }
 
-// The word for the play of a joint; NULL where it has none.
-static const char *play_word(const Joint *joint)
+// By what play joints stand together, in this order; what they are called there.
+#define PLAY_LIST(play)                                                                            \
+    play(IN_JOINT, "play") play(GEARS, "gears") play(RACK, "rack") play(BACKLASH, "backlash")      \
+        play(STOPS, "stops") play(STOP, "stop")
+#define PLAY_ID(id, word) PLAY_##id,
+typedef enum Play { PLAY_LIST(PLAY_ID) PLAY_NONE } Play;
+
+static Play play_at_limits(const Joint *joint)
+{
+    switch (joint_coordinate(joint->kind)) {
+    case JOINT_COORDINATE_TEETH:
+        return PLAY_GEARS;
+    case JOINT_COORDINATE_RACK:
+        return PLAY_RACK;
+    case JOINT_COORDINATE_NONE:
+    case JOINT_COORDINATE_ANGLE:
+    case JOINT_COORDINATE_POSITION:
+        break;
+    }
+    return joint->limits.kind == LIMIT_BACKLASH ? PLAY_BACKLASH : PLAY_STOPS;
+}
+
+static Play play_of(const Joint *joint)
 {
     if (joint->limits.kind != LIMIT_NONE) {
-        return joint_has_rack(joint->kind)            ? "rack"
-               : joint_has_teeth(joint->kind)         ? "gears"
-               : joint->limits.kind == LIMIT_BACKLASH ? "backlash"
-                                                      : "stops";
+        return play_at_limits(joint);
     }
     switch (joint_touches(joint->kind)) {
     case JOINT_TOUCHES_HOLE:
     case JOINT_TOUCHES_GUIDES:
-        return "play";
+        return PLAY_IN_JOINT;
     case JOINT_TOUCHES_DISC:
-        return "stop";
+        return PLAY_STOP;
     case JOINT_TOUCHES_NOTHING:
     case JOINT_TOUCHES_TEETH:
         break;
     }
-    return NULL;
+    return PLAY_NONE;
 }
 
 // What play it is, of a joint that has some.
@@ -576,15 +594,16 @@ static void run_text_write_joint(const Joint *joint, bool is_spatial, Text *text
     }
 }
 
-// The play of all joints for which there is the same word.
-static void run_text_write_play(const Linkage *linkage, const char *word, size_t width, Text *text)
+// The play of all joints that stand together.
+static void run_text_write_play(const Linkage *linkage, Play play, size_t width, Text *text)
 {
+#define PLAY_WORD(id, word) word,
+    static const char *const WORDS[] = {PLAY_LIST(PLAY_WORD)};
     char lead[32];
-    snprintf(lead, sizeof lead, "  %-12s", word);
+    snprintf(lead, sizeof lead, "  %-12s", WORDS[play]);
     Alike *alike = alike_start();
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const char *own = play_word(&linkage->joints[i]);
-        if (own == NULL || strcmp(own, word) != 0) {
+        if (play_of(&linkage->joints[i]) != play) {
             continue;
         }
         Text said;
@@ -598,7 +617,6 @@ static void run_text_write_play(const Linkage *linkage, const char *word, size_t
 
 static void write_mechanism(const RunReport *report, size_t width, Text *text)
 {
-    static const char *const WORDS[] = {"play", "gears", "rack", "backlash", "stops", "stop"};
     const Scenario *scenario = report->scenario;
     write_freedoms(&scenario->linkage, scenario_has_clearance(scenario), text);
     if (scenario->has_fourbar) {
@@ -613,8 +631,8 @@ static void write_mechanism(const RunReport *report, size_t width, Text *text)
                     report->summary->transmission_high * UNITS_DEG);
     }
     text_append(text, "\n");
-    for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++) {
-        run_text_write_play(&scenario->linkage, WORDS[i], width, text);
+    for (Play play = 0; play < PLAY_NONE; play++) {
+        run_text_write_play(&scenario->linkage, play, width, text);
     }
 }
 
