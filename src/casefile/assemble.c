@@ -4,6 +4,7 @@
 #include "casefile/assemble.h"
 
 #include "casefile/build.h"
+#include "casefile/cam.h"
 #include "casefile/check.h"
 #include "casefile/closure.h"
 #include "casefile/drives.h"
@@ -45,6 +46,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         .torsions = names[SCHEMA_TORSION_SPRING].count,
         .loads = names[SCHEMA_LOAD_FAMILY].count,
         .further = names[SCHEMA_DRIVE].count,
+        .profiles = names[SCHEMA_JOINT].count,
     });
     linkage->body_count = names[SCHEMA_BODY].count;
     linkage->joint_count = names[SCHEMA_JOINT].count;
@@ -58,6 +60,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         joint->limits = limits_prepare(entries, i);
         joint->space.axis = (Vec3){0.0, 0.0, 1.0};
     }
+    cam_prepare(entries, linkage);
     for (size_t i = 0; i < linkage->body_count; i++) {
         text_copy(linkage->bodies[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_BODY].names[i]);
     }
@@ -207,6 +210,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         }
     }
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
+    cam_complete(entries, &scenario->linkage);
     complete_motor(entries, &scenario->linkage);
     if (!teeth_join(entries, &scenario->linkage, err) ||
         !drives_complete(entries, &scenario->linkage, err) ||

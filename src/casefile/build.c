@@ -212,6 +212,7 @@ static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *
         joint->anchor_a = to_body(motions, joint->body_a, point);
         joint->anchor_b = to_body(motions, joint->body_b, other);
         joint->direction -= angle_of(motions, joint->body_a);
+        joint->stop.facing -= angle_of(motions, joint->body_b);
         joint->held_angle = angle_of(motions, joint->body_b) - angle_of(motions, joint->body_a);
     }
     set_force_anchors(entries, linkage, motions);

@@ -46,10 +46,10 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     schema_path(row, entries_name(entries, row, index), path);
     Text allowed;
     text_init(&allowed);
-    if (row->rivalry == SCHEMA_SIZES || row->excused_by != NULL) {
+    if (row->rivalry == SCHEMA_STOPPING) {
+        text_append(&allowed, "normal of a line, discs, or profile of a cam");
+    } else if (row->rivalry == SCHEMA_SIZES || row->excused_by != NULL) {
         text_append(&allowed, "hole and pin, or radial-clearance");
-    } else if (row->rivalry == SCHEMA_STOPPING) {
-        text_append(&allowed, "normal of a line, or discs");
     } else {
         target_describe(entries, row, &allowed);
     }

@@ -1,6 +1,7 @@
 // Checks that the values of a joint with play fit together.
 #include "casefile/check_joints.h"
 
+#include "casefile/cam.h"
 #include "casefile/limits.h"
 #include "contact/damping.h"
 #include "contact/law.h"
@@ -154,7 +155,8 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
         return check_guide(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
     case JOINT_TOUCHES_DISC:
-        return check_stiffness(entries, index, scenario, err) &&
+        return cam_check(entries, index, &scenario->linkage, err) &&
+               check_stiffness(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
     case JOINT_TOUCHES_NOTHING:
     case JOINT_TOUCHES_TEETH:

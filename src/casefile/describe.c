@@ -113,8 +113,9 @@ static void describe_default(size_t row_number, Text *text)
         text_append(text, row->rivalry == SCHEMA_SIZES ? "required without radial-clearance"
                           : row->rivalry == SCHEMA_DRIVING
                               ? "required without angle, torque, force or stall-torque"
-                          : row->rivalry == SCHEMA_STOPPING ? "required of a stop, or discs"
-                                                            : "required");
+                          : row->rivalry == SCHEMA_STOPPING
+                              ? "required of a stop, or discs, or profile"
+                              : "required");
         append_kinds(row, text);
         return;
     }

@@ -16,7 +16,8 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         JointKind kind;
         const char *keys;
     } KINDS[] = {
-        {JOINT_STOP, "joints.*.at-a joints.*.at-b joints.*.normal joints.*.radius joints.*.discs"},
+        {JOINT_STOP, "joints.*.at-a joints.*.at-b joints.*.normal joints.*.radius joints.*.discs "
+                     "joints.*.profile"},
         {JOINT_GUIDE, "joints.*.guide joints.*.block joints.*.length"},
         {JOINT_PRISMATIC, "joints.*.along"},
         {JOINT_RACK, "joints.*.rack"},

@@ -114,7 +114,7 @@ static Scenario *scratch_scenario(const ProbeKey *key)
     *scratch = scenario_default();
     const size_t room = key->row->member + key->index + 1;
     Linkage *linkage = &scratch->linkage;
-    *linkage = linkage_create((LinkageRoom){room, room, room, room, room, room});
+    *linkage = linkage_create((LinkageRoom){room, room, room, room, room, room, room});
     linkage->body_count = linkage->joint_count = room;
     linkage->spring_count = linkage->torsion_count = linkage->load_count = room;
     linkage->further_count = room;

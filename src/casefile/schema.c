@@ -114,6 +114,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                                                         "such as 0.2 mm"},
         [SCHEMA_PIVOTS] = {"[joint, joint]",
                            "two joints such as [pinion, wheel], or [guide, pinion] of a rack"},
+        [SCHEMA_PROFILE] = {"list of [angle, length]",
+                            "points such as [[0 deg, 20 mm], [60 deg, 21 mm], ...]"},
         [SCHEMA_TEETH] = {"[whole number, whole number]", "two whole numbers such as [20, 60]"},
         [SCHEMA_DISCS] = {"[length, length]", "two diameters such as [20 mm, 20 mm]"},
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},

@@ -157,6 +157,11 @@ static void set_start(CasefileSetting *setting, const Joint *joint)
 static double heading(const Linkage *linkage, const Joint *joint)
 {
     const bool is_held = joint->body_a != LINKAGE_GROUND && linkage->body_count > 0;
+    if (joint->stop.cam > 0) { // the normal is that of body b's flat
+        const int body = joint->body_b;
+        return joint->stop.facing +
+               (body == LINKAGE_GROUND ? 0.0 : linkage->bodies[body].start.angle);
+    }
     return joint->direction + (is_held ? linkage->bodies[joint->body_a].start.angle : 0.0);
 }
 
@@ -306,6 +311,12 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
         break;
     case SCHEMA_HEADING:
         set_number(setting, heading(linkage, joint));
+        break;
+    case SCHEMA_PROFILE:
+        if (joint->stop.cam > 0) {
+            const Profile *profile = linkage_profile(linkage, joint);
+            set_points(setting, profile->count, profile->angles, profile->radii, "rad", "m");
+        }
         break;
     case SCHEMA_RADIAL_CLEARANCE:
         set_number(setting, linkage_radial_clearance(joint));

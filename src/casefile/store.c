@@ -1,6 +1,7 @@
 // Stores the values of a case, each if it is in its range.
 #include "casefile/store.h"
 
+#include "casefile/cam.h"
 #include "casefile/expect.h"
 #include "casefile/limits.h"
 #include "casefile/loads.h"
@@ -384,6 +385,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return store_pivots(&target, target.field);
     case SCHEMA_TEETH:
         return teeth_store(&target, &scenario->linkage.joints[entry->index].gear);
+    case SCHEMA_PROFILE:
+        return cam_store(&target, &scenario->linkage, target.field);
     case SCHEMA_DISCS:
         return store_discs(&target, target.field);
     case SCHEMA_GRAVITY:

@@ -13,7 +13,9 @@ double law_depth_max(const ForceLaw *law, double radius)
 double law_touching_radius(const Joint *joint)
 {
     const Stop *stop = &joint->stop;
-    const double other = stop->is_disc && stop->radius_a > 0.0 ? stop->radius_a : INFINITY;
+    const double other = stop->cam > 0                           ? stop->hump
+                         : stop->is_disc && stop->radius_a > 0.0 ? stop->radius_a
+                                                                 : INFINITY;
     switch (joint_touches(joint->kind)) {
     case JOINT_TOUCHES_GUIDES:
         return 0.5 * fmin(joint->guide.height, joint->guide.opening);

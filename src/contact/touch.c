@@ -35,18 +35,26 @@ static void place_corners(const Joint *joint, int number, Touch places[TOUCH_COR
     }
 }
 
-static Touch place_stop(const Joint *joint, int number)
+static Touch place_stop(const Linkage *linkage, int number)
 {
+    const Joint *joint = &linkage->joints[number];
     const Stop *stop = &joint->stop;
     return (Touch){
         .joint = number,
-        .shape = stop->is_disc ? TOUCH_DISC : TOUCH_LINE,
+        .shape = stop->cam > 0   ? TOUCH_CAM
+                 : stop->is_disc ? TOUCH_DISC
+                                 : TOUCH_LINE,
         .anchor_a = joint->anchor_a,
         .anchor_b = joint->anchor_b,
         .direction = joint->direction,
         .clearance = stop->radius_b + (stop->is_disc ? stop->radius_a : 0.0),
         .radius_a = stop->is_disc ? stop->radius_a : 0.0,
         .radius_b = stop->radius_b,
+        .cam = {.profile = linkage_profile(linkage, joint),
+                .direction = joint->direction,
+                .radius = stop->radius_b,
+                .is_flat = stop->is_flat,
+                .facing = stop->facing},
     };
 }
 
@@ -101,8 +109,9 @@ static size_t place_ends(const Joint *joint, int number, Touch places[TOUCH_CORN
     return count;
 }
 
-size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
+size_t touch_places(const Linkage *linkage, int number, Touch places[TOUCH_CORNERS])
 {
+    const Joint *joint = &linkage->joints[number];
     if (joint->limits.kind != LIMIT_NONE) {
         return place_ends(joint, number, places);
     }
@@ -122,7 +131,7 @@ size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS])
         place_corners(joint, number, places);
         return TOUCH_CORNERS;
     case JOINT_TOUCHES_DISC:
-        places[0] = place_stop(joint, number);
+        places[0] = place_stop(linkage, number);
         return 1;
     case JOINT_TOUCHES_NOTHING:
     case JOINT_TOUCHES_TEETH:
@@ -138,7 +147,7 @@ bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *er
     *count = 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Touch *own = list + *count;
-        const size_t own_count = touch_places(&linkage->joints[i], (int)i, own);
+        const size_t own_count = touch_places(linkage, (int)i, own);
         ForceLaw law;
         if (own_count > 0 && !law_of_joint(scenario, &linkage->joints[i], &law, err)) {
             free(list);
@@ -169,6 +178,7 @@ TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 lin
         outside = 1.0;
         break;
     case TOUCH_HOLE:
+    case TOUCH_CAM:  // touch_pose_on_cam has it
     case TOUCH_TURN: // pose_of_end has these
     case TOUCH_TEETH:
     case TOUCH_RACK:
@@ -183,6 +193,21 @@ TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 lin
     return pose;
 }
 
+TouchPose touch_pose_on_cam(const Touch *place, Vec2 zero, Vec2 facing, Vec2 offset, Vec2 velocity,
+                            const double omegas[2])
+{
+    const CamPose pose = cam_pose(&place->cam, zero, facing, offset);
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = pose.gap,
+        .has_normal = true,
+        .normal = pose.normal,
+        .approach_speed = -cam_rate(&pose, offset, velocity, omegas[0], omegas[1]),
+        .from_b = pose.from_b,
+    };
+}
+
 // Along what an end pushes on body b; zero of an angle.
 static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion *motions)
 {
@@ -194,6 +219,7 @@ static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
+    case TOUCH_CAM:
         break;
     }
     return (Vec2){0.0, 0.0};
@@ -227,6 +253,14 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
     const bool is_ground = joint->body_a == LINKAGE_GROUND;
     const double angle = is_ground ? 0.0 : motions[joint->body_a].angle;
     const double omega = is_ground ? 0.0 : motions[joint->body_a].omega;
+    if (place->shape == TOUCH_CAM) {
+        const bool is_on_ground = joint->body_b == LINKAGE_GROUND;
+        const double turned = is_on_ground ? 0.0 : motions[joint->body_b].angle;
+        const double omegas[2] = {omega, is_on_ground ? 0.0 : motions[joint->body_b].omega};
+        return touch_pose_on_cam(place, vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0}),
+                                 vec2_rotate(turned + place->cam.facing, (Vec2){1.0, 0.0}), offset,
+                                 velocity, omegas);
+    }
     const Vec2 line = place->shape == TOUCH_LINE
                           ? vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0})
                           : (Vec2){0.0, 0.0};
@@ -251,6 +285,10 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
         *from_b = vec2_sub(*from_a, pose->offset);
         break;
     }
+    case TOUCH_CAM:
+        *from_b = pose->from_b;
+        *from_a = vec2_add(pose->offset, *from_b);
+        break;
     case TOUCH_RACK:
         // where the pinion's pitch circle is nearest to the pitch line
         *from_b = vec2_scale(-place->radius_b * place->sign, vec2_perp(pose->normal));
@@ -285,6 +323,30 @@ double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose
     return vec2_dot(vec2_perp(pose->normal), relative);
 }
 
+TouchTravel touch_travel(const Linkage *linkage, const Touch *place, const TouchPose *pose,
+                         const Motion *motions)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const int bodies[2] = {joint->body_a, joint->body_b};
+    double angles[2] = {place->cam.direction, place->cam.facing};
+    double omegas[2] = {0.0, 0.0};
+    for (int side = 0; side < 2; side++) {
+        if (bodies[side] != LINKAGE_GROUND) {
+            angles[side] += motions[bodies[side]].angle;
+            omegas[side] = motions[bodies[side]].omega;
+        }
+    }
+    const Vec2 x = {1.0, 0.0};
+    const Cam *cam = &place->cam;
+    const CamPose met =
+        cam_pose(cam, vec2_rotate(angles[0], x), vec2_rotate(angles[1], x), pose->offset);
+    const double sliding = cam_sliding(&met, pose->offset, pose->velocity, omegas[0], omegas[1]);
+    return (TouchTravel){
+        .turning = cam_turning(cam, &met, omegas[0], omegas[1], sliding),
+        .along_b = cam_along_b(cam, &met, omegas[0], omegas[1], sliding),
+    };
+}
+
 void touch_response(const Linkage *linkage, const Touch *places, size_t count, bool has_friction,
                     Response *response)
 {
@@ -293,13 +355,14 @@ void touch_response(const Linkage *linkage, const Touch *places, size_t count, b
         const bool is_circle = !touch_is_scalar(&places[i]);
         rows[i] = (ResponsePlace){
             .joint = places[i].joint,
-            .is_line = places[i].shape == TOUCH_LINE,
+            .is_line = places[i].shape == TOUCH_LINE || places[i].shape == TOUCH_CAM,
             .sign = places[i].sign,
             .has_turns = has_friction && is_circle,
             .anchor_a = places[i].anchor_a,
             .anchor_b = places[i].anchor_b,
             .direction = places[i].direction,
             .radius = places[i].radius_b,
+            .cam = places[i].cam,
         };
     }
     response_init_places(linkage, rows, count, response);

@@ -8,6 +8,7 @@
 //     hole    gap = c - |d|,      n = -d / |d|       c radial clearance
 //     disc    gap = |d| - c,      n =  d / |d|       c sum of the radii
 //     line    gap = m . d - c,    n =  m             m the line's normal, c radius on body b
+//     cam     gap = distance from the profile - c, n its normal there (model/cam.h)
 // The ends of a slider's coordinate are lines across it. Of an angle and of teeth the gap is that
 // of the coordinate q itself (model/coordinate.h):
 //     turn    gap = s q - c,      no n               a torque s N on body b, in the sense of q
@@ -29,6 +30,7 @@ typedef enum TouchShape {
     TOUCH_HOLE,  // a circle of body b in one of body a
     TOUCH_DISC,  // a circle of body b beside one of body a
     TOUCH_LINE,  // a circle or point of body b at a line of body a
+    TOUCH_CAM,   // a circle or flat of body b at a profile of body a
     TOUCH_TURN,  // an end of a revolute joint's angle
     TOUCH_TEETH, // a flank of a pair of gears
     TOUCH_RACK,  // a flank of a rack on body a and a pinion
@@ -48,6 +50,7 @@ typedef struct Touch {
     double sign;      // s above; 0 of other shapes
     double radius_a;  // m, of hole, disc or pitch circle; 0 of a line, infinite of a rack
     double radius_b;  // m
+    Cam cam;          // of a cam
     ForceLaw law;     // of this place alone
 } Touch;
 
@@ -60,6 +63,7 @@ typedef struct TouchPose {
     Vec2 normal;           // unit: direction of the force on body b; zero at a turn and without
                            // a normal
     double approach_speed; // m/s, rate of the penetration; without a normal the relative speed
+    Vec2 from_b;           // m, of a cam: from anchor b to where they touch
 } TouchPose;
 
 // Whether the gap of a place is a coordinate by itself, whose rate is the first of the place's rows
@@ -71,6 +75,7 @@ static inline bool touch_is_scalar(const Touch *place)
     case TOUCH_DISC:
         return false;
     case TOUCH_LINE:
+    case TOUCH_CAM:
     case TOUCH_TURN:
     case TOUCH_TEETH:
     case TOUCH_RACK:
@@ -90,6 +95,7 @@ static inline bool touch_is_end(const Touch *place)
     case TOUCH_HOLE:
     case TOUCH_DISC:
     case TOUCH_LINE:
+    case TOUCH_CAM:
         break;
     }
     return false;
@@ -100,7 +106,7 @@ static inline bool touch_is_end(const Touch *place)
 bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *err);
 
 // Writes the places of one joint without their laws; returns how many there are, 0 of an ideal one.
-size_t touch_places(const Joint *joint, int number, Touch places[TOUCH_CORNERS]);
+size_t touch_places(const Linkage *linkage, int number, Touch places[TOUCH_CORNERS]);
 
 // The pose of a pin in its hole, with the velocity of its centre less that of the hole's, m/s.
 static inline TouchPose touch_pose_in_hole(const PinHole *pin, Vec2 velocity)
@@ -122,6 +128,11 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
 // its normal in the world and the angular velocity of body a, rad/s.
 TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 line, double omega_a);
 
+// The same of a cam, with the unit vectors in the world from which its profile's angles count and
+// in which a flat faces, and the angular velocities of both bodies, rad/s.
+TouchPose touch_pose_on_cam(const Touch *place, Vec2 zero, Vec2 facing, Vec2 offset, Vec2 velocity,
+                            const double omegas[2]);
+
 // The point at which the force acts, seen from the anchor on body a and from that on body b, m.
 // Without friction the anchors themselves serve as well where both are circles.
 void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 *from_b);
@@ -130,6 +141,16 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
 // normal turned by a quarter turn.
 double touch_sliding(const Linkage *linkage, const Touch *place, const TouchPose *pose,
                      const Motion *motions);
+
+// How fast the normal of a cam turns, rad/s, and how fast the point where it is met goes on body b
+// along the normal turned by a quarter turn, m/s.
+typedef struct TouchTravel {
+    double turning;
+    double along_b;
+} TouchTravel;
+
+TouchTravel touch_travel(const Linkage *linkage, const Touch *place, const TouchPose *pose,
+                         const Motion *motions);
 
 // Prepares the response of a linkage with its places, in their order; where there is friction, with
 // the turns that it acts in.

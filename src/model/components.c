@@ -173,7 +173,19 @@ static LinkageRoom *count_rooms(const Linkage *whole, const size_t *member_of, s
     for (size_t i = 0; i < whole->load_count; i++) {
         rooms[member_of_load(whole, member_of, i)].loads++;
     }
+    for (size_t i = 0; i < count; i++) {
+        rooms[i].profiles = whole->profile_count;
+    }
     return rooms;
+}
+
+// Each has all profiles, so that cams keep their numbers.
+static void take_profiles(const Linkage *whole, Linkage *linkage)
+{
+    linkage->profile_count = whole->profile_count;
+    for (size_t i = 0; i < whole->profile_count; i++) {
+        linkage->profiles[i] = whole->profiles[i];
+    }
 }
 
 size_t components_count(const Linkage *linkage)
@@ -196,6 +208,7 @@ Component *components_make(const Scenario *scenario, size_t *count)
         component->scenario = zeroed(1, sizeof *component->scenario);
         *component->scenario = scenario_around(scenario, linkage_create(rooms[i]));
         component->scenario->linkage.is_spatial = whole->is_spatial;
+        take_profiles(whole, &component->scenario->linkage);
         // one without the driver has no revolutions
         component->scenario->run.duration = scenario_duration(scenario);
         component->bodies = zeroed(rooms[i].bodies, sizeof *component->bodies);

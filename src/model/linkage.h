@@ -10,6 +10,7 @@
 #include "base/vec2.h"
 #include "base/vec3.h"
 #include "kernel/contact_state.h"
+#include "model/cam.h"
 #include "model/drive.h"
 #include "model/joint.h"
 
@@ -86,11 +87,17 @@ typedef struct Guide {
                     // y its tilt, rad; both as in the joint's rows (model/joint_rows.h)
 } Guide;
 
-// The sizes of a stop. The normal of a line is Joint.direction and points away from the wall.
+// The sizes of a stop. The normal of a line is Joint.direction and points away from the wall; of a
+// cam the profile's angles count from there.
 typedef struct Stop {
     bool is_disc;    // whether body a carries a disc about its anchor; else a line through it
-    double radius_a; // m, of that disc
+    double radius_a; // m, of that disc; of a cam how far it reaches
     double radius_b; // m, of the disc about the anchor of body b; 0: a point
+    size_t cam;      // of a cam that body a carries about its anchor: which of the linkage's
+                     // profiles, counted from 1; 0: none
+    double hump;     // m, of a cam: the least radius of curvature where it is convex
+    bool is_flat;    // whether body b meets the cam with a line through its anchor
+    double facing;   // rad, in body b's frame: the direction of that line towards the cam
 } Stop;
 
 typedef enum LimitKind {
@@ -249,7 +256,9 @@ typedef struct Linkage {
     Driver driver; // the crank's: angles of the crank are those of its body
     size_t further_count;
     Driver *further; // drives beside it, at other joints
-    Torque torque;   // instead of a driver
+    size_t profile_count;
+    Profile *profiles; // of cams
+    Torque torque;     // instead of a driver
 } Linkage;
 
 // How many of each a linkage has room for.
@@ -260,6 +269,7 @@ typedef struct LinkageRoom {
     size_t torsions;
     size_t loads;
     size_t further;
+    size_t profiles;
 } LinkageRoom;
 
 // A linkage without bodies and joints, with room for so many, all zero. For linkage_free.
@@ -270,6 +280,12 @@ Linkage linkage_copy(const Linkage *linkage);
 
 // Frees the arrays; the linkage is then empty.
 void linkage_free(Linkage *linkage);
+
+// The profile of a cam; NULL of other joints.
+static inline const Profile *linkage_profile(const Linkage *linkage, const Joint *joint)
+{
+    return joint->stop.cam > 0 ? &linkage->profiles[joint->stop.cam - 1] : NULL;
+}
 
 // One side of a joint: 0 that of body a, 1 that of body b.
 typedef struct JointEnd {

@@ -60,9 +60,29 @@ static bool check_guide(const Joint *joint, Err *err)
     return true;
 }
 
-static bool check_stop(const Joint *joint, Err *err)
+static bool check_cam(const Linkage *linkage, const Joint *joint, Err *err)
 {
     const Stop *stop = &joint->stop;
+    if (stop->cam > linkage->profile_count) {
+        return err_set(err, ERR_CASE, "joint '%s': the profile of its cam does not exist",
+                       joint->name);
+    }
+    const double hollow = linkage_profile(linkage, joint)->least_hollow;
+    return (stop->radius_b >= 0.0 && (stop->is_flat ? stop->radius_b == 0.0 && !isfinite(hollow)
+                                                    : stop->radius_b < hollow)) ||
+           err_set(
+               err, ERR_CASE,
+               "joint '%s': a roller of %.9g m on a profile whose hollow has %.9g m, allowed: a "
+               "smaller one, and a flat on a convex profile",
+               joint->name, stop->radius_b, hollow);
+}
+
+static bool check_stop(const Linkage *linkage, const Joint *joint, Err *err)
+{
+    const Stop *stop = &joint->stop;
+    if (stop->cam > 0) {
+        return check_cam(linkage, joint, err);
+    }
     const double size = stop->radius_b + (stop->is_disc ? stop->radius_a : 0.0);
     return (stop->radius_a >= 0.0 && stop->radius_b >= 0.0 && isfinite(size) &&
             (!stop->is_disc || size > 0.0)) ||
@@ -174,7 +194,7 @@ static bool check_joint(const Linkage *linkage, size_t number, Err *err)
     case JOINT_TOUCHES_GUIDES:
         return check_guide(joint, err) && check_own_contact(joint, err);
     case JOINT_TOUCHES_DISC:
-        return check_stop(joint, err) && check_own_contact(joint, err);
+        return check_stop(linkage, joint, err) && check_own_contact(joint, err);
     case JOINT_TOUCHES_TEETH:
         return check_gear(linkage, joint, err) && check_own_contact(joint, err);
     case JOINT_TOUCHES_NOTHING:

@@ -17,6 +17,7 @@ Linkage linkage_create(LinkageRoom room)
         .torsions = zeroed(room.torsions, sizeof(TorsionSpring)),
         .loads = zeroed(room.loads, sizeof(Load)),
         .further = zeroed(room.further, sizeof(Driver)),
+        .profiles = zeroed(room.profiles, sizeof(Profile)),
     };
 }
 
@@ -34,7 +35,8 @@ Linkage linkage_copy(const Linkage *linkage)
                               .springs = linkage->spring_count,
                               .torsions = linkage->torsion_count,
                               .loads = linkage->load_count,
-                              .further = linkage->further_count};
+                              .further = linkage->further_count,
+                              .profiles = linkage->profile_count};
     const Linkage made = linkage_create(room);
     copy_block(made.bodies, linkage->bodies, room.bodies, sizeof(Body));
     copy_block(made.joints, linkage->joints, room.joints, sizeof(Joint));
@@ -42,6 +44,7 @@ Linkage linkage_copy(const Linkage *linkage)
     copy_block(made.torsions, linkage->torsions, room.torsions, sizeof(TorsionSpring));
     copy_block(made.loads, linkage->loads, room.loads, sizeof(Load));
     copy_block(made.further, linkage->further, room.further, sizeof(Driver));
+    copy_block(made.profiles, linkage->profiles, room.profiles, sizeof(Profile));
     Linkage copy = *linkage;
     copy.bodies = made.bodies;
     copy.joints = made.joints;
@@ -49,6 +52,7 @@ Linkage linkage_copy(const Linkage *linkage)
     copy.torsions = made.torsions;
     copy.loads = made.loads;
     copy.further = made.further;
+    copy.profiles = made.profiles;
     return copy;
 }
 
@@ -60,5 +64,6 @@ void linkage_free(Linkage *linkage)
     free(linkage->torsions);
     free(linkage->loads);
     free(linkage->further);
+    free(linkage->profiles);
     *linkage = (Linkage){.body_count = 0};
 }

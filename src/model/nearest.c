@@ -18,7 +18,7 @@ enum { STEP_MAX = 12 }; // Newton doubles the digits: from a clearance to roundi
 static const double SOFT = 1e-12; // on the diagonal of ones: a second pass leaves its square
 // m, and of what is longer than a metre the share: its rounding is a hundredth of it
 static const double NEAREST_CLOSED = 1e-14;
-static const double AGREES = 1e-9; // of the largest speed of a joint: what written digits leave
+static const double AGREES = 1e-9; // of the largest speed: what written digits leave
 
 // The rows that are asked for, and what each is to change by.
 typedef struct Demand {
@@ -180,6 +180,10 @@ static int demand_speeds(const Linkage *linkage, const Motion *motions, bool wit
         if (demand->include[i] && add_demand_rows(linkage, (int)i, missing, demand)) {
             worst = (int)i;
         }
+    }
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        // of what turns about a pivot that stands still, no joint has a speed
+        largest = fmax(largest, vec2_length(motions[i].velocity));
     }
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
         const double omega = motions[linkage_drive_body(linkage, i)].omega;

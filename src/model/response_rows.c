@@ -8,7 +8,8 @@
 //               t . d' - w_a (n . d - r) - w_b r             of sliding
 //     theirs    n . d'' + 2 w_a t . d' - w_a^2 n . d + alpha_a t . d
 //               t . d'' - 2 w_a n . d' - w_a^2 t . d - alpha_a (n . d - r) - alpha_b r
-// Ends of a coordinate: model/coordinate.h.
+// Ends of a coordinate: model/coordinate.h. At a cam likewise with the normal where it is met, and
+// the terms of model/cam.h.
 #include "model/response_rows.h"
 
 #include "model/coordinate.h"
@@ -53,21 +54,45 @@ static void place_prismatic(Response *response, size_t row, int joint, const Mot
     }
 }
 
+static double angle_of(int body, const Motion *motions)
+{
+    return body == LINKAGE_GROUND ? 0.0 : motions[body].angle;
+}
+
+static double omega_of(int body, const Motion *motions)
+{
+    return body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
+}
+
 // The normal of a line, in the world.
 static Vec2 line_normal(const ResponsePlace *place, int body_a, const Motion *motions)
 {
-    const double angle = body_a == LINKAGE_GROUND ? 0.0 : motions[body_a].angle;
-    return vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0});
+    return vec2_rotate(angle_of(body_a, motions) + place->direction, (Vec2){1.0, 0.0});
 }
 
-// Two rows, along the normal and the tangent of a line: of both bodies the point that touches.
+// The pose of a cam and its follower.
+static CamPose cam_of(const ResponsePlace *place, const JointEnd ends[2], const Motion *motions)
+{
+    const Cam *cam = &place->cam;
+    const Vec2 offset = vec2_sub(linkage_point(motions, ends[1].body, ends[1].anchor),
+                                 linkage_point(motions, ends[0].body, ends[0].anchor));
+    const Vec2 x = {1.0, 0.0};
+    return cam_pose(cam, vec2_rotate(angle_of(ends[0].body, motions) + cam->direction, x),
+                    vec2_rotate(angle_of(ends[1].body, motions) + cam->facing, x), offset);
+}
+
+// Two rows, along the normal and the tangent of a line or cam: of both bodies the point that
+// touches.
 static void place_line(Response *response, size_t row, const ResponsePlace *place,
                        const JointEnd ends[2], const Motion *motions)
 {
-    const Vec2 normal = line_normal(place, ends[0].body, motions);
+    const bool is_cam = place->cam.profile != NULL;
+    const CamPose cam = is_cam ? cam_of(place, ends, motions) : (CamPose){.gap = 0.0};
+    const Vec2 normal = is_cam ? cam.normal : line_normal(place, ends[0].body, motions);
     const Vec2 directions[2] = {normal, vec2_perp(normal)};
-    const Vec2 point = vec2_sub(linkage_point(motions, ends[1].body, ends[1].anchor),
-                                vec2_scale(place->radius, normal));
+    const Vec2 anchor = linkage_point(motions, ends[1].body, ends[1].anchor);
+    const Vec2 point =
+        is_cam ? vec2_add(anchor, cam.from_b) : vec2_sub(anchor, vec2_scale(place->radius, normal));
     for (int side = 0; side < 2; side++) {
         const int body =
             is_fixed(response->linkage, ends[side].body) ? LINKAGE_GROUND : ends[side].body;
@@ -222,6 +247,42 @@ static void line_free(const Linkage *linkage, const ResponsePlace *place, const 
                free_turning(linkage, motions, b, loads) * place->radius;
 }
 
+// The acceleration of body b at a point, seen from its anchor, less that of body a there, from the
+// relative acceleration of the anchors, along a direction.
+static double acceleration_at(Vec2 direction, Vec2 relative, Vec2 offset, Vec2 from_b,
+                              const double omegas[2], const double alphas[2])
+{
+    const Vec2 from_a = vec2_add(offset, from_b);
+    const Vec2 of_b = vec2_sub(vec2_scale(alphas[1], vec2_perp(from_b)),
+                               vec2_scale(omegas[1] * omegas[1], from_b));
+    const Vec2 of_a = vec2_sub(vec2_scale(alphas[0], vec2_perp(from_a)),
+                               vec2_scale(omegas[0] * omegas[0], from_a));
+    return vec2_dot(direction, vec2_add(relative, vec2_sub(of_b, of_a)));
+}
+
+// The rates of the rates of a cam's rows.
+static void cam_free(const Linkage *linkage, const ResponsePlace *place, const Motion *motions,
+                     const BodyLoad *loads, Vec2 relative, double *gamma)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const JointEnd ends[2] = {{joint->body_a, place->anchor_a}, {joint->body_b, place->anchor_b}};
+    const double omegas[2] = {omega_of(joint->body_a, motions), omega_of(joint->body_b, motions)};
+    const double alphas[2] = {free_turning(linkage, motions, joint->body_a, loads),
+                              free_turning(linkage, motions, joint->body_b, loads)};
+    const CamPose pose = cam_of(place, ends, motions);
+    const Vec2 offset = vec2_sub(linkage_point(motions, joint->body_b, place->anchor_b),
+                                 linkage_point(motions, joint->body_a, place->anchor_a));
+    const Vec2 velocity = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
+                                   linkage_point_velocity(motions, joint->body_a, place->anchor_a));
+    const double sliding = cam_sliding(&pose, offset, velocity, omegas[0], omegas[1]);
+    const double rate = cam_rate(&pose, offset, velocity, omegas[0], omegas[1]);
+    gamma[0] = acceleration_at(pose.normal, relative, offset, pose.measured, omegas, alphas) +
+               cam_bend(&place->cam, &pose, omegas[0], omegas[1], sliding);
+    gamma[1] =
+        acceleration_at(vec2_perp(pose.normal), relative, offset, pose.from_b, omegas, alphas) -
+        cam_turning(&place->cam, &pose, omegas[0], omegas[1], sliding) * rate;
+}
+
 // The rate of the rate of a coordinate's row, from the relative acceleration of the anchors:
 // between gears the pivots' distance is fixed, and its direction turns with what the teeth push
 // along. Of a rack it is that of a line across, and of the turns.
@@ -306,6 +367,8 @@ void response_rows_loose(const Response *response, const Motion *motions, Vec2 g
         gamma[row + 1] = relative.y;
         if (place->sign != 0.0) {
             coordinate_free(linkage, place, motions, loads, relative, gamma + row);
+        } else if (place->cam.profile != NULL) {
+            cam_free(linkage, place, motions, loads, relative, gamma + row);
         } else if (place->is_line) {
             line_free(linkage, place, motions, loads, relative, gamma + row);
         }

@@ -11,20 +11,21 @@ enum {
 };
 
 // A place at which the bodies of a joint with play touch. It has two rows: x and y in the world of
-// anchor b less anchor a; or, at a line of body a, the rates at which the touching points of body b
-// and body a part along the line's normal and along its tangent, the normal turned by a quarter
-// turn; or, at an end of a limited coordinate, the rate at which it comes away from there and a row
-// of nothing. With turns, two more: the angular velocities of body a and of body b. Friction at a
-// line acts in the second row and needs none.
+// anchor b less anchor a; or, at a line or cam of body a, the rates at which the touching points of
+// body b and body a part along the line's normal and along its tangent, the normal turned by a
+// quarter turn; or, at an end of a limited coordinate, the rate at which it comes away from there
+// and a row of nothing. With turns, two more: the angular velocities of body a and of body b.
+// Friction at a line acts in the second row and needs none.
 typedef struct ResponsePlace {
-    int joint; // number in the linkage
-    bool is_line;
-    double sign; // of the joint's coordinate (model/coordinate.h) at one of its ends; else 0
+    int joint;    // number in the linkage
+    bool is_line; // or a cam
+    double sign;  // of the joint's coordinate (model/coordinate.h) at one of its ends; else 0
     bool has_turns;
     Vec2 anchor_a;    // in body a's frame, m
     Vec2 anchor_b;    // in body b's frame, m
     double direction; // rad, in body a's frame: of a line's normal
     double radius;    // m, of body b's circle that meets the line
+    Cam cam;          // its profile is NULL where there is none
 } ResponsePlace;
 
 // A relative velocity as a sum over one or two bodies. A body that cannot give way has no part.

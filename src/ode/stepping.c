@@ -235,7 +235,7 @@ SteppingRate stepping_beside_jump(double before, double mean, double jump_s, dou
 static double smallest_gap(const Linkage *linkage, int joint, const Motion *motions)
 {
     Touch places[TOUCH_CORNERS];
-    const size_t count = touch_places(&linkage->joints[joint], joint, places);
+    const size_t count = touch_places(linkage, joint, places);
     double gap = INFINITY;
     for (size_t i = 0; i < count; i++) {
         gap = fmin(gap, touch_pose(linkage, &places[i], motions).gap);

@@ -20,7 +20,7 @@ double joint_moment(const Linkage *linkage, const Motion *motions, size_t joint,
         return state->moment_on_b;
     }
     Touch touches[TOUCH_CORNERS];
-    touch_places(&linkage->joints[joint], (int)joint, touches);
+    touch_places(linkage, (int)joint, touches);
     const TouchPose pose = touch_pose(linkage, &touches[0], motions);
     Vec2 from_a;
     Vec2 from_b;

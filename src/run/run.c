@@ -319,7 +319,7 @@ static double stored_energy(const Scenario *scenario, const Sample *sample)
             continue;
         }
         Touch places[TOUCH_CORNERS];
-        const size_t count = touch_places(joint, (int)i, places);
+        const size_t count = touch_places(&scenario->linkage, (int)i, places);
         for (size_t k = 0; k < count; k++) {
             const double gap = joint_has_hole(joint->kind)
                                    ? sample->joints[i].gap

@@ -118,7 +118,7 @@ static void place_in_play(Draw *draw, Joint *joint)
 static double gap_at(const Draw *draw, int joint)
 {
     Touch places[TOUCH_CORNERS];
-    touch_places(&draw->linkage->joints[joint], joint, places);
+    touch_places(draw->linkage, joint, places);
     return touch_pose(draw->linkage, &places[0], draw->motions).gap;
 }
 
@@ -241,7 +241,7 @@ static bool is_clear(const Draw *draw)
         const double width = joint_coordinates(joint) == 2 ? linkage_radial_clearance(joint)
                                                            : gap_width(draw, (int)i);
         Touch places[TOUCH_CORNERS];
-        const size_t count = touch_places(joint, (int)i, places);
+        const size_t count = touch_places(linkage, (int)i, places);
         for (size_t k = 0; k < count; k++) {
             const double gap = touch_pose(linkage, &places[k], draw->motions).gap;
             if (!(gap >= -OVERLAP * fmax(width, fabs(places[k].clearance)))) {

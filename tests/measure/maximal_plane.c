@@ -387,6 +387,123 @@ static Real way_on_rack(const Plane *plane, View view, const Touch *place, const
     return vec_dot(along, ends->apart) + place->radius_b * turned;
 }
 
+// How far a point, seen from a cam's centre in the cam's own directions, is from the profile at an
+// angle, squared.
+static Real apart_squared(const Profile *profile, Vec point, Real angle)
+{
+    const Real r = profile_at(profile, (double)angle).r;
+    const Vec to = {point.x - r * cosl(angle), point.y - r * sinl(angle)};
+    return vec_dot(to, to);
+}
+
+// The angle at which a function of it is least: by a scan all round, and where the slope there goes
+// through 0, by bisection and then secants.
+typedef Real (*OfAngle)(const Profile *profile, Vec vector, Real angle);
+
+static Real least_at(OfAngle of, OfAngle slope, const Profile *profile, Vec vector)
+{
+    enum { SCAN = 48, HALVES = 12, SECANTS = 5 };
+    const Real pitch = 2.0L * M_PI / SCAN;
+    Real at = 0.0L;
+    Real least = INFINITY;
+    for (int i = 0; i < SCAN; i++) {
+        const Real value = of(profile, vector, i * pitch);
+        at = value < least ? i * pitch : at;
+        least = fminl(least, value);
+    }
+    Real low = at - pitch;
+    Real high = at + pitch;
+    for (int i = 0; i < HALVES; i++) {
+        const Real middle = 0.5L * (low + high);
+        *(slope(profile, vector, middle) > 0.0L ? &high : &low) = middle;
+    }
+    Real before = low;
+    Real now = high;
+    Real slope_before = slope(profile, vector, before);
+    for (int i = 0; i < SECANTS; i++) {
+        const Real slope_now = slope(profile, vector, now);
+        if (slope_now == slope_before) {
+            break;
+        }
+        const Real next = now - slope_now * (now - before) / (slope_now - slope_before);
+        before = now;
+        slope_before = slope_now;
+        now = next;
+    }
+    return now;
+}
+
+static Vec tangent_at(const Profile *profile, Real angle)
+{
+    const ProfileAt at = profile_at(profile, (double)angle);
+    const Real c = cosl(angle);
+    const Real s = sinl(angle);
+    return (Vec){at.r1 * c - at.r * s, at.r1 * s + at.r * c};
+}
+
+static Real apart_slope(const Profile *profile, Vec point, Real angle)
+{
+    const Real r = profile_at(profile, (double)angle).r;
+    const Vec to = {point.x - r * cosl(angle), point.y - r * sinl(angle)};
+    return -vec_dot(to, tangent_at(profile, angle));
+}
+
+static Real reach_slope(const Profile *profile, Vec direction, Real angle)
+{
+    return -vec_dot(direction, tangent_at(profile, angle));
+}
+
+// The reach of the profile along a direction, negative: it is least where that is largest.
+static Real reach_negative(const Profile *profile, Vec direction, Real angle)
+{
+    const Real r = profile_at(profile, (double)angle).r;
+    return -r * (direction.x * cosl(angle) + direction.y * sinl(angle));
+}
+
+static Vec turn_by(Real angle, Vec vector)
+{
+    return (Vec){cosl(angle) * vector.x - sinl(angle) * vector.y,
+                 sinl(angle) * vector.x + cosl(angle) * vector.y};
+}
+
+// A roller or flat at a cam: normal, depth and where they touch, and the rate by the two points of
+// the bodies there.
+static void meet_cam(const Plane *plane, View view, const Touch *place, const Ends *ends,
+                     Pose *pose)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Cam *cam = &place->cam;
+    const Real zero = angle_of(view, joint->body_a) + cam->direction;
+    const Vec seen = turn_by(-zero, ends->apart);
+    Vec from_b;
+    if (cam->is_flat) {
+        const Vec facing = along_of(view, joint->body_b, cam->facing);
+        pose->normal = vec_times(-1.0L, facing);
+        const Vec out = turn_by(-zero, pose->normal);
+        const Real at = least_at(reach_negative, reach_slope, cam->profile, out);
+        const Real r = profile_at(cam->profile, (double)at).r;
+        const Vec met = turn_by(zero, (Vec){r * cosl(at), r * sinl(at)});
+        pose->gap.depth = vec_dot(pose->normal, vec_sub(met, ends->apart));
+        // on the flat, as a roller's own surface
+        from_b = vec_sub(vec_sub(met, vec_times(pose->gap.depth, pose->normal)), ends->apart);
+    } else {
+        const Real at = least_at(apart_squared, apart_slope, cam->profile, seen);
+        const ProfileAt r = profile_at(cam->profile, (double)at);
+        const Vec tangent = tangent_at(cam->profile, at);
+        const Vec out = vec_times(-1.0L / vec_length(tangent), vec_perp(tangent));
+        const Vec to = {seen.x - r.r * cosl(at), seen.y - r.r * sinl(at)};
+        pose->normal = turn_by(zero, out);
+        pose->gap.depth = place->radius_b - vec_dot(out, to);
+        from_b = vec_times(-place->radius_b, pose->normal);
+    }
+    pose->at[0] = vec_add(ends->arm[0], vec_add(ends->apart, from_b));
+    pose->at[1] = vec_add(ends->arm[1], from_b);
+    const Vec relative = vec_sub(velocity_of(view, joint->body_b, pose->at[1]),
+                                 velocity_of(view, joint->body_a, pose->at[0]));
+    pose->gap.closing = -vec_dot(pose->normal, relative);
+    pose->sliding = vec_dot(vec_perp(pose->normal), relative);
+}
+
 // Where the force acts: on the wall of body a, or on the circle of body b.
 static void place_force(const Touch *place, const Ends *ends, Pose *pose)
 {
@@ -426,6 +543,10 @@ static Pose pose_of(const Plane *plane, View view, const Touch *place)
             pose.normal = vec_times(place->sign / vec_length(ends.apart), vec_perp(ends.apart));
             place_force(place, &ends, &pose);
         }
+        return pose;
+    }
+    if (place->shape == TOUCH_CAM) {
+        meet_cam(plane, view, place, &ends, &pose);
         return pose;
     }
     if (place->shape == TOUCH_RACK) {
@@ -661,6 +782,9 @@ static Real flight_of(const Joint *joint, const Touch *place)
 {
     if (place->shape == TOUCH_HOLE || place->shape == TOUCH_DISC) {
         return place->clearance;
+    }
+    if (place->shape == TOUCH_CAM) {
+        return 0.05 * place->cam.profile->reach;
     }
     if (joint->kind == JOINT_GUIDE) {
         return linkage_radial_clearance(joint);

@@ -205,6 +205,77 @@ static void derivatives_are_those_of_angles_and_teeth(void **state)
     dynamics_finish(&pressed.dynamics);
 }
 
+// A cam on the ground with an arm that carries a roller, and a rocker whose flat rides on it.
+static Scenario riders(void)
+{
+    static Profile profile;
+    Err err = {ERR_NONE, ""};
+    profile.count = 72;
+    for (size_t i = 0; i < profile.count; i++) {
+        profile.angles[i] = 2.0 * M_PI * (double)i / (double)profile.count;
+        profile.radii[i] = 0.03 + 3e-3 * cos(profile.angles[i] - 0.4);
+    }
+    assert_true(profile_settle(&profile, &err));
+    Scenario scenario = kept_default();
+    Linkage *linkage = &scenario.linkage;
+    linkage->profile_count = 1;
+    linkage->profiles = &profile;
+    linkage->body_count = 3;
+    for (size_t i = 0; i < 3; i++) {
+        linkage->bodies[i] = (Body){.mass = 0.5, .inertia = 1e-3};
+    }
+    linkage->bodies[1].start.position = (Vec2){0.045, 0.02};
+    linkage->bodies[2].start.position = (Vec2){0.02, 0.045};
+    static const Vec2 PIVOTS[] = {{0.0, 0.0}, {0.05, 0.06}, {0.08, 0.04}};
+    linkage->joint_count = 5;
+    for (int i = 0; i < 3; i++) {
+        linkage->joints[i] = (Joint){
+            .body_a = LINKAGE_GROUND,
+            .body_b = i,
+            .anchor_a = PIVOTS[i],
+            .anchor_b = vec2_sub(PIVOTS[i], linkage->bodies[i].start.position),
+        };
+    }
+    linkage->joints[3] = (Joint){
+        .kind = JOINT_STOP,
+        .body_a = 0,
+        .body_b = 1,
+        .stop = {.cam = 1, .radius_b = 0.01},
+    };
+    linkage->joints[4] = (Joint){
+        .kind = JOINT_STOP,
+        .body_a = 0,
+        .body_b = 2,
+        .anchor_b = {0.0, -0.01},
+        .stop = {.cam = 1, .is_flat = true, .facing = -1.4},
+    };
+    // what rides is moved to where it presses
+    Motion motions[3];
+    Touch roller[TOUCH_CORNERS];
+    Touch flat[TOUCH_CORNERS];
+    linkage_start(linkage, motions);
+    touch_places(linkage, 3, roller);
+    touch_places(linkage, 4, flat);
+    linkage->joints[3].stop.radius_b += touch_pose(linkage, roller, motions).gap + DEPTH;
+    const double apart = touch_pose(linkage, flat, motions).gap + DEPTH;
+    Joint *riding = &linkage->joints[4];
+    riding->anchor_b = vec2_add(riding->anchor_b, vec2_rotate(-1.4, (Vec2){apart, 0.0}));
+    return scenario;
+}
+
+static void derivatives_are_those_of_rollers_and_flats_on_a_cam(void **state)
+{
+    (void)state;
+    const Scenario scenario = riders();
+    Pressed pressed;
+    press(&pressed, &scenario);
+    assert_int_equal(pressed.dynamics.system.contact_count, 2);
+    const double off = worst(&pressed);
+    print_message("# off by %.3g\n", off);
+    assert_true(off < 2e-3);
+    dynamics_finish(&pressed.dynamics);
+}
+
 static void derivatives_are_those_of_blocks_and_stops(void **state)
 {
     (void)state;
@@ -345,6 +416,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_are_those_of_the_contacts_forces),
         cmocka_unit_test(derivatives_are_those_of_blocks_and_stops),
+        cmocka_unit_test(derivatives_are_those_of_rollers_and_flats_on_a_cam),
         cmocka_unit_test(derivatives_are_those_of_angles_and_teeth),
         cmocka_unit_test(another_sliding_speed_has_other_derivatives),
         cmocka_unit_test(hinges_and_pins_have_the_same_rates_to_the_last_bit),

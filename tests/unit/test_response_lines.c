@@ -96,7 +96,7 @@ static void begin_flight(Flight *flight)
     *flight = (Flight){.loads = {{{0.4, -0.7}, 0.02}, {{-0.3, 0.5}, -0.03}}};
     flight->linkage = flying_pair(flight->motions);
     for (int i = 0; i < 3; i++) {
-        count += touch_places(&flight->linkage.joints[i], i, flight->places + count);
+        count += touch_places(&flight->linkage, i, flight->places + count);
     }
     assert_int_equal(count, PLACES);
     touch_response(&flight->linkage, flight->places, count, true, &flight->response);

@@ -165,9 +165,10 @@ static void a_stop_says_what_touches_what(void **state)
         Stop stop;
         const char *words;
     } CASES[] = {
-        {{false, 0.0, 0.0}, "point against a line"},
-        {{false, 0.0, 5e-3}, "disc of 10 mm against a line"},
-        {{true, 10e-3, 5e-3}, "disc of 10 mm against a disc of 20 mm"},
+        {{.radius_b = 0.0}, "point against a line"},
+        {{.radius_b = 5e-3}, "disc of 10 mm against a line"},
+        {{.is_disc = true, .radius_a = 10e-3, .radius_b = 5e-3},
+         "disc of 10 mm against a disc of 20 mm"},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         joint->stop = CASES[i].stop;

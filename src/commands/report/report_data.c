@@ -39,9 +39,28 @@ static json_t *bodies_json(const Linkage *linkage)
     return bodies;
 }
 
+// The profile of a cam as a polygon about the anchor on body a, in that body's frame.
+static void set_cam(json_t *object, const Linkage *linkage, const Joint *joint)
+{
+    enum { SIDES = 180 };
+    const Profile *profile = linkage_profile(linkage, joint);
+    if (profile == NULL) {
+        return;
+    }
+    json_t *points = json_array();
+    for (int i = 0; i < SIDES; i++) {
+        const double angle = 2.0 * M_PI * i / SIDES;
+        const Vec2 out = vec2_rotate(angle + joint->direction, (Vec2){1.0, 0.0});
+        json_array_append_new(points, vector_json(vec2_scale(profile_at(profile, angle).r, out)));
+    }
+    json_object_set_new(object, "profile_m", points);
+    json_object_set_new(object, "is_flat", json_boolean(joint->stop.is_flat));
+    json_value_set(object, "facing_rad", joint->stop.facing);
+}
+
 // What a joint is drawn by: whether it pivots or slides, what touches in it, and the sizes of that,
 // m.
-static void set_shape(json_t *object, const Joint *joint)
+static void set_shape(json_t *object, const Linkage *linkage, const Joint *joint)
 {
     json_object_set_new(object, "pivots", json_boolean(joint_pivots(joint->kind)));
     json_object_set_new(object, "slides", json_boolean(joint_slides(joint->kind)));
@@ -65,6 +84,7 @@ static void set_shape(json_t *object, const Joint *joint)
         json_object_set_new(object, "is_disc", json_boolean(joint->stop.is_disc));
         json_value_set(object, "radius_a_m", joint->stop.radius_a);
         json_value_set(object, "radius_b_m", joint->stop.radius_b);
+        set_cam(object, linkage, joint);
         break;
     case JOINT_TOUCHES_TEETH:
         json_object_set_new(object, "touches", json_string("teeth"));
@@ -108,7 +128,7 @@ static json_t *joints_json(const Linkage *linkage)
         json_object_set_new(object, "anchor_b_m", vector_json(joint->anchor_b));
         json_value_set(object, "direction_rad", joint->direction);
         json_value_set(object, "held_angle_rad", joint->held_angle);
-        set_shape(object, joint);
+        set_shape(object, linkage, joint);
         if (linkage->is_spatial) {
             set_space(object, linkage, i);
         }

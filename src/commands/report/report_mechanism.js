@@ -585,12 +585,44 @@ class Mechanism {
         context.stroke();
     }
 
+    // The profile of a cam, and the flat that rides on it.
+    drawCam(poses, joint, colour) {
+        const { context } = this;
+        const place = (body, anchor, angle, point) => {
+            const from = poses.point(body, anchor);
+            const [x, y] = rotate(point, angle);
+            return [from[0] + x, from[1] + y];
+        };
+        const turned = poses.angle(joint.body_a);
+        this.line(
+            [...joint.profile_m, joint.profile_m[0]].map((point) =>
+                place(joint.body_a, joint.anchor_a_m, turned, point),
+            ),
+            false,
+        );
+        context.stroke();
+        if (joint.is_flat) {
+            const along = poses.angle(joint.body_b) + joint.facing_rad + Math.PI / 2;
+            const half = 0.12 * this.extent;
+            context.strokeStyle = colour;
+            this.line(
+                [-half, half].map((at) =>
+                    place(joint.body_b, joint.anchor_b_m, along, [at, 0]),
+                ),
+                false,
+            );
+            context.stroke();
+        }
+    }
+
     drawStop(poses, joint, isMain, colour) {
         const { context } = this;
         const from = poses.point(joint.body_a, joint.anchor_a_m);
         context.strokeStyle = colour;
         context.lineWidth = 2;
-        if (joint.is_disc) {
+        if (joint.profile_m) {
+            this.drawCam(poses, joint, colour);
+        } else if (joint.is_disc) {
             this.circle(this.toScreen(from), joint.radius_a_m * this.scale);
             context.stroke();
         } else if (isMain) {

@@ -240,7 +240,7 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
             add_end(linkage, place, &pose, is_first, motions, &joints[place->joint]);
             continue;
         }
-        if (place->shape != TOUCH_LINE) {
+        if (!touch_is_scalar(place)) {
             joints[place->joint] = (JointState){
                 .eccentricity = pose.pose.eccentricity,
                 .gap = pose.pose.gap,

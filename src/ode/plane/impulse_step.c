@@ -151,6 +151,7 @@ static KernelShape kernel_shape_of(TouchShape shape)
     case TOUCH_DISC:
         return KERNEL_DISC;
     case TOUCH_LINE:
+    case TOUCH_CAM:
     case TOUCH_TURN:
     case TOUCH_TEETH:
     case TOUCH_RACK:

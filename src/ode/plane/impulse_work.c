@@ -32,7 +32,7 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
         impulse_step_add_end(&step->scenario->linkage, place, force.x, middle, mean);
         return;
     }
-    if (place->shape != TOUCH_LINE) {
+    if (!touch_is_scalar(place)) {
         mean->force_on_b = force;
         return;
     }
@@ -41,9 +41,12 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
     const TouchPose pose = touch_pose(linkage, place, middle);
     const Vec2 push =
         vec2_add(vec2_scale(force.x, pose.normal), vec2_scale(force.y, vec2_perp(pose.normal)));
-    const Vec2 arm = vec2_sub(vec2_sub(linkage_point(middle, joint->body_b, place->anchor_b),
+    Vec2 from_a;
+    Vec2 from_b;
+    touch_points(place, &pose, &from_a, &from_b);
+    const Vec2 arm = vec2_add(vec2_sub(linkage_point(middle, joint->body_b, place->anchor_b),
                                        linkage_point(middle, joint->body_b, joint->anchor_b)),
-                              vec2_scale(place->radius_b, pose.normal));
+                              from_b);
     mean->force_on_b = vec2_add(mean->force_on_b, push);
     mean->moment_on_b += vec2_cross(arm, push);
 }
@@ -104,7 +107,18 @@ static double work_of_turn(const ImpulseStep *step, size_t number, const Motion 
     return at->row_count == RESPONSE_ROWS_A_JOINT ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
 }
 
-// Likewise of a line, or of a rack.
+// How fast the point moves at which a cam is met.
+static Vec2 moving_on_cam(const Linkage *linkage, const Touch *place, const TouchPose *pose,
+                          const Motion *motions, double along_b)
+{
+    const int body = linkage->joints[place->joint].body_b;
+    const double omega = body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
+    const Vec2 material = vec2_add(linkage_point_velocity(motions, body, place->anchor_b),
+                                   vec2_scale(omega, vec2_perp(pose->from_b)));
+    return vec2_add(material, vec2_scale(along_b, vec2_perp(pose->normal)));
+}
+
+// Likewise of a line or a rack, which turn with body a, or of a cam.
 static double work_at_line(const ImpulseStep *step, size_t number, const Motion *motions,
                            const Motion *driven, bool is_on_a)
 {
@@ -119,8 +133,14 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     Vec2 from_b;
     touch_points(place, &pose, &from_a, &from_b);
     const Vec2 point = vec2_add(linkage_point(motions, joint->body_b, place->anchor_b), from_b);
-    const Vec2 moving = vec2_add(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
-                                 vec2_scale(omega_a, vec2_perp(from_b)));
+    double turning = omega_a;
+    Vec2 moving = vec2_add(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
+                           vec2_scale(omega_a, vec2_perp(from_b)));
+    if (place->shape == TOUCH_CAM) {
+        const TouchTravel travel = touch_travel(linkage, place, &pose, motions);
+        turning = travel.turning;
+        moving = moving_on_cam(linkage, place, &pose, motions, travel.along_b);
+    }
     const Vec2 arm = vec2_sub(point, driven->position);
     const Vec2 speed = vec2_add(driven->velocity, vec2_scale(driven->omega, vec2_perp(arm)));
     const Vec2 pushed = vec2_add(arm_acceleration(driven, arm),
@@ -129,7 +149,7 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     for (size_t i = 0; i < 2; i++) {
         const double early =
             0.5 * step->width_s * step->total.impulse[row + i] - step->total.moment[row + i];
-        work += early * (omega_a * vec2_dot(vec2_perp(directions[i]), speed) +
+        work += early * (turning * vec2_dot(vec2_perp(directions[i]), speed) +
                          vec2_dot(directions[i], pushed));
     }
     return is_on_a ? -work : work;
@@ -145,6 +165,7 @@ static double turning_share(const Joint *joint, const Touch *place, bool is_on_a
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
+    case TOUCH_CAM:
     case TOUCH_RACK: // work_at_line has it
         break;
     }
@@ -204,6 +225,7 @@ static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middl
         }
         switch (step->places[i].shape) {
         case TOUCH_LINE:
+        case TOUCH_CAM:
         case TOUCH_RACK:
             work -= work_at_line(step, i, motions, &motions[body], is_on_a);
             break;

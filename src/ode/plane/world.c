@@ -160,6 +160,7 @@ static void place_line_of(const Joint *joint, WorldPair *pair)
 {
     const Touch *touch = &pair->touch;
     pair->line = (Vec2){cos(touch->direction), sin(touch->direction)};
+    pair->facing = (Vec2){cos(touch->cam.facing), sin(touch->cam.facing)};
     pair->beside[0] = vec2_sub(touch->anchor_a, joint->anchor_a);
     pair->beside[1] = vec2_sub(touch->anchor_b, joint->anchor_b);
 }
@@ -265,7 +266,11 @@ TouchPose pair_pose(const WorldPair *pair)
     const Vec2 arm_b = snapshot_turn(&b, pair->touch.anchor_b);
     const Vec2 offset = vec2_sub(vec2_add(b.position, arm_b), vec2_add(a.position, arm_a));
     const Vec2 velocity = vec2_sub(snapshot_velocity(&b, arm_b), snapshot_velocity(&a, arm_a));
-    return touch_pose_of(&pair->touch, offset, velocity, snapshot_turn(&a, pair->line), a.omega);
+    const Vec2 line = snapshot_turn(&a, pair->line);
+    return pair->touch.shape == TOUCH_CAM
+               ? touch_pose_on_cam(&pair->touch, line, snapshot_turn(&b, pair->facing), offset,
+                                   velocity, (const double[]){a.omega, b.omega})
+               : touch_pose_of(&pair->touch, offset, velocity, line, a.omega);
 }
 
 // Where an anchor is.
@@ -308,6 +313,8 @@ Vec2 pair_point(const WorldPair *pair, Vec2 normal)
     case TOUCH_RACK:
         return vec2_sub(anchor_of(pair, 1),
                         vec2_scale(touch->radius_b * touch->sign, vec2_perp(normal)));
+    case TOUCH_CAM:
+        return vec2_add(anchor_of(pair, 1), pair_pose(pair).from_b);
     case TOUCH_LINE:
     case TOUCH_TURN:
         break;
@@ -631,7 +638,7 @@ static bool make_pairs(const Scenario *scenario, int number, World *world, Err *
 {
     const Joint *joint = &scenario->linkage.joints[number];
     Touch places[TOUCH_CORNERS];
-    const size_t count = touch_places(joint, number, places);
+    const size_t count = touch_places(&scenario->linkage, number, places);
     const dBodyID bodies[2] = {body_of(world, joint->body_a), body_of(world, joint->body_b)};
     for (size_t i = 0; i < count; i++) {
         WorldPair *pair = &world->pairs[world->pair_count++];
@@ -683,7 +690,7 @@ static void make_pair_room(const Linkage *linkage, World *world)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Touch places[TOUCH_CORNERS];
         const Joint *joint = &linkage->joints[i];
-        pairs += linkage_has_play(joint) ? touch_places(joint, (int)i, places) : 0;
+        pairs += linkage_has_play(joint) ? touch_places(linkage, (int)i, places) : 0;
         slidings += joint_is_ideal(joint->kind) && joint_slides(joint->kind) ? 1 : 0;
     }
     world->sliding = zeroed(slidings, sizeof *world->sliding);

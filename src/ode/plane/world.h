@@ -59,12 +59,14 @@ typedef struct WorldEnds WorldEnds;
 // other collider is asked of a pin in its hole, about two geoms: a hole on one body, a cylinder on
 // the other.
 typedef struct WorldPair {
-    int joint;         // number in the linkage
-    Touch touch;       // the place, without its law
-    Vec2 line;         // unit, of a TOUCH_LINE: its normal in body a's frame
-    bool is_corner;    // one of several places of its joint: of a block, or the next
-    bool is_end;       // of a limited coordinate: nothing slides there
-    Vec2 beside[2];    // m, from the joint's anchors to the place's, in their bodies' frames
+    int joint;      // number in the linkage
+    Touch touch;    // the place, without its law
+    Vec2 line;      // unit, in body a's frame: of a line its normal, of a cam where its profile's
+                    // angles count from
+    Vec2 facing;    // unit, in body b's frame: of a flat on a cam
+    bool is_corner; // one of several places of its joint: of a block, or the next
+    bool is_end;    // of a limited coordinate: nothing slides there
+    Vec2 beside[2]; // m, from the joint's anchors to the place's, in their bodies' frames
     dBodyID bodies[2]; // a and b; NULL: the ground
     dGeomID hole;      // of a TOUCH_HOLE that a collider is asked about, else NULL, as the next two
     dGeomID pin;

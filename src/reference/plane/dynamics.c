@@ -58,6 +58,61 @@ static TouchPose pose_in_hole(const Contact *contact, const Tree *tree, const Tr
     return touch_pose_in_hole(&pin, velocity);
 }
 
+// The unit vector in which a flat faces a cam, in the world.
+static Vec2 facing_of(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int body = tree->end_bodies[2 * site->pair + 1];
+    const double angle = body == LINKAGE_GROUND ? 0.0 : state->motions[body].angle;
+    return vec2_rotate(angle + site->touch.cam.facing, (Vec2){1.0, 0.0});
+}
+
+CamPose dynamics_cam(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const Cam *cam = &site->touch.cam;
+    return cam_pose(cam, tree_normal(tree, state, site->pair),
+                    cam->is_flat ? facing_of(tree, state, site) : (Vec2){1.0, 0.0},
+                    tree_pair_gap(tree, state, site->pair));
+}
+
+static TouchPose pose_on_cam(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    const Vec2 velocity = tree_pair_velocity(tree, state, site->pair);
+    const CamPose pose = dynamics_cam(tree, state, site);
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = pose.gap,
+        .has_normal = true,
+        .normal = pose.normal,
+        .approach_speed = -cam_rate(&pose, offset, velocity, tree_omega(state, bodies[0]),
+                                    tree_omega(state, bodies[1])),
+        .from_b = pose.from_b,
+    };
+}
+
+// The second rate of the gap there, after tree_accelerate.
+static double second_on_cam(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const double omegas[2] = {tree_omega(state, bodies[0]), tree_omega(state, bodies[1])};
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    const Vec2 velocity = tree_pair_velocity(tree, state, site->pair);
+    const CamPose pose = dynamics_cam(tree, state, site);
+    const Vec2 from_b = pose.measured;
+    const Vec2 from_a = vec2_add(offset, from_b);
+    const Vec2 turned_b = vec2_sub(vec2_scale(tree_alpha(state, bodies[1]), vec2_perp(from_b)),
+                                   vec2_scale(omegas[1] * omegas[1], from_b));
+    const Vec2 turned_a = vec2_sub(vec2_scale(tree_alpha(state, bodies[0]), vec2_perp(from_a)),
+                                   vec2_scale(omegas[0] * omegas[0], from_a));
+    const Vec2 relative =
+        vec2_add(tree_pair_acceleration(tree, state, site->pair), vec2_sub(turned_b, turned_a));
+    const double sliding = cam_sliding(&pose, offset, velocity, omegas[0], omegas[1]);
+    return vec2_dot(pose.normal, relative) +
+           cam_bend(&site->touch.cam, &pose, omegas[0], omegas[1], sliding);
+}
+
 // A point or disc on body b against a line of body a, or a disc against a disc. The gap has the
 // digits of the way since the base.
 static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlaneSite *site)
@@ -96,6 +151,7 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
+    case TOUCH_CAM:
         break;
     }
     return pose;
@@ -111,6 +167,8 @@ static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeSta
     case TOUCH_TEETH:
     case TOUCH_RACK:
         return pose_of_end(tree, state, site);
+    case TOUCH_CAM:
+        return pose_on_cam(tree, state, site);
     case TOUCH_DISC:
     case TOUCH_LINE:
         break;
@@ -126,6 +184,8 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
     switch (site->touch.shape) {
     case TOUCH_LINE:
         return tree_line_second(&dynamics->tree, state, site->pair);
+    case TOUCH_CAM:
+        return second_on_cam(&dynamics->tree, state, site);
     case TOUCH_TURN:
     case TOUCH_TEETH:
     case TOUCH_RACK:
@@ -167,6 +227,10 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
 // Contact sites: where the bodies of a linkage touch, and how far each may be from touching before
 // it is evaluated again.
 
+// 1: of how far a cam reaches, what may go by until its gap is looked at again: it turns by as much
+// in rad, in which no lobe comes and goes
+static const double CAM_FLIGHT = 0.2;
+
 // m: a site that is apart is evaluated before its bodies have come so much nearer. Of a stop that
 // is no play, but how far the body that touches reaches from where it does; of an angle with one
 // stop, rad.
@@ -183,6 +247,9 @@ static double flight_of(const Linkage *linkage, const double *reaches, const Tou
     }
     if (!joint_has_disc(joint->kind)) {
         return linkage_radial_clearance(joint);
+    }
+    if (touch->shape == TOUCH_CAM) {
+        return CAM_FLIGHT * joint->stop.radius_a;
     }
     const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
     return touch->shape == TOUCH_DISC ? touch->clearance : reaches[body];
@@ -215,6 +282,7 @@ static bool acts_beside(const Touch *touch)
 {
     switch (touch->shape) {
     case TOUCH_LINE:
+    case TOUCH_CAM:
     case TOUCH_TEETH:
     case TOUCH_RACK:
         return true;
@@ -231,7 +299,7 @@ static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of
 {
     const Joint *joint = &dynamics->tree.linkage->joints[touch->joint];
     Touch sites[TOUCH_CORNERS];
-    const bool has_own = tree_own_pairs(joint, touch->joint, sites) > 0;
+    const bool has_own = tree_own_pairs(dynamics->tree.linkage, touch->joint, sites) > 0;
     return (PlaneSite){
         .touch = *touch,
         .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,

@@ -31,6 +31,7 @@ typedef struct SlopesPressing {
     double grip;      // 1, g / (mu N)
     Vec2 *centre;     // G, by coordinate: of the parts that the contact couples, like all
     double *arms;     // m, s; 0 without friction
+    Vec2 beside;      // m, from the circle's centre to where a flat on body b touches
     int pair;         // of the tree
     const CouplingJoint *parts;
 } SlopesPressing;
@@ -51,6 +52,7 @@ static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
     case TOUCH_DISC:
         return side == 0 ? touch->radius_a : vec2_length(pose->offset) - touch->radius_a;
     case TOUCH_LINE:
+    case TOUCH_CAM:
     case TOUCH_TURN:
     case TOUCH_TEETH:
     case TOUCH_RACK:
@@ -93,6 +95,20 @@ static void slopes_clear(const Dynamics *dynamics, const CouplingJoint *parts)
     }
 }
 
+// At a cam: against the point of body a where the gap is measured.
+static void meet_cam(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                     const TouchPose *pose, SlopesPressing *pressing)
+{
+    const CamPose cam = dynamics_cam(tree, state, site);
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const Vec2 from_a = vec2_add(pose->offset, cam.measured);
+    const Vec2 turned_b = vec2_scale(tree_omega(state, bodies[1]), vec2_perp(cam.measured));
+    const Vec2 turned_a = vec2_scale(tree_omega(state, bodies[0]), vec2_perp(from_a));
+    pressing->beside = cam.measured;
+    pressing->bend = site->touch.cam.is_flat ? INFINITY : 1.0 / cam.curvature;
+    pressing->velocity = vec2_add(pose->velocity, vec2_sub(turned_b, turned_a));
+}
+
 static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *state,
                                      size_t number)
 {
@@ -111,18 +127,40 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
     dynamics_contact_find(dynamics, number, state, &pressing.force);
     const TouchPose *pose = &pressing.force.pose;
     pressing.velocity = pose->velocity;
-    if (site->touch.shape == TOUCH_LINE) {
+    switch (site->touch.shape) {
+    case TOUCH_CAM:
+        meet_cam(&dynamics->tree, state, site, pose, &pressing);
+        break;
+    case TOUCH_LINE: {
         // against the point of body a under the circle's centre
         const double omega = tree_omega(state, dynamics->tree.end_bodies[2 * site->pair]);
         pressing.velocity = vec2_sub(pose->velocity, vec2_scale(omega, vec2_perp(pose->offset)));
-    } else {
-        const double distance = vec2_length(pose->offset);
-        pressing.bend = site->touch.shape == TOUCH_DISC ? distance : -distance;
+        break;
+    }
+    case TOUCH_DISC:
+        pressing.bend = vec2_length(pose->offset);
+        break;
+    case TOUCH_HOLE:
+    case TOUCH_TURN: // slopes_add_turn_slopes has these
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
+        pressing.bend = -vec2_length(pose->offset);
+        break;
     }
     pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
                          force_law_tangent(&contact->law, fabs(pose->gap));
     pressing.damping = press_damping(contact, &pressing.force.press);
-    loops_pair_row(&dynamics->tree, state, site->pair, pressing.centre);
+    if (site->touch.shape == TOUCH_CAM) {
+        const int end = 2 * site->pair;
+        const Tree *tree = &dynamics->tree;
+        const Vec2 under = vec2_add(tree_pair_gap(tree, state, site->pair), pressing.beside);
+        tree_point_row(tree, state, tree->end_bodies[end], vec2_add(state->arms[end], under), -1.0,
+                       pressing.centre);
+        tree_point_row(tree, state, tree->end_bodies[end + 1],
+                       vec2_add(state->arms[end + 1], pressing.beside), 1.0, pressing.centre);
+    } else {
+        loops_pair_row(&dynamics->tree, state, site->pair, pressing.centre);
+    }
     if (contact->law.friction > 0.0) {
         find_friction(dynamics, state, site->pair, &pressing);
     }
@@ -196,14 +234,15 @@ static void slopes_find_pushed(const Dynamics *dynamics, const TreeState *state,
     const int end = 2 * pressing->pair;
     // a line is pushed at its point under the circle's centre
     const Vec2 none = {0.0, 0.0};
+    const Vec2 at = pressing->beside;
     const bool is_line = tree->measures[pressing->pair] == TREE_LINE;
-    const Vec2 under = is_line ? tree_pair_gap(tree, state, pressing->pair) : none;
+    const Vec2 under = is_line ? vec2_add(tree_pair_gap(tree, state, pressing->pair), at) : none;
     const bool has_friction = pressing->law->friction > 0.0;
     // without friction what its arms push stays zero
     for (int way = 0; way < (has_friction ? DYNAMICS_PUSHED : 2); way++) {
         const Vec2 force = {way == 0 ? 1.0 : 0.0, way == 1 ? 1.0 : 0.0};
         if (way < 2) {
-            dynamics_load_end(tree, state, end + 1, none, force, &loads);
+            dynamics_load_end(tree, state, end + 1, at, force, &loads);
             dynamics_load_end(tree, state, end, under, vec2_scale(-1.0, force), &loads);
         } else {
             for (int side = 0; side < 2; side++) {

@@ -152,6 +152,15 @@ static double plane_crossing(const System *system, const SystemState *state, siz
         return fabs(tree_line_rate(tree, at, site->pair)) +
                sqrt(of->flight * fabs(tree_line_second(tree, at, site->pair)));
     }
+    if (site->touch.shape == TOUCH_CAM) {
+        // how fast what is met goes by, too: a lobe comes along the profile
+        const int body = tree->end_bodies[2 * site->pair];
+        const double turning =
+            fabs(tree_omega(at, body) - tree_omega(at, tree->end_bodies[2 * site->pair + 1]));
+        return vec2_length(tree_pair_velocity(tree, at, site->pair)) +
+               turning * site->touch.cam.profile->reach +
+               sqrt(of->flight * vec2_length(tree_pair_acceleration(tree, at, site->pair)));
+    }
     const Vec2 v = tree_pair_velocity(tree, at, site->pair);
     const Vec2 a = tree_pair_acceleration(tree, at, site->pair);
     return vec2_length(v) + sqrt(of->flight * vec2_length(a));

@@ -794,10 +794,10 @@ static void tree_list_ends(Tree *tree)
     tree->end_firsts[0] = 0;
 }
 
-size_t tree_own_pairs(const Joint *joint, int number, Touch sites[TOUCH_CORNERS])
+size_t tree_own_pairs(const Linkage *linkage, int number, Touch sites[TOUCH_CORNERS])
 {
-    const bool has_own = joint_slides(joint->kind);
-    return has_own ? touch_places(joint, number, sites) : 0;
+    const bool has_own = joint_slides(linkage->joints[number].kind);
+    return has_own ? touch_places(linkage, number, sites) : 0;
 }
 
 static void set_pairs(Tree *tree)
@@ -814,8 +814,9 @@ static void set_pairs(Tree *tree)
         };
         TreeMeasure measure = TREE_POINTS;
         if (joint_has_disc(joint->kind)) {
-            touch_places(joint, i, sites);
-            measure = sites[0].shape == TOUCH_LINE ? TREE_LINE : TREE_DISC;
+            touch_places(linkage, i, sites);
+            // of a cam the line from which its profile's angles count
+            measure = sites[0].shape == TOUCH_DISC ? TREE_DISC : TREE_LINE;
         } else if (joint_has_rack(joint->kind)) {
             // the way along the line is part of the coordinate
             sites[0].direction = joint->direction;
@@ -828,7 +829,7 @@ static void set_pairs(Tree *tree)
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         tree->corners[i] = corner;
-        const size_t own = tree_own_pairs(joint, i, sites);
+        const size_t own = tree_own_pairs(linkage, i, sites);
         for (size_t k = 0; k < own; k++) {
             set_pair(tree, corner++, joint, &sites[k], TREE_LINE);
         }
@@ -874,7 +875,7 @@ static void tree_make_room(Tree *tree)
     tree->pair_count = linkage->joint_count;
     Touch sites[TOUCH_CORNERS];
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        tree->pair_count += tree_own_pairs(&linkage->joints[i], (int)i, sites);
+        tree->pair_count += tree_own_pairs(linkage, (int)i, sites);
     }
     tree->normals = 2 * (int)tree->pair_count;
     tree->end_count = 3 * tree->pair_count;

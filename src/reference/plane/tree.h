@@ -302,7 +302,7 @@ double tree_tilt(const Tree *tree, const TreeState *state, int joint);
 
 // The pairs that the sites of a joint have of their own: those of corners and of a slider's stops.
 // Returns how many, with the sites.
-size_t tree_own_pairs(const Joint *joint, int number, Touch sites[TOUCH_CORNERS]);
+size_t tree_own_pairs(const Linkage *linkage, int number, Touch sites[TOUCH_CORNERS]);
 
 // Finds the tree of the linkage's ideal joints, which must outlive it (reference/plane/tree.c).
 void tree_build(const Linkage *linkage, Tree *tree);

@@ -1,0 +1,54 @@
+// What of a mechanism, or of a setting, has a program against libjointplay no words for?
+#include "commands/tune/tune_world.h"
+
+static const char *lacks_setting(const Scenario *scenario)
+{
+    const bool has_rows =
+        scenario_has_clearance(scenario) && !scenario_integrates_contacts(scenario);
+    if (scenario->ode.stepping == ODE_EXTRAPOLATED) {
+        return "libjointplay does not extrapolate from several worlds; --schemes direct/staggered "
+               "has a setting for it";
+    }
+    if (has_rows && scenario->ode.collider != ODE_COLLIDER_PIN_HOLE) {
+        return "libjointplay has round holes and no polygons in their place";
+    }
+    return NULL;
+}
+
+static const char *lacks_joint(const Scenario *scenario, const Joint *joint)
+{
+    switch (joint->kind) {
+    case JOINT_GUIDE:
+        return "libjointplay has no block between guides";
+    case JOINT_STOP:
+        return "libjointplay has no disc that meets a wall or another disc";
+    case JOINT_GEAR:
+        return "libjointplay has no pair of gears";
+    case JOINT_RACK:
+        return "libjointplay has no rack and pinion";
+    case JOINT_REVOLUTE:
+    case JOINT_CLEARANCE:
+    case JOINT_PRISMATIC:
+    case JOINT_KIND_COUNT:
+        break;
+    }
+    return linkage_has_play(joint) && scenario->contact.damping == DAMPING_EXACT &&
+                   scenario_restitution(scenario, joint) == 0.0 && !(joint->contact.viscous > 0.0)
+               ? "libjointplay has damping exact for restitutions above 0 alone"
+               : NULL;
+}
+
+const char *tune_world_lacks(const Scenario *scenario)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const char *lacks = lacks_setting(scenario);
+    for (size_t i = 0; i < linkage->joint_count && lacks == NULL; i++) {
+        lacks = lacks_joint(scenario, &linkage->joints[i]);
+    }
+    for (size_t i = 0; i < linkage->torsion_count && lacks == NULL; i++) {
+        if (!joint_has_angle(linkage->joints[linkage->torsions[i].joint].kind)) {
+            lacks = "the program has springs that turn the two sides of a hinge alone";
+        }
+    }
+    return lacks;
+}
