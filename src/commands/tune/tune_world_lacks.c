@@ -1,4 +1,4 @@
-// What of a mechanism, or of a setting, has a program against libjointplay no words for?
+// Says what a program against libjointplay has no words for, of a mechanism and of a setting.
 #include "commands/tune/tune_world.h"
 
 static const char *lacks_setting(const Scenario *scenario)
