@@ -112,8 +112,10 @@ static bool least_change(const Linkage *linkage, const Motion *motions, const De
     return true;
 }
 
-// What the pins still miss of where they are to start; false where they are there.
-static bool demand_positions(const Linkage *linkage, const Motion *motions, Demand *demand)
+// What the pins, with_play, and the ideal joints still miss of where they are to start; false where
+// they are there.
+static bool demand_positions(const Linkage *linkage, const Motion *motions, bool with_play,
+                             Demand *demand)
 {
     demand->rows = 0;
     demand->distance = 0.0;
@@ -124,8 +126,9 @@ static bool demand_positions(const Linkage *linkage, const Motion *motions, Dema
         const Vec2 hole = linkage_point(motions, joint->body_a, joint->anchor_a);
         const Vec2 pin = linkage_point(motions, joint->body_b, joint->anchor_b);
         size = fmax(size, vec2_length(hole));
-        demand->include[i] = joint_rows_count(joint->kind) > 0;
-        if (joint_rows_is_angle(joint->kind, 1)) {
+        demand->include[i] =
+            joint_rows_count(joint->kind) > 0 && (with_play || joint_is_ideal(joint->kind));
+        if (demand->include[i] && joint_rows_is_angle(joint->kind, 1)) {
             const Vec2 opening = kinematics_opening(linkage, motions, (int)i);
             add_demand_rows(linkage, (int)i, vec2_sub(joint_rows_start(joint), opening), demand);
         } else if (demand->include[i]) {
@@ -141,11 +144,12 @@ static bool demand_positions(const Linkage *linkage, const Motion *motions, Dema
     return demand->distance > NEAREST_CLOSED * size;
 }
 
-bool nearest_positions(const Linkage *linkage, Motion *motions)
+static bool find_positions(const Linkage *linkage, bool with_play, Motion *motions)
 {
     Demand demand = create_demand(linkage);
     bool is_solved = true;
-    for (int step = 0; is_solved && demand_positions(linkage, motions, &demand); step++) {
+    for (int step = 0; is_solved && demand_positions(linkage, motions, with_play, &demand);
+         step++) {
         is_solved = step < STEP_MAX && least_change(linkage, motions, &demand);
         if (is_solved) {
             kinematics_move(linkage, demand.change, motions);
@@ -153,6 +157,16 @@ bool nearest_positions(const Linkage *linkage, Motion *motions)
     }
     free_demand(&demand);
     return is_solved;
+}
+
+bool nearest_positions(const Linkage *linkage, Motion *motions)
+{
+    return find_positions(linkage, true, motions);
+}
+
+bool nearest_ideal_positions(const Linkage *linkage, Motion *motions)
+{
+    return find_positions(linkage, false, motions);
 }
 
 // What the speeds miss of keeping joints closed and following the drive. Returns the joint that is

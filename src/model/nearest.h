@@ -8,6 +8,9 @@
 // joints, and holds the driver at its start. False where that cannot all be.
 bool nearest_positions(const Linkage *linkage, Motion *motions);
 
+// The same with pins and blocks free to be anywhere.
+bool nearest_ideal_positions(const Linkage *linkage, Motion *motions);
+
 // Changes the speeds as little as keeps the ideal joints closed, with_play the others too, and
 // follows the driver. Where it cannot be solved nothing changes.
 void nearest_speeds(const Linkage *linkage, bool with_play, Motion *motions);

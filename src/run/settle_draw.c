@@ -7,10 +7,11 @@
 // that with one freedom no two starts are alike.
 //
 // Pins and blocks are put where they are to be in their play, and the bodies move as little as that
-// needs. Limited coordinates and stops follow one by one, each along the direction of least kinetic
-// energy that ideal joints and drive leave. Speeds are those of the mechanism without relative
-// motion in pins, and a multiple of a random change that ideal joints and drive allow. The multiple
-// takes the fastest joint to its share of its largest speed,
+// needs; those that share freedoms are put together (run/settle_together.h). Limited coordinates
+// and stops follow one by one, each along the direction of least kinetic energy that ideal joints
+// and drive leave. Speeds are those of the mechanism without relative motion in pins, and a
+// multiple of a random change that ideal joints and drive allow. The multiple takes the fastest
+// joint to its share of its largest speed,
 //     v = max(closing speed at which contacts began, 2 play / period)
 #include "run/settle_draw.h"
 
@@ -19,6 +20,7 @@
 #include "contact/touch.h"
 #include "model/nearest.h"
 #include "run/settle.h"
+#include "run/settle_together.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -55,6 +57,7 @@ typedef struct Draw {
     const SettleReach *reach;
     double period_s;
     Motion *motions; // owned
+    bool is_shared;  // whether pins and blocks share freedoms
     double shrink;   // 1/g
     double share;    // of the last coordinate drawn: a power of it
     size_t point;    // k above
@@ -189,6 +192,14 @@ static void move_along(Draw *draw, const SpeedChange *changes, double factor)
     }
 }
 
+// Closes the joints, pins and blocks at their starts; where these share freedoms, their starts
+// where they are.
+static bool close_joints(Draw *draw)
+{
+    return draw->is_shared ? settle_close_together(draw->linkage, draw->motions)
+                           : nearest_positions(draw->linkage, draw->motions);
+}
+
 // Moves the bodies until the gap of a joint is what is drawn, if it is free to be that. False where
 // they cannot be put together then.
 static bool place_gap(Draw *draw, int joint)
@@ -208,7 +219,7 @@ static bool place_gap(Draw *draw, int joint)
             break;
         }
         move_along(draw, changes, missing / rate);
-        is_placed = nearest_positions(draw->linkage, draw->motions);
+        is_placed = close_joints(draw);
     }
     free(changes);
     return is_placed;
@@ -218,12 +229,15 @@ static bool place_gap(Draw *draw, int joint)
 static bool place_bodies(Draw *draw)
 {
     Linkage *linkage = draw->linkage;
-    for (size_t i = 0; i < linkage->joint_count; i++) {
+    if (draw->is_shared) {
+        settle_place_together(linkage, draw->motions, &draw->seed);
+    }
+    for (size_t i = 0; i < linkage->joint_count && !draw->is_shared; i++) {
         if (joint_coordinates(&linkage->joints[i]) == 2) {
             place_in_play(draw, &linkage->joints[i]);
         }
     }
-    bool is_placed = nearest_positions(linkage, draw->motions);
+    bool is_placed = close_joints(draw);
     for (size_t i = 0; is_placed && i < linkage->joint_count; i++) {
         if (joint_coordinates(&linkage->joints[i]) == 1) {
             is_placed = place_gap(draw, (int)i);
@@ -335,6 +349,9 @@ static void draw_speeds(Draw *draw)
 {
     Linkage *linkage = draw->linkage;
     nearest_speeds(linkage, true, draw->motions);
+    if (draw->is_shared) {
+        nearest_speeds(linkage, false, draw->motions); // where pins cannot all stand still
+    }
     SpeedChange *changes = zeroed(linkage->body_count, sizeof *changes);
     const double share = 2.0 * next_coordinate(draw) - 1.0;
     if (random_change(draw, changes)) {
@@ -363,6 +380,7 @@ static bool draw_once(Scenario *scenario, const SettleReach *reach, size_t point
         .seed = lcg_stirred((unsigned)point),
     };
     linkage_start(&drawn, draw.motions);
+    draw.is_shared = settle_is_shared(&drawn, draw.motions);
     const bool is_drawn = place_bodies(&draw) && is_clear(&draw);
     if (is_drawn) {
         draw_speeds(&draw);

@@ -24,6 +24,7 @@
 #include "model/kinematics.h"
 #include "model/nearest.h"
 #include "run/settle_parts.h"
+#include "run/settle_together.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -264,6 +265,24 @@ static void move_play(const Linkage *from, const Motion *motions, const Motion *
     }
 }
 
+// Closes the joints of moved bodies; pins that share freedoms start where these then are, as
+// closing turns the bodies by what the starts of all together need not allow. False where they
+// cannot be.
+static bool close_moved(Linkage *linkage, Motion *moved)
+{
+    const size_t size = linkage->body_count * sizeof *moved;
+    Motion *closed = zeroed(linkage->body_count + 1, sizeof *closed);
+    memcpy(closed, moved, size);
+    bool is_closed = nearest_positions(linkage, closed);
+    if (is_closed) {
+        memcpy(moved, closed, size);
+    } else if (settle_is_shared(linkage, moved)) {
+        is_closed = settle_close_together(linkage, moved);
+    }
+    free(closed);
+    return is_closed;
+}
+
 // Changes a start by multiples of all changes. False where it cannot be put together.
 static bool change_along(const MonodromyRuns *runs, const double *factors, Scenario *scenario)
 {
@@ -287,7 +306,7 @@ static bool change_along(const MonodromyRuns *runs, const double *factors, Scena
         }
     }
     move_play(from, motions, moved, linkage);
-    const bool is_closed = nearest_positions(linkage, moved);
+    const bool is_closed = close_moved(linkage, moved);
     nearest_speeds(linkage, false, moved);
     for (size_t i = 0; i < bodies; i++) {
         linkage->bodies[i].start = moved[i];
