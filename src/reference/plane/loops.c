@@ -23,6 +23,10 @@ static const double LOOPS_ROUNDING = 2.0 * DBL_EPSILON;
 // m, or rad: a start is closed to some 1e-12; a pin farther from its own was meant to be elsewhere
 static const double LOOPS_CLOSED_SHARE = 1e-10;
 
+// 1: the root of what is left of the pivot of a loop that others do not close, of its own; of one
+// that they close rounding leaves some 1e-8
+static const double LOOPS_INDEPENDENT = 1e-6;
+
 void loops_pair_row(const Tree *tree, const TreeState *state, int pair, Vec2 *row)
 {
     const int end = 2 * pair;
@@ -131,6 +135,15 @@ static bool starts_rounded(Tree *tree, int joint)
     return vec2_length(tree->base_gaps[joint]) <= LOOPS_CLOSED_SHARE;
 }
 
+// Whether no loop is closed by the others: several pins between two bodies are not brought
+// anywhere.
+static bool are_independent(const LoopsRoom *room, const double *q, const double *rates)
+{
+    tree_evaluate(room->tree, 0.0, q, rates, room->state);
+    return articulated_factor(room->articulated, room->state) &&
+           room->articulated->distance > LOOPS_INDEPENDENT;
+}
+
 // Brings the pins and blocks of a start to their own as loops are closed, with speeds that are not
 // used. Returns whether they are there.
 static bool loops_bring(Tree *tree, const LoopsRoom *of, double *q)
@@ -155,7 +168,9 @@ static bool loops_bring(Tree *tree, const LoopsRoom *of, double *q)
         pinned.articulated = articulated_create(tree, pinned.loop_count, loops);
         pinned.sides = room;
         pinned.solved = room + 2 * most;
-        are_near = loops_project(&pinned, 0.0, q, room + n + 4 * most) <= LOOPS_CLOSED_SHARE;
+        double *rates = room + n + 4 * most;
+        are_near = are_independent(&pinned, q, rates) &&
+                   loops_project(&pinned, 0.0, q, rates) <= LOOPS_CLOSED_SHARE;
         articulated_destroy(pinned.articulated);
     }
     free(room);
