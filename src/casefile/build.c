@@ -208,7 +208,7 @@ static void set_anchors(const Entries *entries, Linkage *linkage, const Motion *
         if (joint_has_teeth(joint->kind)) {
             continue; // its anchors are those of the joints that guide it
         }
-        const Vec2 other = joint_has_disc(joint->kind) ? joint->anchor_b : point;
+        const Vec2 other = joint->is_apart ? joint->anchor_b : point;
         joint->anchor_a = to_body(motions, joint->body_a, point);
         joint->anchor_b = to_body(motions, joint->body_b, other);
         joint->direction -= angle_of(motions, joint->body_a);
@@ -362,11 +362,13 @@ bool build_spatial(const Entries *entries, Scenario *scenario, Err *err)
 {
     Linkage *linkage = &scenario->linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Entry *start = entries_find(entries, "joints.*.start", i);
+        const Entry *start = entries_blame(entries, "joints.*.start joints.*.at-b", i);
         if (start != NULL && vec2_length(linkage->joints[i].clearance.start) > 0.0) {
             return entries_refuse(start, err,
                                   "with axes that are not all along z a pin starts in the middle "
-                                  "of its hole\nallowed: centred");
+                                  "of its hole\nallowed: %s",
+                                  linkage->joints[i].is_apart ? "at, or at-b where at-a is"
+                                                              : "centred");
         }
     }
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);

@@ -47,7 +47,11 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     Text allowed;
     text_init(&allowed);
     if (row->rivalry == SCHEMA_STOPPING) {
-        text_append(&allowed, "normal of a line, discs, or profile of a cam");
+        const bool is_stop = entries_find(entries, "joints.*.radius", index) != NULL;
+        text_append(&allowed, "normal of a line, discs, or profile of a cam%s",
+                    is_stop ? ""
+                            : ", of a stop; hole and pin of a pin in a hole; at of a pivot without "
+                              "play");
     } else if (row->rivalry == SCHEMA_SIZES || row->excused_by != NULL) {
         text_append(&allowed, "hole and pin, or radial-clearance");
     } else {

@@ -50,12 +50,14 @@ static bool check_pin(const Entries *entries, size_t index, const Scenario *scen
     if (!(start <= radial)) {
         return entries_refuse(
             entries_blame(entries,
-                          "joints.*.start joints.*.radial-clearance joints.*.hole joints.*.pin",
+                          "joints.*.start joints.*.at-b joints.*.at-a joints.*.radial-clearance "
+                          "joints.*.hole joints.*.pin",
                           index),
             err,
-            "the pin starts %.6g um off the centre, inside the metal\n"
+            "the pin %s %.6g um off the centre%s, inside the metal\n"
             "allowed: up to the radial clearance, %.6g um",
-            1e6 * start, 1e6 * radial);
+            joint->is_apart ? "stands" : "starts", 1e6 * start,
+            joint->is_apart ? " of its hole" : "", 1e6 * radial);
     }
     const Entry *clearance = entries_find(entries, "joints.*.radial-clearance", index);
     if (needs_sizes(scenario, joint) && clearance != NULL &&

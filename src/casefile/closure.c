@@ -319,6 +319,14 @@ static bool check_bodies(const Entries *entries, const Linkage *linkage, const B
     return true;
 }
 
+// How far two joints may be from one another to be at one place, m: pins that stand apart from
+// their holes' centres do so within their play.
+static double same_place(const Joint *joint, const Joint *other)
+{
+    const bool has_apart = joint->is_apart || other->is_apart;
+    return has_apart ? linkage_radial_clearance(joint) + linkage_radial_clearance(other) : 0.0;
+}
+
 // The least distance from a joint to the next on one of its bodies, m; infinite without a next.
 // Joints at one place are one hinge of several bodies.
 static double shortest_link(const Entries *entries, const Scenario *scenario, const BodyEnds *ends,
@@ -345,7 +353,7 @@ static double shortest_link(const Entries *entries, const Scenario *scenario, co
             const Joint *other = &linkage->joints[ends->ends[i] / 2];
             // in a case with bodies every joint still stands at its place in the world
             const double distance = vec2_length(vec2_sub(other->anchor_a, joint->anchor_a));
-            if (joint_rows_count(other->kind) > 0 && distance > 0.0) {
+            if (joint_rows_count(other->kind) > 0 && distance > same_place(joint, other)) {
                 shortest = fmin(shortest, distance);
             }
         }

@@ -115,7 +115,10 @@ static void describe_default(size_t row_number, Text *text)
                               ? "required without angle, torque, force or stall-torque"
                           : row->rivalry == SCHEMA_STOPPING
                               ? "required of a stop, or discs, or profile"
-                              : "required");
+                          : row->side == SCHEMA_PLACE_OF_BOTH
+                              ? "required without at-a and at-b, but of a stop"
+                          : row->rivalry == SCHEMA_PLACING ? "required of a stop"
+                                                           : "required");
         append_kinds(row, text);
         return;
     }

@@ -9,6 +9,8 @@
 
 enum { SLIDER_GUIDE = 3 }; // number of the slider-crank's joint that slides
 
+static const char PLACES[] = "joints.*.at-a joints.*.at-b";
+
 JointKind joint_kind_find(const Entries *entries, size_t joint)
 {
     // the keys that only joints of a kind have; of several kinds the first counts
@@ -16,8 +18,7 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         JointKind kind;
         const char *keys;
     } KINDS[] = {
-        {JOINT_STOP, "joints.*.at-a joints.*.at-b joints.*.normal joints.*.radius joints.*.discs "
-                     "joints.*.profile"},
+        {JOINT_STOP, "joints.*.normal joints.*.radius joints.*.discs joints.*.profile"},
         {JOINT_GUIDE, "joints.*.guide joints.*.block joints.*.length"},
         {JOINT_PRISMATIC, "joints.*.along"},
         {JOINT_RACK, "joints.*.rack"},
@@ -25,8 +26,9 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         {JOINT_REVOLUTE, "joints.*.backlash joints.*.low joints.*.high"},
         {JOINT_CLEARANCE, "joints.*.hole joints.*.pin joints.*.radial-clearance joints.*.width "
                           "joints.*.start"},
+        {JOINT_STOP, PLACES}, // which pins in holes may have as well
     };
-    static_assert(sizeof KINDS / sizeof *KINDS == JOINT_KIND_COUNT, "each kind has its keys");
+    static_assert(sizeof KINDS / sizeof *KINDS == JOINT_KIND_COUNT + 1, "each kind has its keys");
     if (entries->form != SCHEMA_LONG) {
         const bool is_named = entries_group(entries, "joints.*", joint) != NULL;
         const bool slides = entries->form == SCHEMA_SLIDER_CRANK && joint == SLIDER_GUIDE;
@@ -69,6 +71,15 @@ static bool refuse_key(const Entries *entries, const Entry *entry, JointKind kin
     return false;
 }
 
+// Refuses a start of a pin in its hole, where the places of both say it.
+static bool refuse_start(const Entries *entries, const Entry *start, Err *err)
+{
+    return entries_refuse(start, err,
+                          "at-a and at-b of joint '%s' say already where its pin starts in its "
+                          "hole\nallowed: at-a and at-b, or at and start",
+                          entries_name(entries, start->row, start->index));
+}
+
 bool joint_kind_check(const Entries *entries, Err *err)
 {
     // the keys of a joint stand together, so that its kind is found once
@@ -87,6 +98,10 @@ bool joint_kind_check(const Entries *entries, Err *err)
         }
         if (!schema_is_of_kind(entry->row, kind) || (is_firm && is_of_play(entry->row))) {
             return refuse_key(entries, entry, kind, err);
+        }
+        if (entry->row->type == SCHEMA_START && joint_has_hole(kind) &&
+            entries_blame(entries, PLACES, joint) != NULL) {
+            return refuse_start(entries, entry, err);
         }
     }
     return true;

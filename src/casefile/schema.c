@@ -173,8 +173,14 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
 
 bool schema_are_rivals(const SchemaRow *row, const SchemaRow *other)
 {
-    return row->rivalry != SCHEMA_NO_RIVAL && other->rivalry == row->rivalry &&
-           other->family == row->family && other->side != row->side;
+    if (row->rivalry == SCHEMA_NO_RIVAL || other->rivalry != row->rivalry ||
+        other->family != row->family) {
+        return false;
+    }
+    // those of the two bodies go together
+    return row->rivalry == SCHEMA_PLACING
+               ? (row->side == SCHEMA_PLACE_OF_BOTH) != (other->side == SCHEMA_PLACE_OF_BOTH)
+               : other->side != row->side;
 }
 
 bool schema_is_of_kind(const SchemaRow *row, JointKind kind)

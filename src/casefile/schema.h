@@ -71,6 +71,9 @@ typedef enum SchemaForm {
     SCHEMA_SHORT = SCHEMA_FOUR_BAR | SCHEMA_SLIDER_CRANK,
 } SchemaForm;
 
+// The side of a place that is both bodies', against those of one, 0 and 1.
+enum { SCHEMA_PLACE_OF_BOTH = -1 };
+
 enum { SCHEMA_FORM_COUNT = 3 };
 static_assert((int)SCHEMA_LONG == 1 << (SCHEMA_FORM_COUNT - 1), "the long form is the last");
 
@@ -91,6 +94,7 @@ typedef enum SchemaRivalry {
     SCHEMA_DRIVING,    // speed against angle, torque and others
     SCHEMA_STOPPING,   // the normal of a line, and a radius, against two discs
     SCHEMA_LIMITING,   // backlash against low and high
+    SCHEMA_PLACING,    // one place of a joint against one for each of its bodies
 } SchemaRivalry;
 
 // The bit of a backend, and those of all that take steps of run.step.

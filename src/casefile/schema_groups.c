@@ -16,9 +16,10 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                "With slider-crank likewise: crank-rod, rod-slider and slider-guide. With bodies every "
                "joint, with any name. The keys make the kind: no sizes an ideal pivot; hole and pin, or "
                "radial-clearance, a pin with play; along an ideal prismatic joint, with guide, block "
-               "and length as well a block with play between guides, or a sleeve round a rod; at-a and "
-               "at-b a stop, where two bodies touch that are not joined; gears and teeth a pair of "
-               "gears; rack a rack and pinion. An ideal pivot or prismatic joint with backlash, or with low and high, has "
+               "and length as well a block with play between guides, or a sleeve round a rod; normal, "
+               "discs or profile a stop, where two bodies touch that are not joined; gears and teeth a "
+               "pair of gears; rack a rack and pinion. An ideal pivot or prismatic joint with "
+               "backlash, or with low and high, has "
                "flanks or stops at the ends of its coordinate. With space: spatial there are only pins, "
                "and pivots with or without limits."},
     {"springs", "Springs with dampers along the line between two points, in the plane."},

@@ -137,6 +137,13 @@ static bool limits_apply(const SchemaRow *row, const Joint *joint, const void *f
     return row->type != SCHEMA_START || kind == LIMIT_BACKLASH || joint_is_loose(joint->kind);
 }
 
+// Whether a key is the one that says where a joint is: one place, with its start, or two.
+static bool places_apply(const SchemaRow *row, const Joint *joint)
+{
+    const bool is_of_both = row->rivalry == SCHEMA_PLACING && row->side == SCHEMA_PLACE_OF_BOTH;
+    return !joint->is_apart || !(is_of_both || row->type == SCHEMA_START);
+}
+
 // The form in which a case of the scenario is written.
 static SchemaForm form_of(const Scenario *scenario)
 {
@@ -236,7 +243,7 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         met |= joint_bits(scenario, joint);
         met |= bit(OWN, row->flag > 0 && *((const bool *)((const char *)joint + row->flag)));
         if (!limits_apply(row, joint, schema_field_const(row, scenario, index)) ||
-            !schema_is_of_kind(row, joint->kind)) {
+            !places_apply(row, joint) || !schema_is_of_kind(row, joint->kind)) {
             return false;
         }
     }

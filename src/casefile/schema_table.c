@@ -98,6 +98,10 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     JOINT(guide.field), .form = SCHEMA_LONG | SCHEMA_SLIDER_CRANK, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
     .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = JOINTS_WITH_GUIDES
 #define STOP .form = SCHEMA_LONG, .needs = MEMBER, .kinds = JOINTS_WITH_DISC
+#define APART(field) \
+    .type = SCHEMA_ANCHOR, .form = SCHEMA_LONG, JOINT(field), .flag = offsetof(Joint, is_apart), \
+    .dimension = DIMENSION_LENGTH, .low = -1e3, .high = 1e3, .is_required = true, \
+    .rivalry = SCHEMA_PLACING, .kinds = JOINTS_WITH_DISC | JOINTS_WITH_HOLE, .needs = MEMBER | OWN
 #define LIMITED (JOINTS_WITH_ANGLE | JOINTS_WITH_POSITION)
 #define TOUCHING (JOINTS_WITH_PLAY | JOINTS_WITH_COORDINATE)
 #define SPRING(field) \

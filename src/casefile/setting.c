@@ -174,7 +174,7 @@ static Vec2 start_point(const Linkage *linkage, int body, Vec2 local)
 // Where a joint's hole, or an end of a stop or spring, stands at time zero.
 static Vec2 anchor_place(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
-    const bool is_first = row->side == 0;
+    const bool is_first = row->side != 1;
     if (!(index < schema_member_count(scenario, row->family))) {
         return (Vec2){0.0, 0.0};
     }

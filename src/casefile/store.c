@@ -169,6 +169,24 @@ static void seat_pin(Clearance *clearance)
     }
 }
 
+// A place of a joint. Where those of hole and pin are apart they say where the pin starts in it;
+// the second is stored last, and after the radii.
+static bool store_anchor(const Target *target, Scenario *scenario)
+{
+    const SchemaRow *row = target->entry->row;
+    if (!store_vector(target)) {
+        return false;
+    }
+    if (row->family == SCHEMA_JOINT && row->side == 1) {
+        Joint *joint = &scenario->linkage.joints[target->entry->index];
+        if (joint_has_hole(joint->kind)) {
+            joint->clearance.start = vec2_sub(joint->anchor_b, joint->anchor_a);
+            seat_pin(&joint->clearance);
+        }
+    }
+    return true;
+}
+
 // Where a pin starts in its hole, or a block between its guides: there the second number is an
 // angle.
 static bool store_start(const Target *target, Joint *joint)
@@ -369,8 +387,9 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_TEXT:
         return store_text(&target, target.field, SCENARIO_TITLE_SIZE);
     case SCHEMA_VECTOR:
-    case SCHEMA_ANCHOR: // moved to its body's frame once the bodies are placed
         return store_vector(&target);
+    case SCHEMA_ANCHOR: // moved to its body's frame once the bodies are placed
+        return store_anchor(&target, scenario);
     case SCHEMA_START:
         return store_start(&target, &scenario->linkage.joints[entry->index]);
     case SCHEMA_STIFFNESS:

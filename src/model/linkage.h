@@ -164,6 +164,8 @@ typedef struct Joint {
     int body_b;        // carries the pin
     Vec2 anchor_a;     // hole centre in body a's frame, m
     Vec2 anchor_b;     // pin centre in body b's frame, m
+    bool is_apart;     // whether the case says of each anchor where it is, of a stop or of a pin
+                       // that stands apart from its hole's centre; else they start at one point
     double direction;  // rad, in body a's frame: of the line or the guides; of a stop's normal
     double held_angle; // rad: angle of body b less that of body a where what slides is not tilted
     // sizes of what touches in it (joint_touches)
