@@ -685,6 +685,27 @@ static void add_torque(const Plane *plane, double since_s, Real time_s, View vie
               vec_times(value, along_of(view, joint->body_a, joint->direction)), accelerations);
 }
 
+// Constant torques on bodies; other loads are refused.
+static void add_loads(const Plane *plane, Real *accelerations)
+{
+    for (size_t i = 0; i < plane->linkage->load_count; i++) {
+        const Load *load = &plane->linkage->loads[i];
+        const Vec none = {0.0L, 0.0L};
+        push(plane, load->body, none, none, load->table.values[0], accelerations);
+    }
+}
+
+static bool has_other_loads(const Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        const Load *load = &linkage->loads[i];
+        if (load->kind != LOAD_TORQUE || load->table.count != 1) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void rates(const Maximal *maximal, double since_s, Real time_s, const Real *y, Real *out)
 {
     const Plane *plane = plane_of(maximal);
@@ -720,6 +741,7 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
     add_contacts(plane, view, accelerations);
     add_springs(plane, view, accelerations);
     add_torque(plane, since_s, time_s, view, accelerations);
+    add_loads(plane, accelerations);
     Row *rows = zeroed(ROW_MOST * linkage->joint_count, sizeof *rows);
     Real *right = zeroed(ROW_MOST * linkage->joint_count, sizeof *right);
     const size_t count = list_rows(plane, view, false, rows);
@@ -831,6 +853,10 @@ Maximal *maximal_plane_create(const Scenario *scenario, const MaximalFlaw *flaw,
     }
     if (scenario->contact.model != CONTACT_IMPACT) {
         err_set(err, ERR_CASE, "the velocity-level model is not among these equations");
+        return NULL;
+    }
+    if (has_other_loads(linkage)) {
+        err_set(err, ERR_CASE, "of loads these equations have constant torques on bodies alone");
         return NULL;
     }
     if (!touch_list(scenario, &places, &count, err)) {
