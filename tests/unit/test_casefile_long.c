@@ -169,6 +169,115 @@ static void a_pin_off_the_centre_moves_the_bodies(void **state)
     assert_near(chain.linkage.bodies[0].start.angle, 0.0, 1e-13);
 }
 
+static bool is_setting(const Scenario *scenario, const char *key)
+{
+    CasefileSetting setting;
+    CasefileWalk walk = casefile_walk(scenario);
+    while (casefile_next(&walk, &setting)) {
+        if (strcmp(setting.key, key) == 0) {
+            return setting.applies;
+        }
+    }
+    return false;
+}
+
+static void hole_and_pin_stand_where_each_is_said_to(void **state)
+{
+    (void)state;
+    static const char *const APART[] = {
+        "joints.hole={between: [ground, pin], at-a: [2 mm, 1 mm], at-b: [2.03 mm, 0.96 mm], "
+        "hole: 10.2 mm, pin: 10 mm}"};
+    const Scenario apart = load(PIN, APART, 1);
+    const Joint *joint = &apart.linkage.joints[0];
+    const Motion *body = &apart.linkage.bodies[0].start;
+    // the body stays where it is, and the pin is at its place on it
+    assert_true(body->position.x == 1e-3 && body->position.y == -2e-3);
+    assert_near(joint->anchor_a.x, 2e-3, 1e-18);
+    assert_near(joint->anchor_a.y, 1e-3, 1e-18);
+    const Vec2 arm = vec2_rotate(-M_PI / 6.0, (Vec2){1.03e-3, 2.96e-3});
+    assert_near(joint->anchor_b.x, arm.x, 1e-17);
+    assert_near(joint->anchor_b.y, arm.y, 1e-17);
+    assert_near(eccentricity(&apart.linkage, 0).x, 30e-6, 1e-17);
+    assert_near(joint->clearance.start.x, 30e-6, 1e-17);
+    assert_near(joint->clearance.start.y, -40e-6, 1e-17);
+    assert_true(is_setting(&apart, "joints.hole.at-a") && is_setting(&apart, "joints.hole.at-b"));
+    assert_false(is_setting(&apart, "joints.hole.at") || is_setting(&apart, "joints.hole.start"));
+    // one place instead of the two, and two instead of the one
+    const char *const ONE[] = {APART[0], "joints.hole.at=[0 mm, 0 mm]"};
+    const Scenario one = load(PIN, ONE, 2);
+    assert_true(is_setting(&one, "joints.hole.at") && is_setting(&one, "joints.hole.start"));
+    assert_false(is_setting(&one, "joints.hole.at-a") || is_setting(&one, "joints.hole.at-b"));
+    static const char *const TWO[] = {"joints.hole.at-a=[1 mm, 0 mm]",
+                                      "joints.hole.at-b=[1.1 mm, 0 mm]"};
+    // at the wall, however the places are rounded
+    const Scenario two = load(PIN, TWO, 2);
+    assert_near(eccentricity(&two.linkage, 0).x, 1e-4, 1e-16);
+    assert_true(vec2_length(two.linkage.joints[0].clearance.start) <=
+                linkage_radial_clearance(&two.linkage.joints[0]));
+    refuse(PIN, "joints.hole.at-a=[1 mm, 0 mm]",
+           "memory:5:3: joints.hole.at-b is missing\n"
+           "      hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin:...\n"
+           "      ^~~~\n"
+           "allowed: [x, y] such as [25 mm, 0 mm]");
+}
+
+// In a loop that a drive determines the pin begins where it stands as well.
+static void a_pin_that_stands_apart_is_there_in_a_driven_loop(void **state)
+{
+    (void)state;
+    static const char LOOP[] =
+        "bodies:\n"
+        "  crank: {mass: 0.1 kg, inertia: 90 kg mm^2, at: [0 mm, 25 mm], angle: 90 deg}\n"
+        "  rod: {mass: 0.2 kg, inertia: 700 kg mm^2, at: [60 mm, 65 mm], angle: 14 deg}\n"
+        "  rocker: {mass: 0.1 kg, inertia: 90 kg mm^2, at: [120 mm, 40 mm], angle: 90 deg}\n"
+        "joints:\n"
+        "  pivot: {between: [ground, crank], at: [0 mm, 0 mm]}\n"
+        "  elbow: {between: [crank, rod], at-a: [0 mm, 50 mm], at-b: [0.03 mm, 49.98 mm],\n"
+        "          radial-clearance: 50 um, pin: 10 mm}\n"
+        "  wrist: {between: [rod, rocker], at: [120 mm, 80 mm]}\n"
+        "  heel:  {between: [ground, rocker], at: [120 mm, 0 mm]}\n"
+        "drive: {joint: pivot, speed: 100 rpm}\n";
+    const Scenario loop = load(LOOP, NULL, 0);
+    assert_near(eccentricity(&loop.linkage, 1).x, 30e-6, 1e-13);
+    assert_near(eccentricity(&loop.linkage, 1).y, -20e-6, 1e-13);
+    for (size_t i = 0; i < 4; i++) {
+        assert_true(i == 1 || vec2_length(eccentricity(&loop.linkage, i)) < 1e-14);
+    }
+    // the bodies are where the case has them
+    assert_near(loop.linkage.bodies[1].start.position.x, 60e-3, 1e-12);
+    assert_near(loop.linkage.bodies[2].start.position.y, 40e-3, 1e-12);
+    // and the motion is one that the places decide, not settled from a start of the case's own
+    assert_int_equal(loop.run.start, START_SETTLED);
+}
+
+// Two holes 10 um apart on one pin are one place, and no link of that length.
+static void holes_of_one_pin_are_no_link(void **state)
+{
+    (void)state;
+    static const char PLATES[] =
+        "bodies:\n"
+        "  bolt: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}\n"
+        "  plate: {mass: 0.1 kg, inertia: 90 kg mm^2, at: [40 mm, 0 mm]}\n"
+        "joints:\n"
+        "  first:  {between: [ground, bolt], at-a: [0 mm, 0 mm], at-b: [5 um, 0 um],\n"
+        "           radial-clearance: 20 um, pin: 10 mm}\n"
+        "  second: {between: [plate, bolt], at-a: [10 um, 0 mm], at-b: [5 um, 0 um],\n"
+        "           radial-clearance: 20 um, pin: 10 mm}\n";
+    const Scenario plates = load(PLATES, NULL, 0);
+    assert_near(eccentricity(&plates.linkage, 1).x, -5e-6, 1e-17);
+    static const char APART[] =
+        "bodies:\n"
+        "  bolt: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm]}\n"
+        "joints:\n"
+        "  first: {between: [ground, bolt], at: [0 mm, 0 mm], radial-clearance: 20 um}\n"
+        "  other: {between: [ground, bolt], at: [10 um, 0 mm], radial-clearance: 20 um}\n"
+        "contact: {stiffness: 1e8 N/m}\n";
+    Scenario scenario;
+    Err err = {0};
+    assert_false(casefile_load_text("memory", APART, strlen(APART), NULL, 0, &scenario, &err));
+    assert_non_null(strstr(err.text, "is as long as a link"));
+}
+
 // A third crank: with every joint held one is redundant, and the third turns with the others.
 static void redundant_play_is_no_hindrance(void **state)
 {
@@ -465,6 +574,9 @@ int main(void)
         cmocka_unit_test(a_pin_in_a_hole_is_what_the_case_says),
         cmocka_unit_test(a_four_bar_as_bodies_moves_as_the_short_form_says),
         cmocka_unit_test(a_pin_off_the_centre_moves_the_bodies),
+        cmocka_unit_test(hole_and_pin_stand_where_each_is_said_to),
+        cmocka_unit_test(a_pin_that_stands_apart_is_there_in_a_driven_loop),
+        cmocka_unit_test(holes_of_one_pin_are_no_link),
         cmocka_unit_test(redundant_play_is_no_hindrance),
         cmocka_unit_test(a_body_far_from_its_joints_is_placed),
         cmocka_unit_test(a_drive_takes_free_bodies_with_it),
