@@ -308,6 +308,20 @@ static inline bool linkage_has_play(const Joint *joint)
     return !joint_is_ideal(joint->kind) || joint->limits.kind != LIMIT_NONE;
 }
 
+// Whether two joints are pins in holes of the same two bodies, so that they share what these bear.
+static inline bool linkage_shares_bodies(const Joint *joint, const Joint *other)
+{
+    const bool is_same = joint->body_a == other->body_a && joint->body_b == other->body_b;
+    const bool is_turned = joint->body_a == other->body_b && joint->body_b == other->body_a;
+    return joint_has_hole(joint->kind) && joint_has_hole(other->kind) && (is_same || is_turned);
+}
+
+// The name of a body for people; "ground".
+static inline const char *linkage_body_name(const Linkage *linkage, int body)
+{
+    return body == LINKAGE_GROUND ? "ground" : linkage->bodies[body].name;
+}
+
 // Whether a contact of a joint is under way at time zero.
 static inline bool linkage_starts_touching(const Joint *joint)
 {

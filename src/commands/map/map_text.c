@@ -277,7 +277,7 @@ static void mapping_constants_text(const MappingContact *contact, const Style *s
 
 // ERP, CFM and step for each contact, and what they deliver.
 
-enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 96 };
+enum { LAW_DAMPING_SIZE = 64, STABLE_SIZE = 192 };
 
 void mapping_report_law(const MappingContact *contact, char law[MAPPING_REPORT_LAW_SIZE])
 {
@@ -423,8 +423,43 @@ static void write_law(const MappingReport *report, const MappingContact *contact
                 contact->damping, units->damping, contact->equivalent);
 }
 
+// The square of how fast a contact swings alone at the run's depth, for the least mass, 1/s^2; 0
+// where the run does not press it.
+static double alone_squared(const MappingContact *contact)
+{
+    const MappingJoint *joint = &contact->joint;
+    const double tangent = joint->penetration_max > 0.0
+                               ? force_law_tangent(&contact->impact.law, joint->penetration_max)
+                               : 0.0;
+    return isfinite(tangent) ? tangent / joint->mass_least : 0.0;
+}
+
+// The pins between the bodies of a contact's, under its law: several press at once, and their
+// stiffness adds up. Each is a row n of one freedom with k n n', so that the fastest swing of all
+// is at most the root of the sum of their squares.
+typedef struct Together {
+    size_t count;  // of the pins that the run presses
+    double square; // 1/s^2, of the fastest swing, at most
+} Together;
+
+static Together find_together(const MappingReport *report, const MappingContact *contact)
+{
+    const Joint *joints = report->scenario->linkage.joints;
+    Together found = {.count = 0};
+    for (size_t i = 0; i < report->mapping->contact_count; i++) {
+        const MappingContact *other = &report->mapping->contacts[i];
+        const bool is_pressed = other->lack[0] == '\0' && alone_squared(other) > 0.0;
+        if (is_pressed && strcmp(other->law_name, contact->law_name) == 0 &&
+            linkage_shares_bodies(&joints[contact->joint.joint], &joints[other->joint.joint])) {
+            found.count++;
+            found.square += alone_squared(other);
+        }
+    }
+    return found;
+}
+
 // How much harder the linkage's own load presses, and what that does to stability.
-static void write_run(const MappingContact *contact, Text *text)
+static void write_run(const MappingReport *report, const MappingContact *contact, Text *text)
 {
     const MappingJoint *joint = &contact->joint;
     if (!(joint->penetration_max > 0.0)) {
@@ -432,10 +467,17 @@ static void write_run(const MappingContact *contact, Text *text)
     }
     char stable[STABLE_SIZE] = "";
     const JointUnits *units = mapping_report_units(contact);
-    const double tangent = force_law_tangent(&contact->impact.law, joint->penetration_max);
-    if (isfinite(tangent) && tangent > 0.0) {
-        snprintf(stable, sizeof stable, "; omega h = 2 there at h = %.3g us, for the least mass",
-                 2.0 * sqrt(joint->mass_least / tangent) * UNITS_US);
+    const double square = alone_squared(contact);
+    const Together together = find_together(report, contact);
+    if (square > 0.0) {
+        int length = snprintf(stable, sizeof stable,
+                              "; omega h = 2 there at h = %.3g us, for the least mass",
+                              2.0 / sqrt(square) * UNITS_US);
+        if (together.count > 1) {
+            snprintf(stable + length, sizeof stable - (size_t)length,
+                     ", and of the %zu pins between its bodies together not below %.3g us",
+                     together.count, 2.0 / sqrt(together.square) * UNITS_US);
+        }
     }
     text_append(
         text,
@@ -506,7 +548,7 @@ void mapping_text_write(const void *of, const Style *style, Text *text)
         }
         write_law(report, contact, text);
         if (!mapping_report_is_poisson(report)) {
-            write_run(contact, text);
+            write_run(report, contact, text);
             map_text_write_longest(report, contact, style, text);
         }
         mapping_settings_text_write(report, contact, style, text);
@@ -573,6 +615,29 @@ static void map_screen_table(const MappingReport *report, Text *text)
     }
 }
 
+// What the steps of single pins leave out where several are between two bodies, of the first such.
+static void write_together(const MappingReport *report, Text *text)
+{
+    const Linkage *linkage = &report->scenario->linkage;
+    for (size_t i = 0; i < report->mapping->contact_count; i++) {
+        const MappingContact *contact = &report->mapping->contacts[i];
+        const Together together = find_together(report, contact);
+        const double square = contact->lack[0] == '\0' ? alone_squared(contact) : 0.0;
+        if (together.count > 1 && square > 0.0) {
+            const Joint *joint = &linkage->joints[contact->joint.joint];
+            Text own;
+            text_init(&own);
+            text_append(&own,
+                        "  Each pin alone: the %zu between %s and %s, pressed together, swing up "
+                        "to %.2g times as fast.",
+                        together.count, linkage_body_name(linkage, joint->body_a),
+                        linkage_body_name(linkage, joint->body_b), sqrt(together.square / square));
+            screen_sentence(&own, text);
+            return;
+        }
+    }
+}
+
 void mapping_screen_write(const void *of, const Style *style, Text *text)
 {
     const MappingReport *report = of;
@@ -596,6 +661,7 @@ void mapping_screen_write(const void *of, const Style *style, Text *text)
             MAPPING_VALID_SHARE * UNITS_PERCENT);
         map_screen_table(report, text);
         text_append(text, "  any: the map impulse integrates the contact within the step.\n");
+        write_together(report, text);
     }
     settled_lines(scenario, text);
     text_append(text, "  --full: ERP and CFM of each step, and what ODE delivers with them\n");

@@ -670,6 +670,72 @@ static void write_assumed(const Scenario *scenario, Text *text)
     text_finish(&assumed);
 }
 
+// The largest force in a joint: of the settled motion, where the run is a part of it.
+static double force_most(const Trajectory *run, const SettledMotion *motion, size_t joint)
+{
+    const double largest = run->joints[joint].force_max.value;
+    const double settled = motion != NULL ? motion->joints[joint].force.headline : 0.0;
+    return motion != NULL && motion->period == 0 ? settled : fmax(largest, settled);
+}
+
+// What the pins between two bodies bear.
+typedef struct Shared {
+    size_t count;
+    double least; // N, of what each bears at most
+    double most;  // N
+    double mean;  // N
+} Shared;
+
+static Shared find_shared(const Trajectory *run, const SettledMotion *motion, size_t joint)
+{
+    const Linkage *linkage = &run->linkage;
+    Shared shared = {.least = INFINITY};
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        if (linkage_shares_bodies(&linkage->joints[joint], &linkage->joints[i])) {
+            const double force = force_most(run, motion, i);
+            shared.least = fmin(shared.least, force);
+            shared.most = fmax(shared.most, force);
+            shared.mean += (force - shared.mean) / (double)++shared.count;
+        }
+    }
+    return shared;
+}
+
+// How evenly pins between the same two bodies share what these bear: of those that bear most.
+static void write_shared(const RunReport *report, Text *text)
+{
+    const Trajectory *run = overview_run(report);
+    if (run == NULL || !options_backend_has_play(run->backend)) {
+        return;
+    }
+    const Linkage *linkage = &run->linkage;
+    const SettledMotion *motion = overview_motion(report->scenario, run);
+    Shared largest = {.most = 0.0};
+    size_t of = 0;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Shared shared = find_shared(run, motion, i);
+        if (shared.count > 1 && shared.most > largest.most) {
+            largest = shared;
+            of = i;
+        }
+    }
+    if (largest.count == 0) {
+        return;
+    }
+    Text words;
+    text_init(&words);
+    text_append(&words, "The %zu pins between %s and %s bear ", largest.count,
+                linkage_body_name(linkage, linkage->joints[of].body_a),
+                linkage_body_name(linkage, linkage->joints[of].body_b));
+    units_append(&words, largest.least, "N");
+    text_append(&words, " to ");
+    units_append(&words, largest.most, "N");
+    text_append(&words, " at most each; the most loaded %.3g times their mean.",
+                largest.most / largest.mean);
+    append_paragraph(words.data, text);
+    text_finish(&words);
+}
+
 // What the columns of a motion that does not repeat are.
 static void write_columns(const RunReport *report, Text *text)
 {
@@ -691,6 +757,7 @@ static void write_answer(const RunReport *report, Text *text)
 {
     settled_sentences(report->scenario, true, text);
     write_columns(report, text);
+    write_shared(report, text);
     write_certainty(report, text);
     write_restitution(report->scenario, text);
     write_assumed(report->scenario, text);
