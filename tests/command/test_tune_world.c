@@ -180,6 +180,11 @@ static void pins_in_holes_make_the_same_run(void **state)
         {"$cases/mechanisms/slider-crank-pin.yaml --schemes direct/staggered/impulse "
          "--at-step '2 us' --set run.revolutions=0.05 --set run.samples=3000",
          1e-4, 1e-4, "s/stiffness = 6.6e+10/stiffness = 6.6e+9/"},
+        // two pins of one bar, a hole off its place
+        {"$cases/hard/two-pins.yaml --schemes direct/staggered/impulse --at-step '5 us' "
+         "--set 'joints.left.at-a=[4 um, 0 mm]' --set 'joints.left.at-b=[0 mm, 0 mm]' "
+         "--set run.samples=200",
+         1e-3, 1e-5, "s/hole\\[0\\] = 4e-06/hole[0] = 0.0/"},
         // in the settled motion, whose contacts have begun long before
         {"$cases/paper/impact-k66.yaml --schemes direct/staggered/impulse --at-step '5 us' "
          "--set run.start=settled --set run.revolutions=0.1 --set run.samples=300",
