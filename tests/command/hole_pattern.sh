@@ -46,7 +46,7 @@ ends() {
     report "$title" $?
 }
 
-echo "1..22"
+echo "1..25"
 ends "run" run pattern.yaml --plot pattern.svg --series pattern.csv --full
 for way in plain/textbook plain/corrected plain/exact staggered/textbook staggered/midpoint \
     staggered/impulse; do
@@ -68,6 +68,16 @@ ends "tune, for MuJoCo and Gazebo" tune -q pressed.yaml --error 0.1 --schemes st
     --mjcf pattern.xml --sdf pattern.sdf
 ends "study" study -q study.yaml
 ends "report" report -q pattern.yaml --out pattern.html
+"$program" run -q pattern.yaml >"$log" 2>&1
+tr -s '\n ' ' ' <"$log" | grep -q "The 6 pins between ground and plate bear 10.5 N to 201 N at most each; the most loaded 1.9 times their mean"
+report "run says how they share the load" $?
+"$program" map -q pattern.yaml >"$log" 2>&1
+tr -s '\n ' ' ' <"$log" | grep -q "the 6 between ground and plate, pressed together, swing up to 2.4 times"
+report "map says how they swing together" $?
+# the control: pins between different bodies share nothing
+"$program" run -q "$root/cases/literature/three-clearances.yaml" >"$log" 2>&1
+! grep -q "pins between" "$log"
+report "pins of different bodies share nothing" $?
 grep -q "hole\[0\] = 0.02001;" pattern.c && grep -q "pin\[0\] = 0.02;" pattern.c
 report "the program of tune has both places" $?
 # the control: a hole that is off by more than the play is refused
