@@ -56,7 +56,7 @@ static double least_gap(const Linkage *linkage, const Motion *motions)
             continue;
         }
         Touch places[TOUCH_CORNERS];
-        const size_t count = touch_places(joint, (int)i, places);
+        const size_t count = touch_places(linkage, (int)i, places);
         for (size_t k = 0; k < count; k++) {
             const double gap = touch_pose(linkage, &places[k], motions).gap;
             least = fmin(least, gap / linkage_radial_clearance(joint));
