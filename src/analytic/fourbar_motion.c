@@ -163,23 +163,23 @@ void fourbar_motion_quantities(const FourBarLengths *lengths, double speed, Vec2
     }
 }
 
-typedef struct Curve {
+typedef struct FourBarCurve {
     const FourBarLengths *lengths;
     double speed;
     FourBarQuantity quantity;
-} Curve;
+} FourBarCurve;
 
-static double curve_value(double crank_angle, void *context)
+static double fourbar_value(double crank_angle, void *context)
 {
-    const Curve *curve = context;
+    const FourBarCurve *curve = context;
     return fourbar_motion_quantity(curve->lengths, curve->speed, curve->quantity, crank_angle);
 }
 
 CurveExtreme fourbar_motion_extreme(const FourBarLengths *lengths, double speed,
                                     FourBarQuantity quantity, double first_angle, double last_angle)
 {
-    Curve curve = {lengths, speed, quantity};
-    return curve_extreme(curve_value, &curve, first_angle, last_angle);
+    FourBarCurve curve = {lengths, speed, quantity};
+    return curve_extreme(fourbar_value, &curve, first_angle, last_angle);
 }
 
 void fourbar_motion_turn(FourBarTurn *turn)
@@ -199,6 +199,6 @@ double fourbar_motion_bound(const FourBarLengths *lengths, double speed, FourBar
         const Loop loop = close_loop(lengths, speed, turn->cranks[i]);
         samples[i] = loop_quantity(&loop, quantity);
     }
-    Curve curve = {lengths, speed, quantity};
-    return curve_bound(curve_value, &curve, &turn->grid, samples, is_high, NULL);
+    FourBarCurve curve = {lengths, speed, quantity};
+    return curve_bound(fourbar_value, &curve, &turn->grid, samples, is_high, NULL);
 }

@@ -12,7 +12,7 @@
 
 #include <math.h>
 
-typedef struct Loop {
+typedef struct SliderLoop {
     Vec2 crank; // from its pivot to its pin, along t and n, m
     Vec2 rod;   // from the crank pin to the slider
     double position;
@@ -20,13 +20,13 @@ typedef struct Loop {
     double acceleration;
     double omega3;
     double alpha3;
-} Loop;
+} SliderLoop;
 
-static Loop close_loop(const SliderCrank *mechanism, double speed, double crank_angle)
+static SliderLoop close_slider_loop(const SliderCrank *mechanism, double speed, double crank_angle)
 {
     const double b = mechanism->rod;
-    Loop loop = {.crank =
-                     vec2_rotate(crank_angle - mechanism->line, (Vec2){mechanism->crank, 0.0})};
+    SliderLoop loop = {
+        .crank = vec2_rotate(crank_angle - mechanism->line, (Vec2){mechanism->crank, 0.0})};
     const double s = mechanism->offset - loop.crank.y;
     const double c =
         copysign(sqrt((b - s) * (b + s)), mechanism->side == SLIDER_RIGHT ? 1.0 : -1.0);
@@ -49,7 +49,7 @@ static Vec2 to_world(const SliderCrank *mechanism, Vec2 local)
 bool slidercrank_motion_bodies(const SliderCrank *mechanism, double speed, double crank_angle,
                                Motion motions[3])
 {
-    const Loop loop = close_loop(mechanism, speed, crank_angle);
+    const SliderLoop loop = close_slider_loop(mechanism, speed, crank_angle);
     if (!isfinite(loop.alpha3)) {
         return false;
     }
@@ -89,7 +89,7 @@ bool slidercrank_motion_bodies(const SliderCrank *mechanism, double speed, doubl
 double slidercrank_motion_quantity(const SliderCrank *mechanism, double speed,
                                    SliderCrankQuantity quantity, double crank_angle)
 {
-    const Loop loop = close_loop(mechanism, speed, crank_angle);
+    const SliderLoop loop = close_slider_loop(mechanism, speed, crank_angle);
     switch (quantity) {
     case SLIDERCRANK_ROD_OMEGA:
         return loop.omega3;
@@ -106,15 +106,15 @@ double slidercrank_motion_quantity(const SliderCrank *mechanism, double speed,
     }
 }
 
-typedef struct Curve {
+typedef struct SliderCurve {
     const SliderCrank *mechanism;
     double speed;
     SliderCrankQuantity quantity;
-} Curve;
+} SliderCurve;
 
-static double curve_value(double crank_angle, void *context)
+static double slider_value(double crank_angle, void *context)
 {
-    const Curve *curve = context;
+    const SliderCurve *curve = context;
     return slidercrank_motion_quantity(curve->mechanism, curve->speed, curve->quantity,
                                        crank_angle);
 }
@@ -123,6 +123,6 @@ CurveExtreme slidercrank_motion_extreme(const SliderCrank *mechanism, double spe
                                         SliderCrankQuantity quantity, double first_angle,
                                         double last_angle)
 {
-    Curve curve = {mechanism, speed, quantity};
-    return curve_extreme(curve_value, &curve, first_angle, last_angle);
+    SliderCurve curve = {mechanism, speed, quantity};
+    return curve_extreme(slider_value, &curve, first_angle, last_angle);
 }

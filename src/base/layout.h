@@ -6,13 +6,13 @@
 
 #include <stddef.h>
 
-typedef struct Layout {
+typedef struct MemoryLayout {
     char *memory; // NULL: the layout counts
     size_t used;  // bytes
-} Layout;
+} MemoryLayout;
 
 // Room for an array of some elements, aligned for any type; NULL from a layout that counts.
-static inline void *layout_take(Layout *layout, size_t count, size_t size)
+static inline void *layout_take(MemoryLayout *layout, size_t count, size_t size)
 {
     const size_t unit = sizeof(long double);
     const size_t start = layout->used;

@@ -4,7 +4,7 @@
 #define MOTOR "drive.no-load-speed drive.rotor-inertia"
 #define SOFT  "drive.stiffness drive.damping"
 
-static bool check_space(const Entries *entries, const Linkage *linkage, Err *err)
+static bool check_forces_in_space(const Entries *entries, const Linkage *linkage, Err *err)
 {
     static const char FORMAT[] = "%s not available in space\nallowed: space: planar, or none";
     const EntryGroup *springs = entries_group(entries, "springs", 0);
@@ -98,7 +98,7 @@ static bool check_motor(const Entries *entries, const Linkage *linkage, Err *err
 
 bool check_forces(const Entries *entries, const Scenario *scenario, Err *err)
 {
-    return check_space(entries, &scenario->linkage, err) &&
+    return check_forces_in_space(entries, &scenario->linkage, err) &&
            check_lines(entries, &scenario->linkage, err) &&
            check_turns(entries, &scenario->linkage, err) &&
            check_motor(entries, &scenario->linkage, err);

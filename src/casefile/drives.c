@@ -176,8 +176,8 @@ bool drives_complete(const Entries *entries, Linkage *linkage, Err *err)
 }
 
 // The joint of one drive.
-static bool check_joint(const Entries *entries, const DriveKeys *keys, size_t index,
-                        const Joint *driven, Err *err)
+static bool check_driven_joint(const Entries *entries, const DriveKeys *keys, size_t index,
+                               const Joint *driven, Err *err)
 {
     const bool has_play = linkage_has_play(driven);
     const bool turns = joint_has_angle(driven->kind);
@@ -227,7 +227,7 @@ static bool check_further(const Entries *entries, const Linkage *linkage, size_t
     if (joint < 0) {
         return refuse_name(entries, index, err);
     }
-    if (!check_joint(entries, &FURTHER_KEYS, index, &linkage->joints[joint], err)) {
+    if (!check_driven_joint(entries, &FURTHER_KEYS, index, &linkage->joints[joint], err)) {
         return false;
     }
     const int body = turned_body(linkage, joint);
@@ -275,7 +275,8 @@ bool drives_check(const Entries *entries, const Linkage *linkage, Err *err)
                               driven->name, linkage_has_play(driven) ? "has play" : "has no line");
     }
     const bool is_torque = joint_has_angle(driven->kind) && linkage->torque.table.count > 0;
-    bool is_good = entry == NULL || is_torque || check_joint(entries, &CRANK_KEYS, 0, driven, err);
+    bool is_good =
+        entry == NULL || is_torque || check_driven_joint(entries, &CRANK_KEYS, 0, driven, err);
     for (size_t i = 0; is_good && i < linkage->further_count; i++) {
         is_good = check_further(entries, linkage, i, err);
     }

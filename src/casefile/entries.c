@@ -120,22 +120,22 @@ typedef struct Habit {
     const char *ours;
 } Habit;
 
-static const char KINDS[] =
+static const char KIND_HINT[] =
     "the keys make the kind of a joint: none an ideal pivot, hole and pin one with play, along one "
     "that slides, gears a pair of gears, rack a rack and pinion";
-static const char PLAY[] =
+static const char CLEARANCE_HINT[] =
     "the key is radial-clearance, half of the diametral clearance (hole - pin)";
-static const char RACK[] =
+static const char RACK_HINT[] =
     "the key is rack, with the rack's guide and the pinion's pivot: rack: [guide, pivot]";
 
 static const Habit HABITS[] = {
-    {NULL, "clearance", PLAY},
-    {NULL, "diametral-clearance", PLAY},
-    {NULL, "play", PLAY},
-    {"joints.*", "kind", KINDS},
-    {"joints.*", "type", KINDS},
-    {"joints.*", "pinion", RACK},
-    {"joints.*", "rack-and-pinion", RACK},
+    {NULL, "clearance", CLEARANCE_HINT},
+    {NULL, "diametral-clearance", CLEARANCE_HINT},
+    {NULL, "play", CLEARANCE_HINT},
+    {"joints.*", "kind", KIND_HINT},
+    {"joints.*", "type", KIND_HINT},
+    {"joints.*", "pinion", RACK_HINT},
+    {"joints.*", "rack-and-pinion", RACK_HINT},
     {"joints.*", "diameter", "the keys are hole and pin, both diameters"},
     {"joints.*", "hole-diameter", "the key is hole, a diameter"},
     {"joints.*", "pin-diameter", "the key is pin, a diameter"},

@@ -118,8 +118,8 @@ static bool refuse_value(const Source *source, const Node *node, Err *err)
                         node->text);
 }
 
-static bool read_limit(const Source *source, const Node *node, const char *rest,
-                       ExpectedOutcome *outcome, Err *err)
+static bool read_outcome_limit(const Source *source, const Node *node, const char *rest,
+                               ExpectedOutcome *outcome, Err *err)
 {
     Complaint complaint = {.allowed = ""};
     if (!quantity_number(rest, &outcome->limit, &complaint)) {
@@ -166,6 +166,6 @@ bool expect_outcome_read(const Source *source, const Node *node, ExpectedOutcome
     const char *rest = node->text + strlen(BEGINNINGS[kind]);
     const bool has_limit = kind == OUTCOME_AGREES || kind == OUTCOME_REPORTED;
     return read_of(source, node, outcome, err) &&
-           (has_limit ? read_limit(source, node, rest, outcome, err)
+           (has_limit ? read_outcome_limit(source, node, rest, outcome, err)
                       : read_message(source, node, rest, outcome, err));
 }

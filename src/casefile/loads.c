@@ -105,7 +105,8 @@ static bool read_number(const Target *target, const Node *node, Dimension dimens
 }
 
 // The value of a point, within the range of its row.
-static bool read_value(const Target *target, const Node *node, const Load *load, double *value)
+static bool read_point_value(const Target *target, const Node *node, const Load *load,
+                             double *value)
 {
     const SchemaRow *row = target->entry->row;
     if (!read_number(target, node, loads_value_dimension(row, load), value)) {
@@ -165,7 +166,7 @@ static bool read_points(const Target *target, const Linkage *linkage, Load *load
                                 "a point of %s is two numbers", target->path);
         }
         if (!read_number(target, pair[0], loads_dimension(linkage, load), &numbers[0]) ||
-            !read_value(target, pair[1], load, &numbers[1])) {
+            !read_point_value(target, pair[1], load, &numbers[1])) {
             return false;
         }
         char wrong[WRONG_SIZE];
@@ -405,7 +406,7 @@ bool loads_store_value(const Target *target, const Linkage *linkage, Load *load)
         return read_file(target, linkage, load);
     }
     double value;
-    if (!read_value(target, node, load, &value)) {
+    if (!read_point_value(target, node, load, &value)) {
         return false;
     }
     add_point(&load->table, 0.0, value);
@@ -443,7 +444,7 @@ static bool refuse(const Entries *entries, const char *paths, size_t number, Err
 #define WHAT  "loads.*.force loads.*.torque"
 
 // What a load acts on, and what it is.
-static bool check_kind(const Entries *entries, const Linkage *linkage, size_t i, Err *err)
+static bool check_load_kind(const Entries *entries, const Linkage *linkage, size_t i, Err *err)
 {
     const Load *load = &linkage->loads[i];
     const bool has_joint = entries_find(entries, "loads.*.joint", i) != NULL;
@@ -524,7 +525,7 @@ bool loads_complete(const Entries *entries, Linkage *linkage, Err *err)
 {
     for (size_t i = 0; i < linkage->load_count; i++) {
         Load *load = &linkage->loads[i];
-        if (!check_kind(entries, linkage, i, err) || !check_points(entries, linkage, i, err) ||
+        if (!check_load_kind(entries, linkage, i, err) || !check_points(entries, linkage, i, err) ||
             !fold_period(entries, i, load, err)) {
             return false;
         }

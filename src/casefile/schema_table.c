@@ -544,5 +544,6 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "limits for the runs' numbers: below"},
 };
 // clang-format on
+#undef AT
 
 const size_t SCHEMA_ROW_COUNT = sizeof SCHEMA_ROWS / sizeof SCHEMA_ROWS[0];

@@ -296,7 +296,7 @@ static void take_rest(EngineState *state)
     }
 }
 
-static bool engine_step(void *of, double stop_s, Err *err)
+static bool engine_solver_step(void *of, double stop_s, Err *err)
 {
     EngineState *state = of;
     const bool has_records = state->records.count > 0;
@@ -438,7 +438,7 @@ static void engine_totals(const void *of, JointExtremes *joints)
         .name = word,                                                                              \
         .check = check_##id,                                                                       \
         .open = open_##id,                                                                         \
-        .step = engine_step,                                                                       \
+        .step = engine_solver_step,                                                                \
         .record = engine_record,                                                                   \
         .observe = engine_observe,                                                                 \
         .model = engine_model,                                                                     \

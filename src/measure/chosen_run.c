@@ -100,7 +100,7 @@ static const double SAMPLE_WORK = 2.0;
 static const double FIRST_SAMPLE_POWER = 0.5;
 
 // of a step, what the next one has at least: the coarsest say little about what a second costs
-static const double LEAST_SHARE = 0.1;
+static const double STEP_SHARE_LEAST = 0.1;
 
 // a failed trial gives no hint of the step that succeeds
 static const double AFTER_FAILURE = 0.5;
@@ -235,12 +235,12 @@ static double step_choice_dearer(Work work, double step_s, double dearer)
 {
     const double next_s =
         work.stepped / ((work.fixed + work.stepped / step_s) / dearer - work.fixed);
-    return fmax(next_s, LEAST_SHARE * step_s);
+    return fmax(next_s, STEP_SHARE_LEAST * step_s);
 }
 
 static double step_choice_after_first_sample(double step_s, double excess)
 {
-    return step_s * fmax(pow(excess, -FIRST_SAMPLE_POWER), LEAST_SHARE);
+    return step_s * fmax(pow(excess, -FIRST_SAMPLE_POWER), STEP_SHARE_LEAST);
 }
 
 // The step after one whose largest error in the whole run was that many times the tolerance, where

@@ -672,14 +672,14 @@ static const double WINDOW = 0.01; // of the run
 // of the typical pivot: a change point between two samples 2 degrees apart leaves .02 at one of
 // them
 static const double IS_CLOSE = 0.02;
-static const double LEAST_SHARE = 1e-12;
+static const double PIVOT_SHARE_LEAST = 1e-12;
 
 // The largest share of the largest pivot that all independent pivots exceed.
 static double least_pivot(const Trajectory *run, size_t sample)
 {
     const Motion *motions = run->motions + sample * run->body_count;
     size_t rows = 0;
-    double low = log(LEAST_SHARE), high = 0.0;
+    double low = log(PIVOT_SHARE_LEAST), high = 0.0;
     for (int i = 0; i < HALVINGS; i++) {
         const double middle = 0.5 * (low + high);
         const size_t rank = kinematics_rank(&run->linkage, motions, NULL, true, exp(middle), &rows);

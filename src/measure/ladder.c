@@ -502,7 +502,7 @@ size_t ladder_finest(const Ladder *ladder, size_t scheme)
 // scatter by some 0.1
 static const double ORDER_AGREEMENT = 0.25;
 // a slower fall is none: a bias that a finer step does not take away
-static const double ORDER_LEAST = 0.25;
+static const double FITTED_ORDER_LEAST = 0.25;
 enum { POINTS_LEAST = 3 };
 
 static bool is_above(double error, double floor)
@@ -527,7 +527,7 @@ static size_t ladder_extend(size_t count, const double *steps, const double *err
         const double order = local_order(steps, errors, last);
         low = fmin(low, order);
         high = fmax(high, order);
-        if (!(high - low <= ORDER_AGREEMENT) || !(low >= ORDER_LEAST)) {
+        if (!(high - low <= ORDER_AGREEMENT) || !(low >= FITTED_ORDER_LEAST)) {
             break;
         }
         *spread = high - low;

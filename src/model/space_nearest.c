@@ -13,7 +13,7 @@ static const double ALLOWED = 1e-9;
 // what rounding has left after the first is gone after the second
 enum { PASSES = 2 };
 
-static bool gives_way(const Linkage *linkage, int body)
+static bool body_gives_way(const Linkage *linkage, int body)
 {
     return body != LINKAGE_GROUND && body != linkage_driven_body(linkage);
 }
@@ -78,7 +78,7 @@ void space_nearest_change(const Linkage *linkage, SpeedChange *changes)
     space_start(linkage, motions);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const SpeedChange *change = &changes[i];
-        const bool is_free = gives_way(linkage, (int)i);
+        const bool is_free = body_gives_way(linkage, (int)i);
         const Vec3 velocity = {change->velocity.x, change->velocity.y, change->velocity_z};
         const Vec3 omega = {change->omega_x, change->omega_y, change->omega};
         motions[i].velocity = is_free ? velocity : (Vec3){0.0, 0.0, 0.0};

@@ -157,7 +157,7 @@ void dop853_end(Dop853 *integrator, const double *change)
     }
 }
 
-static void evaluate(Dop853 *integrator, int stage, const double *y)
+static void evaluate_stage(Dop853 *integrator, int stage, const double *y)
 {
     const double time = integrator->time + DOP853_NODE[stage] * integrator->tried;
     integrator->rates(time, y, integrator->stages[stage], integrator->context);
@@ -170,7 +170,7 @@ void dop853_start(Dop853 *integrator, double time, const double *y)
     memmove(integrator->y, y, integrator->size * sizeof *y);
     integrator->tried = 0.0;
     integrator->last_error = ERROR_LEAST;
-    evaluate(integrator, 0, integrator->y);
+    evaluate_stage(integrator, 0, integrator->y);
 }
 
 // Error over allowed error of some of the equations. The two estimates of one group belong
@@ -212,7 +212,7 @@ double dop853_try(Dop853 *integrator, double step)
     }
     integrator->tried = step;
     for (int stage = 1; stage < STEP_STAGES; stage++) {
-        evaluate(integrator, stage, stage_state(integrator, stage));
+        evaluate_stage(integrator, stage, stage_state(integrator, stage));
     }
     double *e5 = integrator->errors[0];
     double *e3 = integrator->errors[1];
@@ -265,7 +265,7 @@ bool dop853_attempt(Dop853 *integrator, double longest)
 static void find_end_rates(Dop853 *integrator)
 {
     if (!integrator->has_end_rates) {
-        evaluate(integrator, END_STAGE, integrator->next);
+        evaluate_stage(integrator, END_STAGE, integrator->next);
         integrator->has_end_rates = true;
     }
 }
@@ -282,7 +282,7 @@ void dop853_fill(Dop853 *integrator)
         return;
     }
     for (int stage = FIRST_DENSE_STAGE; stage < DOP853_STAGES; stage++) {
-        evaluate(integrator, stage, stage_state(integrator, stage));
+        evaluate_stage(integrator, stage, stage_state(integrator, stage));
     }
     const double h = integrator->tried;
     double *const *p = integrator->polynomial;

@@ -100,12 +100,12 @@ enum { PEAK_FORCE, PEAK_DEPTH, PEAK_COUNT };
 // Maxima that a step is passed on in parts for; more are found together.
 enum { PEAKS_SOUGHT_MOST = 8 };
 
-typedef struct Search {
+typedef struct PeakSearch {
     Stepper *stepper;
     SystemState *scratch;
     size_t contact;
     int which;
-} Search;
+} PeakSearch;
 
 Peaks peaks_create(const System *system, SystemState *scratch)
 {
@@ -124,7 +124,7 @@ void peaks_finish(Peaks *peaks)
 
 static double peak_rate(double time, void *context)
 {
-    const Search *search = context;
+    const PeakSearch *search = context;
     const System *system = search->stepper->system;
     double values[PEAK_COUNT];
     double rates[PEAK_COUNT];
@@ -150,7 +150,7 @@ static bool has_peak(const Peak *peak)
 
 // When a maximum of one quantity is passed up to the end of a step, s; INFINITY: not at all. It is
 // sought once, however many maxima of other contacts the step is interrupted for.
-static double seek(Peak *peak, Search search, double start_s, double end_s)
+static double seek(Peak *peak, PeakSearch search, double start_s, double end_s)
 {
     if (!peak->is_sought) {
         double time = end_s;
@@ -221,7 +221,7 @@ static double seek_first(Peaks *peaks, Stepper *stepper, double start_s, double 
     double earliest = end_s;
     for (size_t i = 0; i < system->contact_count; i++) {
         for (int which = PEAK_FORCE; which < PEAK_COUNT; which++) {
-            const Search search = {stepper, peaks->scratch, i, which};
+            const PeakSearch search = {stepper, peaks->scratch, i, which};
             Peak *peak = &peaks->peaks[PEAK_COUNT * i + (size_t)which];
             if (system->contacts[i].mode == CONTACT_PRESSING && has_peak(peak)) {
                 earliest = fmin(earliest, seek(peak, search, start_s, end_s));

@@ -53,7 +53,7 @@ typedef struct Mechanism {
 } Mechanism;
 
 // All arrays, from a layout that counts or has the memory.
-static void mechanism_lay(Mechanism *mechanism, const Linkage *linkage, Layout *layout)
+static void mechanism_lay(Mechanism *mechanism, const Linkage *linkage, MemoryLayout *layout)
 {
     const size_t bodies = linkage->body_count;
     const size_t joints = linkage->joint_count;
@@ -70,11 +70,11 @@ static Mechanism *mechanism_create(const Linkage *linkage)
 {
     Mechanism *mechanism = calloc(1, sizeof *mechanism);
     assert(mechanism != NULL);
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     mechanism_lay(mechanism, linkage, &layout);
     mechanism->memory = calloc(1, layout.used + 1);
     assert(mechanism->memory != NULL);
-    mechanism_lay(mechanism, linkage, &(Layout){mechanism->memory, 0});
+    mechanism_lay(mechanism, linkage, &(MemoryLayout){mechanism->memory, 0});
     return mechanism;
 }
 

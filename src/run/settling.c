@@ -340,8 +340,8 @@ bool settling_turn(Settling *settling, Err *err)
 }
 
 // The largest difference of two revolutions' sections, over the fastest point's speed.
-static double sections_apart(const Linkage *linkage, const Revolution *now, const Revolution *then,
-                             double fastest)
+static double revolution_sections_apart(const Linkage *linkage, const Revolution *now,
+                                        const Revolution *then, double fastest)
 {
     double apart = 0.0;
     for (size_t i = 0; i < SETTLE_RATES * linkage->body_count; i++) {
@@ -367,7 +367,8 @@ static double forces_apart(const Linkage *linkage, const Revolution *now, const 
 static double revolutions_apart(const Linkage *linkage, const Revolution *now,
                                 const Revolution *then, double fastest)
 {
-    return fmax(sections_apart(linkage, now, then, fastest), forces_apart(linkage, now, then));
+    return fmax(revolution_sections_apart(linkage, now, then, fastest),
+                forces_apart(linkage, now, then));
 }
 
 // d_n above, over p revolutions.
@@ -386,7 +387,8 @@ double settling_forces_change(const Settling *settling, size_t period)
 double settling_section_change(const Settling *settling, size_t period)
 {
     const Revolution *last = &settling->revolutions[settling->count - 1];
-    return sections_apart(&settling->scenario.linkage, last, last - period, settling->fastest);
+    return revolution_sections_apart(&settling->scenario.linkage, last, last - period,
+                                     settling->fastest);
 }
 
 // The shortest period that the revolutions of one of p have to the digits that are asked for: a

@@ -25,7 +25,7 @@
 
 // of the prominence: values so near to each other are as low as each other, as the trace knows
 // them no better
-static const double ALIKE = 1e-3;
+static const double SPIKES_ALIKE = 1e-3;
 
 // One of the two parts of a signal as a broken line.
 typedef struct Part {
@@ -150,7 +150,7 @@ static size_t spikes_find_limit(const Part *part, const Peak *peak, size_t other
     const int step = other >= peak->point ? 1 : -1;
     const double fallen = height(part, peak) - 0.5 * peak->prominence;
     const double risen = height(part, peak) - 0.25 * peak->prominence;
-    const double alike = ALIKE * peak->prominence;
+    const double alike = SPIKES_ALIKE * peak->prominence;
     double least = height(part, peak);
     size_t limit = peak->point;
     for (size_t i = peak->point; i != other;) {

@@ -25,7 +25,7 @@ static const double LIKELY = 1e-3;
 static const double NEXT_TO_END = 1e-3;
 
 // of a value: lower differences are rounding
-static const double ALIKE = 1e-12;
+static const double EXTREMES_ALIKE = 1e-12;
 
 enum { POINTS_MAX = LOOK_PARTS_MAX + 4 };
 
@@ -124,7 +124,7 @@ static bool aim_may_come_near(const Aim *aim, const Look *before, int parts, con
     top = most > top ? most : top;
     // what stays as it is has no maximum
     return step_extremes_is_near(aim, top, STEP_EXTREMES_RISE_MAX) &&
-           top - least > ALIKE * fabs(most);
+           top - least > EXTREMES_ALIKE * fabs(most);
 }
 
 // How many signals come near the run's extremes; at most so many are counted.
@@ -162,7 +162,7 @@ static void climb(const Aim *aim, Look three[3])
         double expected;
         const double time_s = top_of_three(aim, three, &expected);
         const double value = aim_value(aim, &three[1]);
-        if (expected - value <= ALIKE * fabs(value) || !(time_s > three[0].time_s) ||
+        if (expected - value <= EXTREMES_ALIKE * fabs(value) || !(time_s > three[0].time_s) ||
             !(time_s < three[2].time_s)) {
             return;
         }
@@ -704,7 +704,7 @@ static bool may_have_top_between(const Aim *aim, const Look *first, const Look *
         rise = BULGE_MOST * fabs(area_above(first, last, aim->signal)) /
                (last->time_s - first->time_s);
     }
-    return rise + change > ALIKE * fabs(higher) &&
+    return rise + change > EXTREMES_ALIKE * fabs(higher) &&
            step_extremes_is_near(aim, higher + rise, STEP_EXTREMES_RISE_MAX);
 }
 

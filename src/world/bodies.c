@@ -51,7 +51,7 @@ static void fill_slots(Bodies *bodies)
     }
 }
 
-static bool make_room(Bodies *bodies)
+static bool make_body_room(Bodies *bodies)
 {
     if (bodies->count < bodies->room) {
         return true;
@@ -84,7 +84,7 @@ BodyRecord *bodies_add(Bodies *bodies, dBodyID body)
     if (known != NULL) {
         return known;
     }
-    if (!make_room(bodies)) {
+    if (!make_body_room(bodies)) {
         return NULL;
     }
     bodies->slots[slot_of(bodies, body)] = bodies->count + 1;

@@ -7,6 +7,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+// What says how a body moves: three numbers of its velocity, three of its angular velocity.
+enum { BODY_NUMBERS = 6 };
+
 // Where a body is, how it moves and what acts on it.
 typedef struct BodyMoment {
     dVector3 position;

@@ -38,7 +38,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 4, BODY_NUMBERS = 6 };
+enum { ROUNDS = 4 };
 
 // of the rows' speeds: above what rounding in ODE's factorisation leaves
 static const double PROMISE = 1e-7;

@@ -26,8 +26,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BODY_NUMBERS = 6 };
-
 // Of what a joint stays open by at mid-step: what it is open by at the ends.
 static double share_at_ends(double erp)
 {

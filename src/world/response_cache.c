@@ -7,6 +7,8 @@
 // world responded so is seen from the step under the contacts' forces (world/impulse.c).
 #include "world/response_cache.h"
 
+#include "world/bodies.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +18,6 @@ enum {
     STEPS_OVER = 12,   // that the three may lie apart
     SHORTEST_PAUSE = 16,
     LONGEST_PAUSE = 1024,
-    BODY_NUMBERS = 6,
 };
 
 struct ResponseCache {

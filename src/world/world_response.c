@@ -20,7 +20,7 @@ static const double EVALUATIONS_LEAST = 100.0;
 // of the rate of a row, in pairs of rows
 static const double RATE_WORK = 30.0;
 
-enum { BODY_NUMBERS = 6, INSIDE_ROWS = 4 /* of the kernel, at most, to one here */ };
+enum { INSIDE_ROWS = 4 /* of the kernel, at most, to one here */ };
 
 static void count(const JpWorld *world, WorldResponse *response)
 {

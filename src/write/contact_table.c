@@ -13,15 +13,15 @@
 #include <string.h>
 
 enum {
-    NAMES_MOST = 3 + 2 * NUMBER_COUNT,
+    COLUMNS_MOST = 3 + 2 * NUMBER_COUNT,
     NAME_SIZE = 40, // of a quantity and its unit
 };
 
 // Which columns the contacts of a linkage have: those of model/number_list.h with NUMBER_CSV, of
 // which those that are forces or lengths stand twice where some joints have torques and angles.
 typedef struct ContactTable {
-    char names[NAMES_MOST][NAME_SIZE];
-    const char *heads[NAMES_MOST]; // these
+    char names[COLUMNS_MOST][NAME_SIZE];
+    const char *heads[COLUMNS_MOST]; // these
     size_t count;
     bool has_crank;
     bool has_turns[2]; // a joint with play of lengths, and one of angles
@@ -41,7 +41,7 @@ static bool is_of_all(const Number *number)
 
 static void add_name(ContactTable *table, const char *name)
 {
-    assert(table->count < NAMES_MOST);
+    assert(table->count < COLUMNS_MOST);
     char *head = table->names[table->count];
     snprintf(head, NAME_SIZE, "%s", name);
     table->heads[table->count++] = head;

@@ -16,7 +16,7 @@ static const double LEAST_DEPTH = 1e-10; // m
 static const double WORLD = 0.3;         // m
 
 // A fixed stream of numbers in [0, 1): Knuth's 64-bit linear congruential generator.
-static double draw(uint64_t *seed)
+static double draw_share(uint64_t *seed)
 {
     *seed = *seed * 6364136223846793005u + 1442695040888963407u;
     return (double)(*seed >> 11) * 0x1p-53;
@@ -67,13 +67,14 @@ Poses collider_poses_make(const Scenario *scenario, int joint, size_t count, uin
     }
     for (size_t i = 0; i < count; i++) {
         Pose *pose = &poses.poses[i];
-        const double depth = LEAST_DEPTH * pow(play / LEAST_DEPTH, draw(&seed));
+        const double depth = LEAST_DEPTH * pow(play / LEAST_DEPTH, draw_share(&seed));
         const double distance = play + (i % 2 == 0 ? depth : -depth);
-        const double direction = 2.0 * M_PI * draw(&seed);
+        const double direction = 2.0 * M_PI * draw_share(&seed);
         const long double x = (long double)distance * cosl(direction);
         const long double y = (long double)distance * sinl(direction);
-        pose->hole = (Vec2){WORLD * (2.0 * draw(&seed) - 1.0), WORLD * (2.0 * draw(&seed) - 1.0)};
-        pose->turn = 2.0 * M_PI * draw(&seed);
+        pose->hole = (Vec2){WORLD * (2.0 * draw_share(&seed) - 1.0),
+                            WORLD * (2.0 * draw_share(&seed) - 1.0)};
+        pose->turn = 2.0 * M_PI * draw_share(&seed);
         pose->outward = (Vec2){cos(direction + pose->turn), sin(direction + pose->turn)};
         pose->pin = vec2_add(pose->hole, vec2_scale(distance, pose->outward));
         pose->circle_depth = distance - play;

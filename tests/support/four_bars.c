@@ -18,7 +18,7 @@ static void add_link(Linkage *linkage, const char *kind, Vec2 at, double angle, 
         (Motion){.position = at, .angle = angle, .velocity = {speed, 0.0}, .omega = omega};
 }
 
-static void add_joint(Linkage *linkage, int a, double along_a, int b, double along_b)
+static void add_link_joint(Linkage *linkage, int a, double along_a, int b, double along_b)
 {
     Joint *joint = &linkage->joints[linkage->joint_count];
     *joint =
@@ -37,12 +37,12 @@ void four_bars_fill(Scenario *scenario, size_t count, double duration_s)
         if (i < count) {
             add_link(linkage, "coupler", (Vec2){x + half, LENGTH}, 0.0, 0.0, LENGTH);
         }
-        add_joint(linkage, LINKAGE_GROUND, x, upright, -half);
+        add_link_joint(linkage, LINKAGE_GROUND, x, upright, -half);
         if (i > 0) {
-            add_joint(linkage, upright - 1, half, upright, half);
+            add_link_joint(linkage, upright - 1, half, upright, half);
         }
         if (i < count) {
-            add_joint(linkage, upright, half, upright + 1, -half);
+            add_link_joint(linkage, upright, half, upright + 1, -half);
         }
     }
     scenario->gravity = scenario_downward(GRAVITY);

@@ -51,7 +51,7 @@ LimitedImpact limited_impact_draw(uint64_t *random, LimitedKind kind, double few
     return impact;
 }
 
-static Body *add_body(Linkage *linkage, const char *name, double mass, double inertia)
+static Body *add_limited_body(Linkage *linkage, const char *name, double mass, double inertia)
 {
     Body *body = &linkage->bodies[linkage->body_count++];
     snprintf(body->name, sizeof body->name, "%s", name);
@@ -60,7 +60,7 @@ static Body *add_body(Linkage *linkage, const char *name, double mass, double in
     return body;
 }
 
-static Joint *add_joint(Linkage *linkage, const char *name, JointKind kind, int a, int b)
+static Joint *add_limited_joint(Linkage *linkage, const char *name, JointKind kind, int a, int b)
 {
     Joint *joint = &linkage->joints[linkage->joint_count++];
     *joint = (Joint){.kind = kind, .body_a = a, .body_b = b};
@@ -74,14 +74,14 @@ static Joint *add_gears(const LimitedImpact *impact, double speed, Linkage *link
     static const char *const NAMES[] = {"pinion", "wheel"};
     for (int i = 0; i < 2; i++) {
         const double inertia = 2.0 * impact->inertia * RADII[i] * RADII[i];
-        Body *body = add_body(linkage, NAMES[i], 0.1, inertia);
+        Body *body = add_limited_body(linkage, NAMES[i], 0.1, inertia);
         body->start.position.x = i == 0 ? 0.0 : RADII[0] + RADII[1];
-        Joint *pivot = add_joint(linkage, NAMES[i], JOINT_REVOLUTE, LINKAGE_GROUND, i);
+        Joint *pivot = add_limited_joint(linkage, NAMES[i], JOINT_REVOLUTE, LINKAGE_GROUND, i);
         pivot->anchor_a = body->start.position;
     }
     // q' = -r_a w_a
     linkage->bodies[0].start.omega = -speed / RADII[0];
-    Joint *gears = add_joint(linkage, "teeth", JOINT_GEAR, 0, 1);
+    Joint *gears = add_limited_joint(linkage, "teeth", JOINT_GEAR, 0, 1);
     gears->gear = (Gear){
         .pivots = {0, 1},
         .carrier = LINKAGE_GROUND,
@@ -116,17 +116,17 @@ static Joint *add_rack(const LimitedImpact *impact, double speed, Linkage *linka
 static Joint *add_hinge(const LimitedImpact *impact, double speed, Linkage *linkage)
 {
     const double mass = 0.5 * impact->inertia / (ARM * ARM);
-    Body *body = add_body(linkage, "arm", mass, 0.5 * impact->inertia);
+    Body *body = add_limited_body(linkage, "arm", mass, 0.5 * impact->inertia);
     body->start = (Motion){.position = {ARM, 0.0}, .velocity = {0.0, ARM * speed}, .omega = speed};
-    Joint *hinge = add_joint(linkage, "hinge", JOINT_REVOLUTE, LINKAGE_GROUND, 0);
+    Joint *hinge = add_limited_joint(linkage, "hinge", JOINT_REVOLUTE, LINKAGE_GROUND, 0);
     hinge->anchor_b.x = -ARM;
     return hinge;
 }
 
 static Joint *add_slider(const LimitedImpact *impact, double speed, Linkage *linkage)
 {
-    Body *body = add_body(linkage, "block", impact->inertia, impact->inertia);
-    Joint *slider = add_joint(linkage, "slider", JOINT_PRISMATIC, LINKAGE_GROUND, 0);
+    Body *body = add_limited_body(linkage, "block", impact->inertia, impact->inertia);
+    Joint *slider = add_limited_joint(linkage, "slider", JOINT_PRISMATIC, LINKAGE_GROUND, 0);
     slider->direction = 0.7;
     body->start.velocity = vec2_rotate(slider->direction, (Vec2){speed, 0.0});
     return slider;

@@ -6,8 +6,8 @@
 #include <assert.h>
 #include <stdio.h>
 
-static void add_body(Linkage *linkage, const char *name, double mass, double inertia, Vec2 position,
-                     double angle)
+static void add_placed_body(Linkage *linkage, const char *name, double mass, double inertia,
+                            Vec2 position, double angle)
 {
     Body *body = &linkage->bodies[linkage->body_count++];
     snprintf(body->name, sizeof body->name, "%s", name);
@@ -16,8 +16,8 @@ static void add_body(Linkage *linkage, const char *name, double mass, double ine
     body->start = (Motion){.position = position, .angle = angle};
 }
 
-static void add_joint(Linkage *linkage, const char *name, int a, Vec2 anchor_a, int b,
-                      Vec2 anchor_b)
+static void add_anchored_joint(Linkage *linkage, const char *name, int a, Vec2 anchor_a, int b,
+                               Vec2 anchor_b)
 {
     Joint *joint = &linkage->joints[linkage->joint_count++];
     *joint = (Joint){.body_a = a, .body_b = b, .anchor_a = anchor_a, .anchor_b = anchor_b};
@@ -63,14 +63,16 @@ Scenario mechanism_paper(void)
     };
     Linkage *linkage = &scenario.linkage;
     // guesses good enough for Newton's method to find the open assembly
-    add_body(linkage, "crank", 0.12, 173.92e-6, (Vec2){0.054, 0.0}, 0.0);
-    add_body(linkage, "coupler", 0.29, 2070.46e-6, (Vec2){0.19, 0.12}, 1.0);
-    add_body(linkage, "follower", 0.28, 1988.39e-6, (Vec2){0.27, 0.13}, 1.5);
-    add_joint(linkage, "ground-crank", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){-0.054, 0.0});
-    add_joint(linkage, "crank-coupler", 0, (Vec2){0.054, 0.0}, 1, (Vec2){-0.1397, 0.0});
-    add_joint(linkage, "coupler-follower", 1, (Vec2){0.1397, 0.0}, 2, (Vec2){0.13525, 0.0});
-    add_joint(linkage, "follower-ground", 2, (Vec2){-0.13525, 0.0}, LINKAGE_GROUND,
-              (Vec2){0.254, 0.0});
+    add_placed_body(linkage, "crank", 0.12, 173.92e-6, (Vec2){0.054, 0.0}, 0.0);
+    add_placed_body(linkage, "coupler", 0.29, 2070.46e-6, (Vec2){0.19, 0.12}, 1.0);
+    add_placed_body(linkage, "follower", 0.28, 1988.39e-6, (Vec2){0.27, 0.13}, 1.5);
+    add_anchored_joint(linkage, "ground-crank", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0,
+                       (Vec2){-0.054, 0.0});
+    add_anchored_joint(linkage, "crank-coupler", 0, (Vec2){0.054, 0.0}, 1, (Vec2){-0.1397, 0.0});
+    add_anchored_joint(linkage, "coupler-follower", 1, (Vec2){0.1397, 0.0}, 2,
+                       (Vec2){0.13525, 0.0});
+    add_anchored_joint(linkage, "follower-ground", 2, (Vec2){-0.13525, 0.0}, LINKAGE_GROUND,
+                       (Vec2){0.254, 0.0});
     linkage->driver = (Driver){.is_present = true, .speed = 1000.0 * 2.0 * M_PI / 60.0};
     assemble(&scenario);
     return scenario;
@@ -106,8 +108,8 @@ Scenario mechanism_pin(double mass, double radial_clearance)
     Scenario scenario = mechanism_default();
     scenario.gravity = scenario_downward(0.0);
     Linkage *linkage = &scenario.linkage;
-    add_body(linkage, "pin", mass, 1e-6, (Vec2){0.0, 0.0}, 0.0);
-    add_joint(linkage, "hole", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){0.0, 0.0});
+    add_placed_body(linkage, "pin", mass, 1e-6, (Vec2){0.0, 0.0}, 0.0);
+    add_anchored_joint(linkage, "hole", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){0.0, 0.0});
     linkage->joints[0].kind = JOINT_CLEARANCE;
     linkage->joints[0].clearance = (Clearance){
         .hole_radius = 5e-3 + radial_clearance,
@@ -123,16 +125,16 @@ Scenario mechanism_parallelogram(void)
 {
     Scenario scenario = mechanism_default();
     Linkage *linkage = &scenario.linkage;
-    add_body(linkage, "first", 1.0, 0.1, (Vec2){0.0, 0.5}, 0.5 * M_PI);
-    add_body(linkage, "second", 1.0, 0.1, (Vec2){1.0, 0.5}, 0.5 * M_PI);
-    add_body(linkage, "third", 1.0, 0.1, (Vec2){2.0, 0.5}, 0.5 * M_PI);
-    add_body(linkage, "bar", 1.0, 0.1, (Vec2){1.0, 1.0}, 0.0);
+    add_placed_body(linkage, "first", 1.0, 0.1, (Vec2){0.0, 0.5}, 0.5 * M_PI);
+    add_placed_body(linkage, "second", 1.0, 0.1, (Vec2){1.0, 0.5}, 0.5 * M_PI);
+    add_placed_body(linkage, "third", 1.0, 0.1, (Vec2){2.0, 0.5}, 0.5 * M_PI);
+    add_placed_body(linkage, "bar", 1.0, 0.1, (Vec2){1.0, 1.0}, 0.0);
     for (int i = 0; i < 3; i++) {
         char name[LINKAGE_NAME_SIZE];
         snprintf(name, sizeof name, "foot-%d", i);
-        add_joint(linkage, name, LINKAGE_GROUND, (Vec2){i, 0.0}, i, (Vec2){-0.5, 0.0});
+        add_anchored_joint(linkage, name, LINKAGE_GROUND, (Vec2){i, 0.0}, i, (Vec2){-0.5, 0.0});
         snprintf(name, sizeof name, "head-%d", i);
-        add_joint(linkage, name, i, (Vec2){0.5, 0.0}, 3, (Vec2){i - 1.0, 0.0});
+        add_anchored_joint(linkage, name, i, (Vec2){0.5, 0.0}, 3, (Vec2){i - 1.0, 0.0});
     }
     linkage->driver = (Driver){.is_present = true, .speed = 1.0, .start = 0.5 * M_PI};
     return scenario;
@@ -152,14 +154,15 @@ Scenario mechanism_slidercrank(double offset, double line, SliderSide side)
     const Vec2 pin = vec2_rotate(crank, (Vec2){0.05, 0.0});
     const Vec2 slider = vec2_add(start, vec2_scale(sign * 0.11, along));
     const Vec2 rod = vec2_sub(slider, pin);
-    add_body(linkage, "crank", 0.30, 1.0e-4, vec2_scale(0.5, pin), crank);
-    add_body(linkage, "rod", 0.21, 2.5e-4, vec2_scale(0.5, vec2_add(pin, slider)),
-             atan2(rod.y, rod.x));
-    add_body(linkage, "slider", 0.14, 1.0e-4, slider, line);
-    add_joint(linkage, "ground-crank", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0, (Vec2){-0.025, 0.0});
-    add_joint(linkage, "crank-rod", 0, (Vec2){0.025, 0.0}, 1, (Vec2){-0.06, 0.0});
-    add_joint(linkage, "rod-slider", 1, (Vec2){0.06, 0.0}, 2, (Vec2){0.0, 0.0});
-    add_joint(linkage, "slider-guide", LINKAGE_GROUND, start, 2, (Vec2){0.0, 0.0});
+    add_placed_body(linkage, "crank", 0.30, 1.0e-4, vec2_scale(0.5, pin), crank);
+    add_placed_body(linkage, "rod", 0.21, 2.5e-4, vec2_scale(0.5, vec2_add(pin, slider)),
+                    atan2(rod.y, rod.x));
+    add_placed_body(linkage, "slider", 0.14, 1.0e-4, slider, line);
+    add_anchored_joint(linkage, "ground-crank", LINKAGE_GROUND, (Vec2){0.0, 0.0}, 0,
+                       (Vec2){-0.025, 0.0});
+    add_anchored_joint(linkage, "crank-rod", 0, (Vec2){0.025, 0.0}, 1, (Vec2){-0.06, 0.0});
+    add_anchored_joint(linkage, "rod-slider", 1, (Vec2){0.06, 0.0}, 2, (Vec2){0.0, 0.0});
+    add_anchored_joint(linkage, "slider-guide", LINKAGE_GROUND, start, 2, (Vec2){0.0, 0.0});
     linkage->joints[3].kind = JOINT_PRISMATIC;
     linkage->joints[3].direction = line;
     linkage->joints[3].held_angle = line;
@@ -176,11 +179,11 @@ Linkage mechanism_chain(size_t count, double length, double mass)
     for (size_t i = 0; i < count; i++) {
         char name[LINKAGE_NAME_SIZE];
         snprintf(name, sizeof name, "link-%zu", i);
-        add_body(&linkage, name, mass, mass * length * length / 12.0,
-                 (Vec2){length * ((double)i + 0.5), 0.0}, 0.0);
+        add_placed_body(&linkage, name, mass, mass * length * length / 12.0,
+                        (Vec2){length * ((double)i + 0.5), 0.0}, 0.0);
         snprintf(name, sizeof name, "pin-%zu", i);
-        add_joint(&linkage, name, (int)i - 1, i > 0 ? half : (Vec2){0.0, 0.0}, (int)i,
-                  vec2_scale(-1.0, half));
+        add_anchored_joint(&linkage, name, (int)i - 1, i > 0 ? half : (Vec2){0.0, 0.0}, (int)i,
+                           vec2_scale(-1.0, half));
         linkage.joints[i].space.axis = (Vec3){0.0, 0.0, 1.0};
     }
     return linkage;

@@ -19,7 +19,7 @@ enum { KIND_COUNT = 4, TRIALS = 1000 };
 // a play that holds so many of the longer of a step and a contact at the first speed
 static const double ROOM = 20.0;
 
-static double draw(unsigned short *state, double low, double high)
+static double draw_between(unsigned short *state, double low, double high)
 {
     return low + (high - low) * erand48(state);
 }
@@ -43,8 +43,8 @@ static Scenario stiff_scenario(unsigned short *state, int number, double mass)
     ContactOptions *options = &scenario.contact;
     const int kind = number % KIND_COUNT;
     options->stiffness = draw_log(state, 1e3, 1e11);
-    options->restitution = draw(state, 0.1, 1.0);
-    options->exponent = kind == 0 ? 1.0 : kind == 1 ? 1.5 : draw(state, 1.05, 2.0);
+    options->restitution = draw_between(state, 0.1, 1.0);
+    options->exponent = kind == 0 ? 1.0 : kind == 1 ? 1.5 : draw_between(state, 1.05, 2.0);
     options->damping = kind == 0 ? DAMPING_VISCOUS : DAMPINGS[number / KIND_COUNT % 3];
     options->viscous_coefficient =
         2.0 * damping_linear_ratio(options->restitution) * sqrt(options->stiffness * mass);
@@ -59,7 +59,7 @@ static Scenario cylinder_scenario(unsigned short *state, int number, double mass
     Scenario scenario = mechanism_pin(mass, 1.0);
     ContactOptions *options = &scenario.contact;
     options->law = LAWS[number / KIND_COUNT % 4];
-    options->restitution = draw(state, 0.2, 1.0);
+    options->restitution = draw_between(state, 0.2, 1.0);
     options->damping = DAMPING_LANKARANI_NIKRAVESH;
     scenario.material.youngs_modulus = draw_log(state, 1e6, 1e12);
     Clearance *clearance = &scenario.linkage.joints[0].clearance;

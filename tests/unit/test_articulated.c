@@ -201,12 +201,12 @@ static Solved *stand(const Linkage *linkage, uint64_t *seed)
     Solved *solved = test_calloc(1, sizeof *solved);
     Tree *tree = &solved->tree;
     tree_build(linkage, tree);
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     TreeState measured;
     tree_state_lay(tree, &layout, &measured);
     solved->memory = test_calloc(1, layout.used);
     solved->state = test_calloc(1, sizeof *solved->state);
-    tree_state_lay(tree, &(Layout){(char *)solved->memory, 0}, solved->state);
+    tree_state_lay(tree, &(MemoryLayout){(char *)solved->memory, 0}, solved->state);
     Motion motions[BODIES];
     linkage_start(linkage, motions);
     double q[EQUATIONS] = {0.0};

@@ -37,7 +37,7 @@ static const char CHAIN[] = "bodies:\n"
                             "  elbow: {between: [crank, rod], at: [100 mm, 0 mm]}\n"
                             "drive: {joint: pivot, speed: 10 rad/s}\n";
 
-static Scenario load(const char *text, const char *const *overrides, size_t count)
+static Scenario load_long(const char *text, const char *const *overrides, size_t count)
 {
     Scenario scenario;
     Err err = {0};
@@ -57,7 +57,7 @@ static Scenario load_file(const char *path, const char *override)
     return kept_instead(&scenario);
 }
 
-static void refuse(const char *text, const char *override, const char *message)
+static void refuse_long(const char *text, const char *override, const char *message)
 {
     Scenario scenario;
     Err err = {0};
@@ -79,7 +79,7 @@ static Vec2 eccentricity(const Linkage *linkage, size_t number)
 static void a_pin_in_a_hole_is_what_the_case_says(void **state)
 {
     (void)state;
-    const Scenario scenario = load(PIN, NULL, 0);
+    const Scenario scenario = load_long(PIN, NULL, 0);
     const Linkage *linkage = &scenario.linkage;
     assert_int_equal(linkage->body_count, 1);
     assert_int_equal(linkage->joint_count, 1);
@@ -130,7 +130,7 @@ static void a_four_bar_as_bodies_moves_as_the_short_form_says(void **state)
     const Vec2 elbow = linkage_point(motions, 0, links->joints[1].anchor_a);
     const Vec2 wrist = linkage_point(motions, 1, links->joints[2].anchor_a);
     text_append(&text, LINKS, elbow.x, elbow.y, wrist.x, wrist.y);
-    const Scenario built = load(text.data, NULL, 0);
+    const Scenario built = load_long(text.data, NULL, 0);
     for (size_t i = 0; i < links->body_count; i++) {
         const Motion *motion = &built.linkage.bodies[i].start;
         assert_near(motion->position.x, motions[i].position.x, 1e-12);
@@ -150,7 +150,7 @@ static void a_pin_off_the_centre_moves_the_bodies(void **state)
 {
     (void)state;
     static const char *const OVERRIDE[] = {"joints.hole.start=[60 um, 80 um]"};
-    const Scenario pin = load(PIN, OVERRIDE, 1);
+    const Scenario pin = load_long(PIN, OVERRIDE, 1);
     assert_near(eccentricity(&pin.linkage, 0).x, 60e-6, 1e-15);
     assert_near(eccentricity(&pin.linkage, 0).y, 80e-6, 1e-15);
     // at the wall, however the radii are rounded
@@ -164,7 +164,7 @@ static void a_pin_off_the_centre_moves_the_bodies(void **state)
     assert_near(eccentricity(&linkage.linkage, 1).x, 0.0, 1e-13);
     static const char *const PLAY[] = {
         "joints.elbow={radial-clearance: 1 mm, pin: 10 mm, start: [0.3 mm, 0.4 mm]}"};
-    const Scenario chain = load(CHAIN, PLAY, 1);
+    const Scenario chain = load_long(CHAIN, PLAY, 1);
     assert_near(eccentricity(&chain.linkage, 1).x, 3e-4, 1e-15);
     assert_near(chain.linkage.bodies[0].start.angle, 0.0, 1e-13);
 }
@@ -321,7 +321,7 @@ static void a_body_far_from_its_joints_is_placed(void **state)
         "         radial-clearance: 50 um, pin: 10 mm}\n"
         "drive: {joint: pivot, speed: 300 rpm}\n"
         "run: {revolutions: 0.1}\n";
-    const Scenario scenario = load(FAR, NULL, 0);
+    const Scenario scenario = load_long(FAR, NULL, 0);
     const Linkage *linkage = &scenario.linkage;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         // a hundredth of the clearance would show in a run
@@ -342,7 +342,7 @@ static Vec2 parting(const Linkage *linkage, size_t number)
 static void a_drive_takes_free_bodies_with_it(void **state)
 {
     (void)state;
-    const Scenario scenario = load(CHAIN, NULL, 0);
+    const Scenario scenario = load_long(CHAIN, NULL, 0);
     const Body *rod = &scenario.linkage.bodies[1];
     assert_near(vec2_length(parting(&scenario.linkage, 0)), 0.0, 1e-15);
     assert_near(vec2_length(parting(&scenario.linkage, 1)), 0.0, 1e-15);
@@ -359,52 +359,55 @@ static void speeds_that_agree_are_taken_as_they_are(void **state)
     static const char *const OVERRIDES[] = {
         "bodies.crank.spin=10 rad/s", "bodies.crank.velocity=[0 m/s, 0.5 m/s]",
         "bodies.rod.velocity=[0 m/s, 1.2 m/s]", "bodies.rod.spin=2 rad/s"};
-    const Scenario scenario = load(CHAIN, OVERRIDES, 4);
+    const Scenario scenario = load_long(CHAIN, OVERRIDES, 4);
     assert_near(scenario.linkage.bodies[1].start.velocity.y, 1.2, 1e-12);
     assert_near(scenario.linkage.bodies[1].start.omega, 2.0, 1e-12);
     // rounded to nine digits they still agree, and are then made to
     static const char *const ROUNDED[] = {
         "bodies.crank.spin=10 rad/s", "bodies.crank.velocity=[0 m/s, 0.5 m/s]",
         "bodies.rod.velocity=[0 m/s, 1.2000000005 m/s]", "bodies.rod.spin=2 rad/s"};
-    const Scenario rounded = load(CHAIN, ROUNDED, 4);
+    const Scenario rounded = load_long(CHAIN, ROUNDED, 4);
     assert_near(vec2_length(parting(&rounded.linkage, 1)), 0.0, 1e-15);
-    refuse(CHAIN, "bodies.rod.spin=2 rad/s",
-           "--set bodies.rod.spin=2 rad/s: the speeds at the start pull the ideal joint 'elbow' "
-           "apart by 1.2 m/s\n"
-           "    --set bodies.rod.spin=2 rad/s\n"
-           "                          ^~~~~~~\n"
-           "allowed: speeds that keep the joints closed, such as the nearest: rod: {velocity: [0 "
-           "m/s, 0.311111111111 m/s], spin: -6.88888888889 rad/s}");
+    refuse_long(
+        CHAIN, "bodies.rod.spin=2 rad/s",
+        "--set bodies.rod.spin=2 rad/s: the speeds at the start pull the ideal joint 'elbow' "
+        "apart by 1.2 m/s\n"
+        "    --set bodies.rod.spin=2 rad/s\n"
+        "                          ^~~~~~~\n"
+        "allowed: speeds that keep the joints closed, such as the nearest: rod: {velocity: [0 "
+        "m/s, 0.311111111111 m/s], spin: -6.88888888889 rad/s}");
     // and so it is
     static const char *const NEAREST[] = {"bodies.rod.velocity=[0 m/s, 0.311111111111 m/s]",
                                           "bodies.rod.spin=-6.88888888889 rad/s"};
-    const Scenario nearest = load(CHAIN, NEAREST, 2);
+    const Scenario nearest = load_long(CHAIN, NEAREST, 2);
     assert_near(vec2_length(parting(&nearest.linkage, 1)), 0.0, 1e-15);
-    refuse(CHAIN, "bodies.crank.spin=0 rad/s",
-           "--set bodies.crank.spin=0 rad/s: a driven body does not turn as its drive does\n"
-           "    --set bodies.crank.spin=0 rad/s\n"
-           "                            ^~~~~~~\n"
-           "allowed: speeds that keep the joints closed, such as the nearest: crank: {velocity: [0 "
-           "m/s, 0.5 m/s], spin: 10 rad/s}, rod: {velocity: [0 m/s, 0.259259259259 m/s], spin: "
-           "-7.40740740741 rad/s}");
+    refuse_long(
+        CHAIN, "bodies.crank.spin=0 rad/s",
+        "--set bodies.crank.spin=0 rad/s: a driven body does not turn as its drive does\n"
+        "    --set bodies.crank.spin=0 rad/s\n"
+        "                            ^~~~~~~\n"
+        "allowed: speeds that keep the joints closed, such as the nearest: crank: {velocity: [0 "
+        "m/s, 0.5 m/s], spin: 10 rad/s}, rod: {velocity: [0 m/s, 0.259259259259 m/s], spin: "
+        "-7.40740740741 rad/s}");
 }
 
 static void points_stand_on_any_body(void **state)
 {
     (void)state;
     static const char *const OVERRIDES[] = {"points.tip={body: rod, along: 100 mm, offset: 5 mm}"};
-    const Scenario scenario = load(CHAIN, OVERRIDES, 1);
+    const Scenario scenario = load_long(CHAIN, OVERRIDES, 1);
     assert_int_equal(scenario.points[0].body, 1);
     assert_near(scenario.points[0].local.x, 0.1, 0.0);
     assert_near(scenario.points[0].local.y, 0.005, 0.0);
-    refuse(CHAIN, "points.tip={body: rood, along: 1 mm}",
-           "--set points.tip={body: rood, along: 1 mm}: unknown body 'rood'; did you mean 'rod'?\n"
-           "    --set points.tip={body: rood, along: 1 mm}\n"
-           "                            ^~~~\n"
-           "allowed: crank, rod");
+    refuse_long(
+        CHAIN, "points.tip={body: rood, along: 1 mm}",
+        "--set points.tip={body: rood, along: 1 mm}: unknown body 'rood'; did you mean 'rod'?\n"
+        "    --set points.tip={body: rood, along: 1 mm}\n"
+        "                            ^~~~\n"
+        "allowed: crank, rod");
 }
 
-static bool find_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
+static bool find_long_setting(const Scenario *scenario, const char *key, CasefileSetting *setting)
 {
     CasefileWalk walk = casefile_walk(scenario);
     while (casefile_next(&walk, setting)) {
@@ -419,36 +422,36 @@ static void settings_tell_bodies_and_joints(void **state)
 {
     (void)state;
     CasefileSetting setting;
-    const Scenario pin = load(PIN, NULL, 0);
-    assert_true(find_setting(&pin, "bodies.pin.velocity", &setting));
+    const Scenario pin = load_long(PIN, NULL, 0);
+    assert_true(find_long_setting(&pin, "bodies.pin.velocity", &setting));
     assert_int_equal(setting.number_count, 2);
     assert_near(setting.numbers[0], 0.5, 0.0);
     assert_string_equal(setting.unit, "m/s");
-    assert_true(find_setting(&pin, "joints.hole.between", &setting));
+    assert_true(find_long_setting(&pin, "joints.hole.between", &setting));
     assert_string_equal(setting.text, "ground, pin");
-    assert_true(find_setting(&pin, "joints.hole.at", &setting));
+    assert_true(find_long_setting(&pin, "joints.hole.at", &setting));
     assert_near(setting.numbers[1], 0.0, 1e-18);
-    assert_true(find_setting(&pin, "run.duration", &setting));
-    assert_false(find_setting(&pin, "run.revolutions", &setting));
-    assert_false(find_setting(&pin, "drive.speed", &setting));
-    assert_false(find_setting(&pin, "four-bar.crank.length", &setting));
-    assert_false(find_setting(&pin, "contact.friction-speed", &setting));
+    assert_true(find_long_setting(&pin, "run.duration", &setting));
+    assert_false(find_long_setting(&pin, "run.revolutions", &setting));
+    assert_false(find_long_setting(&pin, "drive.speed", &setting));
+    assert_false(find_long_setting(&pin, "four-bar.crank.length", &setting));
+    assert_false(find_long_setting(&pin, "contact.friction-speed", &setting));
     static const char *const POINT[] = {"points.tip={body: rod, along: 100 mm}",
                                         "contact.friction=0.1", "reference.tolerance=1e-9"};
-    const Scenario chain = load(CHAIN, POINT, 3);
-    assert_true(find_setting(&chain, "drive.joint", &setting));
+    const Scenario chain = load_long(CHAIN, POINT, 3);
+    assert_true(find_long_setting(&chain, "drive.joint", &setting));
     assert_string_equal(setting.text, "pivot");
-    assert_true(find_setting(&chain, "points.tip.body", &setting));
+    assert_true(find_long_setting(&chain, "points.tip.body", &setting));
     assert_string_equal(setting.text, "rod");
-    assert_true(find_setting(&chain, "points.tip.along", &setting));
+    assert_true(find_long_setting(&chain, "points.tip.along", &setting));
     assert_near(setting.numbers[0], 0.1, 0.0);
-    assert_true(find_setting(&chain, "reference.tolerance", &setting));
+    assert_true(find_long_setting(&chain, "reference.tolerance", &setting));
     assert_near(chain.reference.tolerance, 1e-9, 0.0);
-    assert_false(find_setting(&chain, "joints.elbow.hole", &setting));
+    assert_false(find_long_setting(&chain, "joints.elbow.hole", &setting));
     // of a determined mechanism the drive sets the speeds
     const Scenario linkage = load_file("cases/literature/parallelogram.yaml", NULL);
-    assert_false(find_setting(&linkage, "bodies.coupler.spin", &setting));
-    assert_true(find_setting(&linkage, "joints.wrist.radial-clearance", &setting));
+    assert_false(find_long_setting(&linkage, "bodies.coupler.spin", &setting));
+    assert_true(find_long_setting(&linkage, "joints.wrist.radial-clearance", &setting));
 }
 
 static void the_cases_of_the_literature_load(void **state)
@@ -506,11 +509,11 @@ static void check_table(const char *table, const char *area)
         fail_msg("%s", err.text);
     }
     const Scenario kept = kept_instead(&scenario);
-    const LoadTable *load = &kept.linkage.loads[0].table;
-    assert_int_equal(load->count, 2);
-    assert_near(load->at[1], 0.002, 1e-15);
-    assert_near(load->values[0], -3000.0, 1e-9);
-    assert_near(load->values[1], 1500.0, 1e-9);
+    const LoadTable *load_long = &kept.linkage.loads[0].table;
+    assert_int_equal(load_long->count, 2);
+    assert_near(load_long->at[1], 0.002, 1e-15);
+    assert_near(load_long->values[0], -3000.0, 1e-9);
+    assert_near(load_long->values[1], 1500.0, 1e-9);
 }
 
 static void refuse_table(const char *table, size_t size, const char *message)

@@ -40,7 +40,7 @@ static const char BALLS[] =
     "contact: {stiffness: 1e6 N/m, restitution: 0.9}\n"
     "run: {duration: 10 ms, samples: 50}\n";
 
-static Scenario load(const char *text)
+static Scenario load_sliding(const char *text)
 {
     Scenario scenario;
     Err err = {0};
@@ -62,7 +62,7 @@ static JointRows rows_at_start(const Linkage *linkage, int joint)
 static void a_prismatic_joint_keeps_the_angle_that_the_bodies_are_given(void **state)
 {
     (void)state;
-    const Scenario scenario = load(SLIDER_CRANK(""));
+    const Scenario scenario = load_sliding(SLIDER_CRANK(""));
     const Joint *slide = &scenario.linkage.joints[3];
     assert_int_equal(slide->kind, JOINT_PRISMATIC);
     assert_near(slide->direction, M_PI / 18.0, 1e-16);
@@ -82,7 +82,7 @@ static void a_prismatic_joint_keeps_the_angle_that_the_bodies_are_given(void **s
 static void a_block_starts_off_the_middle_and_tilted_as_the_case_says(void **state)
 {
     (void)state;
-    const Scenario scenario = load(SLIDER_CRANK(GUIDE));
+    const Scenario scenario = load_sliding(SLIDER_CRANK(GUIDE));
     const Joint *slide = &scenario.linkage.joints[3];
     assert_int_equal(slide->kind, JOINT_GUIDE);
     assert_near(linkage_radial_clearance(slide), 1e-3, 1e-17);
@@ -101,7 +101,7 @@ static void a_block_starts_off_the_middle_and_tilted_as_the_case_says(void **sta
 static void a_stop_is_between_the_places_that_the_case_gives(void **state)
 {
     (void)state;
-    const Scenario scenario = load(BALLS);
+    const Scenario scenario = load_sliding(BALLS);
     const Joint *joints = scenario.linkage.joints;
     for (int i = 0; i < 3; i++) {
         assert_int_equal(joints[i].kind, JOINT_STOP);
@@ -122,8 +122,8 @@ static void a_stop_is_between_the_places_that_the_case_gives(void **state)
 static void a_joints_own_stiffness_and_restitution_go_before_those_of_the_contact(void **state)
 {
     (void)state;
-    const Scenario balls = load(BALLS);
-    const Scenario slider = load(SLIDER_CRANK(GUIDE));
+    const Scenario balls = load_sliding(BALLS);
+    const Scenario slider = load_sliding(SLIDER_CRANK(GUIDE));
     ForceLaw law;
     Err err = {0};
     assert_true(law_of_joint(&balls, &balls.linkage.joints[0], &law, &err));
@@ -138,8 +138,8 @@ static void a_joints_own_stiffness_and_restitution_go_before_those_of_the_contac
 static void one_stiffness_for_all_joints_goes_before_their_own(void **state)
 {
     (void)state;
-    Scenario balls = load(BALLS);
-    const Scenario slider = load(SLIDER_CRANK(GUIDE));
+    Scenario balls = load_sliding(BALLS);
+    const Scenario slider = load_sliding(SLIDER_CRANK(GUIDE));
     ForceLaw law;
     Err err = {0};
     scenario_set_stiffness(&balls, 3e6, 1.0);
@@ -163,8 +163,8 @@ static bool is_setting(const Scenario *scenario, const char *key, CasefileSettin
 static void settings_hold_what_the_case_says(void **state)
 {
     (void)state;
-    const Scenario slider = load(SLIDER_CRANK(GUIDE));
-    const Scenario balls = load(BALLS);
+    const Scenario slider = load_sliding(SLIDER_CRANK(GUIDE));
+    const Scenario balls = load_sliding(BALLS);
     CasefileSetting setting;
     assert_true(is_setting(&slider, "joints.slide.along", &setting));
     assert_near(setting.numbers[0], M_PI / 18.0, 1e-16);
@@ -212,7 +212,7 @@ static void limits_and_gears_are_what_the_case_gives(void **state)
 {
     (void)state;
     const double degree = M_PI / 180.0;
-    const Scenario scenario = load(GEARED);
+    const Scenario scenario = load_sliding(GEARED);
     const Joint *joints = scenario.linkage.joints;
     assert_int_equal(joints[0].kind, JOINT_REVOLUTE);
     assert_true(linkage_is_torsional(&joints[0]) && linkage_has_play(&joints[0]));

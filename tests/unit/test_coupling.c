@@ -12,15 +12,15 @@
 
 enum { LINKS = 9, FREEDOMS = 3 };
 
-static const double LENGTH = 0.1; // m
-static const double PLAY = 5e-5;  // m
+static const double LINK_LENGTH = 0.1; // m
+static const double PLAY = 5e-5;       // m
 static const double NUDGE = 1e-3;
 
 // A chain with play in every so many joints, the first one of them; with room for a spring.
 static Scenario chain(size_t count, size_t every)
 {
     Scenario scenario = kept_default();
-    Linkage ideal = mechanism_chain(count, LENGTH, 1.0);
+    Linkage ideal = mechanism_chain(count, LINK_LENGTH, 1.0);
     scenario.linkage =
         linkage_create((LinkageRoom){.bodies = count, .joints = count, .springs = 1});
     scenario.linkage.body_count = scenario.linkage.joint_count = count;

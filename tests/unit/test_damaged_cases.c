@@ -22,7 +22,7 @@ static unsigned next_random(uint64_t *seed)
     return (unsigned)(*seed >> 33);
 }
 
-static void load(const char *text, size_t size, const char *const *overrides, size_t count)
+static void load_damaged(const char *text, size_t size, const char *const *overrides, size_t count)
 {
     Scenario scenario = scenario_default();
     Err err = {0};
@@ -57,7 +57,7 @@ static void a_case_cut_anywhere_does_no_harm(void **state)
 {
     (void)state;
     for (size_t size = 0; size <= good_size; size += sample_stride()) {
-        load(good, size, NULL, 0);
+        load_damaged(good, size, NULL, 0);
     }
 }
 
@@ -71,7 +71,7 @@ static void one_wrong_byte_does_no_harm(void **state)
         const size_t at = next_random(&seed) % good_size;
         // half of them printable, to get past the test for text
         text[at] = (char)(i % 2 == 0 ? next_random(&seed) % 256 : 32 + next_random(&seed) % 95);
-        load(text, good_size, NULL, 0);
+        load_damaged(text, good_size, NULL, 0);
     }
 }
 
@@ -87,7 +87,7 @@ static void two_swapped_pieces_do_no_harm(void **state)
         const size_t rest = good_size - (from > to ? from : to);
         const size_t size = 1 + next_random(&seed) % (rest < 20 ? rest : 20);
         memmove(text + to, good + from, size);
-        load(text, good_size, NULL, 0);
+        load_damaged(text, good_size, NULL, 0);
     }
 }
 
@@ -118,7 +118,7 @@ static void any_override_does_no_harm(void **state)
             strncat(override, piece, sizeof override - strlen(override) - 1);
         }
         const char *overrides[] = {override};
-        load(good, good_size, overrides, 1);
+        load_damaged(good, good_size, overrides, 1);
     }
 }
 
@@ -136,7 +136,7 @@ static void deep_and_wide_documents_end_at_once(void **state)
         for (size_t at = 0; at + length <= LARGE; at += length) {
             memcpy(text + at, PATTERNS[i], length);
         }
-        load(text, LARGE - LARGE % length, NULL, 0);
+        load_damaged(text, LARGE - LARGE % length, NULL, 0);
     }
     free(text);
 }

@@ -26,7 +26,7 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static Spec make_spec(DrawMethod method, uint64_t draws, uint64_t seed)
+static Spec make_drawn_spec(DrawMethod method, uint64_t draws, uint64_t seed)
 {
     return (Spec){.draws = draws, .method = method, .seed = seed};
 }
@@ -120,8 +120,8 @@ static void draws_follow_their_distributions(void **state)
     (void)state;
     Family families[FAMILY_COUNT];
     make_families(families);
-    const Spec random = make_spec(DRAW_RANDOM, DRAWS, 1);
-    const Spec spread = make_spec(DRAW_LATIN_HYPERCUBE, DRAWS, 1);
+    const Spec random = make_drawn_spec(DRAW_RANDOM, DRAWS, 1);
+    const Spec spread = make_drawn_spec(DRAW_LATIN_HYPERCUBE, DRAWS, 1);
     const double bound = sqrt(log(2.0 / KS_LEVEL) / (2.0 * DRAWS));
     for (size_t i = 0; i < FAMILY_COUNT; i++) {
         assert_true(distance(&families[i].variable, &random, families[i].below) <= bound);
@@ -137,7 +137,7 @@ static void draws_of_another_distribution_are_told(void **state)
     (void)state;
     Family families[FAMILY_COUNT];
     make_families(families);
-    const Spec random = make_spec(DRAW_RANDOM, DRAWS, 1);
+    const Spec random = make_drawn_spec(DRAW_RANDOM, DRAWS, 1);
     const double bound = sqrt(log(2.0 / KS_LEVEL) / (2.0 * DRAWS));
     assert_false(distance(&families[1].variable, &random, below_uniform) <= bound);
     assert_false(distance(&families[3].variable, &random, below_uniform) <= bound);
@@ -159,7 +159,7 @@ static void means_and_variances_are_those_of_closed_forms(void **state)
     const double variances[] = {pow(uniform->high - uniform->low, 2.0) / 12.0, 0.25,
                                 (a * a + b * b + c * c - a * b - a * c - b * c) / 18.0};
     const size_t places[] = {0, 2, 4};
-    const Spec spec = make_spec(DRAW_RANDOM, DRAWS, 7);
+    const Spec spec = make_drawn_spec(DRAW_RANDOM, DRAWS, 7);
     for (size_t i = 0; i < 3; i++) {
         draw_all(&spec, &families[places[i]].variable, values);
         double sum = 0.0;
@@ -181,7 +181,7 @@ static void whole_numbers_have_equal_shares(void **state)
     (void)state;
     Variable variable = make_variable("ode.seed", VARIABLE_UNIFORM, 3.0, 9.0);
     variable.is_whole = true;
-    const Spec spec = make_spec(DRAW_LATIN_HYPERCUBE, 700, 1);
+    const Spec spec = make_drawn_spec(DRAW_LATIN_HYPERCUBE, 700, 1);
     size_t counts[7] = {0};
     for (uint64_t i = 0; i < spec.draws; i++) {
         const double value = draw_value(&variable, draw_variable_share(&spec, &variable, i));
@@ -219,12 +219,12 @@ static void a_latin_hypercube_has_one_draw_in_each_share(void **state)
     static const char *const KEYS[] = {"drive.speed", "contact.restitution", "a", "b"};
     for (size_t i = 0; i < sizeof COUNTS / sizeof COUNTS[0]; i++) {
         for (size_t k = 0; k < sizeof KEYS / sizeof KEYS[0]; k++) {
-            const Spec spec = make_spec(DRAW_LATIN_HYPERCUBE, COUNTS[i], i + k);
+            const Spec spec = make_drawn_spec(DRAW_LATIN_HYPERCUBE, COUNTS[i], i + k);
             assert_int_equal(full_shares(&spec, KEYS[k]), COUNTS[i]);
         }
     }
     // the control: at random a share has one draw with a chance of 1 / e
-    const Spec random = make_spec(DRAW_RANDOM, 10007, 1);
+    const Spec random = make_drawn_spec(DRAW_RANDOM, 10007, 1);
     assert_near((double)full_shares(&random, "a") / 10007.0, exp(-1.0),
                 FIVE_DEVIATIONS * 0.5 / sqrt(10007.0));
 }
@@ -312,7 +312,7 @@ static void variables_are_independent(void **state)
     enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0], COUNT = 1000 };
     const double bound = FIVE_DEVIATIONS / sqrt(COUNT - 1.0);
     for (uint64_t seed = 0; seed < 5; seed++) {
-        const Spec spec = make_spec(DRAW_LATIN_HYPERCUBE, COUNT, seed);
+        const Spec spec = make_drawn_spec(DRAW_LATIN_HYPERCUBE, COUNT, seed);
         for (size_t i = 0; i < KEY_COUNT; i++) {
             for (size_t k = 0; k < i; k++) {
                 assert_true(fabs(rank_correlation(&spec, KEYS[i], KEYS[k])) <= bound);
@@ -349,7 +349,7 @@ static void a_latin_hypercube_finds_the_mean_of_a_sum_better(void **state)
     double means[2] = {0.0, 0.0};
     for (uint64_t seed = 0; seed < 50; seed++) {
         for (int method = 0; method < 2; method++) {
-            const Spec spec = make_spec((DrawMethod)method, 200, seed);
+            const Spec spec = make_drawn_spec((DrawMethod)method, 200, seed);
             double sum = 0.0;
             for (uint64_t i = 0; i < spec.draws; i++) {
                 const Variable a = make_variable("a", VARIABLE_UNIFORM, -1.0, 1.0);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 // The expectation of one limit, on a number of an own case.
-static Expectation read(const char *path, const char *limit)
+static Expectation read_expectation(const char *path, const char *limit)
 {
     char setting[256];
     snprintf(setting, sizeof setting, "expect={%s: %s}", path, limit);
@@ -21,7 +21,7 @@ static Expectation read(const char *path, const char *limit)
 
 static bool holds(const char *limit, double value)
 {
-    const Expectation expectation = read("joints.hole.force_max", limit);
+    const Expectation expectation = read_expectation("joints.hole.force_max", limit);
     return expect_value_off(&expectation, value) == 0.0;
 }
 
@@ -45,12 +45,12 @@ static void ends_belong_to_between_and_within_alone(void **state)
 static void off_is_signed_and_never_0_outside(void **state)
 {
     (void)state;
-    const Expectation within = read("joints.hole.force_max", "within 2 % of 100 N");
+    const Expectation within = read_expectation("joints.hole.force_max", "within 2 % of 100 N");
     assert_close(expect_value_off(&within, 105.0), 3.0, 1e-12);
     assert_close(expect_value_off(&within, 90.0), -8.0, 1e-12);
-    const Expectation below = read("joints.hole.force_max", "below 1 N");
+    const Expectation below = read_expectation("joints.hole.force_max", "below 1 N");
     assert_true(expect_value_off(&below, 1.0) > 0.0);
-    const Expectation count = read("ode.joints.hole.impacts", "equals 3");
+    const Expectation count = read_expectation("ode.joints.hole.impacts", "equals 3");
     assert_true(expect_value_off(&count, 3.0) == 0.0 && expect_value_off(&count, 2.0) == -1.0);
     assert_int_equal(count.backend, BACKEND_ODE);
 }

@@ -3,7 +3,7 @@
 
 #include "ode/plane/impulse_curves.h"
 
-enum { BODIES = 2, ROWS = 2, DRIVEN = 0, NUMBERS = 3 * BODIES * ROWS };
+enum { BODIES = 2, ROWS = 2, DRIVEN = 0, CURVE_NUMBERS = 3 * BODIES * ROWS };
 
 // A step that follows two others of other lengths.
 static const double START_S = 2.0e-3;
@@ -36,11 +36,11 @@ static const Linkage LINKAGE = {
 
 static ImpulseCurves make_curves(void)
 {
-    double columns[IMPULSE_COLUMNS][NUMBERS];
-    double rates[NUMBERS];
+    double columns[IMPULSE_COLUMNS][CURVE_NUMBERS];
+    double rates[CURVE_NUMBERS];
     double *all[IMPULSE_COLUMNS];
     for (size_t k = 0; k < IMPULSE_COLUMNS; k++) {
-        for (size_t i = 0; i < NUMBERS; i++) {
+        for (size_t i = 0; i < CURVE_NUMBERS; i++) {
             columns[k][i] = does(i, MIDDLES_S[k]);
             rates[i] = its_rate(i, MIDDLES_S[0]);
         }

@@ -7,11 +7,11 @@
 
 #include "ode/plane/impulse_curves.h"
 
-static const double DURATION_S = 1e-4; // flight, contact of 60 us, and flight again
-static const double SHARE = 0.02;      // of the mobility, that it changes by in the step
-static const double SIDE_SPEED = 0.2;  // m/s
+static const double DRIFT_DURATION_S = 1e-4; // flight, contact of 60 us, and flight again
+static const double SHARE = 0.02;            // of the mobility, that it changes by in the step
+static const double SIDE_SPEED = 0.2;        // m/s
 
-enum { STEPS = 200000, STATES = 6 };
+enum { DRIFT_STEPS = 200000, STATES = 6 };
 
 // u, u', P, x and y each.
 typedef struct State {
@@ -21,7 +21,7 @@ typedef struct State {
 // S, of no symmetry, and g'.
 static void find_drift(double drift[4], double rates[2])
 {
-    const double size = SHARE / (ONE_IMPACT_MASS * DURATION_S);
+    const double size = SHARE / (ONE_IMPACT_MASS * DRIFT_DURATION_S);
     const double shares[4] = {0.7, -0.9, 0.4, 1.1};
     for (int i = 0; i < 4; i++) {
         drift[i] = size * shares[i];
@@ -35,7 +35,7 @@ static State rates_of(const State *state, double time_s)
     double drift[4];
     double free_rates[2];
     find_drift(drift, free_rates);
-    const double off_s = time_s - 0.5 * DURATION_S;
+    const double off_s = time_s - 0.5 * DRIFT_DURATION_S;
     const double *u = state->of;
     const double size = hypot(u[0], u[1]);
     const double depth = size - ONE_IMPACT_CLEARANCE;
@@ -64,8 +64,8 @@ static State plus(const State *state, double share, const State *rates)
 static State truth_at_end(void)
 {
     State state = {{ONE_IMPACT_CLEARANCE - LONE_PIN_GAP, 0.0, ONE_IMPACT_SPEED, SIDE_SPEED}};
-    const double h = DURATION_S / STEPS;
-    for (int i = 0; i < STEPS; i++) {
+    const double h = DRIFT_DURATION_S / DRIFT_STEPS;
+    for (int i = 0; i < DRIFT_STEPS; i++) {
         const double t = i * h;
         const State a = rates_of(&state, t);
         const State at_b = plus(&state, 0.5 * h, &a);
@@ -90,7 +90,7 @@ static Kernel turning_pin(bool has_drift)
         double drift[4];
         kernel_make_drift(&pin);
         find_drift(drift, pin.free_rate);
-        kernel_set_drift(&pin, drift, DURATION_S);
+        kernel_set_drift(&pin, drift, DRIFT_DURATION_S);
     }
     return pin;
 }
@@ -99,12 +99,12 @@ static Kernel turning_pin(bool has_drift)
 // speed.
 static void find_errors(Kernel *pin, const State *truth, double errors[2])
 {
-    assert_true(kernel_run(pin, DURATION_S));
+    assert_true(kernel_run(pin, DRIFT_DURATION_S));
     const PinSums end = single_pin_end(pin);
     KernelSums at = {.impulse = (double *)end.impulse,
                      .moment = (double *)end.moment,
                      .force = (double *)end.force};
-    const KernelPose pose = kernel_pose(pin, 0, pin->node_count - 1, DURATION_S, &at);
+    const KernelPose pose = kernel_pose(pin, 0, pin->node_count - 1, DRIFT_DURATION_S, &at);
     const Vec2 off = vec2_sub(pose.pose.eccentricity, (Vec2){truth->of[0], truth->of[1]});
     const double closing = (truth->of[0] * truth->of[2] + truth->of[1] * truth->of[3]) /
                            hypot(truth->of[0], truth->of[1]);
@@ -143,17 +143,17 @@ static void a_flight_ends_where_a_changing_acceleration_ends_it(void **state)
     pin.free[0] = 1000.0;
     kernel_make_drift(&pin);
     pin.free_rate[0] = 1e7;
-    kernel_set_drift(&pin, drift, DURATION_S);
-    assert_true(kernel_run(&pin, DURATION_S));
+    kernel_set_drift(&pin, drift, DRIFT_DURATION_S);
+    assert_true(kernel_run(&pin, DRIFT_DURATION_S));
     // 0 = v + g t / 2 + g' t (t / 6 - h / 4), without the start
     const double a = 1e7 / 6.0;
-    const double b = 500.0 - 1e7 * DURATION_S / 4.0;
+    const double b = 500.0 - 1e7 * DRIFT_DURATION_S / 4.0;
     const double back_s = (-b + sqrt(b * b + 4.0 * a * 0.01)) / (2.0 * a);
     assert_true(pin.node_count > 3);
     assert_near(pin.times[1], pin.times[2], 0.0);
     assert_close(pin.times[1], back_s, 1e-11);
     // control: with the acceleration of the start alone
-    const double start = 1000.0 - 0.5e7 * DURATION_S;
+    const double start = 1000.0 - 0.5e7 * DRIFT_DURATION_S;
     assert_true(fabs(0.02 / start - back_s) > 1e-3 * back_s);
     kernel_finish(&pin);
 }
@@ -164,7 +164,7 @@ static double curves_off(const ImpulseCurves *curves, const Kernel *pin)
     KernelSums sums = kernel_sums(KERNEL_ROWS_PLAIN);
     double most = 0.0;
     for (int i = 0; i <= 20; i++) {
-        const double time_s = i * DURATION_S / 20.0;
+        const double time_s = i * DRIFT_DURATION_S / 20.0;
         const size_t node = kernel_node(pin, time_s);
         kernel_at(pin, node, time_s, &sums);
         const PinHole pose = kernel_pose(pin, 0, node, time_s, &sums).pose;
@@ -186,8 +186,8 @@ static void curves_of_a_step_have_its_rows_where_they_are(void **state)
     Kernel pin = turning_pin(true);
     const Linkage none = {.body_count = 0};
     ImpulseCurves curves = impulse_curves_create(&none, 1, KERNEL_ROWS_PLAIN);
-    curves.width_s = DURATION_S;
-    assert_true(kernel_run(&pin, DURATION_S));
+    curves.width_s = DRIFT_DURATION_S;
+    assert_true(kernel_run(&pin, DRIFT_DURATION_S));
     impulse_curves_set_places(&curves, &pin);
     assert_true(curves_off(&curves, &pin) < 1e-13);
     // control: another half of the drift that has no part in the mobility's rate

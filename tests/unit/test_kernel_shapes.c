@@ -3,13 +3,13 @@
 
 #include "kernel/internal.h"
 
-static const double DURATION_S = 2e-4; // flight, contact of 60 us, and flight again
-static const double RADIUS_A = 0.03;   // m
+static const double SHAPES_DURATION_S = 2e-4; // flight, contact of 60 us, and flight again
+static const double RADIUS_A = 0.03;          // m
 static const double RADIUS_B = 0.02;
 
-static void run(Kernel *kernel)
+static void run_shape(Kernel *kernel)
 {
-    assert_true(kernel_run(kernel, DURATION_S));
+    assert_true(kernel_run(kernel, SHAPES_DURATION_S));
 }
 
 // The pin of single_pin.h against a line. Its rows: the gap, and sliding.
@@ -73,7 +73,7 @@ static void head_on_all_shapes_are_hertz_closed_form(void **state)
     Kernel pins[2] = {at_line(single_pin_hertz(0.0), 0.0, 0.0),
                       at_disc(single_pin_hertz(0.0), 0.0, 0.0)};
     for (int i = 0; i < 2; i++) {
-        run(&pins[i]);
+        run_shape(&pins[i]);
         const PinSums end = single_pin_end(&pins[i]);
         const double pressed = 2.0 * ONE_IMPACT_MASS * ONE_IMPACT_SPEED;
         assert_close(fabs(end.impulse[0]), pressed, 1e-7);
@@ -94,7 +94,7 @@ static void damping_gives_back_what_its_closed_form_says(void **state)
         Kernel pins[2] = {at_line(single_pin_hertz(FACTORS[k]), 0.0, 0.0),
                           at_disc(single_pin_hertz(FACTORS[k]), 0.0, 0.0)};
         for (int i = 0; i < 2; i++) {
-            run(&pins[i]);
+            run_shape(&pins[i]);
             const double pressed = fabs(single_pin_end(&pins[i]).impulse[0]);
             const double given = pressed / (ONE_IMPACT_MASS * ONE_IMPACT_SPEED) - 1.0;
             const double left = pins[i].contacts[0].state.is_touching ? 0.0 : 1.0;
@@ -112,7 +112,7 @@ static void a_disc_on_a_line_is_braked_until_it_rolls(void **state)
     for (double sliding = -0.3; sliding < 0.31; sliding += 0.2) {
         for (double friction = 0.02; friction < 0.7; friction *= 5.0) {
             Kernel pin = at_line(single_pin_hertz(0.3), friction, sliding);
-            run(&pin);
+            run_shape(&pin);
             const PinSums end = single_pin_end(&pin);
             const double needed = ONE_IMPACT_MASS / 3.0 * fabs(sliding);
             const double braked = fmin(friction * end.impulse[0], needed);
@@ -137,7 +137,7 @@ static void discs_that_graze_keep_energy_and_angular_momentum(void **state)
     static const double FRICTION[2] = {0.0, 0.3};
     for (int i = 0; i < 2; i++) {
         Kernel pin = at_disc(single_pin_hertz(0.0), FRICTION[i], 0.6);
-        run(&pin);
+        run_shape(&pin);
         const PinSums end = single_pin_end(&pin);
         assert_false(pin.contacts[0].state.is_touching);
         const double vx = ONE_IMPACT_SPEED + end.impulse[0] / ONE_IMPACT_MASS;
@@ -150,8 +150,8 @@ static void discs_that_graze_keep_energy_and_angular_momentum(void **state)
         assert_near(behind + end.friction, before, 1e-7 * before);
         assert_int_equal(end.friction > 0.01 * before, i);
         // about the centre of the disc that stands still: force times arm and both turns
-        const double x =
-            pin.position[0] + DURATION_S * ONE_IMPACT_SPEED + end.moment[0] / ONE_IMPACT_MASS;
+        const double x = pin.position[0] + SHAPES_DURATION_S * ONE_IMPACT_SPEED +
+                         end.moment[0] / ONE_IMPACT_MASS;
         const double y = pin.position[1] + end.moment[1] / ONE_IMPACT_MASS;
         const double spin = ONE_IMPACT_MASS * (x * vy - y * vx);
         const double first = -ONE_IMPACT_MASS * pin.position[1] * ONE_IMPACT_SPEED;
@@ -189,7 +189,7 @@ static void two_corners_at_once_share_the_impact(void **state)
     // turning is fifty times as easy as moving
     pin.mobility[0] = pin.mobility[10] = 51.0 / ONE_IMPACT_MASS;
     pin.mobility[2] = pin.mobility[8] = -49.0 / ONE_IMPACT_MASS;
-    run(&pin);
+    run_shape(&pin);
     const PinSums end = single_pin_end(&pin);
     assert_near(end.impulse[0], end.impulse[2], 1e-15);
     assert_close(end.impulse[0], ONE_IMPACT_MASS * ONE_IMPACT_SPEED, 1e-7);
@@ -311,8 +311,8 @@ static void forces_between_nodes_are_no_rounding(void **state)
         pin.position[2 * i] = LONE_PIN_GAP * (1.0 + i * 1e-8);
         pin.speed[2 * i] = -ONE_IMPACT_SPEED;
     }
-    run(&pin);
-    double shortest_s = DURATION_S;
+    run_shape(&pin);
+    double shortest_s = SHAPES_DURATION_S;
     double strongest = 0.0;
     for (size_t node = 0; node + 1 < pin.node_count; node++) {
         PinSums sums[5];

@@ -25,7 +25,7 @@ static void differences(Kernel *pin, double *at, double nudge, double *slopes)
 }
 
 // How far the derivatives by one of the rows are from differences, over the largest.
-static double mismatch(Kernel *pin, size_t row, bool of_position)
+static double slope_mismatch(Kernel *pin, size_t row, bool of_position)
 {
     KernelSlopes slopes;
     kernel_slopes_find(pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
@@ -58,9 +58,9 @@ static void slopes_are_those_of_the_force(void **state)
             assert_near(slopes.force[i], force[i], 1e-13 * hypot(force[0], force[1]));
         }
         for (size_t row = 0; row < pin.row_count; row++) {
-            assert_true(mismatch(&pin, row, false) < 1e-7);
+            assert_true(slope_mismatch(&pin, row, false) < 1e-7);
             // the depth is a thousandth of the play, and its rounding that much larger
-            assert_true(row >= 2 || mismatch(&pin, row, true) < 1e-6);
+            assert_true(row >= 2 || slope_mismatch(&pin, row, true) < 1e-6);
         }
         kernel_finish(&pin);
     }
@@ -89,8 +89,8 @@ static void slopes_at_lines_and_discs_are_those_of_the_force(void **state)
         for (size_t row = 0; row < pin.row_count; row++) {
             // without friction nothing changes with sliding on a line
             const bool is_idle = is_line && row == 1;
-            assert_true((is_idle && friction == 0.0) || mismatch(&pin, row, false) < 1e-7);
-            assert_true(row >= 2 || is_idle || mismatch(&pin, row, true) < 1e-6);
+            assert_true((is_idle && friction == 0.0) || slope_mismatch(&pin, row, false) < 1e-7);
+            assert_true(row >= 2 || is_idle || slope_mismatch(&pin, row, true) < 1e-6);
         }
         kernel_finish(&pin);
     }

@@ -11,18 +11,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STEPS = 3, REPEATS = 5 };
+enum { LADDER_STEP_COUNT = 3, REPEATS = 5 };
 
-static const double LADDER_STEPS[STEPS] = {1e-4, 5e-5, 2.5e-5};
+static const double LADDER_STEPS[LADDER_STEP_COUNT] = {1e-4, 5e-5, 2.5e-5};
 
 // Two schemes of ODE and the reference, nothing run.
-static Ladder *make_ladder(void)
+static Ladder *make_unrun_ladder(void)
 {
     static const Scheme SCHEMES[3] = {
         {.name = "direct/plain", .backend = BACKEND_ODE},
         {.name = "quick/plain", .backend = BACKEND_ODE, .solver = ODE_QUICK},
         {.name = "reference", .backend = BACKEND_REFERENCE}};
-    return ladder_create(SCHEMES, 3, LADDER_STEPS, STEPS, REPEATS);
+    return ladder_create(SCHEMES, 3, LADDER_STEPS, LADDER_STEP_COUNT, REPEATS);
 }
 
 // All runs, with errors of order one and times that grow; the truth is the reference.
@@ -46,7 +46,7 @@ static void fill(Ladder *ladder)
 static void every_run_stands_once_and_rounds_are_taken_in_turn(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     assert_int_equal(ladder->point_count, 7);
     assert_int_equal(ladder_run_total(ladder), 7 * (1 + REPEATS));
     assert_int_equal(ladder_run(ladder, 6).kind, LADDER_ERROR);
@@ -66,7 +66,7 @@ static void every_run_stands_once_and_rounds_are_taken_in_turn(void **state)
 static void the_pace_of_every_scheme_is_known_early(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     // two schemes with three steps each, and the reference, which has none
     static const size_t ORDER[] = {0, 3, 1, 4, 6, 2, 5};
     for (size_t i = 0; i < 7; i++) {
@@ -89,7 +89,7 @@ static void the_pace_of_every_scheme_is_known_early(void **state)
 static void a_run_is_taken_once(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     LadderRun run = {.kind = LADDER_ERROR, .point = 1, .is_complete = true, .wall_s = 2.0};
     assert_int_equal(ladder_next(ladder, 0), 0);
     assert_near(ladder_time_left(ladder, 1), 0.0, 0.0);
@@ -116,7 +116,7 @@ static void a_run_is_taken_once(void **state)
 static void a_failed_point_is_not_timed(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     LadderRun run = {.kind = LADDER_ERROR, .point = 0, .message = "left the plane"};
     assert_true(ladder_add(ladder, &run));
     assert_int_equal(ladder_run_done(ladder), 1 + REPEATS);
@@ -132,7 +132,7 @@ static void a_failed_point_is_not_timed(void **state)
 static void errors_times_frontier_and_orders_are_put_together(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     fill(ladder);
     assert_int_equal(ladder_next(ladder, 0), ladder_run_total(ladder));
     ladder_conclude(ladder);
@@ -159,7 +159,7 @@ static void errors_times_frontier_and_orders_are_put_together(void **state)
 static void the_horizon_and_the_uncertainty_limit_what_is_said(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     fill(ladder);
     ladder->truth.is_limited = true;
     ladder->truth.uncertainty = 2e-5;
@@ -174,7 +174,7 @@ static void the_horizon_and_the_uncertainty_limit_what_is_said(void **state)
 static void unstable_and_unknown_errors_are_no_numbers(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     fill(ladder);
     ladder->points[0].run.error.max = 2.5;
     ladder->points[1].run.error.is_known = false;
@@ -192,7 +192,7 @@ static void unstable_and_unknown_errors_are_no_numbers(void **state)
 static void a_point_without_a_sample_in_the_horizon_has_no_error(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     fill(ladder);
     ladder->truth.is_limited = true;
     ladder->points[0].run.error.max_in_horizon = NAN;
@@ -261,7 +261,7 @@ static Ladder *make_real(Scenario *scenario)
     scenario->run.samples = 90;
     static const Scheme SCHEMES[2] = {{.name = "direct/plain", .backend = BACKEND_ODE},
                                       {.name = "analytic", .backend = BACKEND_ANALYTIC}};
-    return ladder_create(SCHEMES, 2, LADDER_STEPS, STEPS, REPEATS);
+    return ladder_create(SCHEMES, 2, LADDER_STEPS, LADDER_STEP_COUNT, REPEATS);
 }
 
 static void a_runner_makes_what_is_missing(void **state)
@@ -324,7 +324,7 @@ static void a_runner_that_is_stopped_goes_on_later(void **state)
 static void a_point_that_is_beaten_is_timed_once(void **state)
 {
     (void)state;
-    Ladder *ladder = make_ladder();
+    Ladder *ladder = make_unrun_ladder();
     static const struct {
         size_t point;
         double error;
@@ -366,7 +366,7 @@ static void steps_that_cannot_come_to_the_frontier_are_left_out(void **state)
         bool is_left_out;
     } CASES[] = {{1e-3, false, true}, {1e-3, true, false}, {2e-3, false, false}};
     for (size_t i = 0; i < 3; i++) {
-        Ladder *ladder = make_ladder();
+        Ladder *ladder = make_unrun_ladder();
         ladder->is_whole = CASES[i].is_whole;
         ladder->truth = (LadderTruth){.is_known = true, .backend = "reference"};
         add_error_run(ladder, 0, 0.1, 1.0);
@@ -392,7 +392,7 @@ static void times_that_are_clear_need_no_more_runs(void **state)
         size_t more;
     } CASES[] = {{{1.0, 1.01, 1.02}, 1.1, 0}, {{1.0, 1.3, 1.1}, 2.6, 0}, {{1.0, 1.3, 1.1}, 1.1, 2}};
     for (size_t i = 0; i < 3; i++) {
-        Ladder *ladder = make_ladder();
+        Ladder *ladder = make_unrun_ladder();
         ladder->is_whole = false;
         ladder->truth = (LadderTruth){.is_known = true, .is_limited = true};
         add_error_run(ladder, 0, 1e-3, 1.0);
@@ -461,7 +461,7 @@ static void without_a_truth_there_is_no_comparison(void **state)
 static double time_of_member(const Scenario *scenario)
 {
     Scenario member = kept_copy(scenario);
-    member.run.step = LADDER_STEPS[STEPS - 1];
+    member.run.step = LADDER_STEPS[LADDER_STEP_COUNT - 1];
     double longest_s = 1e-3;
     for (int i = 0; i < 9; i++) {
         Trajectory *trajectory = run_scenario(&member, registry_solver(BACKEND_ODE), (RunWatch){0});
@@ -485,7 +485,7 @@ static void ensembles_are_made_beyond_a_horizon(void **state)
     assert_true(runner_execute(&runner, &err));
     assert_int_equal(counts.ensembles, 2);
     assert_int_equal(counts.runs, 0);
-    assert_near(ladder->ensembles[0].step_s, LADDER_STEPS[STEPS - 1], 0.0);
+    assert_near(ladder->ensembles[0].step_s, LADDER_STEPS[LADDER_STEP_COUNT - 1], 0.0);
     assert_true(ladder->ensembles[0].ensemble.members > 0);
     // the limit is that of one run, not of all members
     runner.time_limit_s = 0.75 * ENSEMBLE_MEMBERS * time_of_member(&scenario);

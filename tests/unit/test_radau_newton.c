@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { CHAIN = 30, PAIR = 2, COUNT = CHAIN + PAIR, UNKNOWNS = RADAU_STAGES * COUNT };
+enum { CHAIN = 30, PAIR = 2, VARIABLES = CHAIN + PAIR, UNKNOWNS = RADAU_STAGES * VARIABLES };
 
 static const double STEP = 0.3; // s
 
@@ -14,18 +14,18 @@ static const double STEP = 0.3; // s
 // the two couples them as well, but for the moment nothing presses there.
 static Coupling *make_coupling(void)
 {
-    Linkage linkage = linkage_create((LinkageRoom){.bodies = COUNT, .joints = COUNT});
-    CouplingBody bodies[COUNT];
-    linkage.body_count = linkage.joint_count = COUNT;
-    for (size_t i = 0; i < COUNT; i++) {
+    Linkage linkage = linkage_create((LinkageRoom){.bodies = VARIABLES, .joints = VARIABLES});
+    CouplingBody bodies[VARIABLES];
+    linkage.body_count = linkage.joint_count = VARIABLES;
+    for (size_t i = 0; i < VARIABLES; i++) {
         // 7 and 30 have no common divisor: neighbours are all over the list
         const bool is_within = i + 1 < CHAIN;
         linkage.joints[i].body_a = (int)(is_within ? i * 7 % CHAIN : CHAIN);
         linkage.joints[i].body_b = (int)(is_within ? (i + 1) * 7 % CHAIN : CHAIN + 1);
         bodies[i] = (CouplingBody){(int)i, i, i, 1};
     }
-    linkage.joints[COUNT - 1].body_a = 0;
-    Coupling *coupling = coupling_create(&linkage, COUNT, COUNT, bodies);
+    linkage.joints[VARIABLES - 1].body_a = 0;
+    Coupling *coupling = coupling_create(&linkage, VARIABLES, VARIABLES, bodies);
     linkage_free(&linkage);
     return coupling;
 }
@@ -33,7 +33,7 @@ static Coupling *make_coupling(void)
 static void fill(RadauNewton *newton, uint64_t *seed)
 {
     const Coupling *coupling = newton->coupling;
-    for (size_t a = 0; a < COUNT; a++) {
+    for (size_t a = 0; a < VARIABLES; a++) {
         const size_t *columns = coupling_columns(coupling, coupling->part_of[a]);
         for (size_t i = 0; i < coupling_width(coupling, coupling->part_of[a]); i++) {
             const bool is_own = (a < CHAIN) == (columns[i] < CHAIN);
@@ -50,23 +50,23 @@ static double residual(const RadauNewton *newton, const double *x, const double 
 {
     double worst = 0.0;
     for (size_t i = 0; i < RADAU_STAGES; i++) {
-        for (size_t a = 0; a < COUNT; a++) {
-            double sum = x[i * COUNT + a];
+        for (size_t a = 0; a < VARIABLES; a++) {
+            double sum = x[i * VARIABLES + a];
             for (size_t k = 0; k < RADAU_STAGES; k++) {
                 double pushed = 0.0;
-                for (size_t b = 0; b < COUNT; b++) {
+                for (size_t b = 0; b < VARIABLES; b++) {
                     double moved = 0.0;
                     for (size_t j = 0; j < RADAU_STAGES; j++) {
-                        moved += RADAU_COUPLING[k][j] * x[j * COUNT + b];
+                        moved += RADAU_COUPLING[k][j] * x[j * VARIABLES + b];
                     }
                     const Coupling *coupling = newton->coupling;
                     pushed +=
-                        coupling_entry(coupling, newton->by_rate[k], a, b) * x[k * COUNT + b] +
+                        coupling_entry(coupling, newton->by_rate[k], a, b) * x[k * VARIABLES + b] +
                         STEP * coupling_entry(coupling, newton->by_position[k], a, b) * moved;
                 }
                 sum -= STEP * RADAU_COUPLING[i][k] * pushed;
             }
-            worst = fmax(worst, fabs(sum - right[i * COUNT + a]));
+            worst = fmax(worst, fabs(sum - right[i * VARIABLES + a]));
         }
     }
     return worst;
@@ -98,7 +98,8 @@ static void blocks_are_solved_dense_or_banded(void **state)
         0.1;
     assert_true(residual(&newton, x, right) > 1e-5);
     // where they press on one another all are one block
-    newton.by_rate[0][coupling->first_value[0] + coupling_column_index(coupling, 0, COUNT - 1)] =
+    newton
+        .by_rate[0][coupling->first_value[0] + coupling_column_index(coupling, 0, VARIABLES - 1)] =
         0.1;
     assert_true(radau_newton_factor(&newton, STEP));
     assert_int_equal(newton.block_count, 1);

@@ -14,7 +14,7 @@
 
 #include <stdlib.h>
 
-enum { BODIES = 3, SPEEDS = 3 * BODIES, CASES = 6, LINES = 4, PRISMATIC = 5 };
+enum { BODIES = 3, SPEEDS = 3 * BODIES, DRIFT_CASES = 6, LINES = 4, PRISMATIC = 5 };
 
 // of a second: differences over it are right to 1e-7 and rounded by as much
 static const double SHORT_S = 1e-7;
@@ -22,15 +22,15 @@ static const double SHARE = 1e-5;
 
 // The four-bar with play in one joint or three, without and with friction, and two slider-cranks:
 // with play in the guides, and in the slider's pin.
-typedef struct Case {
+typedef struct DriftCase {
     Scenario scenario;
     Motion motions[KINEMATICS_BODY_MAX];
     Response response;
     ResponseDrift drift;
     size_t rows;
-} Case;
+} DriftCase;
 
-static void make_case(size_t number, Case *made)
+static void make_drift_case(size_t number, DriftCase *made)
 {
     static const char *const JOINTS[] = {"crank-coupler", "coupler-follower", "follower-ground"};
     Err err = {ERR_NONE, ""};
@@ -69,14 +69,14 @@ static void make_case(size_t number, Case *made)
     response_drift_find(&made->response, made->motions, SHORT_S, &made->drift);
 }
 
-static void finish_case(Case *made)
+static void finish_case(DriftCase *made)
 {
     response_drift_finish(&made->drift);
     response_finish(&made->response);
 }
 
 // The bodies some time later.
-static void move(const Case *here, double time_s, Motion *moved)
+static void move(const DriftCase *here, double time_s, Motion *moved)
 {
     for (size_t i = 0; i < here->scenario.linkage.body_count; i++) {
         moved[i] = here->motions[i];
@@ -86,7 +86,7 @@ static void move(const Case *here, double time_s, Motion *moved)
 }
 
 // By how much numbers that follow from a response change, per second.
-static void differ(Case *here, void (*look)(const Response *, double *), size_t count,
+static void differ(DriftCase *here, void (*look)(const Response *, double *), size_t count,
                    double *rates)
 {
     Motion moved[KINEMATICS_BODY_MAX];
@@ -116,9 +116,9 @@ static double largest(const double *values, size_t count)
 static void the_mobility_changes_by_the_drift_and_its_transpose(void **state)
 {
     (void)state;
-    for (size_t number = 0; number < CASES; number++) {
-        Case here;
-        make_case(number, &here);
+    for (size_t number = 0; number < DRIFT_CASES; number++) {
+        DriftCase here;
+        make_drift_case(number, &here);
         const size_t n = here.rows;
         double rates[RESPONSE_ROW_MAX * RESPONSE_ROW_MAX];
         differ(&here, response_mobility, n * n, rates);
@@ -152,9 +152,9 @@ static void look_at_columns(const Response *response, double *columns)
 static void what_a_push_does_to_the_bodies_changes_at_the_rates_found(void **state)
 {
     (void)state;
-    for (size_t number = 0; number < CASES; number++) {
-        Case here;
-        make_case(number, &here);
+    for (size_t number = 0; number < DRIFT_CASES; number++) {
+        DriftCase here;
+        make_drift_case(number, &here);
         const size_t count = 3 * here.scenario.linkage.body_count * here.rows;
         double columns[SPEEDS * RESPONSE_ROW_MAX];
         double rates[SPEEDS * RESPONSE_ROW_MAX];
@@ -172,7 +172,7 @@ static void what_a_push_does_to_the_bodies_changes_at_the_rates_found(void **sta
 
 // The free accelerations of the rows, with speeds that impulses have changed by so much of a
 // column.
-static void free_after(const Case *here, size_t row, double share, double *rates)
+static void free_after(const DriftCase *here, size_t row, double share, double *rates)
 {
     Motion motions[KINEMATICS_BODY_MAX];
     const size_t bodies = here->scenario.linkage.body_count;
@@ -190,9 +190,9 @@ static void free_after(const Case *here, size_t row, double share, double *rates
 static void impulses_change_free_accelerations_by_twice_the_drift(void **state)
 {
     (void)state;
-    for (size_t number = 0; number < CASES; number++) {
-        Case here;
-        make_case(number, &here);
+    for (size_t number = 0; number < DRIFT_CASES; number++) {
+        DriftCase here;
+        make_drift_case(number, &here);
         const size_t n = here.rows;
         const size_t every = number == LINES ? 2 : 1;
         const double scale = largest(here.drift.drift, n * n);

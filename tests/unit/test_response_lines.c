@@ -6,7 +6,7 @@
 #include "kept.h"
 
 // Numbers that are not round and of either sign.
-static double some_number(size_t number)
+static double uneven_number(size_t number)
 {
     return sin(1.0 + 2.3 * (double)number);
 }
@@ -28,10 +28,10 @@ static Linkage flying_pair(Motion motions[2])
         linkage.bodies[i].mass = masses[i];
         linkage.bodies[i].inertia = 1e-4 * (1.0 + (double)i);
         motions[i] = (Motion){
-            .position = {0.1 * some_number(i), 0.1 * some_number(i + 7)},
-            .angle = some_number(i + 3),
-            .velocity = {some_number(i + 11), some_number(i + 13)},
-            .omega = 30.0 * some_number(i + 17),
+            .position = {0.1 * uneven_number(i), 0.1 * uneven_number(i + 7)},
+            .angle = uneven_number(i + 3),
+            .velocity = {uneven_number(i + 11), uneven_number(i + 13)},
+            .omega = 30.0 * uneven_number(i + 17),
         };
     }
     for (size_t i = 0; i < 3; i++) {

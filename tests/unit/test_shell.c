@@ -10,7 +10,7 @@
 #include <string.h>
 
 // names that would do harm in a shell, a comment or a terminal that took them as they are
-static const char *const NASTY[] = {
+static const char *const NASTY_NAMES[] = {
     "plain",
     "two words",
     "it's",
@@ -57,7 +57,7 @@ static const char *const NASTY[] = {
     "octal\0331 digits behind\n1",
     "all \"$(printf '%d\\n' 1)\" `x` !! at once\n'",
 };
-enum { NASTY_COUNT = sizeof NASTY / sizeof *NASTY };
+enum { NASTY_COUNT = sizeof NASTY_NAMES / sizeof *NASTY_NAMES };
 
 // What a shell makes of the text, fed to it as a command.
 static void ask_shell(const char *shell, const char *command, char *answer, size_t size)
@@ -91,7 +91,7 @@ static void a_word_is_that_word_to_a_shell(void **state)
     (void)state;
     const bool has_bash = system("command -v bash >/dev/null") == 0;
     for (size_t i = 0; i < NASTY_COUNT; i++) {
-        const char *word = NASTY[i];
+        const char *word = NASTY_NAMES[i];
         // $'...' is no word of every sh yet
         if (word[0] == '\0' || word[strlen(word) - 1] != '\n') {
             check_word("sh", word);
@@ -108,7 +108,7 @@ static void nothing_in_a_word_ends_a_line_or_reaches_a_terminal(void **state)
     for (size_t i = 0; i < NASTY_COUNT; i++) {
         Text text;
         text_init(&text);
-        shell_append_word(&text, NASTY[i]);
+        shell_append_word(&text, NASTY_NAMES[i]);
         assert_true(text.length > 0);
         assert_true(printable_is_shown(text.data));
         assert_null(strchr(text.data, '\n'));

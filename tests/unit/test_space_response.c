@@ -13,8 +13,8 @@
 #include <string.h>
 
 enum {
-    BODIES = 3,
-    COLUMNS = SPACE_FREEDOMS * BODIES,
+    RESPONSE_BODIES = 3,
+    COLUMNS = SPACE_FREEDOMS * RESPONSE_BODIES,
     IDEAL = COLUMNS, // at most
     SYSTEM = COLUMNS + IDEAL,
     PLAY = PIN_SPACE_PLACES * PIN_SPACE_ROWS,
@@ -29,7 +29,7 @@ static Vec3 drawn(uint64_t *seed, double size)
 
 typedef struct Case {
     Scenario scenario;
-    SpaceMotion motions[BODIES];
+    SpaceMotion motions[RESPONSE_BODIES];
     size_t place_count;
     PinSpace places[PIN_SPACE_PLACES];
     PinSpaceRows rows[PIN_SPACE_PLACES];
@@ -159,7 +159,7 @@ static void pushes_are_answered_as_the_whole_system_answers(void **state)
             double truth[SYSTEM];
             double impulses[PLAY] = {0.0};
             double reactions[IDEAL];
-            SpaceChange changes[BODIES];
+            SpaceChange changes[RESPONSE_BODIES];
             impulses[row] = 1.0;
             solve_whole(&here, &here.play_rows[row], truth);
             space_response_apply(here.response, impulses, changes);
@@ -217,7 +217,7 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
         make_case(number, &here);
         double least_off = INFINITY;
         for (size_t i = 0; i < here.place_count; i++) {
-            SpaceMotion motions[2][BODIES];
+            SpaceMotion motions[2][RESPONSE_BODIES];
             double position[2][2];
             double speed[2][PIN_SPACE_ROWS];
             double drift[PIN_SPACE_ROWS];
@@ -228,7 +228,7 @@ static void rates_of_rows_change_as_they_are_said_to(void **state)
                                      speed[k]);
             }
             pin_space_rows_drift(&here.places[i], &here.rows[i], here.motions, drift);
-            SpaceMotion resting[BODIES];
+            SpaceMotion resting[RESPONSE_BODIES];
             memcpy(resting, here.motions, sizeof resting);
             for (size_t k = 0; k < here.scenario.linkage.body_count; k++) {
                 resting[k].velocity = resting[k].omega = (Vec3){0.0, 0.0, 0.0};

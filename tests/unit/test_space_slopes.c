@@ -7,8 +7,8 @@
 #include "reference/space/space_dynamics.h"
 
 enum {
-    BODIES = 3,
-    COORDINATES = 6 * BODIES,
+    SLOPES_BODIES = 3,
+    COORDINATES = 6 * SLOPES_BODIES,
     SIZE = 2 * COORDINATES + SYSTEM_IMPULSES + 4 * PIN_SPACE_PLACES,
 };
 
@@ -43,7 +43,7 @@ static Pressed *press(size_t joints)
     Err err = {ERR_NONE, ""};
     assert_true(space_dynamics_init(scenario, dynamics, &err));
     const size_t n = dynamics->tree.coordinate_count;
-    SpaceMotion motions[BODIES];
+    SpaceMotion motions[SLOPES_BODIES];
     space_start(&scenario->linkage, motions);
     space_tree_start(&dynamics->tree, motions, pressed->y + n);
     space_loops_start(&dynamics->tree, dynamics->loops, pressed->y, pressed->y + n,
@@ -63,7 +63,7 @@ static Pressed *press(size_t joints)
     return pressed;
 }
 
-static void release(Pressed *pressed)
+static void release_slopes(Pressed *pressed)
 {
     space_dynamics_finish(&pressed->dynamics);
     test_free(pressed);
@@ -123,7 +123,7 @@ static void derivatives_are_those_of_the_places_forces(void **state)
         assert_true(worst(pressed, false, 1.0) < (joints > 1 ? 1e-2 : 1e-4));
         // control: the accelerations of another friction
         assert_true(worst(pressed, true, 1.1) > 1e-2);
-        release(pressed);
+        release_slopes(pressed);
     }
 }
 
@@ -145,7 +145,7 @@ static void rates_that_are_not_determined_are_not_numbers(void **state)
     for (size_t i = 0; i < size; i++) {
         assert_true(isnan(rates[i]));
     }
-    release(pressed);
+    release_slopes(pressed);
 }
 
 int main(void)

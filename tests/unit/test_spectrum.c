@@ -12,7 +12,7 @@
 
 static const double ROUNDING = 1e-11; // of amplitudes of some 10 rad/s from 3600 samples
 
-static Scenario turning(double revolutions, size_t samples)
+static Scenario turning_scenario(double revolutions, size_t samples)
 {
     Scenario scenario = mechanism_paper();
     scenario.run.revolutions = revolutions;
@@ -49,7 +49,7 @@ static void amplitudes_are_those_of_the_sines(void **state)
     MadeOmega *const SIGNALS[] = {known, shifted, known, shifted};
     const size_t SAMPLES[] = {720, 720, 721, 722}; // of four, odd, and of two alone
     for (int i = 0; i < 4; i++) {
-        Scenario scenario = turning(3.0, SAMPLES[i]);
+        Scenario scenario = turning_scenario(3.0, SAMPLES[i]);
         Trajectory *run = made_run(&scenario, SIGNALS[i]);
         const double amplitudes[] = {3.0, 5.0, 0.25, 0.0};
         for (size_t order = 0; order < 4; order++) {
@@ -66,7 +66,7 @@ static void amplitudes_are_those_of_the_sines(void **state)
 static void what_lies_between_orders_is_found_there(void **state)
 {
     (void)state;
-    Scenario scenario = turning(6.0, 720);
+    Scenario scenario = turning_scenario(6.0, 720);
     Trajectory *run = made_run(&scenario, between);
     const Sections sections = section_find(run);
     const Orders orders = spectrum_orders(&sections);
@@ -77,7 +77,7 @@ static void what_lies_between_orders_is_found_there(void **state)
     assert_near(spectrum_body_order(run, 1, 1), 5.0, ROUNDING);
     trajectory_destroy(run);
     // the control: one revolution alone cannot tell it from what lies at whole orders
-    Scenario whole = turning(1.0, 720);
+    Scenario whole = turning_scenario(1.0, 720);
     Trajectory *cut = made_run(&whole, between);
     assert_near(spectrum_body_between(cut, 1), 0.0, 0.0);
     assert_true(fabs(spectrum_body_order(cut, 1, 2) - 0.25) > 0.1);
@@ -91,7 +91,7 @@ static void what_lies_between_orders_is_found_there(void **state)
 static void few_samples_fold_high_orders(void **state)
 {
     (void)state;
-    Scenario scenario = turning(1.0, 24);
+    Scenario scenario = turning_scenario(1.0, 24);
     Trajectory *run = made_run(&scenario, known);
     const Sections sections = section_find(run);
     assert_int_equal(spectrum_orders(&sections).count, 12);
@@ -104,7 +104,7 @@ static void few_samples_fold_high_orders(void **state)
 static void less_than_a_revolution_has_no_spectrum(void **state)
 {
     (void)state;
-    Scenario scenario = turning(0.9, 720);
+    Scenario scenario = turning_scenario(0.9, 720);
     Trajectory *run = made_run(&scenario, known);
     assert_true(isnan(spectrum_body_order(run, 1, 1)));
     assert_true(isnan(spectrum_body_between(run, 1)));

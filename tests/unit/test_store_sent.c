@@ -9,11 +9,11 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-enum { FEW = 30, SECTOR = 512, PAGE = 4096, WAIT_S = 20, NAME_SIZE = PATH_SIZE + 32 };
+enum { SENT_POINTS = 30, SECTOR = 512, PAGE = 4096, WAIT_S = 20, SENT_NAME_SIZE = PATH_SIZE + 32 };
 
-static char journal[NAME_SIZE];
-static char victim[NAME_SIZE];
-static char merged[NAME_SIZE];
+static char journal[SENT_NAME_SIZE];
+static char victim[SENT_NAME_SIZE];
+static char merged[SENT_NAME_SIZE];
 
 static int set_up_sent(void **state)
 {
@@ -60,7 +60,7 @@ static uint64_t hash_folder(void)
     assert_non_null(stream);
     for (const struct dirent *entry; (entry = readdir(stream)) != NULL;) {
         if (entry->d_name[0] != '.') {
-            char name[2 * NAME_SIZE];
+            char name[2 * SENT_NAME_SIZE];
             snprintf(name, sizeof name, "%s/%s", folder, entry->d_name);
             // in whatever order they come
             hash += hash_file(hash_bytes(HASH_START, entry->d_name, strlen(entry->d_name)), name);
@@ -82,7 +82,7 @@ static const unsigned char MAGIC[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63,
 // A journal that undoes nothing and ends with the name of another file.
 static void write_super_journal(void)
 {
-    unsigned char bytes[SECTOR + 4 + NAME_SIZE + 16] = {0};
+    unsigned char bytes[SECTOR + 4 + SENT_NAME_SIZE + 16] = {0};
     struct stat status;
     assert_int_equal(stat(path, &status), 0);
     memcpy(bytes, MAGIC, sizeof MAGIC);
@@ -135,7 +135,7 @@ static void expect_refusal(const char *words)
 static void a_journal_that_names_another_file_is_refused(void **state)
 {
     (void)state;
-    make_store(FEW);
+    make_store(SENT_POINTS);
     write_super_journal();
     expect_refusal("names another file that would be deleted (a super-journal)");
     // the control: SQLite by itself deletes it
@@ -149,7 +149,7 @@ static void a_journal_that_names_another_file_is_refused(void **state)
 static void a_journal_that_is_no_file_of_its_own_is_refused(void **state)
 {
     (void)state;
-    make_store(FEW);
+    make_store(SENT_POINTS);
     write_file(victim, "", 0);
     assert_int_equal(symlink(victim, journal), 0);
     expect_refusal("is a link; move it away");
@@ -164,13 +164,13 @@ static void a_journal_that_is_no_file_of_its_own_is_refused(void **state)
     // the control: what was begun and not used is no harm
     unlink(journal);
     write_file(journal, "", 0);
-    assert_int_equal(count_right_rows(), FEW);
+    assert_int_equal(count_right_rows(), SENT_POINTS);
 }
 
 static void what_is_called_like_a_journal_and_is_none_is_not_deleted(void **state)
 {
     (void)state;
-    make_store(FEW);
+    make_store(SENT_POINTS);
     write_file(journal, "my diary, begun in May\n", 23);
     expect_refusal("is not its journal, and would be deleted as one");
 }
@@ -178,13 +178,13 @@ static void what_is_called_like_a_journal_and_is_none_is_not_deleted(void **stat
 static void a_write_ahead_log_is_refused(void **state)
 {
     (void)state;
-    char log[NAME_SIZE];
+    char log[SENT_NAME_SIZE];
     snprintf(log, sizeof log, "%s-wal", path);
-    make_store(FEW);
+    make_store(SENT_POINTS);
     write_file(log, "x", 1);
     expect_refusal("is a write-ahead log, which no store has");
     unlink(log);
-    assert_int_equal(count_right_rows(), FEW);
+    assert_int_equal(count_right_rows(), SENT_POINTS);
     sqlite3 *base = NULL;
     sqlite3_open(path, &base);
     sqlite3_exec(base, "PRAGMA journal_mode = WAL", NULL, NULL, NULL);
@@ -196,7 +196,7 @@ static void a_write_ahead_log_is_refused(void **state)
 static void make_changed(const char *sql)
 {
     unlink(path);
-    make_store(FEW);
+    make_store(SENT_POINTS);
     sqlite3 *base = NULL;
     char *error = NULL;
     sqlite3_open(path, &base);
@@ -266,7 +266,7 @@ static void a_schema_that_is_not_word_for_word_a_store_s_is_refused(void **state
     }
     // the control
     make_changed("SELECT 1");
-    assert_int_equal(count_right_rows(), FEW);
+    assert_int_equal(count_right_rows(), SENT_POINTS);
 }
 
 static void looking_at_a_store_changes_no_file(void **state)
@@ -275,11 +275,11 @@ static void looking_at_a_store_changes_no_file(void **state)
     Err err = {0};
     StoreCount count;
     StoreSpread spread;
-    make_store(FEW);
+    make_store(SENT_POINTS);
     const uint64_t before = hash_folder();
     Store *store = store_view(path, &err);
     assert_true(store_count(store, &count, &err) && store_spread(store, 4, &spread, &err));
-    assert_int_equal(count.rows, FEW);
+    assert_int_equal(count.rows, SENT_POINTS);
     assert_true(hash_folder() == before);
     assert_true(store_close(store, &err));
     assert_true(hash_folder() == before);

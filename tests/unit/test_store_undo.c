@@ -12,33 +12,39 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-enum { FILE_MAX = 1 << 18, NAME_SIZE = PATH_SIZE + 32, VARIANTS = 60, HEADER = 28, PAGES = 16 };
+enum {
+    UNDO_FILE_MAX = 1 << 18,
+    UNDO_NAME_SIZE = PATH_SIZE + 32,
+    VARIANTS = 60,
+    HEADER = 28,
+    PAGES = 16
+};
 
 // A store or its journal, as the killed process left it.
 typedef struct Content {
     size_t size;
-    unsigned char bytes[FILE_MAX];
+    unsigned char bytes[UNDO_FILE_MAX];
 } Content;
 
-static const unsigned char MAGIC[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
+static const unsigned char JOURNAL_MAGIC[8] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
 
 static Content left;
 static Content left_journal;
 static Content taken_back;
-static char journal[NAME_SIZE];
+static char journal[UNDO_NAME_SIZE];
 static char copy[PATH_SIZE];
-static char copy_journal[NAME_SIZE];
+static char copy_journal[UNDO_NAME_SIZE];
 
-static void read_content(const char *name, Content *content)
+static void read_store(const char *name, Content *content)
 {
     FILE *stream = fopen(name, "rb");
     assert_non_null(stream);
-    content->size = fread(content->bytes, 1, FILE_MAX, stream);
+    content->size = fread(content->bytes, 1, UNDO_FILE_MAX, stream);
     fclose(stream);
-    assert_true(content->size < FILE_MAX);
+    assert_true(content->size < UNDO_FILE_MAX);
 }
 
-static void write_content(const char *name, const Content *content)
+static void write_store(const char *name, const Content *content)
 {
     FILE *stream = fopen(name, "wb");
     assert_non_null(stream);
@@ -116,16 +122,16 @@ static void check_same(const char *what, int variant)
 {
     sqlite3_int64 size;
     sqlite3_int64 seen_size;
-    read_content(path, &left);
-    write_content(copy, &left);
-    read_content(journal, &left_journal);
-    write_content(copy_journal, &left_journal);
+    read_store(path, &left);
+    write_store(copy, &left);
+    read_store(journal, &left_journal);
+    write_store(copy_journal, &left_journal);
     unsigned char *image = image_of_copy(&size);
     unsigned char *seen = image_of_view(&seen_size);
     // what does not begin as a journal is refused, and SQLite, which would delete it, does not see
     // it
-    const bool is_refused =
-        left_journal.size < sizeof MAGIC || memcmp(left_journal.bytes, MAGIC, sizeof MAGIC) != 0;
+    const bool is_refused = left_journal.size < sizeof JOURNAL_MAGIC ||
+                            memcmp(left_journal.bytes, JOURNAL_MAGIC, sizeof JOURNAL_MAGIC) != 0;
     const bool is_same = image == NULL || is_refused ? seen == NULL
                                                      : seen != NULL && size == seen_size &&
                                                            memcmp(image, seen, (size_t)size) == 0;
@@ -135,21 +141,21 @@ static void check_same(const char *what, int variant)
     }
     sqlite3_free(image);
     sqlite3_free(seen);
-    read_content(path, &taken_back);
+    read_store(path, &taken_back);
     assert_int_equal(taken_back.size, left.size);
     assert_memory_equal(taken_back.bytes, left.bytes, left.size);
     assert_int_equal(access(journal, F_OK), 0);
-    read_content(copy, &taken_back);
+    read_store(copy, &taken_back);
 }
 
 static void make_left(Content *whole)
 {
     struct stat status;
     make_store(RUNS);
-    read_content(path, whole);
+    read_store(path, whole);
     assert_int_equal(in_a_child(die_in_mid_change), -SIGKILL);
     // the control: there is something to be undone
-    read_content(path, &left);
+    read_store(path, &left);
     assert_int_equal(stat(journal, &status), 0);
     assert_true(left.size > whole->size || memcmp(left.bytes, whole->bytes, left.size) != 0);
 }
@@ -173,12 +179,12 @@ static void a_journal_that_was_cut_off_is_undone_as_far_as_it_goes(void **state)
     static Content whole;
     static Content whole_journal;
     make_left(&whole);
-    read_content(journal, &whole_journal);
+    read_store(journal, &whole_journal);
     for (int i = 0; i < VARIANTS; i++) {
         Content *cut = &left_journal;
         memcpy(cut, &whole_journal, sizeof *cut);
         cut->size = 1 + (size_t)(i * (double)(whole_journal.size - 1) / VARIANTS);
-        write_content(journal, cut);
+        write_store(journal, cut);
         check_same("cut off", i);
     }
 }
@@ -189,7 +195,7 @@ static void a_damaged_journal_is_undone_as_far_as_it_goes(void **state)
     static Content whole;
     static Content whole_journal;
     make_left(&whole);
-    read_content(journal, &whole_journal);
+    read_store(journal, &whole_journal);
     unsigned seed = 11;
     for (int i = 0; i < 2 * VARIANTS; i++) {
         Content *damaged = &left_journal;
@@ -201,7 +207,7 @@ static void a_damaged_journal_is_undone_as_far_as_it_goes(void **state)
             continue;
         }
         damaged->bytes[place] ^= (unsigned char)(1u << rand_r(&seed) % 8);
-        write_content(journal, damaged);
+        write_store(journal, damaged);
         check_same("damaged", (int)place);
     }
 }
@@ -211,9 +217,9 @@ static void a_journal_of_more_pages_than_there_can_be_is_damage(void **state)
     (void)state;
     static Content whole;
     make_left(&whole);
-    read_content(journal, &left_journal);
+    read_store(journal, &left_journal);
     left_journal.bytes[PAGES] = 0x7f;
-    write_content(journal, &left_journal);
+    write_store(journal, &left_journal);
     Err err = {0};
     assert_null(store_view(path, &err));
     assert_non_null(strstr(err.text, "is damaged"));

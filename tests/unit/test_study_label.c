@@ -51,7 +51,7 @@ static void assert_label(const Layout *layout, const Spec *spec, const Expected 
     assert_int_equal(label.is_log, expected->is_log);
 }
 
-static int set_up(void **state)
+static int set_up_labels(void **state)
 {
     char path[256];
     char folder[256];
@@ -70,7 +70,7 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
+static int tear_down_labels(void **state)
 {
     spec_close(*state);
     return 0;
@@ -150,8 +150,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(settings_have_the_words_units_and_scales_of_the_study_file,
-                                        set_up, tear_down),
-        cmocka_unit_test_setup_teardown(results_have_words, set_up, tear_down),
+                                        set_up_labels, tear_down_labels),
+        cmocka_unit_test_setup_teardown(results_have_words, set_up_labels, tear_down_labels),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

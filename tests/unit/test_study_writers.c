@@ -10,7 +10,7 @@
 enum { CONTENT_SIZE = 1 << 18 };
 
 static char out[PATH_SIZE];
-static char content[CONTENT_SIZE];
+static char written[CONTENT_SIZE];
 
 static int set_up_out(void **state)
 {
@@ -60,11 +60,11 @@ static void csv_brings_back_every_number(void **state)
     Store *store = view();
     assert_true(study_rows_write_csv(store, out, &err));
     store_close(store, &err);
-    read_whole(out, content, sizeof content);
+    read_whole(out, written, sizeof written);
     static const char HEAD[] =
         "run,drive_speed_rad_s,contact_damping,scheme,run_step_s,outcome,reason,coupler_omega_max";
-    assert_int_equal(strncmp(content, HEAD, sizeof HEAD - 1), 0);
-    char *rest = strchr(content, '\n') + 1;
+    assert_int_equal(strncmp(written, HEAD, sizeof HEAD - 1), 0);
+    char *rest = strchr(written, '\n') + 1;
     for (uint64_t run = 0; run < 60; run++) {
         const Record truth = study_record(&layout, run);
         char hash[32] = "";
@@ -135,8 +135,8 @@ static void an_infinity_is_an_empty_cell_and_null(void **state)
     assert_true(store_close(store, &err));
     store = view();
     assert_true(study_rows_write_csv(store, out, &err));
-    read_whole(out, content, sizeof content);
-    char *rest = strchr(content, '\n') + 1;
+    read_whole(out, written, sizeof written);
+    char *rest = strchr(written, '\n') + 1;
     for (size_t i = 0; i < 1 + layout.setting_count + 2; i++) {
         next_cell(&rest);
     }
@@ -145,8 +145,8 @@ static void an_infinity_is_an_empty_cell_and_null(void **state)
     unlink(out);
     assert_true(study_rows_write_jsonl(store, out, &err));
     store_close(store, &err);
-    read_whole(out, content, sizeof content);
-    json_t *row = json_loads(content, 0, NULL);
+    read_whole(out, written, sizeof written);
+    json_t *row = json_loads(written, 0, NULL);
     assert_true(json_is_null(json_object_get(row, layout.results[0].name)));
     json_decref(row);
 }
@@ -240,7 +240,7 @@ static size_t count_words(const char *text, const char *words)
 }
 
 // The picture; its text is freed by the caller.
-static Text draw(const char *x, const char *y, const char *by)
+static Text draw_picture(const char *x, const char *y, const char *by)
 {
     Err err = {0};
     Text svg;
@@ -258,14 +258,14 @@ static void a_picture_has_lines_on_a_grid_and_dots_elsewhere(void **state)
     (void)state;
     make_store(RUNS);
     // eight steps, shared by many runs: a median each and two lines, with bands
-    Text svg = draw("run_step_s", "error_max", "scheme");
+    Text svg = draw_picture("run_step_s", "error_max", "scheme");
     assert_int_equal(count_words(svg.data, "<circle"), 2 * 8 + 2);
     assert_int_equal(count_words(svg.data, "fill-opacity=\"0.16\""), 2);
     assert_has(svg, "196 runs: median, and the band that nine of ten lie in");
     assert_has(svg, "4 without a result left out");
     text_finish(&svg);
     // a result has a value of its own in each run
-    svg = draw("coupler_omega_max_rad_s", "error_max", NULL);
+    svg = draw_picture("coupler_omega_max_rad_s", "error_max", NULL);
     assert_true(count_words(svg.data, "<circle") > 180);
     assert_int_equal(count_words(svg.data, "fill-opacity=\"0.16\""), 0);
     assert_has(svg, "a dot each");
@@ -276,13 +276,13 @@ static void a_picture_of_one_column_is_its_distribution(void **state)
 {
     (void)state;
     make_store(RUNS);
-    Text svg = draw("error_max", NULL, NULL);
+    Text svg = draw_picture("error_max", NULL, NULL);
     assert_has(svg, "share of the runs, %");
     assert_has(svg, "median ");
     assert_int_equal(count_words(svg.data, "fill-opacity=\"0.16\""), 1);
     text_finish(&svg);
     // one value alone is one bar
-    svg = draw("drive_speed_rad_s", NULL, "contact_damping");
+    svg = draw_picture("drive_speed_rad_s", NULL, "contact_damping");
     assert_has(svg, "lankarani-nikravesh");
     text_finish(&svg);
 }

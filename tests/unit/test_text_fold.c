@@ -15,7 +15,7 @@ static void check(const char *line, size_t width, const char *expected)
     text_finish(&text);
 }
 
-static void a_number_stays_with_its_unit(void **state)
+static void a_folded_number_stays_with_its_unit(void **state)
 {
     (void)state;
     check("  the longest step is 100 us here\n", 26, "  the longest step is\n  100 us here\n");
@@ -64,7 +64,7 @@ static void what_stands_in_front_is_not_folded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_number_stays_with_its_unit),
+        cmocka_unit_test(a_folded_number_stays_with_its_unit),
         cmocka_unit_test(a_number_at_the_beginning_of_a_line_is_no_place_to_break),
         cmocka_unit_test(words_stand_under_the_words_of_their_entry),
         cmocka_unit_test(what_has_no_other_blank_is_broken_before_a_unit),

@@ -36,7 +36,7 @@ static Fixture *make(void)
     return made;
 }
 
-static void finish(Fixture *made)
+static void finish_export(Fixture *made)
 {
     tune_destroy(made->tune);
     free(made);
@@ -91,7 +91,7 @@ static void two_surfaces_of_gazebo_make_the_contact(void **state)
     const ErpCfm row = map_get(ODE_MAP_TEXTBOOK)->convert(&contact);
     assert_close(row.erp, gazebo.soft_erp, 1e-15);
     assert_close(row.cfm, gazebo.soft_cfm, 1e-15);
-    finish(made);
+    finish_export(made);
 }
 
 // The force of one row of MuJoCo: f = (a_ref - a0) / (W + R), of a contact that is r < 0 apart.
@@ -120,7 +120,7 @@ static void the_row_of_mujoco_is_the_spring_whatever_the_mass(void **state)
     // control: at MuJoCo's default impedance the mass that is met decides
     assert_true(fabs(mujoco_force(&mujoco, 0.9, 10.0, -depth, -0.05, 100.0) - expected) >
                 0.1 * expected);
-    finish(made);
+    finish_export(made);
 }
 
 static void a_step_that_mujoco_takes_as_asked_is_not_called_finer(void **state)
@@ -138,7 +138,7 @@ static void a_step_that_mujoco_takes_as_asked_is_not_called_finer(void **state)
     assert_true(tune_mujoco_find(&made->report, &mujoco));
     assert_true(mujoco.step_s < 1e-3);
     assert_true(tune_mujoco_is_finer(&made->report, &mujoco));
-    finish(made);
+    finish_export(made);
 }
 
 static void nothing_is_written_without_a_contact(void **state)
@@ -152,7 +152,7 @@ static void nothing_is_written_without_a_contact(void **state)
     tune_mujoco_write(&made->report, &text);
     assert_int_equal(text.length, 0);
     text_finish(&text);
-    finish(made);
+    finish_export(made);
 }
 
 int main(void)

@@ -409,7 +409,7 @@ static bool read_share(const char *text, void *target, Err *err)
                    "--rel is %s; allowed: a share such as 1%% or 0.01, above 0 to 1", text);
 }
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow CHECK_OPTIONS[] = {
     {"baselines", "DIR", "Where the baselines are (default: results/baseline)", 1, OPTION_TEXT,
      AT(folder)},
     {"shipped", NULL, "Check the cases that came with the program against its own baselines", 1,
@@ -510,9 +510,10 @@ const Arguments CHECK_ARGUMENTS = {
                  .count_offset = offsetof(CheckOptions, path_count),
                  .high = CHECK_PATH_MAX,
                  .what = "cases"},
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(CHECK_OPTIONS),
     .check = check_together,
 };
+#undef AT
 
 void check_options_init(CheckOptions *options)
 {

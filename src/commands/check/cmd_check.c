@@ -11,14 +11,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const ResultFile FILES[] = {
+static const ResultFile CHECK_FILES[] = {
     {"--junit", offsetof(CheckOptions, junit), .kind = FILE_JUNIT, .text = check_junit_write},
     {"--markdown", offsetof(CheckOptions, markdown), .kind = FILE_COMMENT,
      .text = check_markdown_write},
 };
 
-static const Results RESULTS = {
-    .json = check_json_build, .text = check_text_write, RESULT_FILES(FILES)};
+static const Results CHECK_RESULTS = {
+    .json = check_json_build, .text = check_text_write, RESULT_FILES(CHECK_FILES)};
 
 // The settings that are others, or, where all are as they were, the number that moved most.
 static void append_moved(const CheckCase *item, Text *text)
@@ -107,9 +107,9 @@ static bool check_items(const CheckOptions *options, CheckItem *items, size_t co
         run.report.is_all = options->is_all;
         // a comment that is printed takes the place of the tables
         if (options->markdown == NULL || !file_is_stream(options->markdown)) {
-            results_print(&RESULTS, &options->common, &run.report);
+            results_print(&CHECK_RESULTS, &options->common, &run.report);
         }
-        is_done = results_write(&RESULTS, &options->common, "", &run.report, err);
+        is_done = results_write(&CHECK_RESULTS, &options->common, "", &run.report, err);
         end_if_stopped();
         is_done = is_done && cmd_check_conclude(&run.report, err);
     }
@@ -124,7 +124,7 @@ static bool check_cases(void *target, Err *err)
     size_t count = 0;
     const bool is_done = (!options->is_blessing || file_make_folder(options->folder, err)) &&
                          check_list_make(options, &items, &count, err) &&
-                         results_claim(&RESULTS, &options->common, "", err) &&
+                         results_claim(&CHECK_RESULTS, &options->common, "", err) &&
                          check_items(options, items, count, err);
     check_list_destroy(items, count);
     return is_done;

@@ -36,7 +36,7 @@ static const double DEFAULT_TIME_LIMIT = 600.0; // s: some hundred times the lon
 
 #define AT(field) .offset = offsetof(CompareOptions, field)
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow COMPARE_OPTIONS[] = {
     {"steps", "LIST",
      "The steps, such as '10 us, 3 us, 1 us', or all: up to eleven, of some 2000 to 1,000,000 "
      "steps in the run (default: those of them that take a minute together, but for a scheme's "
@@ -67,6 +67,7 @@ static const OptionRow OPTIONS[] = {
     COMMON_OUT(3, "Write <case>-compare.json, .txt, .csv and .svg there"),
     COMMON_QUIET(3),
 };
+#undef AT
 
 static bool cmd_compare_check(void *options, Err *err)
 {
@@ -85,7 +86,7 @@ const Arguments COMPARE_ARGUMENTS = {
            "are programs jointplay-NAME in libexec/jointplay, or in the folder that "
            "JOINTPLAY_DRIVERS names.",
     .argument = COMMON_PATH("compare takes one case"),
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(COMPARE_OPTIONS),
     .check = cmd_compare_check,
 };
 
@@ -332,20 +333,20 @@ static void end_stopped(const CompareOptions *options, const Ladder *ladder, Com
     interrupt_obey();
 }
 
-static const ResultFile FILES[] = {
+static const ResultFile COMPARE_FILES[] = {
     {.ending = ".txt", .kind = FILE_REPORT},
     {"--csv", offsetof(CompareOptions, csv), ".csv", FILE_TABLE, .write = compare_rows_write_csv},
     {"--plot", offsetof(CompareOptions, plot), ".svg", FILE_PICTURE, .text = compare_plot_write},
     {.ending = ".json", .kind = FILE_RESULT},
 };
 
-static const Results RESULTS = {
+static const Results COMPARE_RESULTS = {
     .suffix = "-compare",
     .is_followed = true,
     .json = compare_json_build,
     .text = compare_text_write,
     .screen = compare_screen_write,
-    RESULT_FILES(FILES),
+    RESULT_FILES(COMPARE_FILES),
 };
 
 // A point that fails is a result; a comparison in which every one of ODE's fails is none.
@@ -390,8 +391,9 @@ static bool compare_ladder(const CompareOptions *options, const Scenario *scenar
     }
     ladder_conclude(ladder);
     const CompareReport report = {scenario, ladder, listening.store.machine, left};
-    results_print(&RESULTS, &options->common, &report);
-    return results_write(&RESULTS, &options->common, scenario_path(scenario), &report, err) &&
+    results_print(&COMPARE_RESULTS, &options->common, &report);
+    return results_write(&COMPARE_RESULTS, &options->common, scenario_path(scenario), &report,
+                         err) &&
            check_points(ladder, err);
 }
 
@@ -424,7 +426,7 @@ static bool compare_case(void *target, Err *err)
     if (is_done) {
         common_options_settle(&options->common, scenario);
         is_done = compare_options_ladder(options, engines, scenario, &ladder, &left, err) &&
-                  results_claim(&RESULTS, &options->common, scenario_path(scenario), err);
+                  results_claim(&COMPARE_RESULTS, &options->common, scenario_path(scenario), err);
     }
     if (is_done) {
         cmd_compare_warn(options, scenario);

@@ -121,6 +121,7 @@ static const Field POINT_FIELDS[] = {
     {"message", FIELD_TEXT, FIELD_CSV, AT(reason)},
     {0},
 };
+#undef AT
 
 static const Field ORDER_FIELDS[] = {
     {NULL, FIELD_LABEL, FIELD_TABLE, .title = "scheme"},

@@ -19,7 +19,7 @@ typedef struct HelpOptions {
 
 static const char *const SHELLS[] = {"bash", "zsh", NULL};
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow HELP_OPTIONS[] = {
     {"markdown", NULL, "Of the format of a file: as Markdown", 0, OPTION_FLAG,
      offsetof(HelpOptions, is_markdown), .letter = 'm'},
     {"man", NULL, "Print the manual page of the program or a command, for 'man -l -'", 0,
@@ -165,7 +165,7 @@ static const Arguments HELP_ARGUMENTS = {
     .usage = "[case|COMMAND]\ncase GROUP\nstudy COMMAND",
     .doc = "Shows how a command is used, or how a case or study file is written.",
     .argument = {.type = OPTION_READ, .read = cmd_help_read_word},
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(HELP_OPTIONS),
 };
 
 static bool run_help(int argc, char **argv, Err *err)

@@ -101,7 +101,7 @@ static bool read_kd(const char *text, void *target, Err *err)
 
 #define AT(field) .offset = offsetof(MapOptions, field)
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow MAP_OPTIONS[] = {
     {"steps", "LIST",
      "The steps, such as '10 us, 3 us, 1 us' (default: 30 to 0.1 us and the case's own)", 1,
      OPTION_TEXT, AT(steps)},
@@ -148,6 +148,7 @@ static const OptionRow OPTIONS[] = {
     COMMON_OUT(4, "Write <case>-map.txt, .csv, .svg and .json there"),
     COMMON_QUIET(4),
 };
+#undef AT
 
 // What reading a row needs, and what it has no use for.
 static bool check_inverse(const MapOptions *options, Err *err)
@@ -255,7 +256,7 @@ static const Arguments MAP_ARGUMENTS = {
            "predicted and measured in ODE; or the spring, damper and restitution that an ERP and a "
            "CFM stand for.",
     .argument = COMMON_PATH("map takes one case"),
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(MAP_OPTIONS),
     .check = cmd_map_check,
 };
 
@@ -572,20 +573,20 @@ static void show_run(double share, double wall_s, void *context)
     cmd_map_show(watching, words);
 }
 
-static const ResultFile FILES[] = {
+static const ResultFile MAP_FILES[] = {
     {.ending = ".txt", .kind = FILE_REPORT},
     {"--csv", offsetof(MapOptions, csv), ".csv", FILE_TABLE, .write = mapping_rows_write_csv},
     {"--plot", offsetof(MapOptions, plot), ".svg", FILE_PICTURE, .text = mapping_plot_write},
     {.ending = ".json", .kind = FILE_RESULT},
 };
 
-static const Results RESULTS = {
+static const Results MAP_RESULTS = {
     .suffix = "-map",
     .is_followed = true,
     .json = mapping_json_build,
     .text = mapping_text_write,
     .screen = mapping_screen_write,
-    RESULT_FILES(FILES),
+    RESULT_FILES(MAP_FILES),
 };
 
 static const Results INVERSE_RESULTS = {
@@ -623,7 +624,7 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
 {
     const char *path =
         scenario_path(scenario)[0] != '\0' ? scenario_path(scenario) : "lone-contact";
-    if (!results_claim(&RESULTS, &options->common, path, err)) {
+    if (!results_claim(&MAP_RESULTS, &options->common, path, err)) {
         return false;
     }
     Watching watching = {status_line_start(options->common.is_quiet), "the reference's run"};
@@ -635,8 +636,8 @@ static bool map_scenario(const MapOptions *options, const Scenario *scenario,
     status_line_end(&watching.line);
     if (is_done) {
         const MappingReport report = {scenario, &mapping, penalty};
-        results_print(&RESULTS, &options->common, &report);
-        is_done = results_write(&RESULTS, &options->common, path, &report, err);
+        results_print(&MAP_RESULTS, &options->common, &report);
+        is_done = results_write(&MAP_RESULTS, &options->common, path, &report, err);
         say_hint(options, scenario);
     }
     penalty_map_destroy(penalty);

@@ -209,6 +209,7 @@ static const Field READING_FIELDS[] = {
     {0},
 };
 // clang-format on
+#undef AT
 
 static void write_mass(const Inverse *inverse, const InverseMass *mass, const Style *style,
                        Text *text)

@@ -7,9 +7,9 @@
 #include <assert.h>
 #include <stdlib.h>
 
-static const OptionRow OPTIONS[] = {COMMON_JSON(0), COMMON_WIDE(0), COMMON_QUIET(0)};
+static const OptionRow PAPER_OPTIONS[] = {COMMON_JSON(0), COMMON_WIDE(0), COMMON_QUIET(0)};
 
-static const Results RESULTS = {.json = paper_json_make, .text = paper_text_write};
+static const Results PAPER_RESULTS = {.json = paper_json_make, .text = paper_text_write};
 
 static bool compute(void *target, Err *err)
 {
@@ -22,7 +22,7 @@ static bool compute(void *target, Err *err)
     const bool is_computed = paper_compute(result, watch, err);
     progress_end(&progress);
     if (is_computed) {
-        results_print(&RESULTS, options, result);
+        results_print(&PAPER_RESULTS, options, result);
     }
     const bool is_reproduced = is_computed && paper_check(result, err);
     free(result);
@@ -33,7 +33,7 @@ static const Arguments PAPER_ARGUMENTS = {
     .program = "jointplay paper",
     .doc = "Recomputes the tables of the paper that this program began with: printed, "
            "recomputed, difference, and what physics gives.",
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(PAPER_OPTIONS),
 };
 
 static bool run_paper(int argc, char **argv, Err *err)

@@ -67,6 +67,7 @@ const Field PAPER_PIN_FIELDS[] = {
     {0},
 };
 // clang-format on
+#undef AT
 
 static json_t *physics_object(const Physical *physical)
 {

@@ -21,7 +21,7 @@ typedef struct ReportCommand {
     const char *paths[RESULT_MOST]; // one case, one store, or results
 } ReportCommand;
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow REPORT_OPTIONS[] = {
     RUN_CHOICES(1),
     {"out", "FILE.html", "Write this file; without it <name>.html in the current folder", 2,
      OPTION_TEXT, .offset = offsetof(ReportCommand, out), .letter = 'o'},
@@ -209,7 +209,7 @@ static const Arguments REPORT_ARGUMENTS = {
                  .count_offset = offsetof(ReportCommand, path_count),
                  .high = RESULT_MOST,
                  .what = "files"},
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(REPORT_OPTIONS),
     .check = check_command,
 };
 

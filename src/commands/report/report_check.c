@@ -16,7 +16,7 @@ static bool is_within(const json_t *item)
     return strcmp(html_text_of(item, "status"), "within") == 0;
 }
 
-static void append_answer(const json_t *result, Text *html)
+static void append_check_answer(const json_t *result, Text *html)
 {
     static const char *const HEADS[] = {"case", "status", "within", "out", "left out", "~why"};
     const json_t *cases = json_object_get(result, "cases");
@@ -204,7 +204,7 @@ static void append_outcomes(const json_t *item, Text *html)
 
 static void report_check_write(const json_t *result, Text *html)
 {
-    append_answer(result, html);
+    append_check_answer(result, html);
     size_t i;
     json_t *item;
     json_array_foreach(json_object_get(result, "cases"), i, item)

@@ -168,7 +168,7 @@ static void append_engines(const json_t *result, Text *html)
     html_table_end(html);
 }
 
-static void append_answer(const json_t *result, Text *html)
+static void append_compare_answer(const json_t *result, Text *html)
 {
     text_append(html, "<section>\n<h2>The answer</h2>\n");
     (json_array_size(engines_of(result)) > 0 ? append_ways : append_settings)(result, html);
@@ -265,7 +265,7 @@ static PlotStyle style_of(const json_t *result, const json_t *scheme)
         (OdeMap)number_of(html_text_of(scheme, "map"), OPTIONS_ODE_MAPS));
 }
 
-static void append_picture(const json_t *result, Text *html)
+static void append_compare_picture(const json_t *result, Text *html)
 {
     Drawing drawing = {.title = json_array_size(engines_of(result)) > 0
                                     ? "Error against wall time"
@@ -315,7 +315,7 @@ static bool has_any_order(const json_t *schemes)
     return has;
 }
 
-static void append_orders(const json_t *schemes, Text *html)
+static void append_scheme_orders(const json_t *schemes, Text *html)
 {
     static const char *const HEADS[] = {"scheme", "order", "from step", "to step", "points"};
     if (!has_any_order(schemes)) {
@@ -375,10 +375,10 @@ static void append_points(const json_t *schemes, Text *html)
 static void report_compare_write(const json_t *result, Text *html)
 {
     const json_t *schemes = json_object_get(result, "schemes");
-    append_answer(result, html);
-    append_picture(result, html);
+    append_compare_answer(result, html);
+    append_compare_picture(result, html);
     text_append(html, "<section>\n<h2>Schemes</h2>\n");
-    append_orders(schemes, html);
+    append_scheme_orders(schemes, html);
     append_points(schemes, html);
     text_append(html, "</section>\n");
 }

@@ -48,7 +48,7 @@ static void answer_row(const json_t *contact, const json_t *names, Text *html)
     text_append(html, "</tr>\n");
 }
 
-static void append_answer(const json_t *result, Text *html)
+static void append_map_answer(const json_t *result, Text *html)
 {
     const json_t *contacts = json_object_get(result, "contacts");
     const json_t *names = json_object_get(json_array_get(contacts, 0), "longest_valid_step_s");
@@ -87,8 +87,8 @@ static double mean_of(const json_t *row, const char *key)
 }
 
 // One number of the impact that ODE delivers, over the step, a line for each map.
-static void append_picture(const json_t *contact, const char *key, const char *title,
-                           const char *y_title, bool is_log, Text *html)
+static void append_map_picture(const json_t *contact, const char *key, const char *title,
+                               const char *y_title, bool is_log, Text *html)
 {
     char words[256];
     snprintf(words, sizeof words, "%s: %.150s", title, html_text_of(contact, "joint"));
@@ -145,17 +145,17 @@ static void append_rows(const json_t *contact, Text *html)
 
 static void report_map_write(const json_t *result, Text *html)
 {
-    append_answer(result, html);
+    append_map_answer(result, html);
     size_t i;
     json_t *contact;
     json_array_foreach(json_object_get(result, "contacts"), i, contact)
     {
         text_append(html, "<section>\n");
         html_words("h2", html_text_of(contact, "joint"), html);
-        append_picture(contact, "restitution", "Restitution that ODE delivers", "restitution",
-                       false, html);
-        append_picture(contact, "force_max_N", "Peak force that ODE delivers", "force, N", true,
-                       html);
+        append_map_picture(contact, "restitution", "Restitution that ODE delivers", "restitution",
+                           false, html);
+        append_map_picture(contact, "force_max_N", "Peak force that ODE delivers", "force, N", true,
+                           html);
         append_rows(contact, html);
         text_append(html, "</section>\n");
     }

@@ -245,7 +245,7 @@ static bool has_spectrum(const Trajectory *run)
 }
 
 // The amplitudes of each body at the first whole orders.
-static void append_orders(const RunReport *report, Text *html)
+static void append_amplitudes(const RunReport *report, Text *html)
 {
     const Linkage *linkage = &report->scenario->linkage;
     text_append(html, "<div class=\"wide\"><table class=\"numbers\">\n<caption>Amplitudes of the "
@@ -296,7 +296,7 @@ static void append_repeating(const RunReport *report, Text *html)
     text_append(html, "<section id=\"repeating\">\n<h2>How the motion repeats</h2>\n");
     html_list(words.data, html);
     append_motions(report->scenario, html);
-    append_orders(report, html);
+    append_amplitudes(report, html);
     text_append(html, "</section>\n");
     text_finish(&words);
 }

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <zlib.h>
 
-static const double ROUNDING = 1e-13; // 1, of the size of a signal
+static const double SIGNAL_ROUNDING = 1e-13; // 1, of the size of a signal
 
 void pack_finish(Pack *pack)
 {
@@ -49,7 +49,8 @@ PackedSignal pack_add(Pack *pack, const double *values, size_t count, bool is_tu
     }
     signal.low = low <= high ? low : 0.0;
     // what varies by rounding alone is a constant, and takes next to no room
-    const bool varies = high - low > ROUNDING * (fabs(low) + fabs(signal.slope) * (double)count);
+    const bool varies =
+        high - low > SIGNAL_ROUNDING * (fabs(low) + fabs(signal.slope) * (double)count);
     signal.step = varies ? (high - low) / PACK_LEVELS : 0.0;
     unsigned char *bytes = pack_grow(pack, 2 * count);
     uint16_t before = 0;

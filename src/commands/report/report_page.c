@@ -98,7 +98,7 @@ static void append_overview(const RunReport *report, Text *html)
     run_overview_free(&overview);
 }
 
-static void append_answer(const RunReport *report, Text *html)
+static void append_run_answer(const RunReport *report, Text *html)
 {
     text_append(html, "<section id=\"answer\">\n<h2>The answer</h2>\n");
     Text louder;
@@ -117,7 +117,7 @@ static void append_answer(const RunReport *report, Text *html)
 
 // How it was made.
 
-static void append_value(const json_t *value, Text *words)
+static void append_run_value(const json_t *value, Text *words)
 {
     if (json_is_string(value)) {
         text_append(words, "%s", json_string_value(value));
@@ -128,7 +128,7 @@ static void append_value(const json_t *value, Text *words)
     }
 }
 
-static void append_settings(const json_t *all, Text *html)
+static void append_run_settings(const json_t *all, Text *html)
 {
     const json_t *units = json_object_get(all, "setting_units");
     text_append(html, "<details><summary>All settings, in SI units</summary>\n"
@@ -140,7 +140,7 @@ static void append_settings(const json_t *all, Text *html)
         const char *unit = json_string_value(json_object_get(units, key));
         Text words;
         text_init(&words);
-        append_value(value, &words);
+        append_run_value(value, &words);
         text_append(&words, "%s%s", unit != NULL ? " " : "", unit != NULL ? unit : "");
         html_pair(key, words.data, html);
         text_finish(&words);
@@ -176,7 +176,7 @@ static void append_making(const ReportPage *page, Text *html)
         html_pair(strcmp(key, "version") == 0 ? "jointplay" : key, json_string_value(value), html);
     }
     text_append(html, "</table>\n");
-    append_settings(all, html);
+    append_run_settings(all, html);
     text_append(html, "</section>\n");
     json_decref(all);
 }
@@ -196,7 +196,7 @@ static void append_tables(const RunReport *report, Text *html)
 
 // The picture, for readers without script.
 
-static void append_picture(const RunReport *report, Text *html)
+static void append_run_picture(const RunReport *report, Text *html)
 {
     Text svg;
     text_init(&svg);
@@ -218,10 +218,10 @@ void report_page_write(const ReportPage *page, Text *html)
     text_init(&data);
     Text picture;
     text_init(&picture);
-    append_picture(report, &picture);
+    append_run_picture(report, &picture);
     report_data_write(report, page->command, picture.length, &data);
     shell_begin(&shell, html);
-    append_answer(report, html);
+    append_run_answer(report, html);
     text_append(html, "<div id=\"live\" hidden></div>\n%s", picture.data);
     report_numbers_write(report, html);
     append_making(page, html);

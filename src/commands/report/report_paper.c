@@ -306,7 +306,7 @@ static void append_extremes(const json_t *result, Text *html)
     text_append(html, "</section>\n");
 }
 
-static void append_answer(const json_t *result, Text *html)
+static void append_paper_answer(const json_t *result, Text *html)
 {
     const json_t *physics = json_object_get(result, "physics");
     Text words;
@@ -346,7 +346,7 @@ static void append_typos(const json_t *result, Text *html)
 
 static void report_paper_write(const json_t *result, Text *html)
 {
-    append_answer(result, html);
+    append_paper_answer(result, html);
     for (size_t i = 0; i < FIGURE_COUNT; i++) {
         append_figure(&FIGURES[i], json_array_get(json_object_get(result, "tables"), i),
                       json_object_get(result, "physics"), html);

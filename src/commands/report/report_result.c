@@ -106,7 +106,7 @@ static json_t *read_result(const char *path, const ResultKind **kind, Err *err)
 
 // How it was made.
 
-static void append_value(const json_t *value, Text *words)
+static void append_result_value(const json_t *value, Text *words)
 {
     if (json_is_string(value)) {
         text_append(words, "%s", json_string_value(value));
@@ -115,7 +115,7 @@ static void append_value(const json_t *value, Text *words)
     }
 }
 
-static void append_settings(const json_t *result, Text *html)
+static void append_result_settings(const json_t *result, Text *html)
 {
     const json_t *units = json_object_get(result, "setting_units");
     const char *key;
@@ -127,7 +127,7 @@ static void append_settings(const json_t *result, Text *html)
         const char *unit = html_text_of(units, key);
         Text words;
         text_init(&words);
-        append_value(value, &words);
+        append_result_value(value, &words);
         text_append(&words, "%s%s", unit[0] != '\0' ? " " : "", unit);
         html_pair(key, words.data, html);
         text_finish(&words);
@@ -160,13 +160,13 @@ void result_made_write(const json_t *result, const char *command, Text *html)
     }
     text_append(html, "</table>\n");
     if (json_object_size(json_object_get(result, "settings")) > 0) {
-        append_settings(result, html);
+        append_result_settings(result, html);
     }
     text_append(html, "<div id=\"saving\" class=\"controls screen\" hidden></div>\n</section>\n");
 }
 
 // The results, for the script to save.
-static void append_data(const ResultPage *page, json_t *const *results, Text *data)
+static void append_result_data(const ResultPage *page, json_t *const *results, Text *data)
 {
     json_t *all = json_array();
     for (size_t i = 0; i < page->count; i++) {
@@ -212,8 +212,8 @@ static void append_results(const ResultPage *page, json_t *const *results,
     }
 }
 
-static void append_page(const ResultPage *page, json_t *const *results,
-                        const ResultKind *const *kinds, Text *html)
+static void append_result_page(const ResultPage *page, json_t *const *results,
+                               const ResultKind *const *kinds, Text *html)
 {
     Text title;
     text_init(&title);
@@ -227,7 +227,7 @@ static void append_page(const ResultPage *page, json_t *const *results,
     Shell shell = shell_create(SHELL_RESULT, title.data, path[0] != '\0' ? path : page->paths[0]);
     Text data;
     text_init(&data);
-    append_data(page, results, &data);
+    append_result_data(page, results, &data);
     shell_begin(&shell, html);
     append_results(page, results, kinds, html);
     result_made_write(results[0], page->command, html);
@@ -247,7 +247,7 @@ bool result_page_write(const ResultPage *page, Text *html, Err *err)
         is_read = results[i] != NULL;
     }
     if (is_read) {
-        append_page(page, results, kinds, html);
+        append_result_page(page, results, kinds, html);
     }
     for (size_t i = 0; i < page->count; i++) {
         json_decref(results[i]);

@@ -621,7 +621,7 @@ static bool append_contents(Store *store, Text *html, Err *err)
 }
 
 // What the page carries: what the answer counts.
-static bool append_data(Store *store, const char *path, Text *data, Err *err)
+static bool append_store_data(Store *store, const char *path, Text *data, Err *err)
 {
     StoreCount count;
     if (!store_count(store, &count, err)) {
@@ -652,7 +652,8 @@ static bool append_data(Store *store, const char *path, Text *data, Err *err)
     return true;
 }
 
-static bool append_page(Store *store, const char *path, const char *command, Text *html, Err *err)
+static bool append_store_page(Store *store, const char *path, const char *command, Text *html,
+                              Err *err)
 {
     char title[256];
     const char *slash = strrchr(path, '/');
@@ -662,7 +663,7 @@ static bool append_page(Store *store, const char *path, const char *command, Tex
     text_init(&data);
     shell_begin(&shell, html);
     const bool is_written =
-        append_contents(store, html, err) && append_data(store, path, &data, err);
+        append_contents(store, html, err) && append_store_data(store, path, &data, err);
     result_made_write(NULL, command, html);
     shell_end(&shell, data.data, html);
     text_finish(&data);
@@ -676,7 +677,7 @@ bool study_page_write(const char *path, const char *command, Text *html, Err *er
     if (store == NULL) {
         return false;
     }
-    const bool is_written = append_page(store, path, command, html, err);
+    const bool is_written = append_store_page(store, path, command, html, err);
     Err closing = {ERR_NONE, ""};
     return store_close(store, is_written ? err : &closing) && is_written;
 }

@@ -93,7 +93,7 @@ static void append_schemes(const json_t *result, Text *html)
     html_table_end(html);
 }
 
-static void append_picture(const json_t *result, Text *html)
+static void append_tune_picture(const json_t *result, Text *html)
 {
     Drawing drawing = {.title = "Every setting that was tried",
                        .x_title = "processor time, ms",
@@ -141,7 +141,7 @@ static void report_tune_write(const json_t *result, Text *html)
     append_keys(json_object_get(result, "cheapest"), html);
     text_append(html, "</section>\n<section>\n<h2>What was tried</h2>\n");
     append_schemes(result, html);
-    append_picture(result, html);
+    append_tune_picture(result, html);
     text_append(html, "</section>\n<section>\n<h2>For other programs</h2>\n");
     append_code("Lines for a loop of one's own with ODE",
                 html_text_of(json_object_get(result, "own_loop"), "lines"), html);

@@ -29,7 +29,7 @@ typedef struct RunCommand {
 
 static const char *const FORCE_AXES[] = {"linear", "log", NULL};
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow RUN_OPTIONS[] = {
     RUN_CHOICES(1),
     COMMON_JSON(2),
     COMMON_FULL(2),
@@ -84,19 +84,19 @@ static bool load_cases(const RunCommand *command, CaseRun *runs, Err *err)
     return true;
 }
 
-static const ResultFile FILES[] = {
+static const ResultFile RUN_FILES[] = {
     {"--plot", offsetof(RunCommand, plot), ".svg", FILE_PICTURE, .text = plot_run_write},
     {.ending = ".txt", .kind = FILE_REPORT},
     {.ending = ".json", .kind = FILE_RESULT},
 };
 
-static const Results RESULTS = {
+static const Results RUN_RESULTS = {
     .suffix = "",
     .is_followed = true,
     .json = run_json_build,
     .text = run_text_write,
     .screen = run_overview_screen,
-    RESULT_FILES(FILES),
+    RESULT_FILES(RUN_FILES),
 };
 
 // What is printed of a case so far.
@@ -120,14 +120,14 @@ static bool report_case(const RunCommand *command, const CaseRun *run, const Tex
     if (objects != NULL) {
         json_array_append_new(objects, run_json_build(&run->report));
     } else {
-        results_print_rest(&RESULTS, common, &run->report, begun);
+        results_print_rest(&RUN_RESULTS, common, &run->report, begun);
     }
     return (command->series == NULL ||
             run_files_write(run, RUN_SERIES, command->series, common->is_quiet, err)) &&
            (command->contacts == NULL ||
             run_files_write(run, RUN_CONTACTS, command->contacts, common->is_quiet, err)) &&
            (common->folder == NULL || run_files_folder(run, common, err)) &&
-           results_write(&RESULTS, common, scenario_path(&run->scenario), &run->report, err);
+           results_write(&RUN_RESULTS, common, scenario_path(&run->scenario), &run->report, err);
 }
 
 // One case is one object, several are {"cases": [...]}.
@@ -165,7 +165,7 @@ static bool claim_files(const RunCommand *command, const CaseRun *runs, Err *err
         (command->contacts == NULL ||
          run_files_claim(&runs[0], RUN_CONTACTS, command->contacts, err));
     for (size_t i = 0; i < command->case_count && is_claimed; i++) {
-        is_claimed = results_claim(&RESULTS, common, scenario_path(&runs[i].scenario), err) &&
+        is_claimed = results_claim(&RUN_RESULTS, common, scenario_path(&runs[i].scenario), err) &&
                      (common->folder == NULL || run_files_claim_folder(&runs[i], common, err));
     }
     return is_claimed;
@@ -184,7 +184,7 @@ static bool run_all(const RunCommand *command, CaseRun *runs, Err *err)
     Progress progress;
     progress_begin(&progress, command->choices.common.is_quiet);
     for (size_t i = 0; is_reported && i < command->case_count; i++) {
-        runs[i].is_whole = results_tell_all(&RESULTS, &command->choices.common);
+        runs[i].is_whole = results_tell_all(&RUN_RESULTS, &command->choices.common);
         Printing printing = {.options = &command->choices.common, .progress = &progress};
         text_init(&printing.begun);
         runs[i].answered = print_answer;
@@ -252,9 +252,10 @@ static const Arguments RUN_ARGUMENTS = {
                  .count_offset = offsetof(RunCommand, case_count),
                  .high = CASE_MAX,
                  .what = "cases"},
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(RUN_OPTIONS),
     .check = check_command,
 };
+#undef AT
 
 static bool run_run(int argc, char **argv, Err *err)
 {

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const RunWatch NOBODY = {.progress = NULL};
+static const RunWatch FOLLOW_UNWATCHED = {.progress = NULL};
 
 // How far a process has come along a chain.
 typedef struct Chain {
@@ -37,7 +37,7 @@ static double value_at(const Variable *variable, bool backward, uint64_t place)
 }
 
 // Keeps a scenario as the last of the chain; NULL: there is none at its place.
-static void keep(Chain *chain, uint64_t place, const Scenario *scenario)
+static void keep_last(Chain *chain, uint64_t place, const Scenario *scenario)
 {
     if (chain->is_settled) {
         scenario_free(&chain->last);
@@ -52,10 +52,10 @@ static void keep(Chain *chain, uint64_t place, const Scenario *scenario)
 // Settles a scenario behind the last of the chain.
 static void settle_next(const Chain *chain, double before, Scenario *scenario)
 {
-    if (chain->is_settled && settle_follow(scenario, &chain->last, NOBODY)) {
+    if (chain->is_settled && settle_follow(scenario, &chain->last, FOLLOW_UNWATCHED)) {
         scenario->settled.followed_from = before;
     } else if (!chain->is_settled) {
-        settle_scenario(scenario, NOBODY);
+        settle_scenario(scenario, FOLLOW_UNWATCHED);
     }
 }
 
@@ -74,7 +74,7 @@ static void go_along(const Spec *spec, const Variable *variable, Cell *value, co
         if (is_made) {
             settle_next(chain, at > 0 ? value_at(variable, backward, at - 1) : 0.0, scenario);
         }
-        keep(chain, at, is_made ? scenario : NULL);
+        keep_last(chain, at, is_made ? scenario : NULL);
         scenario_free(scenario);
         free(scenario);
     }
@@ -85,7 +85,7 @@ void follow_settle(const Spec *spec, uint64_t run, Scenario *scenario)
     static Chain chain;
     const Variable *variable = spec_variable(spec, spec->follow);
     if (variable == NULL || !scenario_lacks_start(scenario)) {
-        settle_scenario(scenario, NOBODY);
+        settle_scenario(scenario, FOLLOW_UNWATCHED);
         return;
     }
     const size_t number = (size_t)(variable - spec->variables);
@@ -101,11 +101,11 @@ void follow_settle(const Spec *spec, uint64_t run, Scenario *scenario)
     memset(&others[number], 0, sizeof others[number]);
     if (chain.print != spec->print || memcmp(others, chain.values, sizeof others) != 0 ||
         chain.place >= place) {
-        keep(&chain, 0, NULL);
+        keep_last(&chain, 0, NULL);
         chain.print = spec->print;
         memcpy(chain.values, others, sizeof others);
     }
     go_along(spec, variable, &values[number], values, place, &chain);
     settle_next(&chain, place > 0 ? value_at(variable, backward, place - 1) : 0.0, scenario);
-    keep(&chain, place, scenario);
+    keep_last(&chain, place, scenario);
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const RunWatch NOBODY = {.progress = NULL};
+static const RunWatch NEIGHBOURS_UNWATCHED = {.progress = NULL};
 
 // A group of the block, and its scenario once that is settled.
 typedef struct Place {
@@ -37,7 +37,7 @@ static void forget(Place *place)
     place->is_settled = false;
 }
 
-static void keep(Place *place, Scenario scenario)
+static void keep_settled(Place *place, Scenario scenario)
 {
     forget(place);
     place->scenario = scenario;
@@ -86,8 +86,8 @@ static bool settle_alone(Block *block, size_t place)
     const bool is_case = make_scenario(block, place, &scenario);
     if (is_case) {
         slot_limit_again(block->limit_s);
-        settle_scenario(&scenario, NOBODY);
-        keep(&block->places[place], scenario);
+        settle_scenario(&scenario, NEIGHBOURS_UNWATCHED);
+        keep_settled(&block->places[place], scenario);
     }
     return is_case;
 }
@@ -104,12 +104,13 @@ static bool settle_along(Block *block, size_t from, size_t to)
             continue;
         }
         slot_limit_again(block->limit_s);
-        if (!settle_beside_neighbour(&scenario, &block->places[last].scenario, NOBODY)) {
+        if (!settle_beside_neighbour(&scenario, &block->places[last].scenario,
+                                     NEIGHBOURS_UNWATCHED)) {
             scenario_free(&scenario);
             return false;
         }
         scenario.settled.neighbour = run_of(block, last);
-        keep(&block->places[i], scenario);
+        keep_settled(&block->places[i], scenario);
         last = i;
     }
     return true;

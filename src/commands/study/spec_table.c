@@ -109,6 +109,7 @@ const SpecKey SPEC_KEYS[] = {
     {SPEC_TRIANGULAR, "high", SPEC_KEY_VALUE, true, IN(high), .doc = "Upper limit"},
 };
 const size_t SPEC_KEY_COUNT = sizeof SPEC_KEYS / sizeof *SPEC_KEYS;
+#undef AT
 
 const SpecGroupRow SPEC_GROUPS[SPEC_GROUP_COUNT] = {
     [SPEC_TOP] = {"", "case: with the path of a case file, relative to the study file"},

@@ -372,13 +372,13 @@ static PlotStyle study_plot_style_of(size_t group)
 }
 
 // What the picture says of its columns, and the words on its axes.
-typedef struct StudyWords {
+typedef struct PlotWords {
     StudyLabel x;
     StudyLabel y;
     StudyLabel by;
     char x_title[STUDY_LABEL_SIZE + CASEFILE_UNIT_SIZE + 4];
     char y_title[STUDY_LABEL_SIZE + CASEFILE_UNIT_SIZE + 4];
-} StudyWords;
+} PlotWords;
 
 static StudyLabel find_label(const Layout *layout, const Spec *spec, const char *name)
 {
@@ -393,7 +393,7 @@ static void write_title(const StudyLabel *label, char *title, size_t size)
 
 // Of a plot whose columns are there.
 static void find_words(const Layout *layout, const Spec *spec, const StudyPlot *plot,
-                       StudyWords *words)
+                       PlotWords *words)
 {
     words->x = find_label(layout, spec, plot->x);
     words->y = find_label(layout, spec, plot->y);
@@ -403,7 +403,7 @@ static void find_words(const Layout *layout, const Spec *spec, const StudyPlot *
 }
 
 // From SI to the units that are shown.
-static void convert(const StudyWords *words, StudyPoints *points)
+static void convert(const PlotWords *words, StudyPoints *points)
 {
     for (size_t i = 0; i < points->count; i++) {
         points->points[i].x *= words->x.per_si;
@@ -424,7 +424,7 @@ static void study_plot_choose_axis(const StudyLabel *label, const char *title, d
     }
 }
 
-static void study_plot_choose_axes(const StudyPoints *points, const StudyWords *words, bool has_y,
+static void study_plot_choose_axes(const StudyPoints *points, const PlotWords *words, bool has_y,
                                    PlotPanel *panel)
 {
     double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
@@ -574,7 +574,7 @@ enum { HEAD_LETTERS = 84 }; // that fit on its line
 
 // The title that is given, or that of the study, or what is drawn: in words, or where these are too
 // many by the names of the columns.
-static void find_head(const StudyPlot *plot, const StudyWords *words, const Spec *spec, char *head,
+static void find_head(const StudyPlot *plot, const PlotWords *words, const Spec *spec, char *head,
                       size_t size)
 {
     const char *title = plot->title != NULL                      ? plot->title
@@ -642,7 +642,7 @@ bool study_plot_write(Store *store, const StudyPlot *plot, const Spec *spec, Tex
     const Layout *layout = store_layout(store);
     const bool is_line =
         points.x_count <= LINE_X_MAX && points.count >= LINE_SHARE * points.x_count;
-    StudyWords words;
+    PlotWords words;
     find_words(layout, spec, plot, &words);
     convert(&words, &points);
     char head[2 * STUDY_LABEL_SIZE + SPEC_TEXT_SIZE];

@@ -30,6 +30,7 @@ static const Field EFFORT_FIELDS[] = {
     {"own_cpu_s", AT(FIELD_NUMBER, own_cpu_s)},
     {0},
 };
+#undef AT
 
 // Counts of runs are whole numbers, and below 2^53.
 static json_t *whole(uint64_t count)
@@ -289,7 +290,7 @@ static void study_report_spread_row(Table *table, const char *name, const StoreS
 }
 
 // The spread of a result by its name; without any number where there is no such result.
-static StoreSpread spread_of(const Layout *layout, const StoreSpread *spreads, const char *name)
+static StoreSpread spread_named(const Layout *layout, const StoreSpread *spreads, const char *name)
 {
     StoreSpread found = {.count = 0};
     for (size_t i = 0; i < layout->result_count; i++) {
@@ -301,9 +302,9 @@ static StoreSpread spread_of(const Layout *layout, const StoreSpread *spreads, c
 // Which runs found their settled motion by themselves, and what those say of the others.
 static void append_settled(const Layout *layout, const StoreSpread *spreads, Text *text)
 {
-    const StoreSpread from = spread_of(layout, spreads, "settled_from_run");
-    const StoreSpread settled = spread_of(layout, spreads, "settled_period");
-    const StoreSpread apart = spread_of(layout, spreads, "settled_apart");
+    const StoreSpread from = spread_named(layout, spreads, "settled_from_run");
+    const StoreSpread settled = spread_named(layout, spreads, "settled_period");
+    const StoreSpread apart = spread_named(layout, spreads, "settled_apart");
     if (from.count == 0) {
         return;
     }
@@ -366,7 +367,7 @@ enum { HASH_SIZE = 24 };
 // 17 digits give back every number as it was
 static const size_t LINE_FLAGS = JSON_REAL_PRECISION(17) | JSON_COMPACT;
 
-static const double WHOLE_MAX = 9007199254740992.0; // 2^53: whole numbers up to it are exact
+static const double SHOWN_WHOLE_MAX = 9007199254740992.0; // 2^53: whole numbers up to it are exact
 
 // In hexadecimal: many readers of JSON know no whole number beyond 2^53. Empty where there is none.
 static void write_hash(uint64_t hash, char words[HASH_SIZE])
@@ -428,7 +429,7 @@ static bool take_csv(const Layout *layout, const Record *record, void *file, Err
 static json_t *build_number(ColumnKind kind, double number)
 {
     const bool is_whole =
-        kind == COLUMN_WHOLE && fabs(number) <= WHOLE_MAX && number == rint(number);
+        kind == COLUMN_WHOLE && fabs(number) <= SHOWN_WHOLE_MAX && number == rint(number);
     return is_whole ? json_integer((json_int_t)number) : json_value_real(number);
 }
 

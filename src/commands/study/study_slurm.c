@@ -206,7 +206,7 @@ typedef struct SlurmOptions {
 
 #define AT(field) .offset = offsetof(SlurmOptions, field)
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow SLURM_OPTIONS[] = {
     {"shards", "N", "Tasks of the job array, each with a store of its own", 0, OPTION_COUNT,
      AT(job.shards), .low = SLURM_SHARD_LEAST, .high = SLURM_SHARD_MAX, .letter = 'n'},
     {"cpus", "N", "Runs at a time in each task (default: 1)", 0, OPTION_COUNT, AT(job.cpus),
@@ -430,9 +430,10 @@ static const Arguments STUDY_SLURM_ARGUMENTS = {
            "\vA task that is killed, preempted or runs out of time goes back in the queue and "
            "resumes where it was.",
     .argument = {.type = OPTION_TEXT, AT(path), .what = "slurm takes one study"},
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(SLURM_OPTIONS),
     .check = study_slurm_check,
 };
+#undef AT
 
 static bool study_slurm_run(int argc, char **argv, Err *err)
 {

@@ -87,7 +87,7 @@ static bool cmd_tune_read_limit(const char *text, void *target, Err *err)
 
 static const char *const COSTS[] = {"time", "steps", NULL};
 
-static const OptionRow OPTIONS[] = {
+static const OptionRow TUNE_OPTIONS[] = {
     {"error", "X",
      "The largest error allowed of any rate of the motion, relative to its own largest value, such "
      "as 1e-3",
@@ -124,6 +124,7 @@ static const OptionRow OPTIONS[] = {
     COMMON_OUT(3, "Write <case>-tune.json, .txt, .c, .sdf and .xml there"),
     COMMON_QUIET(3),
 };
+#undef AT
 
 // The cost that is minimized must be the one that is limited.
 static bool settle_cost(TuneOptions *options, Err *err)
@@ -177,7 +178,7 @@ static const Arguments TUNE_ARGUMENTS = {
            "and, as far as they can express it, for Gazebo and MuJoCo, with all that was tried."
            "\vExit status 1 says that no setting meets the error, or none within --max-cost.",
     .argument = COMMON_PATH("tune takes one case"),
-    OPTION_ROWS(OPTIONS),
+    OPTION_ROWS(TUNE_OPTIONS),
     .check = cmd_tune_check,
 };
 
@@ -392,7 +393,7 @@ static bool write_mjcf(const void *target, Text *text, const char **nothing, Err
                        nothing);
 }
 
-static const ResultFile FILES[] = {
+static const ResultFile TUNE_FILES[] = {
     {"--code", offsetof(TuneOptions, code), ".c", FILE_CODE, .may = cmd_tune_write_code},
     {"--sdf", offsetof(TuneOptions, sdf), ".sdf", FILE_SDF, .may = write_sdf},
     {"--mjcf", offsetof(TuneOptions, mjcf), ".xml", FILE_MJCF, .may = write_mjcf},
@@ -400,12 +401,12 @@ static const ResultFile FILES[] = {
     {.ending = ".json", .kind = FILE_RESULT},
 };
 
-static const Results RESULTS = {
+static const Results TUNE_RESULTS = {
     .suffix = "-tune",
     .json = tune_json_build,
     .text = tune_text_write,
     .screen = tune_screen_write,
-    RESULT_FILES(FILES),
+    RESULT_FILES(TUNE_FILES),
 };
 
 // Refuses before the search what it cannot write, whatever it finds. --code, of which some schemes
@@ -577,7 +578,7 @@ static bool tune_case(void *target, Err *err)
                    take_drivers(common, scenario, err) && settle_error(options, scenario, err) &&
                    check_files(options, scenario, err) &&
                    tune_options_search(options, scenario, &tune, err) &&
-                   results_claim(&RESULTS, common, scenario_path(scenario), err);
+                   results_claim(&TUNE_RESULTS, common, scenario_path(scenario), err);
     if (is_done) {
         cmd_tune_warn(options, scenario);
         is_done = search(options, scenario, tune, err);
@@ -585,10 +586,10 @@ static bool tune_case(void *target, Err *err)
     if (is_done) {
         const TuneReport report = {scenario, tune, common->overrides, common->override_count,
                                    common->time_limit_s};
-        results_print(&RESULTS, common, &report);
+        results_print(&TUNE_RESULTS, common, &report);
         is_done = check_met(&report, err);
         Err unwritten = {0};
-        if (!results_write(&RESULTS, common, scenario_path(scenario), &report, &unwritten)) {
+        if (!results_write(&TUNE_RESULTS, common, scenario_path(scenario), &report, &unwritten)) {
             is_done = err_add(err, &unwritten);
         }
     }

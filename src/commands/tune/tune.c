@@ -386,7 +386,7 @@ typedef struct Trend {
 static const int SETTINGS_APART = 3;
 
 // errors above this no longer follow the step
-static const double ERROR_MOST = 1.0;
+static const double TRIAL_ERROR_MOST = 1.0;
 
 // two orders that differ by more, or one that is lower, are none
 static const double TREND_AGREEMENT = 0.25;
@@ -406,7 +406,7 @@ static const TuneTrial *trial_before(const Tune *tune, size_t scheme, int index)
     for (size_t i = 0; i < tune->trial_count; i++) {
         const TuneTrial *trial = &tune->trials[i];
         if (trial->scheme == scheme && trial->index <= index && trial->error > 0.0 &&
-            trial->error < ERROR_MOST && (finest == NULL || trial->index > finest->index)) {
+            trial->error < TRIAL_ERROR_MOST && (finest == NULL || trial->index > finest->index)) {
             finest = trial;
         }
     }

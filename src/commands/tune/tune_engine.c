@@ -194,7 +194,7 @@ static void write_text(const EngineTune *tune, const Style *style)
     text_finish(&text);
 }
 
-static json_t *trial_object(const EngineTune *tune, const EngineTrial *trial)
+static json_t *engine_trial_object(const EngineTune *tune, const EngineTrial *trial)
 {
     if (trial == NULL) {
         return json_null();
@@ -218,16 +218,16 @@ static void write_json(const EngineTune *tune)
                                   json_value_text(tune->driver.precision)));
     json_value_set(object, "error_at_most", tune->options->target);
     json_value_set(object, "reference_uncertainty", tune->truth.uncertainty);
-    json_object_set_new(object, "cheapest", trial_object(tune, tune->best));
+    json_object_set_new(object, "cheapest", engine_trial_object(tune, tune->best));
     json_t *trials = json_array();
     for (size_t i = 0; i < tune->trial_count; i++) {
-        json_array_append_new(trials, trial_object(tune, &tune->trials[i]));
+        json_array_append_new(trials, engine_trial_object(tune, &tune->trials[i]));
     }
     json_object_set_new(object, "trials", trials);
     output_json(object);
 }
 
-static bool search(EngineTune *tune, Err *err)
+static bool search_steps(EngineTune *tune, Err *err)
 {
     const CommonOptions *common = tune->options->common;
     Progress progress;
@@ -285,7 +285,7 @@ bool tune_engine_run(const TuneEngineOptions *options, Scenario *scenario, Err *
     bool is_done = check_engine(tune, err);
     if (is_done) {
         common_options_settle(options->common, scenario);
-        is_done = search(tune, err);
+        is_done = search_steps(tune, err);
     }
     free(tune);
     return is_done;

@@ -11,10 +11,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CORNER_COUNT = 8, FACE_COUNT = 6 };
+enum { CONVEX_CORNERS = 8, CONVEX_FACES = 6 };
 
 // thickness of a stave, of the hole's radius
-static const double THICKNESS = 1.0;
+static const double CONVEX_THICKNESS = 1.0;
 
 // corner i: inner or outer, right or left, low or high by its bits; each face counter-clockwise
 // from outside, its number of corners first
@@ -25,8 +25,8 @@ typedef struct Convex {
     PolygonHole polygon;
     double reach; // m, from the hole's centre to the stave's own origin
     // ODE keeps pointers to these: normal and distance of each face, corners, faces
-    dReal planes[4 * FACE_COUNT];
-    dReal corners[3 * CORNER_COUNT];
+    dReal planes[4 * CONVEX_FACES];
+    dReal corners[3 * CONVEX_CORNERS];
     unsigned faces[sizeof FACES / sizeof FACES[0]];
     dGeomID geom;
 } Convex;
@@ -47,10 +47,10 @@ static void make_stave(Convex *convex)
 {
     const PolygonHole *polygon = &convex->polygon;
     const double inner = polygon->facets.inradius;
-    const double outer = inner + THICKNESS * polygon->hole_radius;
+    const double outer = inner + CONVEX_THICKNESS * polygon->hole_radius;
     const double half = 0.5 * polygon->facets.pitch;
     convex->reach = 0.5 * (inner + outer);
-    for (int i = 0; i < CORNER_COUNT; i++) {
+    for (int i = 0; i < CONVEX_CORNERS; i++) {
         const double x = (i & 1) != 0 ? outer : inner;
         dReal *corner = &convex->corners[3 * i];
         corner[0] = x - convex->reach;
@@ -74,8 +74,8 @@ static void *convex_open(const Scenario *scenario, int joint)
     for (size_t i = 0; i < sizeof FACES / sizeof FACES[0]; i++) {
         convex->faces[i] = FACES[i];
     }
-    convex->geom =
-        dCreateConvex(0, convex->planes, FACE_COUNT, convex->corners, CORNER_COUNT, convex->faces);
+    convex->geom = dCreateConvex(0, convex->planes, CONVEX_FACES, convex->corners, CONVEX_CORNERS,
+                                 convex->faces);
     return convex;
 }
 

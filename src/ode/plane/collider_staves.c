@@ -25,7 +25,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CORNER_COUNT = 8, ITERATIONS_MOST = 200, ATTEMPTS_MOST = 4 };
+enum { STAVE_CORNERS = 8, ITERATIONS_MOST = 200, ATTEMPTS_MOST = 4 };
 
 // units to the hole's radius
 static const double UNITS = 5000.0;
@@ -37,10 +37,10 @@ static const double TOLERANCE = 1e-6;
 static const double MARGIN = 0.025;
 
 // thickness of a stave, of the hole's radius
-static const double THICKNESS = 1.0;
+static const double STAVE_THICKNESS = 1.0;
 
 typedef struct Stave {
-    ccd_vec3_t corners[CORNER_COUNT];
+    ccd_vec3_t corners[STAVE_CORNERS];
     ccd_vec3_t centre;
 } Stave;
 
@@ -60,7 +60,7 @@ static void stave_support(const void *object, const ccd_vec3_t *direction, ccd_v
 {
     const Stave *stave = object;
     double most = -INFINITY;
-    for (int i = 0; i < CORNER_COUNT; i++) {
+    for (int i = 0; i < STAVE_CORNERS; i++) {
         const double along = ccdVec3Dot(&stave->corners[i], direction);
         if (along > most) {
             most = along;
@@ -99,10 +99,10 @@ static void *staves_open(const Scenario *scenario, int joint)
     const PolygonHole *polygon = &staves->polygon;
     staves->unit = polygon->hole_radius / UNITS;
     const double inner = polygon->facets.inradius / staves->unit;
-    const double outer = inner + THICKNESS * UNITS;
+    const double outer = inner + STAVE_THICKNESS * UNITS;
     const double height = polygon->half_height / staves->unit;
     const double widening = tan(0.5 * polygon->facets.pitch);
-    for (int i = 0; i < CORNER_COUNT; i++) {
+    for (int i = 0; i < STAVE_CORNERS; i++) {
         const double x = (i & 1) != 0 ? outer : inner;
         ccdVec3Set(&staves->stave.corners[i], x, (i & 2) != 0 ? x * widening : -x * widening,
                    (i & 4) != 0 ? height : -height);
@@ -142,7 +142,7 @@ static Stave seen_from_pin(const Staves *staves, const PolygonSide *side, double
     const double x = side->pin.x / staves->unit + margin;
     const double y = side->pin.y / staves->unit;
     Stave stave = staves->stave;
-    for (int i = 0; i < CORNER_COUNT; i++) {
+    for (int i = 0; i < STAVE_CORNERS; i++) {
         stave.corners[i].v[0] -= x;
         stave.corners[i].v[1] -= y;
     }

@@ -71,7 +71,7 @@ static void find_play_means(ImpulseStep *step, const Motion *middle)
 
 // Where they act on a driven body, seen from its anchors: at the anchor of body b, of all joints
 // with lines.
-static void find_offsets(ImpulseStep *step, const Motion *middle, int body, Vec2 *offsets)
+static void find_driven_offsets(ImpulseStep *step, const Motion *middle, int body, Vec2 *offsets)
 {
     const Linkage *linkage = &step->scenario->linkage;
     stepping_offsets(linkage, middle, body, offsets);
@@ -241,7 +241,7 @@ static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middl
         }
     }
     const BodyLoad load = applied_on(&step->world.applied, body);
-    find_offsets(step, middle, body, step->work->offsets);
+    find_driven_offsets(step, middle, body, step->work->offsets);
     return work + step->width_s * stepping_drive(step->scenario, drive, driven, &load,
                                                  step->work->offsets, step->work->joints);
 }

@@ -87,7 +87,7 @@ static PlainRates rates_between(const Snapshot *first, const Snapshot *last, dou
     };
 }
 
-static bool advance(Plain *plain, Err *err)
+static bool advance_plain(Plain *plain, Err *err)
 {
     const double start_s = (double)plain->index * plain->step_s;
     const Linkage *linkage = &plain->scenario->linkage;
@@ -131,7 +131,7 @@ static bool advance(Plain *plain, Err *err)
 static bool settle(Plain *plain, Err *err)
 {
     while (plain->index < 0) {
-        if (!advance(plain, err)) {
+        if (!advance_plain(plain, err)) {
             return false;
         }
     }
@@ -179,7 +179,7 @@ static bool plain_open(const Scenario *scenario, void **state, Err *err)
 static bool plain_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // a fixed step: the sample is looked up inside it
-    return settle(state, err) && advance(state, err);
+    return settle(state, err) && advance_plain(state, err);
 }
 
 static bool plain_carry(void *state, Carry *carry)

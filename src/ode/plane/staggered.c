@@ -215,7 +215,7 @@ static void book(Staggered *staggered, double middle_s, Stride *stride)
     stride->energy = contact_rows_energy(&staggered->contacts);
 }
 
-static bool advance(Staggered *staggered, Stride *stride, Err *err)
+static bool advance_staggered(Staggered *staggered, Stride *stride, Err *err)
 {
     const double step_s = staggered->step_s;
     World *world = &staggered->world;
@@ -273,7 +273,7 @@ static bool staggered_step(void *state, double stop_s, Err *err)
         staggered->before = staggered->now;
         staggered->now = staggered->ahead;
         staggered->ahead = spare;
-        if (!advance(staggered, staggered->ahead, err)) {
+        if (!advance_staggered(staggered, staggered->ahead, err)) {
             return false;
         }
     } while (staggered->index < 2);

@@ -607,17 +607,12 @@ static void make_bodies(const Scenario *scenario, const Motion *motions, World *
     }
 }
 
-static dBodyID body_of(const World *world, int body)
-{
-    return body == LINKAGE_GROUND ? 0 : world->bodies[body];
-}
-
 static void make_ball(const Scenario *scenario, const Motion *motions, size_t number, World *world)
 {
     const OdeOptions *options = &scenario->ode;
     const Joint *joint = &scenario->linkage.joints[number];
     const dJointID ball = dJointCreateBall(world->id, 0);
-    dJointAttach(ball, body_of(world, joint->body_a), body_of(world, joint->body_b));
+    dJointAttach(ball, world_body(world, joint->body_a), world_body(world, joint->body_b));
     const Vec2 anchor = linkage_point(motions, joint->body_a, joint->anchor_a);
     dJointSetBallAnchor(ball, anchor.x, anchor.y, 0.0);
     dJointSetBallParam(ball, dParamERP, world_hold_erp(options));
@@ -639,7 +634,7 @@ static bool make_pairs(const Scenario *scenario, int number, World *world, Err *
     const Joint *joint = &scenario->linkage.joints[number];
     Touch places[TOUCH_CORNERS];
     const size_t count = touch_places(&scenario->linkage, number, places);
-    const dBodyID bodies[2] = {body_of(world, joint->body_a), body_of(world, joint->body_b)};
+    const dBodyID bodies[2] = {world_body(world, joint->body_a), world_body(world, joint->body_b)};
     for (size_t i = 0; i < count; i++) {
         WorldPair *pair = &world->pairs[world->pair_count++];
         if (joint->limits.kind != LIMIT_NONE) {

@@ -92,6 +92,12 @@ typedef struct World {
     Applied applied;        // springs, dampers, torque
 } World;
 
+// ODE's body of a body of the linkage; 0 for the ground.
+static inline dBodyID world_body(const World *world, int body)
+{
+    return body == LINKAGE_GROUND ? 0 : world->bodies[body];
+}
+
 // Builds the world of a scenario with its bodies in the motions given. Fails with ERR_SOLVER where
 // joint rows would be redundant, or the collider cannot resolve a joint's play.
 // The world must not be copied: ODE keeps pointers into it. It is to be finished after a failure

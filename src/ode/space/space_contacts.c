@@ -400,11 +400,6 @@ static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, dou
     return surface;
 }
 
-static dBodyID body_of(const World *world, int body)
-{
-    return body == LINKAGE_GROUND ? 0 : world->bodies[body];
-}
-
 // A contact as ODE wants it: its normal is that of the force on the hole.
 static void fill_contact(SpaceContacts *contacts, size_t number, double step_s)
 {
@@ -426,8 +421,8 @@ static size_t make_joints(SpaceContacts *contacts)
         SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
         if (contact->state.is_touching) {
-            const dBodyID bodies[2] = {body_of(contacts->world, place->hole.body),
-                                       body_of(contacts->world, place->pin.body)};
+            const dBodyID bodies[2] = {world_body(contacts->world, place->hole.body),
+                                       world_body(contacts->world, place->pin.body)};
             pressing_row_of_way(contacts->world->id, contacts->group, &contact->contact, bodies,
                                 &contact->feedback);
             rows += (contact->contact.surface.mode & dContactFDir1) != 0 ? 3 : 1;
@@ -517,8 +512,8 @@ void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *j
         SpaceContact *contact = &contacts->contacts[i];
         contact->force = (Vec3){0.0, 0.0, 0.0};
         if (contact->state.is_touching) {
-            const dBodyID bodies[2] = {body_of(contacts->world, place->hole.body),
-                                       body_of(contacts->world, place->pin.body)};
+            const dBodyID bodies[2] = {world_body(contacts->world, place->hole.body),
+                                       world_body(contacts->world, place->pin.body)};
             contact->force = vec3_scale(-1.0, pressing_row_force(&contact->feedback, bodies));
             space_joints_press(joints, place, contact->force, contact->hole_axis);
         }

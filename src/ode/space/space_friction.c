@@ -64,8 +64,8 @@ static double at(const System *system, size_t row, size_t column)
 }
 
 // How the speeds of all rows would be after the step if nothing pressed.
-static void find_free(System *system, SpaceResponse *response, const SpaceFrictionStep *step,
-                      const SpaceRow *play_rows)
+static void find_free_speeds(System *system, SpaceResponse *response, const SpaceFrictionStep *step,
+                             const SpaceRow *play_rows)
 {
     const size_t bodies = response->linkage->body_count;
     const size_t play = space_response_play_rows(response);
@@ -117,7 +117,7 @@ static bool start_system(System *system, SpaceResponse *response, const SpaceFri
     }
     const bool is_placed = space_response_place(response, step->motions, play_rows);
     if (is_placed) {
-        find_free(system, response, step, play_rows);
+        find_free_speeds(system, response, step, play_rows);
     }
     free(play_rows);
     return is_placed;

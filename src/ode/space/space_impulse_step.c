@@ -435,8 +435,8 @@ static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
 }
 
 // The mean acceleration of one part of a body's motion beside the contacts', and how it changes.
-static void find_free(const SpaceImpulseStep *step, double width_before_s, Vec3 gained, Vec3 *free,
-                      Vec3 *free_rate)
+static void find_free_acceleration(const SpaceImpulseStep *step, double width_before_s, Vec3 gained,
+                                   Vec3 *free, Vec3 *free_rate)
 {
     const double apart_s = 0.5 * (step->width_s + width_before_s);
     if (step->width_s < SHORT * width_before_s) {
@@ -468,10 +468,10 @@ static void prepare_inside(SpaceImpulseStep *step, const SpaceChange *pushed, do
         SpaceChange *free = &step->free[i];
         const Vec3 gained = vec3_sub(last->velocity, first->velocity);
         const Vec3 spun = vec3_sub(last->omega, first->omega);
-        find_free(step, width_before_s, vec3_sub(gained, pushed[i].move), &free->move,
-                  &step->free_rate[i].move);
-        find_free(step, width_before_s, vec3_sub(spun, pushed[i].turn), &free->turn,
-                  &step->free_rate[i].turn);
+        find_free_acceleration(step, width_before_s, vec3_sub(gained, pushed[i].move), &free->move,
+                               &step->free_rate[i].move);
+        find_free_acceleration(step, width_before_s, vec3_sub(spun, pushed[i].turn), &free->turn,
+                               &step->free_rate[i].turn);
         const Vec3 went = vec3_sub(last->position, first->position);
         const Vec3 turned = quat_turn_between(first->turn, last->turn);
         step->rest[i] = (SpaceChange){

@@ -134,7 +134,7 @@ static void add_row(const SpaceResponse *response, size_t number, double impulse
 }
 
 // Lets the turning of inertias act as ODE does, which is not to do it again.
-static void gyrate(const SpaceResponse *response, double step_s, const World *world)
+static void gyrate_as_ode(const SpaceResponse *response, double step_s, const World *world)
 {
     const int driven = linkage_driven_body(response->linkage);
     for (size_t i = 0; i < response->linkage->body_count; i++) {
@@ -166,7 +166,7 @@ void space_hold_push(SpaceHold *hold, const SpaceResponse *response, const Space
     const Linkage *linkage = response->linkage;
     const int driven = linkage_driven_body(linkage);
     if (hold->is_plain) {
-        gyrate(response, step_s, world);
+        gyrate_as_ode(response, step_s, world);
     }
     loosen(hold, response, motions, step_s, world);
     space_response_openings(response, hold->loose, hold->openings, hold->impulses);
@@ -219,11 +219,6 @@ static void make_body(const Scenario *scenario, size_t number, const SpaceMotion
     space_world_place(world, number, motion);
 }
 
-static dBodyID body_of(const World *world, int body)
-{
-    return body == LINKAGE_GROUND ? 0 : world->bodies[body];
-}
-
 static void make_ideal(const Scenario *scenario, const SpaceMotion *motions, size_t number,
                        const SpaceResponse *response, World *world)
 {
@@ -232,7 +227,7 @@ static void make_ideal(const Scenario *scenario, const SpaceMotion *motions, siz
     const Vec3 axis = space_direction(motions, ends[0].body, ends[0].axis);
     const Joint *joint = &scenario->linkage.joints[number];
     const dJointID made = dJointCreateHinge(world->id, 0);
-    dJointAttach(made, body_of(world, joint->body_a), body_of(world, joint->body_b));
+    dJointAttach(made, world_body(world, joint->body_a), world_body(world, joint->body_b));
     dJointSetHingeAnchor(made, point.x, point.y, point.z);
     dJointSetHingeAxis(made, axis.x, axis.y, axis.z);
     dJointSetFeedback(made, &world->feedback[number]);

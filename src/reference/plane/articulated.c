@@ -538,7 +538,7 @@ static bool articulated_tree_accelerate(Articulated *articulated, const TreeStat
     return is_solved;
 }
 
-static void articulated_lay(Articulated *articulated, Layout *layout)
+static void articulated_lay(Articulated *articulated, MemoryLayout *layout)
 {
     const Plan *plan = &articulated->plan;
     articulated->links =
@@ -615,13 +615,13 @@ Articulated *articulated_create(const Tree *tree, size_t loop_count, const int *
 {
     Articulated made = {.tree = tree, .loop_count = loop_count};
     articulated_make_plan(tree, loop_count, loops, &made.plan, &made.parts);
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     layout_take(&layout, 1, sizeof made);
     articulated_lay(&made, &layout);
     Articulated *articulated = calloc(1, layout.used);
     assert(articulated != NULL);
     *articulated = made;
-    layout = (Layout){(char *)articulated, 0};
+    layout = (MemoryLayout){(char *)articulated, 0};
     layout_take(&layout, 1, sizeof made);
     articulated_lay(articulated, &layout);
     for (size_t i = 0; i < loop_count; i++) {

@@ -460,7 +460,7 @@ static void dynamics_list_coordinates(Dynamics *dynamics)
 }
 
 // All arrays, from a layout that counts or has the memory.
-static void dynamics_lay(Dynamics *dynamics, size_t contact_most, Layout *layout)
+static void dynamics_lay(Dynamics *dynamics, size_t contact_most, MemoryLayout *layout)
 {
     const Linkage *linkage = dynamics->tree.linkage;
     const size_t bodies = linkage->body_count;
@@ -490,11 +490,11 @@ static void dynamics_make_room(Dynamics *dynamics)
 {
     const Linkage *linkage = dynamics->tree.linkage;
     const size_t contact_most = TOUCH_CORNERS * linkage->joint_count;
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     dynamics_lay(dynamics, contact_most, &layout);
     dynamics->memory = calloc(1, layout.used + 1);
     assert(dynamics->memory != NULL);
-    dynamics_lay(dynamics, contact_most, &(Layout){dynamics->memory, 0});
+    dynamics_lay(dynamics, contact_most, &(MemoryLayout){dynamics->memory, 0});
 }
 
 static Coupling *dynamics_couple(const Dynamics *dynamics)
@@ -551,7 +551,7 @@ void dynamics_finish(Dynamics *dynamics)
     tree_finish(&dynamics->tree);
 }
 
-static void dynamics_lay_state(const Dynamics *dynamics, Layout *layout, DynamicsState *state)
+static void dynamics_lay_state(const Dynamics *dynamics, MemoryLayout *layout, DynamicsState *state)
 {
     const size_t contacts = dynamics->system.contact_count;
     const size_t joints = dynamics->tree.linkage->joint_count;
@@ -566,11 +566,11 @@ static void dynamics_lay_state(const Dynamics *dynamics, Layout *layout, Dynamic
 DynamicsState *dynamics_state_create(const Dynamics *dynamics)
 {
     DynamicsState counted;
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     dynamics_lay_state(dynamics, &layout, &counted);
     DynamicsState *state = calloc(1, layout.used);
     assert(state != NULL);
-    dynamics_lay_state(dynamics, &(Layout){(char *)state, 0}, state);
+    dynamics_lay_state(dynamics, &(MemoryLayout){(char *)state, 0}, state);
     return state;
 }
 

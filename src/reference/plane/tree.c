@@ -838,7 +838,7 @@ static void set_pairs(Tree *tree)
 }
 
 // All arrays, from a layout that counts or has the memory.
-static void tree_lay(Tree *tree, Layout *layout)
+static void tree_lay(Tree *tree, MemoryLayout *layout)
 {
     const size_t bodies = tree->linkage->body_count;
     const size_t joints = tree->linkage->joint_count;
@@ -879,12 +879,12 @@ static void tree_make_room(Tree *tree)
     }
     tree->normals = 2 * (int)tree->pair_count;
     tree->end_count = 3 * tree->pair_count;
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     tree_lay(tree, &layout);
     tree->memory_size = layout.used;
     tree->memory = calloc(1, layout.used);
     assert(tree->memory != NULL);
-    tree_lay(tree, &(Layout){tree->memory, 0});
+    tree_lay(tree, &(MemoryLayout){tree->memory, 0});
 }
 
 // The joints that the tree has not used, which close loops.
@@ -937,7 +937,7 @@ void tree_finish(Tree *tree)
     free(tree->memory);
 }
 
-void tree_state_lay(const Tree *tree, Layout *layout, TreeState *state)
+void tree_state_lay(const Tree *tree, MemoryLayout *layout, TreeState *state)
 {
     const size_t bodies = tree->linkage->body_count;
     state->motions = layout_take(layout, bodies, sizeof *state->motions);

@@ -309,7 +309,7 @@ void tree_build(const Linkage *linkage, Tree *tree);
 void tree_finish(Tree *tree);
 
 // Takes room for the arrays of a state of this tree; the memory must be zeros.
-void tree_state_lay(const Tree *tree, Layout *layout, TreeState *state);
+void tree_state_lay(const Tree *tree, MemoryLayout *layout, TreeState *state);
 
 // Puts the base at given motions at time zero, and writes the coordinates' rates there.
 void tree_start(Tree *tree, const Motion *motions, double *u);

@@ -427,7 +427,8 @@ static void space_fronts_find_ground_multipliers(SpaceArticulated *articulated,
     }
 }
 
-static void space_articulated_lay(SpaceArticulated *articulated, size_t loop_count, Layout *layout)
+static void space_articulated_lay(SpaceArticulated *articulated, size_t loop_count,
+                                  MemoryLayout *layout)
 {
     const Plan *plan = &articulated->plan;
     articulated->links =
@@ -492,12 +493,12 @@ SpaceArticulated *space_articulated_create(const SpaceTree *tree, size_t loop_co
 {
     SpaceArticulated made = {.tree = tree};
     space_articulated_make_plan(tree, loop_count, loops, &made.plan, &made.parts);
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     layout_take(&layout, 1, sizeof made);
     space_articulated_lay(&made, loop_count, &layout);
     SpaceArticulated *articulated = zeroed(layout.used, 1);
     *articulated = made;
-    layout = (Layout){(char *)articulated, 0};
+    layout = (MemoryLayout){(char *)articulated, 0};
     layout_take(&layout, 1, sizeof made);
     space_articulated_lay(articulated, loop_count, &layout);
     for (size_t i = 0; i < loop_count; i++) {

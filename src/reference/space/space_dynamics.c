@@ -678,7 +678,7 @@ void space_dynamics_finish(SpaceDynamics *dynamics)
 }
 
 // All of a state, from a layout that counts or has the memory.
-static SpaceState *space_dynamics_lay_state(const SpaceDynamics *dynamics, Layout *layout)
+static SpaceState *space_dynamics_lay_state(const SpaceDynamics *dynamics, MemoryLayout *layout)
 {
     const size_t contacts = dynamics->system.contact_count;
     SpaceState *own = layout_take(layout, 1, sizeof *own);
@@ -696,7 +696,7 @@ static SpaceState *space_dynamics_lay_state(const SpaceDynamics *dynamics, Layou
 
 SpaceState *space_dynamics_state_create(const SpaceDynamics *dynamics)
 {
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     space_dynamics_lay_state(dynamics, &layout);
-    return space_dynamics_lay_state(dynamics, &(Layout){zeroed(layout.used, 1), 0});
+    return space_dynamics_lay_state(dynamics, &(MemoryLayout){zeroed(layout.used, 1), 0});
 }

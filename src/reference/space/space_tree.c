@@ -630,7 +630,7 @@ static void space_tree_list_ends(SpaceTree *tree)
 }
 
 // All arrays, from a layout that counts or has the memory.
-static void space_tree_lay(SpaceTree *tree, Layout *layout)
+static void space_tree_lay(SpaceTree *tree, MemoryLayout *layout)
 {
     const size_t bodies = tree->linkage->body_count;
     const size_t joints = tree->linkage->joint_count;
@@ -669,11 +669,11 @@ static void space_tree_list_loops(SpaceTree *tree, const bool *is_used)
 void space_tree_build(const Linkage *linkage, SpaceTree *tree)
 {
     *tree = (SpaceTree){.linkage = linkage, .driven = linkage_driven_body(linkage)};
-    Layout layout = {NULL, 0};
+    MemoryLayout layout = {NULL, 0};
     space_tree_lay(tree, &layout);
     tree->memory_size = layout.used;
     tree->memory = zeroed(layout.used, 1);
-    space_tree_lay(tree, &(Layout){tree->memory, 0});
+    space_tree_lay(tree, &(MemoryLayout){tree->memory, 0});
     space_tree_list_ends(tree);
     linkage_reaches(linkage, tree->reaches);
     if (tree->driven >= 0) {
@@ -693,7 +693,7 @@ void space_tree_finish(SpaceTree *tree)
     free(tree->memory);
 }
 
-void space_tree_state_lay(const SpaceTree *tree, Layout *layout, SpaceTreeState *state)
+void space_tree_state_lay(const SpaceTree *tree, MemoryLayout *layout, SpaceTreeState *state)
 {
     const size_t joints = tree->linkage->joint_count;
     state->bodies = layout_take(layout, tree->linkage->body_count + 1, sizeof *state->bodies);

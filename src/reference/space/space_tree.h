@@ -97,7 +97,7 @@ void space_tree_build(const Linkage *linkage, SpaceTree *tree);
 void space_tree_finish(SpaceTree *tree);
 
 // Takes room for the arrays of a state of this tree; the memory must be zeros.
-void space_tree_state_lay(const SpaceTree *tree, Layout *layout, SpaceTreeState *state);
+void space_tree_state_lay(const SpaceTree *tree, MemoryLayout *layout, SpaceTreeState *state);
 
 // The node of a body; -1: the ground or the driven body.
 static inline int space_tree_node_of(const SpaceTree *tree, int body)
