@@ -90,19 +90,20 @@ static double residual_share(const Trajectory *run)
     return scale > 0.0 ? fabs(run->energy.residual) / scale : NAN;
 }
 
+// What an extreme is moved by, as in every step.
+#define SAMPLES_raise_to fmax
+#define SAMPLES_lower_to fmin
+
 BodyExtremes number_extremes_at_samples(const Trajectory *run, size_t body)
 {
-    const Motion *start = trajectory_motion(run, 0, body);
-    BodyExtremes extremes = {.omega_max.value = start->omega,
-                             .omega_min.value = start->omega,
-                             .alpha_max.value = start->alpha,
-                             .alpha_min.value = start->alpha};
-    for (size_t k = 1; k < run->sample_count; k++) {
+    BodyExtremes extremes = {0};
+    for (size_t k = 0; k < run->sample_count; k++) {
         const Motion *motion = trajectory_motion(run, k, body);
-        extremes.omega_max.value = fmax(extremes.omega_max.value, motion->omega);
-        extremes.omega_min.value = fmin(extremes.omega_min.value, motion->omega);
-        extremes.alpha_max.value = fmax(extremes.alpha_max.value, motion->alpha);
-        extremes.alpha_min.value = fmin(extremes.alpha_min.value, motion->alpha);
+        const double omega = motion->omega;
+        const double alpha = motion->alpha;
+#define MOVE_EXTREME(name, signal, how)                                                            \
+    extremes.name = number_only(k == 0 ? signal : SAMPLES_##how(extremes.name.value, signal));
+        BODY_EXTREMES_LIST(MOVE_EXTREME)
     }
     return extremes;
 }
