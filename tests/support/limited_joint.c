@@ -97,16 +97,17 @@ static Joint *add_gears(const LimitedImpact *impact, double speed, Linkage *link
 static Joint *add_rack(const LimitedImpact *impact, double speed, Linkage *linkage)
 {
     const double along = -0.6;
-    Body *rack = add_body(linkage, "rack", 2.0 * impact->inertia, impact->inertia);
+    Body *rack = add_limited_body(linkage, "rack", 2.0 * impact->inertia, impact->inertia);
     // q' = -v
     rack->start.velocity = vec2_rotate(along, (Vec2){-speed, 0.0});
-    Body *pinion = add_body(linkage, "pinion", 0.1, 2.0 * impact->inertia * RADII[0] * RADII[0]);
+    Body *pinion =
+        add_limited_body(linkage, "pinion", 0.1, 2.0 * impact->inertia * RADII[0] * RADII[0]);
     pinion->start.position = vec2_rotate(along, (Vec2){0.03, -RADII[0]});
-    Joint *line = add_joint(linkage, "line", JOINT_PRISMATIC, LINKAGE_GROUND, 0);
+    Joint *line = add_limited_joint(linkage, "line", JOINT_PRISMATIC, LINKAGE_GROUND, 0);
     line->direction = along;
-    Joint *pivot = add_joint(linkage, "pivot", JOINT_REVOLUTE, LINKAGE_GROUND, 1);
+    Joint *pivot = add_limited_joint(linkage, "pivot", JOINT_REVOLUTE, LINKAGE_GROUND, 1);
     pivot->anchor_a = pinion->start.position;
-    Joint *mesh = add_joint(linkage, "mesh", JOINT_RACK, 0, 1);
+    Joint *mesh = add_limited_joint(linkage, "mesh", JOINT_RACK, 0, 1);
     mesh->direction = along;
     mesh->anchor_a = vec2_rotate(along, (Vec2){0.03, 0.0});
     mesh->gear = (Gear){.pivots = {0, 1}, .radius_a = INFINITY, .radius_b = -RADII[0]};

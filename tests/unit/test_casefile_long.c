@@ -187,7 +187,7 @@ static void hole_and_pin_stand_where_each_is_said_to(void **state)
     static const char *const APART[] = {
         "joints.hole={between: [ground, pin], at-a: [2 mm, 1 mm], at-b: [2.03 mm, 0.96 mm], "
         "hole: 10.2 mm, pin: 10 mm}"};
-    const Scenario apart = load(PIN, APART, 1);
+    const Scenario apart = load_long(PIN, APART, 1);
     const Joint *joint = &apart.linkage.joints[0];
     const Motion *body = &apart.linkage.bodies[0].start;
     // the body stays where it is, and the pin is at its place on it
@@ -204,13 +204,13 @@ static void hole_and_pin_stand_where_each_is_said_to(void **state)
     assert_false(is_setting(&apart, "joints.hole.at") || is_setting(&apart, "joints.hole.start"));
     // one place instead of the two, and two instead of the one
     const char *const ONE[] = {APART[0], "joints.hole.at=[0 mm, 0 mm]"};
-    const Scenario one = load(PIN, ONE, 2);
+    const Scenario one = load_long(PIN, ONE, 2);
     assert_true(is_setting(&one, "joints.hole.at") && is_setting(&one, "joints.hole.start"));
     assert_false(is_setting(&one, "joints.hole.at-a") || is_setting(&one, "joints.hole.at-b"));
     static const char *const TWO[] = {"joints.hole.at-a=[1 mm, 0 mm]",
                                       "joints.hole.at-b=[1.1 mm, 0 mm]"};
     // at the wall, however the places are rounded
-    const Scenario two = load(PIN, TWO, 2);
+    const Scenario two = load_long(PIN, TWO, 2);
     assert_near(eccentricity(&two.linkage, 0).x, 1e-4, 1e-16);
     assert_true(vec2_length(two.linkage.joints[0].clearance.start) <=
                 linkage_radial_clearance(&two.linkage.joints[0]));
@@ -237,7 +237,7 @@ static void a_pin_that_stands_apart_is_there_in_a_driven_loop(void **state)
         "  wrist: {between: [rod, rocker], at: [120 mm, 80 mm]}\n"
         "  heel:  {between: [ground, rocker], at: [120 mm, 0 mm]}\n"
         "drive: {joint: pivot, speed: 100 rpm}\n";
-    const Scenario loop = load(LOOP, NULL, 0);
+    const Scenario loop = load_long(LOOP, NULL, 0);
     assert_near(eccentricity(&loop.linkage, 1).x, 30e-6, 1e-13);
     assert_near(eccentricity(&loop.linkage, 1).y, -20e-6, 1e-13);
     for (size_t i = 0; i < 4; i++) {
@@ -263,7 +263,7 @@ static void holes_of_one_pin_are_no_link(void **state)
         "           radial-clearance: 20 um, pin: 10 mm}\n"
         "  second: {between: [plate, bolt], at-a: [10 um, 0 mm], at-b: [5 um, 0 um],\n"
         "           radial-clearance: 20 um, pin: 10 mm}\n";
-    const Scenario plates = load(PLATES, NULL, 0);
+    const Scenario plates = load_long(PLATES, NULL, 0);
     assert_near(eccentricity(&plates.linkage, 1).x, -5e-6, 1e-17);
     static const char APART[] =
         "bodies:\n"
