@@ -82,35 +82,6 @@ unopened_sources() {
     find "$1" -name '*.c' | xargs awk 'FNR == 1 && !/^\/\/ [A-Z][^?]*$/ { print FILENAME }'
 }
 
-# Inline functions of a source that neither it nor a list in a header uses. gcc says nothing of them,
-# and clang not where several files are compiled as one.
-unused_inlines() {
-    find "$1" -name '*.c' | xargs awk '
-        function tell(    name) {
-            for (name in count) {
-                if (count[name] == 1) print file, name
-            }
-            delete count
-        }
-        FNR == 1 { tell(); file = FILENAME }
-        {
-            line = $0
-            sub(/\/\/.*/, "", line)
-            if (line ~ /^static inline .*[a-z0-9_]\(/) {
-                name = line
-                sub(/\(.*/, "", name)
-                sub(/.*[ *]/, "", name)
-                count[name] += 0
-            }
-            for (name in count) {
-                if (line ~ ("(^|[^A-Za-z0-9_])" name "([^A-Za-z0-9_]|$)")) count[name]++
-            }
-        }
-        END { tell() }' | while read -r file name; do
-        grep -rqw --include='*.h' "$name" "$1" || echo "$file: $name"
-    done
-}
-
 unguarded_headers() {
     find "$1" -name '*.h' | xargs grep -L '^#pragma once'
 }
@@ -166,19 +137,14 @@ mkdir -p "$control/long"
 yes ';' | head -n 1001 >"$control/long/long.c"
 yes ';' | head -n 1000 >"$control/long/short.c"
 printf '// Finds where it stands.\n' >"$control/opening/c.c"
-mkdir -p "$control/inline"
-printf 'static inline int f(void)\n{\n    return 1; // as f is\n}\n' >"$control/inline/a.c"
-printf 'static inline int g(void)\n{\n    return 1;\n}\nint h = g();\n' >"$control/inline/b.c"
 
-echo 1..20
+echo 1..18
 report "a file includes only its own folder and those above it" "$(broken_layers "$root/src")"
 report "each library is included in its own place alone" "$(broken_walls "$root/src")"
 report "no two files need each other" "$(cycles "$root/src")"
 report "the library prints nothing and ends nothing" "$(loud_library "$root/src")"
 report "no file has more than 1000 lines" "$(long_files "$root/src")"
 report "every source opens with what it does" "$(unopened_sources "$root/src")"
-report "every inline function of a source is used" \
-    "$(unused_inlines "$root/src")$(unused_inlines "$root/tests")"
 report "every header guards itself" "$(unguarded_headers "$root/src")"
 report "a file that includes a lower layer is caught" "$(caught "$(broken_layers "$control")")"
 found=$(broken_layers "$control/rooms")
@@ -203,7 +169,4 @@ report "a source that opens with a question, or with nothing, is caught" \
 found=$(long_files "$control/long" | sed 's|.*/||')
 report "a file of more than 1000 lines is caught" \
     "$([ "$found" = 'long.c: more than 1000 lines' ] || echo "found: $found")"
-found=$(unused_inlines "$control/inline" | sed 's|.*/||')
-report "an inline function that is used nowhere is caught" \
-    "$([ "$found" = 'a.c: f' ] || echo "found: $found")"
 report "files without a circle are not caught" "$(cycles "$control/rooms")"
