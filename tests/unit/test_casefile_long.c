@@ -214,11 +214,11 @@ static void hole_and_pin_stand_where_each_is_said_to(void **state)
     assert_near(eccentricity(&two.linkage, 0).x, 1e-4, 1e-16);
     assert_true(vec2_length(two.linkage.joints[0].clearance.start) <=
                 linkage_radial_clearance(&two.linkage.joints[0]));
-    refuse(PIN, "joints.hole.at-a=[1 mm, 0 mm]",
-           "memory:5:3: joints.hole.at-b is missing\n"
-           "      hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin:...\n"
-           "      ^~~~\n"
-           "allowed: [x, y] such as [25 mm, 0 mm]");
+    refuse_long(PIN, "joints.hole.at-a=[1 mm, 0 mm]",
+                "memory:5:3: joints.hole.at-b is missing\n"
+                "      hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 10.2 mm, pin:...\n"
+                "      ^~~~\n"
+                "allowed: [x, y] such as [25 mm, 0 mm]");
 }
 
 // In a loop that a drive determines the pin begins where it stands as well.
