@@ -46,7 +46,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         .torsions = names[SCHEMA_TORSION_SPRING].count,
         .loads = names[SCHEMA_LOAD_FAMILY].count,
         .further = names[SCHEMA_DRIVE].count,
-        .profiles = names[SCHEMA_JOINT].count,
+        .profiles = cam_count(entries),
     });
     linkage->body_count = names[SCHEMA_BODY].count;
     linkage->joint_count = names[SCHEMA_JOINT].count;

@@ -11,6 +11,15 @@ static const char POINTS[] =
 
 static const double DEGREES = 180.0 / M_PI;
 
+size_t cam_count(const Entries *entries)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < entries->count; i++) {
+        count += entries->entries[i].row->type == SCHEMA_PROFILE ? 1 : 0;
+    }
+    return count;
+}
+
 void cam_prepare(const Entries *entries, Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {

@@ -3,6 +3,9 @@
 
 #include "casefile/target.h"
 
+// How many joints have a profile.
+size_t cam_count(const Entries *entries);
+
 // Gives every joint that has a profile its own, before values are stored.
 void cam_prepare(const Entries *entries, Linkage *linkage);
 

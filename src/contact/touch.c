@@ -240,6 +240,17 @@ static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const M
     };
 }
 
+// How a body is turned, rad, and how fast it turns, rad/s.
+static double angle_of(const Motion *motions, int body)
+{
+    return body == LINKAGE_GROUND ? 0.0 : motions[body].angle;
+}
+
+static double omega_of(const Motion *motions, int body)
+{
+    return body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
+}
+
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions)
 {
     const Joint *joint = &linkage->joints[place->joint];
@@ -247,23 +258,27 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
                                  linkage_point(motions, joint->body_a, place->anchor_a));
     const Vec2 velocity = vec2_sub(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
                                    linkage_point_velocity(motions, joint->body_a, place->anchor_a));
-    if (touch_is_end(place)) {
+    const double angle = angle_of(motions, joint->body_a);
+    const double omega = omega_of(motions, joint->body_a);
+    const Vec2 x = {1.0, 0.0};
+    Vec2 line = {0.0, 0.0};
+    switch (place->shape) {
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
         return pose_of_end(linkage, place, motions, offset, velocity);
+    case TOUCH_CAM:
+        return touch_pose_on_cam(
+            place, vec2_rotate(angle + place->direction, x),
+            vec2_rotate(angle_of(motions, joint->body_b) + place->cam.facing, x), offset, velocity,
+            (const double[]){omega, omega_of(motions, joint->body_b)});
+    case TOUCH_LINE:
+        line = vec2_rotate(angle + place->direction, x);
+        break;
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+        break;
     }
-    const bool is_ground = joint->body_a == LINKAGE_GROUND;
-    const double angle = is_ground ? 0.0 : motions[joint->body_a].angle;
-    const double omega = is_ground ? 0.0 : motions[joint->body_a].omega;
-    if (place->shape == TOUCH_CAM) {
-        const bool is_on_ground = joint->body_b == LINKAGE_GROUND;
-        const double turned = is_on_ground ? 0.0 : motions[joint->body_b].angle;
-        const double omegas[2] = {omega, is_on_ground ? 0.0 : motions[joint->body_b].omega};
-        return touch_pose_on_cam(place, vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0}),
-                                 vec2_rotate(turned + place->cam.facing, (Vec2){1.0, 0.0}), offset,
-                                 velocity, omegas);
-    }
-    const Vec2 line = place->shape == TOUCH_LINE
-                          ? vec2_rotate(angle + place->direction, (Vec2){1.0, 0.0})
-                          : (Vec2){0.0, 0.0};
     return touch_pose_of(place, offset, velocity, line, omega);
 }
 
@@ -327,23 +342,17 @@ TouchTravel touch_travel(const Linkage *linkage, const Touch *place, const Touch
                          const Motion *motions)
 {
     const Joint *joint = &linkage->joints[place->joint];
-    const int bodies[2] = {joint->body_a, joint->body_b};
-    double angles[2] = {place->cam.direction, place->cam.facing};
-    double omegas[2] = {0.0, 0.0};
-    for (int side = 0; side < 2; side++) {
-        if (bodies[side] != LINKAGE_GROUND) {
-            angles[side] += motions[bodies[side]].angle;
-            omegas[side] = motions[bodies[side]].omega;
-        }
-    }
-    const Vec2 x = {1.0, 0.0};
     const Cam *cam = &place->cam;
+    const Vec2 x = {1.0, 0.0};
+    const double a = omega_of(motions, joint->body_a);
+    const double b = omega_of(motions, joint->body_b);
     const CamPose met =
-        cam_pose(cam, vec2_rotate(angles[0], x), vec2_rotate(angles[1], x), pose->offset);
-    const double sliding = cam_sliding(&met, pose->offset, pose->velocity, omegas[0], omegas[1]);
+        cam_pose(cam, vec2_rotate(angle_of(motions, joint->body_a) + cam->direction, x),
+                 vec2_rotate(angle_of(motions, joint->body_b) + cam->facing, x), pose->offset);
+    const double sliding = cam_sliding(&met, pose->offset, pose->velocity, a, b);
     return (TouchTravel){
-        .turning = cam_turning(cam, &met, omegas[0], omegas[1], sliding),
-        .along_b = cam_along_b(cam, &met, omegas[0], omegas[1], sliding),
+        .turning = cam_turning(cam, &met, a, b, sliding),
+        .along_b = cam_along_b(cam, &met, a, b, sliding),
     };
 }
 

@@ -236,6 +236,7 @@ static void the_shipped_cases_obey(void **state)
         "cases/paper/impact-k66.yaml",
         "cases/paper/stackup-impact.yaml",
         "cases/mechanisms/andrews.yaml",
+        "cases/mechanisms/cam-roller.yaml",
         "cases/mechanisms/compressor.yaml",
         "cases/mechanisms/five-bar.yaml",
         "cases/mechanisms/gear-pair.yaml",

@@ -25,7 +25,8 @@ static inline Linkage kept_linkage(void)
                                                 .springs = 32,
                                                 .torsions = 32,
                                                 .loads = 8,
-                                                .further = LINKAGE_DRIVE_MAX}),
+                                                .further = LINKAGE_DRIVE_MAX,
+                                                .profiles = 4}),
         .before = last,
     };
     last = kept;
@@ -55,6 +56,8 @@ static inline Linkage kept_linkage_copy(const Linkage *linkage)
         memcpy(own.torsions, linkage->torsions, copy.torsion_count * sizeof *own.torsions);
     copy.loads = memcpy(own.loads, linkage->loads, copy.load_count * sizeof *own.loads);
     copy.further = memcpy(own.further, linkage->further, copy.further_count * sizeof *own.further);
+    copy.profiles =
+        memcpy(own.profiles, linkage->profiles, copy.profile_count * sizeof *own.profiles);
     return copy;
 }
 

@@ -227,9 +227,16 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
 // Contact sites: where the bodies of a linkage touch, and how far each may be from touching before
 // it is evaluated again.
 
-// 1: of how far a cam reaches, what may go by until its gap is looked at again: it turns by as much
-// in rad, in which no lobe comes and goes
-static const double CAM_FLIGHT = 0.2;
+// What of a cam may go by until its gap is looked at again: its points by two, between which no
+// lobe comes and goes, and at most so much in rad.
+static const double CAM_POINTS = 2.0;
+static const double CAM_TURN = 0.2;
+
+// m, of its reach
+static double flight_of_cam(const Profile *profile)
+{
+    return profile->reach * fmin(CAM_TURN, CAM_POINTS * 2.0 * M_PI / (double)profile->count);
+}
 
 // m: a site that is apart is evaluated before its bodies have come so much nearer. Of a stop that
 // is no play, but how far the body that touches reaches from where it does; of an angle with one
@@ -248,11 +255,19 @@ static double flight_of(const Linkage *linkage, const double *reaches, const Tou
     if (!joint_has_disc(joint->kind)) {
         return linkage_radial_clearance(joint);
     }
-    if (touch->shape == TOUCH_CAM) {
-        return CAM_FLIGHT * joint->stop.radius_a;
+    switch (touch->shape) {
+    case TOUCH_CAM:
+        return flight_of_cam(touch->cam.profile);
+    case TOUCH_DISC:
+        return touch->clearance;
+    case TOUCH_LINE:
+    case TOUCH_HOLE: // which is no stop's, nor are ends
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
+        break;
     }
-    const int body = joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b;
-    return touch->shape == TOUCH_DISC ? touch->clearance : reaches[body];
+    return reaches[joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b];
 }
 
 // m: the lever of an angle, the shorter of how far its bodies reach; 1 of a length.

@@ -109,6 +109,21 @@ static void meet_cam(const Tree *tree, const TreeState *state, const PlaneSite *
     pressing->velocity = vec2_add(pose->velocity, vec2_sub(turned_b, turned_a));
 }
 
+// How each coordinate moves where the gap is measured on body b against body a there.
+static void find_row(const Tree *tree, const TreeState *state, SlopesPressing *pressing)
+{
+    if (pressing->touch->cam.profile == NULL) {
+        loops_pair_row(tree, state, pressing->pair, pressing->centre);
+        return;
+    }
+    const int end = 2 * pressing->pair;
+    const Vec2 under = vec2_add(tree_pair_gap(tree, state, pressing->pair), pressing->beside);
+    tree_point_row(tree, state, tree->end_bodies[end], vec2_add(state->arms[end], under), -1.0,
+                   pressing->centre);
+    tree_point_row(tree, state, tree->end_bodies[end + 1],
+                   vec2_add(state->arms[end + 1], pressing->beside), 1.0, pressing->centre);
+}
+
 static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *state,
                                      size_t number)
 {
@@ -150,17 +165,7 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
     pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
                          force_law_tangent(&contact->law, fabs(pose->gap));
     pressing.damping = press_damping(contact, &pressing.force.press);
-    if (site->touch.shape == TOUCH_CAM) {
-        const int end = 2 * site->pair;
-        const Tree *tree = &dynamics->tree;
-        const Vec2 under = vec2_add(tree_pair_gap(tree, state, site->pair), pressing.beside);
-        tree_point_row(tree, state, tree->end_bodies[end], vec2_add(state->arms[end], under), -1.0,
-                       pressing.centre);
-        tree_point_row(tree, state, tree->end_bodies[end + 1],
-                       vec2_add(state->arms[end + 1], pressing.beside), 1.0, pressing.centre);
-    } else {
-        loops_pair_row(&dynamics->tree, state, site->pair, pressing.centre);
-    }
+    find_row(&dynamics->tree, state, &pressing);
     if (contact->law.friction > 0.0) {
         find_friction(dynamics, state, site->pair, &pressing);
     }

@@ -142,28 +142,31 @@ static double plane_crossing(const System *system, const SystemState *state, siz
     const TreeState *at = &plane_state_of(state)->tree;
     const Contact *of = &system->contacts[contact];
     const PlaneSite *site = &dynamics->sites[contact];
-    if (dynamics_contact_is_turn(site)) {
-        const int joint = site->touch.joint;
+    const int joint = site->touch.joint;
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    double passing = 0.0;
+    switch (site->touch.shape) {
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
         return fabs(tree_coordinate_rate(tree, at, joint)) +
                sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));
-    }
-    if (site->touch.shape == TOUCH_LINE) {
+    case TOUCH_LINE:
         // along the line it may go as fast as it likes
         return fabs(tree_line_rate(tree, at, site->pair)) +
                sqrt(of->flight * fabs(tree_line_second(tree, at, site->pair)));
-    }
-    if (site->touch.shape == TOUCH_CAM) {
-        // how fast what is met goes by, too: a lobe comes along the profile
-        const int body = tree->end_bodies[2 * site->pair];
-        const double turning =
-            fabs(tree_omega(at, body) - tree_omega(at, tree->end_bodies[2 * site->pair + 1]));
-        return vec2_length(tree_pair_velocity(tree, at, site->pair)) +
-               turning * site->touch.cam.profile->reach +
-               sqrt(of->flight * vec2_length(tree_pair_acceleration(tree, at, site->pair)));
+    case TOUCH_CAM:
+        // a lobe comes along the profile
+        passing = site->touch.cam.profile->reach *
+                  fabs(tree_omega(at, bodies[0]) - tree_omega(at, bodies[1]));
+        break;
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+        break;
     }
     const Vec2 v = tree_pair_velocity(tree, at, site->pair);
     const Vec2 a = tree_pair_acceleration(tree, at, site->pair);
-    return vec2_length(v) + sqrt(of->flight * vec2_length(a));
+    return passing + vec2_length(v) + sqrt(of->flight * vec2_length(a));
 }
 
 static double plane_fastest(const System *system, const SystemState *state)
