@@ -212,6 +212,16 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
     scenario->contact.restitution = fmin(scenario->contact.restitution, 1.0);
 }
 
+// The curve goes through the points as they are then.
+static void shake_profile(Profile *profile, uint64_t *seed)
+{
+    Err unused;
+    for (size_t i = 0; i < profile->count; i++) {
+        shake(&profile->radii[i], seed);
+    }
+    profile_settle(profile, &unused);
+}
+
 void shake_inputs(Scenario *scenario, unsigned seed)
 {
     uint64_t drawn = lcg_stirred(seed);
@@ -229,4 +239,7 @@ void shake_inputs(Scenario *scenario, unsigned seed)
     }
     shake_forces(&scenario->linkage, &drawn);
     shake_world(scenario, &drawn);
+    for (size_t i = 0; i < scenario->linkage.profile_count; i++) {
+        shake_profile(&scenario->linkage.profiles[i], &drawn);
+    }
 }

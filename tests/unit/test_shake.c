@@ -51,6 +51,7 @@ static bool is_alike(const Scenario *one, const Scenario *other)
     shared.linkage.torsions = one->linkage.torsions;
     shared.linkage.loads = one->linkage.loads;
     shared.linkage.further = one->linkage.further;
+    shared.linkage.profiles = one->linkage.profiles;
     return memcmp(one, &shared, sizeof shared) == 0 &&
            memcmp(one->linkage.bodies, linkage->bodies,
                   linkage->body_count * sizeof *linkage->bodies) == 0 &&
@@ -70,6 +71,26 @@ static void equal_seeds_shake_alike_and_others_do_not(void **state)
     shake_inputs(&third, 2);
     assert_true(is_alike(&first, &second));
     assert_false(is_alike(&first, &third));
+}
+
+// The points of a cam move by a unit in the last place at most, and the curve with them.
+static void a_profile_is_shaken(void **state)
+{
+    (void)state;
+    const Scenario still = load("cases/mechanisms/cam-roller.yaml", NULL, 0);
+    Scenario shaken = kept_copy(&still);
+    shake_inputs(&shaken, 3);
+    const Profile *before = &still.linkage.profiles[0];
+    const Profile *now = &shaken.linkage.profiles[0];
+    int moved = 0;
+    for (size_t i = 0; i < before->count; i++) {
+        assert_true(ulps_apart(before->radii[i], now->radii[i]) <= 1.0);
+        moved += before->radii[i] != now->radii[i] ? 1 : 0;
+    }
+    // two in three of 72
+    assert_in_range(moved, 32, 64);
+    assert_true(memcmp(before->slopes, now->slopes, sizeof now->slopes) != 0);
+    assert_near(profile_at(now, 1.0).r, profile_at(before, 1.0).r, 1e-16);
 }
 
 static void a_perfect_bounce_gives_back_no_more_than_all(void **state)
@@ -112,6 +133,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_number_moves_by_a_unit_in_the_last_place_at_most),
         cmocka_unit_test(equal_seeds_shake_alike_and_others_do_not),
+        cmocka_unit_test(a_profile_is_shaken),
         cmocka_unit_test(a_perfect_bounce_gives_back_no_more_than_all),
         cmocka_unit_test(a_linkage_at_a_change_point_has_no_scale_of_spikes_however_it_is_rounded),
     };
