@@ -238,17 +238,19 @@ static void print_summary(const Summary *summaries)
 
 int main(int argc, char **argv)
 {
-    static const CaseKind *const KINDS[] = {&CASE_FOUR_BAR, &CASE_BODIES,   &CASE_SPRUNG,
-                                            &CASE_SLIDERS,  &CASE_LIMITS,   &CASE_BALLS,
-                                            &CASE_PENDULA,  &CASE_FOUR_BARS};
+    static const CaseKind *const KINDS[] = {
+        &CASE_FOUR_BAR, &CASE_BODIES,    &CASE_SPRUNG, &CASE_SLIDERS, &CASE_LIMITS, &CASE_BALLS,
+        &CASE_PENDULA,  &CASE_FOUR_BARS, &CASE_HOLES,  &CASE_RACKS,   &CASE_CAMS};
     const CaseKind *kind = NULL;
     for (size_t i = 0; argc > 3 && i < sizeof KINDS / sizeof *KINDS; i++) {
         kind = strcmp(argv[1], KINDS[i]->name) == 0 ? KINDS[i] : kind;
     }
     if (kind == NULL) {
-        fprintf(stderr, "usage: auto_error KIND FIRST LAST [LADDER]\n"
-                        "kinds: four-bar, bodies, sprung, sliders, limits, balls, pendula, "
-                        "four-bars\n");
+        fprintf(stderr, "usage: auto_error KIND FIRST LAST [LADDER]\nkinds:");
+        for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
+            fprintf(stderr, " %s", KINDS[i]->name);
+        }
+        fprintf(stderr, "\n");
         return 2;
     }
     static Summary summaries[TOLERANCE_COUNT];
