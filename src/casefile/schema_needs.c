@@ -144,6 +144,22 @@ static bool places_apply(const SchemaRow *row, const Joint *joint)
     return !joint->is_apart || !(is_of_both || row->type == SCHEMA_START);
 }
 
+// Whether a key says what a stop is: a cam has a profile, and on it a roller or a flat.
+static bool stops_apply(const SchemaRow *row, const Joint *joint)
+{
+    const bool is_cam = joint->stop.cam > 0;
+    switch (row->type) {
+    case SCHEMA_PROFILE:
+        return is_cam;
+    case SCHEMA_DISCS:
+        return !is_cam;
+    case SCHEMA_HEADING:
+        return !is_cam || joint->stop.is_flat;
+    default:
+        return true;
+    }
+}
+
 // The form in which a case of the scenario is written.
 static SchemaForm form_of(const Scenario *scenario)
 {
@@ -243,7 +259,8 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         met |= joint_bits(scenario, joint);
         met |= bit(OWN, row->flag > 0 && *((const bool *)((const char *)joint + row->flag)));
         if (!limits_apply(row, joint, schema_field_const(row, scenario, index)) ||
-            !places_apply(row, joint) || !schema_is_of_kind(row, joint->kind)) {
+            !places_apply(row, joint) || !stops_apply(row, joint) ||
+            !schema_is_of_kind(row, joint->kind)) {
             return false;
         }
     }

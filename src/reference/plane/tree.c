@@ -427,7 +427,7 @@ double tree_coordinate_origin(const Joint *joint)
 // Whether the way along a pair's line is part of a joint's coordinate.
 static bool has_way(const Tree *tree, int joint)
 {
-    return joint_has_rack(tree->linkage->joints[joint].kind);
+    return tree->measures[joint] == TREE_LINE; // of what has a coordinate, a rack alone
 }
 
 double tree_coordinate(const Tree *tree, const TreeState *state, int joint)
