@@ -1,10 +1,7 @@
 // Reads the profiles of cams, and checks that their followers go with them.
 #include "casefile/cam.h"
 
-#include "base/zeroed.h"
-
 #include <math.h>
-#include <stdlib.h>
 
 static const char POINTS[] =
     "at least 6 points in order within a turn, such as [[0 deg, 20 mm], [60 deg, 21 mm], ...]";
@@ -29,15 +26,6 @@ void cam_prepare(const Entries *entries, Linkage *linkage)
     }
 }
 
-static bool read_number(const Target *target, const Node *node, Dimension dimension, double *number)
-{
-    Complaint complaint;
-    return target_check_scalar(target, node) &&
-           (quantity_parse(node->text, dimension, number, &complaint) ||
-            source_error(target->entry->source, node->span, complaint.allowed, target->err, "%s",
-                         complaint.text));
-}
-
 // Whether a point is the first one again, a turn behind it.
 static bool closes(const Profile *profile, double angle, double radius)
 {
@@ -51,8 +39,8 @@ static bool add_point(const Target *target, const Node *pair[2], Profile *profil
     const Source *source = target->entry->source;
     double angle;
     double radius;
-    if (!read_number(target, pair[0], DIMENSION_ANGLE, &angle) ||
-        !read_number(target, pair[1], DIMENSION_LENGTH, &radius)) {
+    if (!target_quantity(target, pair[0], DIMENSION_ANGLE, &angle) ||
+        !target_quantity(target, pair[1], DIMENSION_LENGTH, &radius)) {
         return false;
     }
     if (!(radius > row->low && radius <= row->high)) {

@@ -95,21 +95,12 @@ static void describe_points(const Linkage *linkage, const Load *load, const Sche
              units_example(row->dimension));
 }
 
-static bool read_number(const Target *target, const Node *node, Dimension dimension, double *number)
-{
-    Complaint complaint;
-    return target_check_scalar(target, node) &&
-           (quantity_parse(node->text, dimension, number, &complaint) ||
-            source_error(target->entry->source, node->span, complaint.allowed, target->err, "%s",
-                         complaint.text));
-}
-
 // The value of a point, within the range of its row.
 static bool read_point_value(const Target *target, const Node *node, const Load *load,
                              double *value)
 {
     const SchemaRow *row = target->entry->row;
-    if (!read_number(target, node, loads_value_dimension(row, load), value)) {
+    if (!target_quantity(target, node, loads_value_dimension(row, load), value)) {
         return false;
     }
     *value *= value_scale(row, load);
@@ -165,7 +156,7 @@ static bool read_points(const Target *target, const Linkage *linkage, Load *load
             return source_error(target->entry->source, point->span, allowed, target->err,
                                 "a point of %s is two numbers", target->path);
         }
-        if (!read_number(target, pair[0], loads_dimension(linkage, load), &numbers[0]) ||
+        if (!target_quantity(target, pair[0], loads_dimension(linkage, load), &numbers[0]) ||
             !read_point_value(target, pair[1], load, &numbers[1])) {
             return false;
         }
@@ -421,7 +412,7 @@ bool loads_store_period(const Target *target, const Linkage *linkage, Load *load
         load->table.period = -1.0; // not even that of a turn
         return true;
     }
-    if (!read_number(target, node, loads_dimension(linkage, load), &period)) {
+    if (!target_quantity(target, node, loads_dimension(linkage, load), &period)) {
         return false;
     }
     load->table.period = period;

@@ -123,6 +123,15 @@ bool target_number(const Target *target, const Node *node, TargetNumber *number)
                         complaint.text);
 }
 
+bool target_quantity(const Target *target, const Node *node, Dimension dimension, double *number)
+{
+    Complaint complaint;
+    return target_check_scalar(target, node) &&
+           (quantity_parse(node->text, dimension, number, &complaint) ||
+            source_error(target->entry->source, node->span, complaint.allowed, target->err, "%s",
+                         complaint.text));
+}
+
 bool target_pair(const Node *node, const Node *pair[2])
 {
     pair[0] = node->kind == NODE_LIST ? node->first : NULL;

@@ -39,5 +39,8 @@ bool target_check_scalar(const Target *target, const Node *node);
 // One number, from its node or from one of a pair, in the range of its row.
 bool target_number(const Target *target, const Node *node, TargetNumber *number);
 
+// One quantity of a dimension of its own, whatever its range.
+bool target_quantity(const Target *target, const Node *node, Dimension dimension, double *number);
+
 // The two items of a list of two; false for anything else.
 bool target_pair(const Node *node, const Node *pair[2]);
