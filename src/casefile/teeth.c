@@ -63,11 +63,11 @@ static int other_body(const Joint *joint, int body)
 static bool are_pivots(const Entry *gears, const Joint *const pivots[2], Err *err)
 {
     for (int i = 0; i < 2; i++) {
-        if (!joint_has_angle(pivots[i]->kind)) {
+        if (!joint_pivots(pivots[i]->kind)) {
             const bool is_rack = joint_slides(pivots[i]->kind);
             return entries_refuse(gears, err,
-                                  "gears turn about ideal pivots, and '%s' is none\nallowed: two "
-                                  "pivots such as [pinion, wheel]%s",
+                                  "gears turn about pivots or pins, and '%s' is none\nallowed: two "
+                                  "of them such as [pinion, wheel]%s",
                                   pivots[i]->name,
                                   is_rack ? "; or, of a rack, 'rack' in place of 'gears'" : "");
         }
@@ -93,6 +93,21 @@ static double distance_from_line(const Joint *guide, const Joint *pivot)
 {
     const Vec2 across = vec2_perp(vec2_rotate(guide->direction, (Vec2){1.0, 0.0}));
     return vec2_dot(across, vec2_sub(pivot->anchor_a, guide->anchor_a));
+}
+
+// Whether gears stay as far apart as they are, or push so that they need not.
+static bool are_fixed_apart(const Entries *entries, size_t index, const Joint *gears,
+                            const Joint *const pivots[2], Err *err)
+{
+    for (int i = 0; i < 2; i++) {
+        if (!joint_is_ideal(pivots[i]->kind) && gears->gear.pressure_angle == 0.0) {
+            return entries_refuse(entries_find(entries, "joints.*.gears", index), err,
+                                  "the pin '%s' has play, so that the gears come apart\nallowed: a "
+                                  "pressure-angle, such as 20 deg, or two ideal pivots",
+                                  pivots[i]->name);
+        }
+    }
+    return true;
 }
 
 static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *err)
@@ -121,7 +136,9 @@ static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *er
                                   : "are at the same position",
                               is_rack ? "joints" : "pivots");
     }
-    joint->gear.carrier = carrier;
+    if (!is_rack && !are_fixed_apart(entries, index, joint, joints, err)) {
+        return false;
+    }
     joint->body_a = other_body(joints[0], carrier);
     joint->body_b = other_body(joints[1], carrier);
     joint->gear.radius_a = INFINITY; // until gears are placed

@@ -3,6 +3,7 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "model/mesh.h"
 
 #include <stdlib.h>
 
@@ -103,8 +104,8 @@ static size_t place_ends(const Joint *joint, int number, Touch places[TOUCH_CORN
         end->sign = sign;
         end->direction = joint->direction;
         end->clearance = sign * ends[i];
-        end->radius_a = joint->gear.radius_a;
-        end->radius_b = joint->gear.radius_b;
+        end->radius_a = mesh_slant(&joint->gear) * joint->gear.radius_a;
+        end->radius_b = mesh_slant(&joint->gear) * joint->gear.radius_b;
     }
     return count;
 }
@@ -214,7 +215,7 @@ static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion
     switch (place->shape) {
     case TOUCH_TEETH:
     case TOUCH_RACK:
-        return vec2_scale(place->sign, coordinate_along_teeth(linkage, motions, place->joint));
+        return coordinate_along_teeth(linkage, motions, place->joint, place->sign);
     case TOUCH_TURN:
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
@@ -229,14 +230,14 @@ static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion
 static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const Motion *motions,
                              Vec2 offset, Vec2 velocity)
 {
-    const double position = coordinate_position(linkage, motions, place->joint);
+    const int joint = place->joint;
     return (TouchPose){
         .offset = offset,
         .velocity = velocity,
-        .gap = place->sign * position - place->clearance,
+        .gap = coordinate_gap(linkage, motions, joint, place->sign, place->clearance),
         .has_normal = true,
         .normal = push_of_end(linkage, place, motions),
-        .approach_speed = -place->sign * coordinate_rate(linkage, motions, place->joint),
+        .approach_speed = -coordinate_gap_rate(linkage, motions, joint, place->sign),
     };
 }
 
@@ -294,7 +295,7 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
         *from_b = vec2_sub(*from_a, pose->offset);
         break;
     case TOUCH_TEETH: {
-        // where the pitch circles touch, on the line of the centres
+        // where the line of action meets that of the centres
         const double share = place->radius_a / (place->radius_a + place->radius_b);
         *from_a = vec2_scale(share, pose->offset);
         *from_b = vec2_sub(*from_a, pose->offset);

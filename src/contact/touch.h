@@ -12,7 +12,7 @@
 // The ends of a slider's coordinate are lines across it. Of an angle and of teeth the gap is that
 // of the coordinate q itself (model/coordinate.h):
 //     turn    gap = s q - c,      no n               a torque s N on body b, in the sense of q
-//     teeth   gap = s q - c,      n = s t            t the pitch circles' tangent
+//     teeth   model/mesh.h
 //     rack    gap = s q - c,      n = s t            t the pitch line's direction
 // s is 1 at the low end and c its value, -1 at the high end and c less its value. Lengths are
 // angles at a turn, and forces torques.
@@ -48,8 +48,8 @@ typedef struct Touch {
                       // pitch line
     double clearance; // m, or rad at a turn: c above
     double sign;      // s above; 0 of other shapes
-    double radius_a;  // m, of hole, disc or pitch circle; 0 of a line, infinite of a rack
-    double radius_b;  // m
+    double radius_a;  // m, of hole, disc or base circle; 0 of a line, infinite of a rack
+    double radius_b;  // m; of a pinion of its pitch circle
     Cam cam;          // of a cam
     ForceLaw law;     // of this place alone
 } Touch;

@@ -117,8 +117,9 @@ typedef struct Limits {
     double high;     // rad or m; INFINITY: none
 } Limits;
 
-// A pair of gears. Their pitch circles touch on the line of their centres; the radius of an
-// internal gear is negative, and both together are the distance of the centres.
+// A pair of gears. Their pitch circles touch on the line of their centres while these are as far
+// from each other as the case places them; of an internal gear and its pinion one radius is
+// negative, and both together are that distance.
 //
 // Of a rack body a is the rack and body b the pinion. The pitch line goes through the anchor on the
 // rack, along Joint.direction; the pinion's radius is the distance of its centre from the line,
@@ -126,11 +127,12 @@ typedef struct Limits {
 typedef struct Gear {
     int pivots[2];          // numbers of the joints about which body a (a rack: on which it slides)
                             // and body b turn
-    int carrier;            // of gears the body that has both pivots, or LINKAGE_GROUND
     double teeth[2];        // of gears, or in their ratio; of an internal gear negative
     double radius_a;        // m, of the pitch circles; set where bodies are placed; of a rack
                             // infinite
     double radius_b;        // m
+    double pressure_angle;  // rad, of gears, where the pitch circles touch; 0: they push along
+                            // the pitch circles' tangent
     bool is_backlash_angle; // until then: whether Limits.backlash is an angle of body b, rad
     bool is_start_angle;    // likewise Limits.start
 } Gear;

@@ -157,9 +157,19 @@ static bool check_gear(const Linkage *linkage, const Joint *joint, Err *err)
     }
     for (int i = 0; i < 2; i++) {
         const Joint *pivot = guide_of_teeth(linkage, joint, i);
-        if (pivot == NULL || !joint_has_angle(pivot->kind)) {
-            return err_set(err, ERR_CASE, "joint '%s': its gears need ideal pivots", joint->name);
+        if (pivot == NULL || !joint_pivots(pivot->kind)) {
+            return err_set(err, ERR_CASE, "joint '%s': its gears need pivots", joint->name);
         }
+        if (!joint_is_ideal(pivot->kind) && gear->pressure_angle == 0.0) {
+            return err_set(err, ERR_CASE,
+                           "joint '%s': gears whose pivots have play need a pressure angle",
+                           joint->name);
+        }
+    }
+    if (!(gear->pressure_angle >= 0.0 && gear->pressure_angle < 0.5 * M_PI)) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': pressure angle %.9g rad, allowed: 0 to below 1.57", joint->name,
+                       gear->pressure_angle);
     }
     const double distance = gear->radius_a + gear->radius_b;
     return (distance > 0.0 && isfinite(distance)) ||

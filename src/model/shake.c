@@ -86,6 +86,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
 static void shake_limits(Joint *joint, uint64_t *seed)
 {
     Limits *limits = &joint->limits;
+    if (joint->gear.pressure_angle > 0.0) {
+        shake(&joint->gear.pressure_angle, seed);
+    }
     if (limits->kind == LIMIT_BACKLASH) {
         shake(&limits->backlash, seed);
         shake(&limits->middle, seed);

@@ -370,10 +370,6 @@ static Real coordinate_of(const Plane *plane, View view, const Touch *place, boo
     Real (*of)(View, int) = is_rate ? omega_of : angle_of;
     const Real a = of(view, joint->body_a);
     const Real b = of(view, joint->body_b);
-    if (place->shape == TOUCH_TEETH) {
-        const Real carrier = of(view, joint->gear.carrier);
-        return -(joint->gear.radius_a * (a - carrier) + joint->gear.radius_b * (b - carrier));
-    }
     return joint->body_b == LINKAGE_GROUND ? a - b : b - a;
 }
 
@@ -531,18 +527,50 @@ static void place_force(const Touch *place, const Ends *ends, Pose *pose)
     pose->at[1] = vec_add(ends->arm[1], vec_sub(from_a, ends->apart));
 }
 
+// How far the string between the base circles of two gears is from being unwound: the flanks are
+// involutes, so that along the line of action, the common tangent of the circles, each reaches as
+// far as its circle has unwound to the point where the tangent leaves it.
+static void meet_teeth(const Plane *plane, View view, const Touch *place, const Ends *ends,
+                       Pose *pose)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Gear *gear = &joint->gear;
+    const Real pitch = (Real)gear->radius_a + gear->radius_b;
+    const Real alpha = gear->pressure_angle;
+    const Real base[2] = {gear->radius_a * cosl(alpha), gear->radius_b * cosl(alpha)};
+    const Real around = base[0] + base[1];
+    const Real out = alpha == 0.0L ? 0.0L : base[0] * base[1] > 0.0L ? 1.0L : -1.0L;
+    const Real distance = vec_length(ends->apart);
+    const Real working = alpha == 0.0L ? 0.0L : acosl(around / distance);
+    const Real line =
+        atan2l(ends->apart.y, ends->apart.x) + place->sign * (0.5L * acosl(-1.0L) - out * working);
+    pose->normal = direction_of(line);
+    place_force(place, ends, pose);
+    const Real unwound = base[0] * (angle_of(view, joint->body_a) - line) +
+                         base[1] * (angle_of(view, joint->body_b) - line);
+    const Real placed = out * pitch * sinl(alpha) + around * (0.5L * acosl(-1.0L) - out * alpha);
+    const Real gap = vec_dot(pose->normal, ends->apart) * (out == 0.0L ? 0.0L : 1.0L) -
+                     place->sign * unwound - placed - place->clearance * cosl(alpha);
+    // of whole turns the one at which the gap's middle is nearest
+    const Real middle = (place->sign * joint->limits.middle - place->clearance) * cosl(alpha);
+    pose->gap.depth = -(middle + remainderl(gap - middle, 2.0L * acosl(-1.0L) * around));
+    pose->gap.closing =
+        -vec_dot(pose->normal, vec_sub(velocity_of(view, joint->body_b, pose->at[1]),
+                                       velocity_of(view, joint->body_a, pose->at[0])));
+}
+
 static Pose pose_of(const Plane *plane, View view, const Touch *place)
 {
     const Joint *joint = &plane->linkage->joints[place->joint];
     const Ends ends = ends_of(view, joint->body_a, place->anchor_a, joint->body_b, place->anchor_b);
     Pose pose = {.apart = ends.apart};
-    if (place->shape == TOUCH_TURN || place->shape == TOUCH_TEETH) {
+    if (place->shape == TOUCH_TURN) {
         pose.gap.depth = place->clearance - place->sign * coordinate_of(plane, view, place, false);
         pose.gap.closing = -place->sign * coordinate_of(plane, view, place, true);
-        if (place->shape == TOUCH_TEETH) {
-            pose.normal = vec_times(place->sign / vec_length(ends.apart), vec_perp(ends.apart));
-            place_force(place, &ends, &pose);
-        }
+        return pose;
+    }
+    if (place->shape == TOUCH_TEETH) {
+        meet_teeth(plane, view, place, &ends, &pose);
         return pose;
     }
     if (place->shape == TOUCH_CAM) {

@@ -19,6 +19,7 @@ extern const CaseKind CASE_BALLS;
 extern const CaseKind CASE_LIMITS;
 extern const CaseKind CASE_ROTORS;
 extern const CaseKind CASE_RACKS;
+extern const CaseKind CASE_GEARS;
 extern const CaseKind CASE_CAMS;
 extern const CaseKind CASE_HOLES;
 extern const CaseKind CASE_RUN_UPS;

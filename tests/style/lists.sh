@@ -61,7 +61,7 @@ forget solver $options 'member(ODE_QUICK,' 'member(ODE_NEW, "new")' ode/plane/wo
 forget collider $options 'member(ODE_COLLIDER_STAVES,' \
     'member(ODE_COLLIDER_NEW, "new", collider_new)' contact/facets.c
 forget 'kind of joint' model/joint.h 'member(with, JOINT_GUIDE,' \
-    'member(with, JOINT_NEW, LINE, DISC, NONE, 2, false, "new")' casefile/joint_kind.c \
+    'member(with, JOINT_NEW, LINE, DISC, NONE, false, "new")' casefile/joint_kind.c \
     engine/request.c commands/tune/tune_world_lacks.c
 forget 'way to hold' model/joint.h '    JOINT_HOLDS_LINE,' 'JOINT_HOLDS_NEW,' model/joint_rows.c \
     model/response_rows.c

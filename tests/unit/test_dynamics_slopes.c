@@ -165,12 +165,13 @@ static Scenario geared(void)
                                  .contact = contact};
     linkage->joints[2] =
         (Joint){.name = "planet", .body_a = 2, .body_b = 1, .anchor_a = {0.08, -0.02}};
-    linkage->joints[3] = (Joint){.name = "mesh",
-                                 .kind = JOINT_GEAR,
-                                 .body_a = 0,
-                                 .body_b = 1,
-                                 .gear = {{1, 2}, 2, {20, 60}, 0.02, 0.06, false, false},
-                                 .limits = gap};
+    linkage->joints[3] =
+        (Joint){.name = "mesh",
+                .kind = JOINT_GEAR,
+                .body_a = 0,
+                .body_b = 1,
+                .gear = {.pivots = {1, 2}, .teeth = {20, 60}, .radius_a = 0.02, .radius_b = 0.06},
+                .limits = gap};
     linkage->joints[4] = (Joint){.name = "slide",
                                  .kind = JOINT_PRISMATIC,
                                  .body_a = 2,

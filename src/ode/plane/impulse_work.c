@@ -155,7 +155,7 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     return is_on_a ? -work : work;
 }
 
-// How fast the coordinate of an end goes as one of the bodies turns, m or rad per rad.
+// How fast the gap at an end grows as one of the bodies turns, m or rad per rad, but for its sign.
 static double turning_share(const Joint *joint, const Touch *place, bool is_on_a)
 {
     switch (place->shape) {

@@ -79,8 +79,6 @@ static WorldEnds *ends_make(const Linkage *linkage, const dBodyID *bodies, const
             is_any = true;
             follow(ends, joint->body_a, motions);
             follow(ends, joint->body_b, motions);
-            follow(ends, joint_has_carrier(joint->kind) ? joint->gear.carrier : LINKAGE_GROUND,
-                   motions);
         }
     }
     if (!is_any) {
@@ -121,9 +119,6 @@ static const Motion *ends_look(WorldEnds *ends, int joint)
     const Joint *of = &ends->linkage->joints[joint];
     look_at(ends, of->body_a);
     look_at(ends, of->body_b);
-    if (joint_has_carrier(of->kind)) {
-        look_at(ends, of->gear.carrier);
-    }
     return ends->motions;
 }
 
@@ -290,7 +285,7 @@ Vec2 pair_anchor_b(const WorldPair *pair)
     return anchor_of(pair, 1);
 }
 
-// Where the pitch circles of gears touch.
+// Where gears push, on the line of their centres.
 static Vec2 pitch_point(const WorldPair *pair)
 {
     const Vec2 centre = anchor_of(pair, 0);

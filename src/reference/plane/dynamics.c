@@ -12,6 +12,7 @@
 #include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "model/forces.h"
+#include "model/mesh.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 
@@ -127,7 +128,41 @@ static TouchPose pose_outside(const Tree *tree, const TreeState *state, const Pl
     return pose;
 }
 
-// An end of an angle, or a flank of teeth, which push at right angles to the line of the centres.
+// A flank of a pair of gears (model/mesh.h).
+static TouchPose pose_of_teeth(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int joint = site->touch.joint;
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const Gear *gear = &tree->linkage->joints[joint].gear;
+    const double sign = site->touch.sign;
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    const Vec2 velocity = tree_pair_velocity(tree, state, site->pair);
+    const double turned = sign * tree_coordinate(tree, state, joint) - site->end;
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap =
+            mesh_slant(gear) * turned + mesh_spread(gear, tree_distance(tree, state, site->pair)),
+        .has_normal = true,
+        .normal = mesh_normal(gear, sign, offset),
+        .approach_speed = -mesh_gap_rate(gear, sign, offset, velocity, tree_omega(state, bodies[0]),
+                                         tree_omega(state, bodies[1])),
+    };
+}
+
+// The second rate of its gap.
+static double second_of_teeth(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const Gear *gear = &tree->linkage->joints[site->touch.joint].gear;
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    return mesh_gap_rate(gear, site->touch.sign, offset,
+                         tree_pair_acceleration(tree, state, site->pair),
+                         tree_alpha(state, bodies[0]), tree_alpha(state, bodies[1])) +
+           mesh_bend(gear, site->touch.sign, offset, tree_pair_velocity(tree, state, site->pair));
+}
+
+// An end of an angle, or a flank of a rack.
 static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const PlaneSite *site)
 {
     const int joint = site->touch.joint;
@@ -141,14 +176,12 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
         .approach_speed = -sign * tree_coordinate_rate(tree, state, joint),
     };
     switch (site->touch.shape) {
-    case TOUCH_TEETH:
-        pose.normal = vec2_scale(sign / sqrt(vec2_dot(offset, offset)), vec2_perp(offset));
-        break;
     case TOUCH_RACK:
         pose.normal = vec2_scale(sign, tree_normal(tree, state, site->pair));
         break;
     case TOUCH_TURN:
-    case TOUCH_HOLE: // which are no ends
+    case TOUCH_TEETH: // pose_of_teeth has it
+    case TOUCH_HOLE:  // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
     case TOUCH_CAM:
@@ -163,8 +196,9 @@ static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeSta
     switch (site->touch.shape) {
     case TOUCH_HOLE:
         return pose_in_hole(contact, tree, state, site->pair);
-    case TOUCH_TURN:
     case TOUCH_TEETH:
+        return pose_of_teeth(tree, state, site);
+    case TOUCH_TURN:
     case TOUCH_RACK:
         return pose_of_end(tree, state, site);
     case TOUCH_CAM:
@@ -186,8 +220,9 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
         return tree_line_second(&dynamics->tree, state, site->pair);
     case TOUCH_CAM:
         return second_on_cam(&dynamics->tree, state, site);
-    case TOUCH_TURN:
     case TOUCH_TEETH:
+        return second_of_teeth(&dynamics->tree, state, site);
+    case TOUCH_TURN:
     case TOUCH_RACK:
         return site->touch.sign * tree_coordinate_second(&dynamics->tree, state, site->touch.joint);
     case TOUCH_HOLE:
@@ -763,24 +798,13 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
     return true;
 }
 
-// Whether a third body counts beside the two that touch.
-static bool is_carried(const Dynamics *dynamics, size_t contact)
-{
-    const int joint = dynamics->sites[contact].touch.joint;
-    return joint_has_carrier(dynamics->tree.linkage->joints[joint].kind);
-}
-
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y)
 {
     const Tree *tree = &dynamics->tree;
     TreeState *state = &dynamics->room.state->tree;
     const double *u = y + tree->coordinate_count;
-    if (is_carried(dynamics, contact)) {
-        tree_evaluate(tree, since_s, y, u, state);
-    } else {
-        tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
-    }
+    tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
     ContactForce force;
     dynamics_contact_find(dynamics, contact, state, &force);
     return force;
@@ -789,9 +813,7 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
 size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates)
 {
     const Dynamics *dynamics = (const Dynamics *)system;
-    return is_carried(dynamics, contact)
-               ? 0
-               : tree_pair_coordinates(&dynamics->tree, dynamics->sites[contact].pair, coordinates);
+    return tree_pair_coordinates(&dynamics->tree, dynamics->sites[contact].pair, coordinates);
 }
 
 // The rates of any mechanism; apart from the shorter way, so that this sets up nothing for it.

@@ -10,10 +10,11 @@
 // + of discs, - of a pin in its hole; a line's normal turns as slowly as the mechanism moves.
 //
 // A limited angle or teeth push along a coordinate q with steady shares w of the bodies' turns (of
-// a rack and of the ways along its pitch line), and hold no friction: dA = -M^-1 w ((1 + chi d'/v0)
-// k w dq + (chi F_el / v0 + c) w du).
+// teeth and of the ways of their bodies along what they push), and hold no friction:
+// dA = -M^-1 w ((1 + chi d'/v0) k w dq + (chi F_el / v0 + c) w du).
 #include "reference/plane/dynamics.h"
 
+#include "model/mesh.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 
@@ -324,15 +325,16 @@ static void slopes_add_turn_column(const Dynamics *dynamics, const CouplingJoint
     }
 }
 
-// What the way along a rack's pitch line adds to the loads of a unit force along it, and to how
-// each coordinate moves its own: by the turns of bodies alone until then.
-static void slopes_add_way(const Dynamics *dynamics, const TreeState *state, int joint,
+// What the way along the push of teeth adds to the loads of a unit force along it, and to how each
+// coordinate moves its own: by the turns of bodies alone until then. A rack is pushed at its point
+// under the pinion's centre, a gear at its own centre.
+static void slopes_add_way(const Dynamics *dynamics, const TreeState *state, int joint, Vec2 along,
                            const CouplingJoint *parts, Loads *loads)
 {
     const Tree *tree = &dynamics->tree;
     const Coupling *coupling = dynamics->system.coupling;
-    const Vec2 along = tree_normal(tree, state, joint);
-    const Vec2 under = tree_pair_gap(tree, state, joint);
+    const Vec2 under =
+        tree->measures[joint] == TREE_LINE ? tree_pair_gap(tree, state, joint) : (Vec2){0.0, 0.0};
     dynamics_load_end(tree, state, 2 * joint + 1, (Vec2){0.0, 0.0}, along, loads);
     dynamics_load_end(tree, state, 2 * joint, under, vec2_scale(-1.0, along), loads);
     loops_pair_row(tree, state, joint, dynamics->room.row);
@@ -358,17 +360,21 @@ static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *st
     ContactForce force;
     Loads loads = {.pushes = dynamics->room.zeros};
     dynamics_contact_find(dynamics, number, state, &force);
-    tree_coordinate_parts(&tree->linkage->joints[contact->joint], parts);
+    const Joint *joint = &tree->linkage->joints[contact->joint];
+    const double slant = mesh_slant(&joint->gear); // 1 of all but gears
+    tree_coordinate_parts(joint, parts);
     slopes_clear(dynamics, coupled);
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
         const int body = parts[i].body;
-        dynamics_load_couple(tree, state, body, parts[i].share, &loads);
+        dynamics_load_couple(tree, state, body, slant * parts[i].share, &loads);
         if (body != LINKAGE_GROUND && tree->angle_column[body] >= 0) {
-            dynamics->room.arms[tree->angle_column[body]] += parts[i].share;
+            dynamics->room.arms[tree->angle_column[body]] += slant * parts[i].share;
         }
     }
-    if (joint_has_rack(tree->linkage->joints[contact->joint].kind)) {
-        slopes_add_way(dynamics, state, contact->joint, coupled, &loads);
+    if (joint_has_teeth(joint->kind)) {
+        const double sign = dynamics->sites[number].touch.sign;
+        slopes_add_way(dynamics, state, contact->joint, vec2_scale(sign, force.pose.normal),
+                       coupled, &loads);
     }
     slopes_solve_parts(dynamics, coupled, &loads, dynamics->room.pushed[0]);
     const double stiffness = (1.0 + contact->damping_rate * force.pose.approach_speed) *

@@ -135,6 +135,21 @@ static void plane_sizes(const System *system, const SystemState *state, size_t c
     add_end_size(tree, &plane_state_of(state)->tree, end + 1, length, speed);
 }
 
+// How fast gears may come apart or nearer, m/s.
+static double parting_of(const Tree *tree, const TreeState *at, int joint, double flight)
+{
+    if (tree->linkage->joints[joint].gear.pressure_angle == 0.0) {
+        return 0.0;
+    }
+    const Vec2 offset = tree_pair_gap(tree, at, joint);
+    const Vec2 along = vec2_scale(1.0 / vec2_length(offset), offset);
+    const Vec2 velocity = tree_pair_velocity(tree, at, joint);
+    const double across = vec2_cross(along, velocity);
+    const double second = vec2_dot(along, tree_pair_acceleration(tree, at, joint)) +
+                          across * across / vec2_length(offset);
+    return fabs(vec2_dot(along, velocity)) + sqrt(flight * fabs(second));
+}
+
 static double plane_crossing(const System *system, const SystemState *state, size_t contact)
 {
     const Dynamics *dynamics = plane_dynamics_of(system);
@@ -146,8 +161,11 @@ static double plane_crossing(const System *system, const SystemState *state, siz
     const int *bodies = tree->end_bodies + 2 * site->pair;
     double passing = 0.0;
     switch (site->touch.shape) {
-    case TOUCH_TURN:
     case TOUCH_TEETH:
+        passing = parting_of(tree, at, joint, of->flight);
+        return passing + fabs(tree_coordinate_rate(tree, at, joint)) +
+               sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));
+    case TOUCH_TURN:
     case TOUCH_RACK:
         return fabs(tree_coordinate_rate(tree, at, joint)) +
                sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));

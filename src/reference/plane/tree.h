@@ -289,6 +289,9 @@ static inline Vec2 tree_normal_turned(const Tree *tree, const TreeState *state, 
 // The distance of a pair that has a line or discs, m, less its offset.
 double tree_distance(const Tree *tree, const TreeState *state, int pair);
 
+// By how much the distance from a line has changed since the base, m.
+double tree_line_moved(const Tree *tree, const TreeState *state, int pair);
+
 // The rate of the distance from a line, m/s, and its second rate, m/s^2, after tree_accelerate; or
 // that without accelerations of the coordinates.
 double tree_line_rate(const Tree *tree, const TreeState *state, int pair);
@@ -346,13 +349,13 @@ void tree_point_row(const Tree *tree, const TreeState *state, int body, Vec2 arm
 
 // The limited coordinate of a joint that turns or meshes (model/coordinate.h) in a tree, counted
 // from an origin in its play: the angle that the joint's bodies were placed with, the middle of a
-// gap between teeth. Of a rack the way along the pitch line, which its pair has, is part of it
-// beside what its bodies turn. What it has changed since the base has all the digits of a double,
-// and that at the base comes from long double, however many turns the bodies have made.
+// gap between teeth. Of teeth the way of the pair's ends is part of it beside what the bodies turn:
+// of a rack along the pitch line, of gears round each other. What it has changed since the base has
+// all the digits of a double, and that at the base comes from long double, however many turns the
+// bodies have made.
 
-// The parts that bodies' turns have in a coordinate, rad or m per rad: of body a, body b and the
-// carrier of gears.
-enum { TREE_COORDINATE_PARTS = 3 };
+// The parts that bodies' turns have in a coordinate, rad or m per rad: of body a and body b.
+enum { TREE_COORDINATE_PARTS = 2 };
 
 typedef struct TreeCoordinatePart {
     int body; // LINKAGE_GROUND where there is none
@@ -363,6 +366,10 @@ void tree_coordinate_parts(const Joint *joint, TreeCoordinatePart parts[TREE_COO
 
 // What it counts from, rad or m.
 double tree_coordinate_origin(const Joint *joint);
+
+// Fills in that at the base, with the gap between the joint's ends and the normal of its line
+// there.
+void tree_coordinate_settle(Tree *tree, int joint, TreePoint gap, TreePoint normal);
 
 double tree_coordinate(const Tree *tree, const TreeState *state, int joint);
 double tree_coordinate_rate(const Tree *tree, const TreeState *state, int joint);
