@@ -313,8 +313,8 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
         set_number(setting, heading(linkage, joint));
         break;
     case SCHEMA_PROFILE:
-        if (joint->stop.cam > 0) {
-            const Profile *profile = linkage_profile(linkage, joint);
+        if (*(const size_t *)field > 0) {
+            const Profile *profile = &linkage->profiles[*(const size_t *)field - 1];
             set_points(setting, profile->count, profile->angles, profile->radii, "rad", "m");
         }
         break;

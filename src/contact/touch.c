@@ -3,7 +3,6 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
-#include "model/mesh.h"
 
 #include <stdlib.h>
 
@@ -104,8 +103,8 @@ static size_t place_ends(const Joint *joint, int number, Touch places[TOUCH_CORN
         end->sign = sign;
         end->direction = joint->direction;
         end->clearance = sign * ends[i];
-        end->radius_a = mesh_slant(&joint->gear) * joint->gear.radius_a;
-        end->radius_b = mesh_slant(&joint->gear) * joint->gear.radius_b;
+        end->radius_a = joint->gear.radius_a;
+        end->radius_b = joint->gear.radius_b;
     }
     return count;
 }
@@ -180,7 +179,7 @@ TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 lin
         break;
     case TOUCH_HOLE:
     case TOUCH_CAM:  // touch_pose_on_cam has it
-    case TOUCH_TURN: // pose_of_end has these
+    case TOUCH_TURN: // pose_of_end and pose_of_flank have these
     case TOUCH_TEETH:
     case TOUCH_RACK:
         break;
@@ -209,38 +208,6 @@ TouchPose touch_pose_on_cam(const Touch *place, Vec2 zero, Vec2 facing, Vec2 off
     };
 }
 
-// Along what an end pushes on body b; zero of an angle.
-static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion *motions)
-{
-    switch (place->shape) {
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        return coordinate_along_teeth(linkage, motions, place->joint, place->sign);
-    case TOUCH_TURN:
-    case TOUCH_HOLE: // which are no ends
-    case TOUCH_DISC:
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-        break;
-    }
-    return (Vec2){0.0, 0.0};
-}
-
-// An angle or teeth at one end.
-static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const Motion *motions,
-                             Vec2 offset, Vec2 velocity)
-{
-    const int joint = place->joint;
-    return (TouchPose){
-        .offset = offset,
-        .velocity = velocity,
-        .gap = coordinate_gap(linkage, motions, joint, place->sign, place->clearance),
-        .has_normal = true,
-        .normal = push_of_end(linkage, place, motions),
-        .approach_speed = -coordinate_gap_rate(linkage, motions, joint, place->sign),
-    };
-}
-
 // How a body is turned, rad, and how fast it turns, rad/s.
 static double angle_of(const Motion *motions, int body)
 {
@@ -250,6 +217,44 @@ static double angle_of(const Motion *motions, int body)
 static double omega_of(const Motion *motions, int body)
 {
     return body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
+}
+
+// An angle, or a rack's teeth, at one end.
+static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const Motion *motions,
+                             Vec2 offset, Vec2 velocity)
+{
+    const double sign = place->sign;
+    const bool is_rack = joint_has_rack(linkage->joints[place->joint].kind);
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = sign * coordinate_position(linkage, motions, place->joint) - place->clearance,
+        .has_normal = true,
+        .normal = is_rack ? vec2_scale(sign, joint_rows_along(linkage, motions, place->joint))
+                          : (Vec2){0.0, 0.0},
+        .approach_speed = -sign * coordinate_rate(linkage, motions, place->joint),
+    };
+}
+
+// A flank of a pair of gears.
+static TouchPose pose_of_flank(const Linkage *linkage, const Touch *place, const Motion *motions,
+                               Vec2 offset, Vec2 velocity)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const Mesh mesh = mesh_of(linkage, joint);
+    const MeshFlank flank = coordinate_flank(linkage, motions, place->joint, place->sign);
+    const double position = coordinate_position(linkage, motions, place->joint);
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = mesh_gap(&mesh, &flank, place->sign * position - place->clearance,
+                        vec2_length(offset) - mesh_distance(&joint->gear)),
+        .has_normal = true,
+        .normal = flank.normal,
+        .approach_speed = -mesh_rate(&flank, velocity, omega_of(motions, joint->body_a),
+                                     omega_of(motions, joint->body_b)),
+        .from_b = flank.from_b,
+    };
 }
 
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions)
@@ -265,9 +270,10 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
     Vec2 line = {0.0, 0.0};
     switch (place->shape) {
     case TOUCH_TURN:
-    case TOUCH_TEETH:
     case TOUCH_RACK:
         return pose_of_end(linkage, place, motions, offset, velocity);
+    case TOUCH_TEETH:
+        return pose_of_flank(linkage, place, motions, offset, velocity);
     case TOUCH_CAM:
         return touch_pose_on_cam(
             place, vec2_rotate(angle + place->direction, x),
@@ -294,13 +300,7 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
         *from_a = vec2_scale(place->radius_a, pose->normal);
         *from_b = vec2_sub(*from_a, pose->offset);
         break;
-    case TOUCH_TEETH: {
-        // where the line of action meets that of the centres
-        const double share = place->radius_a / (place->radius_a + place->radius_b);
-        *from_a = vec2_scale(share, pose->offset);
-        *from_b = vec2_sub(*from_a, pose->offset);
-        break;
-    }
+    case TOUCH_TEETH:
     case TOUCH_CAM:
         *from_b = pose->from_b;
         *from_a = vec2_add(pose->offset, *from_b);

@@ -48,7 +48,7 @@ typedef struct Touch {
                       // pitch line
     double clearance; // m, or rad at a turn: c above
     double sign;      // s above; 0 of other shapes
-    double radius_a;  // m, of hole, disc or base circle; 0 of a line, infinite of a rack
+    double radius_a;  // m, of hole or disc; 0 of a line, infinite of a rack
     double radius_b;  // m; of a pinion of its pitch circle
     Cam cam;          // of a cam
     ForceLaw law;     // of this place alone
@@ -63,7 +63,7 @@ typedef struct TouchPose {
     Vec2 normal;           // unit: direction of the force on body b; zero at a turn and without
                            // a normal
     double approach_speed; // m/s, rate of the penetration; without a normal the relative speed
-    Vec2 from_b;           // m, of a cam: from anchor b to where they touch
+    Vec2 from_b;           // m, of a cam and of gears: from anchor b to where they touch
 } TouchPose;
 
 // Whether the gap of a place is a coordinate by itself, whose rate is the first of the place's rows

@@ -11,8 +11,6 @@
 // there.
 #include "model/coordinate.h"
 
-#include "model/mesh.h"
-
 #include <math.h>
 
 double coordinate_low(const Joint *joint)
@@ -104,36 +102,12 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
     return coordinate_sense(of) * (b - a);
 }
 
-double coordinate_gap(const Linkage *linkage, const Motion *motions, int joint, double sign,
-                      double end)
-{
-    const double gap = sign * coordinate_position(linkage, motions, joint) - end;
-    const Joint *of = &linkage->joints[joint];
-    if (!joint_has_mesh(of->kind)) {
-        return gap;
-    }
-    const Vec2 between = linkage_joint_gap(linkage, motions, joint).position;
-    return mesh_slant(&of->gear) * gap +
-           mesh_spread(&of->gear, vec2_length(between) - mesh_distance(&of->gear));
-}
-
-double coordinate_gap_rate(const Linkage *linkage, const Motion *motions, int joint, double sign)
+MeshFlank coordinate_flank(const Linkage *linkage, const Motion *motions, int joint, double sign)
 {
     const Joint *of = &linkage->joints[joint];
-    if (!joint_has_mesh(of->kind)) {
-        return sign * coordinate_rate(linkage, motions, joint);
-    }
-    const JointGap gap = linkage_joint_gap(linkage, motions, joint);
-    return mesh_gap_rate(&of->gear, sign, gap.position, gap.velocity, omega_of(motions, of->body_a),
-                         omega_of(motions, of->body_b));
-}
-
-Vec2 coordinate_along_teeth(const Linkage *linkage, const Motion *motions, int joint, double sign)
-{
-    const Joint *of = &linkage->joints[joint];
-    return joint_has_mesh(of->kind)
-               ? mesh_normal(&of->gear, sign, linkage_joint_gap(linkage, motions, joint).position)
-               : vec2_scale(sign, joint_rows_along(linkage, motions, joint));
+    const Mesh mesh = mesh_of(linkage, of);
+    return mesh_flank(&mesh, sign, linkage_joint_gap(linkage, motions, joint).position,
+                      angle_of(motions, of->body_a), angle_of(motions, of->body_b));
 }
 
 // A force along a direction at a point of both bodies.
@@ -166,15 +140,13 @@ void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, do
                 linkage_point(motions, of->body_b, of->anchor_b), row);
         break;
     case JOINT_COORDINATE_TEETH: {
-        const Vec2 along = coordinate_along_teeth(linkage, motions, joint, sign);
-        const Vec2 centre = linkage_point(motions, of->body_a, of->anchor_a);
-        const Vec2 between = linkage_joint_gap(linkage, motions, joint).position;
-        const double share = of->gear.radius_a / mesh_distance(&of->gear);
-        push_at(linkage, motions, joint, along, vec2_add(centre, vec2_scale(share, between)), row);
+        const MeshFlank flank = coordinate_flank(linkage, motions, joint, sign);
+        const Vec2 centre = linkage_point(motions, of->body_b, of->anchor_b);
+        push_at(linkage, motions, joint, flank.normal, vec2_add(centre, flank.from_b), row);
         break;
     }
     case JOINT_COORDINATE_RACK: {
-        const Vec2 along = coordinate_along_teeth(linkage, motions, joint, sign);
+        const Vec2 along = vec2_scale(sign, joint_rows_along(linkage, motions, joint));
         const Vec2 centre = linkage_point(motions, of->body_b, of->anchor_b);
         const Vec2 inward = vec2_scale(-sign * of->gear.radius_b, vec2_perp(along));
         push_at(linkage, motions, joint, along, vec2_add(centre, inward), row);

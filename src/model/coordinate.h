@@ -7,6 +7,7 @@
 #pragma once
 
 #include "model/joint_rows.h"
+#include "model/mesh.h"
 
 // The values between which the coordinate is free.
 double coordinate_low(const Joint *joint);
@@ -26,15 +27,9 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
 // body a: -1 where b is the ground.
 double coordinate_sense(const Joint *joint);
 
-// How far the coordinate is from an end with a sign, 1 of the low and -1 of the high one, that
-// stands at an end value times the sign; of gears along their line of action. Its rate likewise.
-double coordinate_gap(const Linkage *linkage, const Motion *motions, int joint, double sign,
-                      double end);
-double coordinate_gap_rate(const Linkage *linkage, const Motion *motions, int joint, double sign);
-
-// The direction in which the flank with a sign pushes the teeth of body b, unit: of gears along
-// the line of action, of a rack along its pitch line.
-Vec2 coordinate_along_teeth(const Linkage *linkage, const Motion *motions, int joint, double sign);
+// The flank of a pair of gears with a sign, 1 at the low end of the coordinate and -1 at the high
+// one.
+MeshFlank coordinate_flank(const Linkage *linkage, const Motion *motions, int joint, double sign);
 
 // What the rate of the gap to an end is made of. A push there acts on the bodies with the same
 // coefficients: on a hinge torques, between gears forces on the line of action where it meets that

@@ -133,6 +133,11 @@ typedef struct Gear {
     double radius_b;        // m
     double pressure_angle;  // rad, of gears, where the pitch circles touch; 0: they push along
                             // the pitch circles' tangent
+    size_t error;           // of gears: which of the linkage's profiles is the transmission error,
+                            // counted from 1; 0: none
+    size_t relief;          // and which the relief of both flanks
+    size_t repeats;         // how often they come in a turn of the first gear; 0: once
+    double zero;            // rad: what their angle counts from
     bool is_backlash_angle; // until then: whether Limits.backlash is an angle of body b, rad
     bool is_start_angle;    // likewise Limits.start
 } Gear;
@@ -261,7 +266,7 @@ typedef struct Linkage {
     size_t further_count;
     Driver *further; // drives beside it, at other joints
     size_t profile_count;
-    Profile *profiles; // of cams
+    Profile *profiles; // of cams and gears
     Torque torque;     // instead of a driver
 } Linkage;
 
@@ -284,6 +289,12 @@ Linkage linkage_copy(const Linkage *linkage);
 
 // Frees the arrays; the linkage is then empty.
 void linkage_free(Linkage *linkage);
+
+// Whether something of a pair of gears changes with how they are turned.
+static inline bool linkage_has_teeth_tables(const Joint *joint)
+{
+    return joint->gear.error > 0 || joint->gear.relief > 0;
+}
 
 // The profile of a cam; NULL of other joints.
 static inline const Profile *linkage_profile(const Linkage *linkage, const Joint *joint)

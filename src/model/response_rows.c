@@ -13,7 +13,6 @@
 #include "model/response_rows.h"
 
 #include "model/coordinate.h"
-#include "model/mesh.h"
 
 static bool is_fixed(const Linkage *linkage, int body)
 {
@@ -296,9 +295,11 @@ static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
     gamma[1] = 0.0;
     switch (joint_coordinate(joint->kind)) {
     case JOINT_COORDINATE_TEETH: {
-        const JointGap gap = linkage_joint_gap(linkage, motions, place->joint);
-        gamma[0] = mesh_gap_rate(&joint->gear, place->sign, gap.position, relative, a, b) +
-                   mesh_bend(&joint->gear, place->sign, gap.position, gap.velocity);
+        const MeshFlank flank = coordinate_flank(linkage, motions, place->joint, place->sign);
+        const Vec2 velocity = linkage_joint_gap(linkage, motions, place->joint).velocity;
+        gamma[0] = mesh_rate(&flank, relative, a, b) + mesh_bend(&flank, velocity,
+                                                                 omega_of(joint->body_a, motions),
+                                                                 omega_of(joint->body_b, motions));
         break;
     }
     case JOINT_COORDINATE_RACK:

@@ -111,6 +111,36 @@ static void write_pivot(GearCase *gears, size_t number, FILE *file)
     fprintf(file, "}\n");
 }
 
+static void write_table(GearCase *gears, const char *key, bool is_of_teeth, int repeats, FILE *file)
+{
+    Draw *draw = &gears->draw;
+    const int points = 6 + (int)draw_below(draw, 5);
+    const double size = gears->module * draw_log_between(draw, 1e-3, is_of_teeth ? 0.01 : 0.05);
+    const double phase = draw_between(draw, -M_PI, M_PI);
+    fprintf(file, ",\n    %s: [", key);
+    for (int i = 0; i < points; i++) {
+        const double angle = 2.0 * M_PI * i / points;
+        fprintf(file, "%s[%.12g deg, %.6g um]", i == 0 ? "" : ", ", 360.0 * i / points / repeats,
+                1e6 * size * (sin(angle + phase) + 0.3 * sin(2.0 * angle)));
+    }
+    fprintf(file, "]");
+}
+
+// Of the whole gear, or from tooth to tooth.
+static void write_tables(GearCase *gears, size_t number, FILE *file)
+{
+    const bool is_of_teeth = draw_chance(&gears->draw, 0.6);
+    const bool has_relief = draw_chance(&gears->draw, 0.5);
+    const int repeats = is_of_teeth ? abs(gears->teeth[number]) : 1;
+    fprintf(file, ", repeats: %d", repeats);
+    if (has_relief) {
+        write_table(gears, "relief", is_of_teeth, repeats, file);
+    }
+    if (!has_relief || draw_chance(&gears->draw, 0.7)) {
+        write_table(gears, "transmission-error", is_of_teeth, repeats, file);
+    }
+}
+
 static void write_meshes(GearCase *gears, FILE *file)
 {
     static const double ANGLES[] = {14.5, 20.0, 25.0};
@@ -125,6 +155,9 @@ static void write_meshes(GearCase *gears, FILE *file)
                 i, i, i + 1, gears->teeth[i], gears->teeth[i + 1], angle,
                 1e3 * gears->module * draw_log_between(draw, 0.05, 0.3));
         write_stiffness(draw, before * after / (before + after), file);
+        if (draw_chance(draw, 0.5)) {
+            write_tables(gears, i, file);
+        }
         fprintf(file, "}\n");
     }
 }

@@ -362,6 +362,7 @@ typedef struct Pose {
     Vec at[2];    // from the centres
     Vec apart;    // from anchor a to anchor b
     Real sliding; // m/s
+    Real lever;   // m: of gears, by what the force twists gear b beside its moment, and gear a back
 } Pose;
 
 static Real coordinate_of(const Plane *plane, View view, const Touch *place, bool is_rate)
@@ -527,6 +528,29 @@ static void place_force(const Touch *place, const Ends *ends, Pose *pose)
     pose->at[1] = vec_add(ends->arm[1], vec_sub(from_a, ends->apart));
 }
 
+// How far a flank stands out by the tables of its gears, and the lever of what that changes.
+static Real stand_out(const Plane *plane, View view, const Touch *place, Pose *pose)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Gear *gear = &joint->gear;
+    const Real share = gear->radius_b / ((Real)gear->radius_a + gear->radius_b);
+    // the angle of gear a against the line of the centres, taken from both gears
+    const Real turned =
+        share * (angle_of(view, joint->body_a) - angle_of(view, joint->body_b)) - gear->zero;
+    const size_t tables[2] = {gear->error, gear->relief};
+    Real out_by = 0.0L;
+    for (int i = 0; i < 2; i++) {
+        if (tables[i] > 0) {
+            const ProfileAt at =
+                profile_at(&plane->linkage->profiles[tables[i] - 1], (double)turned);
+            const Real factor = i == 0 ? place->sign : -1.0L;
+            out_by += factor * at.r;
+            pose->lever += factor * share * at.r1;
+        }
+    }
+    return out_by;
+}
+
 // How far the string between the base circles of two gears is from being unwound: the flanks are
 // involutes, so that along the line of action, the common tangent of the circles, each reaches as
 // far as its circle has unwound to the point where the tangent leaves it.
@@ -551,12 +575,14 @@ static void meet_teeth(const Plane *plane, View view, const Touch *place, const 
     const Real placed = out * pitch * sinl(alpha) + around * (0.5L * acosl(-1.0L) - out * alpha);
     const Real gap = vec_dot(pose->normal, ends->apart) * (out == 0.0L ? 0.0L : 1.0L) -
                      place->sign * unwound - placed - place->clearance * cosl(alpha);
+    const Real out_by = stand_out(plane, view, place, pose);
     // of whole turns the one at which the gap's middle is nearest
     const Real middle = (place->sign * joint->limits.middle - place->clearance) * cosl(alpha);
-    pose->gap.depth = -(middle + remainderl(gap - middle, 2.0L * acosl(-1.0L) * around));
+    pose->gap.depth = out_by - (middle + remainderl(gap - middle, 2.0L * acosl(-1.0L) * around));
     pose->gap.closing =
         -vec_dot(pose->normal, vec_sub(velocity_of(view, joint->body_b, pose->at[1]),
-                                       velocity_of(view, joint->body_a, pose->at[0])));
+                                       velocity_of(view, joint->body_a, pose->at[0]))) +
+        pose->lever * (omega_of(view, joint->body_a) - omega_of(view, joint->body_b));
 }
 
 static Pose pose_of(const Plane *plane, View view, const Touch *place)
@@ -661,6 +687,11 @@ static void add_contacts(const Plane *plane, View view, Real *accelerations)
             rolls ? 0.0L
                   : options->friction * force * tanhl(pose.sliding / options->friction_speed);
         const Joint *joint = &plane->linkage->joints[place->joint];
+        if (place->shape == TOUCH_TEETH) {
+            const Vec none = {0.0L, 0.0L};
+            push(plane, joint->body_a, none, none, -pose.lever * force, accelerations);
+            push(plane, joint->body_b, none, none, pose.lever * force, accelerations);
+        }
         push_pair(plane, (const int[2]){joint->body_a, joint->body_b}, pose.at,
                   vec_sub(vec_times(force, pose.normal), vec_times(held, vec_perp(pose.normal))),
                   accelerations);

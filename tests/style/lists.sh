@@ -71,7 +71,7 @@ forget 'way to touch' model/joint.h '    JOINT_TOUCHES_DISC,' 'JOINT_TOUCHES_NEW
     commands/report/report_data.c
 forget coordinate model/joint.h '    JOINT_COORDINATE_TEETH,' 'JOINT_COORDINATE_NEW,' \
     model/coordinate.c model/response_rows.c contact/touch.c casefile/limits.c \
-    commands/run/run_text.c ode/stepping.c reference/plane/tree.c reference/plane/plane_system.c
+    commands/run/run_text.c ode/stepping.c reference/plane/tree_coordinate.c reference/plane/plane_system.c
 forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
     ode/plane/impulse_step.c ode/plane/impulse_work.c reference/plane/dynamics.c \
     reference/plane/dynamics_slopes.c

@@ -156,11 +156,12 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
 }
 
 // How fast the gap at an end grows as one of the bodies turns, m or rad per rad, but for its sign.
-static double turning_share(const Joint *joint, const Touch *place, bool is_on_a)
+static double turning_share(const Linkage *linkage, const Touch *place, const Motion *motions,
+                            bool is_on_a)
 {
     switch (place->shape) {
     case TOUCH_TEETH:
-        return -(is_on_a ? place->radius_a : place->radius_b);
+        return -coordinate_flank(linkage, motions, place->joint, place->sign).arms[is_on_a ? 0 : 1];
     case TOUCH_TURN:
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
@@ -169,18 +170,18 @@ static double turning_share(const Joint *joint, const Touch *place, bool is_on_a
     case TOUCH_RACK: // work_at_line has it
         break;
     }
-    return coordinate_sense(joint) * (is_on_a ? -1.0 : 1.0);
+    return coordinate_sense(&linkage->joints[place->joint]) * (is_on_a ? -1.0 : 1.0);
 }
 
 // Likewise of an end of an angle, or of teeth: a driven body turns about the ground.
-static double work_at_end(const ImpulseStep *step, size_t number, const Motion *driven,
-                          bool is_on_a)
+static double work_at_end(const ImpulseStep *step, size_t number, const Motion *middle,
+                          const Motion *driven, bool is_on_a)
 {
+    const Linkage *linkage = &step->scenario->linkage;
     const Touch *place = &step->places[number];
-    const Joint *joint = &step->scenario->linkage.joints[place->joint];
     const size_t row = step->kernel.contacts[number].first_row;
     const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
-    return early * place->sign * turning_share(joint, place, is_on_a) * driven->alpha;
+    return early * place->sign * turning_share(linkage, place, middle, is_on_a) * driven->alpha;
 }
 
 // The bodies at mid-step with the means of their speeds.
@@ -231,7 +232,7 @@ static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middl
             break;
         case TOUCH_TURN:
         case TOUCH_TEETH:
-            work -= work_at_end(step, i, driven, is_on_a);
+            work -= work_at_end(step, i, middle, driven, is_on_a);
             break;
         case TOUCH_HOLE:
         case TOUCH_DISC:

@@ -285,16 +285,6 @@ Vec2 pair_anchor_b(const WorldPair *pair)
     return anchor_of(pair, 1);
 }
 
-// Where gears push, on the line of their centres.
-static Vec2 pitch_point(const WorldPair *pair)
-{
-    const Vec2 centre = anchor_of(pair, 0);
-    const Touch *touch = &pair->touch;
-    const Vec2 between = vec2_sub(anchor_of(pair, 1), centre);
-    return vec2_add(centre,
-                    vec2_scale(touch->radius_a / (touch->radius_a + touch->radius_b), between));
-}
-
 Vec2 pair_point(const WorldPair *pair, Vec2 normal)
 {
     const Touch *touch = &pair->touch;
@@ -303,11 +293,10 @@ Vec2 pair_point(const WorldPair *pair, Vec2 normal)
         return vec2_sub(pair_centre(pair), vec2_scale(touch->radius_a, normal));
     case TOUCH_DISC:
         return vec2_add(anchor_of(pair, 0), vec2_scale(touch->radius_a, normal));
-    case TOUCH_TEETH:
-        return pitch_point(pair);
     case TOUCH_RACK:
         return vec2_sub(anchor_of(pair, 1),
                         vec2_scale(touch->radius_b * touch->sign, vec2_perp(normal)));
+    case TOUCH_TEETH:
     case TOUCH_CAM:
         return vec2_add(anchor_of(pair, 1), pair_pose(pair).from_b);
     case TOUCH_LINE:

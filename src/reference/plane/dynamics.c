@@ -128,38 +128,48 @@ static TouchPose pose_outside(const Tree *tree, const TreeState *state, const Pl
     return pose;
 }
 
-// A flank of a pair of gears (model/mesh.h).
-static TouchPose pose_of_teeth(const Tree *tree, const TreeState *state, const PlaneSite *site)
+static double angle_of(const TreeState *state, int body)
+{
+    return body == LINKAGE_GROUND ? 0.0 : state->motions[body].angle;
+}
+
+MeshFlank dynamics_flank(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const Mesh mesh = mesh_of(tree->linkage, &tree->linkage->joints[site->touch.joint]);
+    return mesh_flank(&mesh, site->touch.sign, tree_pair_gap(tree, state, site->pair),
+                      angle_of(state, bodies[0]), angle_of(state, bodies[1]));
+}
+
+static TouchPose pose_of_flank(const Tree *tree, const TreeState *state, const PlaneSite *site)
 {
     const int joint = site->touch.joint;
     const int *bodies = tree->end_bodies + 2 * site->pair;
-    const Gear *gear = &tree->linkage->joints[joint].gear;
-    const double sign = site->touch.sign;
-    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    const Mesh mesh = mesh_of(tree->linkage, &tree->linkage->joints[joint]);
+    const MeshFlank flank = dynamics_flank(tree, state, site);
     const Vec2 velocity = tree_pair_velocity(tree, state, site->pair);
-    const double turned = sign * tree_coordinate(tree, state, joint) - site->end;
+    const double beyond = site->touch.sign * tree_coordinate(tree, state, joint) - site->end;
     return (TouchPose){
-        .offset = offset,
+        .offset = flank.offset,
         .velocity = velocity,
-        .gap =
-            mesh_slant(gear) * turned + mesh_spread(gear, tree_distance(tree, state, site->pair)),
+        .gap = mesh_gap(&mesh, &flank, beyond, tree_distance(tree, state, site->pair)),
         .has_normal = true,
-        .normal = mesh_normal(gear, sign, offset),
-        .approach_speed = -mesh_gap_rate(gear, sign, offset, velocity, tree_omega(state, bodies[0]),
-                                         tree_omega(state, bodies[1])),
+        .normal = flank.normal,
+        .approach_speed = -mesh_rate(&flank, velocity, tree_omega(state, bodies[0]),
+                                     tree_omega(state, bodies[1])),
+        .from_b = flank.from_b,
     };
 }
 
 // The second rate of its gap.
-static double second_of_teeth(const Tree *tree, const TreeState *state, const PlaneSite *site)
+static double second_of_flank(const Tree *tree, const TreeState *state, const PlaneSite *site)
 {
     const int *bodies = tree->end_bodies + 2 * site->pair;
-    const Gear *gear = &tree->linkage->joints[site->touch.joint].gear;
-    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
-    return mesh_gap_rate(gear, site->touch.sign, offset,
-                         tree_pair_acceleration(tree, state, site->pair),
-                         tree_alpha(state, bodies[0]), tree_alpha(state, bodies[1])) +
-           mesh_bend(gear, site->touch.sign, offset, tree_pair_velocity(tree, state, site->pair));
+    const MeshFlank flank = dynamics_flank(tree, state, site);
+    return mesh_rate(&flank, tree_pair_acceleration(tree, state, site->pair),
+                     tree_alpha(state, bodies[0]), tree_alpha(state, bodies[1])) +
+           mesh_bend(&flank, tree_pair_velocity(tree, state, site->pair),
+                     tree_omega(state, bodies[0]), tree_omega(state, bodies[1]));
 }
 
 // An end of an angle, or a flank of a rack.
@@ -180,7 +190,7 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
         pose.normal = vec2_scale(sign, tree_normal(tree, state, site->pair));
         break;
     case TOUCH_TURN:
-    case TOUCH_TEETH: // pose_of_teeth has it
+    case TOUCH_TEETH: // pose_of_flank has it
     case TOUCH_HOLE:  // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
@@ -197,7 +207,7 @@ static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeSta
     case TOUCH_HOLE:
         return pose_in_hole(contact, tree, state, site->pair);
     case TOUCH_TEETH:
-        return pose_of_teeth(tree, state, site);
+        return pose_of_flank(tree, state, site);
     case TOUCH_TURN:
     case TOUCH_RACK:
         return pose_of_end(tree, state, site);
@@ -221,7 +231,7 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
     case TOUCH_CAM:
         return second_on_cam(&dynamics->tree, state, site);
     case TOUCH_TEETH:
-        return second_of_teeth(&dynamics->tree, state, site);
+        return second_of_flank(&dynamics->tree, state, site);
     case TOUCH_TURN:
     case TOUCH_RACK:
         return site->touch.sign * tree_coordinate_second(&dynamics->tree, state, site->touch.joint);

@@ -102,6 +102,9 @@ static inline void dynamics_contact_points(const PlaneSite *site, const TouchPos
 // A follower at the profile of a cam.
 CamPose dynamics_cam(const Tree *tree, const TreeState *state, const PlaneSite *site);
 
+// A flank of a pair of gears.
+MeshFlank dynamics_flank(const Tree *tree, const TreeState *state, const PlaneSite *site);
+
 // Whether a contact's gap is that of an angle or of teeth.
 static inline bool dynamics_contact_is_turn(const PlaneSite *site)
 {

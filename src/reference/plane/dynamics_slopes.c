@@ -14,7 +14,6 @@
 // dA = -M^-1 w ((1 + chi d'/v0) k w dq + (chi F_el / v0 + c) w du).
 #include "reference/plane/dynamics.h"
 
-#include "model/mesh.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 
@@ -361,14 +360,18 @@ static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *st
     Loads loads = {.pushes = dynamics->room.zeros};
     dynamics_contact_find(dynamics, number, state, &force);
     const Joint *joint = &tree->linkage->joints[contact->joint];
-    const double slant = mesh_slant(&joint->gear); // 1 of all but gears
     tree_coordinate_parts(joint, parts);
+    if (joint_has_mesh(joint->kind)) {
+        const MeshFlank flank = dynamics_flank(tree, state, &dynamics->sites[number]);
+        parts[0].share = -flank.arms[0];
+        parts[1].share = -flank.arms[1];
+    }
     slopes_clear(dynamics, coupled);
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
         const int body = parts[i].body;
-        dynamics_load_couple(tree, state, body, slant * parts[i].share, &loads);
+        dynamics_load_couple(tree, state, body, parts[i].share, &loads);
         if (body != LINKAGE_GROUND && tree->angle_column[body] >= 0) {
-            dynamics->room.arms[tree->angle_column[body]] += slant * parts[i].share;
+            dynamics->room.arms[tree->angle_column[body]] += parts[i].share;
         }
     }
     if (joint_has_teeth(joint->kind)) {
