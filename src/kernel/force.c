@@ -30,6 +30,7 @@
 //     N' = k (1 + chi d' / v0) d' + (chi F_el / v0 + c) d''
 //     v_t' = t . a + t' . v + R w_a' - (R - |e|) w_b' + d' w_b,   H' = mu (N tanh(v_t / v_s))'
 // of the friction of a pin in space H_t and H_z likewise, with their share phi of the sliding.
+#include "kernel/friction_law.h"
 #include "kernel/internal.h"
 
 #include <math.h>
@@ -74,7 +75,7 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
     const size_t row = of->first_row;
     if (of->shape == KERNEL_LINE) {
         const double taken =
-            of->law.friction * normal * kernel_friction_hold(speed[1], of->law.friction_speed).held;
+            of->law.friction * normal * friction_hold(speed[1], of->law.friction_speed).held;
         force[row + 1] -= taken;
         return taken * speed[1];
     }
@@ -85,14 +86,13 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
     double held;
     double power;
     if (of->row_count < KERNEL_ROWS_MOST) {
-        held =
-            of->law.friction * normal * kernel_friction_hold(sliding, of->law.friction_speed).held;
+        held = of->law.friction * normal * friction_hold(sliding, of->law.friction_speed).held;
         power = held * sliding;
     } else {
         const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
         const double size = hypot(sliding, axial);
         const double grip =
-            of->law.friction * normal * kernel_friction_grip(size, of->law.friction_speed).share;
+            of->law.friction * normal * friction_grip(size, of->law.friction_speed).share;
         const double along = grip * axial;
         held = grip * sliding;
         power = grip * size * size;
@@ -324,7 +324,7 @@ static void find_both(const KernelContact *contact, double round, const Gradient
                       double axial, const Gradient *by_axial, double normal,
                       const Gradient *by_normal, FrictionRows *held)
 {
-    const KernelGrip grip = kernel_friction_grip(hypot(round, axial), contact->law.friction_speed);
+    const FrictionGrip grip = friction_grip(hypot(round, axial), contact->law.friction_speed);
     const double share = grip.share;
     for (size_t k = 0; k < PARTS; k++) {
         const double growth = grip.bend * (round * by_round->of[k] + axial * by_axial->of[k]);
@@ -370,7 +370,7 @@ static void find_friction(const KernelContact *contact, const PinHole *pose, con
         find_both(contact, sliding, &by_sliding, axial, &by_axial, normal, by_normal, held);
         return;
     }
-    const KernelHold hold = kernel_friction_hold(sliding, contact->law.friction_speed);
+    const FrictionHold hold = friction_hold(sliding, contact->law.friction_speed);
     for (size_t k = 0; k < PARTS; k++) {
         held->by_round.of[k] = contact->law.friction * (hold.held * by_normal->of[k] +
                                                         normal * hold.slope * by_sliding.of[k]);
@@ -491,7 +491,7 @@ static inline Rated rated_scale(double factor, Rated a)
 // The share of mu N that is held against a sliding.
 static inline Rated rated_hold(Rated sliding, double speed)
 {
-    const KernelHold hold = kernel_friction_hold(sliding.value, speed);
+    const FrictionHold hold = friction_hold(sliding.value, speed);
     return (Rated){hold.held, hold.slope * sliding.rate};
 }
 
@@ -533,8 +533,8 @@ static Rated rate_space_friction(MovingContact *moving, Rated round, Rated *held
     const Rated by_pin =
         rated_times(moving->pin_arm, rows_along(moving, moving->tangent, KERNEL_ROW_PIN));
     const Rated axial = rated_plus(moving->speed[KERNEL_ROW_AXIAL], rated_plus(by_hole, by_pin));
-    const KernelGrip found =
-        kernel_friction_grip(hypot(round.value, axial.value), moving->contact->law.friction_speed);
+    const FrictionGrip found =
+        friction_grip(hypot(round.value, axial.value), moving->contact->law.friction_speed);
     const Rated share = {found.share,
                          found.bend * (round.value * round.rate + axial.value * axial.rate)};
     const Rated grip =

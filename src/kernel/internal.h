@@ -44,44 +44,6 @@ static inline KernelNodeRow kernel_quintic(KernelNodeRow first, KernelNodeRow la
     };
 }
 
-// Coulomb's friction, smooth through rest: how much of mu N a contact holds against its sliding,
-// with the derivatives.
-//
-// With v the sliding speed and v_s that at which friction takes hold
-//     along a line    tanh(v / v_s),          by v: (1 - tanh^2) / v_s
-//     in a plane      phi(s) (v_x, v_y),      phi = tanh(s / v_s) / s,  s = |(v_x, v_y)|
-//     d phi = phi' / s (v_x dv_x + v_y dv_y), phi' / s = ((1 - tanh^2) / v_s - phi) / s^2
-// and near rest by the series phi = 1 / v_s - s^2 / (3 v_s^3).
-
-// of v_s: sliding below which differences of the closed form would be rounding
-static const double KERNEL_FRICTION_SERIES_BELOW = 1e-4;
-
-typedef struct KernelHold {
-    double held;  // 1
-    double slope; // s/m
-} KernelHold;
-
-static inline KernelHold kernel_friction_hold(double sliding, double speed)
-{
-    const double held = tanh(sliding / speed);
-    return (KernelHold){held, (1.0 - held * held) / speed};
-}
-
-typedef struct KernelGrip {
-    double share; // s/m: phi
-    double bend;  // s^3/m^3: phi' / s
-} KernelGrip;
-
-static inline KernelGrip kernel_friction_grip(double size, double speed)
-{
-    if (size < KERNEL_FRICTION_SERIES_BELOW * speed) {
-        return (KernelGrip){1.0 / speed, -2.0 / (3.0 * speed * speed * speed)};
-    }
-    const KernelHold hold = kernel_friction_hold(size, speed);
-    const double share = hold.held / size;
-    return (KernelGrip){share, (hold.slope - share) / (size * size)};
-}
-
 // What one contact of a kernel did in a step, for kernels whose contacts it moves: its impulses,
 // their integrals and its forces over time, between the nodes as kernel/run.c has it.
 

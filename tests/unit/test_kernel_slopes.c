@@ -2,6 +2,7 @@
 #include "close.h"
 #include "pressed_pin.h"
 
+#include "kernel/friction_law.h"
 #include "kernel/internal.h"
 
 enum { ROWS = KERNEL_ROWS_MOST };
@@ -149,15 +150,15 @@ static void friction_bends_as_it_says(void **state)
     const double speed = 5e-3;
     for (double size = 1e-6 * speed; size < 10.0 * speed; size *= 1.9) {
         const double nudge = 1e-3 * fmax(size, 1e-2 * speed);
-        const KernelHold hold = kernel_friction_hold(size, speed);
-        const double rise = kernel_friction_hold(size + nudge, speed).held -
-                            kernel_friction_hold(size - nudge, speed).held;
+        const FrictionHold hold = friction_hold(size, speed);
+        const double rise = friction_hold(size + nudge, speed).held -
+                            friction_hold(size - nudge, speed).held;
         assert_near(hold.slope, rise / (2.0 * nudge), 1e-5 / speed);
-        const KernelGrip grip = kernel_friction_grip(size, speed);
-        assert_close(grip.share * size, hold.held, 1e-8);
+        const FrictionGrip grip = friction_grip(size, speed);
+        assert_close(grip.share * size, hold.held, 1e-15);
         const double own_nudge = 1e-3 * size;
-        const double bent = kernel_friction_grip(size + own_nudge, speed).share -
-                            kernel_friction_grip(size - own_nudge, speed).share;
+        const double bent = friction_grip(size + own_nudge, speed).share -
+                            friction_grip(size - own_nudge, speed).share;
         // where the closed form's difference is more than rounding
         if (size > 0.1 * speed) {
             assert_close(grip.bend * size, bent / (2.0 * own_nudge), 1e-4);

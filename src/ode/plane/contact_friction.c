@@ -17,6 +17,7 @@
 #include "ode/plane/contact_friction.h"
 
 #include "base/zeroed.h"
+#include "kernel/friction_law.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -163,7 +164,7 @@ static double find_force(const System *system, size_t row, double drift)
     double force = fmax(low, fmin(system->forces[2 * row + 1], high));
     for (int i = 0; i < ROOT_STEPS_MAX; i++) {
         share->mean = share->theta * (drift + mobility * force) + before;
-        const double held = tanh(share->mean / speed);
+        const double held = friction_hold(share->mean, speed).held;
         const double missing = force + most * held;
         *(missing > 0.0 ? &high : &low) = force;
         double next = force - missing / (1.0 + share->theta * stiffness * (1.0 - held * held));
@@ -267,7 +268,7 @@ static void linearise_force(const System *system, size_t number, FrictionRow *ro
     const Share *share = &system->shares[number];
     const double speed = row->friction_speed;
     const double most = row->friction * system->forces[2 * number];
-    const double held = tanh(share->mean / speed);
+    const double held = friction_hold(share->mean, speed).held;
     const double slope = 1.0 - held * held;
     if (slope > FLAT && most > 0.0) {
         const double reach = speed / (share->theta * slope);

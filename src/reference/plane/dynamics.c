@@ -9,6 +9,7 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "kernel/friction_law.h"
 #include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "model/forces.h"
@@ -45,7 +46,8 @@ static void dynamics_add_friction(const Dynamics *dynamics, size_t number, const
         vec2_sub(dynamics_contact_velocity(&dynamics->tree, state, end + 1, from_b),
                  dynamics_contact_velocity(&dynamics->tree, state, end, from_a));
     const double speed = vec2_dot(tangent, sliding);
-    const double friction = law->friction * force->press.normal * tanh(speed / law->friction_speed);
+    const double held = friction_hold(speed, law->friction_speed).held;
+    const double friction = law->friction * force->press.normal * held;
     force->force = vec2_sub(force->force, vec2_scale(friction, tangent));
     force->press.friction_power = friction * speed;
 }

@@ -14,6 +14,7 @@
 // dA = -M^-1 w ((1 + chi d'/v0) k w dq + (chi F_el / v0 + c) w du).
 #include "reference/plane/dynamics.h"
 
+#include "kernel/friction_law.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 
@@ -78,7 +79,7 @@ static void find_friction(const Dynamics *dynamics, const TreeState *state, int 
             pressing->arms[tree->angle_column[body]] += arm;
         }
     }
-    pressing->grip = tanh(sliding / pressing->law->friction_speed);
+    pressing->grip = friction_hold(sliding, pressing->law->friction_speed).held;
 }
 
 // Zeroes what is found for each coordinate of some parts.
