@@ -108,6 +108,11 @@ static double flight_time(const Kernel *kernel, size_t contact, const KernelPoin
         kernel_motion_speed(kernel, of->first_row, from->time_s, from->impulse, from->moment),
         kernel_motion_speed(kernel, of->first_row + 1, from->time_s, from->impulse, from->moment),
     };
+    if (of->shape == KERNEL_SLOT) {
+        const SlotFlight flight = {kernel_motion_position(kernel, contact, from), v, a,
+                                   of->half_length, vec2_length(e)};
+        return kernel_slot_return(&flight, left_s);
+    }
     const double sign = of->radial_clearance < 0.0 ? -1.0 : 1.0;
     const Cubic cubic = {{
         2.0 * sign * vec2_dot(e, v),

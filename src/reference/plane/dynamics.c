@@ -113,6 +113,93 @@ static double second_on_cam(const Tree *tree, const TreeState *state, const Plan
            cam_bend(&site->touch.cam, &pose, omegas[0], omegas[1], sliding);
 }
 
+// A pin in a slot: which of its walls it meets, and how. The straight ones are lines, with the digits
+// of the way since the base; the ends are holes.
+
+int dynamics_contact_pair(const Tree *tree, const PlaneSite *site, ContactWall wall)
+{
+    switch (wall) {
+    case WALL_LOW:
+        return tree->corners[site->touch.joint];
+    case WALL_HIGH:
+        return tree->corners[site->touch.joint] + 1;
+    case WALL_NEAREST:
+    case WALL_BEHIND:
+    case WALL_AHEAD:
+        break;
+    }
+    return site->pair;
+}
+
+WallPlace dynamics_wall(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                        const Contact *contact)
+{
+    const double half = site->touch.half_length;
+    const Vec2 across = tree_normal(tree, state, site->pair);
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    const TouchSlot slot =
+        touch_in_slot(offset, tree_pair_velocity(tree, state, site->pair), across,
+                      tree_omega(state, tree->end_bodies[2 * site->pair]));
+    const double ahead = slot.position.y;
+    const ContactWall end = ahead > 0.0 ? WALL_HIGH : WALL_LOW;
+    const ContactWall side =
+        tree_distance(tree, state, site->pair) > 0.0 ? WALL_AHEAD : WALL_BEHIND;
+    const double outward = ahead > 0.0 ? slot.rate.y : -slot.rate.y;
+    WallPlace place = {.wall = contact->wall};
+    if (place.wall == WALL_NEAREST) {
+        place.wall = fabs(ahead) > half ? end : side;
+    }
+    switch (place.wall) {
+    case WALL_LOW:
+        place.next = side;
+        place.within = -ahead - half;
+        place.leaving = slot.rate.y;
+        break;
+    case WALL_HIGH:
+        place.next = side;
+        place.within = ahead - half;
+        place.leaving = -slot.rate.y;
+        break;
+    case WALL_NEAREST:
+    case WALL_BEHIND:
+    case WALL_AHEAD:
+        place.next = end;
+        place.within = half - fabs(ahead);
+        place.leaving = outward;
+        break;
+    }
+    return place;
+}
+
+static TouchPose pose_in_slot(const Contact *contact, const Tree *tree, const TreeState *state,
+                              const PlaneSite *site)
+{
+    const Vec2 across = tree_normal(tree, state, site->pair);
+    const Vec2 along = vec2_perp(across);
+    const ContactWall wall = dynamics_wall(tree, state, site, contact).wall;
+    const int pair = dynamics_contact_pair(tree, site, wall);
+    TouchPose pose = {
+        .offset = tree_pair_gap(tree, state, site->pair),
+        .velocity = tree_pair_velocity(tree, state, site->pair),
+        .has_normal = true,
+    };
+    if (pair != site->pair) {
+        const TouchPose end = pose_in_hole(contact, tree, state, pair);
+        pose.gap = end.gap;
+        pose.has_normal = end.has_normal;
+        pose.normal = end.normal;
+        pose.approach_speed = end.approach_speed;
+        pose.middle = vec2_sub(pose.offset, end.offset);
+        return pose;
+    }
+    const double side = wall == WALL_AHEAD ? 1.0 : -1.0;
+    pose.gap = contact->clearance - side * tree_distance(tree, state, pair);
+    pose.normal = vec2_scale(-side, across);
+    pose.approach_speed = side * tree_line_rate(tree, state, pair);
+    pose.middle = vec2_scale(vec2_dot(along, pose.offset), along);
+    return pose;
+}
+
 // A point or disc on body b against a line of body a, or a disc against a disc. The gap has the
 // digits of the way since the base.
 static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlaneSite *site)
@@ -152,6 +239,7 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
     case TOUCH_DISC:
     case TOUCH_LINE:
     case TOUCH_CAM:
+    case TOUCH_SLOT:
         break;
     }
     return pose;
@@ -169,11 +257,37 @@ static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeSta
         return pose_of_end(tree, state, site);
     case TOUCH_CAM:
         return pose_on_cam(tree, state, site);
+    case TOUCH_SLOT:
+        return pose_in_slot(contact, tree, state, site);
     case TOUCH_DISC:
     case TOUCH_LINE:
         break;
     }
     return pose_outside(tree, state, site);
+}
+
+// The second rate of the gap between two circles, of which the pair of the tree has the centres.
+static double second_of_circles(const Tree *tree, const TreeState *state, int pair, Vec2 normal,
+                                bool is_inside)
+{
+    const double across = vec2_cross(normal, tree_pair_velocity(tree, state, pair));
+    const Vec2 offset = tree_pair_gap(tree, state, pair);
+    const double turning = across * across / sqrt(vec2_dot(offset, offset));
+    return vec2_dot(normal, tree_pair_acceleration(tree, state, pair)) +
+           (is_inside ? -turning : turning);
+}
+
+static double second_in_slot(const Dynamics *dynamics, size_t number, const TreeState *state,
+                             const TouchPose *pose)
+{
+    const Tree *tree = &dynamics->tree;
+    const PlaneSite *site = &dynamics->sites[number];
+    const ContactWall wall = dynamics_wall(tree, state, site, &dynamics->system.contacts[number]).wall;
+    const int pair = dynamics_contact_pair(tree, site, wall);
+    if (pair != site->pair) {
+        return second_of_circles(tree, state, pair, pose->normal, true);
+    }
+    return (wall == WALL_AHEAD ? -1.0 : 1.0) * tree_line_second(tree, state, pair);
 }
 
 double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
@@ -186,6 +300,8 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
         return tree_line_second(&dynamics->tree, state, site->pair);
     case TOUCH_CAM:
         return second_on_cam(&dynamics->tree, state, site);
+    case TOUCH_SLOT:
+        return second_in_slot(dynamics, number, state, pose);
     case TOUCH_TURN:
     case TOUCH_TEETH:
     case TOUCH_RACK:
@@ -196,10 +312,7 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
     case TOUCH_DISC:
         break;
     }
-    const double across = vec2_cross(pose->normal, pose->velocity);
-    const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
-    return vec2_dot(pose->normal, tree_pair_acceleration(&dynamics->tree, state, site->pair)) +
-           (is_inside ? -turning : turning);
+    return second_of_circles(&dynamics->tree, state, site->pair, pose->normal, is_inside);
 }
 
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
@@ -259,6 +372,7 @@ static double flight_of(const Linkage *linkage, const double *reaches, const Tou
     case TOUCH_CAM:
         return flight_of_cam(touch->cam.profile);
     case TOUCH_DISC:
+    case TOUCH_SLOT:
         return touch->clearance;
     case TOUCH_LINE:
     case TOUCH_HOLE: // which is no stop's, nor are ends
@@ -298,6 +412,7 @@ static bool acts_beside(const Touch *touch)
     switch (touch->shape) {
     case TOUCH_LINE:
     case TOUCH_CAM:
+    case TOUCH_SLOT:
     case TOUCH_TEETH:
     case TOUCH_RACK:
         return true;
@@ -314,7 +429,8 @@ static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of
 {
     const Joint *joint = &dynamics->tree.linkage->joints[touch->joint];
     Touch sites[TOUCH_CORNERS];
-    const bool has_own = tree_own_pairs(dynamics->tree.linkage, touch->joint, sites) > 0;
+    const bool has_own = tree_own_pairs(dynamics->tree.linkage, touch->joint, sites) > 0 &&
+                         touch->shape != TOUCH_SLOT;
     return (PlaneSite){
         .touch = *touch,
         .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,
@@ -341,7 +457,10 @@ static bool dynamics_list_sites(const Scenario *scenario, Dynamics *dynamics, Er
             .place = touch->place,
             .partner = find_partner(scenario, touches, system->contact_count, i),
             .law = touch->law,
-            .clearance = linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
+            .clearance = touch->shape == TOUCH_SLOT
+                             ? touch->clearance
+                             : linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
+            .has_walls = touch->shape == TOUCH_SLOT,
             .arm = site_arm(&scenario->linkage, dynamics->reach, touch),
             .flight = flight_of(&scenario->linkage, dynamics->reach, touch),
         };
@@ -784,6 +903,16 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     ContactForce force;
     dynamics_contact_find(dynamics, contact, state, &force);
     return force;
+}
+
+WallPlace dynamics_contact_wall(const Dynamics *dynamics, size_t contact, double since_s,
+                                const double *y)
+{
+    const Tree *tree = &dynamics->tree;
+    TreeState *state = &dynamics->room.state->tree;
+    const PlaneSite *site = &dynamics->sites[contact];
+    tree_evaluate_pair(tree, site->pair, since_s, y, y + tree->coordinate_count, state);
+    return dynamics_wall(tree, state, site, &dynamics->system.contacts[contact]);
 }
 
 size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates)
