@@ -13,8 +13,7 @@ bool slot_store(const Target *target, Stop *stop)
     TargetNumber length = {.value = 0.0};
     TargetNumber width = length;
     if (!target_pair(node, pair)) {
-        return target_refuse(target, node->span, "%s takes its length and its width",
-                             target->path);
+        return target_refuse(target, node->span, "%s takes its length and its width", target->path);
     }
     if (!target_number(target, pair[0], &length) || !target_number(target, pair[1], &width)) {
         return false;

@@ -56,8 +56,8 @@ typedef struct Touch {
                       // width of a slot
     double radius_b;  // m
     double half_length; // m, of a slot's middle line
-    Cam cam;          // of a cam
-    ForceLaw law;     // of this place alone
+    Cam cam;            // of a cam
+    ForceLaw law;       // of this place alone
 } Touch;
 
 // How a place is at an instant.

@@ -7,9 +7,8 @@
 // R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body
 // about the pin's axis. Two discs outside each other are a hole of negative radius, and |e| is then
 // -|e|. At a line normal and tangent are the rows. In a slot |e| is infinite between the ends where
-// it divides, and R - |e| is the arm of both bodies, for u_e' is against the point under the pin. In
-// space the pin slides along the axis too, with
-// w the turning about x and y,
+// it divides, and R - |e| is the arm of both bodies, for u_e' is against the point under the pin.
+// In space the pin slides along the axis too, with w the turning about x and y,
 //     v_z = u_z' - R t . w_a + (R - |e|) t . w_b
 // and friction is mu N tanh(s / v_s) against the direction of (v_t, v_z), s its size.
 //
@@ -369,8 +368,8 @@ static double find_round(const KernelContact *contact, const PinHole *pose, cons
     const double pin_arm = pin_arm_of(contact, pose);
     const double turning = vec2_dot(pose->normal, velocity) / pose->eccentricity_size;
     const double shortened = contact->shape == KERNEL_SLOT ? speeds[2] - speeds[3] : -speeds[3];
-    *gradient = along(vec2_add(vec2_scale(turning, tangent), vec2_scale(shortened, pose->normal)),
-                      tangent);
+    *gradient =
+        along(vec2_add(vec2_scale(turning, tangent), vec2_scale(shortened, pose->normal)), tangent);
     gradient->of[POSITIONS + 2] = hole_arm;
     gradient->of[POSITIONS + 3] = -pin_arm;
     return vec2_dot(tangent, velocity) + hole_arm * speeds[2] - pin_arm * speeds[3];
@@ -403,7 +402,7 @@ static void write_turns(const KernelContact *contact, const PinHole *pose, const
     const double arm = hole_arm_of(contact, pose);
     const double pin_arm = pin_arm_of(contact, pose);
     const Gradient fixed = along(still, still);
-    const Gradient shortens = along(pose->normal, still);               // of R - |e|
+    const Gradient shortens = along(pose->normal, still);                    // of R - |e|
     const Gradient lengthens = along(vec2_scale(-1.0, pose->normal), still); // of minus that
     const Gradient on_hole = product_rule(held->round, &held->by_round, -arm,
                                           contact->shape == KERNEL_SLOT ? &lengthens : &fixed);
@@ -641,8 +640,7 @@ static Rated find_pressing(MovingContact *moving, const KernelTouch *touch)
         pose->approach_speed,
         round * turning - n[0] * v[0].rate - n[1] * v[1].rate,
     };
-    moving->pin_arm =
-        (Rated){pin_arm_of(moving->contact, pose), -pose->approach_speed};
+    moving->pin_arm = (Rated){pin_arm_of(moving->contact, pose), -pose->approach_speed};
     Rated lost;
     moving->pressing = rate_pressing(moving->contact, touch, closing, &lost);
     return rated_times(lost, closing);

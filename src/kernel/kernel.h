@@ -6,8 +6,8 @@
 // Each contact point has rows of its own. Of a pin in its hole: x and y of the pin's centre less
 // the hole's, and with friction the turns of the hole's and of the pin's body; of two discs
 // likewise. Of a circle on a line: the gap along the line's normal, and the sliding along it. Of a
-// pin in a slot: its centre in the slot's own axes, across and along, from its middle; its turns are
-// felt at the wall with one arm, for these rows compare it with the slot's point under it. In
+// pin in a slot: its centre in the slot's own axes, across and along, from its middle; its turns
+// are felt at the wall with one arm, for these rows compare it with the slot's point under it. In
 // space x and y are across the pin's axis, and friction also has rows for the sliding along the
 // axis and for the turns of both bodies about x and y. With u the rows, W their mobility, g their
 // free acceleration and f the contacts' forces,  u'' = g + W f, where W and g may change in the

@@ -66,8 +66,8 @@ static inline PinHole pin_slot_pose(Vec2 pin, Vec2 velocity, double half_length,
     if (beyond != 0.0) {
         return pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){pin.x, beyond}, velocity, clearance);
     }
-    PinHole pose = pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){pin.x, 0.0}, (Vec2){velocity.x, 0.0},
-                                 clearance);
+    PinHole pose =
+        pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){pin.x, 0.0}, (Vec2){velocity.x, 0.0}, clearance);
     pose.eccentricity_size = INFINITY;
     return pose;
 }

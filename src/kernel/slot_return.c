@@ -64,9 +64,9 @@ static size_t find_changes(const Polynomial *of, double last, double changes[DEG
 // Where the pin is after some time.
 static Vec2 flown(const SlotFlight *flight, double t)
 {
-    return vec2_add(flight->position,
-                    vec2_scale(t, vec2_add(flight->speed,
-                                           vec2_scale(0.5 * t, flight->acceleration))));
+    return vec2_add(
+        flight->position,
+        vec2_scale(t, vec2_add(flight->speed, vec2_scale(0.5 * t, flight->acceleration))));
 }
 
 // The square of its distance from the middle line over that of the wall's less 1, from a time on:

@@ -65,8 +65,7 @@ static const double *needed_at(const System *system, Dop853 *integrator, size_t 
 
 Press system_press(const System *system, Dop853 *integrator, size_t contact, double time)
 {
-    return system->kind->press(system, contact, time,
-                               needed_at(system, integrator, contact, time));
+    return system->kind->press(system, contact, time, needed_at(system, integrator, contact, time));
 }
 
 WallPlace system_wall(const System *system, Dop853 *integrator, size_t contact, double time)

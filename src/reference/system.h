@@ -27,8 +27,8 @@ typedef enum ContactMode {
     CONTACT_SLACK,    // it overlaps the wall, but leaves it faster than the spring follows
 } ContactMode;
 
-// Which wall of a slot a contact meets. While it touches that stays as it is until an event, so that
-// its force is smooth: the curvature of the gap jumps where one goes over into another.
+// Which wall of a slot a contact meets. While it touches that stays as it is until an event, so
+// that its force is smooth: the curvature of the gap jumps where one goes over into another.
 typedef enum ContactWall {
     WALL_NEAREST, // whichever is there: of a contact that is apart, and of all but slots
     WALL_BEHIND,  // the straight one that presses along the direction across the slot

@@ -84,14 +84,14 @@ static void write_crank(SlotCase *slot, bool is_rocker, FILE *file)
     const double start = draw_between(draw, -M_PI, M_PI);
     const double speed = draw_log_between(draw, 50.0, 800.0);
     const size_t drive = draw_below(draw, 3);
+    slot->stiffness *= 10.0; // what a drive pushes is stopped by no inertia of the pin's own
     const Point pin = {radius * cos(start), radius * sin(start)};
     const double depth = radius * draw_between(draw, 1.5, 3.0); // of the rocker's pivot
     const double to_pin = hypot(pin.x, pin.y + depth);
     const double along = is_rocker ? atan2(pin.y + depth, pin.x) : 0.5 * M_PI;
     const Point middle = {is_rocker ? pin.x * depth / to_pin : pin.x,
                           is_rocker ? (pin.y + depth) * depth / to_pin - depth : 0.0};
-    fprintf(file,
-            "bodies:\n  crank: {mass: %.5g kg, inertia: %.6g kg mm^2, at: [0 m, 0 m]",
+    fprintf(file, "bodies:\n  crank: {mass: %.5g kg, inertia: %.6g kg mm^2, at: [0 m, 0 m]",
             slot->mass, inertia_of(slot->mass, 3.0 * radius));
     if (drive == 2) {
         fprintf(file, ", spin: %.6g rad/s", speed * M_PI / 30.0);
@@ -104,8 +104,7 @@ static void write_crank(SlotCase *slot, bool is_rocker, FILE *file)
     if (is_rocker) {
         fprintf(file, "  guide: {between: [ground, moved], at: [0 m, %.15g m]}\n", -depth);
     } else {
-        fprintf(file,
-                "  guide: {between: [ground, moved], at: [%.15g m, 0 m], along: 0 deg}\n",
+        fprintf(file, "  guide: {between: [ground, moved], at: [%.15g m, 0 m], along: 0 deg}\n",
                 middle.x);
     }
     fprintf(file, "  play: {between: [moved, crank], ");

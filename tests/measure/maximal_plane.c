@@ -616,6 +616,21 @@ static MaximalGap gap(const Maximal *maximal, size_t contact, const Real *y)
     return pose_of(plane, view_of(plane, y), &plane->places[contact]).gap;
 }
 
+// Of a slot the centres of the arcs at its ends; of all others there is none.
+static Real corner(const Maximal *maximal, size_t contact, const Real *y)
+{
+    const Plane *plane = plane_of(maximal);
+    const View view = view_of(plane, y);
+    const Touch *place = &plane->places[contact];
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    if (place->shape != TOUCH_SLOT) {
+        return 1.0L;
+    }
+    const Ends ends = ends_of(view, joint->body_a, place->anchor_a, joint->body_b, place->anchor_b);
+    const Vec along = vec_perp(along_of(view, joint->body_a, place->direction));
+    return fabsl(vec_dot(along, ends.apart)) - 0.5L * joint->stop.slot;
+}
+
 // Adds a force at a point of a body, and a moment, to accelerations.
 static void push(const Plane *plane, int body, Vec arm, Vec force, Real moment, Real *accelerations)
 {
@@ -823,6 +838,7 @@ static void destroy(Maximal *maximal)
 static const MaximalKind PLANE = {
     .rates = rates,
     .gap = gap,
+    .corner = corner,
     .project = project,
     .sample = sample,
     .fastest = fastest,

@@ -253,9 +253,8 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
                 .eccentricity = is_slot ? linkage_joint_gap(linkage, motions, place->joint).position
                                         : pose.pose.eccentricity,
                 .gap = pose.pose.gap,
-                .force_on_b =
-                    is_slot ? impulse_step_from_slot(linkage, place, motions, pose.force)
-                            : pose.force,
+                .force_on_b = is_slot ? impulse_step_from_slot(linkage, place, motions, pose.force)
+                                      : pose.force,
                 .force = vec2_length(pose.force),
                 .is_touching = pose.is_touching,
             };

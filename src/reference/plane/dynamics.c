@@ -113,8 +113,8 @@ static double second_on_cam(const Tree *tree, const TreeState *state, const Plan
            cam_bend(&site->touch.cam, &pose, omegas[0], omegas[1], sliding);
 }
 
-// A pin in a slot: which of its walls it meets, and how. The straight ones are lines, with the digits
-// of the way since the base; the ends are holes.
+// A pin in a slot: which of its walls it meets, and how. The straight ones are lines, with the
+// digits of the way since the base; the ends are holes.
 
 int dynamics_contact_pair(const Tree *tree, const PlaneSite *site, ContactWall wall)
 {
@@ -282,7 +282,8 @@ static double second_in_slot(const Dynamics *dynamics, size_t number, const Tree
 {
     const Tree *tree = &dynamics->tree;
     const PlaneSite *site = &dynamics->sites[number];
-    const ContactWall wall = dynamics_wall(tree, state, site, &dynamics->system.contacts[number]).wall;
+    const ContactWall wall =
+        dynamics_wall(tree, state, site, &dynamics->system.contacts[number]).wall;
     const int pair = dynamics_contact_pair(tree, site, wall);
     if (pair != site->pair) {
         return second_of_circles(tree, state, pair, pose->normal, true);

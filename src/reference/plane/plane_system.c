@@ -145,16 +145,14 @@ static void plane_sizes(const System *system, const SystemState *state, size_t c
 static double crossing_in_slot(const Tree *tree, const TreeState *state, const PlaneSite *site,
                                double flight)
 {
-    const TouchSlot slot =
-        touch_in_slot(tree_pair_gap(tree, state, site->pair),
-                      tree_pair_velocity(tree, state, site->pair), tree_normal(tree, state, site->pair),
-                      tree_omega(state, tree->end_bodies[2 * site->pair]));
+    const TouchSlot slot = touch_in_slot(
+        tree_pair_gap(tree, state, site->pair), tree_pair_velocity(tree, state, site->pair),
+        tree_normal(tree, state, site->pair), tree_omega(state, tree->end_bodies[2 * site->pair]));
     const double speed = vec2_length(slot.rate);
     const double to_end = fmax(site->touch.half_length - fabs(slot.position.y), flight);
     const double share = flight / to_end;
-    const double second =
-        fabs(tree_line_second(tree, state, site->pair)) +
-        share * vec2_length(tree_pair_acceleration(tree, state, site->pair));
+    const double second = fabs(tree_line_second(tree, state, site->pair)) +
+                          share * vec2_length(tree_pair_acceleration(tree, state, site->pair));
     return fabs(slot.rate.x) + share * speed + sqrt(flight * second);
 }
 

@@ -301,9 +301,9 @@ double tree_tilt(const Tree *tree, const TreeState *state, int joint);
 
 // The functions of the tree: it is built, moved and evaluated.
 
-// The pairs of a joint beside the one of its anchors: those of corners and of a slider's stops, which
-// are its sites, and those of the ends of a slot, from the centre of an arc to that of the pin.
-// Returns how many, with what they are between.
+// The pairs of a joint beside the one of its anchors: those of corners and of a slider's stops,
+// which are its sites, and those of the ends of a slot, from the centre of an arc to that of the
+// pin. Returns how many, with what they are between.
 size_t tree_own_pairs(const Linkage *linkage, int number, Touch sites[TOUCH_CORNERS]);
 
 // Finds the tree of the linkage's ideal joints, which must outlive it (reference/plane/tree.c).
