@@ -267,13 +267,12 @@ static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeSta
 }
 
 // The second rate of the gap between two circles, of which the pair of the tree has the centres.
-static double second_of_circles(const Tree *tree, const TreeState *state, int pair, Vec2 normal,
-                                bool is_inside)
+static double second_of_circles(const Tree *tree, const TreeState *state, int pair,
+                                const TouchPose *pose, bool is_inside)
 {
-    const double across = vec2_cross(normal, tree_pair_velocity(tree, state, pair));
-    const Vec2 offset = tree_pair_gap(tree, state, pair);
-    const double turning = across * across / sqrt(vec2_dot(offset, offset));
-    return vec2_dot(normal, tree_pair_acceleration(tree, state, pair)) +
+    const double across = vec2_cross(pose->normal, pose->velocity);
+    const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
+    return vec2_dot(pose->normal, tree_pair_acceleration(tree, state, pair)) +
            (is_inside ? -turning : turning);
 }
 
@@ -286,7 +285,12 @@ static double second_in_slot(const Dynamics *dynamics, size_t number, const Tree
         dynamics_wall(tree, state, site, &dynamics->system.contacts[number]).wall;
     const int pair = dynamics_contact_pair(tree, site, wall);
     if (pair != site->pair) {
-        return second_of_circles(tree, state, pair, pose->normal, true);
+        const TouchPose end = {
+            .offset = tree_pair_gap(tree, state, pair),
+            .velocity = tree_pair_velocity(tree, state, pair),
+            .normal = pose->normal,
+        };
+        return second_of_circles(tree, state, pair, &end, true);
     }
     return (wall == WALL_AHEAD ? -1.0 : 1.0) * tree_line_second(tree, state, pair);
 }
@@ -313,7 +317,7 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
     case TOUCH_DISC:
         break;
     }
-    return second_of_circles(&dynamics->tree, state, site->pair, pose->normal, is_inside);
+    return second_of_circles(&dynamics->tree, state, site->pair, pose, is_inside);
 }
 
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
