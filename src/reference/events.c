@@ -34,6 +34,11 @@ static const double LANDING_DEPTH_M = 1e-19;
 // rounding; a longer way is a step of its own
 static const double END_SHIFT_SHARE = 1e-6;
 
+// of a slot's play: a pin may be so far beyond the end of the wall that it meets. What that is off
+// by is the square of it in the gap, below rounding, and as much in the direction of the force; it
+// keeps a pin that rests there, or a slot that is shorter, from changing its wall for ever
+static const double WALL_SHARE = 1e-9;
+
 // roundings of a position or a speed that the sum of a handful of terms leaves uncertain
 static const double EVENTS_ROUNDING = 4.0 * DBL_EPSILON;
 
@@ -65,7 +70,10 @@ static double rounding_of(const System *system, const SystemState *state, size_t
     double speed = 0.0;
     system->kind->sizes(system, state, number, &length, &speed);
     const double depth = EVENTS_ROUNDING * length;
-    if (mode == CONTACT_APART || which == 0 || which == MARGIN_WALL) {
+    if (which == MARGIN_WALL) {
+        return fmax(depth, WALL_SHARE * contact->clearance);
+    }
+    if (mode == CONTACT_APART || which == 0) {
         return depth;
     }
     if (which == MARGIN_REST) {
@@ -170,8 +178,9 @@ bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *poin
                                   points->states[points->count - 1], rates);
 }
 
-// Takes note of an event of a contact, if it is the first of this contact.
-static void note_event(const Margin *margin, double time, Event *event)
+// Takes note of an event of a contact, if it is the first of this contact, from a time at which its
+// margin is used up.
+static void note_event(const Margin *margin, double time, double beyond, Event *event)
 {
     if (time < event->time) {
         const System *system = margin->system;
@@ -183,7 +192,8 @@ static void note_event(const Margin *margin, double time, Event *event)
             .is_rest = margin->which == MARGIN_REST,
         };
         if (margin->which == MARGIN_WALL) {
-            event->wall = system_wall(system, margin->integrator, margin->contact, time).next;
+            // as it is beyond the end: a short one may lie wholly behind
+            event->wall = system_wall(system, margin->integrator, margin->contact, beyond).next;
         }
     }
 }
@@ -247,18 +257,18 @@ static void events_evaluate_at(Margin *margin, const EventPoints *points, Event 
         double top = time;
         if (margin->which == MARGIN_WALL) {
             if (has_left_wall(margin, before, time, state, &top)) {
-                note_event(margin, crossing(margin, before, top), event);
+                note_event(margin, crossing(margin, before, top), top, event);
                 return;
             }
             before = time;
             continue;
         }
         if (is_free && has_been_there(margin, before, time, state, &top)) {
-            note_event(margin, crossing(margin, before, top), event);
+            note_event(margin, crossing(margin, before, top), top, event);
             return;
         }
         if (is_used_up(margin, state, margin_of(press, mode, margin->which))) {
-            note_event(margin, crossing(margin, before, time), event);
+            note_event(margin, crossing(margin, before, time), time, event);
             return;
         }
         before = time;
@@ -314,27 +324,46 @@ static void events_move_end(Dop853 *integrator, double by)
     }
 }
 
+// How far the end of the tried step is from an event, m, and how fast that grows: from the wall, or
+// in a slot from where the wall ends.
+typedef struct Landing {
+    double off;
+    double rate;
+} Landing;
+
+static Landing landing_at_end(const System *system, const Dop853 *integrator, const Event *event)
+{
+    if (event->wall != WALL_NEAREST) {
+        const WallPlace place = system->kind->wall(
+            system, event->contact, integrator->time + integrator->tried, integrator->next);
+        return (Landing){-place.within, place.leaving};
+    }
+    const Press press = press_at_end(system, integrator, event->contact);
+    return (Landing){press.depth, press.closing};
+}
+
 void events_land(const System *system, Dop853 *integrator, Event *event)
 {
+    const bool is_landed = is_at_wall(system, event) || event->wall != WALL_NEAREST;
     // the event lies in the step that showed it
     const double longest = integrator->tried;
     dop853_try(integrator, fmax(0.0, event->time - integrator->time));
-    Press press = press_at_end(system, integrator, event->contact);
-    for (int i = 0; i < LANDING_ITERATIONS && is_at_wall(system, event); i++) {
-        const double by = -press.depth / press.closing;
+    Landing landing = landing_at_end(system, integrator, event);
+    for (int i = 0; i < LANDING_ITERATIONS && is_landed; i++) {
+        const double by = -landing.off / landing.rate;
         const double moved = integrator->tried + by;
         // an event that the step began with lies at its start and moves nowhere
-        if (fabs(press.depth) <= LANDING_DEPTH_M || integrator->tried == 0.0 ||
+        if (fabs(landing.off) <= LANDING_DEPTH_M || integrator->tried == 0.0 ||
             !(moved >= 0.0 && moved <= longest)) {
             break;
         }
         events_move_end(integrator, by);
-        const Press now = press_at_end(system, integrator, event->contact);
-        if (!(fabs(now.depth) < fabs(press.depth))) {
+        const Landing now = landing_at_end(system, integrator, event);
+        if (!(fabs(now.off) < fabs(landing.off))) {
             events_move_end(integrator, -by);
             break;
         }
-        press = now;
+        landing = now;
     }
     event->time = integrator->time + integrator->tried;
 }
