@@ -158,8 +158,8 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
         return check_guide(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
     case JOINT_TOUCHES_DISC:
-        return cam_check(entries, index, &scenario->linkage, err) &&
-               slot_check(entries, index, joint, err) &&
+        return slot_check(entries, index, joint, err) &&
+               cam_check(entries, index, &scenario->linkage, err) &&
                check_stiffness(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
     case JOINT_TOUCHES_NOTHING:
