@@ -394,6 +394,19 @@ typedef struct SlotFlight {
 // INFINITY where that is later than the last one.
 double kernel_slot_return(const SlotFlight *flight, double last_s);
 
+// How far a pin in a slot is beyond the part of the wall that it is at, at a point, m, and how far
+// it may be for rounding.
+double kernel_slot_beyond(const Kernel *kernel, size_t contact, const KernelPoint *point);
+double kernel_slot_rounding(const KernelContact *contact);
+
+// Puts a pin that touches, or has just begun to, at the part of its slot where it is at a point, or
+// where it is going from there.
+void kernel_slot_find_part(Kernel *kernel, size_t contact, KernelPoint *point);
+
+// Lets those that have come to the end of their part go on at the next one. Returns whether any
+// has.
+bool kernel_slots_follow(Kernel *kernel, KernelPoint *point);
+
 // Explicit local steps of a kernel, which use the forces and their rates.
 
 // A step from a completed point: what it was made from, and where it leads.

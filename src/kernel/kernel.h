@@ -48,6 +48,16 @@ enum {
     KERNEL_ROW_PIN = 7,
 };
 
+// The part of a slot's wall that a contact is at while it touches in a run: its force is smooth
+// there, beyond the end of the part as well, and a local step ends where the part does.
+typedef enum KernelPart {
+    KERNEL_PART_NEAREST, // whichever is there: of what does not touch, of other shapes, and after a
+                         // run
+    KERNEL_PART_WALLS,   // the straight ones
+    KERNEL_PART_LOW,     // the arc at the end that comes first along the slot
+    KERNEL_PART_HIGH,    // and the one that comes last
+} KernelPart;
+
 // One contact point. The first seven are given, and the state where it touches already as it is
 // added; the rest lives on from one step to the next. A disc outside another is a hole of negative
 // size: the same formulas hold for both.
@@ -65,6 +75,7 @@ typedef struct KernelContact {
     size_t first_row;
     size_t row_count;
     ContactState state;
+    KernelPart part;
     double frequency;       // rad/s, of its oscillation at the depth to be expected; 0 of a contact
                             // that was set touching and has not been looked at yet
     double force_per_speed; // N s/m: the force to be expected of a closing speed

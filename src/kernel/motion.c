@@ -227,6 +227,23 @@ static PinHole disc_pose(Vec2 position, Vec2 speed, double clearance)
     return pose;
 }
 
+static PinHole slot_pose(const KernelContact *contact, Vec2 at, Vec2 rate)
+{
+    const double clearance = contact->radial_clearance;
+    const double half = contact->half_length;
+    switch (contact->part) {
+    case KERNEL_PART_WALLS:
+        return pin_walls_pose(at, rate, clearance);
+    case KERNEL_PART_LOW:
+        return pin_hole_pose((Vec2){0.0, -half}, at, rate, clearance);
+    case KERNEL_PART_HIGH:
+        return pin_hole_pose((Vec2){0.0, half}, at, rate, clearance);
+    case KERNEL_PART_NEAREST:
+        break;
+    }
+    return pin_slot_pose(at, rate, half, clearance);
+}
+
 // Of all shapes but the one that has to be fast.
 static PinHole other_pose(const KernelContact *contact, const double position[2],
                           const double speed[2])
@@ -237,7 +254,7 @@ static PinHole other_pose(const KernelContact *contact, const double position[2]
     case KERNEL_LINE:
         return line_pose(position[0], speed[0]);
     case KERNEL_SLOT:
-        return pin_slot_pose(at, rate, contact->half_length, contact->radial_clearance);
+        return slot_pose(contact, at, rate);
     case KERNEL_HOLE:
     case KERNEL_DISC:
         break;

@@ -56,20 +56,24 @@ static inline PinHole pin_hole_pose(Vec2 hole_centre, Vec2 pin_centre, Vec2 rela
     };
 }
 
-// The pose of a pin in a slot, in the slot's own axes: x across it, y along it, both from its
-// middle. The middle line reaches half its length to either side, m; the clearance is half the
-// slot's width less the pin's radius, m. Between the ends the normal does not turn: the size of the
-// eccentricity is infinite there.
-static inline PinHole pin_slot_pose(Vec2 pin, Vec2 velocity, double half_length, double clearance)
+// The pose of a pin between two straight walls, in axes across them and along them, from the
+// middle: the normal does not turn, and the size of the eccentricity is infinite. The clearance is
+// half the distance of the walls less the pin's radius, m.
+static inline PinHole pin_walls_pose(Vec2 pin, Vec2 velocity, double clearance)
 {
-    const double beyond = pin.y - fmax(-half_length, fmin(pin.y, half_length));
-    if (beyond != 0.0) {
-        return pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){pin.x, beyond}, velocity, clearance);
-    }
     PinHole pose =
         pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){pin.x, 0.0}, (Vec2){velocity.x, 0.0}, clearance);
     pose.eccentricity_size = INFINITY;
     return pose;
+}
+
+// The pose of a pin in a slot, likewise from the slot's middle. Its middle line reaches half its
+// length to either side, m.
+static inline PinHole pin_slot_pose(Vec2 pin, Vec2 velocity, double half_length, double clearance)
+{
+    const Vec2 end = {0.0, copysign(half_length, pin.y)};
+    return fabs(pin.y) > half_length ? pin_hole_pose(end, pin, velocity, clearance)
+                                     : pin_walls_pose(pin, velocity, clearance);
 }
 
 // The point of the hole's wall nearest the pin, m: where the contact force acts. The hole centre

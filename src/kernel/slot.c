@@ -1,11 +1,67 @@
-// Finds when a pin in a slot is back at a wall, in a flight under a constant acceleration.
+// Follows pins in slots: at which part of the wall they are, and when one in flight is back at it.
 //
+// At a part of the wall the force is smooth; where the pin passes the centre of an end's arc, y =
+// +-l in the slot's axes, the curvature of the gap jumps, and with it the rates of the force. A
+// local step ends there, and the next one begins at the other part.
+//
+// A flight is under a constant acceleration.
 // In the slot's axes p(t) = p + v t + a t^2 / 2. Where it passes the ends' centres, y = +-l, its
 // distance from the middle line changes from one polynomial to another. It is back where
 //     x = +-w                  between the ends
 //     |p - (0, +-l)|^2 = w^2   beyond one
 // with w the distance that it starts at, and leaves.
 #include "kernel/internal.h"
+
+// of a slot's play: so far from the end of its part a pin is there
+static const double PART_ROUNDING = 1e-9;
+
+double kernel_slot_rounding(const KernelContact *contact)
+{
+    return PART_ROUNDING * contact->radial_clearance;
+}
+
+double kernel_slot_beyond(const Kernel *kernel, size_t contact, const KernelPoint *point)
+{
+    const KernelContact *of = &kernel->contacts[contact];
+    const double y = kernel_motion_position(kernel, contact, point).y;
+    switch (of->part) {
+    case KERNEL_PART_LOW:
+        return y + of->half_length;
+    case KERNEL_PART_HIGH:
+        return of->half_length - y;
+    case KERNEL_PART_NEAREST:
+    case KERNEL_PART_WALLS:
+        break;
+    }
+    return fabs(y) - of->half_length;
+}
+
+void kernel_slot_find_part(Kernel *kernel, size_t contact, KernelPoint *point)
+{
+    KernelContact *of = &kernel->contacts[contact];
+    KernelKnownPose *known = &point->known[contact];
+    kernel_point_pose(kernel, point, contact);
+    const double y = kernel_motion_position(kernel, contact, point).y;
+    const double outward = y > 0.0 ? known->speed[1] : -known->speed[1];
+    const double beyond = fabs(y) - of->half_length;
+    const bool is_at_end = fabs(beyond) <= kernel_slot_rounding(of) ? outward > 0.0 : beyond > 0.0;
+    of->part = !is_at_end ? KERNEL_PART_WALLS : y > 0.0 ? KERNEL_PART_HIGH : KERNEL_PART_LOW;
+    known->is_known = false;
+}
+
+bool kernel_slots_follow(Kernel *kernel, KernelPoint *point)
+{
+    bool is_any = false;
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        const KernelContact *contact = &kernel->contacts[i];
+        if (contact->part != KERNEL_PART_NEAREST &&
+            kernel_slot_beyond(kernel, i, point) >= -kernel_slot_rounding(contact)) {
+            kernel_slot_find_part(kernel, i, point);
+            is_any = true;
+        }
+    }
+    return is_any;
+}
 
 enum { DEGREE_MOST = 4, CHANGES_MOST = 4, ROOT_HALVINGS = 100 };
 
