@@ -13,6 +13,7 @@
 #include "casefile/loads.h"
 #include "casefile/profiles.h"
 #include "casefile/slider.h"
+#include "casefile/slot.h"
 #include "casefile/store.h"
 #include "casefile/teeth.h"
 #include "casefile/unused.h"
@@ -234,6 +235,7 @@ static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
     }
     return build_linkage(entries, scenario, err) &&
            limits_check_starts(entries, &scenario->linkage, err) &&
+           slot_check_starts(entries, &scenario->linkage, err) &&
            closure_check_ideal(entries, scenario, err);
 }
 

@@ -144,7 +144,8 @@ static bool places_apply(const SchemaRow *row, const Joint *joint)
     return !joint->is_apart || !(is_of_both || row->type == SCHEMA_START);
 }
 
-// Whether a key says what a stop is: a cam has a profile, and on it a roller or a flat.
+// Whether a key says what a stop is: a cam has a profile, and on it a roller or a flat; a slot has
+// no discs.
 static bool stops_apply(const SchemaRow *row, const Joint *joint)
 {
     const bool is_cam = joint->stop.cam > 0;
@@ -154,8 +155,10 @@ static bool stops_apply(const SchemaRow *row, const Joint *joint)
     switch (row->type) {
     case SCHEMA_PROFILE:
         return is_cam;
+    case SCHEMA_SLOT:
+        return joint->stop.slot > 0.0;
     case SCHEMA_DISCS:
-        return !is_cam;
+        return !is_cam && joint->stop.slot == 0.0;
     case SCHEMA_HEADING:
         return !is_cam || joint->stop.is_flat;
     default:

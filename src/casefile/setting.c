@@ -309,6 +309,9 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
     case SCHEMA_DISCS:
         set_vector(setting, (Vec2){2.0 * joint->stop.radius_a, 2.0 * joint->stop.radius_b});
         break;
+    case SCHEMA_SLOT:
+        set_vector(setting, (Vec2){joint->stop.slot, 2.0 * joint->stop.radius_a});
+        break;
     case SCHEMA_HEADING:
         set_number(setting, heading(linkage, joint));
         break;

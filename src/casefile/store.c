@@ -6,6 +6,7 @@
 #include "casefile/loads.h"
 #include "casefile/over_time.h"
 #include "casefile/profiles.h"
+#include "casefile/slot.h"
 #include "casefile/target.h"
 #include "casefile/teeth.h"
 
@@ -408,6 +409,8 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
         return profiles_store(&target, &scenario->linkage);
     case SCHEMA_DISCS:
         return store_discs(&target, target.field);
+    case SCHEMA_SLOT:
+        return slot_store(&target, target.field);
     case SCHEMA_GRAVITY:
         return store_gravity(&target, scenario);
     case SCHEMA_DIRECTION:

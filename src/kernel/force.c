@@ -6,8 +6,9 @@
 //     v_t = t . u_e' + R u_a' - (R - |e|) u_b',   t the normal turned by a quarter turn,
 // R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body
 // about the pin's axis. Two discs outside each other are a hole of negative radius, and |e| is then
-// -|e|. At a line normal and tangent are the rows. In space the pin slides along the axis too, with
-// w the turning about x and y,
+// -|e|. At a line normal and tangent are the rows. In a slot |e| is infinite between the ends where
+// it divides, and R - |e| is the arm of both bodies, for u_e' is against the point under the pin.
+// In space the pin slides along the axis too, with w the turning about x and y,
 //     v_z = u_z' - R t . w_a + (R - |e|) t . w_b
 // and friction is mu N tanh(s / v_s) against the direction of (v_t, v_z), s its size.
 //
@@ -51,6 +52,20 @@ static void pose_by_rows(const Kernel *kernel, size_t contact, KernelKnownPose *
     known->is_known = true;
 }
 
+// The arms of friction about a pin's axis: of its hole the radius, of the pin itself less than that
+// by the eccentricity. In a slot both bodies have the pin's.
+static inline double pin_arm_of(const KernelContact *contact, const PinHole *pose)
+{
+    return contact->shape == KERNEL_SLOT
+               ? contact->hole_radius - contact->radial_clearance + pose->gap
+               : contact->hole_radius - pose->eccentricity_size;
+}
+
+static inline double hole_arm_of(const KernelContact *contact, const PinHole *pose)
+{
+    return contact->shape == KERNEL_SLOT ? pin_arm_of(contact, pose) : contact->hole_radius;
+}
+
 // How fast a pin slides round its hole.
 static double sliding_round(const double *speed, Vec2 tangent, double hole_arm, double pin_arm)
 {
@@ -79,8 +94,8 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
         force[row + 1] -= taken;
         return taken * speed[1];
     }
-    const double hole_arm = of->hole_radius;
-    const double pin_arm = hole_arm - pose->eccentricity_size;
+    const double hole_arm = hole_arm_of(of, pose);
+    const double pin_arm = pin_arm_of(of, pose);
     const Vec2 tangent = vec2_perp(pose->normal);
     const double sliding = sliding_round(speed, tangent, hole_arm, pin_arm);
     double held;
@@ -349,11 +364,12 @@ static double find_round(const KernelContact *contact, const PinHole *pose, cons
         *gradient = along((Vec2){0.0, 0.0}, tangent);
         return speeds[1];
     }
-    const double hole_arm = contact->hole_radius;
-    const double pin_arm = hole_arm - pose->eccentricity_size;
+    const double hole_arm = hole_arm_of(contact, pose);
+    const double pin_arm = pin_arm_of(contact, pose);
     const double turning = vec2_dot(pose->normal, velocity) / pose->eccentricity_size;
-    *gradient = along(vec2_add(vec2_scale(turning, tangent), vec2_scale(-speeds[3], pose->normal)),
-                      tangent);
+    const double shortened = contact->shape == KERNEL_SLOT ? speeds[2] - speeds[3] : -speeds[3];
+    *gradient =
+        along(vec2_add(vec2_scale(turning, tangent), vec2_scale(shortened, pose->normal)), tangent);
     gradient->of[POSITIONS + 2] = hole_arm;
     gradient->of[POSITIONS + 3] = -pin_arm;
     return vec2_dot(tangent, velocity) + hole_arm * speeds[2] - pin_arm * speeds[3];
@@ -383,11 +399,13 @@ static void write_turns(const KernelContact *contact, const PinHole *pose, const
                         KernelSlopes *slopes)
 {
     const Vec2 still = {0.0, 0.0};
-    const double arm = contact->hole_radius;
-    const double pin_arm = arm - pose->eccentricity_size;
+    const double arm = hole_arm_of(contact, pose);
+    const double pin_arm = pin_arm_of(contact, pose);
     const Gradient fixed = along(still, still);
-    const Gradient shortens = along(pose->normal, still); // of R - |e|
-    const Gradient on_hole = product_rule(held->round, &held->by_round, -arm, &fixed);
+    const Gradient shortens = along(pose->normal, still);                    // of R - |e|
+    const Gradient lengthens = along(vec2_scale(-1.0, pose->normal), still); // of minus that
+    const Gradient on_hole = product_rule(held->round, &held->by_round, -arm,
+                                          contact->shape == KERNEL_SLOT ? &lengthens : &fixed);
     const Gradient on_pin = product_rule(held->round, &held->by_round, pin_arm, &shortens);
     write_slopes(slopes, KERNEL_ROW_TURN, -arm * held->round, &on_hole);
     write_slopes(slopes, KERNEL_ROW_TURN + 1, pin_arm * held->round, &on_pin);
@@ -561,10 +579,11 @@ static Rated rate_friction(MovingContact *moving)
         push_row(moving, 1, rated_scale(-1.0, held));
         return rated_times(held, moving->speed[1]);
     }
-    const double hole_arm = contact->hole_radius;
+    const bool is_slot = contact->shape == KERNEL_SLOT;
+    const Rated hole_arm = is_slot ? moving->pin_arm : (Rated){contact->hole_radius, 0.0};
     const Rated sliding = rated_plus(
         rated_plus(rows_along(moving, moving->tangent, 0),
-                   rated_scale(hole_arm, moving->speed[KERNEL_ROW_TURN])),
+                   rated_times(hole_arm, moving->speed[KERNEL_ROW_TURN])),
         rated_scale(-1.0, rated_times(moving->pin_arm, moving->speed[KERNEL_ROW_TURN + 1])));
     Rated held;
     Rated power;
@@ -577,7 +596,7 @@ static Rated rate_friction(MovingContact *moving)
     for (size_t i = 0; i < 2; i++) {
         push_row(moving, i, rated_scale(-1.0, rated_times(held, moving->tangent[i])));
     }
-    push_row(moving, KERNEL_ROW_TURN, rated_scale(-hole_arm, held));
+    push_row(moving, KERNEL_ROW_TURN, rated_scale(-1.0, rated_times(hole_arm, held)));
     push_row(moving, KERNEL_ROW_TURN + 1, rated_times(moving->pin_arm, held));
     return power;
 }
@@ -621,8 +640,7 @@ static Rated find_pressing(MovingContact *moving, const KernelTouch *touch)
         pose->approach_speed,
         round * turning - n[0] * v[0].rate - n[1] * v[1].rate,
     };
-    moving->pin_arm =
-        (Rated){moving->contact->hole_radius - pose->eccentricity_size, -pose->approach_speed};
+    moving->pin_arm = (Rated){pin_arm_of(moving->contact, pose), -pose->approach_speed};
     Rated lost;
     moving->pressing = rate_pressing(moving->contact, touch, closing, &lost);
     return rated_times(lost, closing);

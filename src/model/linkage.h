@@ -91,8 +91,10 @@ typedef struct Guide {
 // cam the profile's angles count from there.
 typedef struct Stop {
     bool is_disc;    // whether body a carries a disc about its anchor; else a line through it
-    double radius_a; // m, of that disc; of a cam how far it reaches
+    double radius_a; // m, of that disc; of a cam how far it reaches; of a slot half its width
     double radius_b; // m, of the disc about the anchor of body b; 0: a point
+    double slot;     // m, of a slot of body a about its anchor, at right angles to the normal:
+                     // between the centres of the arcs at its ends; 0: none
     size_t cam;      // of a cam that body a carries about its anchor: which of the linkage's
                      // profiles, counted from 1; 0: none
     double hump;     // m, of a cam: the least radius of curvature where it is convex
@@ -300,6 +302,12 @@ static inline bool linkage_has_teeth_tables(const Joint *joint)
 static inline const Profile *linkage_profile(const Linkage *linkage, const Joint *joint)
 {
     return joint->stop.cam > 0 ? &linkage->profiles[joint->stop.cam - 1] : NULL;
+}
+
+// Whether body a has a slot, in which a pin of body b plays.
+static inline bool linkage_has_slot(const Joint *joint)
+{
+    return joint_has_disc(joint->kind) && joint->stop.slot > 0.0;
 }
 
 // One side of a joint: 0 that of body a, 1 that of body b.

@@ -77,11 +77,25 @@ static bool check_cam(const Linkage *linkage, const Joint *joint, Err *err)
                joint->name, stop->radius_b, hollow);
 }
 
+static bool check_slot(const Joint *joint, Err *err)
+{
+    const Stop *stop = &joint->stop;
+    return (isfinite(stop->slot) && stop->radius_b >= 0.0 && stop->radius_a > stop->radius_b &&
+            isfinite(stop->radius_a)) ||
+           err_set(err, ERR_CASE,
+                   "joint '%s': pin radius %.9g m in a slot of width %.9g m, allowed: a pin that "
+                   "is narrower than its slot",
+                   joint->name, stop->radius_b, 2.0 * stop->radius_a);
+}
+
 static bool check_stop(const Linkage *linkage, const Joint *joint, Err *err)
 {
     const Stop *stop = &joint->stop;
     if (stop->cam > 0) {
         return check_cam(linkage, joint, err);
+    }
+    if (stop->slot > 0.0) {
+        return check_slot(joint, err);
     }
     const double size = stop->radius_b + (stop->is_disc ? stop->radius_a : 0.0);
     return (stop->radius_a >= 0.0 && stop->radius_b >= 0.0 && isfinite(size) &&

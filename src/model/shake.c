@@ -67,6 +67,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake_vector(&joint->guide.start, seed);
         shake(&joint->stop.radius_a, seed);
         shake(&joint->stop.radius_b, seed);
+        if (joint->stop.slot > 0.0) {
+            shake(&joint->stop.slot, seed);
+        }
     }
     if (joint->contact.stiffness > 0.0 && (has_own || linkage_is_torsional(joint))) {
         shake(&joint->contact.stiffness, seed);

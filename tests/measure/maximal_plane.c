@@ -501,6 +501,32 @@ static void meet_cam(const Plane *plane, View view, const Touch *place, const En
     pose->sliding = vec_dot(vec_perp(pose->normal), relative);
 }
 
+// A pin in a slot: its centre in the slot's own directions, and the rate by the two points of the
+// bodies where it touches the wall.
+static void meet_slot(const Plane *plane, View view, const Touch *place, const Ends *ends,
+                      Pose *pose)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Vec across = along_of(view, joint->body_a, place->direction);
+    const Vec along = vec_perp(across);
+    const Real half = 0.5L * joint->stop.slot;
+    const Real seen = vec_dot(along, ends->apart);
+    const Real middle = fmaxl(-half, fminl(half, seen));
+    const Vec out = vec_sub(ends->apart, vec_times(middle, along));
+    const Vec off = fabsl(seen) > half ? out : vec_times(vec_dot(across, out), across);
+    const Real distance = vec_length(off);
+    pose->gap.depth = distance - (joint->stop.radius_a - (Real)joint->stop.radius_b);
+    pose->normal = distance > 0.0L ? vec_times(-1.0L / distance, off) : across;
+    const Vec wall =
+        vec_sub(vec_times(middle, along), vec_times(joint->stop.radius_a, pose->normal));
+    pose->at[0] = vec_add(ends->arm[0], wall);
+    pose->at[1] = vec_add(ends->arm[1], vec_sub(wall, ends->apart));
+    const Vec relative = vec_sub(velocity_of(view, joint->body_b, pose->at[1]),
+                                 velocity_of(view, joint->body_a, pose->at[0]));
+    pose->gap.closing = -vec_dot(pose->normal, relative);
+    pose->sliding = vec_dot(vec_perp(pose->normal), relative);
+}
+
 // Where the force acts: on the wall of body a, or on the circle of body b.
 static void place_force(const Touch *place, const Ends *ends, Pose *pose)
 {
@@ -603,6 +629,10 @@ static Pose pose_of(const Plane *plane, View view, const Touch *place)
         meet_cam(plane, view, place, &ends, &pose);
         return pose;
     }
+    if (place->shape == TOUCH_SLOT) {
+        meet_slot(plane, view, place, &ends, &pose);
+        return pose;
+    }
     if (place->shape == TOUCH_RACK) {
         pose.normal = vec_times(place->sign, along_of(view, joint->body_a, place->direction));
         place_force(place, &ends, &pose);
@@ -638,6 +668,21 @@ static MaximalGap gap(const Maximal *maximal, size_t contact, const Real *y)
 {
     const Plane *plane = plane_of(maximal);
     return pose_of(plane, view_of(plane, y), &plane->places[contact]).gap;
+}
+
+// Of a slot the centres of the arcs at its ends; of all others there is none.
+static Real corner(const Maximal *maximal, size_t contact, const Real *y)
+{
+    const Plane *plane = plane_of(maximal);
+    const View view = view_of(plane, y);
+    const Touch *place = &plane->places[contact];
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    if (place->shape != TOUCH_SLOT) {
+        return 1.0L;
+    }
+    const Ends ends = ends_of(view, joint->body_a, place->anchor_a, joint->body_b, place->anchor_b);
+    const Vec along = vec_perp(along_of(view, joint->body_a, place->direction));
+    return fabsl(vec_dot(along, ends.apart)) - 0.5L * joint->stop.slot;
 }
 
 // Adds a force at a point of a body, and a moment, to accelerations.
@@ -852,6 +897,7 @@ static void destroy(Maximal *maximal)
 static const MaximalKind PLANE = {
     .rates = rates,
     .gap = gap,
+    .corner = corner,
     .project = project,
     .sample = sample,
     .fastest = fastest,
@@ -861,7 +907,7 @@ static const MaximalKind PLANE = {
 // How far something may come while it is apart before it is looked at: its play.
 static Real flight_of(const Joint *joint, const Touch *place)
 {
-    if (place->shape == TOUCH_HOLE || place->shape == TOUCH_DISC) {
+    if (place->shape == TOUCH_HOLE || place->shape == TOUCH_DISC || place->shape == TOUCH_SLOT) {
         return place->clearance;
     }
     if (place->shape == TOUCH_CAM) {

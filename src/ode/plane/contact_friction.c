@@ -120,13 +120,17 @@ static void share_rows(const FrictionRow *row, Share *share)
         share->along[0] = share->across[1] = 1.0;
         return;
     }
-    const Vec2 tangent = vec2_perp(row->normal);
+    const Vec2 normal = pair_in_rows(row->pair, row->normal);
+    const Vec2 tangent = vec2_perp(normal);
     const Vec2 arm = vec2_sub(pair_point(row->pair, row->normal), pair_anchor_b(row->pair));
-    const double radius = touch->shape == TOUCH_HOLE ? touch->radius_a : -touch->radius_a;
+    const double pin_arm = vec2_dot(row->normal, arm);
+    const double radius = touch->shape == TOUCH_HOLE   ? touch->radius_a
+                          : touch->shape == TOUCH_SLOT ? -pin_arm // about the pin's centre as well
+                                                       : -touch->radius_a;
     *share = (Share){
         .row_count = RESPONSE_ROWS_A_JOINT,
-        .along = {row->normal.x, row->normal.y, 0.0, 0.0},
-        .across = {tangent.x, tangent.y, radius, vec2_dot(row->normal, arm)},
+        .along = {normal.x, normal.y, 0.0, 0.0},
+        .across = {tangent.x, tangent.y, radius, pin_arm},
     };
 }
 

@@ -285,6 +285,27 @@ Vec2 pair_anchor_b(const WorldPair *pair)
     return anchor_of(pair, 1);
 }
 
+Vec2 pair_in_rows(const WorldPair *pair, Vec2 normal)
+{
+    switch (pair->touch.shape) {
+    case TOUCH_SLOT: {
+        const Snapshot a = snapshot_of(pair->bodies[0]);
+        const Vec2 across = snapshot_turn(&a, pair->line);
+        return (Vec2){vec2_dot(across, normal), vec2_cross(across, normal)};
+    }
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+        return normal;
+    case TOUCH_LINE:
+    case TOUCH_CAM:
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
+        break;
+    }
+    return (Vec2){1.0, 0.0};
+}
+
 Vec2 pair_point(const WorldPair *pair, Vec2 normal)
 {
     const Touch *touch = &pair->touch;
@@ -299,6 +320,9 @@ Vec2 pair_point(const WorldPair *pair, Vec2 normal)
     case TOUCH_TEETH:
     case TOUCH_CAM:
         return vec2_add(anchor_of(pair, 1), pair_pose(pair).from_b);
+    case TOUCH_SLOT:
+        return vec2_add(anchor_of(pair, 0),
+                        vec2_sub(pair_pose(pair).middle, vec2_scale(touch->radius_a, normal)));
     case TOUCH_LINE:
     case TOUCH_TURN:
         break;

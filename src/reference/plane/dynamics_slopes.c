@@ -33,7 +33,7 @@ typedef struct SlopesPressing {
     Vec2 *centre;     // G, by coordinate: of the parts that the contact couples, like all
     double *arms;     // m, s; 0 without friction
     Vec2 beside;      // m, from the circle's centre to where a flat on body b touches
-    int pair;         // of the tree
+    int pair;         // of the tree; in a slot that of the wall that is met
     const CouplingJoint *parts;
 } SlopesPressing;
 
@@ -44,10 +44,13 @@ typedef struct SlopesChange {
 } SlopesChange;
 
 // The arm of friction about the centre of the circle on body b, or on body a about that of its own
-// circle or the point of its line, m.
-static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
+// circle or the point of its line, m. A slot's end is a hole, its straight walls are lines.
+static double friction_arm(const Touch *touch, const TouchPose *pose, bool is_at_line, int side)
 {
+    const double pin_arm = touch->radius_a - touch->clearance + pose->gap; // of a slot
     switch (touch->shape) {
+    case TOUCH_SLOT:
+        return side == 1 ? pin_arm : is_at_line ? -pin_arm : -touch->radius_a;
     case TOUCH_HOLE:
         return side == 0 ? -touch->radius_a : touch->radius_a - vec2_length(pose->offset);
     case TOUCH_DISC:
@@ -63,15 +66,17 @@ static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
 }
 
 // Arms of friction, and how it grips at a state of the tree.
-static void find_friction(const Dynamics *dynamics, const TreeState *state, int pair,
+static void find_friction(const Dynamics *dynamics, const TreeState *state,
                           SlopesPressing *pressing)
 {
     const Tree *tree = &dynamics->tree;
+    const int pair = pressing->pair;
+    const bool is_at_line = tree->measures[pair] == TREE_LINE;
     const TouchPose *pose = &pressing->force.pose;
     double sliding = vec2_dot(vec2_perp(pose->normal), pressing->velocity);
     for (int side = 0; side < 2; side++) {
         const int body = tree->end_bodies[2 * pair + side];
-        const double arm = friction_arm(pressing->touch, pose, side);
+        const double arm = friction_arm(pressing->touch, pose, is_at_line, side);
         if (body != LINKAGE_GROUND) {
             sliding -= arm * state->motions[body].omega;
         }
@@ -108,6 +113,30 @@ static void meet_cam(const Tree *tree, const TreeState *state, const PlaneSite *
     pressing->beside = cam.measured;
     pressing->bend = site->touch.cam.is_flat ? INFINITY : 1.0 / cam.curvature;
     pressing->velocity = vec2_add(pose->velocity, vec2_sub(turned_b, turned_a));
+}
+
+// At a line, of which the pair of the tree has the normal: against the point of body a under the
+// circle's centre.
+static void meet_line(const Tree *tree, const TreeState *state, SlopesPressing *pressing)
+{
+    const double omega = tree_omega(state, tree->end_bodies[2 * pressing->pair]);
+    const Vec2 offset = tree_pair_gap(tree, state, pressing->pair);
+    pressing->velocity = vec2_sub(tree_pair_velocity(tree, state, pressing->pair),
+                                  vec2_scale(omega, vec2_perp(offset)));
+}
+
+// In a slot: at one of its straight walls, or in the hole at one of its ends.
+static void meet_slot(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                      const Contact *contact, SlopesPressing *pressing)
+{
+    const ContactWall wall = dynamics_wall(tree, state, site, contact).wall;
+    pressing->pair = dynamics_contact_pair(tree, site, wall);
+    if (pressing->pair == site->pair) {
+        meet_line(tree, state, pressing);
+        return;
+    }
+    pressing->velocity = tree_pair_velocity(tree, state, pressing->pair);
+    pressing->bend = -vec2_length(tree_pair_gap(tree, state, pressing->pair));
 }
 
 // How each coordinate moves where the gap is measured on body b against body a there.
@@ -147,12 +176,12 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
     case TOUCH_CAM:
         meet_cam(&dynamics->tree, state, site, pose, &pressing);
         break;
-    case TOUCH_LINE: {
-        // against the point of body a under the circle's centre
-        const double omega = tree_omega(state, dynamics->tree.end_bodies[2 * site->pair]);
-        pressing.velocity = vec2_sub(pose->velocity, vec2_scale(omega, vec2_perp(pose->offset)));
+    case TOUCH_LINE:
+        meet_line(&dynamics->tree, state, &pressing);
         break;
-    }
+    case TOUCH_SLOT:
+        meet_slot(&dynamics->tree, state, site, contact, &pressing);
+        break;
     case TOUCH_DISC:
         pressing.bend = vec2_length(pose->offset);
         break;
@@ -168,7 +197,7 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
     pressing.damping = press_damping(contact, &pressing.force.press);
     find_row(&dynamics->tree, state, &pressing);
     if (contact->law.friction > 0.0) {
-        find_friction(dynamics, state, site->pair, &pressing);
+        find_friction(dynamics, state, &pressing);
     }
     return pressing;
 }
@@ -252,7 +281,8 @@ static void slopes_find_pushed(const Dynamics *dynamics, const TreeState *state,
             dynamics_load_end(tree, state, end, under, vec2_scale(-1.0, force), &loads);
         } else {
             for (int side = 0; side < 2; side++) {
-                const double arm = friction_arm(pressing->touch, &pressing->force.pose, side);
+                const double arm =
+                    friction_arm(pressing->touch, &pressing->force.pose, is_line, side);
                 dynamics_load_couple(tree, state, tree->end_bodies[end + side], arm, &loads);
             }
         }

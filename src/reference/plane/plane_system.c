@@ -105,6 +105,11 @@ static Press plane_press(const System *system, size_t contact, double since_s, c
     return dynamics_contact(plane_dynamics_of(system), contact, since_s, y).press;
 }
 
+static WallPlace plane_wall(const System *system, size_t contact, double since_s, const double *y)
+{
+    return dynamics_contact_wall(plane_dynamics_of(system), contact, since_s, y);
+}
+
 static void add_end_size(const Tree *tree, const TreeState *state, int end, double *length,
                          double *speed)
 {
@@ -133,6 +138,22 @@ static void plane_sizes(const System *system, const SystemState *state, size_t c
     }
     add_end_size(tree, &plane_state_of(state)->tree, end, length, speed);
     add_end_size(tree, &plane_state_of(state)->tree, end + 1, length, speed);
+    *length += site->touch.half_length;
+}
+
+// In a slot across it, and along it as far as that brings the pin to an end.
+static double crossing_in_slot(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                               double flight)
+{
+    const TouchSlot slot = touch_in_slot(
+        tree_pair_gap(tree, state, site->pair), tree_pair_velocity(tree, state, site->pair),
+        tree_normal(tree, state, site->pair), tree_omega(state, tree->end_bodies[2 * site->pair]));
+    const double speed = vec2_length(slot.rate);
+    const double to_end = fmax(site->touch.half_length - fabs(slot.position.y), flight);
+    const double share = flight / to_end;
+    const double second = fabs(tree_line_second(tree, state, site->pair)) +
+                          share * vec2_length(tree_pair_acceleration(tree, state, site->pair));
+    return fabs(slot.rate.x) + share * speed + sqrt(flight * second);
 }
 
 // How fast gears may come apart or nearer, m/s.
@@ -173,6 +194,8 @@ static double plane_crossing(const System *system, const SystemState *state, siz
         // along the line it may go as fast as it likes
         return fabs(tree_line_rate(tree, at, site->pair)) +
                sqrt(of->flight * fabs(tree_line_second(tree, at, site->pair)));
+    case TOUCH_SLOT:
+        return crossing_in_slot(tree, at, site, of->flight);
     case TOUCH_CAM:
         // a lobe comes along the profile
         passing = site->touch.cam.profile->reach *
@@ -436,6 +459,7 @@ static const SystemKind PLANE = {
     .rates = dynamics_rates,
     .slopes = dynamics_slopes,
     .press = plane_press,
+    .wall = plane_wall,
     .needs = dynamics_contact_needs,
     .sizes = plane_sizes,
     .crossing = plane_crossing,

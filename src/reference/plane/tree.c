@@ -684,8 +684,26 @@ static void tree_list_ends(Tree *tree)
     tree->end_firsts[0] = 0;
 }
 
+// The centres of the arcs at the ends of a slot, the first one along it first.
+static size_t ends_of_slot(const Joint *joint, Touch ends[TOUCH_CORNERS])
+{
+    const Vec2 along = vec2_perp(vec2_rotate(joint->direction, (Vec2){1.0, 0.0}));
+    for (int i = 0; i < 2; i++) {
+        const double way = (i == 0 ? -0.5 : 0.5) * joint->stop.slot;
+        ends[i] = (Touch){
+            .shape = TOUCH_SLOT,
+            .anchor_a = vec2_add(joint->anchor_a, vec2_scale(way, along)),
+            .anchor_b = joint->anchor_b,
+        };
+    }
+    return 2;
+}
+
 size_t tree_own_pairs(const Linkage *linkage, int number, Touch sites[TOUCH_CORNERS])
 {
+    if (linkage_has_slot(&linkage->joints[number])) {
+        return ends_of_slot(&linkage->joints[number], sites);
+    }
     const bool has_own = joint_slides(linkage->joints[number].kind);
     return has_own ? touch_places(linkage, number, sites) : 0;
 }
@@ -707,6 +725,8 @@ static void set_pairs(Tree *tree)
             touch_places(linkage, i, sites);
             // of a cam the line from which its profile's angles count
             measure = sites[0].shape == TOUCH_DISC ? TREE_DISC : TREE_LINE;
+            // of a slot its middle line
+            sites[0].clearance = sites[0].shape == TOUCH_SLOT ? 0.0 : sites[0].clearance;
         } else if (joint_has_mesh(joint->kind)) {
             // how far apart the centres are, beyond where the pitch circles touch
             sites[0].clearance = mesh_distance(&joint->gear);
@@ -725,7 +745,8 @@ static void set_pairs(Tree *tree)
         tree->corners[i] = corner;
         const size_t own = tree_own_pairs(linkage, i, sites);
         for (size_t k = 0; k < own; k++) {
-            set_pair(tree, corner++, joint, &sites[k], TREE_LINE);
+            set_pair(tree, corner++, joint, &sites[k],
+                     sites[k].shape == TOUCH_SLOT ? TREE_POINTS : TREE_LINE);
         }
     }
     tree_list_ends(tree);

@@ -60,7 +60,8 @@ typedef struct Tree {
     int *angle_column;     // by body; -1 for a driven one and what slides on it
     int *node_of;          // by body; -1 for a driven one
     size_t pair_count;     // those of the joints first
-    int *corners;          // first pair of a block's corners or a slider's stops, by joint
+    int *corners;          // first pair of a block's corners, a slider's stops or a slot's ends, by
+                           // joint
     size_t measured_count; // pairs with a line or discs, and which
     int *measured;         //
     TreeMeasure *measures; // by pair
@@ -303,8 +304,9 @@ double tree_tilt(const Tree *tree, const TreeState *state, int joint);
 
 // The functions of the tree: it is built, moved and evaluated.
 
-// The pairs that the sites of a joint have of their own: those of corners and of a slider's stops.
-// Returns how many, with the sites.
+// The pairs of a joint beside the one of its anchors: those of corners and of a slider's stops,
+// which are its sites, and those of the ends of a slot, from the centre of an arc to that of the
+// pin. Returns how many, with what they are between.
 size_t tree_own_pairs(const Linkage *linkage, int number, Touch sites[TOUCH_CORNERS]);
 
 // Finds the tree of the linkage's ideal joints, which must outlive it (reference/plane/tree.c).
