@@ -372,9 +372,11 @@ static void plane_accelerate(void *own, const double *gained)
     const Applied *applied = &step->world.applied;
     for (size_t i = 0; i < body_count(step); i++) {
         motions[i] = step->middle[i];
-        motions[i].velocity.x += gained[3 * i];
-        motions[i].velocity.y += gained[3 * i + 1];
-        motions[i].omega += gained[3 * i + 2];
+        if (impulse_step_is_free(step, i)) {
+            motions[i].velocity.x += gained[3 * i];
+            motions[i].velocity.y += gained[3 * i + 1];
+            motions[i].omega += gained[3 * i + 2];
+        }
     }
     response_free(&step->response, motions, scenario_gravity(step->scenario),
                   applied->is_any ? applied->loads : NULL, step->scheme.kernel.free);
