@@ -18,9 +18,9 @@
 //     v(t) = .. + A P + A' (s P - Q),   q(t) = .. + A Q + A' (s Q - 2 R),   Q' = P, R' = Q
 // with P and Q the contacts' impulse and its integral up to t. Else it is taken as constant. The
 // step is then taken with what turns in it. All of this is right to one order more than a step
-// without it, and has no part in it where nothing is known yet: a_f, the acceleration beside the
-// contacts', is that of the step before, P_1 / h the mean force in it, g the rows' free
-// acceleration at mid-step, at the speeds v + (h/2) a_f:
+// without it: a_f, the acceleration beside the contacts', is that of the step before, P_1 / h the
+// mean force in it, g the rows' free acceleration at mid-step, at the speeds v + (h/2) a_f. Where
+// there was none, or a kink ended it, a_f and g_1 are those of the start, half a step before:
 //     q_m = q + (h/2) v + (h^2/8) (a_f + A P_1 / h)
 //     g' = (g - g_1 - 2 S_1 P_1) / h                  what is left is no work of the contacts
 //
@@ -111,6 +111,7 @@ void kernel_step_carry(KernelStep *step, Carry *carry)
     CARRY(carry, step->is_calm);
     CARRY_ARRAY(carry, step->free, step->coordinate_count);
     CARRY_ARRAY(carry, step->free_rate, step->coordinate_count);
+    CARRY_ARRAY(carry, step->pressing, rows);
     CARRY_ARRAY(carry, step->total.impulse, rows);
     for (size_t i = 0; step->has_drift && i < KERNEL_STEP_COLUMNS; i++) {
         CARRY_ARRAY(carry, step->columns[i], step->coordinate_count * rows);
@@ -159,29 +160,32 @@ static void push_by_turning(const KernelStep *step, double *speeds)
     }
 }
 
-// Sets what the accelerations beside the contacts' will be at mid-step: those of the step before.
-static void look_ahead(KernelStep *step)
+// Sets what the accelerations beside the contacts' will be at mid-step: those of the step before,
+// or where there is none those of the start.
+static bool look_ahead(KernelStep *step)
 {
-    const bool is_known = step->has_drift && step->steady > 0;
-    for (size_t i = 0; i < step->coordinate_count; i++) {
-        step->ahead[i] = is_known ? step->free[i] : 0.0;
+    if (!step->has_drift) {
+        memset(step->ahead, 0, step->coordinate_count * sizeof *step->ahead);
+        return true;
     }
+    if (step->steady > 0) {
+        memcpy(step->ahead, step->free, step->coordinate_count * sizeof *step->ahead);
+        return true;
+    }
+    memset(step->free_rate, 0, step->coordinate_count * sizeof *step->free_rate);
+    return step->adapter->find_start(step->own, step->ahead);
 }
 
 // What the accelerations have moved the bodies by at mid-step, the contacts pressing as they did in
 // the mean of the step before: at its end an impact may have been under way.
-static const double *find_beyond(KernelStep *step, double width_before_s)
+static const double *find_beyond(KernelStep *step)
 {
-    if (!step->has_drift || step->steady == 0) {
+    if (!step->has_drift) {
         return NULL;
     }
     const double share = 0.125 * step->width_s * step->width_s;
-    double *mean = step->work.rows;
     double *beyond = step->work.changes[0];
-    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
-        mean[i] = step->total.impulse[i] / width_before_s;
-    }
-    step->adapter->push(step->own, step->start_s - step->middles_s[0], mean, beyond);
+    step->adapter->push(step->own, step->start_s - step->middles_s[0], step->pressing, beyond);
     for (size_t i = 0; i < step->coordinate_count; i++) {
         beyond[i] = share * (beyond[i] + step->ahead[i]);
     }
@@ -189,7 +193,8 @@ static const double *find_beyond(KernelStep *step, double width_before_s)
 }
 
 // The free accelerations in the step before, with what its contacts did to them; whether that was
-// so little that they say how these change by themselves.
+// so little that they say how these change by themselves. Where there was none they are those of
+// the start.
 static void keep_free(KernelStep *step, double *free_before)
 {
     const size_t rows = kernel_rows(&step->kernel);
@@ -197,7 +202,7 @@ static void keep_free(KernelStep *step, double *free_before)
     double pushed = 0.0;
     for (size_t i = 0; i < rows; i++) {
         double change = 0.0;
-        for (size_t k = 0; k < rows; k++) {
+        for (size_t k = 0; step->steady > 0 && k < rows; k++) {
             change += 2.0 * step->drift[i * rows + k] * step->total.impulse[k];
         }
         free_before[i] = step->kernel.free[i] + change;
@@ -219,14 +224,15 @@ static void age_columns(KernelStep *step)
 }
 
 // Lets what the rows feel change in the step: their mobility with the bodies, the free acceleration
-// beside that as it did from the middle of the step before, when the contacts changed it by 2 S P.
+// beside that as it did from the middle of the step before, when the contacts changed it by 2 S P,
+// or from the start.
 static void set_drift(KernelStep *step, const double *free_before)
 {
     Kernel *kernel = &step->kernel;
-    const bool is_known = step->steady > 1 && step->is_calm;
-    const double apart_s = step->middles_s[0] - step->middles_s[1];
+    const double before_s = step->steady > 0 ? step->middles_s[1] : step->start_s;
+    const double apart_s = step->middles_s[0] - before_s;
     for (size_t i = 0; i < kernel_rows(kernel); i++) {
-        kernel->free_rate[i] = is_known ? (kernel->free[i] - free_before[i]) / apart_s : 0.0;
+        kernel->free_rate[i] = step->is_calm ? (kernel->free[i] - free_before[i]) / apart_s : 0.0;
     }
     kernel_set_drift(kernel, step->drift, step->width_s);
 }
@@ -360,8 +366,10 @@ KernelStepEnd kernel_step_take(KernelStep *step)
     // accelerations before a kink say nothing of those after it
     const double width_before_s = step->steady == 0 ? 0.0 : step->width_s;
     step->width_s = step->end_s - step->start_s;
-    look_ahead(step);
-    step->adapter->find_middle(step->own, find_beyond(step, width_before_s));
+    if (!look_ahead(step)) {
+        return KERNEL_STEP_REFUSED;
+    }
+    step->adapter->find_middle(step->own, find_beyond(step));
     if (!find_response(step)) {
         return KERNEL_STEP_REFUSED;
     }

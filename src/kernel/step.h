@@ -13,6 +13,10 @@ enum { KERNEL_STEP_COLUMNS = 3 }; // steps of which it is known what rows do: a 
 // What a step asks of the world, in the order in which it asks. All are given what the step has in
 // `own`. Driven bodies are where they are at any time: what changes others leaves them alone.
 typedef struct KernelAdapter {
+    // Of a step with drift before which there was none, or a kink: writes the accelerations beside
+    // the contacts' at its start, by coordinate, and those of the kernel's rows. Returns false
+    // where the world has none.
+    bool (*find_start)(void *own, double *accelerations);
     // Puts the bodies to mid-step, where they are after half a step at the speeds of its start, and
     // then by `beyond`, by coordinate (NULL: not at all).
     void (*find_middle)(void *own, const double *beyond);
@@ -67,7 +71,8 @@ typedef struct KernelStep {
     // by coordinate
     double *free;      // mean acceleration beside the contacts', 1/s of a speed
     double *free_rate; // its rate of change
-    double *ahead;     // with drift, what it will be at mid-step, from the steps before, or zero
+    double *ahead;     // with drift, what it will be at mid-step: as in the step before, or at the
+                       // start of a first one
     double *rest;      // of the end's positions, beyond the formula for inside
     double *moved[2];  // by the contacts in the whole step: speeds and positions
     // by row

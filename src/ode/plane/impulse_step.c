@@ -330,6 +330,29 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
 
 // What the scheme asks of the bodies and of ODE.
 
+// Fails as the ideal joints are redundant somewhere.
+static bool refuse_joints(const ImpulseStep *step)
+{
+    return err_set(step->err, ERR_SOLVER,
+                   "the ideal joints are redundant here: give one joint of the loop some play");
+}
+
+static bool plane_find_start(void *own, double *accelerations)
+{
+    ImpulseStep *step = own;
+    const Linkage *linkage = &step->scenario->linkage;
+    const Vec2 gravity = scenario_gravity(step->scenario);
+    const double start_s = step->scheme.start_s;
+    BodyLoad *loads = step->work->loads;
+    if (!response_place(&step->response, step->before)) {
+        return refuse_joints(step);
+    }
+    loads_of_all(linkage, step->before, start_s, start_s, loads);
+    response_accelerate(&step->response, step->before, gravity, loads, accelerations);
+    response_free(&step->response, step->before, gravity, loads, step->scheme.kernel.free);
+    return true;
+}
+
 static void plane_find_middle(void *own, const double *beyond)
 {
     ImpulseStep *step = own;
@@ -353,8 +376,7 @@ static bool plane_respond(void *own)
 {
     ImpulseStep *step = own;
     if (!response_place(&step->response, step->middle)) {
-        return err_set(step->err, ERR_SOLVER,
-                       "the ideal joints are redundant here: give one joint of the loop some play");
+        return refuse_joints(step);
     }
     if (step->scheme.has_drift) {
         step->drift.columns = step->scheme.columns[0];
@@ -478,6 +500,7 @@ static void plane_compare(void *own, double *speeds, double *gained, double *mov
 }
 
 static const KernelAdapter ADAPTER = {
+    .find_start = plane_find_start,
     .find_middle = plane_find_middle,
     .respond = plane_respond,
     .accelerate = plane_accelerate,
