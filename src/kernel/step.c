@@ -47,9 +47,9 @@ void kernel_step_make_room(KernelStep *step, size_t coordinates, size_t ideal_ro
     const size_t rows = kernel_rows(&step->kernel);
     KernelStepWork *work = &step->work;
     step->coordinate_count = coordinates;
-    double **by_coordinate[] = {&step->free,       &step->free_rate,  &step->ahead,
-                                &step->rest,       &step->moved[0],   &step->moved[1],
-                                &work->changes[0], &work->changes[1], &work->changes[2]};
+    double **by_coordinate[] = {
+        &step->free,     &step->free_rate, &step->ahead,      &step->rest,       &step->moved[0],
+        &step->moved[1], &step->closed,    &work->changes[0], &work->changes[1], &work->changes[2]};
     for (size_t i = 0; i < sizeof by_coordinate / sizeof *by_coordinate; i++) {
         *by_coordinate[i] = zeroed(coordinates, sizeof(double));
     }
@@ -87,10 +87,10 @@ void kernel_step_finish(KernelStep *step)
     kernel_islands_destroy(step->islands);
     kernel_finish(&step->kernel);
     kernel_sums_free(&step->total);
-    double *const arrays[] = {step->free,       step->free_rate, step->ahead,      step->rest,
-                              step->moved[0],   step->moved[1],  step->pressing,   step->closing,
-                              work->rows,       work->ideal[0],  work->changes[0], work->changes[1],
-                              work->changes[2], work->ideal[1]};
+    double *const arrays[] = {step->free,       step->free_rate,  step->ahead,    step->rest,
+                              step->moved[0],   step->moved[1],   step->closed,   step->pressing,
+                              step->closing,    work->rows,       work->ideal[0], work->changes[0],
+                              work->changes[1], work->changes[2], work->ideal[1]};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
@@ -111,6 +111,7 @@ void kernel_step_carry(KernelStep *step, Carry *carry)
     CARRY(carry, step->is_calm);
     CARRY_ARRAY(carry, step->free, step->coordinate_count);
     CARRY_ARRAY(carry, step->free_rate, step->coordinate_count);
+    CARRY_ARRAY(carry, step->closed, step->coordinate_count);
     CARRY_ARRAY(carry, step->pressing, rows);
     CARRY_ARRAY(carry, step->total.impulse, rows);
     for (size_t i = 0; step->has_drift && i < KERNEL_STEP_COLUMNS; i++) {
@@ -321,12 +322,16 @@ static void put_back(KernelStep *step)
     adapter->close(step->own, openings, openings, positions);
     adapter->close(step->own, rates, step->closing, speeds);
     adapter->shift(step->own, positions, speeds);
+    memcpy(step->closed, speeds, step->coordinate_count * sizeof *speeds);
     const size_t count = adapter->find_openings(step->own, openings, rates);
     adapter->close(step->own, rates, rates, speeds);
     memset(positions, 0, step->coordinate_count * sizeof *positions);
     adapter->shift(step->own, positions, speeds);
     for (size_t i = 0; i < count; i++) {
         step->closing[i] += rates[i];
+    }
+    for (size_t i = 0; i < step->coordinate_count; i++) {
+        step->closed[i] = (step->closed[i] + speeds[i]) / step->width_s;
     }
 }
 

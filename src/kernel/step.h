@@ -75,6 +75,7 @@ typedef struct KernelStep {
                        // start of a first one
     double *rest;      // of the end's positions, beyond the formula for inside
     double *moved[2];  // by the contacts in the whole step: speeds and positions
+    double *closed;    // by how much closing the ideal joints has changed the speeds, 1/s of it
     // by row
     KernelSums total; // of the contacts, in the whole step
     double *pressing; // N, their mean forces

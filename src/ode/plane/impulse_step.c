@@ -214,7 +214,9 @@ void impulse_step_place_driven(const ImpulseStep *step, double time_s, Motion *m
 // Springs, dampers and a torque in a step whose contacts are integrated.
 //
 // Dampers feel the mean speed in the step. With P the contacts' impulse and Q its integral it is
-// not that of start and end but differs by A (Q - (h/2) P) / h.
+// not that of start and end but differs by A (Q - (h/2) P) / h. And the end's is not that of the
+// world's step, which their rows know, but has been put back on the ideal joints: by about as much
+// as in the step before.
 
 // Of a step: springs, dampers and torque push the bodies, which move as given at mid-step.
 static void push_loads(ImpulseStep *step)
@@ -233,33 +235,30 @@ static void push_loads(ImpulseStep *step)
                     APPLIED_AT_MEAN, 1);
 }
 
-// Once the contacts are integrated: what the dampers feel of when in the step their impulse came.
+// Once the contacts are integrated: what the dampers feel beside the speeds of start and end.
 static void push_late(ImpulseStep *step)
 {
-    const Linkage *linkage = &step->scenario->linkage;
-    if (!forces_damp(linkage)) {
+    if (!forces_damp(&step->scenario->linkage)) {
         return;
     }
+    const KernelStep *scheme = &step->scheme;
+    const double half_s = 0.5 * scheme->width_s;
     double *late = step->work->rows[0];
-    double *moved = step->work->changes[0];
+    double *beyond = step->work->changes[0];
     Motion *motions = step->work->motions;
-    BodyLoad *loads = step->work->loads;
-    memset(loads, 0, linkage->body_count * sizeof *loads);
-    for (size_t i = 0; i < kernel_rows(&step->scheme.kernel); i++) {
-        late[i] = step->scheme.total.moment[i] / step->scheme.width_s -
-                  0.5 * step->scheme.total.impulse[i];
+    for (size_t i = 0; i < kernel_rows(&scheme->kernel); i++) {
+        late[i] = scheme->total.moment[i] / scheme->width_s - 0.5 * scheme->total.impulse[i];
     }
-    response_apply(&step->response, late, moved);
+    response_apply(&step->response, late, beyond);
+    for (size_t i = 0; i < 3 * body_count(step); i++) {
+        beyond[i] += half_s * scheme->closed[i];
+    }
     for (size_t i = 0; i < body_count(step); i++) {
         motions[i] = step->middle[i];
-        motions[i].velocity = (Vec2){moved[3 * i], moved[3 * i + 1]};
-        motions[i].omega = moved[3 * i + 2];
+        motions[i].velocity = (Vec2){beyond[3 * i], beyond[3 * i + 1]};
+        motions[i].omega = beyond[3 * i + 2];
     }
-    forces_add_dampers(linkage, motions, loads);
-    for (size_t i = 0; i < body_count(step); i++) {
-        dBodyAddForce(step->world.bodies[i], loads[i].force.x, loads[i].force.y, 0.0);
-        dBodyAddTorque(step->world.bodies[i], 0.0, 0.0, loads[i].moment);
-    }
+    applied_push_late(&step->world.applied, motions);
 }
 
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
