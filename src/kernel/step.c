@@ -67,15 +67,13 @@ void kernel_step_make_islands(KernelStep *step)
     step->islands = kernel_islands_create(&step->kernel, &step->coupling);
 }
 
-void kernel_step_make_drift(KernelStep *step, double *columns, const double *rates,
-                            const double *drift)
+void kernel_step_make_drift(KernelStep *step, const double *rates, const double *drift)
 {
     step->has_drift = true;
-    step->columns[0] = columns;
     step->rates = rates;
     step->drift = drift;
     kernel_make_drift(&step->kernel);
-    for (size_t i = 1; i < KERNEL_STEP_COLUMNS; i++) {
+    for (size_t i = 0; i < KERNEL_STEP_COLUMNS; i++) {
         step->columns[i] =
             zeroed(step->coordinate_count * kernel_rows(&step->kernel), sizeof *step->columns[i]);
     }
@@ -94,8 +92,8 @@ void kernel_step_finish(KernelStep *step)
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
-    for (size_t i = 1; i < KERNEL_STEP_COLUMNS; i++) {
-        free(step->columns[i]); // the first one is the adapter's
+    for (size_t i = 0; i < KERNEL_STEP_COLUMNS; i++) {
+        free(step->columns[i]);
     }
 }
 

@@ -53,7 +53,7 @@ typedef struct KernelStepWork {
     double *ideal[2];
 } KernelStepWork;
 
-// A step, and what lives on to the next one. All arrays are owned but for those of a drift.
+// A step, and what lives on to the next one. All arrays are owned but for rates and drift.
 typedef struct KernelStep {
     const KernelAdapter *adapter;
     void *own;              // the adapter's
@@ -103,10 +103,9 @@ typedef enum KernelStepEnd {
 void kernel_step_make_room(KernelStep *step, size_t coordinates, size_t ideal_rows);
 void kernel_step_make_islands(KernelStep *step);
 
-// Lets what pushes do change within the steps: arrays of the adapter's, which it writes anew in
-// each, the first of which changes places with others of the same size.
-void kernel_step_make_drift(KernelStep *step, double *columns, const double *rates,
-                            const double *drift);
+// Lets what pushes do change within the steps: how, the adapter writes to these arrays of its own
+// in each.
+void kernel_step_make_drift(KernelStep *step, const double *rates, const double *drift);
 void kernel_step_finish(KernelStep *step);
 
 // Carries all that lives on from step to step, but for the kernel and the time.

@@ -189,7 +189,7 @@ static void make_scheme(ImpulseStep *step)
     if (rows <= IMPULSE_FEW_ROWS && !step->scenario->ode.is_frozen) {
         step->drift = response_drift_create(&step->response);
         step->curves = impulse_curves_create(&step->scenario->linkage, step->place_count, rows);
-        kernel_step_make_drift(scheme, step->drift.columns, step->drift.rates, step->drift.drift);
+        kernel_step_make_drift(scheme, step->drift.rates, step->drift.drift);
     }
 }
 
@@ -378,8 +378,7 @@ static bool plane_respond(void *own)
         return refuse_joints(step);
     }
     if (step->scheme.has_drift) {
-        step->drift.columns = step->scheme.columns[0];
-        response_drift_columns(&step->response, &step->drift);
+        response_drift_columns(&step->response, step->scheme.columns[0], &step->drift);
         response_drift_find(&step->response, step->middle, 0.5 * step->scheme.width_s,
                             &step->drift);
     }
