@@ -360,6 +360,7 @@ static bool space_advance(void *own)
 {
     SpaceImpulseStep *step = own;
     const double width_s = step->scheme.width_s;
+    const double half_s = 0.5 * width_s;
     const bool is_quick = step->scenario->ode.solver == ODE_QUICK;
     place_bodies(step);
     if (step->hold != NULL) {
@@ -373,10 +374,11 @@ static bool space_advance(void *own)
         if (space_impulse_step_is_free(step, i)) {
             const SpaceMotion now = space_world_motion(&step->world, i);
             SpaceMotion *after = &step->after[i];
-            *after = step->middle[i];
+            *after = step->before[i];
+            coast(after, after->velocity, after->omega, half_s);
             after->velocity = now.velocity;
             after->omega = now.omega;
-            coast(after, now.velocity, now.omega, 0.5 * width_s);
+            coast(after, now.velocity, now.omega, half_s);
         }
     }
     return true;
