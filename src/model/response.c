@@ -142,6 +142,39 @@ void response_free(const Response *response, const Motion *motions, Vec2 gravity
     memcpy(rates, gamma + response->ideal_rows, response_play_rows(response) * sizeof *rates);
 }
 
+// The accelerations of all bodies if no joint held them.
+static void accelerate_loose(const Linkage *linkage, const Motion *motions, Vec2 gravity,
+                             const BodyLoad *loads, double *accelerations)
+{
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const Body *body = &linkage->bodies[i];
+        Vec2 centre = gravity;
+        double turning = 0.0;
+        if (linkage_is_driven(linkage, (int)i)) {
+            centre = motions[i].acceleration;
+            turning = motions[i].alpha;
+        } else if (loads != NULL) {
+            centre = vec2_add(centre, vec2_scale(1.0 / body->mass, loads[i].force));
+            turning = loads[i].moment / body->inertia;
+        }
+        accelerations[3 * i] = centre.x;
+        accelerations[3 * i + 1] = centre.y;
+        accelerations[3 * i + 2] = turning;
+    }
+}
+
+void response_accelerate(const Response *response, const Motion *motions, Vec2 gravity,
+                         const BodyLoad *loads, double *accelerations)
+{
+    double *gamma = response->work;
+    response_rows_loose(response, motions, gravity, loads, gamma);
+    response_solve(response, gamma);
+    accelerate_loose(response->linkage, motions, gravity, loads, accelerations);
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        response_row_push(response->linkage, &response->rows[i], -gamma[i], accelerations);
+    }
+}
+
 void response_add_row(const Response *response, size_t row, double impulse, double *changes)
 {
     response_row_push(response->linkage, &response->rows[row], impulse, changes);

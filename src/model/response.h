@@ -48,6 +48,10 @@ const double *response_block(const Response *response, size_t place, size_t othe
 void response_free(const Response *response, const Motion *motions, Vec2 gravity,
                    const BodyLoad *loads, double *rates);
 
+// Writes the accelerations of all bodies then, three each: x, y, angle.
+void response_accelerate(const Response *response, const Motion *motions, Vec2 gravity,
+                         const BodyLoad *loads, double *accelerations);
+
 // Writes the impulses, N s, with which the ideal joints answer impulses in the joints with play:
 // two rows a joint, on its body b.
 void response_react(const Response *response, const double *impulses, double *reactions);

@@ -42,7 +42,6 @@ ResponseDrift response_drift_create(const Response *response)
     const size_t bodies = response->linkage->body_count;
     return (ResponseDrift){
         .answers = zeroed(play * response->row_count, sizeof(double)),
-        .columns = zeroed(play * 3 * bodies, sizeof(double)),
         .rates = zeroed(play * 3 * bodies, sizeof(double)),
         .drift = zeroed(play * play, sizeof(double)),
         .are_points = are_points(response),
@@ -54,7 +53,6 @@ ResponseDrift response_drift_create(const Response *response)
 void response_drift_finish(ResponseDrift *drift)
 {
     free(drift->answers);
-    free(drift->columns);
     free(drift->rates);
     free(drift->drift);
     free(drift->turning);
@@ -62,15 +60,16 @@ void response_drift_finish(ResponseDrift *drift)
     *drift = (ResponseDrift){.answers = NULL};
 }
 
-void response_drift_columns(const Response *response, ResponseDrift *drift)
+void response_drift_columns(const Response *response, double *columns, ResponseDrift *drift)
 {
     const size_t play = response_play_rows(response);
     const size_t all = response->row_count;
     const size_t speeds = 3 * response->linkage->body_count;
+    drift->columns = columns;
     memset(drift->answers, 0, play * all * sizeof *drift->answers);
     for (size_t row = 0; row < play; row++) {
         double *answer = drift->answers + row * all;
-        double *column = drift->columns + row * speeds;
+        double *column = columns + row * speeds;
         answer[response->ideal_rows + row] = 1.0;
         sparse_back(&response->matrix, answer);
         memset(column, 0, speeds * sizeof *column);

@@ -7,7 +7,7 @@
 typedef struct ResponseDrift {
     double
         *answers; // of an impulse of 1 in each row of play: all rows' impulses; owned, as all here
-    double *columns; // what it does to all speeds, three a body
+    double *columns; // what it does to all speeds, three a body; not owned
     double *rates;   // how that changes with time, 1/s of it
     double *drift;   // S, row by row, 1/(kg s): the mobility changes by S + S', and an impulse P in
                      // the rows of play changes their accelerations by 2 S P
@@ -19,8 +19,9 @@ typedef struct ResponseDrift {
 ResponseDrift response_drift_create(const Response *response);
 void response_drift_finish(ResponseDrift *drift);
 
-// Writes what impulses in the rows of play do, from a response that has been placed.
-void response_drift_columns(const Response *response, ResponseDrift *drift);
+// Writes what impulses in the rows of play do, from a response that has been placed: to `columns`,
+// which are kept.
+void response_drift_columns(const Response *response, double *columns, ResponseDrift *drift);
 
 // Writes, after them, how that changes, and S, where the bodies move as given. Rows that are no
 // points' are differences over a short time, s.

@@ -10,6 +10,7 @@
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "model/independent.h"
+#include "model/loads.h"
 #include "ode/stepping.h"
 
 #include <math.h>
@@ -48,14 +49,49 @@ void impulse_scope_finish(ImpulseScope *scope)
     *scope = (ImpulseScope){.body_count = 0};
 }
 
-void impulse_carry_contacts(KernelIslands *islands, Kernel *kernel, size_t *tick, Carry *carry)
+ImpulseTicks impulse_ticks(const Scenario *scenario)
 {
-    if (islands != NULL) {
-        kernel_islands_carry(islands, carry);
-    } else {
-        kernel_carry(kernel, carry);
+    return (ImpulseTicks){.tick_s = scenario->run.step / (double)scenario->ode.gear};
+}
+
+void impulse_set_end(const Scenario *scenario, bool is_fine, ImpulseTicks *ticks, KernelStep *step)
+{
+    const double rounding_s = STEPPING_ROUNDING * ticks->tick_s;
+    const Linkage *linkage = &scenario->linkage;
+    const double kink_s =
+        fmin(linkage_next_kink(linkage, step->start_s), loads_next_jump(linkage, step->start_s));
+    ticks->tick += is_fine ? 1 : scenario->ode.gear;
+    step->end_s =
+        stepping_end(scenario, step->start_s, (double)ticks->tick * ticks->tick_s, ticks->tick_s);
+    step->is_kink = kink_s < step->end_s + rounding_s;
+    if (step->is_kink) {
+        step->end_s = kink_s;
+        ticks->tick = (size_t)floor((kink_s + rounding_s) / ticks->tick_s);
     }
-    CARRY(carry, *tick);
+}
+
+bool impulse_take_scheme(const Scenario *scenario, KernelStep *step, Err *err)
+{
+    const KernelStepEnd end = kernel_step_take(step);
+    if (end == KERNEL_STEP_TAKEN) {
+        return true;
+    }
+    if (end == KERNEL_STEP_TOO_LONG) {
+        err_set(err, ERR_SOLVER,
+                "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
+    }
+    return stepping_fail(scenario, step->start_s, step->count + 1, step->width_s, err);
+}
+
+void impulse_carry_scheme(KernelStep *step, ImpulseTicks *ticks, Carry *carry)
+{
+    if (step->islands != NULL) {
+        kernel_islands_carry(step->islands, carry);
+    } else {
+        kernel_carry(&step->kernel, carry);
+    }
+    CARRY(carry, ticks->tick);
+    kernel_step_carry(step, carry);
 }
 
 KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands, size_t place,

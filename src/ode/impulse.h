@@ -4,7 +4,7 @@
 // (ode/plane/impulse.c, ode/space/space_impulse.c).
 #pragma once
 
-#include "kernel/kernel.h"
+#include "kernel/step.h"
 #include "model/response_groups.h"
 #include "model/solver.h"
 
@@ -44,9 +44,23 @@ void impulse_scope_finish(ImpulseScope *scope);
 KernelPose impulse_scope_pose(const Kernel *kernel, const KernelIslands *islands, size_t place,
                               ImpulseTime at, const KernelSums *sums);
 
-// Carries the contacts of a step, of its islands or where these are NULL of the kernel of all, and
-// the tick at its end.
-void impulse_carry_contacts(KernelIslands *islands, Kernel *kernel, size_t *tick, Carry *carry);
+// The times at which steps end, but for kinks: n tick_s.
+typedef struct ImpulseTicks {
+    double tick_s; // the finest step
+    size_t tick;   // at the end of the last step, or before it
+} ImpulseTicks;
+
+ImpulseTicks impulse_ticks(const Scenario *scenario);
+
+// Sets where a step ends that has begun, a fine or a coarse one: on the ticks, but not beyond the
+// run, nor beyond a kink of the drive's speed or a jump of a load.
+void impulse_set_end(const Scenario *scenario, bool is_fine, ImpulseTicks *ticks, KernelStep *step);
+
+// Takes such a step. Says what went wrong, and when.
+bool impulse_take_scheme(const Scenario *scenario, KernelStep *step, Err *err);
+
+// Carries the step, its contacts, and the tick at its end.
+void impulse_carry_scheme(KernelStep *step, ImpulseTicks *ticks, Carry *carry);
 
 // The instants within a step at which something stands out: contacts begin or end, forces and
 // depths have their maxima, the step ends.

@@ -168,6 +168,19 @@ static void the_free_acceleration_is_that_of_the_whole_equations(void **state)
         assert_all_near(now, truth, width, 1e-7);
         // control: without gravity it is another one
         assert_true(difference > 0.05 * vec2_length(gravity));
+        // and those of all bodies
+        double bodies[WHOLE_COLUMN_MAX];
+        response_accelerate(&here.response, here.motions, gravity, NULL, bodies);
+        for (size_t k = 0; k < 3; k++) {
+            accelerations[3 * driven + k] = bodies[3 * driven + k]; // the drive's
+        }
+        assert_all_near(bodies, accelerations, 3 * linkage->body_count, 1e-7);
+        response_accelerate(&here.response, here.motions, (Vec2){0.0, 0.0}, NULL, bodies);
+        difference = 0.0;
+        for (size_t i = 0; i < 3 * linkage->body_count; i++) {
+            difference = fmax(difference, fabs(bodies[i] - accelerations[i]));
+        }
+        assert_true(difference > 0.05 * vec2_length(gravity));
         response_finish(&here.response);
     }
 }

@@ -27,6 +27,7 @@ typedef struct DriftCase {
     Motion motions[KINEMATICS_BODY_MAX];
     Response response;
     ResponseDrift drift;
+    double columns[3 * KINEMATICS_BODY_MAX * RESPONSE_ROW_MAX];
     size_t rows;
 } DriftCase;
 
@@ -65,7 +66,7 @@ static void make_drift_case(size_t number, DriftCase *made)
     assert_true(response_place(&made->response, made->motions));
     made->rows = response_play_rows(&made->response);
     made->drift = response_drift_create(&made->response);
-    response_drift_columns(&made->response, &made->drift);
+    response_drift_columns(&made->response, made->columns, &made->drift);
     response_drift_find(&made->response, made->motions, SHORT_S, &made->drift);
 }
 

@@ -3,7 +3,8 @@
 // Springs, at the positions where the step stands, and the torque's mean over the step are forces.
 // A damper with coefficient c takes the rate r of its length (or angle) at the step's start and r'
 // at its end:
-//     f = -c (r + r') / 2     is the row  J v' + (2/c) f = -r
+//     f = -c (r + r') / 2     is the row  J v' + (2/c) f = -r,   and -c d beside it where the mean
+//                             rate is known to be d beyond that of start and end
 //     f = -c r'               is the row  J v' + (1/c) f = 0
 // J v' = r', CFM 2/c or 1/c. The first is the trapezoidal rule, second order and symmetric in time,
 // and both are stable for any c. ODE's distance joint has the row of a line: its right-hand side is
@@ -12,6 +13,8 @@
 
 #include "base/zeroed.h"
 #include "model/loads.h"
+
+#include <string.h>
 
 // m: below it ODE takes any direction for the line
 static const double LINE_LEAST = 1e-6;
@@ -61,6 +64,7 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
     applied->lines = zeroed(linkage->spring_count, sizeof *applied->lines);
     applied->motions = zeroed(linkage->body_count, sizeof *applied->motions);
     applied->seen = zeroed(linkage->body_count, sizeof *applied->seen);
+    applied->late = zeroed(linkage->body_count, sizeof *applied->late);
     applied->loads = zeroed(linkage->body_count, sizeof *applied->loads);
     applied->pushed = zeroed(linkage->load_count, sizeof *applied->pushed);
     applied->rates = zeroed(linkage->load_count, sizeof *applied->rates);
@@ -90,6 +94,7 @@ void applied_finish(Applied *applied)
     free(applied->lines);
     free(applied->motions);
     free(applied->seen);
+    free(applied->late);
     free(applied->loads);
     free(applied->pushed);
     free(applied->rates);
@@ -154,10 +159,12 @@ static void set_turn(const Applied *applied, dJointID row, int joint, double sof
 
 static void set_rows(Applied *applied, double step_s, AppliedRule rule, int direction)
 {
+    applied->motor.late = 0.0;
     const Linkage *linkage = applied->linkage;
     const bool is_mean = rule == APPLIED_AT_MEAN;
     const double share = direction * (is_mean ? 0.5 : 1.0);
     for (size_t i = 0; i < linkage->spring_count; i++) {
+        applied->dampers[i].late = 0.0;
         if (applied->dampers[i].row != NULL) {
             const SpringLine *line = &applied->lines[i];
             set_line(&applied->dampers[i], line, 1.0 / (share * linkage->springs[i].damping),
@@ -166,6 +173,7 @@ static void set_rows(Applied *applied, double step_s, AppliedRule rule, int dire
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
+        applied->torsions[i].late = 0.0;
         set_turn(applied, applied->torsions[i].row, spring->joint, 1.0 / (share * spring->damping),
                  is_mean);
     }
@@ -229,6 +237,30 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
     forces_add_dampers(linkage, motions, applied->loads);
 }
 
+void applied_push_late(Applied *applied, const Motion *beyond)
+{
+    const Linkage *linkage = applied->linkage;
+    memset(applied->late, 0, linkage->body_count * sizeof *applied->late);
+    for (size_t i = 0; i < linkage->spring_count; i++) {
+        const Spring *spring = &linkage->springs[i];
+        applied->dampers[i].late = spring->damping * forces_line(spring, beyond).rate;
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        const TorsionSpring *spring = &linkage->torsions[i];
+        applied->torsions[i].late =
+            -spring->damping * forces_turn(linkage, spring->joint, beyond).rate;
+    }
+    if (applied->motor.row != NULL) {
+        applied->motor.late = -linkage->torque.slope * forces_drive_rate(linkage, beyond);
+    }
+    forces_add_dampers(linkage, beyond, applied->late);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        const BodyLoad *load = &applied->late[i];
+        dBodyAddForce(applied->bodies[i], load->force.x, load->force.y, 0.0);
+        dBodyAddTorque(applied->bodies[i], 0.0, 0.0, load->moment);
+    }
+}
+
 void applied_push(Applied *applied, double start_s, double step_s, AppliedRule rule, int direction)
 {
     if (!applied->is_any) {
@@ -248,7 +280,7 @@ static double take_turn(Applied *applied, const AppliedRow *row, int joint, doub
     if (row->row == NULL) {
         return 0.0;
     }
-    const double moment = row->feedback.t1[2];
+    const double moment = row->feedback.t1[2] + row->late;
     forces_add_moment(applied->linkage, joint, moment, applied->loads);
     return step_s * moment * moment / damping;
 }
@@ -265,7 +297,8 @@ static double take_dampers(Applied *applied, double step_s)
             const dReal *force = applied->dampers[i].feedback.f1;
             const double along =
                 force[0] * line->direction.x + force[1] * line->direction.y; // on its first body
-            const double tension = spring->body_a == LINKAGE_GROUND ? -along : along;
+            const double tension =
+                (spring->body_a == LINKAGE_GROUND ? -along : along) + applied->dampers[i].late;
             forces_add_tension(spring, line, applied->motions, tension, applied->loads);
             work += step_s * tension * tension / spring->damping;
         }

@@ -11,6 +11,7 @@
 typedef struct AppliedRow {
     dJointID row; // NULL: the spring has no damper
     dJointFeedback feedback;
+    double late; // N or N m: tension or moment beside the row's (applied_push_late)
 } AppliedRow;
 
 typedef struct Applied {
@@ -26,6 +27,7 @@ typedef struct Applied {
     SpringLine *lines;     // at the positions of the step
     Motion *motions;       // likewise, with the speeds of its start
     Motion *seen;          // as the engine holds them
+    BodyLoad *late;        // room
     BodyLoad *loads;       // of springs and torque, and of the dampers: before the step
                            // as the speeds of its start have them, behind it as they
                            // were
@@ -59,6 +61,10 @@ void applied_push(Applied *applied, double start_s, double step_s, AppliedRule r
 // The same for motions that are known better than the world has them.
 void applied_push_at(Applied *applied, const Motion *motions, double start_s, double step_s,
                      AppliedRule rule, int direction);
+
+// After that: lets the dampers feel that the mean speeds in the step will be so much above those of
+// its start and end, which their rows know; motions that have these for speeds.
+void applied_push_late(Applied *applied, const Motion *beyond);
 
 // What the drive's torque and the loads gave and the dampers took in a step, J. Of a torque whose
 // rate takes some, that is apart.

@@ -43,8 +43,8 @@ static bool plane_open(const Scenario *scenario, void **own, ImpulseView *view, 
         .scenario = scenario,
         .world = step->world.id,
         .constraint_rows = step->world.constraint_rows,
-        .kernel = &step->kernel,
-        .islands = step->islands,
+        .kernel = &step->scheme.kernel,
+        .islands = step->scheme.islands,
         .groups = &step->groups,
         .whole = &step->whole,
         .depths = impulse->depths,
@@ -76,8 +76,8 @@ static bool plane_take(void *own, ImpulseSpan *span, Err *err)
     if (!impulse_step_take(&impulse->step, err)) {
         return false;
     }
-    *span = (ImpulseSpan){step->start_s,    step->end_s,     step->width_s,
-                          step->drive_work, step->load_work, step->damped};
+    *span = (ImpulseSpan){step->scheme.start_s, step->scheme.end_s, step->scheme.width_s,
+                          step->drive_work,     step->load_work,    step->damped};
     return true;
 }
 
@@ -145,15 +145,12 @@ static double plane_mean(const void *own, size_t joint)
     return impulse->step.mean[joint].force;
 }
 
+// What lives on of few rows beside the scheme.
 static void carry_few_rows(ImpulseStep *step, Carry *carry)
 {
-    const size_t count = 3 * step->scenario->linkage.body_count * kernel_rows(&step->kernel);
-    for (size_t i = 0; i < IMPULSE_COLUMNS; i++) {
-        CARRY_ARRAY(carry, step->columns[i], count);
-    }
-    CARRY(carry, step->middles_s);
-    CARRY_ARRAY(carry, step->drift.rates, count);
-    CARRY_ARRAY(carry, step->drift.drift, kernel_rows(&step->kernel) * kernel_rows(&step->kernel));
+    const size_t rows = kernel_rows(&step->scheme.kernel);
+    CARRY_ARRAY(carry, step->drift.rates, 3 * step->scenario->linkage.body_count * rows);
+    CARRY_ARRAY(carry, step->drift.drift, rows * rows);
     impulse_curves_carry(&step->curves, carry);
 }
 
@@ -161,25 +158,15 @@ static void impulse_step_carry(ImpulseStep *step, Carry *carry)
 {
     const size_t bodies = step->scenario->linkage.body_count;
     world_carry(&step->world, carry);
-    impulse_carry_contacts(step->islands, &step->kernel, &step->tick, carry);
-    CARRY(carry, step->is_kink);
-    CARRY(carry, step->end_s);
-    CARRY(carry, step->count);
-    CARRY(carry, step->start_s);
-    CARRY(carry, step->width_s);
+    impulse_carry_scheme(&step->scheme, &step->ticks, carry);
     CARRY(carry, step->arms);
-    CARRY(carry, step->steady);
-    CARRY(carry, step->is_calm);
     CARRY_ARRAY(carry, step->middle, bodies);
     CARRY_ARRAY(carry, step->after, bodies);
-    CARRY_ARRAY(carry, step->free, 3 * bodies);
-    CARRY_ARRAY(carry, step->free_rate, 3 * bodies);
-    CARRY_ARRAY(carry, step->total.impulse, kernel_rows(&step->kernel));
     CARRY_ARRAY(carry, step->mean, step->scenario->linkage.joint_count);
-    if (step->has_few_rows) {
+    if (step->scheme.has_drift) {
         carry_few_rows(step, carry);
     }
-    if (carry->is_back && step->count > 0) {
+    if (carry->is_back && step->scheme.count > 0) {
         response_place(&step->response, step->middle);
     }
 }

@@ -12,12 +12,11 @@
 #pragma once
 
 #include "base/double2.h"
-#include "kernel/kernel.h"
+#include "kernel/step.h"
 #include "model/linkage.h"
 
 enum {
     IMPULSE_FEW_ROWS = 16, // so many at most: working out what each does takes as their square
-    IMPULSE_COLUMNS = 3,   // steps of which it is known what rows do: a parabola in time
 };
 
 // The freedoms of one body: x and y in m; the angle in rad, and nothing.
@@ -74,8 +73,8 @@ void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *b
 
 // Sets what the rows do: by row and body three numbers, in this step and the two before, the last
 // of them first, and when these had their middles, s; and how it changes in this step.
-void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[IMPULSE_COLUMNS],
-                                const double middles_s[IMPULSE_COLUMNS], const double *rates);
+void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[KERNEL_STEP_COLUMNS],
+                                const double middles_s[KERNEL_STEP_COLUMNS], const double *rates);
 
 // Sets how the places go, from a kernel that has run.
 void impulse_curves_set_places(ImpulseCurves *curves, const Kernel *kernel);

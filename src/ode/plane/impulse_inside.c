@@ -25,7 +25,7 @@ static void push_bodies(const ImpulseStep *step, const ImpulseScope *scope, doub
                         const KernelSums *sums, double *speeds, double *positions)
 {
     if (scope->is_whole) {
-        impulse_step_push_bodies(step, since_s, sums, speeds, positions);
+        kernel_step_push(&step->scheme, since_s, sums, speeds, positions);
         return;
     }
     push_scope(step, scope, sums->impulse, speeds);
@@ -36,15 +36,14 @@ static void push_bodies(const ImpulseStep *step, const ImpulseScope *scope, doub
 static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, double since_s,
                          const KernelSums *sums, Motion *motions)
 {
-    if (since_s == step->width_s && scope->is_whole) {
+    if (since_s == step->scheme.width_s && scope->is_whole) {
         memcpy(motions, step->after, step->scenario->linkage.body_count * sizeof *motions);
         return;
     }
     double *speeds = step->work->changes[0];
     double *positions = step->work->changes[1];
     push_bodies(step, scope, since_s, sums, speeds, positions);
-    const double share = since_s / step->width_s;
-    const double half_s = step->has_few_rows ? 0.5 * since_s : 0.0;
+    const KernelStepTime at = kernel_step_time(&step->scheme, since_s);
     for (size_t n = 0; n < scope->body_count; n++) {
         const size_t i = scope->bodies[n];
         const Motion *first = &step->before[i];
@@ -52,18 +51,15 @@ static void find_motions(const ImpulseStep *step, const ImpulseScope *scope, dou
         double q[3] = {first->position.x, first->position.y, first->angle};
         double w[3];
         for (size_t k = 0; k < 3; k++) {
-            const double mean = step->free[3 * i + k];
-            const double bend = half_s * step->free_rate[3 * i + k];
-            w[k] = v[k] + since_s * mean + bend * (since_s - step->width_s) + speeds[3 * i + k];
-            q[k] += since_s * (v[k] + 0.5 * since_s * mean) + positions[3 * i + k] +
-                    bend * since_s * (since_s / 3.0 - 0.5 * step->width_s) +
-                    share * share * step->rest[3 * i + k];
+            const size_t c = 3 * i + k;
+            w[k] = kernel_step_speed(&step->scheme, c, at, v[k], speeds[c]);
+            q[k] += kernel_step_way(&step->scheme, c, at, v[k], positions[c]);
         }
         motions[i] = (Motion){
             .position = {q[0], q[1]}, .angle = q[2], .velocity = {w[0], w[1]}, .omega = w[2]};
     }
     if (scope->has_drive) {
-        impulse_step_place_driven(step, step->start_s + since_s, motions);
+        impulse_step_place_driven(step, step->scheme.start_s + since_s, motions);
     }
 }
 
@@ -72,8 +68,9 @@ static void follow_curves(const ImpulseStep *step, double since_s, const KernelS
                           Motion *motions)
 {
     impulse_curves_at(&step->curves, since_s, sums, motions);
-    impulse_step_place_driven(step, step->start_s + since_s, motions);
-    for (size_t i = 0; since_s == step->width_s && i < step->scenario->linkage.body_count; i++) {
+    impulse_step_place_driven(step, step->scheme.start_s + since_s, motions);
+    for (size_t i = 0; since_s == step->scheme.width_s && i < step->scenario->linkage.body_count;
+         i++) {
         const Motion *after = &step->after[i];
         motions[i].position = after->position;
         motions[i].angle = after->angle;
@@ -99,12 +96,12 @@ static void find_contact_rates(const ImpulseStep *step, const ImpulseScope *scop
 static void add_free(const ImpulseStep *step, size_t body, double off_middle_s, const double *rates,
                      Motion *motion)
 {
-    const double *free = step->free + 3 * body;
-    const double *free_rate = step->free_rate + 3 * body;
-    const double *pressed = rates + 3 * body;
-    motion->acceleration = (Vec2){pressed[0] + (free[0] + off_middle_s * free_rate[0]),
-                                  pressed[1] + (free[1] + off_middle_s * free_rate[1])};
-    motion->alpha = pressed[2] + (free[2] + off_middle_s * free_rate[2]);
+    const size_t first = 3 * body;
+    const double *pressed = rates + first;
+    motion->acceleration =
+        (Vec2){pressed[0] + kernel_step_beside(&step->scheme, first, off_middle_s),
+               pressed[1] + kernel_step_beside(&step->scheme, first + 1, off_middle_s)};
+    motion->alpha = pressed[2] + kernel_step_beside(&step->scheme, first + 2, off_middle_s);
 }
 
 // Fills in the accelerations.
@@ -112,7 +109,7 @@ static void find_accelerations(const ImpulseStep *step, const ImpulseScope *scop
                                bool is_peak, const KernelSums *sums, Motion *motions)
 {
     double *rates = step->work->changes[0];
-    const double off_middle_s = since_s - 0.5 * step->width_s;
+    const double off_middle_s = since_s - 0.5 * step->scheme.width_s;
     find_contact_rates(step, scope, is_peak, sums, motions, rates);
     for (size_t n = 0; n < scope->body_count; n++) {
         const size_t i = scope->bodies[n];
@@ -128,7 +125,7 @@ static void find_some_accelerations(const ImpulseStep *step, const ImpulseScope 
 {
     const ResponseGroups *groups = &step->groups;
     double *rates = step->work->changes[0];
-    const double off_middle_s = since_s - 0.5 * step->width_s;
+    const double off_middle_s = since_s - 0.5 * step->scheme.width_s;
     const bool is_placed =
         response_groups_place(&step->work->there, groups, &scope->placed, motions);
     response_groups_apply(is_placed ? &step->work->there : &step->response, groups, &scope->placed,
@@ -216,9 +213,9 @@ static void add_line(const Linkage *linkage, const Touch *place, const KernelPos
 static KernelPose look_at_place(const ImpulseStep *step, size_t place, ImpulseTime at,
                                 const KernelSums *sums)
 {
-    const Kernel *kernel = &step->kernel;
+    const Kernel *kernel = &step->scheme.kernel;
     if (!impulse_step_has_curves(step)) {
-        return impulse_scope_pose(kernel, step->islands, place, at, sums);
+        return impulse_scope_pose(kernel, step->scheme.islands, place, at, sums);
     }
     const size_t row = kernel->contacts[place].first_row;
     double position[2];
@@ -274,8 +271,8 @@ static void add_answers(const ImpulseStep *step, const KernelSums *sums, const M
 {
     double *beyond = step->work->rows[0];
     double *reactions = step->work->rows[1];
-    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
-        beyond[i] = sums->force[i] - step->pressing[i];
+    for (size_t i = 0; i < kernel_rows(&step->scheme.kernel); i++) {
+        beyond[i] = sums->force[i] - step->scheme.pressing[i];
     }
     response_react(&step->response, beyond, reactions);
     for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
@@ -288,10 +285,10 @@ static void add_answers(const ImpulseStep *step, const KernelSums *sums, const M
 static void add_few_answers(const ImpulseStep *step, const KernelSums *sums, const Motion *motions,
                             JointState *joints)
 {
-    const size_t rows = kernel_rows(&step->kernel);
+    const size_t rows = kernel_rows(&step->scheme.kernel);
     double beyond[IMPULSE_FEW_ROWS];
     for (size_t i = 0; i < rows; i++) {
-        beyond[i] = sums->force[i] - step->pressing[i];
+        beyond[i] = sums->force[i] - step->scheme.pressing[i];
     }
     for (size_t row = 0; row < step->response.ideal_rows; row += 2) {
         const double *answer = step->drift.answers + row;
@@ -309,12 +306,12 @@ static void add_few_answers(const ImpulseStep *step, const KernelSums *sums, con
 static void add_island_answers(const ImpulseStep *step, const ImpulseScope *scope,
                                const KernelSums *sums, const Motion *motions, JointState *joints)
 {
-    const Kernel *kernel = &step->kernel;
+    const Kernel *kernel = &step->scheme.kernel;
     double *beyond = step->work->rows[0];
     for (size_t n = 0; n < scope->part.place_count; n++) {
         const KernelContact *joint = &kernel->contacts[scope->part.places[n]];
         for (size_t i = joint->first_row; i < joint->first_row + joint->row_count; i++) {
-            beyond[i] = sums->force[i] - step->pressing[i];
+            beyond[i] = sums->force[i] - step->scheme.pressing[i];
         }
     }
     const ResponseGroups *groups = &step->groups;
@@ -333,7 +330,7 @@ static void add_island_answers(const ImpulseStep *step, const ImpulseScope *scop
 static void find_ideal(const ImpulseStep *step, const ImpulseScope *scope, const KernelSums *sums,
                        const Motion *motions, JointState *joints)
 {
-    if (step->has_few_rows) {
+    if (step->scheme.has_drift) {
         add_few_answers(step, sums, motions, joints);
     } else if (scope->is_whole) {
         add_answers(step, sums, motions, joints);

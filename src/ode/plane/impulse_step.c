@@ -1,20 +1,8 @@
 // Takes a step of a planar linkage in ODE whose contacts are integrated within the step.
 //
-// A step from t to t + h, positions q and speeds v both known at t:
-//     q_m = q + (h/2) v                               positions at mid-step
-//     W, g at q_m                                     the linkage as its joints with play feel it
-//     P, Q = impulse of the contacts and its integral over the step, by kernel/run.c
-//     v' from dWorldStep at q_m under the mean force P / h, the driven body at its speed of t + h
-//     q' = q_m + (h/2) v' + A (Q - (h/2) P)           A P = what P does to the speeds
-//     and where A' is known (impulse_step_find_columns), R the integral of Q
-//     v' += A' ((h/2) P - Q),   q' += A' ((h/2) Q - 2 R)
-//     q', v' put back on the ideal joints along the rows at mid-step
-// The last term of q' stands for when in the step the impulse came. The correction along the rows
-// at mid-step, not at the end, leaves the step symmetric in time to the order that matters: the
-// method is of second order in h, whatever the contacts do within a step.
-//
-// Inside a step    v(t) = v + a_f t + A P(t),  q(t) = q + v t + a_f t^2 / 2 + A Q(t)
-// with a_f, the acceleration beside the contacts', such that v(h) = v'. See docs/stepping.md.
+// The scheme is kernel/step.c, over x, y and the angle of each body; the response is that of the
+// linkage (model/response.h), the world's own step dWorldStep, the driven body at its speed of
+// t + h. Of few rows what pushes do changes in the step (model/response_drift.h).
 #include "ode/plane/impulse_step.h"
 
 #include "base/zeroed.h"
@@ -32,17 +20,20 @@ static size_t body_count(const ImpulseStep *step)
     return step->scenario->linkage.body_count;
 }
 
-// Adds changes, three a body, to the free bodies' positions and speeds.
-static void impulse_step_change_motions(const ImpulseStep *step, const double *positions,
-                                        const double *speeds, Motion *motions)
+// Adds changes, three a body, to the free bodies' positions and speeds; NULL for none.
+static void change_motions(const ImpulseStep *step, const double *positions, const double *speeds,
+                           Motion *motions)
 {
     for (size_t i = 0; i < body_count(step); i++) {
-        if (impulse_step_is_free(step, i)) {
-            Motion *motion = &motions[i];
-            const double *moved = positions + 3 * i;
+        if (!impulse_step_is_free(step, i)) {
+            continue;
+        }
+        Motion *motion = &motions[i];
+        const double *moved = positions + 3 * i;
+        motion->position = vec2_add(motion->position, (Vec2){moved[0], moved[1]});
+        motion->angle += moved[2];
+        if (speeds != NULL) {
             const double *speed = speeds + 3 * i;
-            motion->position = vec2_add(motion->position, (Vec2){moved[0], moved[1]});
-            motion->angle += moved[2];
             motion->velocity = vec2_add(motion->velocity, (Vec2){speed[0], speed[1]});
             motion->omega += speed[2];
         }
@@ -59,11 +50,6 @@ static void make_arrays(ImpulseStep *step)
     step->before = zeroed(bodies, sizeof *step->before);
     step->middle = zeroed(bodies, sizeof *step->middle);
     step->after = zeroed(bodies, sizeof *step->after);
-    step->free = zeroed(3 * bodies, sizeof *step->free);
-    step->free_rate = zeroed(3 * bodies, sizeof *step->free_rate);
-    step->ahead = zeroed(3 * bodies, sizeof *step->ahead);
-    step->rest = zeroed(3 * bodies, sizeof *step->rest);
-    step->closing = zeroed(step->response.ideal_rows, sizeof *step->closing);
     step->mean = zeroed(joints, sizeof *step->mean);
     for (size_t i = 0; i < joints; i++) {
         const Joint *joint = &step->scenario->linkage.joints[i];
@@ -75,21 +61,7 @@ static void make_arrays(ImpulseStep *step)
     work->loads = zeroed(bodies, sizeof *work->loads);
     work->offsets = zeroed(joints, sizeof *work->offsets);
     work->joints = zeroed(joints, sizeof *work->joints);
-    const size_t rows = kernel_rows(&step->kernel);
-    step->pressing = zeroed(rows, sizeof *step->pressing);
-    step->has_few_rows =
-        step->islands == NULL && rows <= IMPULSE_FEW_ROWS && !step->scenario->ode.is_frozen;
-    if (step->has_few_rows) {
-        kernel_make_drift(&step->kernel);
-        step->drift = response_drift_create(&step->response);
-        step->columns[0] = step->drift.columns;
-        step->curves = impulse_curves_create(&step->scenario->linkage, step->place_count, rows);
-    }
-    for (size_t i = 1; step->has_few_rows && i < IMPULSE_COLUMNS; i++) {
-        step->columns[i] = zeroed(3 * bodies * rows, sizeof *step->columns[i]);
-    }
     for (size_t i = 0; i < 2; i++) {
-        step->moved[i] = zeroed(3 * bodies, sizeof *step->moved[i]);
         work->rows[i] = zeroed(step->response.row_count, sizeof *work->rows[i]);
         work->changes[i] = zeroed(3 * bodies, sizeof *work->changes[i]);
     }
@@ -101,19 +73,8 @@ static void free_arrays(ImpulseStep *step)
     free(step->before);
     free(step->middle);
     free(step->after);
-    free(step->free);
-    free(step->free_rate);
-    free(step->ahead);
-    free(step->rest);
-    free(step->closing);
-    for (size_t i = 1; i < IMPULSE_COLUMNS; i++) {
-        free(step->columns[i]); // the first one is the drift's
-    }
     response_drift_finish(&step->drift);
-    free(step->moved[0]);
-    free(step->moved[1]);
     free(step->mean);
-    free(step->pressing);
     impulse_curves_finish(&step->curves);
     for (size_t i = 0; work != NULL && i < 2; i++) {
         free(work->rows[i]);
@@ -131,11 +92,9 @@ static void free_arrays(ImpulseStep *step)
 
 void impulse_step_finish(ImpulseStep *step)
 {
-    kernel_islands_destroy(step->islands);
+    kernel_step_finish(&step->scheme);
     response_groups_finish(&step->groups);
     impulse_scope_finish(&step->whole);
-    kernel_finish(&step->kernel);
-    kernel_sums_free(&step->total);
     response_finish(&step->response);
     world_finish(&step->world);
     free_arrays(step);
@@ -189,7 +148,7 @@ static const double *block_of(const void *context, size_t place, size_t other)
 }
 
 // How the places of a response move each other.
-static KernelCoupling impulse_step_coupling(const Response *response)
+static KernelCoupling coupling_of(const Response *response)
 {
     return (KernelCoupling){
         .first_partner = response->first_partner,
@@ -202,7 +161,7 @@ static KernelCoupling impulse_step_coupling(const Response *response)
 static bool init_kernel(ImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
-    step->kernel = kernel_start(scenario->ode.contact_phase);
+    step->scheme.kernel = kernel_start(scenario->ode.contact_phase);
     if (!touch_list(scenario, &step->places, &step->place_count, err)) {
         return false;
     }
@@ -212,19 +171,29 @@ static bool init_kernel(ImpulseStep *step, Err *err)
     for (size_t i = 0; i < step->place_count; i++) {
         const KernelContact added = joint_of(step, &step->places[i]);
         const size_t rows = response_place_rows(&step->response.places[i]);
-        kernel_add(&step->kernel, &added, rows);
+        kernel_add(&step->scheme.kernel, &added, rows);
     }
-    const size_t rows = kernel_rows(&step->kernel);
-    step->total = kernel_sums(rows);
-    if (step->place_count <= IMPULSE_FEW_PLACES) {
-        kernel_make_room(&step->kernel, rows);
-        return true;
-    }
-    const KernelCoupling coupling = impulse_step_coupling(&step->response);
-    kernel_make_rows(&step->kernel);
-    step->islands = kernel_islands_create(&step->kernel, &coupling);
-    response_groups_init(&step->response, &step->groups);
     return true;
+}
+
+// Room for what the scheme knows, and for how pushes change where rows are few.
+static void make_scheme(ImpulseStep *step)
+{
+    KernelStep *scheme = &step->scheme;
+    const size_t rows = kernel_rows(&scheme->kernel);
+    kernel_step_make_room(scheme, 3 * body_count(step), step->response.ideal_rows);
+    scheme->coupling = coupling_of(&step->response);
+    if (step->place_count > IMPULSE_FEW_PLACES) {
+        kernel_step_make_islands(scheme);
+        response_groups_init(&step->response, &step->groups);
+        return;
+    }
+    kernel_make_room(&scheme->kernel, rows);
+    if (rows <= IMPULSE_FEW_ROWS && !step->scenario->ode.is_frozen) {
+        step->drift = response_drift_create(&step->response);
+        step->curves = impulse_curves_create(&step->scenario->linkage, step->place_count, rows);
+        kernel_step_make_drift(scheme, step->drift.rates, step->drift.drift);
+    }
 }
 
 // Where the driven bodies stand at a time, from which they are soon worked out at others.
@@ -241,277 +210,62 @@ void impulse_step_place_driven(const ImpulseStep *step, double time_s, Motion *m
     const Linkage *linkage = &step->scenario->linkage;
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
         motions[linkage_drive_body(linkage, i)] =
-            stepping_driven_since(linkage, i, &step->arms[i], step->start_s, time_s);
-    }
-}
-
-bool impulse_step_init(const Scenario *scenario, const Scenario *spatial, ImpulseStep *step,
-                       Err *err)
-{
-    step->scenario = scenario;
-    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
-    if (!init_kernel(step, err)) {
-        return false;
-    }
-    make_arrays(step);
-    set_arms(step, 0.0);
-    step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
-    linkage_start(&scenario->linkage, step->after);
-    const bool is_built =
-        spatial != NULL ? space_world_build_flat(spatial, scenario, step->after, &step->world, err)
-                        : world_build(scenario, step->after, &step->world, err);
-    if (!is_built) {
-        return false;
-    }
-    // where a step of the world leaves the bodies is not asked for: the cheapest turn will do
-    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
-        dBodySetFiniteRotationMode(step->world.bodies[i], 0);
-    }
-    return true;
-}
-
-// What the impulses of the contacts do to all bodies within a step.
-//
-// Of few rows A, what 1 N s in each does to all speeds, is linear in time (model/response_drift.h),
-// s = t - h/2:
-//     v(t) = .. + A P + A' (s P - Q),   q(t) = .. + A Q + A' (s Q - 2 R),   Q' = P, R' = Q
-// with P and Q the contacts' impulse and its integral up to t. Of many it is taken as constant.
-
-// Of few rows: finds what 1 N s in each does, and how that changes, from the response at mid-step,
-// where the bodies are as given.
-static void impulse_step_find_columns(ImpulseStep *step, const Motion *middle)
-{
-    double *oldest = step->columns[IMPULSE_COLUMNS - 1];
-    memmove(step->columns + 1, step->columns, (IMPULSE_COLUMNS - 1) * sizeof *step->columns);
-    memmove(step->middles_s + 1, step->middles_s, (IMPULSE_COLUMNS - 1) * sizeof *step->middles_s);
-    step->columns[0] = step->drift.columns = oldest;
-    step->middles_s[0] = step->start_s + 0.5 * step->width_s;
-    response_drift_columns(&step->response, &step->drift);
-    response_drift_find(&step->response, middle, 0.5 * step->width_s, &step->drift);
-}
-
-void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const KernelSums *sums,
-                              double *speeds, double *positions)
-{
-    if (!step->has_few_rows) {
-        response_apply(&step->response, sums->impulse, speeds);
-        response_apply(&step->response, sums->moment, positions);
-        return;
-    }
-    const size_t count = 3 * step->scenario->linkage.body_count;
-    const size_t rows = kernel_rows(&step->kernel);
-    const double off_s = since_s - 0.5 * step->width_s;
-    memset(speeds, 0, count * sizeof *speeds);
-    memset(positions, 0, count * sizeof *positions);
-    for (size_t row = 0; row < rows; row++) {
-        const double *column = step->drift.columns + row * count;
-        const double *rate = step->drift.rates + row * count;
-        const double pushed = sums->impulse[row];
-        const double moved = sums->moment[row];
-        const double turned = off_s * pushed - moved;
-        const double carried = off_s * moved - 2.0 * sums->moment[rows + row];
-        for (size_t i = 0; i < count; i++) {
-            speeds[i] += pushed * column[i] + turned * rate[i];
-            positions[i] += moved * column[i] + carried * rate[i];
-        }
-    }
-}
-
-// Writes what the turning of the rows does in the whole step to the speeds of all bodies, three
-// each.
-static void impulse_step_turn_bodies(const ImpulseStep *step, double *speeds)
-{
-    const size_t count = 3 * step->scenario->linkage.body_count;
-    memset(speeds, 0, count * sizeof *speeds);
-    for (size_t row = 0; step->has_few_rows && row < kernel_rows(&step->kernel); row++) {
-        const double turned =
-            0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
-        for (size_t i = 0; i < count; i++) {
-            speeds[i] += turned * step->drift.rates[row * count + i];
-        }
-    }
-}
-
-// Writes what forces in the rows of play do to the speeds of all bodies, per second, at a time
-// since the step's start: as the curves have it, or else as in the last step whose response is
-// known.
-static void impulse_step_press_bodies(const ImpulseStep *step, double since_s, const double *forces,
-                                      double *rates)
-{
-    if (impulse_step_has_curves(step)) {
-        const double time_s = step->start_s + since_s;
-        impulse_curves_press(&step->curves, time_s - step->middles_s[0], forces, rates);
-    } else {
-        response_apply(&step->response, forces, rates);
+            stepping_driven_since(linkage, i, &step->arms[i], step->scheme.start_s, time_s);
     }
 }
 
 // Springs, dampers and a torque in a step whose contacts are integrated.
 //
 // Dampers feel the mean speed in the step. With P the contacts' impulse and Q its integral it is
-// not that of start and end but differs by A (Q - (h/2) P) / h.
+// not that of start and end but differs by A (Q - (h/2) P) / h. And the end's is not that of the
+// world's step, which their rows know, but has been put back on the ideal joints: by about as much
+// as in the step before.
 
-// Of a step: springs, dampers and torque push the bodies, which move as given at mid-step; and once
-// the contacts are integrated, what the dampers feel of when in the step their impulse came.
-static void impulse_step_push(ImpulseStep *step, const Motion *middle)
+// Of a step: springs, dampers and torque push the bodies, which move as given at mid-step.
+static void push_loads(ImpulseStep *step)
 {
     if (!step->world.applied.is_any) {
         return;
     }
     Motion *motions = step->work->motions;
-    memcpy(motions, middle, step->scenario->linkage.body_count * sizeof *motions);
+    memcpy(motions, step->middle, body_count(step) * sizeof *motions);
     for (size_t i = 0; i < linkage_drive_count(&step->scenario->linkage); i++) {
         // the others have the speeds of the start already
         const int body = linkage_drive_body(&step->scenario->linkage, i);
         motions[body].velocity = step->before[body].velocity;
     }
-    applied_push_at(&step->world.applied, motions, step->start_s, step->width_s, APPLIED_AT_MEAN,
-                    1);
+    applied_push_at(&step->world.applied, motions, step->scheme.start_s, step->scheme.width_s,
+                    APPLIED_AT_MEAN, 1);
 }
 
-static void impulse_step_push_late(ImpulseStep *step, const Motion *middle)
+// Once the contacts are integrated: what the dampers feel beside the speeds of start and end.
+static void push_late(ImpulseStep *step)
 {
-    const Linkage *linkage = &step->scenario->linkage;
-    if (!forces_damp(linkage)) {
+    if (!forces_damp(&step->scenario->linkage)) {
         return;
     }
+    const KernelStep *scheme = &step->scheme;
+    const double half_s = 0.5 * scheme->width_s;
     double *late = step->work->rows[0];
-    double *moved = step->work->changes[0];
+    double *beyond = step->work->changes[0];
     Motion *motions = step->work->motions;
-    BodyLoad *loads = step->work->loads;
-    memset(loads, 0, linkage->body_count * sizeof *loads);
-    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
-        late[i] = step->total.moment[i] / step->width_s - 0.5 * step->total.impulse[i];
+    for (size_t i = 0; i < kernel_rows(&scheme->kernel); i++) {
+        late[i] = scheme->total.moment[i] / scheme->width_s - 0.5 * scheme->total.impulse[i];
     }
-    response_apply(&step->response, late, moved);
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
-        motions[i] = middle[i];
-        motions[i].velocity = (Vec2){moved[3 * i], moved[3 * i + 1]};
-        motions[i].omega = moved[3 * i + 2];
+    response_apply(&step->response, late, beyond);
+    for (size_t i = 0; i < 3 * body_count(step); i++) {
+        beyond[i] += half_s * scheme->closed[i];
     }
-    forces_add_dampers(linkage, motions, loads);
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
-        dBodyAddForce(step->world.bodies[i], loads[i].force.x, loads[i].force.y, 0.0);
-        dBodyAddTorque(step->world.bodies[i], 0.0, 0.0, loads[i].moment);
+    for (size_t i = 0; i < body_count(step); i++) {
+        motions[i] = step->middle[i];
+        motions[i].velocity = (Vec2){beyond[3 * i], beyond[3 * i + 1]};
+        motions[i].omega = beyond[3 * i + 2];
     }
-}
-
-// The bodies and accelerations at mid-step, predicted from the steps before.
-//
-// Of few rows the step is taken with what turns in it (impulse_step_find_columns). All of this is
-// right to one order more than a step without it, and has no part in it where nothing is known yet:
-// a_f, the acceleration beside the contacts', is that of the step before, P_1 / h the mean force in
-// it, g the rows' free acceleration at mid-step, at the speeds v + (h/2) a_f:
-//     q_m = q + (h/2) v + (h^2/8) (a_f + A P_1 / h)
-//     g' = (g - g_1 - 2 S_1 P_1) / h                  what is left is no work of the contacts
-
-// of the free accelerations, what impulses may change them by: their own change, which comes of the
-// second power of speeds, is then known to as much
-static const double CALM = 0.1;
-
-// Sets what the accelerations beside the contacts' will be at mid-step: those of the step before.
-static void impulse_step_look_ahead(ImpulseStep *step)
-{
-    const bool is_known = step->has_few_rows && step->steady > 0;
-    for (size_t i = 0; i < 3 * step->scenario->linkage.body_count; i++) {
-        step->ahead[i] = is_known ? step->free[i] : 0.0;
-    }
-}
-
-// Adds to the bodies at mid-step what their accelerations have moved them by then, the contacts
-// pressing as they did in the mean of the step before: at its end an impact may have been under
-// way.
-static void move_middle(const ImpulseStep *step, double width_before_s, Motion *middle)
-{
-    const double share = 0.125 * step->width_s * step->width_s;
-    double *mean = step->work->rows[0];
-    double *pressed = step->work->changes[0];
-    double *speeds = step->work->changes[1];
-    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
-        mean[i] = step->total.impulse[i] / width_before_s;
-    }
-    impulse_step_press_bodies(step, 0.0, mean, pressed);
-    for (size_t i = 0; i < 3 * step->scenario->linkage.body_count; i++) {
-        pressed[i] = share * (pressed[i] + step->ahead[i]);
-    }
-    memset(speeds, 0, 3 * step->scenario->linkage.body_count * sizeof *speeds);
-    impulse_step_change_motions(step, pressed, speeds, middle);
-}
-
-// The bodies at mid-step, with the speeds of its start.
-static void impulse_step_find_middle(ImpulseStep *step, double width_before_s, Motion *middle)
-{
-    const double half_s = 0.5 * step->width_s;
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
-        const Motion *motion = &step->before[i];
-        middle[i] = *motion;
-        middle[i].position = vec2_add(motion->position, vec2_scale(half_s, motion->velocity));
-        middle[i].angle = motion->angle + half_s * motion->omega;
-    }
-    set_arms(step, step->start_s + half_s);
-    impulse_step_place_driven(step, step->start_s + half_s, middle);
-    if (step->has_few_rows && step->steady > 0) {
-        move_middle(step, width_before_s, middle);
-    }
-}
-
-// The free accelerations of the rows of play at mid-step, where the contacts have not changed the
-// speeds.
-static void impulse_step_find_free(ImpulseStep *step, const Motion *middle)
-{
-    Motion *motions = step->work->motions;
-    const double half_s = 0.5 * step->width_s;
-    const Applied *applied = &step->world.applied;
-    memcpy(motions, middle, step->scenario->linkage.body_count * sizeof *motions);
-    for (size_t i = 0; i < step->scenario->linkage.body_count; i++) {
-        const double *ahead = step->ahead + 3 * i;
-        motions[i].velocity.x += half_s * ahead[0];
-        motions[i].velocity.y += half_s * ahead[1];
-        motions[i].omega += half_s * ahead[2];
-    }
-    response_free(&step->response, motions, scenario_gravity(step->scenario),
-                  applied->is_any ? applied->loads : NULL, step->kernel.free);
-}
-
-// Lets what the rows of play feel change in the step: their mobility with the bodies, the free
-// acceleration beside that as it did from the middle of the step before, when the contacts changed
-// it by 2 S P.
-static void impulse_step_set_drift(ImpulseStep *step, const double *free_before)
-{
-    Kernel *kernel = &step->kernel;
-    const bool is_known = step->steady > 1 && step->is_calm;
-    const double apart_s = step->middles_s[0] - step->middles_s[1];
-    for (size_t i = 0; i < kernel_rows(kernel); i++) {
-        kernel->free_rate[i] = is_known ? (kernel->free[i] - free_before[i]) / apart_s : 0.0;
-    }
-    kernel_set_drift(kernel, step->drift.drift, step->width_s);
-}
-
-// The free accelerations in the step before, with what its contacts did to them; whether that was
-// so little that they say how these change by themselves.
-static void impulse_step_keep_free(ImpulseStep *step, double *free_before)
-{
-    const size_t rows = kernel_rows(&step->kernel);
-    double size = 0.0;
-    double pushed = 0.0;
-    for (size_t i = 0; i < rows; i++) {
-        double change = 0.0;
-        for (size_t k = 0; k < rows; k++) {
-            change += 2.0 * step->drift.drift[i * rows + k] * step->total.impulse[k];
-        }
-        free_before[i] = step->kernel.free[i] + change;
-        size = fmax(size, fabs(step->kernel.free[i]));
-        pushed = fmax(pushed, fabs(change));
-    }
-    step->is_calm = pushed <= CALM * size;
+    applied_push_late(&step->world.applied, motions);
 }
 
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
 static const double NEAR_WALL_SHARE = 0.02;
-
-// a last step that is shorter than this share of the others tells no accelerations: rounding and
-// the corrections would stand in them
-static const double SHORT = 0.1;
 
 // The same gap in the axes of a slot, at the start of the step.
 static void put_in_slot(const ImpulseStep *step, const Touch *place, JointGap *gap)
@@ -528,7 +282,7 @@ static void put_in_slot(const ImpulseStep *step, const Touch *place, JointGap *g
 // Where the rows of play are at the start of the step, and how fast they go.
 static void fill_rows(ImpulseStep *step)
 {
-    Kernel *kernel = &step->kernel;
+    Kernel *kernel = &step->scheme.kernel;
     const Linkage *linkage = &step->scenario->linkage;
     for (size_t i = 0; i < step->place_count; i++) {
         const Touch *place = &step->places[i];
@@ -581,7 +335,7 @@ static double gap_at(const KernelContact *joint, Vec2 position)
 // Whether a place touches or will have come near its wall at the end of a step of that length.
 static bool is_near_wall(const ImpulseStep *step, double width_s)
 {
-    const Kernel *kernel = &step->kernel;
+    const Kernel *kernel = &step->scheme.kernel;
     for (size_t i = 0; i < step->place_count; i++) {
         const KernelContact *joint = &kernel->contacts[i];
         const size_t row = joint->first_row;
@@ -601,52 +355,99 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
     return false;
 }
 
-// Lets the contacts run through the step by themselves.
-static bool run_kernel(ImpulseStep *step, const Motion *middle, Err *err)
+// What the scheme asks of the bodies and of ODE.
+
+// Fails as the ideal joints are redundant somewhere.
+static bool refuse_joints(const ImpulseStep *step)
 {
-    Kernel *kernel = &step->kernel;
-    if (!response_place(&step->response, middle)) {
-        return err_set(err, ERR_SOLVER,
-                       "the ideal joints are redundant here: give one joint of the loop some play");
+    return err_set(step->err, ERR_SOLVER,
+                   "the ideal joints are redundant here: give one joint of the loop some play");
+}
+
+static bool plane_find_start(void *own, double *accelerations)
+{
+    ImpulseStep *step = own;
+    const Linkage *linkage = &step->scenario->linkage;
+    const Vec2 gravity = scenario_gravity(step->scenario);
+    const double start_s = step->scheme.start_s;
+    BodyLoad *loads = step->work->loads;
+    if (!response_place(&step->response, step->before)) {
+        return refuse_joints(step);
     }
-    double *free_before = step->work->rows[1];
-    if (step->has_few_rows) {
-        impulse_step_keep_free(step, free_before);
-        impulse_step_find_columns(step, middle);
+    loads_of_all(linkage, step->before, start_s, start_s, loads);
+    response_accelerate(&step->response, step->before, gravity, loads, accelerations);
+    response_free(&step->response, step->before, gravity, loads, step->scheme.kernel.free);
+    return true;
+}
+
+static void plane_find_middle(void *own, const double *beyond)
+{
+    ImpulseStep *step = own;
+    const double half_s = 0.5 * step->scheme.width_s;
+    Motion *middle = step->middle;
+    for (size_t i = 0; i < body_count(step); i++) {
+        const Motion *motion = &step->before[i];
+        middle[i] = *motion;
+        middle[i].position = vec2_add(motion->position, vec2_scale(half_s, motion->velocity));
+        middle[i].angle = motion->angle + half_s * motion->omega;
     }
-    impulse_step_find_free(step, middle);
-    bool is_run;
-    if (step->islands != NULL) {
-        is_run = kernel_islands_run(step->islands, step->width_s);
-    } else {
-        const KernelCoupling coupling = impulse_step_coupling(&step->response);
-        kernel_fill(kernel, &coupling, NULL);
-        if (step->has_few_rows) {
-            impulse_step_set_drift(step, free_before);
-        }
-        is_run = kernel_run(kernel, step->width_s);
+    set_arms(step, step->scheme.start_s + half_s);
+    impulse_step_place_driven(step, step->scheme.start_s + half_s, middle);
+    if (beyond != NULL) {
+        change_motions(step, beyond, NULL, middle);
     }
-    if (!is_run) {
-        return err_set(err, ERR_SOLVER,
-                       "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
+    push_loads(step);
+}
+
+static bool plane_respond(void *own)
+{
+    ImpulseStep *step = own;
+    if (!response_place(&step->response, step->middle)) {
+        return refuse_joints(step);
     }
-    if (step->islands != NULL) {
-        kernel_islands_look(step->islands, step->width_s, &step->total);
-    } else {
-        kernel_at(kernel, kernel->node_count - 1, step->width_s, &step->total);
+    if (step->scheme.has_drift) {
+        response_drift_columns(&step->response, step->scheme.columns[0], &step->drift);
+        response_drift_find(&step->response, step->middle, 0.5 * step->scheme.width_s,
+                            &step->drift);
     }
     return true;
 }
 
-// One step of the world under the contacts' mean force.
-static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
+static void plane_accelerate(void *own, const double *gained)
 {
-    const double width_s = step->width_s;
-    double *loads = step->work->changes[0];
-    impulse_step_push_late(step, middle);
-    response_load(&step->response, step->total.impulse, loads);
+    ImpulseStep *step = own;
+    Motion *motions = step->work->motions;
+    const Applied *applied = &step->world.applied;
     for (size_t i = 0; i < body_count(step); i++) {
-        Motion placed = middle[i];
+        motions[i] = step->middle[i];
+        if (impulse_step_is_free(step, i)) {
+            motions[i].velocity.x += gained[3 * i];
+            motions[i].velocity.y += gained[3 * i + 1];
+            motions[i].omega += gained[3 * i + 2];
+        }
+    }
+    response_free(&step->response, motions, scenario_gravity(step->scenario),
+                  applied->is_any ? applied->loads : NULL, step->scheme.kernel.free);
+}
+
+static void plane_push(void *own, double after_s, const double *impulses, double *speeds)
+{
+    const ImpulseStep *step = own;
+    if (after_s != 0.0 && impulse_step_has_curves(step)) {
+        impulse_curves_press(&step->curves, after_s, impulses, speeds);
+    } else {
+        response_apply(&step->response, impulses, speeds);
+    }
+}
+
+// Puts the bodies of ODE's world to mid-step, the contacts' mean forces pushing them.
+static void place_bodies(ImpulseStep *step)
+{
+    const double width_s = step->scheme.width_s;
+    double *loads = step->work->changes[0];
+    response_load(&step->response, step->scheme.total.impulse, loads);
+    for (size_t i = 0; i < body_count(step); i++) {
+        Motion placed = step->middle[i];
         if (impulse_step_is_free(step, i)) {
             const dBodyID body = step->world.bodies[i];
             dBodyAddForce(body, loads[3 * i] / width_s, loads[3 * i + 1] / width_s, 0.0);
@@ -657,37 +458,19 @@ static bool step_world(ImpulseStep *step, const Motion *middle, Err *err)
         }
         world_place(&step->world, i, &placed);
     }
-    return world_step(&step->world, width_s, step->scenario->ode.solver == ODE_QUICK, err) &&
-           world_check(&step->world, err);
 }
 
-// Puts the end back onto the ideal joints. The rows are those of mid-step: one pass leaves speeds
-// across the joints that fall as h^2, and with them an error that comes and goes with the length of
-// the step; a second one leaves h^3.
-static void put_back(ImpulseStep *step)
+static bool plane_advance(void *own)
 {
-    double *openings = step->work->rows[0];
-    double *rates = step->work->rows[1];
-    double *positions = step->work->changes[0];
-    double *speeds = step->work->changes[1];
-    response_openings(&step->response, step->after, openings, rates);
-    // the impulses that close the positions are of no interest
-    response_close(&step->response, openings, openings, positions);
-    response_close(&step->response, rates, step->closing, speeds);
-    impulse_step_change_motions(step, positions, speeds, step->after);
-    response_openings(&step->response, step->after, openings, rates);
-    response_close(&step->response, rates, rates, speeds);
-    memset(positions, 0, 3 * body_count(step) * sizeof *positions);
-    impulse_step_change_motions(step, positions, speeds, step->after);
-    for (size_t i = 0; i < step->response.ideal_rows; i++) {
-        step->closing[i] += rates[i];
+    ImpulseStep *step = own;
+    const double width_s = step->scheme.width_s;
+    const double half_s = 0.5 * width_s;
+    push_late(step);
+    place_bodies(step);
+    if (!world_step(&step->world, width_s, step->scenario->ode.solver == ODE_QUICK, step->err) ||
+        !world_check(&step->world, step->err)) {
+        return false;
     }
-}
-
-// Places and speeds at the end of the step.
-static void find_end(ImpulseStep *step)
-{
-    const double half_s = 0.5 * step->width_s;
     for (size_t i = 0; i < body_count(step); i++) {
         if (impulse_step_is_free(step, i)) {
             const Snapshot now = world_snapshot(&step->world, i);
@@ -701,30 +484,32 @@ static void find_end(ImpulseStep *step)
             after->angle = before->angle + half_s * before->omega + half_s * now.omega;
         }
     }
-    // when in the step the impulse came
-    double *positions = step->work->changes[0];
-    double *speeds = step->work->changes[1];
-    const double cube = step->width_s * step->width_s * step->width_s / 12.0;
-    impulse_step_push_bodies(step, step->width_s, &step->total, step->moved[0], step->moved[1]);
-    // the world's step has the impulse along the rows of mid-step
-    impulse_step_turn_bodies(step, speeds);
-    for (size_t i = 0; i < 3 * body_count(step); i++) {
-        positions[i] = step->moved[1][i] - half_s * (step->moved[0][i] - speeds[i]);
-        if (step->has_few_rows && step->is_calm) {
-            // accelerations that change beside the contacts'
-            positions[i] -= cube * step->free_rate[i];
-        }
-    }
-    impulse_step_change_motions(step, positions, speeds, step->after);
-    put_back(step);
+    return true;
 }
 
-// What the state inside the step is worked out from.
-static void prepare_inside(ImpulseStep *step, double width_before_s)
+static void plane_shift(void *own, const double *positions, const double *speeds)
 {
-    const double width_s = step->width_s;
-    const double *speeds = step->moved[0];
-    const double *positions = step->moved[1];
+    ImpulseStep *step = own;
+    change_motions(step, positions, speeds, step->after);
+}
+
+static size_t plane_find_openings(void *own, double *positions, double *rates)
+{
+    const ImpulseStep *step = own;
+    response_openings(&step->response, step->after, positions, rates);
+    return step->response.ideal_rows;
+}
+
+static void plane_close_openings(void *own, const double *openings, double *impulses,
+                                 double *changes)
+{
+    const ImpulseStep *step = own;
+    response_close(&step->response, openings, impulses, changes);
+}
+
+static void plane_compare(void *own, double *speeds, double *gained, double *moved)
+{
+    const ImpulseStep *step = own;
     for (size_t i = 0; i < body_count(step); i++) {
         const Motion *first = &step->before[i];
         const Motion *last = &step->after[i];
@@ -733,37 +518,37 @@ static void prepare_inside(ImpulseStep *step, double width_before_s)
         const double q[3] = {first->position.x, first->position.y, first->angle};
         const double p[3] = {last->position.x, last->position.y, last->angle};
         for (size_t k = 0; k < 3; k++) {
-            const size_t n = 3 * i + k;
-            double mean = (w[k] - v[k] - speeds[n]) / width_s;
-            const double apart_s = 0.5 * (width_s + width_before_s);
-            if (width_s < SHORT * width_before_s) {
-                mean = step->free[n] + apart_s * step->free_rate[n];
-            } else {
-                const double change = mean - step->free[n];
-                step->free_rate[n] = width_before_s > 0.0 ? change / apart_s : 0.0;
-            }
-            step->free[n] = mean;
-            const double bent =
-                step->has_few_rows ? width_s * width_s * width_s / 12.0 * step->free_rate[n] : 0.0;
-            step->rest[n] =
-                p[k] - q[k] - width_s * (v[k] + 0.5 * width_s * mean) - positions[n] + bent;
+            speeds[3 * i + k] = v[k];
+            gained[3 * i + k] = w[k] - v[k];
+            moved[3 * i + k] = p[k] - q[k];
         }
     }
-    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
-        step->pressing[i] = step->total.impulse[i] / width_s;
-    }
 }
+
+static const KernelAdapter ADAPTER = {
+    .find_start = plane_find_start,
+    .find_middle = plane_find_middle,
+    .respond = plane_respond,
+    .accelerate = plane_accelerate,
+    .push = plane_push,
+    .advance = plane_advance,
+    .shift = plane_shift,
+    .find_openings = plane_find_openings,
+    .close = plane_close_openings,
+    .compare = plane_compare,
+};
 
 // Of few rows, once there have been steps enough: the curves that the state inside is read from.
 static void find_curves(ImpulseStep *step)
 {
-    step->curves.width_s = step->width_s;
+    step->curves.width_s = step->scheme.width_s;
     for (size_t i = 0; i < body_count(step); i++) {
-        impulse_curves_set_body(&step->curves, i, &step->before[i], step->free + 3 * i,
-                                step->free_rate + 3 * i, step->rest + 3 * i);
+        impulse_curves_set_body(&step->curves, i, &step->before[i], step->scheme.free + 3 * i,
+                                step->scheme.free_rate + 3 * i, step->scheme.rest + 3 * i);
     }
-    impulse_curves_set_columns(&step->curves, step->columns, step->middles_s, step->drift.rates);
-    impulse_curves_set_places(&step->curves, &step->kernel);
+    impulse_curves_set_columns(&step->curves, step->scheme.columns, step->scheme.middles_s,
+                               step->drift.rates);
+    impulse_curves_set_places(&step->curves, &step->scheme.kernel);
 }
 
 void impulse_step_add_sliding(const Linkage *linkage, int joint, const double *values,
@@ -781,58 +566,65 @@ static void find_means(ImpulseStep *step, const Motion *middle)
     const Response *response = &step->response;
     world_joint_forces(&step->world, step->mean);
     for (size_t row = 0; row < response->ideal_rows; row += 2) {
-        const double rate = 1.0 / step->width_s;
-        const double closing[2] = {rate * step->closing[row], rate * step->closing[row + 1]};
+        const double rate = 1.0 / step->scheme.width_s;
+        const double closing[2] = {rate * step->scheme.closing[row],
+                                   rate * step->scheme.closing[row + 1]};
         impulse_step_add_ideal(step, row, closing, middle, &step->mean[response->joint_of[row]]);
     }
 }
 
-// Where the step ends: on the ticks, but not beyond the run, nor beyond a kink of the drive's speed
-// or a jump of a load.
-static void set_end(ImpulseStep *step, size_t ticks)
+bool impulse_step_init(const Scenario *scenario, const Scenario *spatial, ImpulseStep *step,
+                       Err *err)
 {
-    const double rounding_s = STEPPING_ROUNDING * step->tick_s;
-    const Linkage *linkage = &step->scenario->linkage;
-    const double kink_s =
-        fmin(linkage_next_kink(linkage, step->start_s), loads_next_jump(linkage, step->start_s));
-    step->tick += ticks;
-    step->end_s = stepping_end(step->scenario, step->start_s, (double)step->tick * step->tick_s,
-                               step->tick_s);
-    step->is_kink = kink_s < step->end_s + rounding_s;
-    if (step->is_kink) {
-        step->end_s = kink_s;
-        step->tick = (size_t)floor((kink_s + rounding_s) / step->tick_s);
+    step->scenario = scenario;
+    step->scheme.adapter = &ADAPTER;
+    step->scheme.own = step;
+    step->ticks = impulse_ticks(scenario);
+    if (!init_kernel(step, err)) {
+        return false;
     }
+    make_arrays(step);
+    make_scheme(step);
+    set_arms(step, 0.0);
+    step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
+    linkage_start(&scenario->linkage, step->after);
+    const bool is_built =
+        spatial != NULL ? space_world_build_flat(spatial, scenario, step->after, &step->world, err)
+                        : world_build(scenario, step->after, &step->world, err);
+    if (!is_built) {
+        return false;
+    }
+    // where a step of the world leaves the bodies is not asked for: the cheapest turn will do
+    for (size_t i = 0; i < scenario->linkage.body_count; i++) {
+        dBodySetFiniteRotationMode(step->world.bodies[i], 0);
+    }
+    return true;
+}
+
+// Where the bodies and rows are as the step begins, and what the drive does until it ends.
+static void begin_step(ImpulseStep *step)
+{
+    const OdeOptions *options = &step->scenario->ode;
+    kernel_step_begin(&step->scheme);
+    memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
+    impulse_step_place_driven(step, step->scheme.start_s, step->before);
+    fill_rows(step);
+    const double coarse_s = (double)options->gear * step->ticks.tick_s;
+    const bool is_fine =
+        options->gear > 1 && (step->scheme.count == 0 || is_near_wall(step, coarse_s));
+    impulse_set_end(step->scenario, is_fine, &step->ticks, &step->scheme);
+    impulse_step_place_driven(step, step->scheme.end_s, step->after);
 }
 
 bool impulse_step_take(ImpulseStep *step, Err *err)
 {
-    const OdeOptions *options = &step->scenario->ode;
-    // accelerations before a kink say nothing of those after it
-    const double width_before_s = step->is_kink ? 0.0 : step->width_s;
-    step->steady = step->count == 0 || step->is_kink ? 0 : step->steady + 1;
-    Motion *middle = step->middle;
-    step->start_s = step->end_s;
-    memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
-    impulse_step_place_driven(step, step->start_s, step->before);
-    fill_rows(step);
-    const double coarse_s = (double)options->gear * step->tick_s;
-    const size_t ticks =
-        options->gear > 1 && (step->count == 0 || is_near_wall(step, coarse_s)) ? 1 : options->gear;
-    set_end(step, ticks);
-    step->width_s = step->end_s - step->start_s;
-    impulse_step_place_driven(step, step->end_s, step->after);
-    impulse_step_look_ahead(step);
-    impulse_step_find_middle(step, width_before_s, middle);
-    impulse_step_push(step, middle);
-    if (!run_kernel(step, middle, err) || !step_world(step, middle, err)) {
-        return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
+    step->err = err;
+    begin_step(step);
+    if (!impulse_take_scheme(step->scenario, &step->scheme, err)) {
+        return false;
     }
-    find_end(step);
-    prepare_inside(step, width_before_s);
-    find_means(step, middle);
-    impulse_step_find_work(step, middle);
-    step->count++;
+    find_means(step, step->middle);
+    impulse_step_find_work(step, step->middle);
     if (impulse_step_has_curves(step)) {
         find_curves(step);
     }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "contact/touch.h"
-#include "kernel/kernel.h"
+#include "kernel/step.h"
 #include "model/response_drift.h"
 #include "model/trajectory.h"
 #include "ode/impulse.h"
@@ -23,50 +23,28 @@ typedef struct ImpulseWork {
 } ImpulseWork;
 
 typedef struct ImpulseStep {
+    KernelStep scheme; // three coordinates a body
     const Scenario *scenario;
     World world;
-    Response response;      // at mid-step
-    Kernel kernel;          // a joint of it is a place
-    KernelIslands *islands; // of the kernel's places; NULL where they are few
-    ResponseGroups groups;  // where there are islands
+    Response response;     // at mid-step
+    ResponseGroups groups; // where there are islands
     ImpulseScope whole;
     size_t place_count;
     Touch *places; // owned, as are all arrays here
-    double tick_s; // the finest step
-    size_t tick;   // at the end of the last step, or before it
-    bool
-        is_kink; // whether the last step ends at a kink of the drive's speed, or where a load jumps
-    double end_s; // likewise
-    size_t count;
-    double start_s; // of the last step
-    double width_s;
-    Motion *before;                      // at its start
+    ImpulseTicks ticks;
+    Motion *before;                      // at the start of the last step
     Motion *middle;                      // at mid-step, with the speeds of its start
     Motion *after;                       // at its end
     SteppingArm arms[LINKAGE_DRIVE_MAX]; // of the driven bodies, at mid-step
-    double *free;                        // mean acceleration beside the contacts', three a body
-    double *free_rate;                   // its rate of change
-    double *ahead;     // of few rows, what it will be at mid-step, from the steps before, or zero
-    size_t steady;     // steps before this one since the start, or since a kink
-    bool is_calm;      // whether the contacts did not change the accelerations much in the last
-    double *rest;      // of the end's positions, beyond the formula for inside
-    double drive_work; // J, in the whole step
-    double load_work;  // J, of loads, likewise
-    double damped;     // J, in dampers, likewise
-    KernelSums total;  // of the contacts, in the whole step
-    bool has_few_rows; // what each of them does, and how that changes, is worked out in each step
-    // of few rows: what 1 N s in each does to all speeds, three a body, in this step and in those
-    // before it, and when these had their middles; this step's belong to `drift`
-    ResponseDrift drift;
-    double *columns[IMPULSE_COLUMNS];
-    double middles_s[IMPULSE_COLUMNS];
-    ImpulseCurves curves; // what is inside the step, once there have been so many
-    double *moved[2];     // by the contacts in the whole step: speeds and positions, three a body
-    double *closing;      // N s, of the ideal joints' rows, beside the world's step
-    JointState *mean;     // mean forces of the ideal joints
-    double *pressing;     // N, of the rows of play, likewise
+    double drive_work;                   // J, in the whole step
+    double load_work;                    // J, of loads, likewise
+    double damped;                       // J, in dampers, likewise
+    ResponseDrift drift;                 // with drift: of few rows
+    ImpulseCurves curves;                // what is inside the step, once there have been so many
+    JointState *mean;                    // mean forces of the ideal joints
     bool has_coordinates; // whether a joint that slides or is limited is to be observed
     ImpulseWork *work;
+    Err *err; // of the step that is being taken
 } ImpulseStep;
 
 // Whether a body moves by the forces on it, and not by the drive.
@@ -115,15 +93,10 @@ Vec2 impulse_step_from_slot(const Linkage *linkage, const Touch *place, const Mo
 void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pressing,
                           const Motion *motions, JointState *state);
 
-// Writes what the contacts have done up to a time in the step to the speeds and to the positions of
-// all bodies, three each, from their sums.
-void impulse_step_push_bodies(const ImpulseStep *step, double since_s, const KernelSums *sums,
-                              double *speeds, double *positions);
-
 // Whether the curves of the last step are known: of few rows, once there have been steps enough.
 static inline bool impulse_step_has_curves(const ImpulseStep *step)
 {
-    return step->has_few_rows && step->count >= IMPULSE_COLUMNS;
+    return step->scheme.has_drift && step->scheme.count >= KERNEL_STEP_COLUMNS;
 }
 
 // Finds the mean forces of the joints with play and the works of the drives, of loads and of

@@ -26,8 +26,8 @@ static Vec2 arm_acceleration(const Motion *driven, Vec2 arm)
 static void add_mean(const ImpulseStep *step, size_t number, const Motion *middle, JointState *mean)
 {
     const Touch *place = &step->places[number];
-    const double *sum = step->total.impulse + step->kernel.contacts[number].first_row;
-    const Vec2 force = {sum[0] / step->width_s, sum[1] / step->width_s};
+    const double *sum = step->scheme.total.impulse + step->scheme.kernel.contacts[number].first_row;
+    const Vec2 force = {sum[0] / step->scheme.width_s, sum[1] / step->scheme.width_s};
     if (step->scenario->linkage.joints[place->joint].limits.kind != LIMIT_NONE) {
         impulse_step_add_end(&step->scenario->linkage, place, force.x, middle, mean);
         return;
@@ -91,11 +91,11 @@ static void find_driven_offsets(ImpulseStep *step, const Motion *middle, int bod
 static double work_at_point(const ImpulseStep *step, size_t number, const Motion *driven,
                             bool is_on_a)
 {
-    const KernelContact *at = &step->kernel.contacts[number];
+    const KernelContact *at = &step->scheme.kernel.contacts[number];
     const Touch *place = &step->places[number];
-    const double *sum = step->total.impulse + at->first_row;
-    const double *moment = step->total.moment + at->first_row;
-    const double half_s = 0.5 * step->width_s;
+    const double *sum = step->scheme.total.impulse + at->first_row;
+    const double *moment = step->scheme.total.moment + at->first_row;
+    const double half_s = 0.5 * step->scheme.width_s;
     const Vec2 early = {half_s * sum[0] - moment[0], half_s * sum[1] - moment[1]};
     const Vec2 arm = vec2_rotate(driven->angle, is_on_a ? place->anchor_a : place->anchor_b);
     const Vec2 turning = arm_acceleration(driven, arm);
@@ -106,8 +106,8 @@ static double work_at_point(const ImpulseStep *step, size_t number, const Motion
 static double work_of_turn(const ImpulseStep *step, size_t number, const Motion *driven,
                            bool is_on_a)
 {
-    const KernelContact *at = &step->kernel.contacts[number];
-    const double *sum = step->total.impulse + at->first_row;
+    const KernelContact *at = &step->scheme.kernel.contacts[number];
+    const double *sum = step->scheme.total.impulse + at->first_row;
     return at->row_count == RESPONSE_ROWS_A_JOINT ? sum[is_on_a ? 2 : 3] * driven->omega : 0.0;
 }
 
@@ -130,7 +130,7 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     const Linkage *linkage = &step->scenario->linkage;
     const Touch *place = &step->places[number];
     const Joint *joint = &linkage->joints[place->joint];
-    const size_t row = step->kernel.contacts[number].first_row;
+    const size_t row = step->scheme.kernel.contacts[number].first_row;
     const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
     const TouchPose pose = touch_pose(linkage, place, motions);
     const bool is_slot = place->shape == TOUCH_SLOT;
@@ -156,8 +156,8 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
                                  vec2_scale(driven->omega, vec2_perp(vec2_sub(moving, speed))));
     double work = 0.0;
     for (size_t i = 0; i < 2; i++) {
-        const double early =
-            0.5 * step->width_s * step->total.impulse[row + i] - step->total.moment[row + i];
+        const double early = 0.5 * step->scheme.width_s * step->scheme.total.impulse[row + i] -
+                             step->scheme.total.moment[row + i];
         work += early * (turning * vec2_dot(vec2_perp(directions[i]), speed) +
                          vec2_dot(directions[i], pushed));
     }
@@ -189,8 +189,9 @@ static double work_at_end(const ImpulseStep *step, size_t number, const Motion *
 {
     const Linkage *linkage = &step->scenario->linkage;
     const Touch *place = &step->places[number];
-    const size_t row = step->kernel.contacts[number].first_row;
-    const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
+    const size_t row = step->scheme.kernel.contacts[number].first_row;
+    const double early = 0.5 * step->scheme.width_s * step->scheme.total.impulse[row] -
+                         step->scheme.total.moment[row];
     return early * place->sign * turning_share(linkage, place, middle, is_on_a) * driven->alpha;
 }
 
@@ -257,8 +258,8 @@ static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middl
     }
     const BodyLoad load = applied_on(&step->world.applied, body);
     find_driven_offsets(step, middle, body, step->work->offsets);
-    return work + step->width_s * stepping_drive(step->scenario, drive, driven, &load,
-                                                 step->work->offsets, step->work->joints);
+    return work + step->scheme.width_s * stepping_drive(step->scenario, drive, driven, &load,
+                                                        step->work->offsets, step->work->joints);
 }
 
 void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
@@ -267,7 +268,7 @@ void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
     Motion *motions = step->work->motions;
     find_play_means(step, middle);
     find_mean_motions(step, middle, motions);
-    const AppliedWork applied = applied_book(&step->world.applied, step->width_s);
+    const AppliedWork applied = applied_book(&step->world.applied, step->scheme.width_s);
     double work = 0.0;
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
         work += work_of_drive(step, i, middle, motions);

@@ -41,8 +41,8 @@ static bool space_open(const Scenario *scenario, void **own, ImpulseView *view, 
         .scenario = scenario,
         .world = step->world.id,
         .constraint_rows = step->world.constraint_rows,
-        .kernel = &step->kernel,
-        .islands = step->islands,
+        .kernel = &step->scheme.kernel,
+        .islands = step->scheme.islands,
         .groups = &step->groups,
         .whole = &step->whole,
         .counts = impulse->are_ends,
@@ -72,7 +72,8 @@ static bool space_take(void *own, ImpulseSpan *span, Err *err)
     if (!space_impulse_step_take(&impulse->step, err)) {
         return false;
     }
-    *span = (ImpulseSpan){step->start_s, step->end_s, step->width_s, step->drive_work, 0.0, 0.0};
+    *span = (ImpulseSpan){
+        step->scheme.start_s, step->scheme.end_s, step->scheme.width_s, step->drive_work, 0.0, 0.0};
     return true;
 }
 
@@ -131,15 +132,9 @@ static void space_impulse_step_carry(SpaceImpulseStep *step, Carry *carry)
 {
     const Linkage *linkage = &step->scenario->linkage;
     world_carry(&step->world, carry);
-    impulse_carry_contacts(step->islands, &step->kernel, &step->tick, carry);
-    CARRY(carry, step->end_s);
-    CARRY(carry, step->count);
-    CARRY(carry, step->start_s);
-    CARRY(carry, step->width_s);
+    impulse_carry_scheme(&step->scheme, &step->ticks, carry);
     CARRY_ARRAY(carry, step->angles, linkage->joint_count);
     CARRY_ARRAY(carry, step->after, linkage->body_count);
-    CARRY_ARRAY(carry, step->free, linkage->body_count);
-    CARRY_ARRAY(carry, step->free_rate, linkage->body_count);
     CARRY_ARRAY(carry, step->gyration, linkage->body_count);
 }
 

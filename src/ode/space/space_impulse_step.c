@@ -1,6 +1,6 @@
 // Takes a step of a linkage in space in ODE whose contacts are integrated within the step.
 //
-// The step of ode/plane/impulse_step.c, with rotations for angles: bodies turn by (h/2) omega up to
+// The scheme is kernel/step.c, with rotations for angles: bodies turn by (h/2) omega up to
 // mid-step and by (h/2) omega' from there. The rows of the contacts are frozen at mid-step
 // (contact/pin_space_rows.h). Turning inertias are a torque in the step of the world
 // (ode/space/space_world.c); what omega will be at its end is known but for an error of the order
@@ -11,28 +11,39 @@
 #include "ode/engine.h"
 #include "ode/stepping.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
+enum { COORDINATES = sizeof(SpaceChange) / sizeof(double) }; // of a body
+static_assert(sizeof(SpaceChange) == 6 * sizeof(double), "a change is six numbers");
+
+// Numbers by coordinate as changes of bodies.
+static SpaceChange *by_body(double *numbers)
+{
+    return (SpaceChange *)numbers;
+}
+
+static const SpaceChange *change_of(const double *numbers, size_t body)
+{
+    return (const SpaceChange *)numbers + body;
+}
+
 void space_impulse_step_finish(SpaceImpulseStep *step)
 {
-    kernel_islands_destroy(step->islands);
+    kernel_step_finish(&step->scheme);
     response_groups_finish(&step->groups);
     impulse_scope_finish(&step->whole);
-    kernel_finish(&step->kernel);
     space_response_finish(step->response);
     space_response_finish(step->there);
     space_hold_free(step->hold);
     free(step->response);
     free(step->there);
-    kernel_sums_free(&step->total);
     world_finish(&step->world);
-    void *const arrays[] = {step->places,     step->stops,     step->angles,     step->rows,
-                            step->before,     step->after,     step->free,       step->free_rate,
-                            step->rest,       step->gyration,  step->middle,     step->closing,
-                            step->mean,       step->motions,   step->changes[0], step->changes[1],
-                            step->changes[2], step->play_rows, step->play[0],    step->play[1],
-                            step->ideal[0],   step->ideal[1],  step->forces};
+    void *const arrays[] = {step->places, step->stops,   step->angles,     step->rows,
+                            step->before, step->after,   step->gyration,   step->middle,
+                            step->mean,   step->motions, step->changes[0], step->changes[1],
+                            step->ideal,  step->play,    step->play_rows,  step->forces};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
@@ -44,7 +55,7 @@ static const double *block_of(const void *context, size_t place, size_t other)
 }
 
 // How the places of a response move each other.
-static KernelCoupling space_impulse_step_coupling(const SpaceResponse *response)
+static KernelCoupling coupling_of(const SpaceResponse *response)
 {
     return (KernelCoupling){
         .first_partner = response->first_partner,
@@ -57,7 +68,7 @@ static KernelCoupling space_impulse_step_coupling(const SpaceResponse *response)
 static bool init_kernel(SpaceImpulseStep *step, Err *err)
 {
     const Scenario *scenario = step->scenario;
-    step->kernel = kernel_start(scenario->ode.contact_phase);
+    step->scheme.kernel = kernel_start(scenario->ode.contact_phase);
     step->places = pin_space_list(scenario, &step->place_count, err);
     if (step->places == NULL) {
         return false;
@@ -81,7 +92,7 @@ static bool init_kernel(SpaceImpulseStep *step, Err *err)
             .state = joint->contacts[place->place],
             .siblings = {place->place == 1 ? -1 : 0, place->place == 0 ? 1 : 0},
         };
-        kernel_add(&step->kernel, &added, rows);
+        kernel_add(&step->scheme.kernel, &added, rows);
     }
     for (size_t i = 0; i < stop_count; i++) {
         const StopSpace *stop = &step->stops[i];
@@ -90,19 +101,21 @@ static bool init_kernel(SpaceImpulseStep *step, Err *err)
                                      .shape = KERNEL_LINE,
                                      .joint = stop->joint,
                                      .state = joint->contacts[stop_space_place(stop)]};
-        kernel_add(&step->kernel, &added, PIN_SPACE_PLAIN_ROWS);
+        kernel_add(&step->scheme.kernel, &added, PIN_SPACE_PLAIN_ROWS);
     }
-    step->total = kernel_sums(kernel_rows(&step->kernel));
     return true;
 }
 
-// Makes room for the mobilities that are not always zero, or for islands.
-static void make_room(SpaceImpulseStep *step)
+// Room for what the scheme knows, and for the mobilities that are not always zero, or for islands.
+static void make_scheme(SpaceImpulseStep *step)
 {
+    const Linkage *linkage = &step->scenario->linkage;
+    KernelStep *scheme = &step->scheme;
+    kernel_step_make_room(scheme, COORDINATES * linkage->body_count,
+                          SPACE_JOINT_ROWS * linkage->joint_count);
+    scheme->coupling = coupling_of(step->response);
     if (step->place_count > IMPULSE_FEW_PLACES) {
-        const KernelCoupling coupling = space_impulse_step_coupling(step->response);
-        kernel_make_rows(&step->kernel);
-        step->islands = kernel_islands_create(&step->kernel, &coupling);
+        kernel_step_make_islands(scheme);
         space_response_groups_init(step->response, &step->groups);
         return;
     }
@@ -110,8 +123,8 @@ static void make_room(SpaceImpulseStep *step)
     for (size_t i = 0; i < step->place_count; i++) {
         places[i] = i;
     }
-    const KernelCoupling coupling = space_impulse_step_coupling(step->response);
-    kernel_make_room(&step->kernel, kernel_coupling_reach(&coupling, &step->kernel, places));
+    kernel_make_room(&scheme->kernel,
+                     kernel_coupling_reach(&scheme->coupling, &scheme->kernel, places));
     free(places);
 }
 
@@ -119,7 +132,7 @@ static void make_arrays(SpaceImpulseStep *step)
 {
     const size_t bodies = step->scenario->linkage.body_count;
     const size_t joints = step->scenario->linkage.joint_count;
-    const size_t rows = kernel_rows(&step->kernel);
+    const size_t rows = kernel_rows(&step->scheme.kernel);
     const size_t ideal = SPACE_JOINT_ROWS * joints;
     step->response = zeroed(1, sizeof *step->response);
     step->there = zeroed(1, sizeof *step->there);
@@ -131,22 +144,16 @@ static void make_arrays(SpaceImpulseStep *step)
     }
     step->before = zeroed(bodies, sizeof *step->before);
     step->after = zeroed(bodies, sizeof *step->after);
-    step->free = zeroed(bodies, sizeof *step->free);
-    step->free_rate = zeroed(bodies, sizeof *step->free_rate);
-    step->rest = zeroed(bodies, sizeof *step->rest);
     step->gyration = zeroed(bodies, sizeof *step->gyration);
     step->middle = zeroed(bodies, sizeof *step->middle);
-    step->closing = zeroed(ideal, sizeof *step->closing);
     step->mean = zeroed(joints, sizeof *step->mean);
     step->motions = zeroed(bodies, sizeof *step->motions);
     for (size_t i = 0; i < SPACE_IMPULSE_ROOMS; i++) {
         step->changes[i] = zeroed(bodies, sizeof *step->changes[i]);
     }
     step->play_rows = zeroed(rows, sizeof *step->play_rows);
-    for (size_t i = 0; i < 2; i++) {
-        step->play[i] = zeroed(rows, sizeof *step->play[i]);
-        step->ideal[i] = zeroed(ideal, sizeof *step->ideal[i]);
-    }
+    step->play = zeroed(rows, sizeof *step->play);
+    step->ideal = zeroed(ideal, sizeof *step->ideal);
     step->forces = zeroed(joints, sizeof *step->forces);
 }
 
@@ -158,7 +165,7 @@ static bool build(SpaceImpulseStep *step, Err *err)
     SpaceResponsePlace *places = zeroed(count, sizeof *places);
     for (size_t i = 0; i < count; i++) {
         places[i] = (SpaceResponsePlace){space_impulse_step_joint(step, i),
-                                         step->kernel.contacts[i].row_count};
+                                         step->scheme.kernel.contacts[i].row_count};
     }
     const bool is_built =
         space_world_build(scenario, step->after, places, count, &step->world, step->response,
@@ -168,27 +175,8 @@ static bool build(SpaceImpulseStep *step, Err *err)
     return is_built;
 }
 
-bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, Err *err)
-{
-    step->scenario = scenario;
-    step->driven = linkage_driven_body(&scenario->linkage);
-    step->tick_s = scenario->run.step / (double)scenario->ode.gear;
-    if (!init_kernel(step, err)) {
-        return false;
-    }
-    make_arrays(step);
-    space_start(&scenario->linkage, step->after);
-    if (!build(step, err)) {
-        return false;
-    }
-    make_room(step);
-    step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
-    return true;
-}
-
 // as in ode/plane/impulse_step.c
 static const double NEAR_WALL_SHARE = 0.02;
-static const double SHORT = 0.1;
 
 static size_t body_count(const SpaceImpulseStep *step)
 {
@@ -200,19 +188,19 @@ static void fill_stop(SpaceImpulseStep *step, size_t place)
 {
     const Linkage *linkage = &step->scenario->linkage;
     const StopSpace *stop = space_impulse_step_stop(step, place);
-    const size_t row = step->kernel.contacts[place].first_row;
+    const size_t row = step->scheme.kernel.contacts[place].first_row;
     double *angle = &step->angles[stop->joint];
     *angle = space_coordinate_near(linkage, step->before, stop->joint, *angle);
     const SpaceRow opening = stop_space_row(stop, linkage, step->before);
-    step->kernel.position[row] = stop_space_gap(stop, *angle);
-    step->kernel.speed[row] = space_row_speed(&opening, step->before);
-    step->kernel.position[row + 1] = step->kernel.speed[row + 1] = 0.0;
+    step->scheme.kernel.position[row] = stop_space_gap(stop, *angle);
+    step->scheme.kernel.speed[row] = space_row_speed(&opening, step->before);
+    step->scheme.kernel.position[row + 1] = step->scheme.kernel.speed[row + 1] = 0.0;
 }
 
 // Where the rows of play are at the start of the step, and how fast they go.
 static void fill_rows(SpaceImpulseStep *step)
 {
-    Kernel *kernel = &step->kernel;
+    Kernel *kernel = &step->scheme.kernel;
     for (size_t i = step->pin_count; i < step->place_count; i++) {
         fill_stop(step, i);
     }
@@ -236,7 +224,8 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
         const double moved = width_s * space_row_speed(&opening, step->before);
         const double play = coordinate_play(&linkage->joints[stop->joint]);
         const double limit = isfinite(play) ? NEAR_WALL_SHARE * play : 0.0;
-        if (step->kernel.contacts[i].state.is_touching || gap < limit || gap + moved < limit) {
+        if (step->scheme.kernel.contacts[i].state.is_touching || gap < limit ||
+            gap + moved < limit) {
             return true;
         }
     }
@@ -245,7 +234,7 @@ static bool is_near_wall(const SpaceImpulseStep *step, double width_s)
         // the speed alone: what it may gain meanwhile is less than the margin
         const double limit = NEAR_WALL_SHARE * step->places[i].clearance;
         const double moved = width_s * pose.approach_speed;
-        if (step->kernel.contacts[i].state.is_touching || pose.gap < limit ||
+        if (step->scheme.kernel.contacts[i].state.is_touching || pose.gap < limit ||
             pose.gap - moved < limit) {
             return true;
         }
@@ -260,47 +249,66 @@ static void coast(SpaceMotion *motion, Vec3 velocity, Vec3 omega, double span_s)
     space_change(motion, &moved, NULL);
 }
 
-// The bodies at mid-step, with the speeds of its start.
-static void find_middle(const SpaceImpulseStep *step, SpaceMotion *middle)
+// What the scheme asks of the bodies and of ODE.
+
+static void space_find_middle(void *own, const double *beyond)
 {
-    const double half_s = 0.5 * step->width_s;
+    SpaceImpulseStep *step = own;
+    const double half_s = 0.5 * step->scheme.width_s;
+    SpaceMotion *middle = step->middle;
     for (size_t i = 0; i < body_count(step); i++) {
         middle[i] = step->before[i];
         coast(&middle[i], middle[i].velocity, middle[i].omega, half_s);
+        if (beyond != NULL && space_impulse_step_is_free(step, i)) {
+            space_change(&middle[i], change_of(beyond, i), NULL);
+        }
     }
     if (step->driven >= 0) {
-        middle[step->driven] = space_driven(&step->scenario->linkage, step->start_s + half_s);
+        middle[step->driven] =
+            space_driven(&step->scenario->linkage, step->scheme.start_s + half_s);
     }
 }
 
-// Freezes the rows and the linkage's response at mid-step, and finds how fast the rows move freely.
-static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
+// Freezes the rows and the linkage's response at mid-step.
+static bool space_respond(void *own)
 {
-    Kernel *kernel = &step->kernel;
-    double *play_drift = step->play[0];
-    double *ideal_drift = step->ideal[0];
-    SpaceMotion *loose = step->motions;
+    SpaceImpulseStep *step = own;
+    const Kernel *kernel = &step->scheme.kernel;
     for (size_t i = 0; i < step->place_count; i++) {
         const KernelContact *joint = &kernel->contacts[i];
         const StopSpace *stop = space_impulse_step_stop(step, i);
         if (stop != NULL) {
             step->rows[i].count = PIN_SPACE_PLAIN_ROWS;
-            step->rows[i].rows[0] = stop_space_row(stop, &step->scenario->linkage, middle);
+            step->rows[i].rows[0] = stop_space_row(stop, &step->scenario->linkage, step->middle);
             step->rows[i].rows[1] = (SpaceRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
         } else {
-            pin_space_rows_place(&step->places[i], middle, &step->rows[i]);
+            pin_space_rows_place(&step->places[i], step->middle, &step->rows[i]);
         }
         memcpy(step->play_rows + joint->first_row, step->rows[i].rows,
                joint->row_count * sizeof *step->play_rows);
     }
-    if (!space_response_place(step->response, middle, step->play_rows)) {
-        return false;
+    if (!space_response_place(step->response, step->middle, step->play_rows)) {
+        return err_set(step->err, ERR_SOLVER,
+                       "the ideal joints are redundant here: give one joint of the loop some play");
     }
-    memcpy(loose, middle, body_count(step) * sizeof *loose);
+    step->scheme.coupling = coupling_of(step->response);
+    fill_rows(step);
+    return true;
+}
+
+static void space_accelerate(void *own, const double *gained)
+{
+    SpaceImpulseStep *step = own;
+    Kernel *kernel = &step->scheme.kernel;
+    SpaceMotion *loose = step->motions;
+    for (size_t i = 0; i < body_count(step); i++) {
+        loose[i] = step->middle[i];
+        space_change(&loose[i], NULL, change_of(gained, i));
+    }
     space_response_loosen(step->response, step->scenario->gravity, loose);
     for (size_t i = 0; i < step->place_count; i++) {
         const StopSpace *stop = space_impulse_step_stop(step, i);
-        double *drift = play_drift + kernel->contacts[i].first_row;
+        double *drift = step->play + kernel->contacts[i].first_row;
         if (stop != NULL) {
             drift[0] = stop_space_drift(stop, &step->scenario->linkage, loose);
             drift[1] = 0.0;
@@ -308,58 +316,34 @@ static bool place_linkage(SpaceImpulseStep *step, const SpaceMotion *middle)
             pin_space_rows_drift(&step->places[i], &step->rows[i], loose, drift);
         }
     }
-    space_response_drift(step->response, loose, ideal_drift);
-    const KernelCoupling coupling = space_impulse_step_coupling(step->response);
-    if (step->islands != NULL) {
-        // other rows may have been chosen
-        step->islands->coupling = coupling;
-    } else {
-        kernel_fill(kernel, &coupling, NULL);
-    }
-    space_response_free(step->response, ideal_drift, play_drift, kernel->free);
-    return true;
+    space_response_drift(step->response, loose, step->ideal);
+    space_response_free(step->response, step->ideal, step->play, kernel->free);
 }
 
-// Lets the contacts run through the step by themselves.
-static bool run_kernel(SpaceImpulseStep *step, const SpaceMotion *middle, SpaceChange *pushed,
-                       Err *err)
+static void space_push(void *own, double after_s, const double *impulses, double *speeds)
 {
-    Kernel *kernel = &step->kernel;
-    if (!place_linkage(step, middle)) {
-        return err_set(err, ERR_SOLVER,
-                       "the ideal joints are redundant here: give one joint of the loop some play");
-    }
-    fill_rows(step);
-    if (!(step->islands != NULL ? kernel_islands_run(step->islands, step->width_s)
-                                : kernel_run(kernel, step->width_s))) {
-        return err_set(err, ERR_SOLVER,
-                       "contact sub-stepping exceeded 100000 steps in one step; reduce run.step");
-    }
-    if (step->islands != NULL) {
-        kernel_islands_look(step->islands, step->width_s, &step->total);
-    } else {
-        kernel_at(kernel, kernel->node_count - 1, step->width_s, &step->total);
-    }
-    space_response_apply(step->response, step->total.impulse, pushed);
-    return true;
+    (void)after_s; // the response is taken as constant
+    const SpaceImpulseStep *step = own;
+    space_response_apply(step->response, impulses, by_body(speeds));
 }
 
-// One step of the world under the contacts' mean force.
-static bool step_world(SpaceImpulseStep *step, const SpaceMotion *middle, const SpaceChange *pushed,
-                       Err *err)
+// Puts the bodies of ODE's world to mid-step, the contacts' mean forces pushing them.
+static void place_bodies(SpaceImpulseStep *step)
 {
-    const double rate = 1.0 / step->width_s;
-    SpaceChange *loads = step->changes[1];
-    space_response_load(step->response, step->total.impulse, loads);
+    const KernelStep *scheme = &step->scheme;
+    const double rate = 1.0 / scheme->width_s;
+    SpaceChange *loads = step->changes[0];
+    space_response_load(step->response, scheme->total.impulse, loads);
     for (size_t i = 0; i < body_count(step); i++) {
-        SpaceMotion placed = middle[i];
+        SpaceMotion placed = step->middle[i];
         if (space_impulse_step_is_free(step, i)) {
             const dBodyID body = step->world.bodies[i];
             const Vec3 force = vec3_scale(rate, loads[i].move);
-            const Vec3 rest = vec3_add(vec3_sub(step->free[i].turn, step->gyration[i]),
-                                       vec3_scale(rate, pushed[i].turn));
-            const Vec3 turning = space_world_gyration(step->response, i, &middle[i], rest,
-                                                      step->width_s, &step->gyration[i]);
+            const Vec3 rest =
+                vec3_add(vec3_sub(change_of(scheme->free, i)->turn, step->gyration[i]),
+                         vec3_scale(rate, change_of(scheme->moved[0], i)->turn));
+            const Vec3 turning = space_world_gyration(step->response, i, &placed, rest,
+                                                      scheme->width_s, &step->gyration[i]);
             const Vec3 torque = vec3_add(vec3_scale(rate, loads[i].turn), turning);
             dBodyAddForce(body, force.x, force.y, force.z);
             dBodyAddTorque(body, torque.x, torque.y, torque.z);
@@ -370,115 +354,104 @@ static bool step_world(SpaceImpulseStep *step, const SpaceMotion *middle, const 
         }
         space_world_place(&step->world, i, &placed);
     }
-    if (step->hold != NULL) {
-        space_hold_push(step->hold, step->response, middle, step->width_s, &step->world);
-    }
+}
+
+static bool space_advance(void *own)
+{
+    SpaceImpulseStep *step = own;
+    const double width_s = step->scheme.width_s;
+    const double half_s = 0.5 * width_s;
     const bool is_quick = step->scenario->ode.solver == ODE_QUICK;
-    return engine_step(step->world.id, step->width_s, is_quick, err) &&
-           space_world_check(&step->world, err);
-}
-
-// Adds changes to the free bodies' positions and speeds.
-static void change_motions(SpaceImpulseStep *step, const SpaceChange *positions,
-                           const SpaceChange *speeds)
-{
-    for (size_t i = 0; i < body_count(step); i++) {
-        if (space_impulse_step_is_free(step, i)) {
-            space_change(&step->after[i], &positions[i], speeds != NULL ? &speeds[i] : NULL);
-        }
+    place_bodies(step);
+    if (step->hold != NULL) {
+        space_hold_push(step->hold, step->response, step->middle, width_s, &step->world);
     }
-}
-
-// Puts the end back onto the ideal joints, in passes as in the plane (ode/plane/impulse_step.c).
-static void put_back(SpaceImpulseStep *step)
-{
-    double *openings = step->ideal[0];
-    double *rates = step->ideal[1];
-    SpaceChange *positions = step->changes[1];
-    SpaceChange *speeds = step->changes[2];
-    space_response_openings(step->response, step->after, openings, rates);
-    // the impulses that close the positions are of no interest
-    space_response_close(step->response, openings, openings, positions);
-    space_response_close(step->response, rates, step->closing, speeds);
-    change_motions(step, positions, speeds);
-    space_response_openings(step->response, step->after, openings, rates);
-    space_response_close(step->response, rates, rates, speeds);
-    memset(positions, 0, body_count(step) * sizeof *positions);
-    change_motions(step, positions, speeds);
-    for (size_t i = 0; i < step->response->ideal_rows; i++) {
-        step->closing[i] += rates[i];
+    if (!engine_step(step->world.id, width_s, is_quick, step->err) ||
+        !space_world_check(&step->world, step->err)) {
+        return false;
     }
-}
-
-static void find_end(SpaceImpulseStep *step, const SpaceMotion *middle)
-{
-    const double half_s = 0.5 * step->width_s;
     for (size_t i = 0; i < body_count(step); i++) {
         if (space_impulse_step_is_free(step, i)) {
             const SpaceMotion now = space_world_motion(&step->world, i);
             SpaceMotion *after = &step->after[i];
-            *after = middle[i];
+            *after = step->before[i];
+            coast(after, after->velocity, after->omega, half_s);
             after->velocity = now.velocity;
             after->omega = now.omega;
             coast(after, now.velocity, now.omega, half_s);
         }
     }
-    SpaceChange *positions = step->changes[1];
-    // when in the step the impulse came
-    double *late = step->play[0];
-    for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
-        late[i] = step->total.moment[i] - half_s * step->total.impulse[i];
+    return true;
+}
+
+static void space_shift(void *own, const double *positions, const double *speeds)
+{
+    SpaceImpulseStep *step = own;
+    for (size_t i = 0; i < body_count(step); i++) {
+        if (space_impulse_step_is_free(step, i)) {
+            space_change(&step->after[i], change_of(positions, i), change_of(speeds, i));
+        }
     }
-    space_response_apply(step->response, late, positions);
-    change_motions(step, positions, NULL);
-    put_back(step);
 }
 
-// The mean acceleration of one part of a body's motion beside the contacts', and how it changes.
-static void find_free_acceleration(const SpaceImpulseStep *step, double width_before_s, Vec3 gained,
-                                   Vec3 *free, Vec3 *free_rate)
+static size_t space_find_openings(void *own, double *positions, double *rates)
 {
-    const double apart_s = 0.5 * (step->width_s + width_before_s);
-    if (step->width_s < SHORT * width_before_s) {
-        *free = vec3_add(*free, vec3_scale(apart_s, *free_rate));
-        return;
-    }
-    const Vec3 mean = vec3_scale(1.0 / step->width_s, gained);
-    *free_rate = width_before_s > 0.0 ? vec3_scale(1.0 / apart_s, vec3_sub(mean, *free))
-                                      : (Vec3){0.0, 0.0, 0.0};
-    *free = mean;
+    const SpaceImpulseStep *step = own;
+    space_response_openings(step->response, step->after, positions, rates);
+    return step->response->ideal_rows;
 }
 
-// What is left of a move over the step, beyond the formula for inside.
-static Vec3 rest_of(double width_s, Vec3 moved, Vec3 speed, Vec3 mean, Vec3 pushed)
+static void space_close_openings(void *own, const double *openings, double *impulses,
+                                 double *changes)
 {
-    const Vec3 coasted = vec3_scale(width_s, vec3_add(speed, vec3_scale(0.5 * width_s, mean)));
-    return vec3_sub(vec3_sub(moved, coasted), pushed);
+    const SpaceImpulseStep *step = own;
+    space_response_close(step->response, openings, impulses, by_body(changes));
 }
 
-// What the state inside the step is worked out from.
-static void prepare_inside(SpaceImpulseStep *step, const SpaceChange *pushed, double width_before_s)
+static void space_compare(void *own, double *speeds, double *gained, double *moved)
 {
-    const double width_s = step->width_s;
-    SpaceChange *moved = step->changes[1];
-    space_response_apply(step->response, step->total.moment, moved);
+    const SpaceImpulseStep *step = own;
     for (size_t i = 0; i < body_count(step); i++) {
         const SpaceMotion *first = &step->before[i];
         const SpaceMotion *last = &step->after[i];
-        SpaceChange *free = &step->free[i];
-        const Vec3 gained = vec3_sub(last->velocity, first->velocity);
-        const Vec3 spun = vec3_sub(last->omega, first->omega);
-        find_free_acceleration(step, width_before_s, vec3_sub(gained, pushed[i].move), &free->move,
-                               &step->free_rate[i].move);
-        find_free_acceleration(step, width_before_s, vec3_sub(spun, pushed[i].turn), &free->turn,
-                               &step->free_rate[i].turn);
-        const Vec3 went = vec3_sub(last->position, first->position);
-        const Vec3 turned = quat_turn_between(first->turn, last->turn);
-        step->rest[i] = (SpaceChange){
-            rest_of(width_s, went, first->velocity, free->move, moved[i].move),
-            rest_of(width_s, turned, first->omega, free->turn, moved[i].turn),
-        };
+        by_body(speeds)[i] = (SpaceChange){first->velocity, first->omega};
+        by_body(gained)[i] = (SpaceChange){vec3_sub(last->velocity, first->velocity),
+                                           vec3_sub(last->omega, first->omega)};
+        by_body(moved)[i] = (SpaceChange){vec3_sub(last->position, first->position),
+                                          quat_turn_between(first->turn, last->turn)};
     }
+}
+
+static const KernelAdapter ADAPTER = {
+    .find_middle = space_find_middle,
+    .respond = space_respond,
+    .accelerate = space_accelerate,
+    .push = space_push,
+    .advance = space_advance,
+    .shift = space_shift,
+    .find_openings = space_find_openings,
+    .close = space_close_openings,
+    .compare = space_compare,
+};
+
+bool space_impulse_step_init(const Scenario *scenario, SpaceImpulseStep *step, Err *err)
+{
+    step->scenario = scenario;
+    step->driven = linkage_driven_body(&scenario->linkage);
+    step->scheme.adapter = &ADAPTER;
+    step->scheme.own = step;
+    step->ticks = impulse_ticks(scenario);
+    if (!init_kernel(step, err)) {
+        return false;
+    }
+    make_arrays(step);
+    space_start(&scenario->linkage, step->after);
+    if (!build(step, err)) {
+        return false;
+    }
+    make_scheme(step);
+    step->whole = impulse_scope_whole(&scenario->linkage, step->place_count);
+    return true;
 }
 
 // Sets the length of the next step, and what the drive does in it.
@@ -486,19 +459,16 @@ static void begin_step(SpaceImpulseStep *step)
 {
     const Linkage *linkage = &step->scenario->linkage;
     const size_t gear = step->scenario->ode.gear;
-    step->start_s = step->end_s;
+    kernel_step_begin(&step->scheme);
     memcpy(step->before, step->after, body_count(step) * sizeof *step->before);
     if (step->driven >= 0) {
-        step->before[step->driven] = space_driven(linkage, step->start_s);
+        step->before[step->driven] = space_driven(linkage, step->scheme.start_s);
     }
-    const bool is_fine =
-        gear > 1 && (step->count == 0 || is_near_wall(step, (double)gear * step->tick_s));
-    step->tick += is_fine ? 1 : gear;
-    step->end_s = stepping_end(step->scenario, step->start_s, (double)step->tick * step->tick_s,
-                               step->tick_s);
-    step->width_s = step->end_s - step->start_s;
+    const double coarse_s = (double)gear * step->ticks.tick_s;
+    const bool is_fine = gear > 1 && (step->scheme.count == 0 || is_near_wall(step, coarse_s));
+    impulse_set_end(step->scenario, is_fine, &step->ticks, &step->scheme);
     if (step->driven >= 0) {
-        step->after[step->driven] = space_driven(linkage, step->end_s);
+        step->after[step->driven] = space_driven(linkage, step->scheme.end_s);
     }
 }
 
@@ -529,9 +499,9 @@ static void find_means(SpaceImpulseStep *step)
             sum->turn = vec3_add(sum->turn, load.turn);
         }
     }
-    double *closing = step->ideal[0];
+    double *closing = step->ideal;
     for (size_t i = 0; i < step->response->ideal_rows; i++) {
-        closing[i] = step->closing[i] / step->width_s;
+        closing[i] = step->scheme.closing[i] / step->scheme.width_s;
     }
     space_response_add_forces(step->response, closing, step->mean);
     if (step->driven >= 0) {
@@ -545,11 +515,12 @@ static double work_of_stop(const SpaceImpulseStep *step, size_t place)
     const Linkage *linkage = &step->scenario->linkage;
     const StopSpace *stop = space_impulse_step_stop(step, place);
     const Joint *joint = &linkage->joints[stop->joint];
-    const size_t row = step->kernel.contacts[place].first_row;
+    const size_t row = step->scheme.kernel.contacts[place].first_row;
     if (joint->body_b != step->driven || joint->body_a == LINKAGE_GROUND) {
         return 0.0;
     }
-    const double early = 0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
+    const double early = 0.5 * step->scheme.width_s * step->scheme.total.impulse[row] -
+                         step->scheme.total.moment[row];
     const Vec3 axis = step->rows[place].rows[0].angular[1];
     const Vec3 turning = vec3_cross(step->middle[joint->body_a].omega, axis);
     return -early * vec3_dot(turning, step->middle[step->driven].omega);
@@ -564,10 +535,10 @@ static double work_beyond(const SpaceImpulseStep *step, size_t place)
     const PinSpaceRows *rows = &step->rows[place];
     double work = 0.0;
     for (size_t k = 0; k < PIN_SPACE_PLAIN_ROWS; k++) {
-        const size_t row = step->kernel.contacts[place].first_row + k;
+        const size_t row = step->scheme.kernel.contacts[place].first_row + k;
         const SpaceRow *of = &rows->rows[k];
-        const double early =
-            0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
+        const double early = 0.5 * step->scheme.width_s * step->scheme.total.impulse[row] -
+                             step->scheme.total.moment[row];
         for (int side = 0; side < 2; side++) {
             if (of->body[side] == step->driven) {
                 const Vec3 at = side == 0 ? rows->at_a : rows->at_b;
@@ -586,9 +557,9 @@ static void find_drive_work(SpaceImpulseStep *step)
     if (step->driven < 0) {
         return;
     }
-    const double rate = 1.0 / step->width_s;
+    const double rate = 1.0 / step->scheme.width_s;
     SpaceChange *loads = step->changes[0];
-    space_response_load(step->response, step->total.impulse, loads);
+    space_response_load(step->response, step->scheme.total.impulse, loads);
     const SpaceChange *own = &loads[step->driven];
     const SpaceChange others = {
         vec3_add(step->on_driven.move, vec3_scale(rate, own->move)),
@@ -596,7 +567,7 @@ static void find_drive_work(SpaceImpulseStep *step)
     };
     Vec3 force;
     step->drive_work =
-        step->width_s *
+        step->scheme.width_s *
         space_joints_drive(step->scenario, &step->middle[step->driven], &others, &force);
     for (size_t i = 0; i < step->place_count; i++) {
         step->drive_work += work_beyond(step, i);
@@ -612,17 +583,11 @@ static void space_impulse_means_find(SpaceImpulseStep *step)
 
 bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
 {
-    const double width_before_s = step->width_s;
-    SpaceMotion *const middle = step->middle;
-    SpaceChange *pushed = step->changes[0]; // what the contacts change of the speeds
+    step->err = err;
     begin_step(step);
-    find_middle(step, middle);
-    if (!run_kernel(step, middle, pushed, err) || !step_world(step, middle, pushed, err)) {
-        return stepping_fail(step->scenario, step->start_s, step->count + 1, step->width_s, err);
+    if (!impulse_take_scheme(step->scenario, &step->scheme, err)) {
+        return false;
     }
-    find_end(step, middle);
-    prepare_inside(step, pushed, width_before_s);
-    step->count++;
     space_impulse_means_find(step);
     return true;
 }
@@ -633,53 +598,58 @@ bool space_impulse_step_take(SpaceImpulseStep *step, Err *err)
 //     theta(t) = omega t + a t^2 / 2 + A Q(t)
 // which is right to the order of the step, and ends where the step does.
 
-// How far or how fast one part of a body's motion goes.
-static Vec3 moved_by(double since_s, double share, Vec3 speed, Vec3 mean, Vec3 pushed, Vec3 rest)
+// What impulses in the rows of play do to the speeds of an island's bodies.
+static void push_scope(const SpaceImpulseStep *step, const ImpulseScope *scope,
+                       const double *impulses, SpaceChange *changes)
 {
-    const Vec3 coasted = vec3_scale(since_s, vec3_add(speed, vec3_scale(0.5 * since_s, mean)));
-    return vec3_add(vec3_add(coasted, pushed), vec3_scale(share * share, rest));
-}
-
-// What impulses in the rows of play do to the speeds of a scope's bodies.
-static void apply(const SpaceImpulseStep *step, const ImpulseScope *scope, const double *impulses,
-                  SpaceChange *changes)
-{
-    if (scope->is_whole) {
-        space_response_apply(step->response, impulses, changes);
-        return;
-    }
     for (size_t n = 0; n < scope->body_count; n++) {
         changes[scope->bodies[n]] = (SpaceChange){{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     }
     space_response_groups_apply(step->response, &step->groups, &scope->part, impulses, changes);
 }
 
+// What the contacts have done to the speeds and the positions of a scope's bodies up to a time.
+static void push_bodies(const SpaceImpulseStep *step, const ImpulseScope *scope, double since_s,
+                        const KernelSums *sums, SpaceChange *speeds, SpaceChange *places)
+{
+    if (scope->is_whole) {
+        kernel_step_push(&step->scheme, since_s, sums, (double *)speeds, (double *)places);
+        return;
+    }
+    push_scope(step, scope, sums->impulse, speeds);
+    push_scope(step, scope, sums->moment, places);
+}
+
 // How the bodies move at a time within the step, from the contacts' sums up to then.
 static void find_motions(const SpaceImpulseStep *step, const ImpulseScope *scope, double since_s,
                          const KernelSums *sums, SpaceMotion *motions)
 {
-    const Linkage *linkage = &step->scenario->linkage;
-    const double share = since_s / step->width_s;
+    const KernelStep *scheme = &step->scheme;
+    const KernelStepTime at = kernel_step_time(scheme, since_s);
     SpaceChange *speeds = step->changes[0];
     SpaceChange *places = step->changes[1];
-    apply(step, scope, sums->impulse, speeds);
-    apply(step, scope, sums->moment, places);
+    push_bodies(step, scope, since_s, sums, speeds, places);
     for (size_t n = 0; n < scope->body_count; n++) {
         const size_t i = scope->bodies[n];
         const SpaceMotion *first = &step->before[i];
-        const SpaceChange *free = &step->free[i];
-        const SpaceChange *rest = &step->rest[i];
-        const SpaceChange place = {
-            moved_by(since_s, share, first->velocity, free->move, places[i].move, rest->move),
-            moved_by(since_s, share, first->omega, free->turn, places[i].turn, rest->turn)};
-        const SpaceChange speed = {vec3_add(speeds[i].move, vec3_scale(since_s, free->move)),
-                                   vec3_add(speeds[i].turn, vec3_scale(since_s, free->turn))};
+        const double *pushed = (const double *)&speeds[i];
+        double *moved = (double *)&places[i];
+        const SpaceChange going = {first->velocity, first->omega};
+        SpaceChange now;
+        for (size_t k = 0; k < COORDINATES; k++) {
+            const size_t c = COORDINATES * i + k;
+            const double speed = ((const double *)&going)[k];
+            ((double *)&now)[k] = kernel_step_speed(scheme, c, at, speed, pushed[k]);
+            moved[k] = kernel_step_way(scheme, c, at, speed, moved[k]);
+        }
         motions[i] = *first;
-        space_change(&motions[i], &place, &speed);
+        space_change(&motions[i], &places[i], NULL);
+        motions[i].velocity = now.move;
+        motions[i].omega = now.turn;
         motions[i].acceleration = motions[i].alpha = (Vec3){0.0, 0.0, 0.0};
     }
     if (scope->has_drive) {
-        motions[step->driven] = space_driven(linkage, step->start_s + since_s);
+        motions[step->driven] = space_driven(&step->scenario->linkage, scheme->start_s + since_s);
     }
 }
 
@@ -695,7 +665,8 @@ static bool place_there(const SpaceImpulseStep *step, const SpaceMotion *motions
         } else {
             pin_space_rows_move(&step->places[i], motions, &moved);
         }
-        memcpy(rows + step->kernel.contacts[i].first_row, moved.rows, moved.count * sizeof *rows);
+        memcpy(rows + step->scheme.kernel.contacts[i].first_row, moved.rows,
+               moved.count * sizeof *rows);
     }
     return space_response_place(step->there, motions, rows);
 }
@@ -707,21 +678,24 @@ static void find_accelerations(const SpaceImpulseStep *step, const ImpulseScope 
                                SpaceMotion *motions)
 {
     SpaceChange *rates = step->changes[0];
-    const double off_middle_s = since_s - 0.5 * step->width_s;
-    if (scope->is_whole && is_peak && place_there(step, motions)) {
+    const double off_middle_s = since_s - 0.5 * step->scheme.width_s;
+    if (!scope->is_whole) {
+        push_scope(step, scope, sums->force, rates);
+    } else if (is_peak && place_there(step, motions)) {
         space_response_apply(step->there, sums->force, rates);
     } else {
-        apply(step, scope, sums->force, rates);
+        space_response_apply(step->response, sums->force, rates);
     }
     for (size_t n = 0; n < scope->body_count; n++) {
         const size_t i = scope->bodies[n];
         if (space_impulse_step_is_free(step, i)) {
-            const SpaceChange *free = &step->free[i];
-            const SpaceChange *rate = &step->free_rate[i];
-            motions[i].acceleration =
-                vec3_add(rates[i].move, vec3_add(free->move, vec3_scale(off_middle_s, rate->move)));
-            motions[i].alpha =
-                vec3_add(rates[i].turn, vec3_add(free->turn, vec3_scale(off_middle_s, rate->turn)));
+            SpaceChange beside;
+            for (size_t k = 0; k < COORDINATES; k++) {
+                ((double *)&beside)[k] =
+                    kernel_step_beside(&step->scheme, COORDINATES * i + k, off_middle_s);
+            }
+            motions[i].acceleration = vec3_add(rates[i].move, beside.move);
+            motions[i].alpha = vec3_add(rates[i].turn, beside.turn);
         }
     }
 }
@@ -744,14 +718,15 @@ static void find_pins(const SpaceImpulseStep *step, const ImpulseScope *scope, I
         const PinSpaceRows *rows = &step->rows[i];
         JointState *plane = &joints->plane[place->joint];
         SpaceJointState *space = &joints->space[place->joint];
-        const KernelPose pose = impulse_scope_pose(&step->kernel, step->islands, i, at, sums);
+        const KernelPose pose =
+            impulse_scope_pose(&step->scheme.kernel, step->scheme.islands, i, at, sums);
         Vec3 force = in_world(rows, pose.force);
         if (place->place == PIN_SPACE_COLLAR) {
             space_joints_press(joints, place, force, rows->across[0]);
             continue;
         }
         if (rows->count == PIN_SPACE_ROWS) {
-            const double axial = sums->force[step->kernel.contacts[i].first_row + 4];
+            const double axial = sums->force[step->scheme.kernel.contacts[i].first_row + 4];
             force = vec3_add(force, vec3_scale(axial, rows->axis));
         }
         plane->is_touching = (place->place > 0 && plane->is_touching) || pose.is_touching;
@@ -781,7 +756,8 @@ static void find_stops(const SpaceImpulseStep *step, const ImpulseScope *scope, 
         if (stop == NULL) {
             continue;
         }
-        const KernelPose pose = impulse_scope_pose(&step->kernel, step->islands, i, at, sums);
+        const KernelPose pose =
+            impulse_scope_pose(&step->scheme.kernel, step->scheme.islands, i, at, sums);
         JointState *state = &joints->plane[stop->joint];
         if (i == step->pin_count || stop[-1].joint != stop->joint) {
             state->gap = INFINITY;
@@ -802,11 +778,11 @@ static void add_answers(const SpaceImpulseStep *step, const ImpulseScope *scope,
 {
     const SpaceResponse *response = step->response;
     const ResponseGroups *groups = &step->groups;
-    double *beyond = step->play[0];
+    double *beyond = step->play;
     for (size_t n = 0; n < scope->part.place_count; n++) {
-        const KernelContact *joint = &step->kernel.contacts[scope->part.places[n]];
+        const KernelContact *joint = &step->scheme.kernel.contacts[scope->part.places[n]];
         for (size_t i = joint->first_row; i < joint->first_row + joint->row_count; i++) {
-            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+            beyond[i] = sums->force[i] - step->scheme.pressing[i];
         }
     }
     const double *all =
@@ -843,14 +819,14 @@ static void find_forces(const SpaceImpulseStep *step, const ImpulseScope *scope,
                         const KernelSums *sums, const SpaceMotion *motions, SpaceJoints *joints)
 {
     const Linkage *linkage = &step->scenario->linkage;
-    double *beyond = step->play[0];
-    double *reactions = step->ideal[0];
+    double *beyond = step->play;
+    double *reactions = step->ideal;
     Vec3 *forces = step->forces;
     const bool is_of_all = scope->is_whole || scope->has_drive;
     if (is_of_all) {
         memcpy(forces, step->mean, linkage->joint_count * sizeof *forces);
-        for (size_t i = 0; i < kernel_rows(&step->kernel); i++) {
-            beyond[i] = sums->force[i] - step->total.impulse[i] / step->width_s;
+        for (size_t i = 0; i < kernel_rows(&step->scheme.kernel); i++) {
+            beyond[i] = sums->force[i] - step->scheme.pressing[i];
         }
         space_response_react(step->response, beyond, reactions);
         space_response_add_forces(step->response, reactions, forces);

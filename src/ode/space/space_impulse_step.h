@@ -4,21 +4,20 @@
 
 #include "contact/pin_space_rows.h"
 #include "contact/stop_space.h"
-#include "kernel/kernel.h"
+#include "kernel/step.h"
 #include "model/space_response_groups.h"
 #include "ode/impulse.h"
 #include "ode/space/space_joints.h"
 #include "ode/space/space_world.h"
 
-enum { SPACE_IMPULSE_ROOMS = 3 };
+enum { SPACE_IMPULSE_ROOMS = 2 };
 
 typedef struct SpaceImpulseStep {
+    KernelStep scheme; // six coordinates a body: what a SpaceChange has
     const Scenario *scenario;
     World world;
     SpaceResponse *response; // at mid-step; owned
     SpaceResponse *there;    // at whatever time is looked at; owned
-    Kernel kernel;           // a joint of it is a place
-    KernelIslands *islands;  // of the kernel's places; NULL where they are few
     ResponseGroups groups;   // where there are islands
     ImpulseScope whole;
     size_t place_count;
@@ -28,31 +27,22 @@ typedef struct SpaceImpulseStep {
     double *angles;     // rad, by joint: of limited ones at the start of the step
     PinSpaceRows *rows; // by place, at mid-step; of a stop the first two rows alone
     int driven;         // body, or LINKAGE_GROUND
-    double tick_s;      // the finest step
-    size_t tick;        // at the end of the last step
-    double end_s;       // likewise
-    size_t count;
-    double start_s; // of the last step
-    double width_s;
-    SpaceMotion *before;    // by body, at its start
-    SpaceMotion *after;     // at its end
-    SpaceChange *free;      // mean acceleration beside the contacts'
-    SpaceChange *free_rate; // its rate of change
-    SpaceChange *rest;      // of the end's positions, beyond the formula for inside
-    Vec3 *gyration;         // rad/s^2, of turning inertias, in the step
-    SpaceMotion *middle;    // at mid-step, with the speeds of the start
-    double drive_work;      // J, in the whole step
-    SpaceHold *hold;        // owned; NULL where the ideal joints are rows of ODE
-    KernelSums total;       // of the contacts, in the whole step
-    double *closing;        // N s, of the ideal rows, beside the step of the world
-    Vec3 *mean;             // N, by joint: mean forces of the ideal ones on bodies b
-    SpaceChange on_driven;  // N, N m: mean of what they do to the driven body
+    ImpulseTicks ticks;
+    SpaceMotion *before;   // by body, at the start of the last step
+    SpaceMotion *after;    // at its end
+    Vec3 *gyration;        // rad/s^2, of turning inertias, in the step
+    SpaceMotion *middle;   // at mid-step, with the speeds of the start
+    double drive_work;     // J, in the whole step
+    SpaceHold *hold;       // owned; NULL where the ideal joints are rows of ODE
+    Vec3 *mean;            // N, by joint: mean forces of the ideal ones on bodies b
+    SpaceChange on_driven; // N, N m: mean of what they do to the driven body
+    Err *err;              // of the step that is being taken
     // room to work in
     SpaceMotion *motions;
     SpaceChange *changes[SPACE_IMPULSE_ROOMS]; // by body
     SpaceRow *play_rows;                       // by row of play
-    double *play[2];                           // likewise
-    double *ideal[2];                          // by ideal row, of as many as there can be
+    double *play;                              // likewise
+    double *ideal;                             // by ideal row, of as many as there can be
     Vec3 *forces;                              // by joint
 } SpaceImpulseStep;
 
@@ -70,7 +60,7 @@ void space_impulse_step_finish(SpaceImpulseStep *step);
 // The joint that a place is of.
 static inline int space_impulse_step_joint(const SpaceImpulseStep *step, size_t place)
 {
-    return step->kernel.contacts[place].joint;
+    return step->scheme.kernel.contacts[place].joint;
 }
 
 // The stop that a place is; NULL of a pin's.
