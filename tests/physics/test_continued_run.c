@@ -359,6 +359,7 @@ static void every_solver_goes_on_to_the_last_bit(void **state)
         "cases/mechanisms/gear-pair.yaml",
         "cases/mechanisms/rack-and-pinion.yaml",
         "cases/mechanisms/cam-roller.yaml",
+        "cases/mechanisms/pin-slot.yaml",
         "cases/mechanisms/newtons-cradle.yaml",
         "cases/mechanisms/woodpecker.yaml",
         "cases/mechanisms/compressor.yaml",

@@ -237,6 +237,7 @@ static void the_shipped_cases_obey(void **state)
         "cases/paper/stackup-impact.yaml",
         "cases/mechanisms/andrews.yaml",
         "cases/mechanisms/cam-roller.yaml",
+        "cases/mechanisms/pin-slot.yaml",
         "cases/mechanisms/compressor.yaml",
         "cases/mechanisms/five-bar.yaml",
         "cases/mechanisms/gear-pair.yaml",
@@ -280,8 +281,8 @@ static Scenario random_case_of(const CaseKind *kind, uint64_t seed)
 static void random_cases_obey(void **state)
 {
     (void)state;
-    const CaseKind *const KINDS[] = {&CASE_FOUR_BAR, &CASE_BODIES, &CASE_SPRUNG, &CASE_SLIDERS,
-                                     &CASE_LIMITS};
+    const CaseKind *const KINDS[] = {&CASE_FOUR_BAR, &CASE_BODIES, &CASE_SPRUNG,
+                                     &CASE_SLIDERS,  &CASE_LIMITS, &CASE_SLOTS};
     int pushed = 0;
     for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
         for (uint64_t seed = 1; seed <= 6; seed++) {

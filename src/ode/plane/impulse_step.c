@@ -345,8 +345,11 @@ static bool is_near_wall(const ImpulseStep *step, double width_s)
             width_s * (kernel->speed[row] + 0.5 * width_s * kernel->free[row]),
             width_s * (kernel->speed[row + 1] + 0.5 * width_s * kernel->free[row + 1]),
         };
-        const double near = NEAR_WALL_SHARE *
-                            linkage_radial_clearance(&step->scenario->linkage.joints[joint->joint]);
+        const double play =
+            joint->shape == KERNEL_SLOT
+                ? joint->radial_clearance
+                : linkage_radial_clearance(&step->scenario->linkage.joints[joint->joint]);
+        const double near = NEAR_WALL_SHARE * play;
         if (joint->state.is_touching || gap_at(joint, now) < near ||
             gap_at(joint, vec2_add(now, moved)) < near) {
             return true;
