@@ -11,7 +11,9 @@
 #include "casefile/joint_kind.h"
 #include "casefile/limits.h"
 #include "casefile/loads.h"
+#include "casefile/profiles.h"
 #include "casefile/slider.h"
+#include "casefile/slot.h"
 #include "casefile/store.h"
 #include "casefile/teeth.h"
 #include "casefile/unused.h"
@@ -46,7 +48,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         .torsions = names[SCHEMA_TORSION_SPRING].count,
         .loads = names[SCHEMA_LOAD_FAMILY].count,
         .further = names[SCHEMA_DRIVE].count,
-        .profiles = cam_count(entries),
+        .profiles = profiles_count(entries),
     });
     linkage->body_count = names[SCHEMA_BODY].count;
     linkage->joint_count = names[SCHEMA_JOINT].count;
@@ -60,7 +62,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         joint->limits = limits_prepare(entries, i);
         joint->space.axis = (Vec3){0.0, 0.0, 1.0};
     }
-    cam_prepare(entries, linkage);
+    profiles_prepare(entries, scenario);
     for (size_t i = 0; i < linkage->body_count; i++) {
         text_copy(linkage->bodies[i].name, LINKAGE_NAME_SIZE, names[SCHEMA_BODY].names[i]);
     }
@@ -233,6 +235,7 @@ static bool build_long(const Entries *entries, Scenario *scenario, Err *err)
     }
     return build_linkage(entries, scenario, err) &&
            limits_check_starts(entries, &scenario->linkage, err) &&
+           slot_check_starts(entries, &scenario->linkage, err) &&
            closure_check_ideal(entries, scenario, err);
 }
 

@@ -47,8 +47,11 @@ static bool refuse_missing(const Entries *entries, const SchemaRow *row, size_t 
     Text allowed;
     text_init(&allowed);
     if (row->rivalry == SCHEMA_STOPPING) {
-        const bool is_stop = entries_find(entries, "joints.*.radius", index) != NULL;
-        text_append(&allowed, "normal of a line, discs, or profile of a cam%s",
+        const bool is_slot = entries_find(entries, "joints.*.slot", index) != NULL;
+        const bool is_stop = entries_find(entries, "joints.*.radius", index) != NULL || is_slot;
+        text_append(&allowed, "%s%s",
+                    is_slot ? "the direction across the slot, such as 90 deg"
+                            : "normal of a line or slot, discs, or profile of a cam",
                     is_stop ? ""
                             : ", of a stop; hole and pin of a pin in a hole; at of a pivot without "
                               "play");

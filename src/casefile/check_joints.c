@@ -3,6 +3,7 @@
 
 #include "casefile/cam.h"
 #include "casefile/limits.h"
+#include "casefile/slot.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 
@@ -157,7 +158,8 @@ static bool check_joint(const Entries *entries, size_t index, const Scenario *sc
         return check_guide(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
     case JOINT_TOUCHES_DISC:
-        return cam_check(entries, index, &scenario->linkage, err) &&
+        return slot_check(entries, index, joint, err) &&
+               cam_check(entries, index, &scenario->linkage, err) &&
                check_stiffness(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);
     case JOINT_TOUCHES_NOTHING:

@@ -95,10 +95,10 @@ static void append_kinds(const SchemaRow *row, Text *text)
         (is_of_hinges && is_of_stops)) {
         return;
     }
-    text_append(text, schema_is_of_any(row, JOINTS_WITH_CARRIER) ? " of gears"
-                      : schema_is_of_any(row, JOINTS_WITH_RACK)  ? " of a rack"
-                      : is_of_hinges                             ? " but of a stop"
-                      : is_of_stops                              ? " of a stop"
+    text_append(text, schema_is_of_any(row, JOINTS_WITH_MESH)   ? " of gears"
+                      : schema_is_of_any(row, JOINTS_WITH_RACK) ? " of a rack"
+                      : is_of_hinges                            ? " but of a stop"
+                      : is_of_stops                             ? " of a stop"
                       : schema_is_of_any(row, JOINTS_WITH_POSITION)
                           ? " of a prismatic joint or guide"
                       : schema_is_of_any(row, JOINTS_WITH_GUIDES) ? " of a guide"

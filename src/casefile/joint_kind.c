@@ -18,7 +18,8 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
         JointKind kind;
         const char *keys;
     } KINDS[] = {
-        {JOINT_STOP, "joints.*.normal joints.*.radius joints.*.discs joints.*.profile"},
+        {JOINT_STOP, "joints.*.normal joints.*.radius joints.*.discs joints.*.profile "
+                     "joints.*.slot"},
         {JOINT_GUIDE, "joints.*.guide joints.*.block joints.*.length"},
         {JOINT_PRISMATIC, "joints.*.along"},
         {JOINT_RACK, "joints.*.rack"},

@@ -81,6 +81,41 @@ bool limits_check(const Entries *entries, size_t index, const Scenario *scenario
     return check_order(entries, index, joint, err) && check_contact(entries, index, scenario, err);
 }
 
+// How deep the flanks of gears are in one another at their start, m, by their transmission error
+// and relief; 0 of other joints.
+static double overlap_of(const Linkage *linkage, const Motion *motions, int number)
+{
+    const Joint *joint = &linkage->joints[number];
+    double deepest = 0.0;
+    for (int i = 0; joint_has_mesh(joint->kind) && i < 2; i++) {
+        const double sign = i == 0 ? 1.0 : -1.0;
+        const double end = sign * (i == 0 ? coordinate_low(joint) : coordinate_high(joint));
+        const Mesh mesh = mesh_of(linkage, joint);
+        const MeshFlank flank = coordinate_flank(linkage, motions, number, sign);
+        const double beyond = sign * coordinate_position(linkage, motions, number) - end;
+        const double apart = vec2_length(flank.offset) - mesh_distance(&joint->gear);
+        deepest = fmax(deepest, -mesh_gap(&mesh, &flank, beyond, apart));
+    }
+    return deepest;
+}
+
+// Whether gears start clear of one another.
+static bool check_flanks(const Entries *entries, const Linkage *linkage, const Motion *motions,
+                         int number, Err *err)
+{
+    const Joint *joint = &linkage->joints[number];
+    const double overlap = overlap_of(linkage, motions, number);
+    return overlap <= LINKAGE_SEATED * joint->limits.backlash ||
+           entries_refuse(entries_blame(entries,
+                                        "joints.*.start joints.*.transmission-error "
+                                        "joints.*.relief joints.*.backlash",
+                                        (size_t)number),
+                          err,
+                          "the gears of joint '%s' start %.4g um inside one another\nallowed: a "
+                          "start in the gap that their transmission-error and relief leave",
+                          joint->name, 1e6 * overlap);
+}
+
 bool limits_check_starts(const Entries *entries, const Linkage *linkage, Err *err)
 {
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
@@ -89,6 +124,9 @@ bool limits_check_starts(const Entries *entries, const Linkage *linkage, Err *er
     for (size_t i = 0; is_right && i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const Limits *limits = &joint->limits;
+        if (linkage_has_teeth_tables(joint)) {
+            is_right = check_flanks(entries, linkage, motions, (int)i, err);
+        }
         if (limits->kind != LIMIT_STOPS) {
             continue;
         }

@@ -67,6 +67,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_DIRECTION:
     case SCHEMA_START:
     case SCHEMA_DISCS:
+    case SCHEMA_SLOT:
     case SCHEMA_ANCHOR:
     case SCHEMA_BETWEEN:
     case SCHEMA_EXPECT:

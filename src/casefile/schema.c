@@ -118,6 +118,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                             "points such as [[0 deg, 20 mm], [60 deg, 21 mm], ...]"},
         [SCHEMA_TEETH] = {"[whole number, whole number]", "two whole numbers such as [20, 60]"},
         [SCHEMA_DISCS] = {"[length, length]", "two diameters such as [20 mm, 20 mm]"},
+        [SCHEMA_SLOT] = {"[length, length]", "length and width such as [30 mm, 8.1 mm]"},
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},

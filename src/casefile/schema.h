@@ -29,9 +29,10 @@ typedef enum SchemaType {
     SCHEMA_COORDINATE, // angle of a hinge, length of a slider or of gears -> double of a Limits
     SCHEMA_DAMPER,     // damping of a joint's contact -> double
     SCHEMA_PIVOTS,     // [joint, joint] -> the joints that guide teeth: pivots of a Gear
-    SCHEMA_PROFILE,    // a list of [angle, distance] -> the profile of a Stop
+    SCHEMA_PROFILE,    // a list of [angle, length] -> size_t, which of the linkage's profiles
     SCHEMA_TEETH,      // [number, number] -> the teeth of a Gear
     SCHEMA_DISCS,      // [diameter, diameter] -> the radii of a Stop
+    SCHEMA_SLOT,       // [length, width] -> the slot of a Stop
     SCHEMA_HEADING,    // angle of the world -> Joint.direction, of body a once it is placed
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
     SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass

@@ -17,7 +17,7 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                "joint, with any name. The keys make the kind: no sizes an ideal pivot; hole and pin, or "
                "radial-clearance, a pin with play; along an ideal prismatic joint, with guide, block "
                "and length as well a block with play between guides, or a sleeve round a rod; normal, "
-               "discs or profile a stop, where two bodies touch that are not joined; gears and teeth a "
+               "slot, discs or profile a stop, where two bodies touch that are not joined; gears and teeth a "
                "pair of gears; rack a rack and pinion. An ideal pivot or prismatic joint with "
                "backlash, or with low and high, has "
                "flanks or stops at the ends of its coordinate. With space: spatial there are only pins, "

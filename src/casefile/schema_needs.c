@@ -144,20 +144,39 @@ static bool places_apply(const SchemaRow *row, const Joint *joint)
     return !joint->is_apart || !(is_of_both || row->type == SCHEMA_START);
 }
 
-// Whether a key says what a stop is: a cam has a profile, and on it a roller or a flat.
+// Whether a key says what a stop is: a cam has a profile, and on it a roller or a flat; a slot has
+// no discs.
 static bool stops_apply(const SchemaRow *row, const Joint *joint)
 {
     const bool is_cam = joint->stop.cam > 0;
+    if (!joint_has_disc(joint->kind)) {
+        return true;
+    }
     switch (row->type) {
     case SCHEMA_PROFILE:
         return is_cam;
+    case SCHEMA_SLOT:
+        return joint->stop.slot > 0.0;
     case SCHEMA_DISCS:
-        return !is_cam;
+        return !is_cam && joint->stop.slot == 0.0;
     case SCHEMA_HEADING:
         return !is_cam || joint->stop.is_flat;
     default:
         return true;
     }
+}
+
+// Whether a key of gears says something: how often tables repeat, where there are some.
+static bool gears_apply(const SchemaRow *row, const Joint *joint)
+{
+    if (!joint_has_mesh(joint->kind)) {
+        return true;
+    }
+    const char *key = strrchr(row->path, '.') + 1;
+    return strcmp(key, "transmission-error") == 0 ? joint->gear.error > 0
+           : strcmp(key, "relief") == 0           ? joint->gear.relief > 0
+           : strcmp(key, "repeats") == 0          ? linkage_has_teeth_tables(joint)
+                                                  : true;
 }
 
 // The form in which a case of the scenario is written.
@@ -259,7 +278,7 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
         met |= joint_bits(scenario, joint);
         met |= bit(OWN, row->flag > 0 && *((const bool *)((const char *)joint + row->flag)));
         if (!limits_apply(row, joint, schema_field_const(row, scenario, index)) ||
-            !places_apply(row, joint) || !stops_apply(row, joint) ||
+            !places_apply(row, joint) || !stops_apply(row, joint) || !gears_apply(row, joint) ||
             !schema_is_of_kind(row, joint->kind)) {
             return false;
         }

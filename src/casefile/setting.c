@@ -309,12 +309,15 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
     case SCHEMA_DISCS:
         set_vector(setting, (Vec2){2.0 * joint->stop.radius_a, 2.0 * joint->stop.radius_b});
         break;
+    case SCHEMA_SLOT:
+        set_vector(setting, (Vec2){joint->stop.slot, 2.0 * joint->stop.radius_a});
+        break;
     case SCHEMA_HEADING:
         set_number(setting, heading(linkage, joint));
         break;
     case SCHEMA_PROFILE:
-        if (joint->stop.cam > 0) {
-            const Profile *profile = linkage_profile(linkage, joint);
+        if (*(const size_t *)field > 0) {
+            const Profile *profile = &linkage->profiles[*(const size_t *)field - 1];
             set_points(setting, profile->count, profile->angles, profile->radii, "rad", "m");
         }
         break;

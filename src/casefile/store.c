@@ -1,11 +1,12 @@
 // Stores the values of a case, each if it is in its range.
 #include "casefile/store.h"
 
-#include "casefile/cam.h"
 #include "casefile/expect.h"
 #include "casefile/limits.h"
 #include "casefile/loads.h"
 #include "casefile/over_time.h"
+#include "casefile/profiles.h"
+#include "casefile/slot.h"
 #include "casefile/target.h"
 #include "casefile/teeth.h"
 
@@ -405,9 +406,11 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     case SCHEMA_TEETH:
         return teeth_store(&target, &scenario->linkage.joints[entry->index].gear);
     case SCHEMA_PROFILE:
-        return cam_store(&target, &scenario->linkage, target.field);
+        return profiles_store(&target, &scenario->linkage);
     case SCHEMA_DISCS:
         return store_discs(&target, target.field);
+    case SCHEMA_SLOT:
+        return slot_store(&target, target.field);
     case SCHEMA_GRAVITY:
         return store_gravity(&target, scenario);
     case SCHEMA_DIRECTION:

@@ -63,11 +63,11 @@ static int other_body(const Joint *joint, int body)
 static bool are_pivots(const Entry *gears, const Joint *const pivots[2], Err *err)
 {
     for (int i = 0; i < 2; i++) {
-        if (!joint_has_angle(pivots[i]->kind)) {
+        if (!joint_pivots(pivots[i]->kind)) {
             const bool is_rack = joint_slides(pivots[i]->kind);
             return entries_refuse(gears, err,
-                                  "gears turn about ideal pivots, and '%s' is none\nallowed: two "
-                                  "pivots such as [pinion, wheel]%s",
+                                  "gears turn about pivots or pins, and '%s' is none\nallowed: two "
+                                  "of them such as [pinion, wheel]%s",
                                   pivots[i]->name,
                                   is_rack ? "; or, of a rack, 'rack' in place of 'gears'" : "");
         }
@@ -93,6 +93,57 @@ static double distance_from_line(const Joint *guide, const Joint *pivot)
 {
     const Vec2 across = vec2_perp(vec2_rotate(guide->direction, (Vec2){1.0, 0.0}));
     return vec2_dot(across, vec2_sub(pivot->anchor_a, guide->anchor_a));
+}
+
+// Whether a table comes again as often as the gears say in a turn of the first one.
+static bool settle_table(const Entry *points, size_t repeats, Profile *table, Err *err)
+{
+    table->period = 2.0 * M_PI / (double)repeats;
+    if (table->radii[table->count - 1] == table->radii[0] &&
+        fabs(table->angles[table->count - 1] - table->angles[0] - table->period) < 1e-9) {
+        table->count--; // the first point again
+    }
+    const double reach = table->angles[table->count - 1] - table->angles[0];
+    if (reach >= table->period * (1.0 - 1e-9)) {
+        return entries_refuse(points, err,
+                              "the points reach over %.6g deg, and come again after %.6g deg\n"
+                              "allowed: points within one of the %zu repeats in a turn",
+                              reach * 180.0 / M_PI, table->period * 180.0 / M_PI, repeats);
+    }
+    return profile_settle(table, err);
+}
+
+static bool settle_tables(const Entries *entries, size_t index, Linkage *linkage, Err *err)
+{
+    Gear *gear = &linkage->joints[index].gear;
+    const Entry *error = entries_find(entries, "joints.*.transmission-error", index);
+    const Entry *relief = entries_find(entries, "joints.*.relief", index);
+    const Entry *repeats = entries_find(entries, "joints.*.repeats", index);
+    if (repeats != NULL && error == NULL && relief == NULL) {
+        return entries_refuse(repeats, err,
+                              "nothing repeats in a turn of the first gear\nallowed: beside a "
+                              "transmission-error or relief");
+    }
+    gear->repeats = gear->repeats == 0 ? 1 : gear->repeats;
+    return (error == NULL ||
+            settle_table(error, gear->repeats, &linkage->profiles[gear->error - 1], err)) &&
+           (relief == NULL ||
+            settle_table(relief, gear->repeats, &linkage->profiles[gear->relief - 1], err));
+}
+
+// Whether gears stay as far apart as they are, or push so that they need not.
+static bool are_fixed_apart(const Entries *entries, size_t index, const Joint *gears,
+                            const Joint *const pivots[2], Err *err)
+{
+    for (int i = 0; i < 2; i++) {
+        if (!joint_is_ideal(pivots[i]->kind) && gears->gear.pressure_angle == 0.0) {
+            return entries_refuse(entries_find(entries, "joints.*.gears", index), err,
+                                  "the pin '%s' has play, so that the gears come apart\nallowed: a "
+                                  "pressure-angle, such as 20 deg, or two ideal pivots",
+                                  pivots[i]->name);
+        }
+    }
+    return true;
 }
 
 static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *err)
@@ -121,7 +172,10 @@ static bool join(const Entries *entries, size_t index, Linkage *linkage, Err *er
                                   : "are at the same position",
                               is_rack ? "joints" : "pivots");
     }
-    joint->gear.carrier = carrier;
+    if (!is_rack && !(are_fixed_apart(entries, index, joint, joints, err) &&
+                      settle_tables(entries, index, linkage, err))) {
+        return false;
+    }
     joint->body_a = other_body(joints[0], carrier);
     joint->body_b = other_body(joints[1], carrier);
     joint->gear.radius_a = INFINITY; // until gears are placed
@@ -148,13 +202,21 @@ static Vec2 anchor_on(const Joint *joint, int body)
     return joint->body_a == body ? joint->anchor_a : joint->anchor_b;
 }
 
+static double angle_of(const Motion *motions, int body)
+{
+    return body == LINKAGE_GROUND ? 0.0 : motions[body].angle;
+}
+
 // The pitch circles share the distance of the pivots.
 static void place_gears(const Linkage *linkage, const Motion *motions, int number, Gear *gear)
 {
+    const Joint *joint = &linkage->joints[number];
     const double distance = vec2_length(linkage_joint_gap(linkage, motions, number).position);
     const double sum = gear->teeth[0] + gear->teeth[1];
     gear->radius_a = distance * gear->teeth[0] / sum;
     gear->radius_b = distance * gear->teeth[1] / sum;
+    gear->zero = gear->teeth[1] / sum *
+                 (angle_of(motions, joint->body_a) - angle_of(motions, joint->body_b));
 }
 
 // The line of the guide in the rack's frame.

@@ -37,17 +37,21 @@ typedef struct Parts {
     const char *outer;
 } Parts;
 
-static Parts parts_of(JointKind kind)
+static Parts parts_of(const Joint *joint)
 {
-    switch (joint_touches(kind)) {
+    switch (joint_touches(joint->kind)) {
     case JOINT_TOUCHES_HOLE:
         return (Parts){"pin", "the wall of its hole"};
     case JOINT_TOUCHES_GUIDES:
         return (Parts){"block", "its guide"};
     case JOINT_TOUCHES_TEETH:
-        return joint_has_rack(kind) ? (Parts){"pinion", "its rack"}
-                                    : (Parts){"second gear", "the first one"};
+        return joint_has_rack(joint->kind) ? (Parts){"pinion", "its rack"}
+                                           : (Parts){"second gear", "the first one"};
     case JOINT_TOUCHES_DISC:
+        if (joint->stop.slot > 0.0) {
+            return (Parts){"pin", "the wall of its slot"};
+        }
+        break;
     case JOINT_TOUCHES_NOTHING:
         break;
     }
@@ -60,7 +64,7 @@ bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, doub
     if (depth <= share * allowed) {
         return true;
     }
-    const Parts parts = parts_of(joint->kind);
+    const Parts parts = parts_of(joint);
     return err_set(err, ERR_SOLVER,
                    "the %s of %s is %.4g mm inside %s; no contact law holds beyond %.4g mm",
                    parts.inner, joint->name, 1e3 * depth, parts.outer, 1e3 * allowed);

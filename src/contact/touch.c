@@ -35,10 +35,29 @@ static void place_corners(const Joint *joint, int number, Touch places[TOUCH_COR
     }
 }
 
+static Touch place_slot(const Joint *joint, int number)
+{
+    const Stop *stop = &joint->stop;
+    return (Touch){
+        .joint = number,
+        .shape = TOUCH_SLOT,
+        .anchor_a = joint->anchor_a,
+        .anchor_b = joint->anchor_b,
+        .direction = joint->direction,
+        .clearance = stop->radius_a - stop->radius_b,
+        .radius_a = stop->radius_a,
+        .radius_b = stop->radius_b,
+        .half_length = 0.5 * stop->slot,
+    };
+}
+
 static Touch place_stop(const Linkage *linkage, int number)
 {
     const Joint *joint = &linkage->joints[number];
     const Stop *stop = &joint->stop;
+    if (linkage_has_slot(joint)) {
+        return place_slot(joint, number);
+    }
     return (Touch){
         .joint = number,
         .shape = stop->cam > 0   ? TOUCH_CAM
@@ -162,6 +181,36 @@ bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *er
     return true;
 }
 
+TouchSlot touch_in_slot(Vec2 offset, Vec2 velocity, Vec2 across, double omega_a)
+{
+    const Vec2 along = vec2_perp(across);
+    const Vec2 at = {vec2_dot(across, offset), vec2_dot(along, offset)};
+    return (TouchSlot){
+        .across = across,
+        .position = at,
+        .rate = {vec2_dot(across, velocity) + omega_a * at.y,
+                 vec2_dot(along, velocity) - omega_a * at.x},
+    };
+}
+
+static TouchPose pose_in_slot(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 across,
+                              double omega_a)
+{
+    const Vec2 along = vec2_perp(across);
+    const TouchSlot slot = touch_in_slot(offset, velocity, across, omega_a);
+    const PinHole pin =
+        pin_slot_pose(slot.position, slot.rate, place->half_length, place->clearance);
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = pin.gap,
+        .has_normal = pin.has_normal,
+        .normal = vec2_add(vec2_scale(pin.normal.x, across), vec2_scale(pin.normal.y, along)),
+        .approach_speed = pin.approach_speed,
+        .middle = vec2_scale(slot.position.y - pin.eccentricity.y, along),
+    };
+}
+
 TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 line, double omega_a)
 {
     TouchPose pose = {.offset = offset, .velocity = velocity};
@@ -177,9 +226,11 @@ TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 lin
     case TOUCH_DISC:
         outside = 1.0;
         break;
+    case TOUCH_SLOT:
+        return pose_in_slot(place, offset, velocity, line, omega_a);
     case TOUCH_HOLE:
     case TOUCH_CAM:  // touch_pose_on_cam has it
-    case TOUCH_TURN: // pose_of_end has these
+    case TOUCH_TURN: // pose_of_end and pose_of_flank have these
     case TOUCH_TEETH:
     case TOUCH_RACK:
         break;
@@ -208,38 +259,6 @@ TouchPose touch_pose_on_cam(const Touch *place, Vec2 zero, Vec2 facing, Vec2 off
     };
 }
 
-// Along what an end pushes on body b; zero of an angle.
-static Vec2 push_of_end(const Linkage *linkage, const Touch *place, const Motion *motions)
-{
-    switch (place->shape) {
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        return vec2_scale(place->sign, coordinate_along_teeth(linkage, motions, place->joint));
-    case TOUCH_TURN:
-    case TOUCH_HOLE: // which are no ends
-    case TOUCH_DISC:
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-        break;
-    }
-    return (Vec2){0.0, 0.0};
-}
-
-// An angle or teeth at one end.
-static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const Motion *motions,
-                             Vec2 offset, Vec2 velocity)
-{
-    const double position = coordinate_position(linkage, motions, place->joint);
-    return (TouchPose){
-        .offset = offset,
-        .velocity = velocity,
-        .gap = place->sign * position - place->clearance,
-        .has_normal = true,
-        .normal = push_of_end(linkage, place, motions),
-        .approach_speed = -place->sign * coordinate_rate(linkage, motions, place->joint),
-    };
-}
-
 // How a body is turned, rad, and how fast it turns, rad/s.
 static double angle_of(const Motion *motions, int body)
 {
@@ -249,6 +268,50 @@ static double angle_of(const Motion *motions, int body)
 static double omega_of(const Motion *motions, int body)
 {
     return body == LINKAGE_GROUND ? 0.0 : motions[body].omega;
+}
+
+// An angle, or a rack's teeth, at one end.
+static TouchPose pose_of_end(const Linkage *linkage, const Touch *place, const Motion *motions,
+                             Vec2 offset, Vec2 velocity)
+{
+    const double sign = place->sign;
+    const bool is_rack = joint_has_rack(linkage->joints[place->joint].kind);
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = sign * coordinate_position(linkage, motions, place->joint) - place->clearance,
+        .has_normal = true,
+        .normal = is_rack ? vec2_scale(sign, joint_rows_along(linkage, motions, place->joint))
+                          : (Vec2){0.0, 0.0},
+        .approach_speed = -sign * coordinate_rate(linkage, motions, place->joint),
+    };
+}
+
+// A flank of a pair of gears.
+static TouchPose pose_of_flank(const Linkage *linkage, const Touch *place, const Motion *motions,
+                               Vec2 offset, Vec2 velocity)
+{
+    const Joint *joint = &linkage->joints[place->joint];
+    const Mesh mesh = mesh_of(linkage, joint);
+    const MeshFlank flank = coordinate_flank(linkage, motions, place->joint, place->sign);
+    const double position = coordinate_position(linkage, motions, place->joint);
+    return (TouchPose){
+        .offset = offset,
+        .velocity = velocity,
+        .gap = mesh_gap(&mesh, &flank, place->sign * position - place->clearance,
+                        vec2_length(offset) - mesh_distance(&joint->gear)),
+        .has_normal = true,
+        .normal = flank.normal,
+        .approach_speed = -mesh_rate(&flank, velocity, omega_of(motions, joint->body_a),
+                                     omega_of(motions, joint->body_b)),
+        .from_b = flank.from_b,
+    };
+}
+
+Vec2 touch_across(const Linkage *linkage, const Touch *place, const Motion *motions)
+{
+    const int body = linkage->joints[place->joint].body_a;
+    return vec2_rotate(angle_of(motions, body) + place->direction, (Vec2){1.0, 0.0});
 }
 
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions)
@@ -264,15 +327,17 @@ TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *m
     Vec2 line = {0.0, 0.0};
     switch (place->shape) {
     case TOUCH_TURN:
-    case TOUCH_TEETH:
     case TOUCH_RACK:
         return pose_of_end(linkage, place, motions, offset, velocity);
+    case TOUCH_TEETH:
+        return pose_of_flank(linkage, place, motions, offset, velocity);
     case TOUCH_CAM:
         return touch_pose_on_cam(
             place, vec2_rotate(angle + place->direction, x),
             vec2_rotate(angle_of(motions, joint->body_b) + place->cam.facing, x), offset, velocity,
             (const double[]){omega, omega_of(motions, joint->body_b)});
     case TOUCH_LINE:
+    case TOUCH_SLOT:
         line = vec2_rotate(angle + place->direction, x);
         break;
     case TOUCH_HOLE:
@@ -293,13 +358,11 @@ void touch_points(const Touch *place, const TouchPose *pose, Vec2 *from_a, Vec2 
         *from_a = vec2_scale(place->radius_a, pose->normal);
         *from_b = vec2_sub(*from_a, pose->offset);
         break;
-    case TOUCH_TEETH: {
-        // where the pitch circles touch, on the line of the centres
-        const double share = place->radius_a / (place->radius_a + place->radius_b);
-        *from_a = vec2_scale(share, pose->offset);
+    case TOUCH_SLOT:
+        *from_a = vec2_sub(pose->middle, vec2_scale(place->radius_a, pose->normal));
         *from_b = vec2_sub(*from_a, pose->offset);
         break;
-    }
+    case TOUCH_TEETH:
     case TOUCH_CAM:
         *from_b = pose->from_b;
         *from_a = vec2_add(pose->offset, *from_b);
@@ -362,15 +425,17 @@ void touch_response(const Linkage *linkage, const Touch *places, size_t count, b
     ResponsePlace *rows = zeroed(count, sizeof *rows);
     for (size_t i = 0; i < count; i++) {
         const bool is_circle = !touch_is_scalar(&places[i]);
+        const bool is_slot = places[i].shape == TOUCH_SLOT;
         rows[i] = (ResponsePlace){
             .joint = places[i].joint,
-            .is_line = places[i].shape == TOUCH_LINE || places[i].shape == TOUCH_CAM,
+            // of a slot the rates of the pin's centre in the slot's own axes
+            .is_line = places[i].shape == TOUCH_LINE || places[i].shape == TOUCH_CAM || is_slot,
             .sign = places[i].sign,
             .has_turns = has_friction && is_circle,
             .anchor_a = places[i].anchor_a,
             .anchor_b = places[i].anchor_b,
             .direction = places[i].direction,
-            .radius = places[i].radius_b,
+            .radius = is_slot ? 0.0 : places[i].radius_b,
             .cam = places[i].cam,
         };
     }

@@ -9,10 +9,13 @@
 //     disc    gap = |d| - c,      n =  d / |d|       c sum of the radii
 //     line    gap = m . d - c,    n =  m             m the line's normal, c radius on body b
 //     cam     gap = distance from the profile - c, n its normal there (model/cam.h)
+//     slot    gap = c - |e|,      n = -e / |e|       c half its width less the pin's radius
+// with e from the nearest point of the slot's middle line, which goes through anchor a at right
+// angles to m, half its length to either side (kernel/pin_hole.h).
 // The ends of a slider's coordinate are lines across it. Of an angle and of teeth the gap is that
 // of the coordinate q itself (model/coordinate.h):
 //     turn    gap = s q - c,      no n               a torque s N on body b, in the sense of q
-//     teeth   gap = s q - c,      n = s t            t the pitch circles' tangent
+//     teeth   model/mesh.h
 //     rack    gap = s q - c,      n = s t            t the pitch line's direction
 // s is 1 at the low end and c its value, -1 at the high end and c less its value. Lengths are
 // angles at a turn, and forces torques.
@@ -31,6 +34,7 @@ typedef enum TouchShape {
     TOUCH_DISC,  // a circle of body b beside one of body a
     TOUCH_LINE,  // a circle or point of body b at a line of body a
     TOUCH_CAM,   // a circle or flat of body b at a profile of body a
+    TOUCH_SLOT,  // a circle of body b in a slot of body a
     TOUCH_TURN,  // an end of a revolute joint's angle
     TOUCH_TEETH, // a flank of a pair of gears
     TOUCH_RACK,  // a flank of a rack on body a and a pinion
@@ -42,16 +46,18 @@ typedef struct Touch {
     int joint; // number in the linkage
     int place; // 0, or number of the corner
     TouchShape shape;
-    Vec2 anchor_a;    // in body a's frame, m: centre of hole or disc, a point of the line
-    Vec2 anchor_b;    // in body b's frame, m: centre of the circle
-    double direction; // rad, in body a's frame: of a line's normal, away from the wall; of a rack's
-                      // pitch line
-    double clearance; // m, or rad at a turn: c above
-    double sign;      // s above; 0 of other shapes
-    double radius_a;  // m, of hole, disc or pitch circle; 0 of a line, infinite of a rack
-    double radius_b;  // m
-    Cam cam;          // of a cam
-    ForceLaw law;     // of this place alone
+    Vec2 anchor_a;      // in body a's frame, m: centre of hole or disc, a point of the line
+    Vec2 anchor_b;      // in body b's frame, m: centre of the circle
+    double direction;   // rad, in body a's frame: of a line's normal, away from the wall; across a
+                        // slot; of a rack's pitch line
+    double clearance;   // m, or rad at a turn: c above
+    double sign;        // s above; 0 of other shapes
+    double radius_a;    // m, of hole or disc; 0 of a line, infinite of a rack; half the width of a
+                        // slot
+    double radius_b;    // m; of a pinion of its pitch circle
+    double half_length; // m, of a slot's middle line
+    Cam cam;            // of a cam
+    ForceLaw law;       // of this place alone
 } Touch;
 
 // How a place is at an instant.
@@ -63,7 +69,8 @@ typedef struct TouchPose {
     Vec2 normal;           // unit: direction of the force on body b; zero at a turn and without
                            // a normal
     double approach_speed; // m/s, rate of the penetration; without a normal the relative speed
-    Vec2 from_b;           // m, of a cam: from anchor b to where they touch
+    Vec2 from_b;           // m, of a cam and of gears: from anchor b to where they touch
+    Vec2 middle;           // m, of a slot: from anchor a to the nearest point of its middle line
 } TouchPose;
 
 // Whether the gap of a place is a coordinate by itself, whose rate is the first of the place's rows
@@ -73,6 +80,7 @@ static inline bool touch_is_scalar(const Touch *place)
     switch (place->shape) {
     case TOUCH_HOLE:
     case TOUCH_DISC:
+    case TOUCH_SLOT:
         return false;
     case TOUCH_LINE:
     case TOUCH_CAM:
@@ -96,6 +104,7 @@ static inline bool touch_is_end(const Touch *place)
     case TOUCH_DISC:
     case TOUCH_LINE:
     case TOUCH_CAM:
+    case TOUCH_SLOT:
         break;
     }
     return false;
@@ -124,14 +133,27 @@ static inline TouchPose touch_pose_in_hole(const PinHole *pin, Vec2 velocity)
 // The pose of a place whose bodies move so.
 TouchPose touch_pose(const Linkage *linkage, const Touch *place, const Motion *motions);
 
-// The same of circles and lines from what it is made of: the offset and the velocity, and of a line
-// its normal in the world and the angular velocity of body a, rad/s.
+// A pin in a slot in the slot's own axes, which are its rows in the response: x across it, y along
+// it. They turn with body a.
+typedef struct TouchSlot {
+    Vec2 across;   // unit, in the world; along it is perp of that
+    Vec2 position; // m, of the pin's centre from the slot's middle
+    Vec2 rate;     // m/s
+} TouchSlot;
+
+TouchSlot touch_in_slot(Vec2 offset, Vec2 velocity, Vec2 across, double omega_a);
+
+// The same of circles, lines and slots from what it is made of: the offset and the velocity, and of
+// a line or slot its normal in the world and the angular velocity of body a, rad/s.
 TouchPose touch_pose_of(const Touch *place, Vec2 offset, Vec2 velocity, Vec2 line, double omega_a);
 
 // The same of a cam, with the unit vectors in the world from which its profile's angles count and
 // in which a flat faces, and the angular velocities of both bodies, rad/s.
 TouchPose touch_pose_on_cam(const Touch *place, Vec2 zero, Vec2 facing, Vec2 offset, Vec2 velocity,
                             const double omegas[2]);
+
+// The direction across a slot, unit, in the world.
+Vec2 touch_across(const Linkage *linkage, const Touch *place, const Motion *motions);
 
 // The point at which the force acts, seen from the anchor on body a and from that on body b, m.
 // Without friction the anchors themselves serve as well where both are circles.

@@ -6,8 +6,9 @@
 //     v_t = t . u_e' + R u_a' - (R - |e|) u_b',   t the normal turned by a quarter turn,
 // R the hole's radius, e eccentricity, u_a', u_b' the turning of the hole's and the pin's body
 // about the pin's axis. Two discs outside each other are a hole of negative radius, and |e| is then
-// -|e|. At a line normal and tangent are the rows. In space the pin slides along the axis too, with
-// w the turning about x and y,
+// -|e|. At a line normal and tangent are the rows. In a slot |e| is infinite between the ends where
+// it divides, and R - |e| is the arm of both bodies, for u_e' is against the point under the pin.
+// In space the pin slides along the axis too, with w the turning about x and y,
 //     v_z = u_z' - R t . w_a + (R - |e|) t . w_b
 // and friction is mu N tanh(s / v_s) against the direction of (v_t, v_z), s its size.
 //
@@ -30,6 +31,7 @@
 //     N' = k (1 + chi d' / v0) d' + (chi F_el / v0 + c) d''
 //     v_t' = t . a + t' . v + R w_a' - (R - |e|) w_b' + d' w_b,   H' = mu (N tanh(v_t / v_s))'
 // of the friction of a pin in space H_t and H_z likewise, with their share phi of the sliding.
+#include "kernel/friction_law.h"
 #include "kernel/internal.h"
 
 #include <math.h>
@@ -48,6 +50,20 @@ static void pose_by_rows(const Kernel *kernel, size_t contact, KernelKnownPose *
     known->speed[1] = work->speeds[row + 1];
     known->pose = kernel_motion_pose_of(kernel, contact, position, known->speed);
     known->is_known = true;
+}
+
+// The arms of friction about a pin's axis: of its hole the radius, of the pin itself less than that
+// by the eccentricity. In a slot both bodies have the pin's.
+static inline double pin_arm_of(const KernelContact *contact, const PinHole *pose)
+{
+    return contact->shape == KERNEL_SLOT
+               ? contact->hole_radius - contact->radial_clearance + pose->gap
+               : contact->hole_radius - pose->eccentricity_size;
+}
+
+static inline double hole_arm_of(const KernelContact *contact, const PinHole *pose)
+{
+    return contact->shape == KERNEL_SLOT ? pin_arm_of(contact, pose) : contact->hole_radius;
 }
 
 // How fast a pin slides round its hole.
@@ -74,25 +90,24 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
     const size_t row = of->first_row;
     if (of->shape == KERNEL_LINE) {
         const double taken =
-            of->law.friction * normal * kernel_friction_hold(speed[1], of->law.friction_speed).held;
+            of->law.friction * normal * friction_hold(speed[1], of->law.friction_speed).held;
         force[row + 1] -= taken;
         return taken * speed[1];
     }
-    const double hole_arm = of->hole_radius;
-    const double pin_arm = hole_arm - pose->eccentricity_size;
+    const double hole_arm = hole_arm_of(of, pose);
+    const double pin_arm = pin_arm_of(of, pose);
     const Vec2 tangent = vec2_perp(pose->normal);
     const double sliding = sliding_round(speed, tangent, hole_arm, pin_arm);
     double held;
     double power;
     if (of->row_count < KERNEL_ROWS_MOST) {
-        held =
-            of->law.friction * normal * kernel_friction_hold(sliding, of->law.friction_speed).held;
+        held = of->law.friction * normal * friction_hold(sliding, of->law.friction_speed).held;
         power = held * sliding;
     } else {
         const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
         const double size = hypot(sliding, axial);
         const double grip =
-            of->law.friction * normal * kernel_friction_grip(size, of->law.friction_speed).share;
+            of->law.friction * normal * friction_grip(size, of->law.friction_speed).share;
         const double along = grip * axial;
         held = grip * sliding;
         power = grip * size * size;
@@ -324,7 +339,7 @@ static void find_both(const KernelContact *contact, double round, const Gradient
                       double axial, const Gradient *by_axial, double normal,
                       const Gradient *by_normal, FrictionRows *held)
 {
-    const KernelGrip grip = kernel_friction_grip(hypot(round, axial), contact->law.friction_speed);
+    const FrictionGrip grip = friction_grip(hypot(round, axial), contact->law.friction_speed);
     const double share = grip.share;
     for (size_t k = 0; k < PARTS; k++) {
         const double growth = grip.bend * (round * by_round->of[k] + axial * by_axial->of[k]);
@@ -349,11 +364,12 @@ static double find_round(const KernelContact *contact, const PinHole *pose, cons
         *gradient = along((Vec2){0.0, 0.0}, tangent);
         return speeds[1];
     }
-    const double hole_arm = contact->hole_radius;
-    const double pin_arm = hole_arm - pose->eccentricity_size;
+    const double hole_arm = hole_arm_of(contact, pose);
+    const double pin_arm = pin_arm_of(contact, pose);
     const double turning = vec2_dot(pose->normal, velocity) / pose->eccentricity_size;
-    *gradient = along(vec2_add(vec2_scale(turning, tangent), vec2_scale(-speeds[3], pose->normal)),
-                      tangent);
+    const double shortened = contact->shape == KERNEL_SLOT ? speeds[2] - speeds[3] : -speeds[3];
+    *gradient =
+        along(vec2_add(vec2_scale(turning, tangent), vec2_scale(shortened, pose->normal)), tangent);
     gradient->of[POSITIONS + 2] = hole_arm;
     gradient->of[POSITIONS + 3] = -pin_arm;
     return vec2_dot(tangent, velocity) + hole_arm * speeds[2] - pin_arm * speeds[3];
@@ -370,7 +386,7 @@ static void find_friction(const KernelContact *contact, const PinHole *pose, con
         find_both(contact, sliding, &by_sliding, axial, &by_axial, normal, by_normal, held);
         return;
     }
-    const KernelHold hold = kernel_friction_hold(sliding, contact->law.friction_speed);
+    const FrictionHold hold = friction_hold(sliding, contact->law.friction_speed);
     for (size_t k = 0; k < PARTS; k++) {
         held->by_round.of[k] = contact->law.friction * (hold.held * by_normal->of[k] +
                                                         normal * hold.slope * by_sliding.of[k]);
@@ -383,11 +399,13 @@ static void write_turns(const KernelContact *contact, const PinHole *pose, const
                         KernelSlopes *slopes)
 {
     const Vec2 still = {0.0, 0.0};
-    const double arm = contact->hole_radius;
-    const double pin_arm = arm - pose->eccentricity_size;
+    const double arm = hole_arm_of(contact, pose);
+    const double pin_arm = pin_arm_of(contact, pose);
     const Gradient fixed = along(still, still);
-    const Gradient shortens = along(pose->normal, still); // of R - |e|
-    const Gradient on_hole = product_rule(held->round, &held->by_round, -arm, &fixed);
+    const Gradient shortens = along(pose->normal, still);                    // of R - |e|
+    const Gradient lengthens = along(vec2_scale(-1.0, pose->normal), still); // of minus that
+    const Gradient on_hole = product_rule(held->round, &held->by_round, -arm,
+                                          contact->shape == KERNEL_SLOT ? &lengthens : &fixed);
     const Gradient on_pin = product_rule(held->round, &held->by_round, pin_arm, &shortens);
     write_slopes(slopes, KERNEL_ROW_TURN, -arm * held->round, &on_hole);
     write_slopes(slopes, KERNEL_ROW_TURN + 1, pin_arm * held->round, &on_pin);
@@ -491,7 +509,7 @@ static inline Rated rated_scale(double factor, Rated a)
 // The share of mu N that is held against a sliding.
 static inline Rated rated_hold(Rated sliding, double speed)
 {
-    const KernelHold hold = kernel_friction_hold(sliding.value, speed);
+    const FrictionHold hold = friction_hold(sliding.value, speed);
     return (Rated){hold.held, hold.slope * sliding.rate};
 }
 
@@ -533,8 +551,8 @@ static Rated rate_space_friction(MovingContact *moving, Rated round, Rated *held
     const Rated by_pin =
         rated_times(moving->pin_arm, rows_along(moving, moving->tangent, KERNEL_ROW_PIN));
     const Rated axial = rated_plus(moving->speed[KERNEL_ROW_AXIAL], rated_plus(by_hole, by_pin));
-    const KernelGrip found =
-        kernel_friction_grip(hypot(round.value, axial.value), moving->contact->law.friction_speed);
+    const FrictionGrip found =
+        friction_grip(hypot(round.value, axial.value), moving->contact->law.friction_speed);
     const Rated share = {found.share,
                          found.bend * (round.value * round.rate + axial.value * axial.rate)};
     const Rated grip =
@@ -561,10 +579,11 @@ static Rated rate_friction(MovingContact *moving)
         push_row(moving, 1, rated_scale(-1.0, held));
         return rated_times(held, moving->speed[1]);
     }
-    const double hole_arm = contact->hole_radius;
+    const bool is_slot = contact->shape == KERNEL_SLOT;
+    const Rated hole_arm = is_slot ? moving->pin_arm : (Rated){contact->hole_radius, 0.0};
     const Rated sliding = rated_plus(
         rated_plus(rows_along(moving, moving->tangent, 0),
-                   rated_scale(hole_arm, moving->speed[KERNEL_ROW_TURN])),
+                   rated_times(hole_arm, moving->speed[KERNEL_ROW_TURN])),
         rated_scale(-1.0, rated_times(moving->pin_arm, moving->speed[KERNEL_ROW_TURN + 1])));
     Rated held;
     Rated power;
@@ -577,7 +596,7 @@ static Rated rate_friction(MovingContact *moving)
     for (size_t i = 0; i < 2; i++) {
         push_row(moving, i, rated_scale(-1.0, rated_times(held, moving->tangent[i])));
     }
-    push_row(moving, KERNEL_ROW_TURN, rated_scale(-hole_arm, held));
+    push_row(moving, KERNEL_ROW_TURN, rated_scale(-1.0, rated_times(hole_arm, held)));
     push_row(moving, KERNEL_ROW_TURN + 1, rated_times(moving->pin_arm, held));
     return power;
 }
@@ -621,8 +640,7 @@ static Rated find_pressing(MovingContact *moving, const KernelTouch *touch)
         pose->approach_speed,
         round * turning - n[0] * v[0].rate - n[1] * v[1].rate,
     };
-    moving->pin_arm =
-        (Rated){moving->contact->hole_radius - pose->eccentricity_size, -pose->approach_speed};
+    moving->pin_arm = (Rated){pin_arm_of(moving->contact, pose), -pose->approach_speed};
     Rated lost;
     moving->pressing = rate_pressing(moving->contact, touch, closing, &lost);
     return rated_times(lost, closing);

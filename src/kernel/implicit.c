@@ -86,7 +86,7 @@ double kernel_depth_rounding(const Kernel *kernel, size_t contact, double time_s
 {
     const KernelContact *of = &kernel->contacts[contact];
     if (of->shape != KERNEL_LINE) {
-        return DEPTH_ROUNDINGS * fabs(of->radial_clearance);
+        return DEPTH_ROUNDINGS * (fabs(of->radial_clearance) + of->half_length);
     }
     return DEPTH_ROUNDINGS *
            (fabs(kernel->position[of->first_row]) + time_s * fabs(kernel->speed[of->first_row]));

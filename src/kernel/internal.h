@@ -44,44 +44,6 @@ static inline KernelNodeRow kernel_quintic(KernelNodeRow first, KernelNodeRow la
     };
 }
 
-// Coulomb's friction, smooth through rest: how much of mu N a contact holds against its sliding,
-// with the derivatives.
-//
-// With v the sliding speed and v_s that at which friction takes hold
-//     along a line    tanh(v / v_s),          by v: (1 - tanh^2) / v_s
-//     in a plane      phi(s) (v_x, v_y),      phi = tanh(s / v_s) / s,  s = |(v_x, v_y)|
-//     d phi = phi' / s (v_x dv_x + v_y dv_y), phi' / s = ((1 - tanh^2) / v_s - phi) / s^2
-// and near rest by the series phi = 1 / v_s - s^2 / (3 v_s^3).
-
-// of v_s: sliding below which differences of the closed form would be rounding
-static const double KERNEL_FRICTION_SERIES_BELOW = 1e-4;
-
-typedef struct KernelHold {
-    double held;  // 1
-    double slope; // s/m
-} KernelHold;
-
-static inline KernelHold kernel_friction_hold(double sliding, double speed)
-{
-    const double held = tanh(sliding / speed);
-    return (KernelHold){held, (1.0 - held * held) / speed};
-}
-
-typedef struct KernelGrip {
-    double share; // s/m: phi
-    double bend;  // s^3/m^3: phi' / s
-} KernelGrip;
-
-static inline KernelGrip kernel_friction_grip(double size, double speed)
-{
-    if (size < KERNEL_FRICTION_SERIES_BELOW * speed) {
-        return (KernelGrip){1.0 / speed, -2.0 / (3.0 * speed * speed * speed)};
-    }
-    const KernelHold hold = kernel_friction_hold(size, speed);
-    const double share = hold.held / size;
-    return (KernelGrip){share, (hold.slope - share) / (size * size)};
-}
-
 // What one contact of a kernel did in a step, for kernels whose contacts it moves: its impulses,
 // their integrals and its forces over time, between the nodes as kernel/run.c has it.
 
@@ -292,6 +254,9 @@ PinHole kernel_motion_pose(const Kernel *kernel, size_t contact, double time_s,
 PinHole kernel_motion_flight(const Kernel *kernel, size_t contact, double time_s,
                              const double moved[2], const double speeds[2]);
 
+// Where the first two rows of a contact are at a point.
+Vec2 kernel_motion_position(const Kernel *kernel, size_t contact, const KernelPoint *point);
+
 // The acceleration of a row, m/s^2 or rad/s^2, under forces, after impulses.
 double kernel_motion_acceleration(const Kernel *kernel, size_t row, double time_s,
                                   const double *impulse, const double *force);
@@ -377,6 +342,32 @@ void kernel_rates_find(Kernel *kernel, KernelPoint *point);
 // What rounding leaves of a depth, m: the play less an eccentricity, or at a line the gap at the
 // start of the world's step less the way since then.
 double kernel_depth_rounding(const Kernel *kernel, size_t contact, double time_s);
+
+// A pin in a slot in flight, in the slot's axes.
+typedef struct SlotFlight {
+    Vec2 position;     // m
+    Vec2 speed;        // m/s
+    Vec2 acceleration; // m/s^2
+    double half_length;
+    double distance; // m, from the middle line, at the start
+} SlotFlight;
+
+// The time, s, after which one that is at a wall and leaves it is back at that wall or at another;
+// INFINITY where that is later than the last one.
+double kernel_slot_return(const SlotFlight *flight, double last_s);
+
+// How far a pin in a slot is beyond the part of the wall that it is at, at a point, m, and how far
+// it may be for rounding.
+double kernel_slot_beyond(const Kernel *kernel, size_t contact, const KernelPoint *point);
+double kernel_slot_rounding(const KernelContact *contact);
+
+// Puts a pin that touches, or has just begun to, at the part of its slot where it is at a point, or
+// where it is going from there.
+void kernel_slot_find_part(Kernel *kernel, size_t contact, KernelPoint *point);
+
+// Lets those that have come to the end of their part go on at the next one. Returns whether any
+// has.
+bool kernel_slots_follow(Kernel *kernel, KernelPoint *point);
 
 // Explicit local steps of a kernel, which use the forces and their rates.
 

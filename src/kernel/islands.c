@@ -570,12 +570,13 @@ static bool may_touch(const Kernel *all, const KernelContact *contact, double du
     const double *speed = all->speed + row;
     const double *free = all->free + row;
     const double half_s = 0.5 * duration;
-    if (contact->shape != KERNEL_HOLE && contact->shape != KERNEL_DISC) {
+    if (contact->shape == KERNEL_LINE) {
         return position[0] <= duration * (push + fabs(speed[0]) + half_s * fabs(free[0]));
     }
-    const double size = hypot(position[0], position[1]);
-    const double gap = contact->shape == KERNEL_HOLE ? contact->radial_clearance - size
-                                                     : contact->radial_clearance + size;
+    const double beyond = fmax(fabs(position[1]) - contact->half_length, 0.0); // of a slot's end
+    const double size = hypot(position[0], beyond);
+    const double gap = contact->shape == KERNEL_DISC ? contact->radial_clearance + size
+                                                     : contact->radial_clearance - size;
     const double fastest = push + hypot(speed[0], speed[1]) + half_s * hypot(free[0], free[1]);
     return gap <= duration * fastest;
 }

@@ -5,7 +5,9 @@
 //
 // Each contact point has rows of its own. Of a pin in its hole: x and y of the pin's centre less
 // the hole's, and with friction the turns of the hole's and of the pin's body; of two discs
-// likewise. Of a circle on a line: the gap along the line's normal, and the sliding along it. In
+// likewise. Of a circle on a line: the gap along the line's normal, and the sliding along it. Of a
+// pin in a slot: its centre in the slot's own axes, across and along, from its middle; its turns
+// are felt at the wall with one arm, for these rows compare it with the slot's point under it. In
 // space x and y are across the pin's axis, and friction also has rows for the sliding along the
 // axis and for the turns of both bodies about x and y. With u the rows, W their mobility, g their
 // free acceleration and f the contacts' forces,  u'' = g + W f, where W and g may change in the
@@ -27,6 +29,7 @@ typedef enum KernelShape {
     KERNEL_HOLE, // it is inside a circle
     KERNEL_DISC, // it is outside a circle
     KERNEL_LINE, // it is on one side of a line; also of any gap that is a row by itself
+    KERNEL_SLOT, // it is inside a slot with two ends (kernel/pin_hole.h)
 } KernelShape;
 
 enum {
@@ -45,14 +48,26 @@ enum {
     KERNEL_ROW_PIN = 7,
 };
 
-// One contact point. The first six are given, and the state where it touches already as it is
+// The part of a slot's wall that a contact is at while it touches in a run: its force is smooth
+// there, beyond the end of the part as well, and a local step ends where the part does.
+typedef enum KernelPart {
+    KERNEL_PART_NEAREST, // whichever is there: of what does not touch, of other shapes, and after a
+                         // run
+    KERNEL_PART_WALLS,   // the straight ones
+    KERNEL_PART_LOW,     // the arc at the end that comes first along the slot
+    KERNEL_PART_HIGH,    // and the one that comes last
+} KernelPart;
+
+// One contact point. The first seven are given, and the state where it touches already as it is
 // added; the rest lives on from one step to the next. A disc outside another is a hole of negative
 // size: the same formulas hold for both.
 typedef struct KernelContact {
     ForceLaw law;
     KernelShape shape;
     double radial_clearance; // m; of a disc less than 0, minus the sum of the radii; not of a line
-    double hole_radius;      // m; of a disc minus the radius of that on body a; not of a line
+    double hole_radius;      // m; of a disc minus the radius of that on body a; not of a line; of a
+                             // slot half its width
+    double half_length;      // m, of a slot's middle line
     int joint;               // contacts of one joint have the same number, and follow each other
     int siblings[2];         // the first and the last contact that can touch together with this
                              // one, counted from here; 0 and 0 where there is none
@@ -60,6 +75,7 @@ typedef struct KernelContact {
     size_t first_row;
     size_t row_count;
     ContactState state;
+    KernelPart part;
     double frequency;       // rad/s, of its oscillation at the depth to be expected; 0 of a contact
                             // that was set touching and has not been looked at yet
     double force_per_speed; // N s/m: the force to be expected of a closing speed
@@ -117,7 +133,7 @@ typedef struct Kernel {
 } Kernel;
 
 // How one contact is at an instant, in its first two rows. The size of the eccentricity is less
-// than 0 of a disc and infinite of a line.
+// than 0 of a disc and infinite of a line, and of a slot between its ends.
 typedef struct KernelPose {
     PinHole pose;
     Vec2 force; // N, on the pin, friction included
@@ -127,7 +143,7 @@ typedef struct KernelPose {
 // A kernel of no contacts yet.
 Kernel kernel_start(double phase);
 
-// Adds a contact, of which the first six members are given, with its rows:
+// Adds a contact, of which the first seven members are given, with its rows:
 // KERNEL_ROWS_PLAIN, or more of one with friction, but for a line's.
 void kernel_add(Kernel *kernel, const KernelContact *contact, size_t rows);
 

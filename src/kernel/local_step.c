@@ -108,6 +108,11 @@ static double flight_time(const Kernel *kernel, size_t contact, const KernelPoin
         kernel_motion_speed(kernel, of->first_row, from->time_s, from->impulse, from->moment),
         kernel_motion_speed(kernel, of->first_row + 1, from->time_s, from->impulse, from->moment),
     };
+    if (of->shape == KERNEL_SLOT) {
+        const SlotFlight flight = {kernel_motion_position(kernel, contact, from), v, a,
+                                   of->half_length, vec2_length(e)};
+        return kernel_slot_return(&flight, left_s);
+    }
     const double sign = of->radial_clearance < 0.0 ? -1.0 : 1.0;
     const Cubic cubic = {{
         2.0 * sign * vec2_dot(e, v),
@@ -578,6 +583,42 @@ static bool shorten_to_turn(const Kernel *kernel, const KernelPoint *from, const
     return *width_s < whole_s;
 }
 
+// How far a pin in a slot is beyond the part of the wall that it is at, after a part of a step, m.
+static double beyond_part(Kernel *kernel, LocalStep *step, size_t contact, double width_s)
+{
+    depth_after(kernel, step, contact, width_s); // which leaves the point in the trial
+    return kernel_slot_beyond(kernel, contact, &kernel->work->trial);
+}
+
+// Shortens a step to where a pin that touches comes to the end of the part of its slot's wall that
+// it is at: the rates of its force jump there. Returns whether there is one.
+static bool shorten_to_part(Kernel *kernel, LocalStep *step, const KernelPoint *to, double *width_s)
+{
+    const double whole_s = *width_s;
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        if (kernel->contacts[i].part == KERNEL_PART_NEAREST) {
+            continue;
+        }
+        const double near = kernel_slot_rounding(&kernel->contacts[i]);
+        double low = 0.0;
+        double high = whole_s;
+        double first = kernel_slot_beyond(kernel, i, step->from);
+        double last = kernel_slot_beyond(kernel, i, to);
+        if (!(first < 0.0 && last > near)) {
+            continue;
+        }
+        for (int n = 0; n < ROOT_STEPS && last > near; n++) {
+            const double secant = low + (high - low) * first / (first - last);
+            const double width = n % 3 == 2 ? 0.5 * (low + high) : secant;
+            const double beyond = beyond_part(kernel, step, i, width);
+            *(beyond > 0.0 ? &high : &low) = width;
+            *(beyond > 0.0 ? &last : &first) = beyond;
+        }
+        *width_s = fmin(*width_s, high);
+    }
+    return *width_s < whole_s;
+}
+
 // Steps to where the first of the contacts found begins or ends: the length is right but for the
 // error of what was known between the ends of the step. Returns false where a step cannot be taken.
 static bool step_to_first_event(Kernel *kernel, LocalStep *step, double *width_s, KernelPoint *to)
@@ -612,6 +653,10 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
         shorten_to_turn(kernel, step->from, to, &width_s)) {
         is_solved = try_local_step(kernel, step, width_s, to);
     }
+    if (is_solved && step->method != LOCAL_STEP_FLIGHT &&
+        shorten_to_part(kernel, step, to, &width_s)) {
+        is_solved = try_local_step(kernel, step, width_s, to);
+    }
     *events = is_solved ? find_events(kernel, step, to, &width_s) : 0;
     if (*events != 0) {
         is_solved = step_to_first_event(kernel, step, &width_s, to);
@@ -623,5 +668,6 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
     for (size_t i = 0; i < kernel->contact_count; i++) {
         kernel->contacts[i].state.age_s += width_s;
     }
+    step->is_ended = !kernel_slots_follow(kernel, to) && step->is_ended;
     return true;
 }

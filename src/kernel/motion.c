@@ -163,6 +163,16 @@ double kernel_motion_speed(const Kernel *kernel, size_t row, double time_s, cons
     return row_motion(kernel, row, time_s, impulse, moment, &position);
 }
 
+Vec2 kernel_motion_position(const Kernel *kernel, size_t contact, const KernelPoint *point)
+{
+    const size_t row = kernel->contacts[contact].first_row;
+    double position[2];
+    for (size_t i = 0; i < 2; i++) {
+        row_motion(kernel, row + i, point->time_s, point->impulse, point->moment, &position[i]);
+    }
+    return (Vec2){position[0], position[1]};
+}
+
 // The acceleration of a row under the forces in a span of so many rows.
 static inline double row_acceleration_by(const Kernel *kernel, KernelSpan span, size_t rows,
                                          size_t row, double time_s, const double *impulse,
@@ -217,14 +227,39 @@ static PinHole disc_pose(Vec2 position, Vec2 speed, double clearance)
     return pose;
 }
 
+static PinHole slot_pose(const KernelContact *contact, Vec2 at, Vec2 rate)
+{
+    const double clearance = contact->radial_clearance;
+    const double half = contact->half_length;
+    switch (contact->part) {
+    case KERNEL_PART_WALLS:
+        return pin_walls_pose(at, rate, clearance);
+    case KERNEL_PART_LOW:
+        return pin_hole_pose((Vec2){0.0, -half}, at, rate, clearance);
+    case KERNEL_PART_HIGH:
+        return pin_hole_pose((Vec2){0.0, half}, at, rate, clearance);
+    case KERNEL_PART_NEAREST:
+        break;
+    }
+    return pin_slot_pose(at, rate, half, clearance);
+}
+
 // Of all shapes but the one that has to be fast.
 static PinHole other_pose(const KernelContact *contact, const double position[2],
                           const double speed[2])
 {
-    return contact->shape == KERNEL_LINE
-               ? line_pose(position[0], speed[0])
-               : disc_pose((Vec2){position[0], position[1]}, (Vec2){speed[0], speed[1]},
-                           contact->radial_clearance);
+    const Vec2 at = {position[0], position[1]};
+    const Vec2 rate = {speed[0], speed[1]};
+    switch (contact->shape) {
+    case KERNEL_LINE:
+        return line_pose(position[0], speed[0]);
+    case KERNEL_SLOT:
+        return slot_pose(contact, at, rate);
+    case KERNEL_HOLE:
+    case KERNEL_DISC:
+        break;
+    }
+    return disc_pose(at, rate, contact->radial_clearance);
 }
 
 PinHole kernel_motion_pose_of(const Kernel *kernel, size_t contact, const double position[2],

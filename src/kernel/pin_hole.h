@@ -1,9 +1,13 @@
-// Where is a pin in its hole, how deep in the wall, and how fast does it go deeper?
+// Where is a pin in its hole or slot, how deep in the wall, and how fast does it go deeper?
 //
 // Two circles, the pin inside the hole; exact, with no polygon between. Everything is measured at
 // the circles' centres: e = pin centre - hole centre, gap = clearance - |e|,
 // d' = e . (v_pin - v_hole) / |e|. The wall presses the pin along -e / |e|, inwards.
 // Inline: the innermost call of every solver, some 5 ns.
+//
+// A slot is a hole about the nearest point of a segment, its middle line: between the ends two
+// straight walls, at each end the arc of a hole. Across the change the gap and its rate go on, and
+// the curvature jumps.
 #pragma once
 
 #include "base/vec2.h"
@@ -50,6 +54,26 @@ static inline PinHole pin_hole_pose(Vec2 hole_centre, Vec2 pin_centre, Vec2 rela
         .normal = {-outward.x, -outward.y},
         .approach_speed = vec2_dot(outward, relative_velocity),
     };
+}
+
+// The pose of a pin between two straight walls, in axes across them and along them, from the
+// middle: the normal does not turn, and the size of the eccentricity is infinite. The clearance is
+// half the distance of the walls less the pin's radius, m.
+static inline PinHole pin_walls_pose(Vec2 pin, Vec2 velocity, double clearance)
+{
+    PinHole pose =
+        pin_hole_pose((Vec2){0.0, 0.0}, (Vec2){pin.x, 0.0}, (Vec2){velocity.x, 0.0}, clearance);
+    pose.eccentricity_size = INFINITY;
+    return pose;
+}
+
+// The pose of a pin in a slot, likewise from the slot's middle. Its middle line reaches half its
+// length to either side, m.
+static inline PinHole pin_slot_pose(Vec2 pin, Vec2 velocity, double half_length, double clearance)
+{
+    const Vec2 end = {0.0, copysign(half_length, pin.y)};
+    return fabs(pin.y) > half_length ? pin_hole_pose(end, pin, velocity, clearance)
+                                     : pin_walls_pose(pin, velocity, clearance);
 }
 
 // The point of the hole's wall nearest the pin, m: where the contact force acts. The hole centre

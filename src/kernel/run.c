@@ -517,10 +517,20 @@ static void expect_contact(Kernel *kernel, size_t number, Vec2 normal)
                              OVERDAMPED_FREQUENCIES * contact->frequency;
 }
 
-static void begin_contact(Kernel *kernel, size_t number, const PinHole *pose)
+static void begin_contact(Kernel *kernel, size_t number, KernelPoint *point)
 {
-    kernel->contacts[number].state = contact_state_begun(pose->approach_speed);
-    expect_contact(kernel, number, pose->normal);
+    const PinHole pose = *kernel_point_pose(kernel, point, number);
+    kernel->contacts[number].state = contact_state_begun(pose.approach_speed);
+    expect_contact(kernel, number, pose.normal);
+    if (kernel->contacts[number].shape == KERNEL_SLOT) {
+        kernel_slot_find_part(kernel, number, point);
+    }
+}
+
+static void end_contact(KernelContact *contact)
+{
+    contact->state.is_touching = false;
+    contact->part = KERNEL_PART_NEAREST;
 }
 
 // Contacts that were set touching before a first step.
@@ -536,29 +546,41 @@ static void resume_contacts(Kernel *kernel, const KernelPoint *point)
 
 // Contacts that a step of the world finds begun or over already: by rounding, as the positions of
 // the bodies and those of the step before differ in the last bits.
-static void settle_contacts(Kernel *kernel, const KernelPoint *point)
+static void settle_contacts(Kernel *kernel, KernelPoint *point)
 {
     for (size_t i = 0; i < kernel->contact_count; i++) {
         KernelContact *contact = &kernel->contacts[i];
         const PinHole *pose = kernel_point_pose(kernel, point, i);
         if (contact->state.is_touching) {
             contact->state.is_touching = pose->penetration > 0.0 || pose->approach_speed > 0.0;
+            if (contact->shape == KERNEL_SLOT && contact->state.is_touching) {
+                kernel_slot_find_part(kernel, i, point);
+            }
         } else if (pose->penetration > 0.0 && pose->approach_speed > 0.0) {
-            begin_contact(kernel, i, pose);
+            begin_contact(kernel, i, point);
         }
     }
 }
 
-static void change_contacts(Kernel *kernel, const KernelPoint *point)
+// After a run all poses are those of the nearest part again, whenever they are asked for.
+static bool leave_parts(Kernel *kernel, bool is_run)
+{
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        kernel->contacts[i].part = KERNEL_PART_NEAREST;
+    }
+    return is_run;
+}
+
+static void change_contacts(Kernel *kernel, KernelPoint *point)
 {
     for (size_t i = 0; i < kernel->contact_count; i++) {
         if (!kernel->work->has_event[i]) {
             continue;
         }
         if (kernel->contacts[i].state.is_touching) {
-            kernel->contacts[i].state.is_touching = false;
+            end_contact(&kernel->contacts[i]);
         } else {
-            begin_contact(kernel, i, kernel_point_pose(kernel, point, i));
+            begin_contact(kernel, i, point);
         }
     }
 }
@@ -609,7 +631,7 @@ bool kernel_run(Kernel *kernel, double duration)
     while (duration - from->time_s > rounding_s) {
         if (kernel->node_count > NODE_MAX || kernel->event_count > kernel->event_most ||
             (kernel->work_most > 0.0 && kernel->work_done > kernel->work_most)) {
-            return false;
+            return leave_parts(kernel, false);
         }
         size_t events;
         step.from = from;
@@ -644,5 +666,5 @@ bool kernel_run(Kernel *kernel, double duration)
         from = to;
         to = spare;
     }
-    return true;
+    return leave_parts(kernel, true);
 }

@@ -58,14 +58,11 @@ static int renumber(const int *own, int body)
     return body == LINKAGE_GROUND ? LINKAGE_GROUND : own[body];
 }
 
-// Gives a component's teeth the numbers that their carriers and pivots have there.
-static void renumber_gears(const int *own_body, const int *own_joint, Linkage *linkage)
+// Gives a component's teeth the numbers that their pivots have there.
+static void renumber_gears(const int *own_joint, Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->joint_count; i++) {
         Gear *gear = &linkage->joints[i].gear;
-        if (joint_has_carrier(linkage->joints[i].kind)) {
-            gear->carrier = renumber(own_body, gear->carrier);
-        }
         if (joint_has_teeth(linkage->joints[i].kind)) {
             gear->pivots[0] = own_joint[gear->pivots[0]];
             gear->pivots[1] = own_joint[gear->pivots[1]];
@@ -142,7 +139,7 @@ static void share_out(const Linkage *whole, const size_t *member_of, Component *
         linkage->loads[linkage->load_count++] = load;
     }
     for (size_t i = 0; i < count; i++) {
-        renumber_gears(own_body, own_joint, &components[i].scenario->linkage);
+        renumber_gears(own_joint, &components[i].scenario->linkage);
     }
     free(own_body);
     free(own_joint);

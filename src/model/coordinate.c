@@ -2,16 +2,13 @@
 //
 //     revolute     q = phi_b - phi_a        (the other sign where b is the ground)
 //     prismatic    q = t . d
-//     gears        q = -(r_a (phi_a - phi_c) + r_b (phi_b - phi_c))
+//     gears        model/mesh.h
 //     rack         q = t . d + r_b (phi_b - phi_a)
-// t the line's direction on body a, d from anchor a to anchor b; r pitch radii, r_a + r_b the
-// distance of the centres, c the carrier of both pivots. With u from centre a to centre b and t =
-// perp u the pitch circles touch at P = centre a + r_a u, and
-//     q' = t . (v_b(P) - v_a(P))
-// while the pivots hold: a force t on body b at P, and the other way on body a, is the push along
-// q. What bears the gears answers in the pivots. The pressure angle's part of the force, along u,
-// does no work and is left out. Of a rack P = centre b - r_b perp t, wherever its guide and the
-// pinion's pivot let the bodies be.
+// t the line's direction on body a, d from anchor a to anchor b; r_b the pitch radius. A push along
+// the coordinate of teeth is a force on body b, and the other way on body a, at P: of a rack along
+// t at centre b - r_b perp t, of gears along the line of action where it meets the line of the
+// centres. Both hold wherever guides and pivots let the bodies be; what bears the bodies answers
+// there.
 #include "model/coordinate.h"
 
 #include <math.h>
@@ -72,10 +69,9 @@ double coordinate_position(const Linkage *linkage, const Motion *motions, int jo
     switch (joint_coordinate(of->kind)) {
     case JOINT_COORDINATE_POSITION:
         return along_line(linkage, motions, joint);
-    case JOINT_COORDINATE_TEETH: {
-        const double carrier = angle_of(motions, of->gear.carrier);
-        return -(of->gear.radius_a * (a - carrier) + of->gear.radius_b * (b - carrier));
-    }
+    case JOINT_COORDINATE_TEETH:
+        return mesh_position(&of->gear, linkage_joint_gap(linkage, motions, joint).position, a, b,
+                             of->limits.middle);
     case JOINT_COORDINATE_RACK:
         return along_line(linkage, motions, joint) + of->gear.radius_b * (b - a);
     case JOINT_COORDINATE_NONE:
@@ -96,8 +92,8 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
     case JOINT_COORDINATE_RACK:
         return along_line_rate(linkage, motions, joint) + of->gear.radius_b * (b - a);
     case JOINT_COORDINATE_TEETH: {
-        const double carrier = omega_of(motions, of->gear.carrier);
-        return -(of->gear.radius_a * (a - carrier) + of->gear.radius_b * (b - carrier));
+        const JointGap gap = linkage_joint_gap(linkage, motions, joint);
+        return mesh_position_rate(&of->gear, gap.position, gap.velocity, a, b);
     }
     case JOINT_COORDINATE_NONE:
     case JOINT_COORDINATE_ANGLE:
@@ -106,13 +102,12 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
     return coordinate_sense(of) * (b - a);
 }
 
-Vec2 coordinate_along_teeth(const Linkage *linkage, const Motion *motions, int joint)
+MeshFlank coordinate_flank(const Linkage *linkage, const Motion *motions, int joint, double sign)
 {
-    if (joint_has_rack(linkage->joints[joint].kind)) {
-        return joint_rows_along(linkage, motions, joint);
-    }
-    const Vec2 between = linkage_joint_gap(linkage, motions, joint).position;
-    return vec2_perp(vec2_scale(1.0 / vec2_length(between), between));
+    const Joint *of = &linkage->joints[joint];
+    const Mesh mesh = mesh_of(linkage, of);
+    return mesh_flank(&mesh, sign, linkage_joint_gap(linkage, motions, joint).position,
+                      angle_of(motions, of->body_a), angle_of(motions, of->body_b));
 }
 
 // A force along a direction at a point of both bodies.
@@ -129,30 +124,31 @@ static void push_at(const Linkage *linkage, const Motion *motions, int joint, Ve
     }
 }
 
-void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, JointRow *row)
+void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, double sign,
+                    JointRow *row)
 {
     const Joint *of = &linkage->joints[joint];
+    const double turn = sign * coordinate_sense(of);
     switch (joint_coordinate(of->kind)) {
     case JOINT_COORDINATE_NONE:
     case JOINT_COORDINATE_ANGLE:
-        *row = (JointRow){.turn = {-coordinate_sense(of), coordinate_sense(of)}};
+        *row = (JointRow){.turn = {-turn, turn}};
         break;
     case JOINT_COORDINATE_POSITION:
-        push_at(linkage, motions, joint, joint_rows_along(linkage, motions, joint),
+        push_at(linkage, motions, joint,
+                vec2_scale(sign, joint_rows_along(linkage, motions, joint)),
                 linkage_point(motions, of->body_b, of->anchor_b), row);
         break;
     case JOINT_COORDINATE_TEETH: {
-        const Vec2 along = coordinate_along_teeth(linkage, motions, joint);
-        const Vec2 centre = linkage_point(motions, of->body_a, of->anchor_a);
-        // from centre a to centre b is the direction turned back
-        const Vec2 outward = vec2_scale(-of->gear.radius_a, vec2_perp(along));
-        push_at(linkage, motions, joint, along, vec2_add(centre, outward), row);
+        const MeshFlank flank = coordinate_flank(linkage, motions, joint, sign);
+        const Vec2 centre = linkage_point(motions, of->body_b, of->anchor_b);
+        push_at(linkage, motions, joint, flank.normal, vec2_add(centre, flank.from_b), row);
         break;
     }
     case JOINT_COORDINATE_RACK: {
-        const Vec2 along = coordinate_along_teeth(linkage, motions, joint);
+        const Vec2 along = vec2_scale(sign, joint_rows_along(linkage, motions, joint));
         const Vec2 centre = linkage_point(motions, of->body_b, of->anchor_b);
-        const Vec2 inward = vec2_scale(-of->gear.radius_b, vec2_perp(along));
+        const Vec2 inward = vec2_scale(-sign * of->gear.radius_b, vec2_perp(along));
         push_at(linkage, motions, joint, along, vec2_add(centre, inward), row);
         break;
     }

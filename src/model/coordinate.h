@@ -7,6 +7,7 @@
 #pragma once
 
 #include "model/joint_rows.h"
+#include "model/mesh.h"
 
 // The values between which the coordinate is free.
 double coordinate_low(const Joint *joint);
@@ -18,20 +19,20 @@ double coordinate_play(const Joint *joint);
 
 double coordinate_position(const Linkage *linkage, const Motion *motions, int joint);
 
-// Its rate, rad/s or m/s, in the bodies' velocities: that of gears holds while their pivots do.
-// That of a rack holds wherever the two bodies are.
+// Its rate, rad/s or m/s, in the bodies' velocities. That of teeth holds wherever the two bodies
+// are.
 double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint);
 
 // The sign with which the coordinate of a revolute joint follows the angle of body b less that of
 // body a: -1 where b is the ground.
 double coordinate_sense(const Joint *joint);
 
-// The direction in which the teeth of body b move against those of body a as the coordinate grows,
-// unit: of gears the line from the centre of gear a to that of gear b, turned by a quarter turn; of
-// a rack that of its pitch line.
-Vec2 coordinate_along_teeth(const Linkage *linkage, const Motion *motions, int joint);
+// The flank of a pair of gears with a sign, 1 at the low end of the coordinate and -1 at the high
+// one.
+MeshFlank coordinate_flank(const Linkage *linkage, const Motion *motions, int joint, double sign);
 
-// What the rate is made of. A push along the coordinate acts on the bodies with the same
-// coefficients: on a hinge torques, between gears forces at the point where their pitch circles
-// touch, along their common tangent, and of a rack where the pinion's pitch circle is nearest.
-void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, JointRow *row);
+// What the rate of the gap to an end is made of. A push there acts on the bodies with the same
+// coefficients: on a hinge torques, between gears forces on the line of action where it meets that
+// of the centres, and of a rack where the pinion's pitch circle is nearest.
+void coordinate_row(const Linkage *linkage, const Motion *motions, int joint, double sign,
+                    JointRow *row);

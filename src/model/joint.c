@@ -1,7 +1,7 @@
 // Has the words of the kinds of joints, and which kind another is without its play.
 #include "model/joint.h"
 
-#define JOINT_WORDS(with, id, holds, touches, coordinate, bodies, in_space, words) words,
+#define JOINT_WORDS(with, id, holds, touches, coordinate, in_space, words) words,
 
 JointKind joint_without_play(JointKind kind)
 {

@@ -26,7 +26,8 @@ typedef enum JointTouches {
     JOINT_TOUCHES_DISC,   // a disc on body b and a line or a disc of body a, from outside; nothing
                           // while apart
     JOINT_TOUCHES_TEETH,  // of two gears on pivots, or of a rack on its guide and a pinion on its
-                          // pivot, which are joints of their own: the ends of its coordinate
+                          // pivot, which are joints of their own and may have play: the ends of
+                          // its coordinate
 } JointTouches;
 
 // The coordinate of a joint, which limits, drives and loads are for (model/coordinate.h).
@@ -39,18 +40,17 @@ typedef enum JointCoordinate {
 } JointCoordinate;
 
 // The kinds: a row each, its enumerator; by what it holds its bodies, what touches, and its
-// coordinate; how many bodies it has, the third of which carries the other two; whether it is
-// available in space; and what a message calls it. What is made of the list gets `with` beside each
-// row.
+// coordinate; whether it is available in space; and what a message calls it. What is made of the
+// list gets `with` beside each row.
 // clang-format off
 #define JOINT_KIND_LIST(member, with) \
-    member(with, JOINT_REVOLUTE,  POINT,   NOTHING, ANGLE,    2, true,  "which has no play") \
-    member(with, JOINT_CLEARANCE, POINT,   HOLE,    NONE,     2, true,  "a pin in a hole") \
-    member(with, JOINT_PRISMATIC, LINE,    NOTHING, POSITION, 2, false, "a prismatic joint without play") \
-    member(with, JOINT_GUIDE,     LINE,    GUIDES,  NONE,     2, false, "a block between guides") \
-    member(with, JOINT_STOP,      NOTHING, DISC,    NONE,     2, false, "a stop") \
-    member(with, JOINT_GEAR,      NOTHING, TEETH,   TEETH,    3, false, "a pair of gears") \
-    member(with, JOINT_RACK,      NOTHING, TEETH,   RACK,     2, false, "a rack and pinion")
+    member(with, JOINT_REVOLUTE,  POINT,   NOTHING, ANGLE,    true,  "which has no play") \
+    member(with, JOINT_CLEARANCE, POINT,   HOLE,    NONE,     true,  "a pin in a hole") \
+    member(with, JOINT_PRISMATIC, LINE,    NOTHING, POSITION, false, "a prismatic joint without play") \
+    member(with, JOINT_GUIDE,     LINE,    GUIDES,  NONE,     false, "a block between guides") \
+    member(with, JOINT_STOP,      NOTHING, DISC,    NONE,     false, "a stop") \
+    member(with, JOINT_GEAR,      NOTHING, TEETH,   TEETH,    false, "a pair of gears") \
+    member(with, JOINT_RACK,      NOTHING, TEETH,   RACK,     false, "a rack and pinion")
 // clang-format on
 #define JOINT_KIND(with, id, ...) id,
 typedef enum JointKind { JOINT_KIND_LIST(JOINT_KIND, _) JOINT_KIND_COUNT } JointKind;
@@ -64,9 +64,7 @@ typedef enum JointKind { JOINT_KIND_LIST(JOINT_KIND, _) JOINT_KIND_COUNT } Joint
     JOINT_BIT(id, JOINT_TOUCHES_##touches == JOINT_TOUCHES_##with)
 #define JOINT_IF_COORDINATE(with, id, holds, touches, coordinate, ...) \
     JOINT_BIT(id, JOINT_COORDINATE_##coordinate == JOINT_COORDINATE_##with)
-#define JOINT_IF_BODIES(with, id, holds, touches, coordinate, bodies, ...) \
-    JOINT_BIT(id, (bodies) == (with))
-#define JOINT_IF_SPATIAL(with, id, holds, touches, coordinate, bodies, in_space, ...) \
+#define JOINT_IF_SPATIAL(with, id, holds, touches, coordinate, in_space, ...) \
     JOINT_BIT(id, (in_space) == (with))
 typedef enum JointKinds {
     JOINTS_ALL = (1 << JOINT_KIND_COUNT) - 1,
@@ -83,7 +81,7 @@ typedef enum JointKinds {
     JOINTS_WITH_ANGLE = 0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, ANGLE),
     JOINTS_WITH_POSITION = 0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, POSITION),
     JOINTS_WITH_RACK = 0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, RACK),
-    JOINTS_WITH_CARRIER = 0 JOINT_KIND_LIST(JOINT_IF_BODIES, 3),
+    JOINTS_WITH_MESH = 0 JOINT_KIND_LIST(JOINT_IF_COORDINATE, TEETH),
     JOINTS_IN_SPACE = 0 JOINT_KIND_LIST(JOINT_IF_SPATIAL, true),
 } JointKinds;
 // clang-format on
@@ -166,10 +164,10 @@ static inline bool joint_has_rack(JointKind kind)
     return joint_is_among(kind, JOINTS_WITH_RACK);
 }
 
-// Whether it has a third body, which carries the other two.
-static inline bool joint_has_carrier(JointKind kind)
+// Whether the teeth of two gears touch (model/mesh.h).
+static inline bool joint_has_mesh(JointKind kind)
 {
-    return joint_is_among(kind, JOINTS_WITH_CARRIER);
+    return joint_is_among(kind, JOINTS_WITH_MESH);
 }
 
 // Whether it is available in space.

@@ -124,7 +124,7 @@ static double size_beyond(const Joint *joint, int side)
     case JOINT_TOUCHES_GUIDES:
         return side == 1 ? 0.5 * hypot(joint->guide.height, joint->guide.length) : 0.0;
     case JOINT_TOUCHES_DISC:
-        return side == 0 ? joint->stop.radius_a : joint->stop.radius_b;
+        return side == 0 ? joint->stop.radius_a + 0.5 * joint->stop.slot : joint->stop.radius_b;
     case JOINT_TOUCHES_NOTHING:
     case JOINT_TOUCHES_HOLE:
     case JOINT_TOUCHES_TEETH:

@@ -91,8 +91,10 @@ typedef struct Guide {
 // cam the profile's angles count from there.
 typedef struct Stop {
     bool is_disc;    // whether body a carries a disc about its anchor; else a line through it
-    double radius_a; // m, of that disc; of a cam how far it reaches
+    double radius_a; // m, of that disc; of a cam how far it reaches; of a slot half its width
     double radius_b; // m, of the disc about the anchor of body b; 0: a point
+    double slot;     // m, of a slot of body a about its anchor, at right angles to the normal:
+                     // between the centres of the arcs at its ends; 0: none
     size_t cam;      // of a cam that body a carries about its anchor: which of the linkage's
                      // profiles, counted from 1; 0: none
     double hump;     // m, of a cam: the least radius of curvature where it is convex
@@ -117,8 +119,9 @@ typedef struct Limits {
     double high;     // rad or m; INFINITY: none
 } Limits;
 
-// A pair of gears. Their pitch circles touch on the line of their centres; the radius of an
-// internal gear is negative, and both together are the distance of the centres.
+// A pair of gears. Their pitch circles touch on the line of their centres while these are as far
+// from each other as the case places them; of an internal gear and its pinion one radius is
+// negative, and both together are that distance.
 //
 // Of a rack body a is the rack and body b the pinion. The pitch line goes through the anchor on the
 // rack, along Joint.direction; the pinion's radius is the distance of its centre from the line,
@@ -126,11 +129,17 @@ typedef struct Limits {
 typedef struct Gear {
     int pivots[2];          // numbers of the joints about which body a (a rack: on which it slides)
                             // and body b turn
-    int carrier;            // of gears the body that has both pivots, or LINKAGE_GROUND
     double teeth[2];        // of gears, or in their ratio; of an internal gear negative
     double radius_a;        // m, of the pitch circles; set where bodies are placed; of a rack
                             // infinite
     double radius_b;        // m
+    double pressure_angle;  // rad, of gears, where the pitch circles touch; 0: they push along
+                            // the pitch circles' tangent
+    size_t error;           // of gears: which of the linkage's profiles is the transmission error,
+                            // counted from 1; 0: none
+    size_t relief;          // and which the relief of both flanks
+    size_t repeats;         // how often they come in a turn of the first gear; 0: once
+    double zero;            // rad: what their angle counts from
     bool is_backlash_angle; // until then: whether Limits.backlash is an angle of body b, rad
     bool is_start_angle;    // likewise Limits.start
 } Gear;
@@ -259,7 +268,7 @@ typedef struct Linkage {
     size_t further_count;
     Driver *further; // drives beside it, at other joints
     size_t profile_count;
-    Profile *profiles; // of cams
+    Profile *profiles; // of cams and gears
     Torque torque;     // instead of a driver
 } Linkage;
 
@@ -283,10 +292,22 @@ Linkage linkage_copy(const Linkage *linkage);
 // Frees the arrays; the linkage is then empty.
 void linkage_free(Linkage *linkage);
 
+// Whether something of a pair of gears changes with how they are turned.
+static inline bool linkage_has_teeth_tables(const Joint *joint)
+{
+    return joint->gear.error > 0 || joint->gear.relief > 0;
+}
+
 // The profile of a cam; NULL of other joints.
 static inline const Profile *linkage_profile(const Linkage *linkage, const Joint *joint)
 {
     return joint->stop.cam > 0 ? &linkage->profiles[joint->stop.cam - 1] : NULL;
+}
+
+// Whether body a has a slot, in which a pin of body b plays.
+static inline bool linkage_has_slot(const Joint *joint)
+{
+    return joint_has_disc(joint->kind) && joint->stop.slot > 0.0;
 }
 
 // One side of a joint: 0 that of body a, 1 that of body b.

@@ -77,11 +77,25 @@ static bool check_cam(const Linkage *linkage, const Joint *joint, Err *err)
                joint->name, stop->radius_b, hollow);
 }
 
+static bool check_slot(const Joint *joint, Err *err)
+{
+    const Stop *stop = &joint->stop;
+    return (isfinite(stop->slot) && stop->radius_b >= 0.0 && stop->radius_a > stop->radius_b &&
+            isfinite(stop->radius_a)) ||
+           err_set(err, ERR_CASE,
+                   "joint '%s': pin radius %.9g m in a slot of width %.9g m, allowed: a pin that "
+                   "is narrower than its slot",
+                   joint->name, stop->radius_b, 2.0 * stop->radius_a);
+}
+
 static bool check_stop(const Linkage *linkage, const Joint *joint, Err *err)
 {
     const Stop *stop = &joint->stop;
     if (stop->cam > 0) {
         return check_cam(linkage, joint, err);
+    }
+    if (stop->slot > 0.0) {
+        return check_slot(joint, err);
     }
     const double size = stop->radius_b + (stop->is_disc ? stop->radius_a : 0.0);
     return (stop->radius_a >= 0.0 && stop->radius_b >= 0.0 && isfinite(size) &&
@@ -157,9 +171,19 @@ static bool check_gear(const Linkage *linkage, const Joint *joint, Err *err)
     }
     for (int i = 0; i < 2; i++) {
         const Joint *pivot = guide_of_teeth(linkage, joint, i);
-        if (pivot == NULL || !joint_has_angle(pivot->kind)) {
-            return err_set(err, ERR_CASE, "joint '%s': its gears need ideal pivots", joint->name);
+        if (pivot == NULL || !joint_pivots(pivot->kind)) {
+            return err_set(err, ERR_CASE, "joint '%s': its gears need pivots", joint->name);
         }
+        if (!joint_is_ideal(pivot->kind) && gear->pressure_angle == 0.0) {
+            return err_set(err, ERR_CASE,
+                           "joint '%s': gears whose pivots have play need a pressure angle",
+                           joint->name);
+        }
+    }
+    if (!(gear->pressure_angle >= 0.0 && gear->pressure_angle < 0.5 * M_PI)) {
+        return err_set(err, ERR_CASE,
+                       "joint '%s': pressure angle %.9g rad, allowed: 0 to below 1.57", joint->name,
+                       gear->pressure_angle);
     }
     const double distance = gear->radius_a + gear->radius_b;
     return (distance > 0.0 && isfinite(distance)) ||

@@ -15,7 +15,10 @@
 
 #include <math.h>
 
-static const double TURN = 2.0 * M_PI;
+static double period_of(const Profile *profile)
+{
+    return profile->period > 0.0 ? profile->period : 2.0 * M_PI;
+}
 
 static bool check_points(const Profile *profile, Err *err)
 {
@@ -24,15 +27,15 @@ static bool check_points(const Profile *profile, Err *err)
                        PROFILE_MIN, PROFILE_MAX);
     }
     for (size_t i = 0; i < profile->count; i++) {
-        const double last =
-            i == 0 ? profile->angles[profile->count - 1] - TURN : profile->angles[i - 1];
+        const double last = i == 0 ? profile->angles[profile->count - 1] - period_of(profile)
+                                   : profile->angles[i - 1];
         if (!(profile->angles[i] > last)) {
             return err_set(err, ERR_CASE,
                            "point %zu of a profile is not behind the one before, or more than a "
-                           "turn behind the first",
+                           "period behind the first",
                            i + 1);
         }
-        if (!(profile->radii[i] > 0.0 && isfinite(profile->radii[i]))) {
+        if (!(profile->is_signed || profile->radii[i] > 0.0) || !isfinite(profile->radii[i])) {
             return err_set(err, ERR_CASE, "point %zu of a profile is not away from the centre",
                            i + 1);
         }
@@ -78,7 +81,7 @@ static void add_end(const Profile *profile, size_t piece, bool is_far, double si
 static void find_curvatures(Profile *profile)
 {
     enum { LOOKS = 8 };
-    profile->reach = 0.0;
+    profile->reach = -INFINITY;
     profile->least = INFINITY;
     profile->least_hump = profile->least_hollow = INFINITY;
     for (size_t i = 0; i < profile->count; i++) {
@@ -86,9 +89,12 @@ static void find_curvatures(Profile *profile)
         for (int k = 0; k < LOOKS; k++) {
             const double angle = profile->angles[i] + h * k / LOOKS;
             const ProfileAt at = profile_at(profile, angle);
-            const double curvature = profile_curvature(&at);
             profile->reach = fmax(profile->reach, at.r);
             profile->least = fmin(profile->least, at.r);
+            if (profile->is_signed) {
+                continue;
+            }
+            const double curvature = profile_curvature(&at);
             if (curvature > 0.0) {
                 profile->least_hump = fmin(profile->least_hump, 1.0 / curvature);
             } else if (-1.0 / curvature < profile->least_hollow) {
@@ -105,7 +111,7 @@ bool profile_settle(Profile *profile, Err *err)
         return false;
     }
     const size_t count = profile->count;
-    profile->angles[count] = profile->angles[0] + TURN;
+    profile->angles[count] = profile->angles[0] + period_of(profile);
     profile->radii[count] = profile->radii[0];
     Banded band = {.count = 0};
     double right[2 * PROFILE_MAX] = {0.0};
@@ -128,11 +134,11 @@ bool profile_settle(Profile *profile, Err *err)
     return is_found || err_set(err, ERR_CASE, "there is no smooth curve through a profile");
 }
 
-// The piece of an angle that lies within the profile's turn.
+// The piece of an angle that lies within the profile's period.
 static size_t piece_of(const Profile *profile, double angle)
 {
     // points mostly are evenly spaced
-    const double share = (angle - profile->angles[0]) / TURN;
+    const double share = (angle - profile->angles[0]) / period_of(profile);
     size_t piece =
         (size_t)fmin(fmax(share * (double)profile->count, 0.0), (double)(profile->count - 1));
     while (piece > 0 && angle < profile->angles[piece]) {
@@ -146,8 +152,9 @@ static size_t piece_of(const Profile *profile, double angle)
 
 ProfileAt profile_at(const Profile *profile, double angle)
 {
-    const double turns = floor((angle - profile->angles[0]) / TURN);
-    const double within = angle - turns * TURN;
+    const double period = period_of(profile);
+    const double turns = floor((angle - profile->angles[0]) / period);
+    const double within = angle - turns * period;
     const size_t i = piece_of(profile, within);
     const double h = profile->angles[i + 1] - profile->angles[i];
     const double s = (within - profile->angles[i]) / h;
@@ -204,7 +211,7 @@ ProfileNearest profile_nearest(const Profile *profile, Vec2 point)
     const double below = atan2(point.y, point.x);
     const double away = fabs(rho - profile_at(profile, below).r);
     const double window = away < rho ? asin(away / rho) : M_PI;
-    const double pitch = TURN / (double)profile->count;
+    const double pitch = period_of(profile) / (double)profile->count;
     const int looks = (int)fmin(ceil(window / pitch), 0.5 * (double)profile->count);
     double angle = below;
     double least = INFINITY;

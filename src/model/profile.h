@@ -1,4 +1,5 @@
-// The profile of a cam: a closed curve about a centre, by its distance from there over the angle.
+// The profile of a cam: a closed curve about a centre, by its distance from there over the angle;
+// or the transmission error of gears over theirs.
 //
 // Between the given points a periodic spline of degree 5, whose first four derivatives are
 // continuous: what rides on it meets no jump of a force, nor of its rates. Of a smooth curve by N
@@ -8,20 +9,24 @@
 #include "base/err.h"
 #include "base/vec2.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum { PROFILE_MIN = 6, PROFILE_MAX = 400 }; // points: by degrees, and some
 
 typedef struct Profile {
     size_t count;
-    double
-        angles[PROFILE_MAX + 1]; // rad, increasing; the one behind the last a turn after the first
-    double radii[PROFILE_MAX + 1]; // m, above 0
+    double period;  // rad, after which it comes again; 0: a turn
+    bool is_signed; // whether it may have any sign: a transmission error, which has no centre
+    double angles[PROFILE_MAX +
+                  1]; // rad, increasing; the one behind the last a period after the first
+    double radii[PROFILE_MAX + 1]; // m; of a cam above 0
     // by profile_settle: the derivatives there, m/rad and m/rad^2
     double slopes[PROFILE_MAX + 1];
     double bends[PROFILE_MAX + 1];
-    double reach;        // m, the largest radius
-    double least;        // m, the smallest
+    double reach; // m, the largest radius
+    double least; // m, the smallest
+    // of a cam
     double least_hump;   // m, the smallest radius of curvature where it is convex
     double least_hollow; // m, where it is concave; infinite of a convex profile
     double hollow_at;    // rad, where that is

@@ -114,15 +114,15 @@ static void place_coordinate(Response *response, size_t row, const ResponsePlace
 {
     const Joint *joint = &response->linkage->joints[place->joint];
     JointRow along;
-    coordinate_row(response->linkage, motions, place->joint, &along);
+    coordinate_row(response->linkage, motions, place->joint, place->sign, &along);
     response->rows[row + 1] = (ResponseRow){.body = {LINKAGE_GROUND, LINKAGE_GROUND}};
     for (int side = 0; side < 2; side++) {
         const int body = linkage_end(joint, side).body;
         ResponseRow *of = &response->rows[row];
         of->body[side] = is_fixed(response->linkage, body) ? LINKAGE_GROUND : body;
-        of->x[side] = place->sign * along.x[side];
-        of->y[side] = place->sign * along.y[side];
-        of->turn[side] = place->sign * along.turn[side];
+        of->x[side] = along.x[side];
+        of->y[side] = along.y[side];
+        of->turn[side] = along.turn[side];
     }
 }
 
@@ -283,9 +283,8 @@ static void cam_free(const Linkage *linkage, const ResponsePlace *place, const M
         cam_turning(&place->cam, &pose, omegas[0], omegas[1], sliding) * rate;
 }
 
-// The rate of the rate of a coordinate's row, from the relative acceleration of the anchors:
-// between gears the pivots' distance is fixed, and its direction turns with what the teeth push
-// along. Of a rack it is that of a line across, and of the turns.
+// The rate of the rate of a coordinate's row, from the relative acceleration of the anchors. Of a
+// rack it is that of a line across, and of the turns.
 static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
                             const Motion *motions, const BodyLoad *loads, Vec2 relative,
                             double *gamma)
@@ -296,9 +295,11 @@ static void coordinate_free(const Linkage *linkage, const ResponsePlace *place,
     gamma[1] = 0.0;
     switch (joint_coordinate(joint->kind)) {
     case JOINT_COORDINATE_TEETH: {
-        const Vec2 along = coordinate_along_teeth(linkage, motions, place->joint);
-        gamma[0] = place->sign * (vec2_dot(along, relative) - joint->gear.radius_a * a -
-                                  joint->gear.radius_b * b);
+        const MeshFlank flank = coordinate_flank(linkage, motions, place->joint, place->sign);
+        const Vec2 velocity = linkage_joint_gap(linkage, motions, place->joint).velocity;
+        gamma[0] = mesh_rate(&flank, relative, a, b) + mesh_bend(&flank, velocity,
+                                                                 omega_of(joint->body_a, motions),
+                                                                 omega_of(joint->body_b, motions));
         break;
     }
     case JOINT_COORDINATE_RACK:

@@ -67,6 +67,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake_vector(&joint->guide.start, seed);
         shake(&joint->stop.radius_a, seed);
         shake(&joint->stop.radius_b, seed);
+        if (joint->stop.slot > 0.0) {
+            shake(&joint->stop.slot, seed);
+        }
     }
     if (joint->contact.stiffness > 0.0 && (has_own || linkage_is_torsional(joint))) {
         shake(&joint->contact.stiffness, seed);
@@ -86,6 +89,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
 static void shake_limits(Joint *joint, uint64_t *seed)
 {
     Limits *limits = &joint->limits;
+    if (joint->gear.pressure_angle > 0.0) {
+        shake(&joint->gear.pressure_angle, seed);
+    }
     if (limits->kind == LIMIT_BACKLASH) {
         shake(&limits->backlash, seed);
         shake(&limits->middle, seed);

@@ -83,6 +83,9 @@ static void walk_joint(Walk *walk, Joint *joint)
     walk_number(walk, &joint->clearance.start.y);
     walk_number(walk, &joint->guide.start.x);
     walk_number(walk, &joint->guide.start.y);
+    if (linkage_has_teeth_tables(joint)) {
+        walk_number(walk, &joint->gear.zero);
+    }
     walk_limit(walk, &joint->limits.middle);
     walk_limit(walk, &joint->limits.low);
     walk_limit(walk, &joint->limits.high);

@@ -82,6 +82,9 @@ static void turn_back_joint(const Linkage *linkage, int number, const double *ba
     const double a = joint->body_a == LINKAGE_GROUND ? 0.0 : back_rad[joint->body_a];
     const double b = joint->body_b == LINKAGE_GROUND ? 0.0 : back_rad[joint->body_b];
     joint->held_angle -= b - a;
+    if (linkage_has_teeth_tables(joint)) {
+        joint->gear.zero -= (a - b) * joint->gear.radius_b / mesh_distance(&joint->gear);
+    }
     if (joint->limits.kind == LIMIT_NONE || joint_has_position(joint->kind)) {
         return;
     }

@@ -62,9 +62,6 @@ static void link_bodies(CouplingMaker *maker, const Linkage *linkage, const size
         const Joint *joint = &linkage->joints[i];
         add_part(part_of_body, joint->body_a, &joints[i]);
         add_part(part_of_body, joint->body_b, &joints[i]);
-        if (joint_has_carrier(joint->kind)) {
-            add_part(part_of_body, joint->gear.carrier, &joints[i]);
-        }
         link_all(maker, &joints[i]);
     }
     for (size_t i = 0; i < linkage->spring_count; i++) {

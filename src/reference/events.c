@@ -6,6 +6,8 @@
 //     slack:     d, -release
 // A pressing contact that has moved out and comes back (kernel/contact_state.h) also has the margin
 // -d': where that is used up its impact is over.
+// A contact that touches in a slot has as well how far the end of the wall is that it meets: where
+// that is used up it goes on at the next one.
 // A margin that is negative at one of a few points of a step has crossed zero before it. The
 // crossing is found on the step's polynomial; then the step is taken again up to there, and its end
 // moved by Newton's method until the penetration is zero to rounding: no step ever passes the
@@ -23,7 +25,7 @@
 #include <float.h>
 #include <math.h>
 
-enum { HALVINGS = 24, LANDING_ITERATIONS = 4, MARGIN_REST = 2, MARGINS = 3 };
+enum { HALVINGS = 24, LANDING_ITERATIONS = 4, MARGIN_REST = 2, MARGIN_WALL = 3, MARGINS = 4 };
 
 // m: a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
 static const double LANDING_DEPTH_M = 1e-19;
@@ -31,6 +33,11 @@ static const double LANDING_DEPTH_M = 1e-19;
 // of a step: an end that is moved by less moves with its rates, whose square this leaves below
 // rounding; a longer way is a step of its own
 static const double END_SHIFT_SHARE = 1e-6;
+
+// of a slot's play: a pin may be so far beyond the end of the wall that it meets. What that is off
+// by is the square of it in the gap, below rounding, and as much in the direction of the force; it
+// keeps a pin that rests there, or a slot that is shorter, from changing its wall for ever
+static const double WALL_SHARE = 1e-9;
 
 // roundings of a position or a speed that the sum of a handful of terms leaves uncertain
 static const double EVENTS_ROUNDING = 4.0 * DBL_EPSILON;
@@ -63,6 +70,9 @@ static double rounding_of(const System *system, const SystemState *state, size_t
     double speed = 0.0;
     system->kind->sizes(system, state, number, &length, &speed);
     const double depth = EVENTS_ROUNDING * length;
+    if (which == MARGIN_WALL) {
+        return fmax(depth, WALL_SHARE * contact->clearance);
+    }
     if (mode == CONTACT_APART || which == 0) {
         return depth;
     }
@@ -87,6 +97,9 @@ static double margin_at(double time, void *context)
 {
     const Margin *margin = context;
     const System *system = margin->system;
+    if (margin->which == MARGIN_WALL) {
+        return system_wall(system, margin->integrator, margin->contact, time).within;
+    }
     const Press press = press_at(margin, time);
     return margin_of(&press, system->contacts[margin->contact].mode, margin->which);
 }
@@ -100,18 +113,23 @@ static ContactMode mode_after(ContactMode mode, int which)
     if (which == 0) {
         return CONTACT_APART;
     }
-    return mode == CONTACT_PRESSING && which != MARGIN_REST ? CONTACT_SLACK : CONTACT_PRESSING;
+    if (which == MARGIN_REST || which == MARGIN_WALL) {
+        return mode;
+    }
+    return mode == CONTACT_PRESSING ? CONTACT_SLACK : CONTACT_PRESSING;
 }
 
-// How many margins a contact has in its mode.
-static int margin_count(const Contact *contact)
+// Whether a contact has a margin in its mode.
+static bool has_margin(const Contact *contact, int which)
 {
     if (contact->mode == CONTACT_APART) {
-        return 1;
+        return which == 0;
     }
-    const bool may_rest = contact->mode == CONTACT_PRESSING && contact->law.resting_speed > 0.0 &&
-                          contact->is_released && !contact->is_resting;
-    return may_rest ? MARGINS : MARGIN_REST;
+    if (which == MARGIN_REST) {
+        return contact->mode == CONTACT_PRESSING && contact->law.resting_speed > 0.0 &&
+               contact->is_released && !contact->is_resting;
+    }
+    return which != MARGIN_WALL || contact->has_walls;
 }
 
 // Where the margin first turns negative between two times, the first of which may be the event
@@ -160,23 +178,35 @@ bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *poin
                                   points->states[points->count - 1], rates);
 }
 
-// Takes note of an event of a contact, if it is the first of this contact.
-static void note_event(const Margin *margin, double time, Event *event)
+// Takes note of an event of a contact, if it is the first of this contact, from a time at which its
+// margin is used up.
+static void note_event(const Margin *margin, double time, double beyond, Event *event)
 {
     if (time < event->time) {
-        const ContactMode mode = margin->system->contacts[margin->contact].mode;
+        const System *system = margin->system;
+        const ContactMode mode = system->contacts[margin->contact].mode;
         *event = (Event){
             .time = time,
             .contact = margin->contact,
             .mode = mode_after(mode, margin->which),
             .is_rest = margin->which == MARGIN_REST,
         };
+        if (margin->which == MARGIN_WALL) {
+            // as it is beyond the end: a short one may lie wholly behind
+            event->wall = system_wall(system, margin->integrator, margin->contact, beyond).next;
+        }
     }
 }
 
 static double approach_at(double time, void *context)
 {
     return press_at(context, time).closing;
+}
+
+static double leaving_at(double time, void *context)
+{
+    const Margin *margin = context;
+    return system_wall(margin->system, margin->integrator, margin->contact, time).leaving;
 }
 
 // Whether a margin is below zero by more than rounding, as that is in a state.
@@ -197,6 +227,23 @@ static bool has_been_there(Margin *margin, double first, double last, const Syst
            is_used_up(margin, state, margin_at(*top, margin));
 }
 
+// Whether a contact that touches has gone beyond the end of its wall between two times, at the
+// second or, where it comes back, before it.
+static bool has_left_wall(Margin *margin, double first, double last, const SystemState *state,
+                          double *when)
+{
+    const System *system = margin->system;
+    const bool is_end = last == margin->integrator->time + margin->integrator->tried;
+    const WallPlace place =
+        is_end ? system->kind->wall(system, margin->contact, last, margin->integrator->next)
+               : system_wall(system, margin->integrator, margin->contact, last);
+    *when = last;
+    return is_used_up(margin, state, place.within) ||
+           (place.leaving < 0.0 && leaving_at(first, margin) > 0.0 &&
+            root_find(leaving_at, margin, first, last, 0.0, when) &&
+            is_used_up(margin, state, margin_at(*when, margin)));
+}
+
 static void events_evaluate_at(Margin *margin, const EventPoints *points, Event *event)
 {
     const System *system = margin->system;
@@ -208,12 +255,20 @@ static void events_evaluate_at(Margin *margin, const EventPoints *points, Event 
         const SystemState *state = points->states[i];
         const Press *press = &state->contacts[margin->contact];
         double top = time;
+        if (margin->which == MARGIN_WALL) {
+            if (has_left_wall(margin, before, time, state, &top)) {
+                note_event(margin, crossing(margin, before, top), top, event);
+                return;
+            }
+            before = time;
+            continue;
+        }
         if (is_free && has_been_there(margin, before, time, state, &top)) {
-            note_event(margin, crossing(margin, before, top), event);
+            note_event(margin, crossing(margin, before, top), top, event);
             return;
         }
         if (is_used_up(margin, state, margin_of(press, mode, margin->which))) {
-            note_event(margin, crossing(margin, before, time), event);
+            note_event(margin, crossing(margin, before, time), time, event);
             return;
         }
         before = time;
@@ -225,11 +280,12 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
 {
     found->count = 0;
     for (size_t i = 0; i < system->contact_count; i++) {
-        const int margins = margin_count(&system->contacts[i]);
         Event event = {.time = INFINITY};
-        for (int which = 0; which < margins; which++) {
+        for (int which = 0; which < MARGINS; which++) {
             Margin margin = {system, integrator, i, which};
-            events_evaluate_at(&margin, points, &event);
+            if (has_margin(&system->contacts[i], which)) {
+                events_evaluate_at(&margin, points, &event);
+            }
         }
         if (event.time < INFINITY) {
             found->events[found->count++] = event;
@@ -268,27 +324,46 @@ static void events_move_end(Dop853 *integrator, double by)
     }
 }
 
+// How far the end of the tried step is from an event, m, and how fast that grows: from the wall, or
+// in a slot from where the wall ends.
+typedef struct Landing {
+    double off;
+    double rate;
+} Landing;
+
+static Landing landing_at_end(const System *system, const Dop853 *integrator, const Event *event)
+{
+    if (event->wall != WALL_NEAREST) {
+        const WallPlace place = system->kind->wall(
+            system, event->contact, integrator->time + integrator->tried, integrator->next);
+        return (Landing){-place.within, place.leaving};
+    }
+    const Press press = press_at_end(system, integrator, event->contact);
+    return (Landing){press.depth, press.closing};
+}
+
 void events_land(const System *system, Dop853 *integrator, Event *event)
 {
+    const bool is_landed = is_at_wall(system, event) || event->wall != WALL_NEAREST;
     // the event lies in the step that showed it
     const double longest = integrator->tried;
     dop853_try(integrator, fmax(0.0, event->time - integrator->time));
-    Press press = press_at_end(system, integrator, event->contact);
-    for (int i = 0; i < LANDING_ITERATIONS && is_at_wall(system, event); i++) {
-        const double by = -press.depth / press.closing;
+    Landing landing = landing_at_end(system, integrator, event);
+    for (int i = 0; i < LANDING_ITERATIONS && is_landed; i++) {
+        const double by = -landing.off / landing.rate;
         const double moved = integrator->tried + by;
         // an event that the step began with lies at its start and moves nowhere
-        if (fabs(press.depth) <= LANDING_DEPTH_M || integrator->tried == 0.0 ||
+        if (fabs(landing.off) <= LANDING_DEPTH_M || integrator->tried == 0.0 ||
             !(moved >= 0.0 && moved <= longest)) {
             break;
         }
         events_move_end(integrator, by);
-        const Press now = press_at_end(system, integrator, event->contact);
-        if (!(fabs(now.depth) < fabs(press.depth))) {
+        const Landing now = landing_at_end(system, integrator, event);
+        if (!(fabs(now.off) < fabs(landing.off))) {
             events_move_end(integrator, -by);
             break;
         }
-        press = now;
+        landing = now;
     }
     event->time = integrator->time + integrator->tried;
 }
@@ -323,6 +398,15 @@ void events_apply(System *system, const EventList *events, double time_s, const 
         if (contact->mode == CONTACT_APART) {
             contact_begin(contact, system->kind->time(system, time_s),
                           system->kind->press(system, event->contact, time_s, y).closing);
+            if (contact->has_walls) {
+                contact->wall = system->kind->wall(system, event->contact, time_s, y).wall;
+            }
+        }
+        if (event->wall != WALL_NEAREST) {
+            contact->wall = event->wall;
+        }
+        if (event->mode == CONTACT_APART) {
+            contact->wall = WALL_NEAREST;
         }
         if (event->is_rest) {
             contact_rest(contact);

@@ -15,10 +15,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { COUPLING_JOINT_PARTS = 3 };
+enum { COUPLING_JOINT_PARTS = 2 };
 
-// The parts that a joint's bodies belong to, each once: those of body a, of body b and of the
-// carrier of gears; the ground and the driven body have none.
+// The parts that a joint's bodies belong to, each once: those of body a and of body b; the ground
+// and the driven body have none.
 typedef struct CouplingJoint {
     size_t count;
     size_t parts[COUPLING_JOINT_PARTS];

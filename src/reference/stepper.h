@@ -5,13 +5,15 @@
 #include "reference/integrators.h"
 #include "reference/system.h"
 
-// Events: a contact begins, ends, goes slack or has outlasted its impact (reference/events.c).
+// Events: a contact begins, ends, goes slack, has outlasted its impact, or comes to another wall of
+// its slot (reference/events.c).
 
 typedef struct Event {
     double time; // s
     size_t contact;
     ContactMode mode; // the mode that begins
     bool is_rest;     // it stays in its mode, and its impact is over
+    ContactWall wall; // of a slot that it comes to, in its mode; WALL_NEAREST: it is no such event
 } Event;
 
 // Events of a step, at most one a contact.

@@ -50,16 +50,37 @@ void system_free_needs(System *system)
     free(system->needs);
 }
 
-Press system_press(const System *system, Dop853 *integrator, size_t contact, double time)
+// The integrator's vector at a time in the tried step, as far as a contact depends on it.
+static const double *needed_at(const System *system, Dop853 *integrator, size_t contact,
+                               double time)
 {
     const size_t first = system->need_firsts[contact];
     const size_t count = system->need_firsts[contact + 1] - first;
-    const double *y = integrator->y;
-    if (time != integrator->time) {
-        y = count > 0 ? dop853_dense_some(integrator, time, system->needs + first, count)
-                      : dop853_dense(integrator, time);
+    if (time == integrator->time) {
+        return integrator->y;
     }
-    return system->kind->press(system, contact, time, y);
+    return count > 0 ? dop853_dense_some(integrator, time, system->needs + first, count)
+                     : dop853_dense(integrator, time);
+}
+
+Press system_press(const System *system, Dop853 *integrator, size_t contact, double time)
+{
+    return system->kind->press(system, contact, time, needed_at(system, integrator, contact, time));
+}
+
+WallPlace system_wall(const System *system, Dop853 *integrator, size_t contact, double time)
+{
+    return system->kind->wall(system, contact, time, needed_at(system, integrator, contact, time));
+}
+
+void system_find_walls(System *system, const double *y)
+{
+    for (size_t i = 0; i < system->contact_count; i++) {
+        Contact *contact = &system->contacts[i];
+        if (contact->has_walls && contact->mode != CONTACT_APART) {
+            contact->wall = system->kind->wall(system, i, 0.0, y).wall;
+        }
+    }
 }
 
 void system_take_contacts(System *system)
@@ -102,6 +123,7 @@ void system_carry(System *system, Carry *carry)
     for (size_t i = 0; i < system->contact_count; i++) {
         Contact *contact = &system->contacts[i];
         CARRY(carry, contact->mode);
+        CARRY(carry, contact->wall);
         CARRY(carry, contact->onset_s);
         CARRY(carry, contact->impact_speed);
         CARRY(carry, contact->damping_rate);

@@ -27,19 +27,39 @@ typedef enum ContactMode {
     CONTACT_SLACK,    // it overlaps the wall, but leaves it faster than the spring follows
 } ContactMode;
 
+// Which wall of a slot a contact meets. While it touches that stays as it is until an event, so
+// that its force is smooth: the curvature of the gap jumps where one goes over into another.
+typedef enum ContactWall {
+    WALL_NEAREST, // whichever is there: of a contact that is apart, and of all but slots
+    WALL_BEHIND,  // the straight one that presses along the direction across the slot
+    WALL_AHEAD,   // the straight one that presses against it
+    WALL_LOW,     // the arc at the end of the slot that comes first along it
+    WALL_HIGH,    // and the one that comes last
+} ContactWall;
+
+// How a contact is to the wall that it meets.
+typedef struct WallPlace {
+    ContactWall wall; // that one; of WALL_NEAREST the one that is there
+    ContactWall next; // the one that follows where it ends
+    double within;    // m, along the slot: how far its end is; negative beyond
+    double leaving;   // m/s, how fast that gets less
+} WallPlace;
+
 typedef struct Contact {
     int joint;
     int place;   // of the joint: which of its contacts it is
     int partner; // of a limited coordinate: by how many contacts the one at its other end comes
                  // later; 0: there is none
     ForceLaw law;
-    double clearance;   // m, radial, or of a collar in space axial; 0 of a stop
+    double clearance;   // m, radial, or of a collar in space axial; 0 of a stop but a slot
     double arm;         // m, by which an angle counts as a length and a torque as a force; 1 of
                         // what is a length already
     double flight;      // m, by which it may come nearer between two evaluations while it is apart
     double hole_radius; // m, of a pin in space
     bool is_collar;     // of a pin in space: it stops the pin along its axis
+    bool has_walls;     // of a slot
     ContactMode mode;
+    ContactWall wall;
     double onset_s;      // when the contact under way began
     double impact_speed; // m/s, closing speed when the contact under way began
     double damping_rate; // s/m, chi / v0, v0 not below the law's floor
@@ -152,7 +172,9 @@ typedef struct SystemKind {
     Dop853Slopes slopes; // or NULL
     // One contact at a time, for events: cheaper than the whole state.
     Press (*press)(const System *system, size_t contact, double since_s, const double *y);
-    // Writes the coordinates that this depends on. Returns how many there are; 0 where it
+    // How a contact is to the walls of its slot; NULL where there are no slots.
+    WallPlace (*wall)(const System *system, size_t contact, double since_s, const double *y);
+    // Writes the coordinates that press depends on. Returns how many there are; 0 where it
     // depends on all.
     size_t (*needs)(const System *system, size_t contact, size_t *coordinates);
     // Sums of the lengths and speeds that the position and velocity of a contact come from.
@@ -234,6 +256,12 @@ void system_free_needs(System *system);
 
 // One contact at a time in the tried step.
 Press system_press(const System *system, Dop853 *integrator, size_t contact, double time);
+
+// The same of the walls of its slot.
+WallPlace system_wall(const System *system, Dop853 *integrator, size_t contact, double time);
+
+// Finds the walls that contacts which touch at the start meet, from the integrator's vector there.
+void system_find_walls(System *system, const double *y);
 
 // Lets contacts begin as the linkage has it, and the other way round: writes what they carry at a
 // time, s, in the mode that they are in.

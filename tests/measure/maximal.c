@@ -11,7 +11,9 @@
 //     apart    no force; ends where the depth d becomes positive: v0 is then the closing speed d'
 //     pressed  F(d) (1 + chi d' / v0) + c d'; ends where d or the force becomes negative
 //     slack    no force; ends where d becomes negative or the force would be positive
-// A step in which a mode ends is repeated until it ends there.
+// A pressed contact that has moved out and comes back has outlasted its impact: from where d' is
+// zero on v0 is the law's resting speed. A step in which a mode ends is repeated until it ends
+// there.
 #include "maximal.h"
 
 #include "base/zeroed.h"
@@ -247,6 +249,13 @@ static bool try_step(Motor *motor, Real length)
     return false;
 }
 
+// Whether a pressed contact that comes back has outlasted its impact by that.
+static bool may_rest(const MaximalContact *contact)
+{
+    return contact->mode == MAXIMAL_PRESSED && contact->law.resting_speed > 0.0 &&
+           contact->is_released && !contact->is_resting;
+}
+
 // By how much a contact's mode still holds: it ends where this is negative. The rate is that of the
 // depth, where the margin is one, else 0.
 typedef struct Margin {
@@ -273,6 +282,9 @@ static Margin margin_of(const Maximal *maximal, size_t contact, const Real *y)
     if (of->mode == MAXIMAL_SLACK && release > 0.0L) {
         return (Margin){-release, 0.0L, MAXIMAL_PRESSED};
     }
+    if (may_rest(of) && gap.closing > 0.0L) {
+        return (Margin){-gap.closing, 0.0L, MAXIMAL_RESTS};
+    }
     return (Margin){gap.depth, gap.closing, MAXIMAL_APART};
 }
 
@@ -285,6 +297,9 @@ static Margin margin_towards(const Maximal *maximal, size_t contact, MaximalMode
     const Real sign = of->mode == MAXIMAL_APART ? -1.0L : 1.0L;
     if (of->mode == MAXIMAL_APART || after == MAXIMAL_APART) {
         return (Margin){sign * gap.depth, sign * gap.closing, after};
+    }
+    if (after == MAXIMAL_RESTS) {
+        return (Margin){-gap.closing, 0.0L, after};
     }
     Real release;
     pressing(of, gap, &release);
@@ -383,13 +398,37 @@ static Real dip_of(const Motor *motor, size_t contact, Real length)
     return matters && x > 1e-3L && x < 0.999L ? x : 1.0L;
 }
 
+// m: nearer than this a step that begins or ends at a corner is at it
+static const Real AT_CORNER = 1e-12L;
+
+// Where within a step the gap of a contact that touches has a corner in its curvature, by a secant;
+// 1 where it has none. Extrapolation does not see what it loses there.
+static Real corner_of(const Motor *motor, size_t contact)
+{
+    const Maximal *maximal = motor->maximal;
+    if (maximal->kind->corner == NULL || maximal->contacts[contact].mode == MAXIMAL_APART) {
+        return 1.0L;
+    }
+    const Real a = maximal->kind->corner(maximal, contact, motor->y);
+    const Real b = maximal->kind->corner(maximal, contact, motor->next);
+    const bool passes = a < 0.0L ? b > AT_CORNER : b < -AT_CORNER;
+    return passes && fabsl(a) > AT_CORNER ? a / (a - b) : 1.0L;
+}
+
 static void change_mode(Motor *motor, size_t contact, MaximalMode after)
 {
     MaximalContact *of = &motor->maximal->contacts[contact];
+    if (after == MAXIMAL_RESTS) {
+        of->is_resting = true;
+        of->damping_rate =
+            of->law.hysteresis / fmaxl(of->law.resting_speed, (Real)of->law.impact_speed_floor);
+        return;
+    }
     if (of->mode == MAXIMAL_APART) {
         const MaximalGap gap = motor->maximal->kind->gap(motor->maximal, contact, motor->y);
         of->damping_rate =
             of->law.hysteresis / fmaxl(gap.closing, (Real)of->law.impact_speed_floor);
+        of->is_released = of->is_resting = false;
     }
     of->mode = after;
 }
@@ -402,6 +441,12 @@ static void accept(Motor *motor, Real length)
     motor->steps++;
     maximal->kind->project(maximal, motor->time_s, motor->y);
     motor->fastest = fmaxl(motor->fastest, maximal->kind->fastest(maximal, motor->y));
+    for (size_t i = 0; i < maximal->contact_count; i++) {
+        MaximalContact *contact = &maximal->contacts[i];
+        contact->is_released =
+            contact->is_released || (contact->mode != MAXIMAL_APART &&
+                                     maximal->kind->gap(maximal, i, motor->y).closing < 0.0L);
+    }
 }
 
 // The first event in the step that stands in next, which is shortened to end on it. The number of
@@ -460,6 +505,7 @@ static bool advance(Motor *motor, Real most, Real *wanted, int *idle)
             if (margin_of(maximal, i, motor->next).left >= 0.0L) {
                 whole = fminl(whole, dip_of(motor, i, length) * length);
             }
+            whole = fminl(whole, corner_of(motor, i) * length);
         }
         if (whole < length) {
             length = whole;

@@ -13,6 +13,7 @@ typedef enum MaximalMode {
     MAXIMAL_APART,
     MAXIMAL_PRESSED,
     MAXIMAL_SLACK, // overlaps, but parts faster than the spring follows
+    MAXIMAL_RESTS, // stays pressed, and its impact is over: no mode, but what an event leads to
 } MaximalMode;
 
 typedef struct MaximalContact {
@@ -20,6 +21,8 @@ typedef struct MaximalContact {
     Real flight; // m, the depth may change by so much in a step while it is apart
     MaximalMode mode;
     Real damping_rate; // s/m, chi / v0 of the contact under way
+    bool is_released;  // whether it has moved out since it began
+    bool is_resting;   // and has come back
 } MaximalContact;
 
 // How a contact stands: depth, m (rad), negative while apart, and its rate.
@@ -35,6 +38,8 @@ typedef struct MaximalKind {
     // The rates of all coordinates; time tables take the piece that holds from since_s on.
     void (*rates)(const Maximal *maximal, double since_s, Real time_s, const Real *y, Real *rates);
     MaximalGap (*gap)(const Maximal *maximal, size_t contact, const Real *y);
+    // How far a contact is beyond where the curvature of its gap jumps, m; NULL: nowhere.
+    Real (*corner)(const Maximal *maximal, size_t contact, const Real *y);
     // Puts a state on the drive's path and back on the ideal joints.
     void (*project)(const Maximal *maximal, Real time_s, Real *y);
     void (*sample)(const Maximal *maximal, const Real *y, Trajectory *trajectory, size_t sample);

@@ -362,6 +362,7 @@ typedef struct Pose {
     Vec at[2];    // from the centres
     Vec apart;    // from anchor a to anchor b
     Real sliding; // m/s
+    Real lever;   // m: of gears, by what the force twists gear b beside its moment, and gear a back
 } Pose;
 
 static Real coordinate_of(const Plane *plane, View view, const Touch *place, bool is_rate)
@@ -370,10 +371,6 @@ static Real coordinate_of(const Plane *plane, View view, const Touch *place, boo
     Real (*of)(View, int) = is_rate ? omega_of : angle_of;
     const Real a = of(view, joint->body_a);
     const Real b = of(view, joint->body_b);
-    if (place->shape == TOUCH_TEETH) {
-        const Real carrier = of(view, joint->gear.carrier);
-        return -(joint->gear.radius_a * (a - carrier) + joint->gear.radius_b * (b - carrier));
-    }
     return joint->body_b == LINKAGE_GROUND ? a - b : b - a;
 }
 
@@ -504,6 +501,32 @@ static void meet_cam(const Plane *plane, View view, const Touch *place, const En
     pose->sliding = vec_dot(vec_perp(pose->normal), relative);
 }
 
+// A pin in a slot: its centre in the slot's own directions, and the rate by the two points of the
+// bodies where it touches the wall.
+static void meet_slot(const Plane *plane, View view, const Touch *place, const Ends *ends,
+                      Pose *pose)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Vec across = along_of(view, joint->body_a, place->direction);
+    const Vec along = vec_perp(across);
+    const Real half = 0.5L * joint->stop.slot;
+    const Real seen = vec_dot(along, ends->apart);
+    const Real middle = fmaxl(-half, fminl(half, seen));
+    const Vec out = vec_sub(ends->apart, vec_times(middle, along));
+    const Vec off = fabsl(seen) > half ? out : vec_times(vec_dot(across, out), across);
+    const Real distance = vec_length(off);
+    pose->gap.depth = distance - (joint->stop.radius_a - (Real)joint->stop.radius_b);
+    pose->normal = distance > 0.0L ? vec_times(-1.0L / distance, off) : across;
+    const Vec wall =
+        vec_sub(vec_times(middle, along), vec_times(joint->stop.radius_a, pose->normal));
+    pose->at[0] = vec_add(ends->arm[0], wall);
+    pose->at[1] = vec_add(ends->arm[1], vec_sub(wall, ends->apart));
+    const Vec relative = vec_sub(velocity_of(view, joint->body_b, pose->at[1]),
+                                 velocity_of(view, joint->body_a, pose->at[0]));
+    pose->gap.closing = -vec_dot(pose->normal, relative);
+    pose->sliding = vec_dot(vec_perp(pose->normal), relative);
+}
+
 // Where the force acts: on the wall of body a, or on the circle of body b.
 static void place_force(const Touch *place, const Ends *ends, Pose *pose)
 {
@@ -531,22 +554,83 @@ static void place_force(const Touch *place, const Ends *ends, Pose *pose)
     pose->at[1] = vec_add(ends->arm[1], vec_sub(from_a, ends->apart));
 }
 
+// How far a flank stands out by the tables of its gears, and the lever of what that changes.
+static Real stand_out(const Plane *plane, View view, const Touch *place, Pose *pose)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Gear *gear = &joint->gear;
+    const Real share = gear->radius_b / ((Real)gear->radius_a + gear->radius_b);
+    // the angle of gear a against the line of the centres, taken from both gears
+    const Real turned =
+        share * (angle_of(view, joint->body_a) - angle_of(view, joint->body_b)) - gear->zero;
+    const size_t tables[2] = {gear->error, gear->relief};
+    Real out_by = 0.0L;
+    for (int i = 0; i < 2; i++) {
+        if (tables[i] > 0) {
+            const ProfileAt at =
+                profile_at(&plane->linkage->profiles[tables[i] - 1], (double)turned);
+            const Real factor = i == 0 ? place->sign : -1.0L;
+            out_by += factor * at.r;
+            pose->lever += factor * share * at.r1;
+        }
+    }
+    return out_by;
+}
+
+// How far the string between the base circles of two gears is from being unwound: the flanks are
+// involutes, so that along the line of action, the common tangent of the circles, each reaches as
+// far as its circle has unwound to the point where the tangent leaves it.
+static void meet_teeth(const Plane *plane, View view, const Touch *place, const Ends *ends,
+                       Pose *pose)
+{
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    const Gear *gear = &joint->gear;
+    const Real pitch = (Real)gear->radius_a + gear->radius_b;
+    const Real alpha = gear->pressure_angle;
+    const Real base[2] = {gear->radius_a * cosl(alpha), gear->radius_b * cosl(alpha)};
+    const Real around = base[0] + base[1];
+    const Real out = alpha == 0.0L ? 0.0L : base[0] * base[1] > 0.0L ? 1.0L : -1.0L;
+    const Real distance = vec_length(ends->apart);
+    const Real working = alpha == 0.0L ? 0.0L : acosl(around / distance);
+    const Real line =
+        atan2l(ends->apart.y, ends->apart.x) + place->sign * (0.5L * acosl(-1.0L) - out * working);
+    pose->normal = direction_of(line);
+    place_force(place, ends, pose);
+    const Real unwound = base[0] * (angle_of(view, joint->body_a) - line) +
+                         base[1] * (angle_of(view, joint->body_b) - line);
+    const Real placed = out * pitch * sinl(alpha) + around * (0.5L * acosl(-1.0L) - out * alpha);
+    const Real gap = vec_dot(pose->normal, ends->apart) * (out == 0.0L ? 0.0L : 1.0L) -
+                     place->sign * unwound - placed - place->clearance * cosl(alpha);
+    const Real out_by = stand_out(plane, view, place, pose);
+    // of whole turns the one at which the gap's middle is nearest
+    const Real middle = (place->sign * joint->limits.middle - place->clearance) * cosl(alpha);
+    pose->gap.depth = out_by - (middle + remainderl(gap - middle, 2.0L * acosl(-1.0L) * around));
+    pose->gap.closing =
+        -vec_dot(pose->normal, vec_sub(velocity_of(view, joint->body_b, pose->at[1]),
+                                       velocity_of(view, joint->body_a, pose->at[0]))) +
+        pose->lever * (omega_of(view, joint->body_a) - omega_of(view, joint->body_b));
+}
+
 static Pose pose_of(const Plane *plane, View view, const Touch *place)
 {
     const Joint *joint = &plane->linkage->joints[place->joint];
     const Ends ends = ends_of(view, joint->body_a, place->anchor_a, joint->body_b, place->anchor_b);
     Pose pose = {.apart = ends.apart};
-    if (place->shape == TOUCH_TURN || place->shape == TOUCH_TEETH) {
+    if (place->shape == TOUCH_TURN) {
         pose.gap.depth = place->clearance - place->sign * coordinate_of(plane, view, place, false);
         pose.gap.closing = -place->sign * coordinate_of(plane, view, place, true);
-        if (place->shape == TOUCH_TEETH) {
-            pose.normal = vec_times(place->sign / vec_length(ends.apart), vec_perp(ends.apart));
-            place_force(place, &ends, &pose);
-        }
+        return pose;
+    }
+    if (place->shape == TOUCH_TEETH) {
+        meet_teeth(plane, view, place, &ends, &pose);
         return pose;
     }
     if (place->shape == TOUCH_CAM) {
         meet_cam(plane, view, place, &ends, &pose);
+        return pose;
+    }
+    if (place->shape == TOUCH_SLOT) {
+        meet_slot(plane, view, place, &ends, &pose);
         return pose;
     }
     if (place->shape == TOUCH_RACK) {
@@ -584,6 +668,21 @@ static MaximalGap gap(const Maximal *maximal, size_t contact, const Real *y)
 {
     const Plane *plane = plane_of(maximal);
     return pose_of(plane, view_of(plane, y), &plane->places[contact]).gap;
+}
+
+// Of a slot the centres of the arcs at its ends; of all others there is none.
+static Real corner(const Maximal *maximal, size_t contact, const Real *y)
+{
+    const Plane *plane = plane_of(maximal);
+    const View view = view_of(plane, y);
+    const Touch *place = &plane->places[contact];
+    const Joint *joint = &plane->linkage->joints[place->joint];
+    if (place->shape != TOUCH_SLOT) {
+        return 1.0L;
+    }
+    const Ends ends = ends_of(view, joint->body_a, place->anchor_a, joint->body_b, place->anchor_b);
+    const Vec along = vec_perp(along_of(view, joint->body_a, place->direction));
+    return fabsl(vec_dot(along, ends.apart)) - 0.5L * joint->stop.slot;
 }
 
 // Adds a force at a point of a body, and a moment, to accelerations.
@@ -633,6 +732,11 @@ static void add_contacts(const Plane *plane, View view, Real *accelerations)
             rolls ? 0.0L
                   : options->friction * force * tanhl(pose.sliding / options->friction_speed);
         const Joint *joint = &plane->linkage->joints[place->joint];
+        if (place->shape == TOUCH_TEETH) {
+            const Vec none = {0.0L, 0.0L};
+            push(plane, joint->body_a, none, none, -pose.lever * force, accelerations);
+            push(plane, joint->body_b, none, none, pose.lever * force, accelerations);
+        }
         push_pair(plane, (const int[2]){joint->body_a, joint->body_b}, pose.at,
                   vec_sub(vec_times(force, pose.normal), vec_times(held, vec_perp(pose.normal))),
                   accelerations);
@@ -793,6 +897,7 @@ static void destroy(Maximal *maximal)
 static const MaximalKind PLANE = {
     .rates = rates,
     .gap = gap,
+    .corner = corner,
     .project = project,
     .sample = sample,
     .fastest = fastest,
@@ -802,7 +907,7 @@ static const MaximalKind PLANE = {
 // How far something may come while it is apart before it is looked at: its play.
 static Real flight_of(const Joint *joint, const Touch *place)
 {
-    if (place->shape == TOUCH_HOLE || place->shape == TOUCH_DISC) {
+    if (place->shape == TOUCH_HOLE || place->shape == TOUCH_DISC || place->shape == TOUCH_SLOT) {
         return place->clearance;
     }
     if (place->shape == TOUCH_CAM) {

@@ -205,7 +205,6 @@ static Scenario gears(double teeth_b, bool is_floating, double spin, double dura
     const double sum = 20.0 + teeth_b;
     mesh->gear = (Gear){
         .pivots = {0, 1},
-        .carrier = carrier,
         .teeth = {20.0, teeth_b},
         .radius_a = distance * 20.0 / sum,
         .radius_b = distance * teeth_b / sum,

@@ -263,10 +263,7 @@ static Scenario carried_gears(size_t others)
         .kind = JOINT_GEAR,
         .body_a = arm + 1,
         .body_b = arm + 2,
-        .gear = {.pivots = {first + 1, first + 2},
-                 .carrier = arm,
-                 .radius_a = 0.02,
-                 .radius_b = 0.04},
+        .gear = {.pivots = {first + 1, first + 2}, .radius_a = 0.02, .radius_b = 0.04},
         .limits = {.kind = LIMIT_BACKLASH, .backlash = 1e-4},
         .contact = {.stiffness = 1e7, .exponent = 1.0},
     };

@@ -61,7 +61,7 @@ forget solver $options 'member(ODE_QUICK,' 'member(ODE_NEW, "new")' ode/plane/wo
 forget collider $options 'member(ODE_COLLIDER_STAVES,' \
     'member(ODE_COLLIDER_NEW, "new", collider_new)' contact/facets.c
 forget 'kind of joint' model/joint.h 'member(with, JOINT_GUIDE,' \
-    'member(with, JOINT_NEW, LINE, DISC, NONE, 2, false, "new")' casefile/joint_kind.c \
+    'member(with, JOINT_NEW, LINE, DISC, NONE, false, "new")' casefile/joint_kind.c \
     engine/request.c commands/tune/tune_world_lacks.c
 forget 'way to hold' model/joint.h '    JOINT_HOLDS_LINE,' 'JOINT_HOLDS_NEW,' model/joint_rows.c \
     model/response_rows.c
@@ -71,7 +71,7 @@ forget 'way to touch' model/joint.h '    JOINT_TOUCHES_DISC,' 'JOINT_TOUCHES_NEW
     commands/report/report_data.c
 forget coordinate model/joint.h '    JOINT_COORDINATE_TEETH,' 'JOINT_COORDINATE_NEW,' \
     model/coordinate.c model/response_rows.c contact/touch.c casefile/limits.c \
-    commands/run/run_text.c ode/stepping.c reference/plane/tree.c reference/plane/plane_system.c
+    commands/run/run_text.c ode/stepping.c reference/plane/tree_coordinate.c reference/plane/plane_system.c
 forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
     ode/plane/impulse_step.c ode/plane/impulse_work.c reference/plane/dynamics.c \
     reference/plane/dynamics_slopes.c

@@ -84,7 +84,6 @@ static Joint *add_gears(const LimitedImpact *impact, double speed, Linkage *link
     Joint *gears = add_limited_joint(linkage, "teeth", JOINT_GEAR, 0, 1);
     gears->gear = (Gear){
         .pivots = {0, 1},
-        .carrier = LINKAGE_GROUND,
         .teeth = {20.0, 50.0},
         .radius_a = RADII[0],
         .radius_b = RADII[1],

@@ -51,3 +51,20 @@ static inline void press_elsewhere(Kernel *pin, bool is_line, double friction)
         pin->speed[i] *= -1.0;
     }
 }
+
+// Makes of it a pin in a slot along y, as deep in one of its straight walls, or in the arc at an
+// end.
+static inline void press_in_slot(Kernel *pin, bool is_at_end)
+{
+    KernelContact *joint = &pin->contacts[0];
+    joint->shape = KERNEL_SLOT;
+    joint->half_length = 0.01;
+    if (is_at_end) {
+        pin->position[1] += copysign(joint->half_length, pin->position[1]);
+    } else {
+        pin->position[0] = copysign(PRESSED_CLEARANCE + PRESSED_DEPTH, pin->position[0]);
+        pin->position[1] *= 0.5 * joint->half_length / PRESSED_CLEARANCE;
+        pin->speed[0] = copysign(0.02, pin->position[0]);
+        pin->speed[1] *= 0.1; // no faster than friction takes hold
+    }
+}

@@ -64,7 +64,8 @@ static Scenario geared(void)
             .contact = contact,
         };
     }
-    linkage->joints[2].gear = (Gear){{0, 1}, 2, {20.0, 40.0}, 0.02, 0.04, false, false};
+    linkage->joints[2].gear =
+        (Gear){.pivots = {0, 1}, .teeth = {20.0, 40.0}, .radius_a = 0.02, .radius_b = 0.04};
     linkage->joints[6].gear = (Gear){.pivots = {5, 0}, .radius_a = INFINITY, .radius_b = 0.02};
     return scenario;
 }
@@ -178,7 +179,6 @@ static void gears_on_the_ground_have_the_mass_of_the_formula(void **state)
     Motion motions[8];
     linkage->body_count = 2;
     linkage->joint_count = 3;
-    linkage->joints[2].gear.carrier = LINKAGE_GROUND;
     for (size_t i = 0; i < 2; i++) {
         Joint *pivot = &linkage->joints[i];
         pivot->body_a = LINKAGE_GROUND;

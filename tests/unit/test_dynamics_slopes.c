@@ -48,6 +48,12 @@ static void press(Pressed *pressed, const Scenario *mechanism)
         contact->mode = CONTACT_PRESSING;
         contact->damping_rate = 1e3;
         const TouchPose pose = dynamics_contact(dynamics, i, 0.0, pressed->y).pose;
+        if (contact->has_walls) {
+            contact->wall = dynamics_contact_wall(dynamics, i, 0.0, pressed->y).wall;
+            contact->clearance -= pose.gap + DEPTH;
+            dynamics->sites[i].touch.clearance = contact->clearance;
+            continue;
+        }
         contact->clearance = vec2_length(pose.offset) - DEPTH;
         // of lines and discs
         dynamics->tree.base_distances[dynamics->sites[i].pair] -= pose.gap + DEPTH;
@@ -165,12 +171,13 @@ static Scenario geared(void)
                                  .contact = contact};
     linkage->joints[2] =
         (Joint){.name = "planet", .body_a = 2, .body_b = 1, .anchor_a = {0.08, -0.02}};
-    linkage->joints[3] = (Joint){.name = "mesh",
-                                 .kind = JOINT_GEAR,
-                                 .body_a = 0,
-                                 .body_b = 1,
-                                 .gear = {{1, 2}, 2, {20, 60}, 0.02, 0.06, false, false},
-                                 .limits = gap};
+    linkage->joints[3] =
+        (Joint){.name = "mesh",
+                .kind = JOINT_GEAR,
+                .body_a = 0,
+                .body_b = 1,
+                .gear = {.pivots = {1, 2}, .teeth = {20, 60}, .radius_a = 0.02, .radius_b = 0.06},
+                .limits = gap};
     linkage->joints[4] = (Joint){.name = "slide",
                                  .kind = JOINT_PRISMATIC,
                                  .body_a = 2,
@@ -273,6 +280,62 @@ static void derivatives_are_those_of_rollers_and_flats_on_a_cam(void **state)
     const double off = worst(&pressed);
     print_message("# off by %.3g\n", off);
     assert_true(off < 2e-3);
+    dynamics_finish(&pressed.dynamics);
+}
+
+// A lever with two slots, and an arm at each whose pin is in it: at a straight wall, and in the arc
+// at an end.
+static Scenario slotted(void)
+{
+    static const Vec2 PIVOTS[] = {{0.0, 0.0}, {0.09, -0.03}, {-0.06, 0.07}};
+    static const Vec2 SLOTS[] = {{0.05, 0.01}, {-0.04, 0.02}};
+    static const Vec2 OFF[] = {{60e-6, 4e-3}, {50e-6, 10.03e-3}}; // across and along
+    static const double ACROSS[] = {0.7, -1.1};
+    Scenario scenario = kept_default();
+    Linkage *linkage = &scenario.linkage;
+    linkage->body_count = 3;
+    linkage->joint_count = 5;
+    for (int i = 0; i < 3; i++) {
+        linkage->bodies[i] = (Body){.mass = 0.5, .inertia = 1e-3};
+        linkage->bodies[i].start.position =
+            vec2_add(PIVOTS[i], (Vec2){0.01 * (i + 1), 0.02 - 0.01 * i});
+        linkage->joints[i] = (Joint){
+            .body_a = LINKAGE_GROUND,
+            .body_b = i,
+            .anchor_a = PIVOTS[i],
+            .anchor_b = vec2_sub(PIVOTS[i], linkage->bodies[i].start.position),
+        };
+    }
+    for (int i = 0; i < 2; i++) {
+        const Vec2 across = vec2_rotate(ACROSS[i], (Vec2){1.0, 0.0});
+        const Vec2 pin = vec2_add(vec2_add(SLOTS[i], vec2_scale(OFF[i].x, across)),
+                                  vec2_scale(OFF[i].y, vec2_perp(across)));
+        linkage->joints[3 + i] = (Joint){
+            .kind = JOINT_STOP,
+            .body_a = 0,
+            .body_b = 1 + i,
+            .anchor_a = vec2_sub(SLOTS[i], linkage->bodies[0].start.position),
+            .anchor_b = vec2_sub(pin, linkage->bodies[1 + i].start.position),
+            .direction = ACROSS[i],
+            .stop = {.slot = 0.02, .radius_a = 5.06e-3, .radius_b = 5e-3},
+        };
+    }
+    return scenario;
+}
+
+static void derivatives_are_those_of_pins_in_slots(void **state)
+{
+    (void)state;
+    const Scenario scenario = slotted();
+    Pressed pressed;
+    press(&pressed, &scenario);
+    const Contact *contacts = pressed.dynamics.system.contacts;
+    assert_int_equal(pressed.dynamics.system.contact_count, 2);
+    assert_int_equal(contacts[0].wall, WALL_AHEAD);
+    assert_int_equal(contacts[1].wall, WALL_HIGH);
+    const double off = worst(&pressed);
+    print_message("# off by %.3g\n", off);
+    assert_true(off < 1e-4);
     dynamics_finish(&pressed.dynamics);
 }
 
@@ -417,6 +480,7 @@ int main(void)
         cmocka_unit_test(derivatives_are_those_of_the_contacts_forces),
         cmocka_unit_test(derivatives_are_those_of_blocks_and_stops),
         cmocka_unit_test(derivatives_are_those_of_rollers_and_flats_on_a_cam),
+        cmocka_unit_test(derivatives_are_those_of_pins_in_slots),
         cmocka_unit_test(derivatives_are_those_of_angles_and_teeth),
         cmocka_unit_test(another_sliding_speed_has_other_derivatives),
         cmocka_unit_test(hinges_and_pins_have_the_same_rates_to_the_last_bit),

@@ -107,11 +107,25 @@ static void rates_at_lines_and_discs_are_too(void **state)
     }
 }
 
+static void rates_in_slots_are_too(void **state)
+{
+    (void)state;
+    for (unsigned number = 0; number < 20; number++) {
+        uint64_t seed = lcg_stirred(number);
+        const double friction = number % 2 == 0 ? 0.0 : 0.3;
+        Kernel pin =
+            pressed_pin(&seed, friction, friction > 0.0 ? KERNEL_ROWS_PLANE : KERNEL_ROWS_PLAIN);
+        press_in_slot(&pin, number / 2 % 2 == 0);
+        check(&pin, &seed);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rates_are_those_of_the_force_along_the_motion),
         cmocka_unit_test(rates_at_lines_and_discs_are_too),
+        cmocka_unit_test(rates_in_slots_are_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

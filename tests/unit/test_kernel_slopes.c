@@ -2,6 +2,7 @@
 #include "close.h"
 #include "pressed_pin.h"
 
+#include "kernel/friction_law.h"
 #include "kernel/internal.h"
 
 enum { ROWS = KERNEL_ROWS_MOST };
@@ -96,6 +97,38 @@ static void slopes_at_lines_and_discs_are_those_of_the_force(void **state)
     }
 }
 
+static void slopes_in_slots_are_those_of_the_force(void **state)
+{
+    (void)state;
+    for (unsigned number = 0; number < 20; number++) {
+        uint64_t seed = lcg_stirred(number);
+        const double friction = number % 2 == 0 ? 0.0 : 0.3;
+        const bool is_at_end = number / 2 % 2 == 0;
+        Kernel pin =
+            pressed_pin(&seed, friction, friction > 0.0 ? KERNEL_ROWS_PLANE : KERNEL_ROWS_PLAIN);
+        press_in_slot(&pin, is_at_end);
+        KernelSlopes slopes;
+        double force[ROWS];
+        double powers[2];
+        kernel_force_find(&pin, 0.0, NOTHING, NOTHING, force, powers);
+        kernel_slopes_find(&pin, 0, 0.0, NOTHING, NOTHING, 0.0, &slopes);
+        assert_true(hypot(force[0], force[1]) > 1.0);
+        for (size_t i = 0; i < pin.row_count; i++) {
+            assert_near(slopes.force[i], force[i], 1e-13 * hypot(force[0], force[1]));
+        }
+        // friction turns both bodies alike: the pin's centre is where its rows are
+        assert_true(friction == 0.0 || force[2] == -force[3]);
+        for (size_t row = 0; row < pin.row_count; row++) {
+            // between the ends nothing changes along the slot
+            const bool is_idle = !is_at_end && row == 1;
+            assert_true((is_idle && friction == 0.0) || slope_mismatch(&pin, row, false) < 1e-7);
+            assert_true(row >= 2 || is_idle || slope_mismatch(&pin, row, true) < 1e-6);
+            assert_true(!is_idle || slopes.by_position[0][1] == 0.0);
+        }
+        kernel_finish(&pin);
+    }
+}
+
 // Going out so fast that the damper would pull.
 static void a_force_that_would_pull_is_none_unless_it_is_smooth(void **state)
 {
@@ -149,15 +182,15 @@ static void friction_bends_as_it_says(void **state)
     const double speed = 5e-3;
     for (double size = 1e-6 * speed; size < 10.0 * speed; size *= 1.9) {
         const double nudge = 1e-3 * fmax(size, 1e-2 * speed);
-        const KernelHold hold = kernel_friction_hold(size, speed);
-        const double rise = kernel_friction_hold(size + nudge, speed).held -
-                            kernel_friction_hold(size - nudge, speed).held;
+        const FrictionHold hold = friction_hold(size, speed);
+        const double rise = friction_hold(size + nudge, speed).held -
+                            friction_hold(size - nudge, speed).held;
         assert_near(hold.slope, rise / (2.0 * nudge), 1e-5 / speed);
-        const KernelGrip grip = kernel_friction_grip(size, speed);
-        assert_close(grip.share * size, hold.held, 1e-8);
+        const FrictionGrip grip = friction_grip(size, speed);
+        assert_close(grip.share * size, hold.held, 1e-15);
         const double own_nudge = 1e-3 * size;
-        const double bent = kernel_friction_grip(size + own_nudge, speed).share -
-                            kernel_friction_grip(size - own_nudge, speed).share;
+        const double bent = friction_grip(size + own_nudge, speed).share -
+                            friction_grip(size - own_nudge, speed).share;
         // where the closed form's difference is more than rounding
         if (size > 0.1 * speed) {
             assert_close(grip.bend * size, bent / (2.0 * own_nudge), 1e-4);
@@ -173,6 +206,7 @@ int main(void)
         cmocka_unit_test(slopes_are_those_of_the_force),
         cmocka_unit_test(friction_bends_as_it_says),
         cmocka_unit_test(slopes_at_lines_and_discs_are_those_of_the_force),
+        cmocka_unit_test(slopes_in_slots_are_those_of_the_force),
         cmocka_unit_test(a_force_that_would_pull_is_none_unless_it_is_smooth),
         cmocka_unit_test(a_smooth_force_goes_on_below_a_depth),
     };

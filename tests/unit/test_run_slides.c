@@ -169,6 +169,7 @@ static void a_stop_says_what_touches_what(void **state)
         {{.radius_b = 5e-3}, "disc of 10 mm against a line"},
         {{.is_disc = true, .radius_a = 10e-3, .radius_b = 5e-3},
          "disc of 10 mm against a disc of 20 mm"},
+        {{.slot = 0.03, .radius_a = 5.1e-3, .radius_b = 5e-3}, "pin of 10 mm in a slot of 10.2 mm"},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         joint->stop = CASES[i].stop;

@@ -84,6 +84,7 @@ static void set_shape(json_t *object, const Linkage *linkage, const Joint *joint
         json_object_set_new(object, "is_disc", json_boolean(joint->stop.is_disc));
         json_value_set(object, "radius_a_m", joint->stop.radius_a);
         json_value_set(object, "radius_b_m", joint->stop.radius_b);
+        json_value_set(object, "slot_m", joint->stop.slot);
         set_cam(object, linkage, joint);
         break;
     case JOINT_TOUCHES_TEETH:

@@ -197,7 +197,8 @@ class Mechanism {
         }
         for (const joint of this.data.joints) {
             const [x, y] = poses.point(joint.body_a, joint.anchor_a_m);
-            const reach = Math.abs(joint.radius_a_m || joint.pin_radius_m || 0);
+            const reach =
+                Math.abs(joint.radius_a_m || joint.pin_radius_m || 0) + (joint.slot_m || 0) / 2;
             yield [x - reach, y - reach];
             yield [x + reach, y + reach];
             if (joint.touches === "disc" || joint.touches === "teeth") {
@@ -615,6 +616,28 @@ class Mechanism {
         }
     }
 
+    // The wall of a slot: two straight lines across its normal, and an arc at each end.
+    drawSlot(poses, joint) {
+        const from = poses.point(joint.body_a, joint.anchor_a_m);
+        const angle = poses.angle(joint.body_a) + joint.direction_rad;
+        const points = [];
+        const steps = 24;
+        for (let i = 0; i <= 2 * steps + 1; i++) {
+            const isFirst = i <= steps;
+            const turn = ((isFirst ? i : i - 1) * Math.PI) / steps;
+            const [x, y] = rotate(
+                [
+                    joint.radius_a_m * Math.cos(turn),
+                    joint.radius_a_m * Math.sin(turn) + (isFirst ? 0.5 : -0.5) * joint.slot_m,
+                ],
+                angle,
+            );
+            points.push([from[0] + x, from[1] + y]);
+        }
+        this.line([...points, points[0]], false);
+        this.context.stroke();
+    }
+
     drawStop(poses, joint, isMain, colour) {
         const { context } = this;
         const from = poses.point(joint.body_a, joint.anchor_a_m);
@@ -622,6 +645,8 @@ class Mechanism {
         context.lineWidth = 2;
         if (joint.profile_m) {
             this.drawCam(poses, joint, colour);
+        } else if (joint.slot_m > 0) {
+            this.drawSlot(poses, joint);
         } else if (joint.is_disc) {
             this.circle(this.toScreen(from), joint.radius_a_m * this.scale);
             context.stroke();

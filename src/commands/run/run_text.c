@@ -461,13 +461,20 @@ static void run_text_write_stop(const Joint *joint, Text *text)
 {
     const Stop *stop = &joint->stop;
     if (stop->radius_b > 0.0) {
-        text_append(text, "%s of %.7g mm", stop->cam > 0 ? "roller" : "disc",
+        text_append(text, "%s of %.7g mm",
+                    stop->cam > 0      ? "roller"
+                    : stop->slot > 0.0 ? "pin"
+                                       : "disc",
                     2.0 * stop->radius_b * UNITS_MM);
     } else {
         text_append(text, stop->is_flat ? "flat" : stop->cam > 0 ? "knife edge" : "point");
     }
     if (stop->cam > 0) {
         text_append(text, " on a cam that reaches %.7g mm", stop->radius_a * UNITS_MM);
+    } else if (stop->slot > 0.0) {
+        text_append(text, " in a slot of %.7g mm,\n", 2.0 * stop->radius_a * UNITS_MM);
+        text_append(text, "              %.7g mm between its ends' centres, play %.4g um",
+                    stop->slot * UNITS_MM, (stop->radius_a - stop->radius_b) * UNITS_UM);
     } else if (stop->is_disc) {
         text_append(text, " against a disc of %.7g mm", 2.0 * stop->radius_a * UNITS_MM);
     } else {

@@ -21,7 +21,9 @@ static const char *lacks_joint(const Scenario *scenario, const Joint *joint)
     case JOINT_GUIDE:
         return "libjointplay has no block between guides";
     case JOINT_STOP:
-        return "libjointplay has no disc that meets a wall or another disc";
+        return linkage_has_slot(joint)
+                   ? "libjointplay has no slot in which a pin plays"
+                   : "libjointplay has no disc that meets a wall or another disc";
     case JOINT_GEAR:
         return "libjointplay has no pair of gears";
     case JOINT_RACK:

@@ -5,6 +5,8 @@
 // ways whose velocities jump of the line between two.
 #include "drivers/common/driver.h"
 
+#include "kernel/friction_law.h"
+
 #include <jansson.h>
 #include <math.h>
 #include <stdarg.h>
@@ -718,7 +720,8 @@ DriverPress driver_press(const DriverJoint *joint, const DriverContact *contact,
         const double sliding = vec2_dot(tangent, going) +
                                joint->hole_radius * omega_of(motions, bodies[0]) -
                                pin_arm * omega_of(motions, bodies[1]);
-        const double held = joint->law.friction * force * tanh(sliding / joint->law.friction_speed);
+        const double held =
+            joint->law.friction * force * friction_hold(sliding, joint->law.friction_speed).held;
         press.force = vec2_sub(press.force, vec2_scale(held, tangent));
         press.moments[0] = -joint->hole_radius * held;
         press.moments[1] = pin_arm * held;

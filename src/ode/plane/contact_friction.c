@@ -17,6 +17,7 @@
 #include "ode/plane/contact_friction.h"
 
 #include "base/zeroed.h"
+#include "kernel/friction_law.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -119,13 +120,17 @@ static void share_rows(const FrictionRow *row, Share *share)
         share->along[0] = share->across[1] = 1.0;
         return;
     }
-    const Vec2 tangent = vec2_perp(row->normal);
+    const Vec2 normal = pair_in_rows(row->pair, row->normal);
+    const Vec2 tangent = vec2_perp(normal);
     const Vec2 arm = vec2_sub(pair_point(row->pair, row->normal), pair_anchor_b(row->pair));
-    const double radius = touch->shape == TOUCH_HOLE ? touch->radius_a : -touch->radius_a;
+    const double pin_arm = vec2_dot(row->normal, arm);
+    const double radius = touch->shape == TOUCH_HOLE   ? touch->radius_a
+                          : touch->shape == TOUCH_SLOT ? -pin_arm // about the pin's centre as well
+                                                       : -touch->radius_a;
     *share = (Share){
         .row_count = RESPONSE_ROWS_A_JOINT,
-        .along = {row->normal.x, row->normal.y, 0.0, 0.0},
-        .across = {tangent.x, tangent.y, radius, vec2_dot(row->normal, arm)},
+        .along = {normal.x, normal.y, 0.0, 0.0},
+        .across = {tangent.x, tangent.y, radius, pin_arm},
     };
 }
 
@@ -163,7 +168,7 @@ static double find_force(const System *system, size_t row, double drift)
     double force = fmax(low, fmin(system->forces[2 * row + 1], high));
     for (int i = 0; i < ROOT_STEPS_MAX; i++) {
         share->mean = share->theta * (drift + mobility * force) + before;
-        const double held = tanh(share->mean / speed);
+        const double held = friction_hold(share->mean, speed).held;
         const double missing = force + most * held;
         *(missing > 0.0 ? &high : &low) = force;
         double next = force - missing / (1.0 + share->theta * stiffness * (1.0 - held * held));
@@ -267,7 +272,7 @@ static void linearise_force(const System *system, size_t number, FrictionRow *ro
     const Share *share = &system->shares[number];
     const double speed = row->friction_speed;
     const double most = row->friction * system->forces[2 * number];
-    const double held = tanh(share->mean / speed);
+    const double held = friction_hold(share->mean, speed).held;
     const double slope = 1.0 - held * held;
     if (slope > FLAT && most > 0.0) {
         const double reach = speed / (share->theta * slope);

@@ -85,10 +85,9 @@ static const Motion *contact_mass_place(ContactMass *mass)
 static void set_along(const ContactMass *mass, const ContactRow *rows, size_t number,
                       double along[RESPONSE_ROWS_A_JOINT])
 {
-    const bool is_scalar = touch_is_scalar(&mass->world->pairs[number].touch);
-    const Vec2 normal = rows[number].normal;
-    along[0] = is_scalar ? 1.0 : normal.x;
-    along[1] = is_scalar ? 0.0 : normal.y;
+    const Vec2 normal = pair_in_rows(&mass->world->pairs[number], rows[number].normal);
+    along[0] = normal.x;
+    along[1] = normal.y;
     along[2] = along[3] = 0.0;
 }
 
@@ -138,7 +137,7 @@ static void contact_mass_find(ContactMass *mass, ContactRow *rows, size_t number
         share_mass(mass, rows, number);
         return;
     }
-    const Vec2 along = is_scalar ? (Vec2){1.0, 0.0} : row->normal;
+    const Vec2 along = pair_in_rows(pair, row->normal);
     row->mass = response_mass(&mass->response, response_first_row(&mass->response, number), along);
     row->stiff_mass = row->mass;
     row->mass_normal = row->normal;

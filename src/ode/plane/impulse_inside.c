@@ -168,6 +168,13 @@ void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pre
     state->moment_on_b += vec2_cross(arms[1], force);
 }
 
+Vec2 impulse_step_from_slot(const Linkage *linkage, const Touch *place, const Motion *motions,
+                            Vec2 in_rows)
+{
+    const Vec2 across = touch_across(linkage, place, motions);
+    return vec2_add(vec2_scale(in_rows.x, across), vec2_scale(in_rows.y, vec2_perp(across)));
+}
+
 // Adds one place at an end of a coordinate to the state of its joint, which has what holds the
 // joint beside it.
 static void add_end(const Linkage *linkage, const Touch *place, const KernelPose *pose,
@@ -238,10 +245,13 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
             continue;
         }
         if (!touch_is_scalar(place)) {
+            const bool is_slot = place->shape == TOUCH_SLOT;
             joints[place->joint] = (JointState){
-                .eccentricity = pose.pose.eccentricity,
+                .eccentricity = is_slot ? linkage_joint_gap(linkage, motions, place->joint).position
+                                        : pose.pose.eccentricity,
                 .gap = pose.pose.gap,
-                .force_on_b = pose.force,
+                .force_on_b = is_slot ? impulse_step_from_slot(linkage, place, motions, pose.force)
+                                      : pose.force,
                 .force = vec2_length(pose.force),
                 .is_touching = pose.is_touching,
             };

@@ -109,6 +109,8 @@ static KernelShape kernel_shape_of(TouchShape shape)
         return KERNEL_HOLE;
     case TOUCH_DISC:
         return KERNEL_DISC;
+    case TOUCH_SLOT:
+        return KERNEL_SLOT;
     case TOUCH_LINE:
     case TOUCH_CAM:
     case TOUCH_TURN:
@@ -132,6 +134,7 @@ static KernelContact joint_of(const ImpulseStep *step, const Touch *place)
         .shape = shape,
         .radial_clearance = is_line ? 0.0 : sign * place->clearance,
         .hole_radius = is_line ? 0.0 : sign * place->radius_a,
+        .half_length = place->half_length,
         .joint = place->joint,
         .state = step->scenario->linkage.joints[place->joint].contacts[place->place],
         .siblings = {has_corners ? -place->place : 0,
@@ -264,6 +267,18 @@ static void push_late(ImpulseStep *step)
 // a pin this close to the wall at the end of a coarse step, of its play, is taken to be there
 static const double NEAR_WALL_SHARE = 0.02;
 
+// The same gap in the axes of a slot, at the start of the step.
+static void put_in_slot(const ImpulseStep *step, const Touch *place, JointGap *gap)
+{
+    const Linkage *linkage = &step->scenario->linkage;
+    const int body = linkage->joints[place->joint].body_a;
+    const double omega = body == LINKAGE_GROUND ? 0.0 : step->before[body].omega;
+    const TouchSlot slot = touch_in_slot(gap->position, gap->velocity,
+                                         touch_across(linkage, place, step->before), omega);
+    gap->position = slot.position;
+    gap->velocity = slot.rate;
+}
+
 // Where the rows of play are at the start of the step, and how fast they go.
 static void fill_rows(ImpulseStep *step)
 {
@@ -282,7 +297,10 @@ static void fill_rows(ImpulseStep *step)
             speed[1] = touch_sliding(linkage, place, &pose, step->before);
             continue;
         }
-        const JointGap gap = linkage_joint_gap(linkage, step->before, place->joint);
+        JointGap gap = linkage_joint_gap(linkage, step->before, place->joint);
+        if (place->shape == TOUCH_SLOT) {
+            put_in_slot(step, place, &gap);
+        }
         position[0] = gap.position.x;
         position[1] = gap.position.y;
         speed[0] = gap.velocity.x;
@@ -299,9 +317,19 @@ static void fill_rows(ImpulseStep *step)
 // The gap of a place at a position in its first two rows.
 static double gap_at(const KernelContact *joint, Vec2 position)
 {
-    return joint->shape == KERNEL_LINE   ? position.x
-           : joint->shape == KERNEL_HOLE ? joint->radial_clearance - vec2_length(position)
-                                         : joint->radial_clearance + vec2_length(position);
+    switch (joint->shape) {
+    case KERNEL_LINE:
+        return position.x;
+    case KERNEL_HOLE:
+        return joint->radial_clearance - vec2_length(position);
+    case KERNEL_SLOT:
+        return pin_slot_pose(position, (Vec2){0.0, 0.0}, joint->half_length,
+                             joint->radial_clearance)
+            .gap;
+    case KERNEL_DISC:
+        break;
+    }
+    return joint->radial_clearance + vec2_length(position);
 }
 
 // Whether a place touches or will have come near its wall at the end of a step of that length.

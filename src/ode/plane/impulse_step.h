@@ -85,6 +85,10 @@ static inline void impulse_step_add_ideal(const ImpulseStep *step, size_t row, c
     }
 }
 
+// What acts in the rows of a slot, in the world.
+Vec2 impulse_step_from_slot(const Linkage *linkage, const Touch *place, const Motion *motions,
+                            Vec2 in_rows);
+
 // Adds what an end of a limited coordinate presses with, N or N m.
 void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pressing,
                           const Motion *motions, JointState *state);

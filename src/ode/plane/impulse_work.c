@@ -32,11 +32,13 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
         impulse_step_add_end(&step->scenario->linkage, place, force.x, middle, mean);
         return;
     }
+    const Linkage *linkage = &step->scenario->linkage;
     if (!touch_is_scalar(place)) {
-        mean->force_on_b = force;
+        mean->force_on_b = place->shape == TOUCH_SLOT
+                               ? impulse_step_from_slot(linkage, place, middle, force)
+                               : force;
         return;
     }
-    const Linkage *linkage = &step->scenario->linkage;
     const Joint *joint = &linkage->joints[place->joint];
     const TouchPose pose = touch_pose(linkage, place, middle);
     const Vec2 push =
@@ -70,14 +72,16 @@ static void find_play_means(ImpulseStep *step, const Motion *middle)
 }
 
 // Where they act on a driven body, seen from its anchors: at the anchor of body b, of all joints
-// with lines.
+// with lines and slots.
 static void find_driven_offsets(ImpulseStep *step, const Motion *middle, int body, Vec2 *offsets)
 {
     const Linkage *linkage = &step->scenario->linkage;
     stepping_offsets(linkage, middle, body, offsets);
     for (size_t i = 0; i < step->place_count; i++) {
         const int joint = step->places[i].joint;
-        if (touch_is_scalar(&step->places[i]) && linkage->joints[joint].body_a == body) {
+        const bool is_beside =
+            touch_is_scalar(&step->places[i]) || step->places[i].shape == TOUCH_SLOT;
+        if (is_beside && linkage->joints[joint].body_a == body) {
             offsets[joint] = linkage_joint_gap(linkage, middle, joint).position;
         }
     }
@@ -118,7 +122,8 @@ static Vec2 moving_on_cam(const Linkage *linkage, const Touch *place, const Touc
     return vec2_add(material, vec2_scale(along_b, vec2_perp(pose->normal)));
 }
 
-// Likewise of a line or a rack, which turn with body a, or of a cam.
+// Likewise of a line, a rack or a slot, which turn with body a, or of a cam. Those of a slot act at
+// the pin's centre.
 static double work_at_line(const ImpulseStep *step, size_t number, const Motion *motions,
                            const Motion *driven, bool is_on_a)
 {
@@ -128,10 +133,14 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     const size_t row = step->scheme.kernel.contacts[number].first_row;
     const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
     const TouchPose pose = touch_pose(linkage, place, motions);
-    const Vec2 directions[2] = {pose.normal, vec2_perp(pose.normal)};
+    const bool is_slot = place->shape == TOUCH_SLOT;
+    const Vec2 normal = is_slot ? touch_across(linkage, place, motions) : pose.normal;
+    const Vec2 directions[2] = {normal, vec2_perp(normal)};
     Vec2 from_a;
-    Vec2 from_b;
-    touch_points(place, &pose, &from_a, &from_b);
+    Vec2 from_b = {0.0, 0.0};
+    if (!is_slot) {
+        touch_points(place, &pose, &from_a, &from_b);
+    }
     const Vec2 point = vec2_add(linkage_point(motions, joint->body_b, place->anchor_b), from_b);
     double turning = omega_a;
     Vec2 moving = vec2_add(linkage_point_velocity(motions, joint->body_b, place->anchor_b),
@@ -155,33 +164,35 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     return is_on_a ? -work : work;
 }
 
-// How fast the coordinate of an end goes as one of the bodies turns, m or rad per rad.
-static double turning_share(const Joint *joint, const Touch *place, bool is_on_a)
+// How fast the gap at an end grows as one of the bodies turns, m or rad per rad, but for its sign.
+static double turning_share(const Linkage *linkage, const Touch *place, const Motion *motions,
+                            bool is_on_a)
 {
     switch (place->shape) {
     case TOUCH_TEETH:
-        return -(is_on_a ? place->radius_a : place->radius_b);
+        return -coordinate_flank(linkage, motions, place->joint, place->sign).arms[is_on_a ? 0 : 1];
     case TOUCH_TURN:
     case TOUCH_HOLE: // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
     case TOUCH_CAM:
+    case TOUCH_SLOT:
     case TOUCH_RACK: // work_at_line has it
         break;
     }
-    return coordinate_sense(joint) * (is_on_a ? -1.0 : 1.0);
+    return coordinate_sense(&linkage->joints[place->joint]) * (is_on_a ? -1.0 : 1.0);
 }
 
 // Likewise of an end of an angle, or of teeth: a driven body turns about the ground.
-static double work_at_end(const ImpulseStep *step, size_t number, const Motion *driven,
-                          bool is_on_a)
+static double work_at_end(const ImpulseStep *step, size_t number, const Motion *middle,
+                          const Motion *driven, bool is_on_a)
 {
+    const Linkage *linkage = &step->scenario->linkage;
     const Touch *place = &step->places[number];
-    const Joint *joint = &step->scenario->linkage.joints[place->joint];
     const size_t row = step->scheme.kernel.contacts[number].first_row;
     const double early = 0.5 * step->scheme.width_s * step->scheme.total.impulse[row] -
                          step->scheme.total.moment[row];
-    return early * place->sign * turning_share(joint, place, is_on_a) * driven->alpha;
+    return early * place->sign * turning_share(linkage, place, middle, is_on_a) * driven->alpha;
 }
 
 // The bodies at mid-step with the means of their speeds.
@@ -230,9 +241,13 @@ static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middl
         case TOUCH_RACK:
             work -= work_at_line(step, i, motions, &motions[body], is_on_a);
             break;
+        case TOUCH_SLOT:
+            work -= work_at_line(step, i, motions, &motions[body], is_on_a);
+            work -= work_of_turn(step, i, driven, is_on_a);
+            break;
         case TOUCH_TURN:
         case TOUCH_TEETH:
-            work -= work_at_end(step, i, driven, is_on_a);
+            work -= work_at_end(step, i, middle, driven, is_on_a);
             break;
         case TOUCH_HOLE:
         case TOUCH_DISC:

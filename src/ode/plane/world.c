@@ -79,8 +79,6 @@ static WorldEnds *ends_make(const Linkage *linkage, const dBodyID *bodies, const
             is_any = true;
             follow(ends, joint->body_a, motions);
             follow(ends, joint->body_b, motions);
-            follow(ends, joint_has_carrier(joint->kind) ? joint->gear.carrier : LINKAGE_GROUND,
-                   motions);
         }
     }
     if (!is_any) {
@@ -121,9 +119,6 @@ static const Motion *ends_look(WorldEnds *ends, int joint)
     const Joint *of = &ends->linkage->joints[joint];
     look_at(ends, of->body_a);
     look_at(ends, of->body_b);
-    if (joint_has_carrier(of->kind)) {
-        look_at(ends, of->gear.carrier);
-    }
     return ends->motions;
 }
 
@@ -290,14 +285,25 @@ Vec2 pair_anchor_b(const WorldPair *pair)
     return anchor_of(pair, 1);
 }
 
-// Where the pitch circles of gears touch.
-static Vec2 pitch_point(const WorldPair *pair)
+Vec2 pair_in_rows(const WorldPair *pair, Vec2 normal)
 {
-    const Vec2 centre = anchor_of(pair, 0);
-    const Touch *touch = &pair->touch;
-    const Vec2 between = vec2_sub(anchor_of(pair, 1), centre);
-    return vec2_add(centre,
-                    vec2_scale(touch->radius_a / (touch->radius_a + touch->radius_b), between));
+    switch (pair->touch.shape) {
+    case TOUCH_SLOT: {
+        const Snapshot a = snapshot_of(pair->bodies[0]);
+        const Vec2 across = snapshot_turn(&a, pair->line);
+        return (Vec2){vec2_dot(across, normal), vec2_cross(across, normal)};
+    }
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+        return normal;
+    case TOUCH_LINE:
+    case TOUCH_CAM:
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
+        break;
+    }
+    return (Vec2){1.0, 0.0};
 }
 
 Vec2 pair_point(const WorldPair *pair, Vec2 normal)
@@ -308,13 +314,15 @@ Vec2 pair_point(const WorldPair *pair, Vec2 normal)
         return vec2_sub(pair_centre(pair), vec2_scale(touch->radius_a, normal));
     case TOUCH_DISC:
         return vec2_add(anchor_of(pair, 0), vec2_scale(touch->radius_a, normal));
-    case TOUCH_TEETH:
-        return pitch_point(pair);
     case TOUCH_RACK:
         return vec2_sub(anchor_of(pair, 1),
                         vec2_scale(touch->radius_b * touch->sign, vec2_perp(normal)));
+    case TOUCH_TEETH:
     case TOUCH_CAM:
         return vec2_add(anchor_of(pair, 1), pair_pose(pair).from_b);
+    case TOUCH_SLOT:
+        return vec2_add(anchor_of(pair, 0),
+                        vec2_sub(pair_pose(pair).middle, vec2_scale(touch->radius_a, normal)));
     case TOUCH_LINE:
     case TOUCH_TURN:
         break;

@@ -158,6 +158,9 @@ TouchPose pair_pose(const WorldPair *pair);
 Vec2 pair_centre(const WorldPair *pair);
 Vec2 pair_anchor_b(const WorldPair *pair);
 
+// What a unit along a normal is in the first two rows of the response at the place.
+Vec2 pair_in_rows(const WorldPair *pair, Vec2 normal);
+
 // The point, m, in the world, at which a force along a normal acts.
 Vec2 pair_point(const WorldPair *pair, Vec2 normal);
 

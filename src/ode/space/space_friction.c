@@ -16,6 +16,7 @@
 #include "ode/space/space_friction.h"
 
 #include "base/zeroed.h"
+#include "kernel/friction_law.h"
 
 #include <math.h>
 
@@ -156,7 +157,7 @@ static double solve_mean(double factor, const double m[3], const double b[2], do
 // phi: what holds at a sliding speed, for each unit of it.
 static double hold_at(double most, double speed, double size)
 {
-    return size < 1e-6 * speed ? most / speed : most * tanh(size / speed) / size;
+    return most * friction_grip(size, speed).share;
 }
 
 // Solves (1 + theta phi M) w = b for w, whose size phi depends on, by the Illinois method.
@@ -261,7 +262,7 @@ static void make_rows(const System *system, size_t place, double alone, SpaceFri
     const Vec3 across = vec3_cross(row->normal, row->along);
     const double before[2] = {(1.0 - share->theta) * vec3_dot(row->sliding, row->along),
                               (1.0 - share->theta) * vec3_dot(row->sliding, across)};
-    const double held = tanh(size / speed);
+    const double held = friction_hold(size, speed).held;
     const double slope = 1.0 - held * held;
     if (slope > FLAT) {
         const double reach = speed / (share->theta * slope);

@@ -9,9 +9,11 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "kernel/friction_law.h"
 #include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "model/forces.h"
+#include "model/mesh.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 
@@ -44,7 +46,8 @@ static void dynamics_add_friction(const Dynamics *dynamics, size_t number, const
         vec2_sub(dynamics_contact_velocity(&dynamics->tree, state, end + 1, from_b),
                  dynamics_contact_velocity(&dynamics->tree, state, end, from_a));
     const double speed = vec2_dot(tangent, sliding);
-    const double friction = law->friction * force->press.normal * tanh(speed / law->friction_speed);
+    const double held = friction_hold(speed, law->friction_speed).held;
+    const double friction = law->friction * force->press.normal * held;
     force->force = vec2_sub(force->force, vec2_scale(friction, tangent));
     force->press.friction_power = friction * speed;
 }
@@ -113,6 +116,93 @@ static double second_on_cam(const Tree *tree, const TreeState *state, const Plan
            cam_bend(&site->touch.cam, &pose, omegas[0], omegas[1], sliding);
 }
 
+// A pin in a slot: which of its walls it meets, and how. The straight ones are lines, with the
+// digits of the way since the base; the ends are holes.
+
+int dynamics_contact_pair(const Tree *tree, const PlaneSite *site, ContactWall wall)
+{
+    switch (wall) {
+    case WALL_LOW:
+        return tree->corners[site->touch.joint];
+    case WALL_HIGH:
+        return tree->corners[site->touch.joint] + 1;
+    case WALL_NEAREST:
+    case WALL_BEHIND:
+    case WALL_AHEAD:
+        break;
+    }
+    return site->pair;
+}
+
+WallPlace dynamics_wall(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                        const Contact *contact)
+{
+    const double half = site->touch.half_length;
+    const Vec2 across = tree_normal(tree, state, site->pair);
+    const Vec2 offset = tree_pair_gap(tree, state, site->pair);
+    const TouchSlot slot =
+        touch_in_slot(offset, tree_pair_velocity(tree, state, site->pair), across,
+                      tree_omega(state, tree->end_bodies[2 * site->pair]));
+    const double ahead = slot.position.y;
+    const ContactWall end = ahead > 0.0 ? WALL_HIGH : WALL_LOW;
+    const ContactWall side =
+        tree_distance(tree, state, site->pair) > 0.0 ? WALL_AHEAD : WALL_BEHIND;
+    const double outward = ahead > 0.0 ? slot.rate.y : -slot.rate.y;
+    WallPlace place = {.wall = contact->wall};
+    if (place.wall == WALL_NEAREST) {
+        place.wall = fabs(ahead) > half ? end : side;
+    }
+    switch (place.wall) {
+    case WALL_LOW:
+        place.next = side;
+        place.within = -ahead - half;
+        place.leaving = slot.rate.y;
+        break;
+    case WALL_HIGH:
+        place.next = side;
+        place.within = ahead - half;
+        place.leaving = -slot.rate.y;
+        break;
+    case WALL_NEAREST:
+    case WALL_BEHIND:
+    case WALL_AHEAD:
+        place.next = end;
+        place.within = half - fabs(ahead);
+        place.leaving = outward;
+        break;
+    }
+    return place;
+}
+
+static TouchPose pose_in_slot(const Contact *contact, const Tree *tree, const TreeState *state,
+                              const PlaneSite *site)
+{
+    const Vec2 across = tree_normal(tree, state, site->pair);
+    const Vec2 along = vec2_perp(across);
+    const ContactWall wall = dynamics_wall(tree, state, site, contact).wall;
+    const int pair = dynamics_contact_pair(tree, site, wall);
+    TouchPose pose = {
+        .offset = tree_pair_gap(tree, state, site->pair),
+        .velocity = tree_pair_velocity(tree, state, site->pair),
+        .has_normal = true,
+    };
+    if (pair != site->pair) {
+        const TouchPose end = pose_in_hole(contact, tree, state, pair);
+        pose.gap = end.gap;
+        pose.has_normal = end.has_normal;
+        pose.normal = end.normal;
+        pose.approach_speed = end.approach_speed;
+        pose.middle = vec2_sub(pose.offset, end.offset);
+        return pose;
+    }
+    const double side = wall == WALL_AHEAD ? 1.0 : -1.0;
+    pose.gap = contact->clearance - side * tree_distance(tree, state, pair);
+    pose.normal = vec2_scale(-side, across);
+    pose.approach_speed = side * tree_line_rate(tree, state, pair);
+    pose.middle = vec2_scale(vec2_dot(along, pose.offset), along);
+    return pose;
+}
+
 // A point or disc on body b against a line of body a, or a disc against a disc. The gap has the
 // digits of the way since the base.
 static TouchPose pose_outside(const Tree *tree, const TreeState *state, const PlaneSite *site)
@@ -127,7 +217,51 @@ static TouchPose pose_outside(const Tree *tree, const TreeState *state, const Pl
     return pose;
 }
 
-// An end of an angle, or a flank of teeth, which push at right angles to the line of the centres.
+static double angle_of(const TreeState *state, int body)
+{
+    return body == LINKAGE_GROUND ? 0.0 : state->motions[body].angle;
+}
+
+MeshFlank dynamics_flank(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const Mesh mesh = mesh_of(tree->linkage, &tree->linkage->joints[site->touch.joint]);
+    return mesh_flank(&mesh, site->touch.sign, tree_pair_gap(tree, state, site->pair),
+                      angle_of(state, bodies[0]), angle_of(state, bodies[1]));
+}
+
+static TouchPose pose_of_flank(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int joint = site->touch.joint;
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const Mesh mesh = mesh_of(tree->linkage, &tree->linkage->joints[joint]);
+    const MeshFlank flank = dynamics_flank(tree, state, site);
+    const Vec2 velocity = tree_pair_velocity(tree, state, site->pair);
+    const double beyond = site->touch.sign * tree_coordinate(tree, state, joint) - site->end;
+    return (TouchPose){
+        .offset = flank.offset,
+        .velocity = velocity,
+        .gap = mesh_gap(&mesh, &flank, beyond, tree_distance(tree, state, site->pair)),
+        .has_normal = true,
+        .normal = flank.normal,
+        .approach_speed = -mesh_rate(&flank, velocity, tree_omega(state, bodies[0]),
+                                     tree_omega(state, bodies[1])),
+        .from_b = flank.from_b,
+    };
+}
+
+// The second rate of its gap.
+static double second_of_flank(const Tree *tree, const TreeState *state, const PlaneSite *site)
+{
+    const int *bodies = tree->end_bodies + 2 * site->pair;
+    const MeshFlank flank = dynamics_flank(tree, state, site);
+    return mesh_rate(&flank, tree_pair_acceleration(tree, state, site->pair),
+                     tree_alpha(state, bodies[0]), tree_alpha(state, bodies[1])) +
+           mesh_bend(&flank, tree_pair_velocity(tree, state, site->pair),
+                     tree_omega(state, bodies[0]), tree_omega(state, bodies[1]));
+}
+
+// An end of an angle, or a flank of a rack.
 static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const PlaneSite *site)
 {
     const int joint = site->touch.joint;
@@ -141,17 +275,16 @@ static TouchPose pose_of_end(const Tree *tree, const TreeState *state, const Pla
         .approach_speed = -sign * tree_coordinate_rate(tree, state, joint),
     };
     switch (site->touch.shape) {
-    case TOUCH_TEETH:
-        pose.normal = vec2_scale(sign / sqrt(vec2_dot(offset, offset)), vec2_perp(offset));
-        break;
     case TOUCH_RACK:
         pose.normal = vec2_scale(sign, tree_normal(tree, state, site->pair));
         break;
     case TOUCH_TURN:
-    case TOUCH_HOLE: // which are no ends
+    case TOUCH_TEETH: // pose_of_flank has it
+    case TOUCH_HOLE:  // which are no ends
     case TOUCH_DISC:
     case TOUCH_LINE:
     case TOUCH_CAM:
+    case TOUCH_SLOT:
         break;
     }
     return pose;
@@ -163,17 +296,49 @@ static TouchPose pose_of(const Contact *contact, const Tree *tree, const TreeSta
     switch (site->touch.shape) {
     case TOUCH_HOLE:
         return pose_in_hole(contact, tree, state, site->pair);
-    case TOUCH_TURN:
     case TOUCH_TEETH:
+        return pose_of_flank(tree, state, site);
+    case TOUCH_TURN:
     case TOUCH_RACK:
         return pose_of_end(tree, state, site);
     case TOUCH_CAM:
         return pose_on_cam(tree, state, site);
+    case TOUCH_SLOT:
+        return pose_in_slot(contact, tree, state, site);
     case TOUCH_DISC:
     case TOUCH_LINE:
         break;
     }
     return pose_outside(tree, state, site);
+}
+
+// The second rate of the gap between two circles, of which the pair of the tree has the centres.
+static double second_of_circles(const Tree *tree, const TreeState *state, int pair,
+                                const TouchPose *pose, bool is_inside)
+{
+    const double across = vec2_cross(pose->normal, pose->velocity);
+    const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
+    return vec2_dot(pose->normal, tree_pair_acceleration(tree, state, pair)) +
+           (is_inside ? -turning : turning);
+}
+
+static double second_in_slot(const Dynamics *dynamics, size_t number, const TreeState *state,
+                             const TouchPose *pose)
+{
+    const Tree *tree = &dynamics->tree;
+    const PlaneSite *site = &dynamics->sites[number];
+    const ContactWall wall =
+        dynamics_wall(tree, state, site, &dynamics->system.contacts[number]).wall;
+    const int pair = dynamics_contact_pair(tree, site, wall);
+    if (pair != site->pair) {
+        const TouchPose end = {
+            .offset = tree_pair_gap(tree, state, pair),
+            .velocity = tree_pair_velocity(tree, state, pair),
+            .normal = pose->normal,
+        };
+        return second_of_circles(tree, state, pair, &end, true);
+    }
+    return (wall == WALL_AHEAD ? -1.0 : 1.0) * tree_line_second(tree, state, pair);
 }
 
 double dynamics_contact_second(const Dynamics *dynamics, size_t number, const TreeState *state,
@@ -186,8 +351,11 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
         return tree_line_second(&dynamics->tree, state, site->pair);
     case TOUCH_CAM:
         return second_on_cam(&dynamics->tree, state, site);
-    case TOUCH_TURN:
+    case TOUCH_SLOT:
+        return second_in_slot(dynamics, number, state, pose);
     case TOUCH_TEETH:
+        return second_of_flank(&dynamics->tree, state, site);
+    case TOUCH_TURN:
     case TOUCH_RACK:
         return site->touch.sign * tree_coordinate_second(&dynamics->tree, state, site->touch.joint);
     case TOUCH_HOLE:
@@ -196,10 +364,7 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
     case TOUCH_DISC:
         break;
     }
-    const double across = vec2_cross(pose->normal, pose->velocity);
-    const double turning = across * across / sqrt(vec2_dot(pose->offset, pose->offset));
-    return vec2_dot(pose->normal, tree_pair_acceleration(&dynamics->tree, state, site->pair)) +
-           (is_inside ? -turning : turning);
+    return second_of_circles(&dynamics->tree, state, site->pair, pose, is_inside);
 }
 
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
@@ -222,133 +387,6 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
     if (contact->law.friction > 0.0 && !dynamics_contact_is_turn(site)) {
         dynamics_add_friction(dynamics, number, state, force);
     }
-}
-
-// Contact sites: where the bodies of a linkage touch, and how far each may be from touching before
-// it is evaluated again.
-
-// What of a cam may go by until its gap is looked at again: its points by two, between which no
-// lobe comes and goes, and at most so much in rad.
-static const double CAM_POINTS = 2.0;
-static const double CAM_TURN = 0.2;
-
-// m, of its reach
-static double flight_of_cam(const Profile *profile)
-{
-    return profile->reach * fmin(CAM_TURN, CAM_POINTS * 2.0 * M_PI / (double)profile->count);
-}
-
-// m: a site that is apart is evaluated before its bodies have come so much nearer. Of a stop that
-// is no play, but how far the body that touches reaches from where it does; of an angle with one
-// stop, rad.
-static double flight_of(const Linkage *linkage, const double *reaches, const Touch *touch)
-{
-    const Joint *joint = &linkage->joints[touch->joint];
-    if (joint->limits.kind != LIMIT_NONE) {
-        const double half = coordinate_play(joint);
-        const double beyond =
-            joint_has_position(joint->kind)
-                ? reaches[joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b]
-                : 1.0;
-        return isfinite(half) ? half : beyond;
-    }
-    if (!joint_has_disc(joint->kind)) {
-        return linkage_radial_clearance(joint);
-    }
-    switch (touch->shape) {
-    case TOUCH_CAM:
-        return flight_of_cam(touch->cam.profile);
-    case TOUCH_DISC:
-        return touch->clearance;
-    case TOUCH_LINE:
-    case TOUCH_HOLE: // which is no stop's, nor are ends
-    case TOUCH_TURN:
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        break;
-    }
-    return reaches[joint->body_b == LINKAGE_GROUND ? joint->body_a : joint->body_b];
-}
-
-// m: the lever of an angle, the shorter of how far its bodies reach; 1 of a length.
-static double site_arm(const Linkage *linkage, const double *reaches, const Touch *touch)
-{
-    double arm = INFINITY;
-    for (int side = 0; touch->shape == TOUCH_TURN && side < 2; side++) {
-        const int body = linkage_end(&linkage->joints[touch->joint], side).body;
-        arm = body == LINKAGE_GROUND ? arm : fmin(arm, reaches[body]);
-    }
-    return touch->shape == TOUCH_TURN ? arm : 1.0;
-}
-
-// By how many sites the one at the other end of a limited coordinate comes later.
-static int find_partner(const Scenario *scenario, const Touch *touches, size_t count, size_t number)
-{
-    if (scenario->linkage.joints[touches[number].joint].limits.kind == LIMIT_NONE) {
-        return 0;
-    }
-    const bool is_low = number + 1 < count && touches[number + 1].joint == touches[number].joint;
-    const bool is_high = number > 0 && touches[number - 1].joint == touches[number].joint;
-    return is_low ? 1 : is_high ? -1 : 0;
-}
-
-// Whether the force of a site has a moment about the anchors.
-static bool acts_beside(const Touch *touch)
-{
-    switch (touch->shape) {
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        return true;
-    case TOUCH_TURN:
-        return false;
-    case TOUCH_HOLE:
-    case TOUCH_DISC:
-        break;
-    }
-    return touch->law.friction > 0.0;
-}
-
-static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of_joint)
-{
-    const Joint *joint = &dynamics->tree.linkage->joints[touch->joint];
-    Touch sites[TOUCH_CORNERS];
-    const bool has_own = tree_own_pairs(dynamics->tree.linkage, touch->joint, sites) > 0;
-    return (PlaneSite){
-        .touch = *touch,
-        .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,
-        .acts_beside = acts_beside(touch),
-        .end = touch->clearance - touch->sign * tree_coordinate_origin(joint),
-    };
-}
-
-// Fills in the contacts and their sites, for which there is room. Fails with ERR_CASE where a law
-// does not fit a joint.
-static bool dynamics_list_sites(const Scenario *scenario, Dynamics *dynamics, Err *err)
-{
-    System *system = &dynamics->system;
-    Touch *touches;
-    if (!touch_list(scenario, &touches, &system->contact_count, err)) {
-        return false;
-    }
-    size_t of_joint = 0; // the number of the site among those of its joint
-    for (size_t i = 0; i < system->contact_count; i++) {
-        const Touch *touch = &touches[i];
-        of_joint = i > 0 && touches[i - 1].joint == touch->joint ? of_joint + 1 : 0;
-        system->contacts[i] = (Contact){
-            .joint = touch->joint,
-            .place = touch->place,
-            .partner = find_partner(scenario, touches, system->contact_count, i),
-            .law = touch->law,
-            .clearance = linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
-            .arm = site_arm(&scenario->linkage, dynamics->reach, touch),
-            .flight = flight_of(&scenario->linkage, dynamics->reach, touch),
-        };
-        dynamics->sites[i] = site_of(dynamics, touch, of_joint);
-    }
-    free(touches);
-    return true;
 }
 
 // Reactions: the forces with which the ideal joints hold their bodies.
@@ -763,35 +801,32 @@ bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y
     return true;
 }
 
-// Whether a third body counts beside the two that touch.
-static bool is_carried(const Dynamics *dynamics, size_t contact)
-{
-    const int joint = dynamics->sites[contact].touch.joint;
-    return joint_has_carrier(dynamics->tree.linkage->joints[joint].kind);
-}
-
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y)
 {
     const Tree *tree = &dynamics->tree;
     TreeState *state = &dynamics->room.state->tree;
     const double *u = y + tree->coordinate_count;
-    if (is_carried(dynamics, contact)) {
-        tree_evaluate(tree, since_s, y, u, state);
-    } else {
-        tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
-    }
+    tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
     ContactForce force;
     dynamics_contact_find(dynamics, contact, state, &force);
     return force;
 }
 
+WallPlace dynamics_contact_wall(const Dynamics *dynamics, size_t contact, double since_s,
+                                const double *y)
+{
+    const Tree *tree = &dynamics->tree;
+    TreeState *state = &dynamics->room.state->tree;
+    const PlaneSite *site = &dynamics->sites[contact];
+    tree_evaluate_pair(tree, site->pair, since_s, y, y + tree->coordinate_count, state);
+    return dynamics_wall(tree, state, site, &dynamics->system.contacts[contact]);
+}
+
 size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coordinates)
 {
     const Dynamics *dynamics = (const Dynamics *)system;
-    return is_carried(dynamics, contact)
-               ? 0
-               : tree_pair_coordinates(&dynamics->tree, dynamics->sites[contact].pair, coordinates);
+    return tree_pair_coordinates(&dynamics->tree, dynamics->sites[contact].pair, coordinates);
 }
 
 // The rates of any mechanism; apart from the shorter way, so that this sets up nothing for it.

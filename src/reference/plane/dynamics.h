@@ -99,8 +99,23 @@ static inline void dynamics_contact_points(const PlaneSite *site, const TouchPos
     }
 }
 
+// How a pin is to the walls of its slot.
+WallPlace dynamics_wall(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                        const Contact *contact);
+
+// The pair of the tree between whose ends the gap of a contact is measured: in a slot that of the
+// wall that it meets.
+int dynamics_contact_pair(const Tree *tree, const PlaneSite *site, ContactWall wall);
+
 // A follower at the profile of a cam.
 CamPose dynamics_cam(const Tree *tree, const TreeState *state, const PlaneSite *site);
+
+// Fills in the contacts and their sites, for which there is room. Fails with ERR_CASE where a law
+// does not fit a joint.
+bool dynamics_list_sites(const Scenario *scenario, Dynamics *dynamics, Err *err);
+
+// A flank of a pair of gears.
+MeshFlank dynamics_flank(const Tree *tree, const TreeState *state, const PlaneSite *site);
 
 // Whether a contact's gap is that of an angle or of teeth.
 static inline bool dynamics_contact_is_turn(const PlaneSite *site)
@@ -181,6 +196,10 @@ LoopsRoom dynamics_loops(const Dynamics *dynamics);
 // evaluated.
 ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double since_s,
                               const double *y);
+
+// The same of the walls of its slot.
+WallPlace dynamics_contact_wall(const Dynamics *dynamics, size_t contact, double since_s,
+                                const double *y);
 
 // Writes the coordinates of a Dynamics that this depends on. Returns how many there are; 0 where it
 // depends on all.

@@ -10,10 +10,11 @@
 // + of discs, - of a pin in its hole; a line's normal turns as slowly as the mechanism moves.
 //
 // A limited angle or teeth push along a coordinate q with steady shares w of the bodies' turns (of
-// a rack and of the ways along its pitch line), and hold no friction: dA = -M^-1 w ((1 + chi d'/v0)
-// k w dq + (chi F_el / v0 + c) w du).
+// teeth and of the ways of their bodies along what they push), and hold no friction:
+// dA = -M^-1 w ((1 + chi d'/v0) k w dq + (chi F_el / v0 + c) w du).
 #include "reference/plane/dynamics.h"
 
+#include "kernel/friction_law.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 
@@ -32,7 +33,7 @@ typedef struct SlopesPressing {
     Vec2 *centre;     // G, by coordinate: of the parts that the contact couples, like all
     double *arms;     // m, s; 0 without friction
     Vec2 beside;      // m, from the circle's centre to where a flat on body b touches
-    int pair;         // of the tree
+    int pair;         // of the tree; in a slot that of the wall that is met
     const CouplingJoint *parts;
 } SlopesPressing;
 
@@ -43,10 +44,13 @@ typedef struct SlopesChange {
 } SlopesChange;
 
 // The arm of friction about the centre of the circle on body b, or on body a about that of its own
-// circle or the point of its line, m.
-static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
+// circle or the point of its line, m. A slot's end is a hole, its straight walls are lines.
+static double friction_arm(const Touch *touch, const TouchPose *pose, bool is_at_line, int side)
 {
+    const double pin_arm = touch->radius_a - touch->clearance + pose->gap; // of a slot
     switch (touch->shape) {
+    case TOUCH_SLOT:
+        return side == 1 ? pin_arm : is_at_line ? -pin_arm : -touch->radius_a;
     case TOUCH_HOLE:
         return side == 0 ? -touch->radius_a : touch->radius_a - vec2_length(pose->offset);
     case TOUCH_DISC:
@@ -62,15 +66,17 @@ static double friction_arm(const Touch *touch, const TouchPose *pose, int side)
 }
 
 // Arms of friction, and how it grips at a state of the tree.
-static void find_friction(const Dynamics *dynamics, const TreeState *state, int pair,
+static void find_friction(const Dynamics *dynamics, const TreeState *state,
                           SlopesPressing *pressing)
 {
     const Tree *tree = &dynamics->tree;
+    const int pair = pressing->pair;
+    const bool is_at_line = tree->measures[pair] == TREE_LINE;
     const TouchPose *pose = &pressing->force.pose;
     double sliding = vec2_dot(vec2_perp(pose->normal), pressing->velocity);
     for (int side = 0; side < 2; side++) {
         const int body = tree->end_bodies[2 * pair + side];
-        const double arm = friction_arm(pressing->touch, pose, side);
+        const double arm = friction_arm(pressing->touch, pose, is_at_line, side);
         if (body != LINKAGE_GROUND) {
             sliding -= arm * state->motions[body].omega;
         }
@@ -78,7 +84,7 @@ static void find_friction(const Dynamics *dynamics, const TreeState *state, int 
             pressing->arms[tree->angle_column[body]] += arm;
         }
     }
-    pressing->grip = tanh(sliding / pressing->law->friction_speed);
+    pressing->grip = friction_hold(sliding, pressing->law->friction_speed).held;
 }
 
 // Zeroes what is found for each coordinate of some parts.
@@ -107,6 +113,30 @@ static void meet_cam(const Tree *tree, const TreeState *state, const PlaneSite *
     pressing->beside = cam.measured;
     pressing->bend = site->touch.cam.is_flat ? INFINITY : 1.0 / cam.curvature;
     pressing->velocity = vec2_add(pose->velocity, vec2_sub(turned_b, turned_a));
+}
+
+// At a line, of which the pair of the tree has the normal: against the point of body a under the
+// circle's centre.
+static void meet_line(const Tree *tree, const TreeState *state, SlopesPressing *pressing)
+{
+    const double omega = tree_omega(state, tree->end_bodies[2 * pressing->pair]);
+    const Vec2 offset = tree_pair_gap(tree, state, pressing->pair);
+    pressing->velocity = vec2_sub(tree_pair_velocity(tree, state, pressing->pair),
+                                  vec2_scale(omega, vec2_perp(offset)));
+}
+
+// In a slot: at one of its straight walls, or in the hole at one of its ends.
+static void meet_slot(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                      const Contact *contact, SlopesPressing *pressing)
+{
+    const ContactWall wall = dynamics_wall(tree, state, site, contact).wall;
+    pressing->pair = dynamics_contact_pair(tree, site, wall);
+    if (pressing->pair == site->pair) {
+        meet_line(tree, state, pressing);
+        return;
+    }
+    pressing->velocity = tree_pair_velocity(tree, state, pressing->pair);
+    pressing->bend = -vec2_length(tree_pair_gap(tree, state, pressing->pair));
 }
 
 // How each coordinate moves where the gap is measured on body b against body a there.
@@ -146,12 +176,12 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
     case TOUCH_CAM:
         meet_cam(&dynamics->tree, state, site, pose, &pressing);
         break;
-    case TOUCH_LINE: {
-        // against the point of body a under the circle's centre
-        const double omega = tree_omega(state, dynamics->tree.end_bodies[2 * site->pair]);
-        pressing.velocity = vec2_sub(pose->velocity, vec2_scale(omega, vec2_perp(pose->offset)));
+    case TOUCH_LINE:
+        meet_line(&dynamics->tree, state, &pressing);
         break;
-    }
+    case TOUCH_SLOT:
+        meet_slot(&dynamics->tree, state, site, contact, &pressing);
+        break;
     case TOUCH_DISC:
         pressing.bend = vec2_length(pose->offset);
         break;
@@ -167,7 +197,7 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
     pressing.damping = press_damping(contact, &pressing.force.press);
     find_row(&dynamics->tree, state, &pressing);
     if (contact->law.friction > 0.0) {
-        find_friction(dynamics, state, site->pair, &pressing);
+        find_friction(dynamics, state, &pressing);
     }
     return pressing;
 }
@@ -251,7 +281,8 @@ static void slopes_find_pushed(const Dynamics *dynamics, const TreeState *state,
             dynamics_load_end(tree, state, end, under, vec2_scale(-1.0, force), &loads);
         } else {
             for (int side = 0; side < 2; side++) {
-                const double arm = friction_arm(pressing->touch, &pressing->force.pose, side);
+                const double arm =
+                    friction_arm(pressing->touch, &pressing->force.pose, is_line, side);
                 dynamics_load_couple(tree, state, tree->end_bodies[end + side], arm, &loads);
             }
         }
@@ -324,15 +355,16 @@ static void slopes_add_turn_column(const Dynamics *dynamics, const CouplingJoint
     }
 }
 
-// What the way along a rack's pitch line adds to the loads of a unit force along it, and to how
-// each coordinate moves its own: by the turns of bodies alone until then.
-static void slopes_add_way(const Dynamics *dynamics, const TreeState *state, int joint,
+// What the way along the push of teeth adds to the loads of a unit force along it, and to how each
+// coordinate moves its own: by the turns of bodies alone until then. A rack is pushed at its point
+// under the pinion's centre, a gear at its own centre.
+static void slopes_add_way(const Dynamics *dynamics, const TreeState *state, int joint, Vec2 along,
                            const CouplingJoint *parts, Loads *loads)
 {
     const Tree *tree = &dynamics->tree;
     const Coupling *coupling = dynamics->system.coupling;
-    const Vec2 along = tree_normal(tree, state, joint);
-    const Vec2 under = tree_pair_gap(tree, state, joint);
+    const Vec2 under =
+        tree->measures[joint] == TREE_LINE ? tree_pair_gap(tree, state, joint) : (Vec2){0.0, 0.0};
     dynamics_load_end(tree, state, 2 * joint + 1, (Vec2){0.0, 0.0}, along, loads);
     dynamics_load_end(tree, state, 2 * joint, under, vec2_scale(-1.0, along), loads);
     loops_pair_row(tree, state, joint, dynamics->room.row);
@@ -358,7 +390,13 @@ static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *st
     ContactForce force;
     Loads loads = {.pushes = dynamics->room.zeros};
     dynamics_contact_find(dynamics, number, state, &force);
-    tree_coordinate_parts(&tree->linkage->joints[contact->joint], parts);
+    const Joint *joint = &tree->linkage->joints[contact->joint];
+    tree_coordinate_parts(joint, parts);
+    if (joint_has_mesh(joint->kind)) {
+        const MeshFlank flank = dynamics_flank(tree, state, &dynamics->sites[number]);
+        parts[0].share = -flank.arms[0];
+        parts[1].share = -flank.arms[1];
+    }
     slopes_clear(dynamics, coupled);
     for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
         const int body = parts[i].body;
@@ -367,8 +405,10 @@ static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *st
             dynamics->room.arms[tree->angle_column[body]] += parts[i].share;
         }
     }
-    if (joint_has_rack(tree->linkage->joints[contact->joint].kind)) {
-        slopes_add_way(dynamics, state, contact->joint, coupled, &loads);
+    if (joint_has_teeth(joint->kind)) {
+        const double sign = dynamics->sites[number].touch.sign;
+        slopes_add_way(dynamics, state, contact->joint, vec2_scale(sign, force.pose.normal),
+                       coupled, &loads);
     }
     slopes_solve_parts(dynamics, coupled, &loads, dynamics->room.pushed[0]);
     const double stiffness = (1.0 + contact->damping_rate * force.pose.approach_speed) *

@@ -105,6 +105,11 @@ static Press plane_press(const System *system, size_t contact, double since_s, c
     return dynamics_contact(plane_dynamics_of(system), contact, since_s, y).press;
 }
 
+static WallPlace plane_wall(const System *system, size_t contact, double since_s, const double *y)
+{
+    return dynamics_contact_wall(plane_dynamics_of(system), contact, since_s, y);
+}
+
 static void add_end_size(const Tree *tree, const TreeState *state, int end, double *length,
                          double *speed)
 {
@@ -133,6 +138,37 @@ static void plane_sizes(const System *system, const SystemState *state, size_t c
     }
     add_end_size(tree, &plane_state_of(state)->tree, end, length, speed);
     add_end_size(tree, &plane_state_of(state)->tree, end + 1, length, speed);
+    *length += site->touch.half_length;
+}
+
+// In a slot across it, and along it as far as that brings the pin to an end.
+static double crossing_in_slot(const Tree *tree, const TreeState *state, const PlaneSite *site,
+                               double flight)
+{
+    const TouchSlot slot = touch_in_slot(
+        tree_pair_gap(tree, state, site->pair), tree_pair_velocity(tree, state, site->pair),
+        tree_normal(tree, state, site->pair), tree_omega(state, tree->end_bodies[2 * site->pair]));
+    const double speed = vec2_length(slot.rate);
+    const double to_end = fmax(site->touch.half_length - fabs(slot.position.y), flight);
+    const double share = flight / to_end;
+    const double second = fabs(tree_line_second(tree, state, site->pair)) +
+                          share * vec2_length(tree_pair_acceleration(tree, state, site->pair));
+    return fabs(slot.rate.x) + share * speed + sqrt(flight * second);
+}
+
+// How fast gears may come apart or nearer, m/s.
+static double parting_of(const Tree *tree, const TreeState *at, int joint, double flight)
+{
+    if (tree->linkage->joints[joint].gear.pressure_angle == 0.0) {
+        return 0.0;
+    }
+    const Vec2 offset = tree_pair_gap(tree, at, joint);
+    const Vec2 along = vec2_scale(1.0 / vec2_length(offset), offset);
+    const Vec2 velocity = tree_pair_velocity(tree, at, joint);
+    const double across = vec2_cross(along, velocity);
+    const double second = vec2_dot(along, tree_pair_acceleration(tree, at, joint)) +
+                          across * across / vec2_length(offset);
+    return fabs(vec2_dot(along, velocity)) + sqrt(flight * fabs(second));
 }
 
 static double plane_crossing(const System *system, const SystemState *state, size_t contact)
@@ -146,8 +182,11 @@ static double plane_crossing(const System *system, const SystemState *state, siz
     const int *bodies = tree->end_bodies + 2 * site->pair;
     double passing = 0.0;
     switch (site->touch.shape) {
-    case TOUCH_TURN:
     case TOUCH_TEETH:
+        passing = parting_of(tree, at, joint, of->flight);
+        return passing + fabs(tree_coordinate_rate(tree, at, joint)) +
+               sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));
+    case TOUCH_TURN:
     case TOUCH_RACK:
         return fabs(tree_coordinate_rate(tree, at, joint)) +
                sqrt(of->flight * fabs(tree_coordinate_second(tree, at, joint)));
@@ -155,6 +194,8 @@ static double plane_crossing(const System *system, const SystemState *state, siz
         // along the line it may go as fast as it likes
         return fabs(tree_line_rate(tree, at, site->pair)) +
                sqrt(of->flight * fabs(tree_line_second(tree, at, site->pair)));
+    case TOUCH_SLOT:
+        return crossing_in_slot(tree, at, site, of->flight);
     case TOUCH_CAM:
         // a lobe comes along the profile
         passing = site->touch.cam.profile->reach *
@@ -418,6 +459,7 @@ static const SystemKind PLANE = {
     .rates = dynamics_rates,
     .slopes = dynamics_slopes,
     .press = plane_press,
+    .wall = plane_wall,
     .needs = dynamics_contact_needs,
     .sizes = plane_sizes,
     .crossing = plane_crossing,

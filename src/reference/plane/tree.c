@@ -12,6 +12,7 @@
 #include "base/sincos.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
+#include "model/mesh.h"
 #include "reference/span.h"
 
 #include <assert.h>
@@ -28,8 +29,7 @@ static inline void tree_set_centre(const Tree *tree, int body, Vec2 moved, TreeS
 
 // Distances of a point from a line, and of a disc from a disc.
 
-// By how much the distance from a line has changed since the base.
-static double line_moved(const Tree *tree, const TreeState *state, int pair)
+double tree_line_moved(const Tree *tree, const TreeState *state, int pair)
 {
     const Vec2 normal = tree_normal(tree, state, pair);
     const Vec2 turned = tree_normal_turned(tree, state, pair);
@@ -40,7 +40,7 @@ static double line_moved(const Tree *tree, const TreeState *state, int pair)
 double tree_distance(const Tree *tree, const TreeState *state, int pair)
 {
     if (tree->measures[pair] == TREE_LINE) {
-        return tree->base_distances[pair] + line_moved(tree, state, pair);
+        return tree->base_distances[pair] + tree_line_moved(tree, state, pair);
     }
     const Vec2 moved = tree_pair_moved(tree, state, pair);
     const Vec2 before = tree->base_gaps[pair];
@@ -391,98 +391,6 @@ void tree_point_row(const Tree *tree, const TreeState *state, int body, Vec2 arm
     }
 }
 
-// Limited coordinates: how far a hinge has turned, or a gear against another, within its play.
-
-void tree_coordinate_parts(const Joint *joint, TreeCoordinatePart parts[TREE_COORDINATE_PARTS])
-{
-    const Gear *gear = &joint->gear;
-    const double sense = coordinate_sense(joint);
-    switch (joint_coordinate(joint->kind)) {
-    case JOINT_COORDINATE_TEETH:
-        parts[0] = (TreeCoordinatePart){joint->body_a, -gear->radius_a};
-        parts[1] = (TreeCoordinatePart){joint->body_b, -gear->radius_b};
-        parts[2] = (TreeCoordinatePart){gear->carrier, gear->radius_a + gear->radius_b};
-        break;
-    case JOINT_COORDINATE_RACK: // beside the way along the pitch line
-        parts[0] = (TreeCoordinatePart){joint->body_a, -gear->radius_b};
-        parts[1] = (TreeCoordinatePart){joint->body_b, gear->radius_b};
-        parts[2] = (TreeCoordinatePart){LINKAGE_GROUND, 0.0};
-        break;
-    case JOINT_COORDINATE_ANGLE:
-    case JOINT_COORDINATE_NONE:
-    case JOINT_COORDINATE_POSITION:
-        parts[0] = (TreeCoordinatePart){joint->body_a, -sense};
-        parts[1] = (TreeCoordinatePart){joint->body_b, sense};
-        parts[2] = (TreeCoordinatePart){LINKAGE_GROUND, 0.0};
-        break;
-    }
-}
-
-double tree_coordinate_origin(const Joint *joint)
-{
-    return joint_has_teeth(joint->kind) ? joint->limits.middle
-                                        : coordinate_sense(joint) * joint->held_angle;
-}
-
-// Whether the way along a pair's line is part of a joint's coordinate.
-static bool has_way(const Tree *tree, int joint)
-{
-    return tree->measures[joint] == TREE_LINE; // of what has a coordinate, a rack alone
-}
-
-double tree_coordinate(const Tree *tree, const TreeState *state, int joint)
-{
-    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
-    tree_coordinate_parts(&tree->linkage->joints[joint], parts);
-    double sum = 0.0;
-    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
-        sum += parts[i].body == LINKAGE_GROUND ? 0.0 : parts[i].share * state->turn[parts[i].body];
-    }
-    sum += has_way(tree, joint) ? line_moved(tree, state, joint) : 0.0;
-    return tree->base_coordinates[joint] + sum;
-}
-
-double tree_coordinate_rate(const Tree *tree, const TreeState *state, int joint)
-{
-    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
-    tree_coordinate_parts(&tree->linkage->joints[joint], parts);
-    double sum = 0.0;
-    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
-        sum += parts[i].share * tree_omega(state, parts[i].body);
-    }
-    return has_way(tree, joint) ? sum + tree_line_rate(tree, state, joint) : sum;
-}
-
-double tree_coordinate_second(const Tree *tree, const TreeState *state, int joint)
-{
-    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
-    tree_coordinate_parts(&tree->linkage->joints[joint], parts);
-    double sum = 0.0;
-    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
-        sum += parts[i].share * tree_alpha(state, parts[i].body);
-    }
-    return has_way(tree, joint) ? sum + tree_line_second(tree, state, joint) : sum;
-}
-
-void tree_coordinate_sizes(const Tree *tree, const TreeState *state, int joint, double *position,
-                           double *speed)
-{
-    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
-    tree_coordinate_parts(&tree->linkage->joints[joint], parts);
-    *position = fabs(tree->base_coordinates[joint]);
-    *speed = 0.0;
-    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
-        if (parts[i].body != LINKAGE_GROUND) {
-            *position += fabs(parts[i].share * state->turn[parts[i].body]);
-            *speed += fabs(parts[i].share * tree_omega(state, parts[i].body));
-        }
-    }
-    if (has_way(tree, joint)) {
-        *position += fabs(line_moved(tree, state, joint));
-        *speed += fabs(tree_line_rate(tree, state, joint));
-    }
-}
-
 // The base: where the linkage stands at the start of a step, in long double.
 //
 // A play of 10 um between links of a metre: of 16 digits of a position eleven are left for the pin
@@ -557,27 +465,6 @@ static long double base_angle_of(const Tree *tree, int body)
     return body == LINKAGE_GROUND ? 0.0L : tree->base_angle[body];
 }
 
-// A limited coordinate.
-static void tree_coordinate_settle(Tree *tree, int joint)
-{
-    const Joint *of = &tree->linkage->joints[joint];
-    TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
-    tree_coordinate_parts(of, parts);
-    long double sum = -(long double)tree_coordinate_origin(of);
-    for (int i = 0; i < TREE_COORDINATE_PARTS; i++) {
-        if (parts[i].body != LINKAGE_GROUND) {
-            sum += parts[i].share * tree->base_angle[parts[i].body];
-        }
-    }
-    if (has_way(tree, joint)) {
-        const TreePoint gap = subtract(tree_base_end_point(tree, 2 * joint + 1),
-                                       tree_base_end_point(tree, 2 * joint));
-        const TreePoint along = normal_of(tree, joint);
-        sum += along.x * gap.x + along.y * gap.y;
-    }
-    tree->base_coordinates[joint] = (double)sum;
-}
-
 // Distances from lines and between discs, and tilts.
 static void measure(Tree *tree)
 {
@@ -601,7 +488,10 @@ static void measure(Tree *tree)
     for (int i = 0; i < (int)tree->linkage->joint_count; i++) {
         const Joint *joint = &tree->linkage->joints[i];
         if (joint->limits.kind != LIMIT_NONE && !joint_has_position(joint->kind)) {
-            tree_coordinate_settle(tree, i);
+            const int pair = 2 * i;
+            const TreePoint gap =
+                subtract(tree_base_end_point(tree, pair + 1), tree_base_end_point(tree, pair));
+            tree_coordinate_settle(tree, i, gap, normal_of(tree, i));
         }
     }
 }
@@ -794,8 +684,26 @@ static void tree_list_ends(Tree *tree)
     tree->end_firsts[0] = 0;
 }
 
+// The centres of the arcs at the ends of a slot, the first one along it first.
+static size_t ends_of_slot(const Joint *joint, Touch ends[TOUCH_CORNERS])
+{
+    const Vec2 along = vec2_perp(vec2_rotate(joint->direction, (Vec2){1.0, 0.0}));
+    for (int i = 0; i < 2; i++) {
+        const double way = (i == 0 ? -0.5 : 0.5) * joint->stop.slot;
+        ends[i] = (Touch){
+            .shape = TOUCH_SLOT,
+            .anchor_a = vec2_add(joint->anchor_a, vec2_scale(way, along)),
+            .anchor_b = joint->anchor_b,
+        };
+    }
+    return 2;
+}
+
 size_t tree_own_pairs(const Linkage *linkage, int number, Touch sites[TOUCH_CORNERS])
 {
+    if (linkage_has_slot(&linkage->joints[number])) {
+        return ends_of_slot(&linkage->joints[number], sites);
+    }
     const bool has_own = joint_slides(linkage->joints[number].kind);
     return has_own ? touch_places(linkage, number, sites) : 0;
 }
@@ -817,6 +725,12 @@ static void set_pairs(Tree *tree)
             touch_places(linkage, i, sites);
             // of a cam the line from which its profile's angles count
             measure = sites[0].shape == TOUCH_DISC ? TREE_DISC : TREE_LINE;
+            // of a slot its middle line
+            sites[0].clearance = sites[0].shape == TOUCH_SLOT ? 0.0 : sites[0].clearance;
+        } else if (joint_has_mesh(joint->kind)) {
+            // how far apart the centres are, beyond where the pitch circles touch
+            sites[0].clearance = mesh_distance(&joint->gear);
+            measure = TREE_DISC;
         } else if (joint_has_rack(joint->kind)) {
             // the way along the line is part of the coordinate
             sites[0].direction = joint->direction;
@@ -831,7 +745,8 @@ static void set_pairs(Tree *tree)
         tree->corners[i] = corner;
         const size_t own = tree_own_pairs(linkage, i, sites);
         for (size_t k = 0; k < own; k++) {
-            set_pair(tree, corner++, joint, &sites[k], TREE_LINE);
+            set_pair(tree, corner++, joint, &sites[k],
+                     sites[k].shape == TOUCH_SLOT ? TREE_POINTS : TREE_LINE);
         }
     }
     tree_list_ends(tree);

@@ -60,7 +60,8 @@ typedef struct Tree {
     int *angle_column;     // by body; -1 for a driven one and what slides on it
     int *node_of;          // by body; -1 for a driven one
     size_t pair_count;     // those of the joints first
-    int *corners;          // first pair of a block's corners or a slider's stops, by joint
+    int *corners;          // first pair of a block's corners, a slider's stops or a slot's ends, by
+                           // joint
     size_t measured_count; // pairs with a line or discs, and which
     int *measured;         //
     TreeMeasure *measures; // by pair
@@ -289,6 +290,9 @@ static inline Vec2 tree_normal_turned(const Tree *tree, const TreeState *state, 
 // The distance of a pair that has a line or discs, m, less its offset.
 double tree_distance(const Tree *tree, const TreeState *state, int pair);
 
+// By how much the distance from a line has changed since the base, m.
+double tree_line_moved(const Tree *tree, const TreeState *state, int pair);
+
 // The rate of the distance from a line, m/s, and its second rate, m/s^2, after tree_accelerate; or
 // that without accelerations of the coordinates.
 double tree_line_rate(const Tree *tree, const TreeState *state, int pair);
@@ -300,8 +304,9 @@ double tree_tilt(const Tree *tree, const TreeState *state, int joint);
 
 // The functions of the tree: it is built, moved and evaluated.
 
-// The pairs that the sites of a joint have of their own: those of corners and of a slider's stops.
-// Returns how many, with the sites.
+// The pairs of a joint beside the one of its anchors: those of corners and of a slider's stops,
+// which are its sites, and those of the ends of a slot, from the centre of an arc to that of the
+// pin. Returns how many, with what they are between.
 size_t tree_own_pairs(const Linkage *linkage, int number, Touch sites[TOUCH_CORNERS]);
 
 // Finds the tree of the linkage's ideal joints, which must outlive it (reference/plane/tree.c).
@@ -346,13 +351,13 @@ void tree_point_row(const Tree *tree, const TreeState *state, int body, Vec2 arm
 
 // The limited coordinate of a joint that turns or meshes (model/coordinate.h) in a tree, counted
 // from an origin in its play: the angle that the joint's bodies were placed with, the middle of a
-// gap between teeth. Of a rack the way along the pitch line, which its pair has, is part of it
-// beside what its bodies turn. What it has changed since the base has all the digits of a double,
-// and that at the base comes from long double, however many turns the bodies have made.
+// gap between teeth. Of teeth the way of the pair's ends is part of it beside what the bodies turn:
+// of a rack along the pitch line, of gears round each other. What it has changed since the base has
+// all the digits of a double, and that at the base comes from long double, however many turns the
+// bodies have made.
 
-// The parts that bodies' turns have in a coordinate, rad or m per rad: of body a, body b and the
-// carrier of gears.
-enum { TREE_COORDINATE_PARTS = 3 };
+// The parts that bodies' turns have in a coordinate, rad or m per rad: of body a and body b.
+enum { TREE_COORDINATE_PARTS = 2 };
 
 typedef struct TreeCoordinatePart {
     int body; // LINKAGE_GROUND where there is none
@@ -363,6 +368,10 @@ void tree_coordinate_parts(const Joint *joint, TreeCoordinatePart parts[TREE_COO
 
 // What it counts from, rad or m.
 double tree_coordinate_origin(const Joint *joint);
+
+// Fills in that at the base, with the gap between the joint's ends and the normal of its line
+// there.
+void tree_coordinate_settle(Tree *tree, int joint, TreePoint gap, TreePoint normal);
 
 double tree_coordinate(const Tree *tree, const TreeState *state, int joint);
 double tree_coordinate_rate(const Tree *tree, const TreeState *state, int joint);

@@ -11,6 +11,7 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "kernel/friction_law.h"
 #include "model/space_coordinate.h"
 
 #include <math.h>
@@ -201,9 +202,7 @@ static void space_contact_add_friction(const SpaceContact *at, const Contact *co
                              space_tree_velocity(state, at->site.hole.body, force->force_a)),
                     force->outward);
     const double speed = vec3_length(sliding);
-    const double scale = contact->law.friction_speed;
-    // tanh(x) / x, which is 1 to the last bit below this speed
-    const double share = speed > 1e-9 * scale ? tanh(speed / scale) / speed : 1.0 / scale;
+    const double share = friction_grip(speed, contact->law.friction_speed).share;
     const double friction = contact->law.friction * force->press.normal * share;
     force->force = vec3_sub(force->force, vec3_scale(friction, sliding));
     force->press.friction_power = friction * speed * speed;

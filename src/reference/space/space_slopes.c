@@ -11,6 +11,7 @@
 #include "reference/space/space_dynamics.h"
 
 #include "base/zeroed.h"
+#include "kernel/friction_law.h"
 
 #include <math.h>
 #include <string.h>
@@ -61,17 +62,14 @@ static void space_slopes_resolve(const SpaceDynamics *dynamics, const SpaceState
     find_points(dynamics, &state->tree, site, force->force_a, force->force_b, pressing->wall);
     pressing->share = pressing->share_slope = 0.0;
     if (pressing->contact->law.friction > 0.0 && !contact->is_collar) {
-        const double scale = pressing->contact->law.friction_speed;
         pressing->sliding = vec3_across(
             vec3_sub(space_tree_velocity(&state->tree, site->pin.body, force->force_b),
                      space_tree_velocity(&state->tree, site->hole.body, force->force_a)),
             force->outward);
         const double speed = vec3_length(pressing->sliding);
-        const double grip = tanh(speed / scale);
-        const bool is_slow = !(speed > 1e-4 * scale);
-        pressing->share = is_slow ? 1.0 / scale : grip / speed;
-        pressing->share_slope =
-            is_slow ? 0.0 : ((1.0 - grip * grip) / scale - pressing->share) / speed;
+        const FrictionGrip grip = friction_grip(speed, contact->law.friction_speed);
+        pressing->share = grip.share;
+        pressing->share_slope = grip.bend * speed;
     }
 }
 
