@@ -425,7 +425,7 @@ void touch_response(const Linkage *linkage, const Touch *places, size_t count, b
     ResponsePlace *rows = zeroed(count, sizeof *rows);
     for (size_t i = 0; i < count; i++) {
         const bool is_circle = !touch_is_scalar(&places[i]);
-        const bool is_slot = places[i].shape == TOUCH_SLOT;
+        const bool is_slot = touch_has_walls(&places[i]);
         rows[i] = (ResponsePlace){
             .joint = places[i].joint,
             // of a slot the rates of the pin's centre in the slot's own axes

@@ -110,6 +110,43 @@ static inline bool touch_is_end(const Touch *place)
     return false;
 }
 
+// Whether what presses is a torque, and lengths are angles.
+static inline bool touch_is_torque(const Touch *place)
+{
+    switch (place->shape) {
+    case TOUCH_TURN:
+        return true;
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+    case TOUCH_LINE:
+    case TOUCH_CAM:
+    case TOUCH_SLOT:
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
+        break;
+    }
+    return false;
+}
+
+// Whether a place has several walls, of which one is met at a time; its rows are across and along
+// its own axes.
+static inline bool touch_has_walls(const Touch *place)
+{
+    switch (place->shape) {
+    case TOUCH_SLOT:
+        return true;
+    case TOUCH_HOLE:
+    case TOUCH_DISC:
+    case TOUCH_LINE:
+    case TOUCH_CAM:
+    case TOUCH_TURN:
+    case TOUCH_TEETH:
+    case TOUCH_RACK:
+        break;
+    }
+    return false;
+}
+
 // Makes a list of the places of all joints with play, joint by joint, with their laws, which free()
 // gives back. Fails with ERR_CASE where a law does not fit a joint.
 bool touch_list(const Scenario *scenario, Touch **places, size_t *count, Err *err);

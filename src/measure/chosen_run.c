@@ -121,8 +121,8 @@ static const double ORDER_MOST = 0.9;
 static double meeting_speed(const Scenario *scenario, const Touch *place)
 {
     SpeedScale scale = scale_speeds(scenario);
-    double speed = place->shape == TOUCH_TURN ? 0.0 : scale.moving;
-    for (int side = 0; place->shape == TOUCH_TURN && side < 2; side++) {
+    double speed = touch_is_torque(place) ? 0.0 : scale.moving;
+    for (int side = 0; touch_is_torque(place) && side < 2; side++) {
         const int body = linkage_end(&scenario->linkage.joints[place->joint], side).body;
         speed = body == LINKAGE_GROUND ? speed : fmax(speed, scale.turning[body]);
     }

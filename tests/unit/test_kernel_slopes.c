@@ -183,8 +183,8 @@ static void friction_bends_as_it_says(void **state)
     for (double size = 1e-6 * speed; size < 10.0 * speed; size *= 1.9) {
         const double nudge = 1e-3 * fmax(size, 1e-2 * speed);
         const FrictionHold hold = friction_hold(size, speed);
-        const double rise = friction_hold(size + nudge, speed).held -
-                            friction_hold(size - nudge, speed).held;
+        const double rise =
+            friction_hold(size + nudge, speed).held - friction_hold(size - nudge, speed).held;
         assert_near(hold.slope, rise / (2.0 * nudge), 1e-5 / speed);
         const FrictionGrip grip = friction_grip(size, speed);
         assert_close(grip.share * size, hold.held, 1e-15);

@@ -155,7 +155,7 @@ void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pre
                           const Motion *motions, JointState *state)
 {
     state->force += pressing;
-    if (place->shape == TOUCH_TURN) {
+    if (touch_is_torque(place)) {
         const double sense = coordinate_sense(&linkage->joints[place->joint]);
         state->moment_on_b += sense * place->sign * pressing;
         return;
@@ -245,7 +245,7 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
             continue;
         }
         if (!touch_is_scalar(place)) {
-            const bool is_slot = place->shape == TOUCH_SLOT;
+            const bool is_slot = touch_has_walls(place);
             joints[place->joint] = (JointState){
                 .eccentricity = is_slot ? linkage_joint_gap(linkage, motions, place->joint).position
                                         : pose.pose.eccentricity,

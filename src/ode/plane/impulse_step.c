@@ -298,7 +298,7 @@ static void fill_rows(ImpulseStep *step)
             continue;
         }
         JointGap gap = linkage_joint_gap(linkage, step->before, place->joint);
-        if (place->shape == TOUCH_SLOT) {
+        if (touch_has_walls(place)) {
             put_in_slot(step, place, &gap);
         }
         position[0] = gap.position.x;

@@ -34,9 +34,8 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
     }
     const Linkage *linkage = &step->scenario->linkage;
     if (!touch_is_scalar(place)) {
-        mean->force_on_b = place->shape == TOUCH_SLOT
-                               ? impulse_step_from_slot(linkage, place, middle, force)
-                               : force;
+        mean->force_on_b =
+            touch_has_walls(place) ? impulse_step_from_slot(linkage, place, middle, force) : force;
         return;
     }
     const Joint *joint = &linkage->joints[place->joint];
@@ -80,7 +79,7 @@ static void find_driven_offsets(ImpulseStep *step, const Motion *middle, int bod
     for (size_t i = 0; i < step->place_count; i++) {
         const int joint = step->places[i].joint;
         const bool is_beside =
-            touch_is_scalar(&step->places[i]) || step->places[i].shape == TOUCH_SLOT;
+            touch_is_scalar(&step->places[i]) || touch_has_walls(&step->places[i]);
         if (is_beside && linkage->joints[joint].body_a == body) {
             offsets[joint] = linkage_joint_gap(linkage, middle, joint).position;
         }
@@ -133,7 +132,7 @@ static double work_at_line(const ImpulseStep *step, size_t number, const Motion 
     const size_t row = step->scheme.kernel.contacts[number].first_row;
     const double omega_a = joint->body_a == LINKAGE_GROUND ? 0.0 : motions[joint->body_a].omega;
     const TouchPose pose = touch_pose(linkage, place, motions);
-    const bool is_slot = place->shape == TOUCH_SLOT;
+    const bool is_slot = touch_has_walls(place);
     const Vec2 normal = is_slot ? touch_across(linkage, place, motions) : pose.normal;
     const Vec2 directions[2] = {normal, vec2_perp(normal)};
     Vec2 from_a;

@@ -201,7 +201,7 @@ static void pair_make_end(const Scenario *scenario, const Touch *touch, const dB
         .ends = touch->shape == TOUCH_LINE ? NULL : ends,
     };
     place_line_of(&scenario->linkage.joints[touch->joint], pair);
-    if (touch->shape == TOUCH_TURN) {
+    if (touch_is_torque(touch)) {
         pair->row = pressing_row_of_angle(world, (dBodyID[]){bodies[1], bodies[0]}, NULL);
         pressing_row_set_axis(pair->row, 0.0, 0.0, touch->sign);
     }

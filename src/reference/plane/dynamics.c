@@ -380,7 +380,7 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
         return;
     }
     force->force = vec2_scale(force->press.normal, force->pose.normal);
-    if (site->touch.shape == TOUCH_TURN) {
+    if (touch_is_torque(&site->touch)) {
         const Joint *joint = &dynamics->tree.linkage->joints[contact->joint];
         force->couple = site->touch.sign * coordinate_sense(joint) * force->press.normal;
     }

@@ -56,11 +56,11 @@ static double flight_of(const Linkage *linkage, const double *reaches, const Tou
 static double site_arm(const Linkage *linkage, const double *reaches, const Touch *touch)
 {
     double arm = INFINITY;
-    for (int side = 0; touch->shape == TOUCH_TURN && side < 2; side++) {
+    for (int side = 0; touch_is_torque(touch) && side < 2; side++) {
         const int body = linkage_end(&linkage->joints[touch->joint], side).body;
         arm = body == LINKAGE_GROUND ? arm : fmin(arm, reaches[body]);
     }
-    return touch->shape == TOUCH_TURN ? arm : 1.0;
+    return touch_is_torque(touch) ? arm : 1.0;
 }
 
 // By how many sites the one at the other end of a limited coordinate comes later.
@@ -97,8 +97,8 @@ static PlaneSite site_of(const Dynamics *dynamics, const Touch *touch, size_t of
 {
     const Joint *joint = &dynamics->tree.linkage->joints[touch->joint];
     Touch sites[TOUCH_CORNERS];
-    const bool has_own = tree_own_pairs(dynamics->tree.linkage, touch->joint, sites) > 0 &&
-                         touch->shape != TOUCH_SLOT;
+    const bool has_own =
+        tree_own_pairs(dynamics->tree.linkage, touch->joint, sites) > 0 && !touch_has_walls(touch);
     return (PlaneSite){
         .touch = *touch,
         .pair = has_own ? dynamics->tree.corners[touch->joint] + (int)of_joint : touch->joint,
@@ -123,10 +123,10 @@ bool dynamics_list_sites(const Scenario *scenario, Dynamics *dynamics, Err *err)
             .place = touch->place,
             .partner = find_partner(scenario, touches, system->contact_count, i),
             .law = touch->law,
-            .clearance = touch->shape == TOUCH_SLOT
+            .clearance = touch_has_walls(touch)
                              ? touch->clearance
                              : linkage_radial_clearance(&scenario->linkage.joints[touch->joint]),
-            .has_walls = touch->shape == TOUCH_SLOT,
+            .has_walls = touch_has_walls(touch),
             .arm = site_arm(&scenario->linkage, dynamics->reach, touch),
             .flight = flight_of(&scenario->linkage, dynamics->reach, touch),
         };

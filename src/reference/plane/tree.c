@@ -726,7 +726,7 @@ static void set_pairs(Tree *tree)
             // of a cam the line from which its profile's angles count
             measure = sites[0].shape == TOUCH_DISC ? TREE_DISC : TREE_LINE;
             // of a slot its middle line
-            sites[0].clearance = sites[0].shape == TOUCH_SLOT ? 0.0 : sites[0].clearance;
+            sites[0].clearance = touch_has_walls(&sites[0]) ? 0.0 : sites[0].clearance;
         } else if (joint_has_mesh(joint->kind)) {
             // how far apart the centres are, beyond where the pitch circles touch
             sites[0].clearance = mesh_distance(&joint->gear);
@@ -746,7 +746,7 @@ static void set_pairs(Tree *tree)
         const size_t own = tree_own_pairs(linkage, i, sites);
         for (size_t k = 0; k < own; k++) {
             set_pair(tree, corner++, joint, &sites[k],
-                     sites[k].shape == TOUCH_SLOT ? TREE_POINTS : TREE_LINE);
+                     touch_has_walls(&sites[k]) ? TREE_POINTS : TREE_LINE);
         }
     }
     tree_list_ends(tree);
