@@ -187,8 +187,7 @@ static void describe_meaning(const SchemaRow *row, bool is_page, Text *text)
     if (is_page) {
         shown.needs &= ~SPATIAL & ~(is_of_group(row, "ode.") ? ODE : 0U) &
                        ~(is_of_group(row, "contact.") ? PLAY : 0U);
-        shown.wants &= ~(COMMON_STIFFNESS | COMMON_DAMPING | COMMON_FRICTION) &
-                       ~((row->wants & REMEMBERED) != 0 ? REBOUND : 0U);
+        shown.wants &= ~(COMMON_STIFFNESS | COMMON_DAMPING | COMMON_FRICTION);
         shown.needs &= ~((row->wants & SETTLED) != 0 ? PLAY | REPEATING | IMPACT : 0U) &
                        ~((row->wants & PIN) != 0 ? PLAY : 0U);
         // an engine is its own backend, and a chosen step is that of a backend with steps

@@ -320,6 +320,7 @@ static unsigned shared_bits(const Scenario *scenario)
             bit(COMMON_DAMPING, joint->contact.viscous == 0.0) |
             bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
             bit(REBOUND, (is_restored(damping) || is_poisson) && !joint->contact.has_restitution) |
+            bit(REMEMBERED, is_restored(damping) && damping != DAMPING_DISSIPATION) |
             bit(PIN, joint_has_hole(joint->kind));
     }
     return met;
@@ -345,7 +346,6 @@ static unsigned row_bits(const Scenario *scenario)
            bit(SETTLED, scenario->run.start == START_SETTLED) |
            bit(UNSTEADY, scenario->linkage.driver.table.count > 0 ||
                              scenario->linkage.torque.table.count > 1) |
-           bit(REMEMBERED, scenario->contact.damping != DAMPING_DISSIPATION) |
            bit(DERIVED, scenario->contact.damping != DAMPING_DISSIPATION ||
                             scenario->contact.dissipation == 0.0);
 }

@@ -379,11 +379,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      .doc = "impacts below this speed do not bounce"},
     {.path = "contact.impact-speed-floor", .dimension = DIMENSION_SPEED,
      AT(contact.impact_speed_floor), .low = 0.0, .high = 1e3, .low_is_open = true,
-     .needs = IMPACT, .wants = REBOUND | REMEMBERED,
+     .needs = IMPACT, .wants = REMEMBERED,
      .doc = "smallest impact speed by which the damping laws divide"},
     {.path = "contact.resting-speed", .dimension = DIMENSION_SPEED, AT(contact.resting_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .zero_word = "none",
-     .needs = IMPACT, .wants = REBOUND | REMEMBERED,
+     .needs = IMPACT, .wants = REMEMBERED,
      .doc = "speed by which damping laws divide once a contact has outlasted its impact: it was "
             "compressed, released, and is compressed again"},
     {.path = "contact.dissipation", .dimension = DIMENSION_DISSIPATION, AT(contact.dissipation),
