@@ -146,6 +146,12 @@ static bool check_restitution(const Entries *entries, size_t index, const Scenar
 static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[index];
+    if (joint->contact.viscous > 0.0 && joint->contact.dissipation > 0.0) {
+        return entries_refuse(entries_find(entries, "joints.*.dissipation", index), err,
+                              "joint '%s' has two dampings\nallowed: a viscous-coefficient or a "
+                              "dissipation",
+                              joint->name);
+    }
     if (joint_has_teeth(joint->kind) || joint->limits.kind != LIMIT_NONE) {
         return limits_check(entries, index, scenario, err) &&
                check_restitution(entries, index, scenario, err);

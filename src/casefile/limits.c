@@ -41,7 +41,8 @@ static SchemaRow as_angle(const SchemaRow *row)
         angular.dimension = DIMENSION_TORSION_SPRING;
         break;
     case SCHEMA_DAMPER:
-        angular.dimension = DIMENSION_TORSION_DAMPING;
+        angular.dimension = row->dimension == DIMENSION_DISSIPATION ? DIMENSION_TORSION_DISSIPATION
+                                                                    : DIMENSION_TORSION_DAMPING;
         break;
     default:
         angular.dimension = DIMENSION_ANGLE;

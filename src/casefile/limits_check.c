@@ -37,6 +37,32 @@ static bool check_order(const Entries *entries, size_t index, const Joint *joint
                           joint->name);
 }
 
+// Whether a pivot has a damping of its own where that of the contact is one of lengths.
+static bool check_damping(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    const ContactOptions *contact = &scenario->contact;
+    const EntryGroup *group = entries_group(entries, "joints.*", index);
+    if (!joint_has_angle(joint->kind) || joint->contact.viscous > 0.0 ||
+        joint->contact.dissipation > 0.0) {
+        return true;
+    }
+    if (contact->damping == DAMPING_VISCOUS) {
+        return entries_refuse_group(group, err,
+                                    "joint '%s', %s, needs its own viscous-coefficient: that of "
+                                    "the contact is a force over a speed\nallowed: "
+                                    "viscous-coefficient: 0.1 N m s/rad, or another "
+                                    "contact.damping",
+                                    joint->name, describe(joint));
+    }
+    return contact->damping != DAMPING_DISSIPATION || contact->dissipation == 0.0 ||
+           entries_refuse_group(group, err,
+                                "joint '%s', %s, needs its own dissipation: that of the contact "
+                                "is by a speed\nallowed: dissipation: 0.3 s/rad, or another "
+                                "contact.damping",
+                                joint->name, describe(joint));
+}
+
 static bool check_contact(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[index];
@@ -53,13 +79,7 @@ static bool check_contact(const Entries *entries, size_t index, const Scenario *
                                     "joint '%s', %s, needs a stiffness\nallowed: stiffness: %s",
                                     joint->name, describe(joint), stiffness_example(joint));
     }
-    return !is_turning || joint->contact.viscous > 0.0 ||
-           scenario->contact.damping != DAMPING_VISCOUS ||
-           entries_refuse_group(group, err,
-                                "joint '%s', %s, needs its own viscous-coefficient: that of "
-                                "the contact is a force over a speed\nallowed: "
-                                "viscous-coefficient: 0.1 N m s/rad, or another contact.damping",
-                                joint->name, describe(joint));
+    return check_damping(entries, index, scenario, err);
 }
 
 bool limits_check(const Entries *entries, size_t index, const Scenario *scenario, Err *err)

@@ -53,7 +53,7 @@ static const Condition CONDITIONS[] = {
 // clang-format off
 static const Condition WANTS[] = {
     {COMMON_STIFFNESS, 0, {"a joint with play that has no stiffness of its own", "", false}},
-    {COMMON_DAMPING, 0, {"a joint with play that has no viscous-coefficient of its own", "", false}},
+    {COMMON_DAMPING, 0, {"a joint with play that has no viscous-coefficient or dissipation of its own", "", false}},
     {REBOUND, 0, {"a contact.damping but none and viscous, at a joint without values of its own", "contact.damping", false}},
     {OWN_REBOUND, 0, {"a contact.damping but none and viscous", "contact.damping", false}},
     {COMMON_FRICTION, 0, {"a joint with play whose sides slide and that has no friction of its own", "", false}},
@@ -317,7 +317,8 @@ static unsigned shared_bits(const Scenario *scenario)
         const DampingKind damping = law_options(contact, joint).damping;
         met |=
             bit(COMMON_STIFFNESS, (joint_bits(scenario, joint) & OWN_STIFFNESS) == 0) |
-            bit(COMMON_DAMPING, joint->contact.viscous == 0.0) |
+            bit(COMMON_DAMPING,
+                joint->contact.viscous == 0.0 && joint->contact.dissipation == 0.0) |
             bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
             bit(REBOUND, (is_restored(damping) || is_poisson) && !joint->contact.has_restitution) |
             bit(REMEMBERED, is_restored(damping) && damping != DAMPING_DISSIPATION) |

@@ -298,7 +298,9 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
         break;
     case SCHEMA_DAMPER:
         set_number(setting, *(const double *)field);
-        set_turning(setting, joint, DIMENSION_TORSION_DAMPING);
+        set_turning(setting, joint,
+                    row->dimension == DIMENSION_DISSIPATION ? DIMENSION_TORSION_DISSIPATION
+                                                            : DIMENSION_TORSION_DAMPING);
         break;
     case SCHEMA_PIVOTS:
         set_pivots(setting, scenario, &joint->gear);

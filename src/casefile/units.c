@@ -83,6 +83,8 @@ static const Unit UNITS[] = {
     {"N m/deg", DIMENSION_TORSION_SPRING, 180.0, M_PI},
     {"N m s/rad", DIMENSION_TORSION_DAMPING, 1.0, 1.0},
     {"N mm s/rad", DIMENSION_TORSION_DAMPING, 1.0, 1e3},
+    {"s/rad", DIMENSION_TORSION_DISSIPATION, 1.0, 1.0},
+    {"s/deg", DIMENSION_TORSION_DISSIPATION, 180.0, M_PI},
     {"N/m^n",   DIMENSION_STIFFNESS,     1.0,    1.0},
     {"N/mm^n",  DIMENSION_STIFFNESS,     1.0,    1.0},
     {"N/m",     DIMENSION_STIFFNESS,     1.0,    1.0},

@@ -38,6 +38,7 @@ enum { UNITS_NAME_SIZE = 32 };
     member(DIMENSION_TORQUE, "a torque", "0.1 N m", "N m") \
     member(DIMENSION_TORSION_SPRING, "a torsional stiffness", "0.5 N m/rad", "N m/rad") \
     member(DIMENSION_TORSION_DAMPING, "a torsional damping", "1 N mm s/rad", "N m s/rad") \
+    member(DIMENSION_TORSION_DISSIPATION, "a dissipation of an angle", "0.3 s/rad", "s/rad") \
     member(DIMENSION_STIFFNESS, "a stiffness", "6.6e10 N/m^1.5", "N/m^n")
 // clang-format on
 #define UNITS_DIMENSION(id, ...) id,

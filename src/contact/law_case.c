@@ -16,6 +16,10 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
         own.damping = DAMPING_VISCOUS;
         own.viscous_coefficient = joint->contact.viscous;
     }
+    if (joint->contact.dissipation > 0.0) {
+        own.damping = DAMPING_DISSIPATION;
+        own.dissipation = joint->contact.dissipation;
+    }
     if (joint->contact.has_restitution) {
         own.restitution = joint->contact.restitution;
     }

@@ -152,6 +152,8 @@ typedef struct JointContact {
     bool has_restitution; // whether it has its own
     double restitution;   // 1
     double viscous;       // N s/m: its damping is viscous, with this; 0: none of its own
+    double dissipation;   // s/m (s/rad of an angle): its damping is a dissipation, with this; 0:
+                          // none of its own
     bool has_friction;    // whether it has its own
     double friction;      // 1, Coulomb's coefficient
 } JointContact;

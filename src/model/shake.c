@@ -75,6 +75,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake(&joint->contact.stiffness, seed);
     }
     shake(&joint->contact.viscous, seed);
+    if (joint->contact.dissipation > 0.0) {
+        shake(&joint->contact.dissipation, seed);
+    }
     if (joint->contact.has_restitution) {
         shake(&joint->contact.restitution, seed);
         joint->contact.restitution = fmin(joint->contact.restitution, 1.0);

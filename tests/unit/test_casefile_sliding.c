@@ -134,6 +134,25 @@ static void a_joints_own_stiffness_and_restitution_go_before_those_of_the_contac
     assert_near(law_options(&balls.contact, &balls.linkage.joints[2]).restitution, 0.9, 0.0);
 }
 
+// By a speed, in place of the contact's damping: F = F_el (1 + c d').
+static void a_joints_own_dissipation_goes_before_the_contacts_damping(void **state)
+{
+    (void)state;
+    const Scenario balls = load_sliding(BALLS);
+    Joint joint = balls.linkage.joints[2];
+    ForceLaw law;
+    Err err = {0};
+    joint.contact.dissipation = 0.4;
+    assert_true(law_of_joint(&balls, &joint, &law, &err));
+    const double elastic = force_law_elastic(&law, 1e-4);
+    assert_near(force_law_force(&law, 1e-4, 0.5, 2.0), 1.2 * elastic, 1e-9 * elastic);
+    assert_near(force_law_force(&law, 1e-4, 0.5, 0.1), 1.2 * elastic, 1e-9 * elastic);
+    // the control: that of the contact depends on the speed of the impact
+    assert_true(law_of_joint(&balls, &balls.linkage.joints[2], &law, &err));
+    assert_true(force_law_force(&law, 1e-4, 0.5, 0.1) >
+                (1.0 + 1e-3) * force_law_force(&law, 1e-4, 0.5, 2.0));
+}
+
 // What tune and map try goes before both.
 static void one_stiffness_for_all_joints_goes_before_their_own(void **state)
 {
@@ -259,6 +278,7 @@ int main(void)
         cmocka_unit_test(a_block_starts_off_the_middle_and_tilted_as_the_case_says),
         cmocka_unit_test(a_stop_is_between_the_places_that_the_case_gives),
         cmocka_unit_test(a_joints_own_stiffness_and_restitution_go_before_those_of_the_contact),
+        cmocka_unit_test(a_joints_own_dissipation_goes_before_the_contacts_damping),
         cmocka_unit_test(one_stiffness_for_all_joints_goes_before_their_own),
         cmocka_unit_test(settings_hold_what_the_case_says),
         cmocka_unit_test(limits_and_gears_are_what_the_case_gives),

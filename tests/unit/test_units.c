@@ -26,6 +26,7 @@ static void units_convert_to_si(void **state)
     assert_true(in_si(DIMENSION_PRESSURE, "GPa", 207.0) == 2.07e11);
     assert_true(in_si(DIMENSION_PRESSURE, "N/mm^2", 2.07e5) == 2.07e11);
     assert_true(in_si(DIMENSION_DAMPING, "N s/mm", 973.33) == 973330.0);
+    assert_near(in_si(DIMENSION_TORSION_DISSIPATION, "s/deg", 1.0), 180.0 / M_PI, 1e-14);
     assert_near(in_si(DIMENSION_ANGULAR_SPEED, "rpm", 1000.0), 104.71975511965977, 1e-13);
     assert_near(in_si(DIMENSION_ANGULAR_SPEED, "deg/s", 6000.0), 104.71975511965977, 1e-13);
     assert_near(in_si(DIMENSION_ANGLE, "deg", 180.0), 3.14159265358979312, 0.0);

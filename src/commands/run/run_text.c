@@ -703,13 +703,14 @@ static void write_drive(const Scenario *scenario, Text *text)
 }
 
 // The restitution depends on the speed of the impact: what it is at some.
-static void run_text_write_dissipation(const ForceLaw *law, Text *text)
+static void run_text_write_dissipation(const ForceLaw *law, bool is_turning, Text *text)
 {
-    static const double SPEEDS[] = {0.1, 0.3, 1.0}; // m/s
-    text_append(text, " %.4g s/m, which gives back", law_dissipation(law));
+    static const double SPEEDS[] = {0.1, 0.3, 1.0}; // m/s, rad/s
+    text_append(text, " %.4g %s, which gives back", law_dissipation(law),
+                is_turning ? "s/rad" : "s/m");
     for (size_t i = 0; i < sizeof SPEEDS / sizeof *SPEEDS; i++) {
-        text_append(text, "%s %.3g at %.3g m/s", i > 0 ? "," : "", law_restitution(law, SPEEDS[i]),
-                    SPEEDS[i]);
+        text_append(text, "%s %.3g at %.3g %s", i > 0 ? "," : "", law_restitution(law, SPEEDS[i]),
+                    SPEEDS[i], is_turning ? "rad/s" : "m/s");
     }
 }
 
@@ -723,7 +724,7 @@ static void run_text_write_damping(const ContactOptions *contact, const ForceLaw
                     is_turning ? "N m s/rad" : "N s/m");
     } else if (contact->damping == DAMPING_DISSIPATION) {
         if (law != NULL) {
-            run_text_write_dissipation(law, text);
+            run_text_write_dissipation(law, is_turning, text);
         }
     } else if (contact->damping != DAMPING_NONE) {
         text_append(text, ", restitution %.4g", contact->restitution);

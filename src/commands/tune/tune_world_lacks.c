@@ -1,6 +1,8 @@
 // Says what a program against libjointplay has no words for, of a mechanism and of a setting.
 #include "commands/tune/tune_world.h"
 
+#include "contact/law.h"
+
 static const char *lacks_setting(const Scenario *scenario)
 {
     const bool has_rows =
@@ -34,8 +36,8 @@ static const char *lacks_joint(const Scenario *scenario, const Joint *joint)
     case JOINT_KIND_COUNT:
         break;
     }
-    return linkage_has_play(joint) && scenario->contact.damping == DAMPING_EXACT &&
-                   scenario_restitution(scenario, joint) == 0.0 && !(joint->contact.viscous > 0.0)
+    const bool is_exact = law_options(&scenario->contact, joint).damping == DAMPING_EXACT;
+    return linkage_has_play(joint) && is_exact && scenario_restitution(scenario, joint) == 0.0
                ? "libjointplay has damping exact for restitutions above 0 alone"
                : NULL;
 }
