@@ -429,7 +429,7 @@ void touch_response(const Linkage *linkage, const Touch *places, size_t count, b
         rows[i] = (ResponsePlace){
             .joint = places[i].joint,
             // of a slot the rates of the pin's centre in the slot's own axes
-            .is_line = places[i].shape == TOUCH_LINE || places[i].shape == TOUCH_CAM || is_slot,
+            .is_line = is_slot || touch_rows(&places[i]) == TOUCH_ROWS_LINE,
             .sign = places[i].sign,
             .has_turns = has_friction && is_circle,
             .anchor_a = places[i].anchor_a,

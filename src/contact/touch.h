@@ -27,18 +27,30 @@
 #include "model/response.h"
 #include "model/scenario.h"
 
-// How what touches is shaped; a switch over shapes has no default, so that a new one is met
-// wherever shapes differ.
-typedef enum TouchShape {
-    TOUCH_HOLE,  // a circle of body b in one of body a
-    TOUCH_DISC,  // a circle of body b beside one of body a
-    TOUCH_LINE,  // a circle or point of body b at a line of body a
-    TOUCH_CAM,   // a circle or flat of body b at a profile of body a
-    TOUCH_SLOT,  // a circle of body b in a slot of body a
-    TOUCH_TURN,  // an end of a revolute joint's angle
-    TOUCH_TEETH, // a flank of a pair of gears
-    TOUCH_RACK,  // a flank of a rack on body a and a pinion
-} TouchShape;
+// What rows a place has in a response, in which its contact is integrated.
+typedef enum TouchRows {
+    TOUCH_ROWS_WORLD,      // x and y of anchor b less anchor a, in the world
+    TOUCH_ROWS_AXES,       // the same across and along axes of body a
+    TOUCH_ROWS_LINE,       // the gap, which has a normal always, and the sliding
+    TOUCH_ROWS_COORDINATE, // the gap alone: nothing slides
+} TouchRows;
+
+// How what touches is shaped: a row each, its enumerator; what rows of a response it has; whether
+// it presses by a torque, and its lengths are angles; and what it is. Where what is done differs
+// from shape to shape, a switch over shapes has no default, so that a new one is met there.
+// clang-format off
+#define TOUCH_SHAPE_LIST(member, with) \
+    member(with, TOUCH_HOLE,  WORLD,      false, "a circle of body b in one of body a") \
+    member(with, TOUCH_DISC,  WORLD,      false, "a circle of body b beside one of body a") \
+    member(with, TOUCH_LINE,  LINE,       false, "a circle or point of body b at a line of body a") \
+    member(with, TOUCH_CAM,   LINE,       false, "a circle or flat of body b at a profile of body a") \
+    member(with, TOUCH_SLOT,  AXES,       false, "a circle of body b in a slot of body a") \
+    member(with, TOUCH_TURN,  COORDINATE, true,  "an end of a revolute joint's angle") \
+    member(with, TOUCH_TEETH, COORDINATE, false, "a flank of a pair of gears") \
+    member(with, TOUCH_RACK,  COORDINATE, false, "a flank of a rack on body a and a pinion")
+// clang-format on
+#define TOUCH_SHAPE(with, id, ...) id,
+typedef enum TouchShape { TOUCH_SHAPE_LIST(TOUCH_SHAPE, _) } TouchShape;
 
 enum { TOUCH_CORNERS = 4 };
 
@@ -73,78 +85,38 @@ typedef struct TouchPose {
     Vec2 middle;           // m, of a slot: from anchor a to the nearest point of its middle line
 } TouchPose;
 
+static inline TouchRows touch_rows(const Touch *place)
+{
+#define TOUCH_ROWS(with, id, rows, ...) TOUCH_ROWS_##rows,
+    static const unsigned char ROWS[] = {TOUCH_SHAPE_LIST(TOUCH_ROWS, _)};
+    return (TouchRows)ROWS[place->shape];
+}
+
 // Whether the gap of a place is a coordinate by itself, whose rate is the first of the place's rows
 // in the response: it has a normal always, and no curvature.
 static inline bool touch_is_scalar(const Touch *place)
 {
-    switch (place->shape) {
-    case TOUCH_HOLE:
-    case TOUCH_DISC:
-    case TOUCH_SLOT:
-        return false;
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-    case TOUCH_TURN:
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        break;
-    }
-    return true;
+    return touch_rows(place) >= TOUCH_ROWS_LINE;
 }
 
 // Whether a place is an end of an angle or of teeth, where nothing slides.
 static inline bool touch_is_end(const Touch *place)
 {
-    switch (place->shape) {
-    case TOUCH_TURN:
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        return true;
-    case TOUCH_HOLE:
-    case TOUCH_DISC:
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-    case TOUCH_SLOT:
-        break;
-    }
-    return false;
+    return touch_rows(place) >= TOUCH_ROWS_COORDINATE;
+}
+
+// Whether a place has several walls, of which one is met at a time, and rows in its own axes.
+static inline bool touch_has_walls(const Touch *place)
+{
+    return touch_rows(place) == TOUCH_ROWS_AXES;
 }
 
 // Whether what presses is a torque, and lengths are angles.
 static inline bool touch_is_torque(const Touch *place)
 {
-    switch (place->shape) {
-    case TOUCH_TURN:
-        return true;
-    case TOUCH_HOLE:
-    case TOUCH_DISC:
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-    case TOUCH_SLOT:
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        break;
-    }
-    return false;
-}
-
-// Whether a place has several walls, of which one is met at a time; its rows are across and along
-// its own axes.
-static inline bool touch_has_walls(const Touch *place)
-{
-    switch (place->shape) {
-    case TOUCH_SLOT:
-        return true;
-    case TOUCH_HOLE:
-    case TOUCH_DISC:
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-    case TOUCH_TURN:
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
-        break;
-    }
-    return false;
+#define TOUCH_TORQUE(with, id, rows, is_torque, ...) is_torque,
+    static const bool TORQUES[] = {TOUCH_SHAPE_LIST(TOUCH_TORQUE, _)};
+    return TORQUES[place->shape];
 }
 
 // Makes a list of the places of all joints with play, joint by joint, with their laws, which free()

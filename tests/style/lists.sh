@@ -72,7 +72,8 @@ forget 'way to touch' model/joint.h '    JOINT_TOUCHES_DISC,' 'JOINT_TOUCHES_NEW
 forget coordinate model/joint.h '    JOINT_COORDINATE_TEETH,' 'JOINT_COORDINATE_NEW,' \
     model/coordinate.c model/response_rows.c contact/touch.c casefile/limits.c \
     commands/run/run_text.c ode/stepping.c reference/plane/tree_coordinate.c reference/plane/plane_system.c
-forget shape contact/touch.h '    TOUCH_LINE,' 'TOUCH_NEW,' contact/touch.c ode/plane/world.c \
+forget shape contact/touch.h 'member(with, TOUCH_LINE,' \
+    'member(with, TOUCH_NEW, LINE, false, "new")' contact/touch.c ode/plane/world.c \
     ode/plane/impulse_step.c ode/plane/impulse_work.c reference/plane/dynamics.c \
     reference/plane/dynamics_slopes.c
 forget dimension casefile/units.h 'member(DIMENSION_MASS,' 'member(DIMENSION_NEW)' casefile/units.c

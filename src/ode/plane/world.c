@@ -287,20 +287,16 @@ Vec2 pair_anchor_b(const WorldPair *pair)
 
 Vec2 pair_in_rows(const WorldPair *pair, Vec2 normal)
 {
-    switch (pair->touch.shape) {
-    case TOUCH_SLOT: {
+    switch (touch_rows(&pair->touch)) {
+    case TOUCH_ROWS_AXES: {
         const Snapshot a = snapshot_of(pair->bodies[0]);
         const Vec2 across = snapshot_turn(&a, pair->line);
         return (Vec2){vec2_dot(across, normal), vec2_cross(across, normal)};
     }
-    case TOUCH_HOLE:
-    case TOUCH_DISC:
+    case TOUCH_ROWS_WORLD:
         return normal;
-    case TOUCH_LINE:
-    case TOUCH_CAM:
-    case TOUCH_TURN:
-    case TOUCH_TEETH:
-    case TOUCH_RACK:
+    case TOUCH_ROWS_LINE:
+    case TOUCH_ROWS_COORDINATE:
         break;
     }
     return (Vec2){1.0, 0.0};
