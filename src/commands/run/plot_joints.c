@@ -151,9 +151,6 @@ void plot_pins_ends(const PlotView *view, PlotPanel panel)
 
 // the force axis ends at this share of the largest force: a contact begins and ends at zero
 static const double FORCE_DEPTH = 1e-5;
-// errors below this share of the largest omega are rounding
-static const double ERROR_FLOOR = 1e-12;
-static const double ERROR_DECADES = 1e4;
 
 static double force_of(const RunReport *report, const Trajectory *run, size_t sample, size_t joint)
 {
@@ -398,112 +395,6 @@ void plot_joints_paths(const PlotView *view, PlotPanel panel)
         }
     }
     plot_circle(&panel, radius, WALL);
-    plot_leave(&panel);
-}
-
-// The run that the others are held against, or NULL.
-static const Trajectory *find_truth(const RunReport *report)
-{
-    for (size_t i = 0; i < report->run_count; i++) {
-        for (size_t k = 0; report->errors[i].is_known && k < report->run_count; k++) {
-            if (strcmp(report->runs[k]->backend, report->errors[i].against) == 0) {
-                return report->runs[k];
-            }
-        }
-    }
-    return NULL;
-}
-
-static double omega_error(const RunReport *report, const Trajectory *run, size_t sample,
-                          size_t body)
-{
-    const Trajectory *truth = find_truth(report);
-    if (run->space_motions != NULL && truth->space_motions != NULL) {
-        return vec3_length(vec3_sub(trajectory_space_motion(run, sample, body)->omega,
-                                    trajectory_space_motion(truth, sample, body)->omega));
-    }
-    return fabs(trajectory_motion(run, sample, body)->omega -
-                trajectory_motion(truth, sample, body)->omega);
-}
-
-// Whether a run's difference is drawn: that of one without the play is the play's.
-static bool shows_error(const RunReport *report, size_t run)
-{
-    const bool has_play = scenario_has_clearance(report->scenario);
-    return report->errors[run].is_known &&
-           !(has_play &&
-             strcmp(report->runs[run]->backend, OPTIONS_BACKENDS[BACKEND_ANALYTIC]) == 0);
-}
-
-// The largest difference as a range of four decades, none of them below rounding.
-static void choose_error_range(const RunReport *report, const Trajectory *truth, Axis *axis)
-{
-    double high = 0.0;
-    double scale = 0.0;
-    for (size_t run = 0; run < report->run_count; run++) {
-        for (size_t body = 0; shows_error(report, run) && body < truth->body_count; body++) {
-            scale = fmax(scale, trajectory_omega_scale(truth, body));
-            for (size_t i = 0; i < truth->sample_count; i++) {
-                high = fmax(high, omega_error(report, report->runs[run], i, body));
-            }
-        }
-    }
-    const double rounding = fmax(ERROR_FLOOR * scale, ERROR_FLOOR);
-    axis->high = pow(10.0, ceil(log10(fmax(high, rounding))));
-    axis->low = fmax(axis->high / ERROR_DECADES, 1e-3 * pow(10.0, floor(log10(rounding))));
-}
-
-// Whether there is a difference to draw, and not rounding alone.
-static bool differs(const RunReport *report, size_t run, size_t body)
-{
-    const Trajectory *truth = find_truth(report);
-    const double floor = ERROR_FLOOR * trajectory_omega_scale(truth, body);
-    for (size_t i = 0; i < truth->sample_count; i++) {
-        if (omega_error(report, report->runs[run], i, body) > floor) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool draws_error(const PlotView *view, size_t run, size_t body)
-{
-    return shows_error(view->report, run) && plot_look_shows(view, false, body) &&
-           differs(view->report, run, body);
-}
-
-bool plot_joints_has_errors(const PlotView *view)
-{
-    const RunReport *report = view->report;
-    const Trajectory *truth = find_truth(report);
-    for (size_t run = 0; truth != NULL && run < report->run_count; run++) {
-        for (size_t body = 0; body < truth->body_count; body++) {
-            if (draws_error(view, run, body)) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-void plot_joints_errors(const PlotView *view, PlotPanel panel)
-{
-    const RunReport *report = view->report;
-    static const PlotQuantity ERROR = {"difference of omega", false, -1, omega_error};
-    const Trajectory *truth = find_truth(report);
-    char title[128];
-    snprintf(title, sizeof title, "Difference from %s", truth->backend);
-    panel.title = title;
-    panel.y = (Axis){.title = "|difference of omega|, rad/s", .scale = AXIS_LOG};
-    choose_error_range(report, truth, &panel.y);
-    plot_enter(&panel);
-    for (size_t run = 0; run < report->run_count; run++) {
-        for (size_t body = 0; body < truth->body_count; body++) {
-            if (draws_error(view, run, body)) {
-                plot_look_draw(view, &panel, run, ERROR, body);
-            }
-        }
-    }
     plot_leave(&panel);
 }
 

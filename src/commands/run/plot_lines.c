@@ -24,15 +24,18 @@ const PlotSet *plot_view_set(const PlotView *view, bool is_joint)
     return is_joint ? &view->joints : &view->bodies;
 }
 
-// Does any body turn by more than rounding? A body without friction in a round hole does not, and
-// its angular velocity would be a picture of noise. Its energy of rotation is held against its
-// energy of translation: speeds that differ by 1e-10 are rounding over many steps.
+// Does any body that no drive turns turn by more than rounding? A body without friction in a round
+// hole does not, and its angular velocity would be a picture of noise. Its energy of rotation is
+// held against its energy of translation: speeds that differ by 1e-10 are rounding over many steps.
 static bool any_turns(const RunReport *report)
 {
     const double turning = 1e-10 * 1e-10;
     for (size_t i = 0; i < report->run_count; i++) {
         const Trajectory *run = report->runs[i];
         for (size_t body = 0; run->is_complete && body < run->body_count; body++) {
+            if (linkage_is_driven(&report->scenario->linkage, (int)body)) {
+                continue;
+            }
             const Body *shape = &report->scenario->linkage.bodies[body];
             double rotation = 0.0;
             double translation = 0.0;
@@ -188,7 +191,8 @@ PlotView plot_view_begin(const RunReport *report)
     const Linkage *linkage = &report->scenario->linkage;
     PlotView view = {
         .report = report,
-        .turns = linkage->driver.is_present || !space_has_plane(linkage) || any_turns(report),
+        .turns = linkage_drive_count(linkage) == linkage->body_count || !space_has_plane(linkage) ||
+                 any_turns(report),
         .bodies = set_create(linkage->body_count),
         .joints = set_create(linkage->joint_count),
     };

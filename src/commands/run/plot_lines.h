@@ -166,10 +166,11 @@ bool plot_limits_any(const Linkage *linkage, bool is_angle, LimitKind kind);
 void plot_limits_loop(const PlotView *view, PlotPanel panel);
 bool plot_limits_has_loop(const Linkage *linkage);
 
-// How far omega is from the run that is taken as the truth, of runs that feel the play where there
-// is any; and whether there is such a run, in which a body turns otherwise.
-void plot_joints_errors(const PlotView *view, PlotPanel panel);
-bool plot_joints_has_errors(const PlotView *view);
+// How far omega, or the velocity of the centres where nothing turns, is from the run that is taken
+// as the truth, of runs that feel the play where there is any; and whether there is such a run, in
+// which a body moves otherwise.
+void plot_errors_draw(const PlotView *view, PlotPanel panel);
+bool plot_errors_any(const PlotView *view);
 
 // What the drive of a pivot has to give, or gives; and whether a linkage has that.
 void plot_loads_torque(const PlotView *view, PlotPanel panel);

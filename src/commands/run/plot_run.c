@@ -11,8 +11,6 @@
 #include <string.h>
 
 // The panels of the bodies' motion: their rotation, or their centres where nothing turns.
-//
-// Their rotation, or the motion of their centres where nothing turns.
 
 // a symmetric logarithmic scale is used where one backend exceeds another by this factor, or
 // exceeds what it stays below for most of its run
@@ -517,8 +515,8 @@ static size_t choose_panels(const PlotView *view, PanelChoice panels[PANEL_MAX])
     if (view->joints.left_out > 0) {
         panels[count++].draw = plot_overview_joints;
     }
-    if (plot_joints_has_errors(view)) {
-        panels[count++].draw = plot_joints_errors;
+    if (plot_errors_any(view)) {
+        panels[count++].draw = plot_errors_draw;
     }
     return count;
 }
