@@ -490,13 +490,33 @@ static void write_backlash(const Joint *joint, const char *turned, Text *text)
                 backlash / fabs(joint->gear.radius_b) * UNITS_DEG, turned);
 }
 
-static void write_teeth(const Joint *joint, Text *text)
+// How far a table of gears reaches to either side, one of the linkage's profiles.
+static void write_table(const Linkage *linkage, size_t number, const char *what, Text *text)
 {
+    if (number > 0) {
+        const Profile *table = &linkage->profiles[number - 1];
+        text_append(text, ",\n              %s from %.4g to %.4g um", what, table->least * UNITS_UM,
+                    table->reach * UNITS_UM);
+    }
+}
+
+static void write_teeth(const Linkage *linkage, const Joint *joint, Text *text)
+{
+    const Gear *gear = &joint->gear;
     text_append(text, "%.6g and %.6g teeth, pitch radii %.6g and %.6g mm,\n", joint->gear.teeth[0],
                 joint->gear.teeth[1], joint->gear.radius_a * UNITS_MM,
                 joint->gear.radius_b * UNITS_MM);
     text_append(text, "              ");
     write_backlash(joint, "second", text);
+    if (gear->pressure_angle > 0.0) {
+        text_append(text, ",\n              pressure angle %.6g deg",
+                    gear->pressure_angle * UNITS_DEG);
+    }
+    write_table(linkage, gear->error, "transmission error", text);
+    write_table(linkage, gear->relief, "relief", text);
+    if (linkage_has_teeth_tables(joint)) {
+        text_append(text, ", %zu times a turn of the first", gear->repeats);
+    }
 }
 
 static void write_rack(const Joint *joint, Text *text)
@@ -521,7 +541,7 @@ static void write_ends(const Limits *limits, double scale, const char *unit, Tex
 }
 
 // What limits a coordinate: in degrees of a pivot, mm of a slider, and um of teeth.
-static void run_text_write_limits(const Joint *joint, Text *text)
+static void run_text_write_limits(const Linkage *linkage, const Joint *joint, Text *text)
 {
     switch (joint_coordinate(joint->kind)) {
     case JOINT_COORDINATE_ANGLE:
@@ -531,7 +551,7 @@ static void run_text_write_limits(const Joint *joint, Text *text)
         write_ends(&joint->limits, UNITS_MM, "mm", text);
         break;
     case JOINT_COORDINATE_TEETH:
-        write_teeth(joint, text);
+        write_teeth(linkage, joint, text);
         break;
     case JOINT_COORDINATE_RACK:
         write_rack(joint, text);
@@ -582,15 +602,15 @@ static Play play_of(const Joint *joint)
 }
 
 // What play it is, of a joint that has some.
-static void run_text_write_joint(const Joint *joint, bool is_spatial, Text *text)
+static void run_text_write_joint(const Linkage *linkage, const Joint *joint, Text *text)
 {
     if (joint->limits.kind != LIMIT_NONE) {
-        run_text_write_limits(joint, text);
+        run_text_write_limits(linkage, joint, text);
         return;
     }
     switch (joint_touches(joint->kind)) {
     case JOINT_TOUCHES_HOLE:
-        run_text_write_pin(joint, is_spatial, text);
+        run_text_write_pin(joint, linkage->is_spatial, text);
         break;
     case JOINT_TOUCHES_GUIDES:
         write_guide(joint, text);
@@ -618,7 +638,7 @@ static void run_text_write_play(const Linkage *linkage, Play play, size_t width,
         }
         Text said;
         text_init(&said);
-        run_text_write_joint(&linkage->joints[i], linkage->is_spatial, &said);
+        run_text_write_joint(linkage, &linkage->joints[i], &said);
         alike_add(alike, linkage->joints[i].name, said.data);
         text_finish(&said);
     }
