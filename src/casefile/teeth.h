@@ -6,7 +6,7 @@
 // Stores the numbers of teeth of a pair of gears.
 bool teeth_store(const Target *target, Gear *gear);
 
-// Finds the bodies of every pair of gears, with their carrier, and of every rack and pinion, with
+// Finds the bodies of every pair of gears on one carrier, and of every rack and pinion, with
 // the pinion's radius, from the joints that guide them, once the joints' bodies are known and while
 // anchors are those that the case gives in the world.
 bool teeth_join(const Entries *entries, Linkage *linkage, Err *err);
