@@ -2,6 +2,7 @@
 #include "casefile/limits.h"
 
 #include "base/zeroed.h"
+#include "contact/touch.h"
 #include "model/space_coordinate.h"
 
 #include <math.h>
@@ -101,25 +102,19 @@ bool limits_check(const Entries *entries, size_t index, const Scenario *scenario
     return check_order(entries, index, joint, err) && check_contact(entries, index, scenario, err);
 }
 
-// How deep the flanks of gears are in one another at their start, m, by their transmission error
-// and relief; 0 of other joints.
+// How deep the flanks of gears are in one another at their start, m.
 static double overlap_of(const Linkage *linkage, const Motion *motions, int number)
 {
-    const Joint *joint = &linkage->joints[number];
+    Touch flanks[TOUCH_CORNERS];
     double deepest = 0.0;
-    for (int i = 0; joint_has_mesh(joint->kind) && i < 2; i++) {
-        const double sign = i == 0 ? 1.0 : -1.0;
-        const double end = sign * (i == 0 ? coordinate_low(joint) : coordinate_high(joint));
-        const Mesh mesh = mesh_of(linkage, joint);
-        const MeshFlank flank = coordinate_flank(linkage, motions, number, sign);
-        const double beyond = sign * coordinate_position(linkage, motions, number) - end;
-        const double apart = vec2_length(flank.offset) - mesh_distance(&joint->gear);
-        deepest = fmax(deepest, -mesh_gap(&mesh, &flank, beyond, apart));
+    const size_t count = touch_places(linkage, number, flanks);
+    for (size_t i = 0; i < count; i++) {
+        deepest = fmax(deepest, -touch_pose(linkage, &flanks[i], motions).gap);
     }
     return deepest;
 }
 
-// Whether gears start clear of one another.
+// Whether gears start clear of one another, by their transmission error and relief.
 static bool check_flanks(const Entries *entries, const Linkage *linkage, const Motion *motions,
                          int number, Err *err)
 {
