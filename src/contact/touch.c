@@ -292,13 +292,12 @@ static TouchPose pose_of_flank(const Linkage *linkage, const Touch *place, const
                                Vec2 offset, Vec2 velocity)
 {
     const Joint *joint = &linkage->joints[place->joint];
-    const Mesh mesh = mesh_of(linkage, joint);
     const MeshFlank flank = coordinate_flank(linkage, motions, place->joint, place->sign);
     const double position = coordinate_position(linkage, motions, place->joint);
     return (TouchPose){
         .offset = offset,
         .velocity = velocity,
-        .gap = mesh_gap(&mesh, &flank, place->sign * position - place->clearance,
+        .gap = mesh_gap(&joint->gear, &flank, place->sign * position - place->clearance,
                         vec2_length(offset) - mesh_distance(&joint->gear)),
         .has_normal = true,
         .normal = flank.normal,

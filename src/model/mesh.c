@@ -27,12 +27,6 @@ double mesh_position_rate(const Gear *gear, Vec2 offset, Vec2 velocity, double o
     return mesh_distance(gear) * turning - gear->radius_a * omega_a - gear->radius_b * omega_b;
 }
 
-// cos alpha: what of a way along the pitch circles a flank goes along the line of action.
-static double slant_of(const Gear *gear)
-{
-    return gear->pressure_angle == 0.0 ? 1.0 : cos(gear->pressure_angle);
-}
-
 // e of the formulas.
 static double outwards(const Gear *gear)
 {
@@ -66,7 +60,7 @@ static void stand_out(const Profile *table, double factor, double share, double 
 MeshFlank mesh_flank(const Mesh *mesh, double sign, Vec2 offset, double angle_a, double angle_b)
 {
     const Gear *gear = mesh->gear;
-    const double slant = slant_of(gear);
+    const double slant = gear->pressure_angle == 0.0 ? 1.0 : cos(gear->pressure_angle);
     const double pitch = mesh_distance(gear);
     const double distance = vec2_length(offset);
     const double e = outwards(gear);
@@ -74,6 +68,7 @@ MeshFlank mesh_flank(const Mesh *mesh, double sign, Vec2 offset, double angle_a,
     MeshFlank flank = {
         .sign = sign,
         .offset = offset,
+        .slant = slant,
         .arms = {slant * gear->radius_a, slant * gear->radius_b},
         .cosine = e == 0.0 ? 1.0 : pitch * slant / distance,
     };
@@ -110,7 +105,7 @@ double mesh_bend(const MeshFlank *flank, Vec2 velocity, double omega_a, double o
 
 // By how much the flanks are further from each other, m along the line of action, with the centres
 // so much further apart than the pitch circles have them, with its digits.
-static double spread_of(const Gear *gear, double apart)
+static double spread_of(const Gear *gear, double slant, double apart)
 {
     // Gauss's rule of five points
     static const double NODES[] = {-0.9061798459386640, -0.5384693101056831, 0.0,
@@ -125,7 +120,7 @@ static double spread_of(const Gear *gear, double apart)
         return 0.0;
     }
     const double pitch = mesh_distance(gear);
-    const double base = pitch * slant_of(gear);
+    const double base = pitch * slant;
     if (fabs(apart) > NEAR * (pitch - base)) {
         const double alpha = gear->pressure_angle;
         const double working = acos(fmin(1.0, base / (pitch + apart)));
@@ -139,7 +134,7 @@ static double spread_of(const Gear *gear, double apart)
     return e * mean * apart;
 }
 
-double mesh_gap(const Mesh *mesh, const MeshFlank *flank, double beyond, double apart)
+double mesh_gap(const Gear *gear, const MeshFlank *flank, double beyond, double apart)
 {
-    return slant_of(mesh->gear) * beyond - flank->stands_out + spread_of(mesh->gear, apart);
+    return flank->slant * beyond - flank->stands_out + spread_of(gear, flank->slant, apart);
 }

@@ -40,6 +40,7 @@ typedef struct MeshFlank {
     Vec2 offset;       // d, m
     Vec2 normal;       // n, unit
     Vec2 from_b;       // m, from centre b to where the line of action meets that of the centres
+    double slant;      // cos alpha: of a way along the pitch circles that along the line of action
     double arms[2];    // m_a and m_b, m
     double stands_out; // y, m
     double bend;       // y'', m/rad^2
@@ -58,7 +59,7 @@ double mesh_rate(const MeshFlank *flank, Vec2 velocity, double omega_a, double o
 double mesh_bend(const MeshFlank *flank, Vec2 velocity, double omega_a, double omega_b);
 
 // g above, m, with s q - c and how much further apart the centres are than R, m.
-double mesh_gap(const Mesh *mesh, const MeshFlank *flank, double beyond, double apart);
+double mesh_gap(const Gear *gear, const MeshFlank *flank, double beyond, double apart);
 
 // How far the gears have come round, q, m, next to a value; and its rate, m/s.
 double mesh_position(const Gear *gear, Vec2 offset, double angle_a, double angle_b, double near);

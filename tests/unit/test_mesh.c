@@ -108,7 +108,7 @@ static double gap_of(const Mesh *mesh, double sign, const double turned[2], Vec2
 {
     const MeshFlank flank = mesh_flank(mesh, sign, centre_b, turned[0], turned[1]);
     const double q = mesh_position(mesh->gear, centre_b, turned[0], turned[1], 0.0);
-    return mesh_gap(mesh, &flank, sign * q, vec2_length(centre_b) - DISTANCE);
+    return mesh_gap(mesh->gear, &flank, sign * q, vec2_length(centre_b) - DISTANCE);
 }
 
 static void flanks_are_as_far_apart_as_their_curves(void **state)
@@ -202,9 +202,9 @@ static void the_spread_is_one_function(void **state)
     const double edge = 0.1 * DISTANCE * (1.0 - cos(ALPHA));
     for (int i = 0; i < 2; i++) {
         const double apart = (i == 0 ? 1.0 : -1.0) * edge;
-        const MeshFlank flank = {.sign = 1.0};
-        const double inside = mesh_gap(&mesh, &flank, 0.0, apart * (1.0 - 1e-12));
-        const double outside = mesh_gap(&mesh, &flank, 0.0, apart * (1.0 + 1e-12));
+        const MeshFlank flank = mesh_flank(&mesh, 1.0, (Vec2){DISTANCE, 0.0}, 0.0, 0.0);
+        const double inside = mesh_gap(&gear, &flank, 0.0, apart * (1.0 - 1e-12));
+        const double outside = mesh_gap(&gear, &flank, 0.0, apart * (1.0 + 1e-12));
         assert_near(inside, outside, 1e-15);
         assert_near(inside / apart, sin(ALPHA), 0.1);
     }

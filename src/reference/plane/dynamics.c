@@ -234,17 +234,17 @@ static TouchPose pose_of_flank(const Tree *tree, const TreeState *state, const P
 {
     const int joint = site->touch.joint;
     const int *bodies = tree->end_bodies + 2 * site->pair;
-    const Mesh mesh = mesh_of(tree->linkage, &tree->linkage->joints[joint]);
+    const Gear *gear = &tree->linkage->joints[joint].gear;
     const MeshFlank flank = dynamics_flank(tree, state, site);
     const Vec2 velocity = tree_pair_velocity(tree, state, site->pair);
     const double beyond = site->touch.sign * tree_coordinate(tree, state, joint) - site->end;
     // without a pressure angle the centres stay as far apart as they are
-    const bool may_part = mesh.gear->pressure_angle > 0.0;
+    const bool may_part = gear->pressure_angle > 0.0;
     return (TouchPose){
         .offset = flank.offset,
         .velocity = velocity,
-        .gap = mesh_gap(&mesh, &flank, beyond,
-                        may_part ? tree_distance(tree, state, site->pair) : 0.0),
+        .gap =
+            mesh_gap(gear, &flank, beyond, may_part ? tree_distance(tree, state, site->pair) : 0.0),
         .has_normal = true,
         .normal = flank.normal,
         .approach_speed = -mesh_rate(&flank, velocity, tree_omega(state, bodies[0]),
