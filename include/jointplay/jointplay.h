@@ -85,8 +85,11 @@ typedef enum JpDamping {
     JP_DAMPING_DISSIPATION, /* D = dissipation F_el: it has no memory of the impact */
 } JpDamping;
 
+enum { JP_SERIES_TERMS = 24 };
+
 typedef struct JpContact {
-    double stiffness;  /* K of F_el = K d^exponent, N/m^exponent; 0 of a logarithmic law */
+    double stiffness;  /* K of F_el = K d^exponent, N/m^exponent; 0 of a logarithmic law; with a
+                        * play k of F_el = k d / W, N/m */
     double exponent;   /* 1 */
     double compliance; /* A of d = A F (B - ln F), m/N: a cylinder in a hole; else 0 */
     double offset;     /* B, 1, F in N */
@@ -98,6 +101,10 @@ typedef struct JpContact {
     /* m/s, of the hysteretic kinds: a contact that has outlasted its impact (it was compressed,
      * released, and is compressed again) is damped as if it had this speed; 0: as at its impact */
     double resting_speed;
+    /* m, of a pin in the hole of an eye, by elasticity, else 0: W = series[0] + series[1] x + .., x
+     * linear in ln(1 + ln(1 + play / d)), -1 at 30 plays and 1 at 1e-8 (JP_PIN_ELASTIC) */
+    double play;
+    double series[JP_SERIES_TERMS];
 } JpContact;
 
 /* No stiffness yet; exponent 1, JP_DAMPING_EXACT, restitution .5, speed floor 1e-6, no resting
@@ -105,13 +112,15 @@ typedef struct JpContact {
 JP_API JpContact jp_contact_default(void);
 JP_API JpStatus jp_contact_check(const JpContact *contact, JpError *error);
 
-/* The elastic laws of a round pin in a round hole, both of one material. */
+/* The elastic laws of a round pin in a round hole. JP_PIN_ELASTIC, of an eye that is clamped on its
+ * outer circle, follows from elasticity; for others see docs/equations.md. */
 typedef enum JpPinLaw {
     JP_PIN_HERTZ,
     JP_PIN_JOHNSON,
     JP_PIN_RADZIMOVSKY,
     JP_PIN_ESDU_78035,
     JP_PIN_DUBOWSKY_FREUDENSTEIN,
+    JP_PIN_ELASTIC,
 } JpPinLaw;
 
 typedef struct JpPin {
@@ -120,9 +129,14 @@ typedef struct JpPin {
     double width;          /* m, over which they touch; not of JP_PIN_HERTZ */
     double youngs_modulus; /* Pa */
     double poisson_ratio;  /* 1 */
+    double eye_radius;     /* m, outer radius of what has the hole, of JP_PIN_ELASTIC: at least 1.2
+                            * times hole_radius; 0: twice hole_radius */
+    double pin_modulus;    /* Pa, of a pin of another material; 0: as above */
+    double pin_ratio;      /* 1, likewise; of a pin_modulus above 0 alone */
 } JpPin;
 
-/* Fills in stiffness and exponent, or compliance and offset; the rest of the contact stays. */
+/* Fills in stiffness and exponent, compliance and offset, and play and series; the rest of the
+ * contact stays. */
 JP_API JpStatus jp_contact_of_pin(JpPinLaw law, const JpPin *pin, JpContact *contact,
                                   JpError *error);
 

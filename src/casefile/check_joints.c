@@ -67,7 +67,7 @@ static bool check_pin(const Entries *entries, size_t index, const Scenario *scen
                               "the law %s needs the diameter of the pin\nallowed: pin: 10 mm "
                               "beside radial-clearance, or contact.stiffness such as 6.6e10 "
                               "N/m^1.5",
-                              OPTIONS_LAWS[scenario->contact.law]);
+                              OPTIONS_LAWS[law_options(&scenario->contact, joint).law]);
     }
     if (needs_width(scenario, joint) && joint->clearance.width == 0.0) {
         const Entry *law = entries_find(entries, "contact.law", 0);
@@ -99,7 +99,8 @@ static bool check_stiffness(const Entries *entries, size_t index, const Scenario
            entries_refuse_group(group, err,
                                 "joint '%s', %s, needs a stiffness: the law %s is for pins in "
                                 "holes\nallowed: stiffness: 1e8 N/m here or in contact",
-                                joint->name, what, OPTIONS_LAWS[scenario->contact.law]);
+                                joint->name, what,
+                                OPTIONS_LAWS[law_chosen(scenario->contact.law, 0.0)]);
 }
 
 static bool check_guide(const Entries *entries, size_t index, const Scenario *scenario, Err *err)

@@ -66,6 +66,7 @@ static const Condition WANTS[] = {
     {REMEMBERED, 0, {"a contact.damping but none, viscous and dissipation", "contact.damping", false}},
     {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
     {UNSTEADY, 0, {"a drive.speed, angle, torque or force over time", "drive.speed", false}},
+    {ELASTIC_PIN, 0, {"contact.law: elastic, or auto and a width, and no stiffness of its own", "contact.law", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
 };
 // clang-format on
@@ -351,13 +352,20 @@ static unsigned row_bits(const Scenario *scenario)
                             scenario->contact.dissipation == 0.0);
 }
 
+static bool has_elastic_law(const Scenario *scenario, const Joint *joint)
+{
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    return own.model == CONTACT_IMPACT && own.stiffness == 0.0 && own.law == LAW_ELASTIC;
+}
+
 static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
     const bool is_joint = row->family == SCHEMA_JOINT && index < scenario->linkage.joint_count;
     const Joint *joint = is_joint ? &scenario->linkage.joints[index] : NULL;
     const bool is_own = is_joint && (scenario->contact.model == CONTACT_POISSON ||
                                      is_restored(law_options(&scenario->contact, joint).damping));
-    return shared_bits(scenario) | row_bits(scenario) | bit(OWN_REBOUND, is_own);
+    return shared_bits(scenario) | row_bits(scenario) | bit(OWN_REBOUND, is_own) |
+           bit(ELASTIC_PIN, is_joint && has_elastic_law(scenario, joint));
 }
 
 // A start is one of play: without, nothing says where a joint starts but its bodies.

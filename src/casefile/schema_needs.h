@@ -55,5 +55,6 @@ enum {
     REMEMBERED = 1 << 12,      // the damping divides by the speed of the impact
     DERIVED = 1 << 13,         // what is lost follows from a restitution
     UNSTEADY = 1 << 14,        // the drive's speed is not constant
+    ELASTIC_PIN = 1 << 15,     // the joint's stiffness is that of the elastic law
     SHUFFLED = 1 << 9,         // the quick solver comes to change the order of the rows
 };

@@ -94,6 +94,9 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define SPACE_BODY BODY, .needs = MEMBER | SPATIAL
 #define JOINT(field) .family = SCHEMA_JOINT, AT_JOINT(field)
 #define PIN(field) JOINT(clearance.field), .needs = MEMBER, .kinds = JOINTS_WITH_HOLE
+#define PIN_MATERIAL(field) \
+    JOINT(clearance.field), .needs = MEMBER | MATERIAL, .kinds = JOINTS_WITH_HOLE, \
+    .default_words = "that of material"
 #define GUIDE(field) \
     JOINT(guide.field), .form = SCHEMA_LONG | SCHEMA_SLIDER_CRANK, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
     .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = JOINTS_WITH_GUIDES

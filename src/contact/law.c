@@ -2,6 +2,7 @@
 #include "contact/law.h"
 
 #include "contact/damping.h"
+#include "contact/eye.h"
 #include "contact/penalty.h"
 
 #include <math.h>
@@ -16,8 +17,12 @@ const Law *law_get(LawKind kind)
 
 double law_effective_modulus(const ContactPair *pair)
 {
-    const MaterialOptions material = {pair->youngs_modulus, pair->poisson_ratio};
-    return penalty_effective_modulus(&material);
+    const double hole = 1.0 - pair->poisson_ratio * pair->poisson_ratio;
+    if (pair->pin_modulus == 0.0) {
+        return pair->youngs_modulus / (2.0 * hole);
+    }
+    const double pin = 1.0 - pair->pin_ratio * pair->pin_ratio;
+    return 1.0 / (hole / pair->youngs_modulus + pin / pair->pin_modulus);
 }
 
 static bool check_pair(LawKind kind, const ContactPair *pair, Err *err)
@@ -27,7 +32,8 @@ static bool check_pair(LawKind kind, const ContactPair *pair, Err *err)
     if (!(pair->pin_radius > 0.0 && pair->hole_radius > pair->pin_radius)) {
         return err_set(err, ERR_CASE, "the contact law %s needs a pin smaller than its hole", name);
     }
-    if (!(pair->youngs_modulus > 0.0) || !(fabs(pair->poisson_ratio) < 1.0)) {
+    if (!(pair->youngs_modulus > 0.0) || !(fabs(pair->poisson_ratio) < 1.0) ||
+        !(pair->pin_modulus >= 0.0) || !(fabs(pair->pin_ratio) < 1.0)) {
         return err_set(err, ERR_CASE,
                        "the contact law %s needs a Young's modulus above 0 and a Poisson's ratio"
                        " between -1 and 1",
@@ -35,6 +41,11 @@ static bool check_pair(LawKind kind, const ContactPair *pair, Err *err)
     }
     if (law->needs_width && !(pair->width > 0.0)) {
         return err_set(err, ERR_CASE, "the contact law %s needs the width of the joint", name);
+    }
+    if (pair->eye_radius > 0.0 && pair->eye_radius < EYE_LEAST * pair->hole_radius) {
+        return err_set(err, ERR_CASE,
+                       "the eye's radius, %.6g mm, is not %.2g times that of its hole, %.6g mm",
+                       1e3 * pair->eye_radius, EYE_LEAST, 1e3 * pair->hole_radius);
     }
     if (law->needs_force && !(pair->reference_force > 0.0)) {
         return err_set(err, ERR_CASE, "the contact law %s needs a reference force above 0", name);
@@ -59,14 +70,24 @@ bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err)
     return true;
 }
 
+static double own_or(double own, double common)
+{
+    return own > 0.0 ? own : common;
+}
+
 ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material, double speed)
 {
+    const bool is_one = clearance->modulus[0] == clearance->modulus[1] &&
+                        clearance->poisson[0] == clearance->poisson[1];
     return (ContactPair){
         .hole_radius = clearance->hole_radius,
         .pin_radius = clearance->pin_radius,
         .width = clearance->width,
-        .youngs_modulus = material->youngs_modulus,
-        .poisson_ratio = material->poisson_ratio,
+        .eye_radius = law_eye_radius(clearance),
+        .youngs_modulus = own_or(clearance->modulus[0], material->youngs_modulus),
+        .poisson_ratio = own_or(clearance->poisson[0], material->poisson_ratio),
+        .pin_modulus = is_one ? 0.0 : own_or(clearance->modulus[1], material->youngs_modulus),
+        .pin_ratio = is_one ? 0.0 : own_or(clearance->poisson[1], material->poisson_ratio),
         .reference_force = penalty_reference_force(speed),
     };
 }

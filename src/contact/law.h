@@ -5,13 +5,17 @@
 #include "kernel/force_law.h"
 #include "model/scenario.h"
 
-// A pin in a hole, both of one material.
+// A pin in a hole.
 typedef struct ContactPair {
     double hole_radius;     // m
     double pin_radius;      // m, smaller
     double width;           // m, over which they touch; only the cylinder laws need it
-    double youngs_modulus;  // Pa
-    double poisson_ratio;   // 1
+    double eye_radius;      // m, of the outside of the eye around the hole, for the elastic law; 0:
+                            // twice that of the hole
+    double youngs_modulus;  // Pa, of what has the hole
+    double poisson_ratio;   // 1, likewise
+    double pin_modulus;     // Pa, of a pin of another material; 0: of the same
+    double pin_ratio;       // 1, likewise, of a modulus above 0
     double reference_force; // N, at which a law whose stiffness depends on a load is taken:
                             // paper-table-2, by the tangential force of the paper's Table I
 } ContactPair;
@@ -25,6 +29,9 @@ typedef struct Law {
 
 const Law *law_get(LawKind kind);
 
+// The law that is meant by one that may be auto, of a pin with a width, m, or 0.
+LawKind law_chosen(LawKind kind, double width);
+
 // Makes the undamped law of a pair. Fails with ERR_CASE, the law untouched, where radii, material
 // or (if needed) width or reference force are out of range.
 bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err);
@@ -32,6 +39,9 @@ bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err);
 // The pair of a joint. The reference force is the paper's for its crank-coupler pin at the
 // driver's speed, rad/s; 0 stands for 1000 rpm.
 ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material, double speed);
+
+// The outer radius, m, of the eye of a joint: given, or twice that of its hole.
+double law_eye_radius(const Clearance *clearance);
 
 // The whole law of a joint as the options say: given stiffness or law, damping, speed floor,
 // friction. Fails
@@ -59,7 +69,8 @@ static inline double law_dissipation(const ForceLaw *law)
 // The restitution, 1, that the hysteretic damping of a law delivers at an impact speed, m/s.
 double law_restitution(const ForceLaw *law, double speed);
 
-// The contact's options with what the joint has of its own in their place.
+// The contact's options with what the joint has of its own in their place, and the law that is
+// meant.
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint);
 
 // Whether the stiffness of any joint with play is that of the law that the options name.
@@ -97,7 +108,7 @@ double law_touching_radius(const Joint *joint);
 // its depth is no number.
 bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, double share, Err *err);
 
-// E* = E / (2 (1 - nu^2)), Pa.
+// E*, Pa: 1 / E* = (1 - nu_a^2) / E_a + (1 - nu_b^2) / E_b, of hole and pin.
 double law_effective_modulus(const ContactPair *pair);
 
 // The members, by the names in OPTIONS_LAW_LIST.

@@ -7,6 +7,7 @@
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
 {
     ContactOptions own = *contact;
+    own.law = law_chosen(own.law, joint->clearance.width);
     // one stiffness for all joints is one of lengths
     if (joint->contact.stiffness > 0.0 && (!contact->is_for_all || linkage_is_torsional(joint))) {
         own.stiffness = joint->contact.stiffness;

@@ -108,14 +108,34 @@ static json_t *body_object(const Body *body)
                      engine_pair(start->velocity), "omega_rad_s", start->omega);
 }
 
+static json_t *series_array(const ForceLaw *law)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
+        json_array_append_new(array, json_real(law->series[i]));
+    }
+    return array;
+}
+
+static json_t *elastic_object(const ForceLaw *law)
+{
+    switch (law->family) {
+    case FORCE_LAW_POWER:
+        return json_pack("{s:s, s:f, s:f}", "family", "power", "stiffness_N_m", law->stiffness,
+                         "exponent", law->exponent);
+    case FORCE_LAW_LOGARITHMIC:
+        return json_pack("{s:s, s:f, s:f, s:f}", "family", "logarithmic", "compliance_m_N",
+                         law->compliance, "offset", law->offset, "log_scale", law->log_scale);
+    case FORCE_LAW_CONFORMING:
+        break;
+    }
+    return json_pack("{s:s, s:f, s:f, s:o}", "family", "conforming", "stiffness_N_m",
+                     law->stiffness, "play_m", law->play, "series", series_array(law));
+}
+
 static json_t *law_object(const ForceLaw *law)
 {
-    json_t *object =
-        law->family == FORCE_LAW_POWER
-            ? json_pack("{s:s, s:f, s:f}", "family", "power", "stiffness_N_m", law->stiffness,
-                        "exponent", law->exponent)
-            : json_pack("{s:s, s:f, s:f, s:f}", "family", "logarithmic", "compliance_m_N",
-                        law->compliance, "offset", law->offset, "log_scale", law->log_scale);
+    json_t *object = elastic_object(law);
     const int is_added = json_object_update_new(
         object, json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "hysteresis", law->hysteresis,
                           "viscous_N_s_m", law->viscous, "impact_speed_floor_m_s",

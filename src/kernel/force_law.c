@@ -5,6 +5,7 @@
 //   with y = B - ln F    y - ln y = L,  L = B + ln A - ln d,  F = d / (A y)
 //                        dF/dd = 1 / (A (y - 1)),  W = A F^2 (2 y - 1) / 4
 //   The branch y > 1 is the physical one: F grows with d. It ends at y = 1, d = A e^(B-1).
+// Conforming family      kernel/conforming.h
 // Damping                F_total = max(0, F + (chi F / max(v0, floor) + c) d')
 //
 // d penetration, m; F force, N; K stiffness, N/m^n; n exponent, 1; A compliance, m/N; B offset, 1
@@ -15,8 +16,11 @@
 // Crossley, J. Appl. Mech. 42 (1975) 440, for the damping term F chi d' / v0.
 #include "kernel/force_law.h"
 
+#include "kernel/conforming.h"
+
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 // the closing speed of a pin let go a fraction of a micron from the wall
 static const double DEFAULT_SPEED_FLOOR = 1e-3;
@@ -52,8 +56,33 @@ ForceLaw force_law_logarithmic(double compliance, double offset)
     };
 }
 
+ForceLaw force_law_conforming(double stiffness, double play, const double *series)
+{
+    ForceLaw law = {
+        .family = FORCE_LAW_CONFORMING,
+        .stiffness = stiffness,
+        .play = play,
+        .impact_speed_floor = DEFAULT_SPEED_FLOOR,
+    };
+    memcpy(law.series, series, sizeof law.series);
+    return law;
+}
+
+static bool is_conforming_sound(const ForceLaw *law)
+{
+    double width = 0.0; // where it is least
+    for (int i = FORCE_LAW_TERMS - 1; i >= 0; i--) {
+        width = law->series[i] - width;
+    }
+    return law->stiffness > 0.0 && isfinite(law->stiffness) && law->play > 0.0 &&
+           isfinite(law->play) && width > 0.0 && isfinite(width);
+}
+
 bool force_law_is_sound(const ForceLaw *law)
 {
+    if (law->family == FORCE_LAW_CONFORMING) {
+        return is_conforming_sound(law);
+    }
     if (law->family == FORCE_LAW_POWER) {
         return law->stiffness > 0.0 && isfinite(law->stiffness) && law->exponent > 0.0 &&
                isfinite(law->exponent);
@@ -121,7 +150,7 @@ static double power(double base, double exponent)
 
 double force_law_depth_limit(const ForceLaw *law)
 {
-    return law->family == FORCE_LAW_POWER ? INFINITY : exp(law->log_scale - 1.0);
+    return law->family == FORCE_LAW_LOGARITHMIC ? exp(law->log_scale - 1.0) : INFINITY;
 }
 
 double force_law_elastic(const ForceLaw *law, double penetration)
@@ -131,6 +160,9 @@ double force_law_elastic(const ForceLaw *law, double penetration)
     }
     if (law->family == FORCE_LAW_POWER) {
         return law->stiffness * power(penetration, law->exponent);
+    }
+    if (law->family == FORCE_LAW_CONFORMING) {
+        return conforming_secant(law, penetration) * penetration;
     }
     return penetration / (law->compliance * branch_at(law, penetration));
 }
@@ -142,6 +174,12 @@ double force_law_tangent(const ForceLaw *law, double penetration)
     }
     if (penetration <= 0.0) {
         return 0.0;
+    }
+    if (law->family == FORCE_LAW_CONFORMING) {
+        double force;
+        double slope;
+        conforming_both(law, penetration, &force, &slope);
+        return slope;
     }
     return 1.0 / (law->compliance * (branch_at(law, penetration) - 1.0));
 }
@@ -158,6 +196,10 @@ void force_law_both(const ForceLaw *law, double penetration, double *elastic, do
         *elastic = *tangent = 0.0;
         return;
     }
+    if (law->family == FORCE_LAW_CONFORMING) {
+        conforming_both(law, penetration, elastic, tangent);
+        return;
+    }
     const double branch = branch_at(law, penetration);
     *elastic = penetration / (law->compliance * branch);
     *tangent = 1.0 / (law->compliance * (branch - 1.0));
@@ -172,6 +214,9 @@ double force_law_secant(const ForceLaw *law, double penetration)
         }
         return law->exponent == 1.0 ? law->stiffness
                                     : law->stiffness * pow(depth, law->exponent - 1.0);
+    }
+    if (law->family == FORCE_LAW_CONFORMING) {
+        return conforming_secant(law, penetration);
     }
     return penetration <= 0.0 ? 0.0 : 1.0 / (law->compliance * branch_at(law, penetration));
 }
@@ -204,6 +249,9 @@ double force_law_penetration(const ForceLaw *law, double force)
     if (law->family == FORCE_LAW_POWER) {
         return pow(force / law->stiffness, 1.0 / law->exponent);
     }
+    if (law->family == FORCE_LAW_CONFORMING) {
+        return conforming_penetration(law, force);
+    }
     const double y = law->offset - log(force);
     return y >= 1.0 ? law->compliance * force * y : NAN;
 }
@@ -215,6 +263,9 @@ double force_law_energy(const ForceLaw *law, double penetration)
     }
     if (law->family == FORCE_LAW_POWER) {
         return force_law_elastic(law, penetration) * penetration / (law->exponent + 1.0);
+    }
+    if (law->family == FORCE_LAW_CONFORMING) {
+        return conforming_energy(law, penetration);
     }
     const double y = branch_at(law, penetration);
     const double force = penetration / (law->compliance * y);

@@ -10,28 +10,35 @@
 typedef enum ForceLawFamily {
     FORCE_LAW_POWER,       // F = K d^n
     FORCE_LAW_LOGARITHMIC, // d = A F (B - ln F), F in N: cylinder in a hole
+    FORCE_LAW_CONFORMING,  // F = k d / W(d / play): cylinder in the hole of an eye, by elasticity
+                           // (kernel/conforming.h)
 } ForceLawFamily;
+
+enum { FORCE_LAW_TERMS = 24 }; // of W as a polynomial: leaves 1e-6 of a force, 1e-4 of rubber's
 
 typedef struct ForceLaw {
     ForceLawFamily family;
-    double stiffness;          // K, N/m^n, of FORCE_LAW_POWER
-    double exponent;           // n, 1, of FORCE_LAW_POWER
-    double compliance;         // A, m/N, of FORCE_LAW_LOGARITHMIC
-    double offset;             // B, 1, of FORCE_LAW_LOGARITHMIC
-    double log_scale;          // B + ln(A / (m/N)), 1: set by force_law_logarithmic
-    double hysteresis;         // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
-    double viscous;            // c, N s/m: F = F_el + c d'; 0 for none
-    double impact_speed_floor; // m/s, > 0: smallest v0 the hysteretic damping divides by
-    double resting_speed;      // m/s: v0 of a contact that has outlasted its impact
-                               // (kernel/contact_state.h); 0: that of its impact for ever
-    double friction;           // mu, 1: Coulomb's coefficient; 0 for none
-    double friction_speed;     // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
+    double stiffness;               // K, N/m^n, of FORCE_LAW_POWER; k, N/m, of FORCE_LAW_CONFORMING
+    double exponent;                // n, 1, of FORCE_LAW_POWER
+    double compliance;              // A, m/N, of FORCE_LAW_LOGARITHMIC
+    double offset;                  // B, 1, of FORCE_LAW_LOGARITHMIC
+    double log_scale;               // B + ln(A / (m/N)), 1: set by force_law_logarithmic
+    double hysteresis;              // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
+    double viscous;                 // c, N s/m: F = F_el + c d'; 0 for none
+    double impact_speed_floor;      // m/s, > 0: smallest v0 the hysteretic damping divides by
+    double resting_speed;           // m/s: v0 of a contact that has outlasted its impact
+                                    // (kernel/contact_state.h); 0: that of its impact for ever
+    double friction;                // mu, 1: Coulomb's coefficient; 0 for none
+    double friction_speed;          // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
+    double play;                    // m, of FORCE_LAW_CONFORMING: what depths are measured in
+    double series[FORCE_LAW_TERMS]; // likewise: of W
 } ForceLaw;
 
-// The two families, without damping and friction, with an impact speed floor of 1 mm/s. Every
-// number must be > 0 (B alone may be anything).
+// The families, without damping and friction, with an impact speed floor of 1 mm/s. Every number
+// must be > 0 (B and the series' may be anything).
 ForceLaw force_law_power(double stiffness, double exponent);
 ForceLaw force_law_logarithmic(double compliance, double offset);
+ForceLaw force_law_conforming(double stiffness, double play, const double *series);
 
 // That law with a coefficient of friction and the sliding speed, m/s, over which it sets in.
 static inline ForceLaw force_law_with_friction(ForceLaw law, double friction, double speed)
@@ -49,7 +56,7 @@ bool force_law_is_sound(const ForceLaw *law);
 ForceLaw force_law_share(const ForceLaw *law, double share);
 
 // The deepest penetration the law can describe, m: A e^(B-1) of the logarithmic family, where
-// the force has no finite slope any more; infinite for the power family.
+// the force has no finite slope any more; infinite for the others.
 double force_law_depth_limit(const ForceLaw *law);
 
 // Elastic force, N, at a penetration, m; 0 where it is not positive; NaN beyond the depth limit,
@@ -57,7 +64,7 @@ double force_law_depth_limit(const ForceLaw *law);
 double force_law_elastic(const ForceLaw *law, double penetration);
 
 // Slope of the elastic force, N/m. At no penetration: 0 for n > 1, K for n = 1, infinite for
-// n < 1, 0 for the logarithmic family (its stiffness vanishes as 1 / ln d).
+// n < 1, 0 for the others (their stiffness vanishes as 1 / ln d).
 double force_law_tangent(const ForceLaw *law, double penetration);
 
 // Both at once, from one solution of the law.

@@ -4,6 +4,7 @@
 // of it is a row: predicted, judged, and run in ODE as a single pin (measure/mapping_contact.h).
 #include "measure/mapping.h"
 #include "base/text.h"
+#include "contact/law.h"
 
 #include <assert.h>
 #include <math.h>
@@ -53,7 +54,7 @@ static bool mapping_make_contact(const Mapping *mapping, const Scenario *scenari
     if (is_torsional && has_laws(mapping)) {
         return err_set(lack, ERR_USAGE,
                        "its stiffness is its own: the law %s is for a pin in its hole",
-                       OPTIONS_LAWS[scenario->contact.law]);
+                       OPTIONS_LAWS[law_chosen(scenario->contact.law, at->clearance.width)]);
     }
     return speed > 0.0 ? mapping_contact_make(scenario, joint, mass, speed, contact, lack)
                        : err_set(lack, ERR_USAGE,
@@ -73,8 +74,9 @@ static void mapping_add_contact(Mapping *mapping, const Scenario *scenario,
     if (!mapping_make_contact(mapping, scenario, joint, mass, speed, contact, &lack)) {
         *contact = (MappingContact){
             .joint = *joint,
-            .law_name = has_laws(mapping) ? OPTIONS_LAWS[scenario->contact.law]
-                                          : mapping_law_name(scenario, at),
+            .law_name = has_laws(mapping)
+                            ? OPTIONS_LAWS[law_chosen(scenario->contact.law, at->clearance.width)]
+                            : mapping_law_name(scenario, at),
             .scenario = *scenario,
             .impact = {.mass = mass, .speed = speed},
             .lack_kind = lack.kind,

@@ -71,6 +71,9 @@ typedef struct Clearance {
     double hole_radius; // m
     double pin_radius;  // m
     double width;       // m, the length over which pin and hole touch
+    double eye_radius;  // m, of the outside of the eye around the hole; 0: twice that of the hole
+    double modulus[2];  // Pa, of the materials of hole and pin; 0: that of the scenario's
+    double poisson[2];  // 1, likewise Poisson's ratios
     Vec2 start;         // eccentricity at time zero: pin centre minus hole centre, m, world frame
 } Clearance;
 

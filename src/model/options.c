@@ -65,7 +65,7 @@ ContactOptions contact_options_default(void)
 {
     return (ContactOptions){
         .model = CONTACT_IMPACT,
-        .law = LAW_HERTZ_SOCKET,
+        .law = LAW_AUTO,
         .stiffness = 0.0,
         .exponent = 1.5,
         .damping = DAMPING_EXACT, // the one that gives back what was asked for

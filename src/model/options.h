@@ -13,6 +13,8 @@
 
 // The elastic laws, F(penetration); see contact/law.h.
 #define OPTIONS_LAW_LIST(member) \
+    member(LAW_AUTO, "auto", law_auto) \
+    member(LAW_ELASTIC, "elastic", law_elastic) \
     member(LAW_HERTZ_SOCKET, "hertz-socket", law_hertz_socket) \
     member(LAW_JOHNSON, "johnson", law_johnson) \
     member(LAW_RADZIMOVSKY, "radzimovsky", law_radzimovsky) \

@@ -108,6 +108,19 @@ static void shake_limits(Joint *joint, uint64_t *seed)
     }
 }
 
+// What most pins do not say of their eye; then nothing is drawn for it.
+static void shake_eye(Clearance *clearance, uint64_t *seed)
+{
+    double *const numbers[] = {&clearance->eye_radius, &clearance->modulus[0],
+                               &clearance->modulus[1], &clearance->poisson[0],
+                               &clearance->poisson[1]};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        if (*numbers[i] > 0.0) {
+            shake(numbers[i], seed);
+        }
+    }
+}
+
 static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
 {
     shake_vector(&joint->anchor_a, seed);
@@ -115,6 +128,7 @@ static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
     shake(&joint->clearance.hole_radius, seed);
     shake(&joint->clearance.pin_radius, seed);
     shake(&joint->clearance.width, seed);
+    shake_eye(&joint->clearance, seed);
     shake_vector(&joint->clearance.start, seed);
     shake_sliding(joint, has_own, seed);
     shake_limits(joint, seed);

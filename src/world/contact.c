@@ -5,6 +5,7 @@
 #include "contact/law.h"
 
 #include <math.h>
+#include <string.h>
 
 // slower than any impact of a body of millimetres that one sees
 static const double DEFAULT_SPEED_FLOOR = 1e-6;
@@ -18,13 +19,15 @@ static const LawKind PIN_LAWS[] = {
     [JP_PIN_RADZIMOVSKY] = LAW_RADZIMOVSKY,
     [JP_PIN_ESDU_78035] = LAW_ESDU_78035,
     [JP_PIN_DUBOWSKY_FREUDENSTEIN] = LAW_DUBOWSKY_FREUDENSTEIN,
+    [JP_PIN_ELASTIC] = LAW_ELASTIC,
 };
 
-// the program alone has those of the paper's tables, which follow from no theory of contact
-enum { PAPER_LAWS = 2 };
+// the program alone has a law that depends on the case, and those of the paper's tables, which
+// follow from no theory of contact
+enum { CASE_LAWS = 3 };
 _Static_assert(sizeof KINDS / sizeof *KINDS == DAMPING_COUNT,
                "JpDamping has a damping that OPTIONS_DAMPING_LIST lacks");
-_Static_assert(sizeof PIN_LAWS / sizeof *PIN_LAWS + PAPER_LAWS == LAW_COUNT,
+_Static_assert(sizeof PIN_LAWS / sizeof *PIN_LAWS + CASE_LAWS == LAW_COUNT,
                "a law of OPTIONS_LAW_LIST is missing: add it to JpPinLaw and to PIN_LAWS");
 
 JpContact jp_contact_default(void)
@@ -39,6 +42,7 @@ JpContact jp_contact_default(void)
 
 static JpStatus check_elastic(const JpContact *contact, JpError *error)
 {
+    REFUSAL_TRY(refusal_of_negative(contact->play, "the contact's play", error));
     if (contact->compliance == 0.0) {
         REFUSAL_TRY(refusal_of_positive(contact->stiffness, "the contact's stiffness", error));
         return refusal_of_positive(contact->exponent, "the contact's exponent", error);
@@ -94,8 +98,17 @@ JpStatus contact_law(const JpContact *contact, ForceLaw *law, JpError *error)
     REFUSAL_TRY(refusal_of_null(contact, "the contact", error));
     REFUSAL_TRY(check_elastic(contact, error));
     REFUSAL_TRY(check_damping(contact, error));
-    *law = contact->compliance == 0.0 ? force_law_power(contact->stiffness, contact->exponent)
-                                      : force_law_logarithmic(contact->compliance, contact->offset);
+    *law = contact->play > 0.0
+               ? force_law_conforming(contact->stiffness, contact->play, contact->series)
+           : contact->compliance == 0.0
+               ? force_law_power(contact->stiffness, contact->exponent)
+               : force_law_logarithmic(contact->compliance, contact->offset);
+    if (contact->play > 0.0 && !force_law_is_sound(law)) {
+        return refusal(error, JP_ERROR_ARGUMENT,
+                       "the contact's series gives no force above 0 over a play of %g; "
+                       "jp_contact_of_pin fills both in",
+                       contact->play);
+    }
     if (!force_law_is_sound(law)) {
         return refusal(error, JP_ERROR_ARGUMENT,
                        "the contact's compliance is %g and its offset %g, which is out of a "
@@ -120,6 +133,17 @@ JpStatus jp_contact_check(const JpContact *contact, JpError *error)
     return contact_law(contact, &unused, error);
 }
 
+void contact_set_elastic(const ForceLaw *law, JpContact *contact)
+{
+    const bool is_power = law->family == FORCE_LAW_POWER;
+    contact->stiffness = law->stiffness;
+    contact->exponent = is_power ? law->exponent : 1.0;
+    contact->compliance = law->compliance;
+    contact->offset = law->offset;
+    contact->play = law->play;
+    memcpy(contact->series, law->series, sizeof contact->series);
+}
+
 JpStatus jp_contact_of_pin(JpPinLaw kind, const JpPin *pin, JpContact *contact, JpError *error)
 {
     REFUSAL_TRY(refusal_of_null(pin, "the pin", error));
@@ -131,23 +155,24 @@ JpStatus jp_contact_of_pin(JpPinLaw kind, const JpPin *pin, JpContact *contact, 
     REFUSAL_TRY(refusal_of_positive(pin->pin_radius, "the pin's radius", error));
     REFUSAL_TRY(refusal_of_positive(pin->youngs_modulus, "Young's modulus", error));
     REFUSAL_TRY(refusal_of_negative(pin->width, "the pin's width", error));
+    REFUSAL_TRY(refusal_of_negative(pin->pin_modulus, "the pin's Young's modulus", error));
+    REFUSAL_TRY(refusal_of_negative(pin->eye_radius, "the eye's radius", error));
     const ContactPair pair = {
         .hole_radius = pin->hole_radius,
         .pin_radius = pin->pin_radius,
         .width = pin->width,
         .youngs_modulus = pin->youngs_modulus,
         .poisson_ratio = pin->poisson_ratio,
+        .pin_modulus = pin->pin_modulus,
+        .pin_ratio = pin->pin_modulus > 0.0 ? pin->pin_ratio : 0.0,
+        .eye_radius = pin->eye_radius,
     };
     Err refused = {ERR_NONE, ""};
     ForceLaw law;
     if (!law_make(PIN_LAWS[kind], &pair, &law, &refused)) {
         return refusal(error, JP_ERROR_ARGUMENT, "%s", refused.text);
     }
-    const bool is_power = law.family == FORCE_LAW_POWER;
-    contact->stiffness = is_power ? law.stiffness : 0.0;
-    contact->exponent = is_power ? law.exponent : 1.0;
-    contact->compliance = is_power ? 0.0 : law.compliance;
-    contact->offset = is_power ? 0.0 : law.offset;
+    contact_set_elastic(&law, contact);
     return refusal_none(error);
 }
 

@@ -22,7 +22,11 @@ typedef struct Chain {
 
 static JpPinInHole steel_pin(void)
 {
-    const JpPin sizes = {PIN_RADIUS + PLAY, PIN_RADIUS, 0.02, 207e9, 0.3};
+    const JpPin sizes = {.hole_radius = PIN_RADIUS + PLAY,
+                         .pin_radius = PIN_RADIUS,
+                         .width = 0.02,
+                         .youngs_modulus = 207e9,
+                         .poisson_ratio = 0.3};
     JpPinInHole pin = jp_pin_default();
     pin.hole_radius = sizes.hole_radius;
     pin.pin_radius = sizes.pin_radius;

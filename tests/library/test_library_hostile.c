@@ -108,8 +108,14 @@ static void call_mapping(Draw *draw, size_t kind, Outcome *out)
 static void call_contact(Draw *draw, size_t kind, Outcome *out)
 {
     JpContact contact = contact_of(draw);
-    const JpPin pin = {number(draw), number(draw), number(draw), number(draw),
-                       pick(draw, 2) == 0 ? 0.3 : number(draw)};
+    const JpPin pin = {number(draw),
+                       number(draw),
+                       number(draw),
+                       number(draw),
+                       pick(draw, 2) == 0 ? 0.3 : number(draw),
+                       pick(draw, 2) == 0 ? 0.0 : number(draw),
+                       pick(draw, 2) == 0 ? 0.0 : number(draw),
+                       number(draw)};
     switch (kind) {
     case 4:
         contact = jp_contact_default();
@@ -213,8 +219,12 @@ static void calls_that_once_ended_the_program_are_answered(void **state)
     assert_int_equal(jp_restitution_of(1e-310, 0.0, 1e-310, &found, &error), JP_OK);
     assert_close(found, 1.0, 0.0);
     JpContact contact = jp_contact_default();
-    const JpPin thick = {1e300, 1e299, 1e300, 1e308, 0.3};
-    for (int law = JP_PIN_HERTZ; law <= JP_PIN_DUBOWSKY_FREUDENSTEIN; law++) {
+    const JpPin thick = {.hole_radius = 1e300,
+                         .pin_radius = 1e299,
+                         .width = 1e300,
+                         .youngs_modulus = 1e308,
+                         .poisson_ratio = 0.3};
+    for (int law = JP_PIN_HERTZ; law <= JP_PIN_ELASTIC; law++) {
         assert_int_equal(jp_contact_of_pin((JpPinLaw)law, &thick, &contact, &error),
                          JP_ERROR_ARGUMENT);
     }

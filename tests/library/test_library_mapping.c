@@ -172,7 +172,11 @@ static void laws_of_a_pin_are_those_of_the_books(void **state)
 {
     (void)state;
     // Hertz: 4/3 E* sqrt(R), E* = E / (2 (1 - nu^2)), R = Ri Rj / (Ri - Rj)
-    const JpPin pin = {0.0105, 0.0100, 0.02, 2.07e11, 0.3};
+    const JpPin pin = {.hole_radius = 0.0105,
+                       .pin_radius = 0.0100,
+                       .width = 0.02,
+                       .youngs_modulus = 2.07e11,
+                       .poisson_ratio = 0.3};
     JpContact contact = jp_contact_default();
     assert_int_equal(jp_contact_of_pin(JP_PIN_HERTZ, &pin, &contact, NULL), JP_OK);
     const double modulus = 2.07e11 / (2.0 * (1.0 - 0.09));

@@ -64,7 +64,11 @@ static void a_contact_that_is_none_is_refused(void **state)
 static void a_pin_that_is_none_is_refused(void **state)
 {
     (void)state;
-    const JpPin pin = {0.0105, 0.0100, 0.02, 2.07e11, 0.3};
+    const JpPin pin = {.hole_radius = 0.0105,
+                       .pin_radius = 0.0100,
+                       .width = 0.02,
+                       .youngs_modulus = 2.07e11,
+                       .poisson_ratio = 0.3};
     JpContact contact = good();
     assert_refused(jp_contact_of_pin(JP_PIN_HERTZ, NULL, &contact, &error));
     assert_refused(jp_contact_of_pin(JP_PIN_HERTZ, &pin, NULL, &error));

@@ -229,8 +229,12 @@ static void add_pin(RandomWorld *made, dBodyID hole, dBodyID body, const double 
     if (pick(made, 3) == 0) {
         // steel: its contacts are shorter, and so is the step that anybody would take
         made->step = made->is_wild ? made->step : fmin(made->step, STEEL_STEP);
-        const JpPin sizes = {pin.hole_radius, pin.pin_radius, 2.0 * pin.hole_radius, 2e11, 0.3};
-        jp_contact_of_pin((JpPinLaw)pick(made, 5), &sizes, &pin.contact, NULL);
+        const JpPin sizes = {.hole_radius = pin.hole_radius,
+                             .pin_radius = pin.pin_radius,
+                             .width = 2.0 * pin.hole_radius,
+                             .youngs_modulus = 2e11,
+                             .poisson_ratio = 0.3};
+        jp_contact_of_pin((JpPinLaw)pick(made, 6), &sizes, &pin.contact, NULL);
     }
     pin.friction = made->is_passive || pick(made, 2) == 0 ? 0.0 : between(made, 0.05, 0.5);
     RandomPlay of = {

@@ -391,7 +391,7 @@ static bool map_options_settings(const MapOptions *options, const Scenario *scen
         settings->maps[i] = options->maps == NULL ? (OdeMap)i : (OdeMap)words[i];
     }
     if (options->laws != NULL && strcmp(options->laws, "all") == 0) {
-        for (int i = 0; OPTIONS_LAWS[i] != NULL; i++) {
+        for (int i = LAW_AUTO + 1; i < LAW_COUNT; i++) {
             settings->laws[settings->law_count++] = (LawKind)i;
         }
     } else if (options->laws != NULL) {

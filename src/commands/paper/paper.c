@@ -419,13 +419,14 @@ static bool fill_pin(const ContactPair *pair, double force, PhysicalPin *made, E
 static bool fill_laws(const ContactPair *pair, double force, PhysicalLaw laws[PHYSICAL_LAW_COUNT],
                       Err *err)
 {
-    for (int kind = 0; kind < PHYSICAL_LAW_COUNT; kind++) {
+    for (int i = 0; i < PHYSICAL_LAW_COUNT; i++) {
+        const LawKind kind = (LawKind)(LAW_AUTO + 1 + i);
         ForceLaw law;
-        if (!law_make((LawKind)kind, pair, &law, err)) {
+        if (!law_make(kind, pair, &law, err)) {
             return false;
         }
         const double approach = force_law_penetration(&law, force);
-        laws[kind] = (PhysicalLaw){
+        laws[i] = (PhysicalLaw){
             .name = OPTIONS_LAWS[kind],
             .approach = approach,
             .tangent = force_law_tangent(&law, approach),

@@ -60,8 +60,8 @@ typedef struct PhysicalLaw {
 } PhysicalLaw;
 
 enum {
-    PHYSICAL_LAW_COUNT = LAW_COUNT,
-    PHYSICAL_BASE_ROW = 9, // of 1000 rpm
+    PHYSICAL_LAW_COUNT = LAW_COUNT - 1, // all but LAW_AUTO, which is one of them
+    PHYSICAL_BASE_ROW = 9,              // of 1000 rpm
 };
 
 typedef struct Physical {

@@ -755,6 +755,14 @@ static void run_text_write_damping(const ContactOptions *contact, const ForceLaw
     }
 }
 
+static void write_eye(const Clearance *clearance, Text *text)
+{
+    const bool is_given = clearance->eye_radius > 0.0;
+    text_append(text, ", in an eye of %.4g times its hole",
+                law_eye_radius(clearance) / clearance->hole_radius);
+    text_append(text, "%s", is_given ? "" : " (assumed)");
+}
+
 static void write_impact_law(const Scenario *scenario, const Joint *joint, Text *text)
 {
     const ContactOptions own = law_options(&scenario->contact, joint);
@@ -771,9 +779,11 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
         if (law.exponent != 1.0) {
             text_append(text, "^%.4g", law.exponent);
         }
-    } else {
+    } else if (law.family == FORCE_LAW_LOGARITHMIC) {
         text_append(text, ", d = A F (B - ln F) with A = %.4g m/N, B = %.4g", law.compliance,
                     law.offset);
+    } else {
+        write_eye(&joint->clearance, text);
     }
     run_text_write_damping(&own, is_built ? &law : NULL, is_turning, text);
 }

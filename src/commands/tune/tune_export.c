@@ -6,6 +6,7 @@
 #include "commands/tune/tune_world.h"
 #include "contact/law.h"
 #include "contact/map.h"
+#include "kernel/conforming.h"
 #include "measure/chosen_run.h"
 #include "write/number.h"
 #include "write/table.h"
@@ -262,6 +263,28 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
 //     k = F(d) / d,  c = chi F(d) / v0 (or the constant damper)
 // and from them soft_erp and soft_cfm by the map of the setting, as contact/map.c.
 
+static void write_conforming(const ForceLaw *law, Text *text)
+{
+    text_append(text, "    static const double w[] = {");
+    for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
+        text_append(text, "%s%s", i % 4 == 0 ? "\n        " : " ",
+                    number_shortest(law->series[i]).text);
+        text_append(text, ",");
+    }
+    text_append(text,
+                "\n    }; // F(depth) = %s depth / W, N: a pin in an eye, by elasticity\n"
+                "    const double z = log1p(%s / depth);\n"
+                "    const double x = fmin(%s * log1p(z) - %s, 1.0);\n"
+                "    double width = 0.0;\n"
+                "    for (int i = %d; i >= 0; i--) {\n"
+                "        width = width * x + w[i];\n"
+                "    }\n"
+                "    const double k = %s / width; // N/m\n",
+                number_shortest(law->stiffness).text, number_shortest(law->play).text,
+                number_shortest(CONFORMING_SCALE).text, number_shortest(CONFORMING_SHIFT).text,
+                FORCE_LAW_TERMS - 1, number_shortest(law->stiffness).text);
+}
+
 static void write_elastic(const ForceLaw *law, bool is_angle, Text *text)
 {
     const char *unit = is_angle ? "N m/rad" : "N/m";
@@ -272,6 +295,8 @@ static void write_elastic(const ForceLaw *law, bool is_angle, Text *text)
         text_append(text, "    const double k = %s * pow(depth, %s); // F(depth) / depth, %s\n",
                     number_shortest(law->stiffness).text, number_shortest(law->exponent - 1.0).text,
                     unit);
+    } else if (law->family == FORCE_LAW_CONFORMING) {
+        write_conforming(law, text);
     } else {
         text_append(text,
                     "    double force = depth / %s; // N: depth = A F (B - ln F)\n"

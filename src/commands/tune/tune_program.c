@@ -16,6 +16,7 @@
 #include "model/scenario.h"
 #include "ode/engine.h"
 #include "run/registry.h"
+#include "world/contact.h"
 
 #include <assert.h>
 #include <jointplay/jointplay.h>
@@ -246,13 +247,7 @@ static bool tune_program_fill_contact(const Scenario *scenario, const Joint *joi
     if (!law_of_joint(scenario, joint, &law, err)) {
         return false;
     }
-    if (law.family == FORCE_LAW_POWER) {
-        contact->stiffness = law.stiffness;
-        contact->exponent = law.exponent;
-    } else {
-        contact->compliance = law.compliance;
-        contact->offset = law.offset;
-    }
+    contact_set_elastic(&law, contact);
     contact->damping = DAMPINGS[own.damping];
     if (own.damping == DAMPING_VISCOUS) {
         contact->damper = law.viscous;

@@ -221,6 +221,17 @@ static void tune_world_joints_write_point(const char *name, const char *field, V
     }
 }
 
+static void write_series(const char *name, const double *series, Text *text)
+{
+    text_append(text, "    const double series_of_%s[] = {", name);
+    for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
+        text_append(text, "%s%s,", i % 4 == 0 ? "\n        " : " ",
+                    number_shortest(series[i]).text);
+    }
+    text_append(text, "\n    };\n    memcpy(%s.series, series_of_%s, sizeof %s.series);\n", name,
+                name, name);
+}
+
 // The contact of a struct of which `name` is a member that is a contact.
 static bool tune_world_write_contact(const Scenario *scenario, const Joint *joint, const char *name,
                                      Text *text, Err *err)
@@ -243,9 +254,13 @@ static bool tune_world_write_contact(const Scenario *scenario, const Joint *join
         if (!is_linear) {
             write_field(name, "exponent", law.exponent, "", text);
         }
-    } else {
+    } else if (law.family == FORCE_LAW_LOGARITHMIC) {
         write_field(name, "compliance", law.compliance, "m/N: depth = A F (B - ln F)", text);
         write_field(name, "offset", law.offset, "", text);
+    } else {
+        write_field(name, "stiffness", law.stiffness, "N/m: force = k depth / W", text);
+        write_field(name, "play", law.play, "m", text);
+        write_series(name, law.series, text);
     }
     text_append(text, "    %s.damping = %s;\n", name, DAMPINGS[own.damping]);
     if (own.damping == DAMPING_VISCOUS) {

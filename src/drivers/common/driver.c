@@ -122,7 +122,16 @@ static DriverBody read_body(const json_t *object)
 static ForceLaw read_law(const json_t *object)
 {
     ForceLaw law = {.family = FORCE_LAW_POWER};
-    if (strcmp(json_string_value(member(object, "family")), "power") == 0) {
+    const char *family = json_string_value(member(object, "family"));
+    if (strcmp(family, "conforming") == 0) {
+        law.family = FORCE_LAW_CONFORMING;
+        law.stiffness = number(object, "stiffness_N_m");
+        law.play = number(object, "play_m");
+        const json_t *series = member(object, "series");
+        for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
+            law.series[i] = json_number_value(json_array_get(series, i));
+        }
+    } else if (strcmp(family, "power") == 0) {
         law.stiffness = number(object, "stiffness_N_m");
         law.exponent = number(object, "exponent");
     } else {
