@@ -5,6 +5,7 @@
 #include "casefile/limits.h"
 #include "casefile/slot.h"
 #include "contact/damping.h"
+#include "contact/eye.h"
 #include "contact/law.h"
 
 #include <math.h>
@@ -39,11 +40,23 @@ static bool check_sizes(const Entries *entries, size_t index, const Joint *joint
         hole_is_new ? pin->node->text : hole->node->text);
 }
 
+// The elastic law's eye has a wall that counts.
+static bool check_eye(const Entries *entries, size_t index, const Joint *joint, Err *err)
+{
+    const Entry *eye = entries_find(entries, "joints.*.eye-radius", index);
+    const double least = EYE_LEAST * joint->clearance.hole_radius;
+    return eye == NULL || joint->clearance.eye_radius >= least ||
+           entries_refuse(eye, err,
+                          "the eye of joint %s (%.60s) is hardly larger than its hole\nallowed: "
+                          "%.6g mm, %.2g times the hole's radius, or more",
+                          joint->name, eye->node->text, 1e3 * least, EYE_LEAST);
+}
+
 static bool check_pin(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[index];
     const EntryGroup *group = entries_group(entries, "joints.*", index);
-    if (!check_sizes(entries, index, joint, err)) {
+    if (!check_sizes(entries, index, joint, err) || !check_eye(entries, index, joint, err)) {
         return false;
     }
     const double radial = linkage_radial_clearance(joint);

@@ -8,7 +8,7 @@
 
 #include <assert.h>
 
-enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 40 };
+enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 64 };
 
 // How a value is written, and what it becomes in the scenario.
 typedef enum SchemaType {

@@ -378,7 +378,7 @@ static bool find_angle(Search *search, double *log_angle)
 // Polynomial coefficients of the Chebyshev series through values at its nodes.
 static void fit(const double *values, double *series)
 {
-    enum { TERMS = FORCE_LAW_TERMS };
+    enum { TERMS = CONFORMING_TERMS };
     double older[TERMS] = {1.0}; // T_0, T_1 .. by powers
     double old[TERMS] = {0.0, 1.0};
     memset(series, 0, TERMS * sizeof *series);
@@ -402,7 +402,8 @@ static void fit(const double *values, double *series)
 // stiff beside its pin that the series is not right enough.
 static bool is_rising(const double *series)
 {
-    const ForceLaw law = force_law_conforming(1.0, 1.0, series);
+    Conforming law = {.stiffness = 1.0, .play = 1.0};
+    memcpy(law.series, series, sizeof law.series);
     for (double depth = 1e-9; depth < 1e9; depth *= 1.1) {
         double force;
         double slope;
@@ -421,11 +422,11 @@ bool eye_series(const Eye *eye, double *series)
     if (!prepare(eye, &nodes, &influence)) {
         return false;
     }
-    double values[FORCE_LAW_TERMS];
+    double values[CONFORMING_TERMS];
     double log_angle = log(1e-6);
-    for (size_t i = FORCE_LAW_TERMS; i-- > 0;) { // from x = 1, the least approach
-        const size_t node = FORCE_LAW_TERMS - 1 - i;
-        const double x = cos(PI * ((double)node + 0.5) / FORCE_LAW_TERMS);
+    for (size_t i = CONFORMING_TERMS; i-- > 0;) { // from x = 1, the least approach
+        const size_t node = CONFORMING_TERMS - 1 - i;
+        const double x = cos(PI * ((double)node + 0.5) / CONFORMING_TERMS);
         Search search = {.nodes = &nodes, .influence = &influence, .approach = conforming_depth(x)};
         if (!find_angle(&search, &log_angle)) {
             return false;

@@ -21,7 +21,7 @@ enum { KEPT = 8 };
 typedef struct Found {
     Eye eye;
     bool is_sound;
-    double series[FORCE_LAW_TERMS];
+    double series[CONFORMING_TERMS];
 } Found;
 
 static _Thread_local struct {

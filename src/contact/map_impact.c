@@ -133,6 +133,8 @@ static double missing_energy(double depth, void *context)
            0.5 * impact->mass * impact->speed * impact->speed;
 }
 
+enum { DOUBLINGS = 200 }; // of a depth, until it takes up the energy
+
 double map_impact_depth(const MapImpactCase *impact)
 {
     const ForceLaw *law = &impact->law;
@@ -143,7 +145,14 @@ double map_impact_depth(const MapImpactCase *impact)
     }
     MapImpactCase sought = *impact;
     double depth = NAN;
-    root_find(missing_energy, &sought, 0.0, force_law_depth_limit(law), 0.0, &depth);
+    double most = force_law_depth_limit(law);
+    if (!isfinite(most)) {
+        most = law->conforming.play;
+        for (int i = 0; i < DOUBLINGS && missing_energy(most, &sought) < 0.0; i++) {
+            most *= 2.0;
+        }
+    }
+    root_find(missing_energy, &sought, 0.0, most, 0.0, &depth);
     return depth;
 }
 

@@ -111,8 +111,8 @@ static json_t *body_object(const Body *body)
 static json_t *series_array(const ForceLaw *law)
 {
     json_t *array = json_array();
-    for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
-        json_array_append_new(array, json_real(law->series[i]));
+    for (size_t i = 0; i < CONFORMING_TERMS; i++) {
+        json_array_append_new(array, json_real(law->conforming.series[i]));
     }
     return array;
 }
@@ -130,7 +130,8 @@ static json_t *elastic_object(const ForceLaw *law)
         break;
     }
     return json_pack("{s:s, s:f, s:f, s:o}", "family", "conforming", "stiffness_N_m",
-                     law->stiffness, "play_m", law->play, "series", series_array(law));
+                     law->conforming.stiffness, "play_m", law->conforming.play, "series",
+                     series_array(law));
 }
 
 static json_t *law_object(const ForceLaw *law)

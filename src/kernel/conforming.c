@@ -3,10 +3,12 @@
 // With s = d / play and z = ln(1 + 1/s), t = ln(1 + z):
 //     dF/dd = k / W (1 + W'(x) dx/dt / ((1 + z) (1 + s) W))
 // The energy is k d^2 times the integral of u / W(u d) over u from 0 to 1, by Gauss's rule in the
-// cube root of u, which takes the logarithm at u = 0 away: right to 1e-10.
+// cube root of u, which takes the logarithm at u = 0 away: right to 1e-7 above 1e-4 plays, and to
+// 1e-6 below.
 #include "kernel/conforming.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 // W and its slope over x.
 typedef struct Width {
@@ -16,8 +18,8 @@ typedef struct Width {
 
 static Width width_at(const double *series, double x)
 {
-    Width width = {series[FORCE_LAW_TERMS - 1], 0.0};
-    for (int i = FORCE_LAW_TERMS - 2; i >= 0; i--) {
+    Width width = {series[CONFORMING_TERMS - 1], 0.0};
+    for (int i = CONFORMING_TERMS - 2; i >= 0; i--) {
         width.slope = width.slope * x + width.value;
         width.value = width.value * x + series[i];
     }
@@ -32,7 +34,7 @@ typedef struct Place {
     bool is_least;
 } Place;
 
-static Place place_of(const ForceLaw *law, double penetration)
+static Place place_of(const Conforming *law, double penetration)
 {
     const double s = penetration / law->play;
     const double z = log1p(1.0 / s);
@@ -45,7 +47,7 @@ double conforming_depth(double x)
     return 1.0 / expm1(expm1((x + CONFORMING_SHIFT) / CONFORMING_SCALE));
 }
 
-void conforming_both(const ForceLaw *law, double penetration, double *force, double *slope)
+void conforming_both(const Conforming *law, double penetration, double *force, double *slope)
 {
     const Place at = place_of(law, penetration);
     const Width width = width_at(law->series, at.x);
@@ -57,20 +59,20 @@ void conforming_both(const ForceLaw *law, double penetration, double *force, dou
     *slope = secant * (1.0 + turn);
 }
 
-double conforming_secant(const ForceLaw *law, double penetration)
+double conforming_secant(const Conforming *law, double penetration)
 {
     if (penetration <= 0.0) {
         return 0.0;
     }
     double width = 0.0;
     const double x = place_of(law, penetration).x;
-    for (int i = FORCE_LAW_TERMS - 1; i >= 0; i--) {
+    for (int i = CONFORMING_TERMS - 1; i >= 0; i--) {
         width = width * x + law->series[i];
     }
     return law->stiffness / width;
 }
 
-double conforming_penetration(const ForceLaw *law, double force)
+double conforming_penetration(const Conforming *law, double force)
 {
     enum { STEPS = 60 };
     // from above, by Newton's method: there F grows almost as its slope has it
@@ -88,17 +90,18 @@ double conforming_penetration(const ForceLaw *law, double force)
     return depth;
 }
 
-double conforming_energy(const ForceLaw *law, double penetration)
+double conforming_energy(const Conforming *law, double penetration)
 {
     static const double NODES[] = {0.1488743389816312, 0.4333953941292472, 0.6794095682990244,
                                    0.8650633666889845, 0.9739065285171717};
     static const double WEIGHTS[] = {0.2955242247147529, 0.2692667193099963, 0.2190863625159820,
                                      0.1494513491505806, 0.0666713443086881};
     double sum = 0.0;
-    for (int i = 0; i < 10; i++) {
-        const double root = 0.5 * (1.0 + (i % 2 == 0 ? 1.0 : -1.0) * NODES[i / 2]);
+    for (int i = 0; i < 20; i++) { // half of them below 1/2, half above
+        const double place = 1.0 + (i % 2 == 0 ? 1.0 : -1.0) * NODES[i / 4];
+        const double root = 0.25 * place + (i / 2 % 2 == 0 ? 0.0 : 0.5);
         const double share = root * root * root;
-        sum += 1.5 * WEIGHTS[i / 2] * root * root * share *
+        sum += 0.75 * WEIGHTS[i / 4] * root * root * share *
                conforming_secant(law, share * penetration);
     }
     return sum * penetration * penetration;

@@ -6,23 +6,29 @@
 // much, pin and hole touch over a fixed angle, and it is constant.
 #pragma once
 
-#include "kernel/force_law.h"
+enum { CONFORMING_TERMS = 24 }; // leaves 1e-6 of a force, 1e-4 of what can hardly be compressed
+
+typedef struct Conforming {
+    double stiffness;                // k, N/m
+    double play;                     // m
+    double series[CONFORMING_TERMS]; // c
+} Conforming;
 
 // x = CONFORMING_SCALE ln(1 + ln(1 + play / d)) - CONFORMING_SHIFT
 static const double CONFORMING_SCALE = 0.6816458780101551;
 static const double CONFORMING_SHIFT = 1.02199242256881;
 
 // Force, N, and slope, N/m, at a penetration above 0, m.
-void conforming_both(const ForceLaw *law, double penetration, double *force, double *slope);
+void conforming_both(const Conforming *law, double penetration, double *force, double *slope);
 
 // The spring that gives the force there, F / d, N/m; 0 at no penetration.
-double conforming_secant(const ForceLaw *law, double penetration);
+double conforming_secant(const Conforming *law, double penetration);
 
 // Where a force, N, above 0 is reached, m.
-double conforming_penetration(const ForceLaw *law, double force);
+double conforming_penetration(const Conforming *law, double force);
 
 // What is stored at a penetration above 0, J.
-double conforming_energy(const ForceLaw *law, double penetration);
+double conforming_energy(const Conforming *law, double penetration);
 
 // The penetration, in plays, that an x stands for.
 double conforming_depth(double x);

@@ -16,8 +16,6 @@
 // Crossley, J. Appl. Mech. 42 (1975) 440, for the damping term F chi d' / v0.
 #include "kernel/force_law.h"
 
-#include "kernel/conforming.h"
-
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -60,18 +58,17 @@ ForceLaw force_law_conforming(double stiffness, double play, const double *serie
 {
     ForceLaw law = {
         .family = FORCE_LAW_CONFORMING,
-        .stiffness = stiffness,
-        .play = play,
+        .conforming = {.stiffness = stiffness, .play = play},
         .impact_speed_floor = DEFAULT_SPEED_FLOOR,
     };
-    memcpy(law.series, series, sizeof law.series);
+    memcpy(law.conforming.series, series, sizeof law.conforming.series);
     return law;
 }
 
-static bool is_conforming_sound(const ForceLaw *law)
+static bool is_conforming_sound(const Conforming *law)
 {
     double width = 0.0; // where it is least
-    for (int i = FORCE_LAW_TERMS - 1; i >= 0; i--) {
+    for (int i = CONFORMING_TERMS - 1; i >= 0; i--) {
         width = law->series[i] - width;
     }
     return law->stiffness > 0.0 && isfinite(law->stiffness) && law->play > 0.0 &&
@@ -81,7 +78,7 @@ static bool is_conforming_sound(const ForceLaw *law)
 bool force_law_is_sound(const ForceLaw *law)
 {
     if (law->family == FORCE_LAW_CONFORMING) {
-        return is_conforming_sound(law);
+        return is_conforming_sound(&law->conforming);
     }
     if (law->family == FORCE_LAW_POWER) {
         return law->stiffness > 0.0 && isfinite(law->stiffness) && law->exponent > 0.0 &&
@@ -96,6 +93,7 @@ ForceLaw force_law_share(const ForceLaw *law, double share)
     assert(share > 0.0);
     ForceLaw part = *law;
     part.stiffness *= share;
+    part.conforming.stiffness *= share;
     part.viscous *= share;
     if (law->family == FORCE_LAW_LOGARITHMIC) {
         // d = A F (B - ln F) with F of the whole = F of the part / share
@@ -162,7 +160,7 @@ double force_law_elastic(const ForceLaw *law, double penetration)
         return law->stiffness * power(penetration, law->exponent);
     }
     if (law->family == FORCE_LAW_CONFORMING) {
-        return conforming_secant(law, penetration) * penetration;
+        return conforming_secant(&law->conforming, penetration) * penetration;
     }
     return penetration / (law->compliance * branch_at(law, penetration));
 }
@@ -178,7 +176,7 @@ double force_law_tangent(const ForceLaw *law, double penetration)
     if (law->family == FORCE_LAW_CONFORMING) {
         double force;
         double slope;
-        conforming_both(law, penetration, &force, &slope);
+        conforming_both(&law->conforming, penetration, &force, &slope);
         return slope;
     }
     return 1.0 / (law->compliance * (branch_at(law, penetration) - 1.0));
@@ -197,7 +195,7 @@ void force_law_both(const ForceLaw *law, double penetration, double *elastic, do
         return;
     }
     if (law->family == FORCE_LAW_CONFORMING) {
-        conforming_both(law, penetration, elastic, tangent);
+        conforming_both(&law->conforming, penetration, elastic, tangent);
         return;
     }
     const double branch = branch_at(law, penetration);
@@ -216,7 +214,7 @@ double force_law_secant(const ForceLaw *law, double penetration)
                                     : law->stiffness * pow(depth, law->exponent - 1.0);
     }
     if (law->family == FORCE_LAW_CONFORMING) {
-        return conforming_secant(law, penetration);
+        return conforming_secant(&law->conforming, penetration);
     }
     return penetration <= 0.0 ? 0.0 : 1.0 / (law->compliance * branch_at(law, penetration));
 }
@@ -250,7 +248,7 @@ double force_law_penetration(const ForceLaw *law, double force)
         return pow(force / law->stiffness, 1.0 / law->exponent);
     }
     if (law->family == FORCE_LAW_CONFORMING) {
-        return conforming_penetration(law, force);
+        return conforming_penetration(&law->conforming, force);
     }
     const double y = law->offset - log(force);
     return y >= 1.0 ? law->compliance * force * y : NAN;
@@ -265,7 +263,7 @@ double force_law_energy(const ForceLaw *law, double penetration)
         return force_law_elastic(law, penetration) * penetration / (law->exponent + 1.0);
     }
     if (law->family == FORCE_LAW_CONFORMING) {
-        return conforming_energy(law, penetration);
+        return conforming_energy(&law->conforming, penetration);
     }
     const double y = branch_at(law, penetration);
     const double force = penetration / (law->compliance * y);

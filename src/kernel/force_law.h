@@ -5,6 +5,8 @@
 // pressing force along the normal and never negative.
 #pragma once
 
+#include "kernel/conforming.h"
+
 #include <stdbool.h>
 
 typedef enum ForceLawFamily {
@@ -14,24 +16,21 @@ typedef enum ForceLawFamily {
                            // (kernel/conforming.h)
 } ForceLawFamily;
 
-enum { FORCE_LAW_TERMS = 24 }; // of W as a polynomial: leaves 1e-6 of a force, 1e-4 of rubber's
-
 typedef struct ForceLaw {
     ForceLawFamily family;
-    double stiffness;               // K, N/m^n, of FORCE_LAW_POWER; k, N/m, of FORCE_LAW_CONFORMING
-    double exponent;                // n, 1, of FORCE_LAW_POWER
-    double compliance;              // A, m/N, of FORCE_LAW_LOGARITHMIC
-    double offset;                  // B, 1, of FORCE_LAW_LOGARITHMIC
-    double log_scale;               // B + ln(A / (m/N)), 1: set by force_law_logarithmic
-    double hysteresis;              // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
-    double viscous;                 // c, N s/m: F = F_el + c d'; 0 for none
-    double impact_speed_floor;      // m/s, > 0: smallest v0 the hysteretic damping divides by
-    double resting_speed;           // m/s: v0 of a contact that has outlasted its impact
-                                    // (kernel/contact_state.h); 0: that of its impact for ever
-    double friction;                // mu, 1: Coulomb's coefficient; 0 for none
-    double friction_speed;          // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
-    double play;                    // m, of FORCE_LAW_CONFORMING: what depths are measured in
-    double series[FORCE_LAW_TERMS]; // likewise: of W
+    double stiffness;          // K, N/m^n, of FORCE_LAW_POWER
+    double exponent;           // n, 1, of FORCE_LAW_POWER
+    double compliance;         // A, m/N, of FORCE_LAW_LOGARITHMIC
+    double offset;             // B, 1, of FORCE_LAW_LOGARITHMIC
+    double log_scale;          // B + ln(A / (m/N)), 1: set by force_law_logarithmic
+    double hysteresis;         // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
+    double viscous;            // c, N s/m: F = F_el + c d'; 0 for none
+    double impact_speed_floor; // m/s, > 0: smallest v0 the hysteretic damping divides by
+    double resting_speed;      // m/s: v0 of a contact that has outlasted its impact
+                               // (kernel/contact_state.h); 0: that of its impact for ever
+    double friction;           // mu, 1: Coulomb's coefficient; 0 for none
+    double friction_speed;     // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
+    Conforming conforming;     // of FORCE_LAW_CONFORMING
 } ForceLaw;
 
 // The families, without damping and friction, with an impact speed floor of 1 mm/s. Every number

@@ -136,12 +136,13 @@ JpStatus jp_contact_check(const JpContact *contact, JpError *error)
 void contact_set_elastic(const ForceLaw *law, JpContact *contact)
 {
     const bool is_power = law->family == FORCE_LAW_POWER;
-    contact->stiffness = law->stiffness;
+    contact->stiffness =
+        law->family == FORCE_LAW_CONFORMING ? law->conforming.stiffness : law->stiffness;
     contact->exponent = is_power ? law->exponent : 1.0;
     contact->compliance = law->compliance;
     contact->offset = law->offset;
-    contact->play = law->play;
-    memcpy(contact->series, law->series, sizeof contact->series);
+    contact->play = law->conforming.play;
+    memcpy(contact->series, law->conforming.series, sizeof contact->series);
 }
 
 JpStatus jp_contact_of_pin(JpPinLaw kind, const JpPin *pin, JpContact *contact, JpError *error)

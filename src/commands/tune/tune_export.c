@@ -266,9 +266,9 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
 static void write_conforming(const ForceLaw *law, Text *text)
 {
     text_append(text, "    static const double w[] = {");
-    for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
+    for (size_t i = 0; i < CONFORMING_TERMS; i++) {
         text_append(text, "%s%s", i % 4 == 0 ? "\n        " : " ",
-                    number_shortest(law->series[i]).text);
+                    number_shortest(law->conforming.series[i]).text);
         text_append(text, ",");
     }
     text_append(text,
@@ -280,9 +280,10 @@ static void write_conforming(const ForceLaw *law, Text *text)
                 "        width = width * x + w[i];\n"
                 "    }\n"
                 "    const double k = %s / width; // N/m\n",
-                number_shortest(law->stiffness).text, number_shortest(law->play).text,
-                number_shortest(CONFORMING_SCALE).text, number_shortest(CONFORMING_SHIFT).text,
-                FORCE_LAW_TERMS - 1, number_shortest(law->stiffness).text);
+                number_shortest(law->conforming.stiffness).text,
+                number_shortest(law->conforming.play).text, number_shortest(CONFORMING_SCALE).text,
+                number_shortest(CONFORMING_SHIFT).text, CONFORMING_TERMS - 1,
+                number_shortest(law->conforming.stiffness).text);
 }
 
 static void write_elastic(const ForceLaw *law, bool is_angle, Text *text)

@@ -224,7 +224,7 @@ static void tune_world_joints_write_point(const char *name, const char *field, V
 static void write_series(const char *name, const double *series, Text *text)
 {
     text_append(text, "    const double series_of_%s[] = {", name);
-    for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
+    for (size_t i = 0; i < CONFORMING_TERMS; i++) {
         text_append(text, "%s%s,", i % 4 == 0 ? "\n        " : " ",
                     number_shortest(series[i]).text);
     }
@@ -258,9 +258,9 @@ static bool tune_world_write_contact(const Scenario *scenario, const Joint *join
         write_field(name, "compliance", law.compliance, "m/N: depth = A F (B - ln F)", text);
         write_field(name, "offset", law.offset, "", text);
     } else {
-        write_field(name, "stiffness", law.stiffness, "N/m: force = k depth / W", text);
-        write_field(name, "play", law.play, "m", text);
-        write_series(name, law.series, text);
+        write_field(name, "stiffness", law.conforming.stiffness, "N/m: force = k depth / W", text);
+        write_field(name, "play", law.conforming.play, "m", text);
+        write_series(name, law.conforming.series, text);
     }
     text_append(text, "    %s.damping = %s;\n", name, DAMPINGS[own.damping]);
     if (own.damping == DAMPING_VISCOUS) {

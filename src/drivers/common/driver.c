@@ -125,11 +125,11 @@ static ForceLaw read_law(const json_t *object)
     const char *family = json_string_value(member(object, "family"));
     if (strcmp(family, "conforming") == 0) {
         law.family = FORCE_LAW_CONFORMING;
-        law.stiffness = number(object, "stiffness_N_m");
-        law.play = number(object, "play_m");
+        law.conforming.stiffness = number(object, "stiffness_N_m");
+        law.conforming.play = number(object, "play_m");
         const json_t *series = member(object, "series");
-        for (size_t i = 0; i < FORCE_LAW_TERMS; i++) {
-            law.series[i] = json_number_value(json_array_get(series, i));
+        for (size_t i = 0; i < CONFORMING_TERMS; i++) {
+            law.conforming.series[i] = json_number_value(json_array_get(series, i));
         }
     } else if (strcmp(family, "power") == 0) {
         law.stiffness = number(object, "stiffness_N_m");
