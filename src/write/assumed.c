@@ -3,6 +3,7 @@
 
 #include "casefile/casefile.h"
 #include "casefile/schema.h"
+#include "contact/law.h"
 #include "write/json_value.h"
 #include "write/units.h"
 
@@ -49,9 +50,35 @@ static bool is_given(const Scenario *scenario, const char *key)
     return false;
 }
 
-static void append_value(const CasefileSetting *setting, Text *text)
+// The laws that auto stands for.
+static void append_laws(const Scenario *scenario, Text *text)
 {
-    if (setting->number_count == 0 || setting->kind == CASEFILE_WORD) {
+    bool has_law[LAW_COUNT] = {false};
+    bool is_eye_open = false;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        const ContactOptions own = law_options(&scenario->contact, joint);
+        if (joint_has_hole(joint->kind) && own.stiffness == 0.0) {
+            has_law[own.law] = true;
+            is_eye_open |= own.law == LAW_ELASTIC && joint->clearance.eye_radius == 0.0;
+        }
+    }
+    const char *between = "";
+    for (int i = 0; i < LAW_COUNT; i++) {
+        if (has_law[i]) {
+            text_append(text, "%s%s", between, OPTIONS_LAWS[i]);
+            text_append(text, "%s",
+                        i == LAW_ELASTIC && is_eye_open ? " (eyes twice their holes)" : "");
+            between = " and ";
+        }
+    }
+}
+
+static void append_value(const Scenario *scenario, const CasefileSetting *setting, Text *text)
+{
+    if (strcmp(setting->key, "contact.law") == 0 && scenario->contact.law == LAW_AUTO) {
+        append_laws(scenario, text);
+    } else if (setting->number_count == 0 || setting->kind == CASEFILE_WORD) {
         text_append(text, "%s", setting->text);
     } else if (setting->unit[0] == '\0') {
         text_append(text, "%.4g", setting->numbers[0]);
@@ -64,7 +91,8 @@ static void append_value(const CasefileSetting *setting, Text *text)
 
 // Calls back with each assumption.
 static void each_assumption(const Scenario *scenario,
-                            void (*take)(const CasefileSetting *, const char *word, void *),
+                            void (*take)(const Scenario *, const CasefileSetting *,
+                                         const char *word, void *),
                             void *context)
 {
     const unsigned met = schema_met(scenario);
@@ -77,16 +105,17 @@ static void each_assumption(const Scenario *scenario,
         }
         SchemaLack lack;
         if (!schema_lacks(schema_find(setting.key), scenario, 0, met, &lack)) {
-            take(&setting, word, context);
+            take(scenario, &setting, word, context);
         }
     }
 }
 
-static void take_text(const CasefileSetting *setting, const char *word, void *context)
+static void take_text(const Scenario *scenario, const CasefileSetting *setting, const char *word,
+                      void *context)
 {
     Text *text = context;
     text_append(text, "%s%s ", text->length > 0 ? ", " : "", word);
-    append_value(setting, text);
+    append_value(scenario, setting, text);
 }
 
 void assumed_text(const Scenario *scenario, Text *text)
@@ -98,12 +127,13 @@ void assumed_text(const Scenario *scenario, Text *text)
     text_finish(&own);
 }
 
-static void take_json(const CasefileSetting *setting, const char *word, void *context)
+static void take_json(const Scenario *scenario, const CasefileSetting *setting, const char *word,
+                      void *context)
 {
     (void)word;
     Text value;
     text_init(&value);
-    append_value(setting, &value);
+    append_value(scenario, setting, &value);
     json_object_set_new(context, setting->key, json_value_text(value.data));
     text_finish(&value);
 }
