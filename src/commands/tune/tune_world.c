@@ -223,13 +223,12 @@ static void tune_world_joints_write_point(const char *name, const char *field, V
 
 static void write_series(const char *name, const double *series, Text *text)
 {
-    text_append(text, "    const double series_of_%s[] = {", name);
+    text_append(text, "    memcpy(%s.series, (const double[]){", name);
     for (size_t i = 0; i < CONFORMING_TERMS; i++) {
         text_append(text, "%s%s,", i % 4 == 0 ? "\n        " : " ",
                     number_shortest(series[i]).text);
     }
-    text_append(text, "\n    };\n    memcpy(%s.series, series_of_%s, sizeof %s.series);\n", name,
-                name, name);
+    text_append(text, "\n    }, sizeof %s.series);\n", name);
 }
 
 // The contact of a struct of which `name` is a member that is a contact.
@@ -684,7 +683,8 @@ static void write_includes(const Scenario *scenario, Text *text)
     const double every = tune_world_every(scenario);
     text_append(text,
                 "\n#include <jointplay/jointplay.h>\n#include <math.h>\n#include <stdio.h>\n"
-                "#include <stdlib.h>\n\n"
+                "#include <stdlib.h>\n"
+                "#include <string.h>\n\n"
                 "static const double STEP = %s; // s\n"
                 "static const int STEPS = %zu, EVERY = %.0f; // from line to line\n\n"
                 "static dWorldID world;\n",
