@@ -67,12 +67,28 @@ void maximal_destroy(Maximal *maximal)
     }
 }
 
+static Real conforming_force(const Conforming *law, Real depth)
+{
+    if (!(depth > 0.0L)) {
+        return 0.0L;
+    }
+    const Real x = CONFORMING_SCALE * log1pl(log1pl(law->play / depth)) - CONFORMING_SHIFT;
+    Real width = 0.0L;
+    for (int i = CONFORMING_TERMS - 1; i >= 0; i--) {
+        width = width * fminl(x, 1.0L) + law->series[i];
+    }
+    return law->stiffness * depth / width;
+}
+
 // The elastic force of the law, N, to the precision of Real: that of force_law_elastic would do to
 // one part in 1e16 only, which is rough for small steps.
 static Real elastic_force(const ForceLaw *law, Real depth)
 {
     if (law->family == FORCE_LAW_POWER) {
         return law->stiffness * powl(depth, law->exponent);
+    }
+    if (law->family == FORCE_LAW_CONFORMING) {
+        return conforming_force(&law->conforming, depth);
     }
     Real force = force_law_elastic(law, (double)depth);
     for (int i = 0; i < 3 && force > 0.0L; i++) {

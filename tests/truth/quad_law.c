@@ -15,6 +15,7 @@
 // Sources: as in src/contact.
 #include "quad_law.h"
 
+#include "contact/law.h"
 #include "contact/penalty.h"
 
 #include <math.h>
@@ -38,10 +39,39 @@ static Quad branch(Quad level)
     return y;
 }
 
+static Quad quad_conforming_force(const Conforming *law, Quad depth)
+{
+    const Quad z = log1pq(law->play / depth);
+    Quad x = CONFORMING_SCALE * log1pq(z) - CONFORMING_SHIFT;
+    x = x > 1 ? 1 : x;
+    Quad width = 0;
+    for (int i = CONFORMING_TERMS - 1; i >= 0; i--) {
+        width = width * x + law->series[i];
+    }
+    return law->stiffness * depth / width;
+}
+
+// By Simpson's rule in the fourth root of the depth.
+static Quad quad_conforming_energy(const Conforming *law, Quad depth)
+{
+    enum { PARTS = 4000 };
+    Quad sum = 0;
+    for (int i = 1; i <= PARTS; i++) {
+        const Quad root = (Quad)i / PARTS;
+        const Quad cube = root * root * root;
+        const Quad weight = i == PARTS ? 1 : i % 2 == 1 ? 4 : 2;
+        sum += weight * 4 * cube * depth * quad_conforming_force(law, cube * root * depth);
+    }
+    return sum / (3 * PARTS);
+}
+
 Quad quad_law_force(const QuadLaw *law, Quad depth)
 {
     if (!(depth > 0)) {
         return 0;
+    }
+    if (law->is_conforming) {
+        return quad_conforming_force(&law->conforming, depth);
     }
     if (law->is_logarithmic) {
         return depth / (law->compliance * branch(law->log_scale - logq(depth)));
@@ -60,6 +90,9 @@ Quad quad_law_force(const QuadLaw *law, Quad depth)
 
 Quad quad_law_energy(const QuadLaw *law, Quad depth)
 {
+    if (law->is_conforming && depth > 0) {
+        return quad_conforming_energy(&law->conforming, depth);
+    }
     const Quad force = quad_law_force(law, depth);
     if (!law->is_logarithmic || !(depth > 0)) {
         return force * depth / (law->exponent + 1);
@@ -83,6 +116,18 @@ static QuadLaw logarithmic_law(Quad compliance, Quad offset)
     };
 }
 
+static QuadLaw conforming_law(const Scenario *scenario, const Joint *joint)
+{
+    const ContactPair pair = law_pair(&joint->clearance, &scenario->material, 0.0);
+    ForceLaw law;
+    Err err = {ERR_NONE, ""};
+    if (!law_make(LAW_ELASTIC, &pair, &law, &err)) {
+        fprintf(stderr, "%s\n", err.text);
+        abort();
+    }
+    return (QuadLaw){.is_conforming = true, .conforming = law.conforming};
+}
+
 // The law that the case names, without damping.
 static QuadLaw named_law(const Scenario *scenario, const Joint *joint)
 {
@@ -94,7 +139,9 @@ static QuadLaw named_law(const Scenario *scenario, const Joint *joint)
     const Quad modulus = (Quad)scenario->material.youngs_modulus / (2 * (1 - ratio * ratio));
     const Quad a = 1 / (acosq(-1) * width * modulus);
     const Quad width_factor = (Quad)215 / 100; // of Radzimovsky's contact width
-    switch (scenario->contact.law) {
+    switch (law_chosen(scenario->contact.law, joint->clearance.width)) {
+    case LAW_ELASTIC:
+        return conforming_law(scenario, joint);
     case LAW_HERTZ_SOCKET:
         return power_law(4 * modulus * sqrtq(hole * pin / play) / 3, 1.5);
     case LAW_JOHNSON:

@@ -1,9 +1,11 @@
 // The contact laws in quadruple precision, made from a joint's sizes and material.
 //
-// Written apart from src/contact: only the case's data and the two fitted numbers of the paper's
-// table (contact/penalty.h) come from the program.
+// Written apart from src/contact: only the case's data, the two fitted numbers of the paper's table
+// (contact/penalty.h) and the series of an eye (contact/eye.h, which has a truth of its own,
+// tests/support/eye_truth.h) come from the program.
 #pragma once
 
+#include "kernel/conforming.h"
 #include "model/scenario.h"
 
 #include <quadmath.h>
@@ -13,6 +15,8 @@ typedef __float128 Quad;
 // F = K d^n, or d = A F (B - ln F), d the depth, m, and F the force, N.
 typedef struct QuadLaw {
     bool is_logarithmic;
+    bool is_conforming; // F = K d / W: kernel/conforming.h
+    Conforming conforming;
     Quad stiffness;  // K, N/m^n
     Quad exponent;   // n, 1
     Quad compliance; // A, m/N

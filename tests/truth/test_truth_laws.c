@@ -86,8 +86,10 @@ static void forces_and_damping_factors_are_those_of_the_program(void **state)
         for (int i = 0; i < 3; i++) {
             const double force = (double)quad_law_force(&own, depths[i]);
             assert_close(force_law_elastic(&theirs, depths[i]), force, 2e-14);
+            // by a rule on twenty points
             assert_close(force_law_energy(&theirs, depths[i]),
-                         (double)quad_law_energy(&own, depths[i]), 2e-14);
+                         (double)quad_law_energy(&own, depths[i]),
+                         own.is_conforming ? 1e-7 : 2e-14);
         }
     }
     ContactOptions contact = contact_options_default();
