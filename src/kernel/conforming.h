@@ -6,7 +6,7 @@
 // much, pin and hole touch over a fixed angle, and it is constant.
 #pragma once
 
-enum { CONFORMING_TERMS = 24 }; // leaves 1e-6 of a force, 1e-4 of what can hardly be compressed
+enum { CONFORMING_TERMS = 24 }; // leaves 5e-6 of a force, 4e-5 where nu is 0.45
 
 typedef struct Conforming {
     double stiffness;                // k, N/m
