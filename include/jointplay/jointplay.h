@@ -83,6 +83,7 @@ typedef enum JpDamping {
     JP_DAMPING_EXACT,
     JP_DAMPING_VISCOUS,     /* D = damper: the spring and damper of kp and kd */
     JP_DAMPING_DISSIPATION, /* D = dissipation F_el: it has no memory of the impact */
+    JP_DAMPING_STEP, /* D = damper x^2 (3 - 2 x), x = d / full_damping_depth, and damper beyond it */
 } JpDamping;
 
 typedef struct JpContact {
@@ -92,12 +93,13 @@ typedef struct JpContact {
     double offset;     /* B, 1, F in N */
     JpDamping damping;
     double restitution; /* 1, 0 to 1, of the hysteretic kinds; some want more than 0 */
-    double damper;      /* N s/m, of JP_DAMPING_VISCOUS */
+    double damper;      /* N s/m, of JP_DAMPING_VISCOUS and JP_DAMPING_STEP */
     double dissipation; /* s/m, of JP_DAMPING_DISSIPATION */
     double speed_floor; /* m/s, > 0: slower impacts are damped as if they had this speed */
     /* m/s, of the hysteretic kinds: a contact that has outlasted its impact (it was compressed,
      * released, and is compressed again) is damped as if it had this speed; 0: as at its impact */
     double resting_speed;
+    double full_damping_depth; /* m, > 0, of JP_DAMPING_STEP */
 } JpContact;
 
 /* No stiffness yet; exponent 1, JP_DAMPING_EXACT, restitution .5, speed floor 1e-6, no resting

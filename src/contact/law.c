@@ -95,6 +95,9 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
         built.hysteresis = 0.0; // some factors are infinite there, and its loss is the bounce
     } else if (contact->damping == DAMPING_VISCOUS) {
         built.viscous = contact->viscous_coefficient;
+    } else if (contact->damping == DAMPING_STEP) {
+        built.viscous = contact->viscous_coefficient;
+        built.full_damping_depth = contact->full_damping_depth;
     } else if (contact->damping == DAMPING_DISSIPATION) {
         law_set_dissipation(contact->dissipation > 0.0
                                 ? contact->dissipation

@@ -65,6 +65,9 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint);
 // Whether the stiffness of any joint with play is that of the law that the options name.
 bool law_is_asked(const Scenario *scenario);
 
+// Whether a force of the contact opposes its speed: none where its restitution is 1.
+bool law_is_damped(const ContactOptions *contact);
+
 // Whether any joint with play has friction; whether any is damped.
 bool law_has_friction(const Scenario *scenario);
 bool law_has_damping(const Scenario *scenario);

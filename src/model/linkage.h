@@ -152,6 +152,7 @@ typedef struct JointContact {
     bool has_restitution; // whether it has its own
     double restitution;   // 1
     double viscous;       // N s/m: its damping is viscous, with this; 0: none of its own
+    double full_depth;    // m (rad of an angle): and grows up to this depth; 0: none of its own
     double dissipation;   // s/m (s/rad of an angle): its damping is a dissipation, with this; 0:
                           // none of its own
     bool has_friction;    // whether it has its own
