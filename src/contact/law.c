@@ -76,6 +76,9 @@ double law_restitution(const ForceLaw *law, double speed)
     return damping_delivered(law->hysteresis * speed / fmax(speed, law->impact_speed_floor));
 }
 
+// of the pin's radius: the laws are for depths small against it, and steel has yielded long before
+static const double LAW_DEPTH_SHARE = 0.1;
+
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err)
 {
@@ -87,6 +90,7 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
         if (!law_make(contact->law, &pair, &built, err)) {
             return false;
         }
+        built.depth_most = fmin(built.depth_most, LAW_DEPTH_SHARE * clearance->pin_radius);
     }
     built.impact_speed_floor = contact->impact_speed_floor;
     built.friction = contact->friction;

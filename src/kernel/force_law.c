@@ -10,7 +10,8 @@
 //
 // d penetration, m; F force, N; K stiffness, N/m^n; n exponent, 1; A compliance, m/N; B offset, 1
 // (with F in N); W elastic energy, J; chi hysteresis factor, 1; c viscous coefficient, N s/m;
-// d_full depth of full damping, m; v0 closing speed at the onset of contact, m/s; d' rate of d, m/s.
+// d_full depth of full damping, m; v0 closing speed at the onset of contact, m/s; d' rate of d,
+// m/s.
 //
 // Sources: K. L. Johnson, Contact Mechanics (1985), ch. 4 and 5; ESDU 78035 (1978); Hunt and
 // Crossley, J. Appl. Mech. 42 (1975) 440, for the damping term F chi d' / v0; MSC Adams, function
@@ -39,6 +40,7 @@ ForceLaw force_law_power(double stiffness, double exponent)
         .family = FORCE_LAW_POWER,
         .stiffness = stiffness,
         .exponent = exponent,
+        .depth_most = INFINITY,
         .impact_speed_floor = DEFAULT_SPEED_FLOOR,
     };
 }
@@ -50,6 +52,7 @@ ForceLaw force_law_logarithmic(double compliance, double offset)
         .compliance = compliance,
         .offset = offset,
         .log_scale = offset + log(compliance),
+        .depth_most = INFINITY,
         .impact_speed_floor = DEFAULT_SPEED_FLOOR,
     };
 }

@@ -19,6 +19,7 @@ typedef struct ForceLaw {
     double compliance;         // A, m/N, of FORCE_LAW_LOGARITHMIC
     double offset;             // B, 1, of FORCE_LAW_LOGARITHMIC
     double log_scale;          // B + ln(A / (m/N)), 1: set by force_law_logarithmic
+    double depth_most;         // m, up to which what the law is made of holds; infinite: any depth
     double hysteresis;         // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
     double viscous;            // c, N s/m: F = F_el + c d'; 0 for none
     double full_damping_depth; // m, > 0: c grows from 0 at the wall to its value at this depth, by
@@ -30,7 +31,8 @@ typedef struct ForceLaw {
     double friction_speed;     // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
 } ForceLaw;
 
-// The two families, without damping and friction, with an impact speed floor of 1 mm/s. Every
+// The two families, of any depth, without damping and friction, with an impact speed floor of 1
+// mm/s. Every
 // number must be > 0 (B alone may be anything).
 ForceLaw force_law_power(double stiffness, double exponent);
 ForceLaw force_law_logarithmic(double compliance, double offset);

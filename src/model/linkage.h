@@ -68,10 +68,11 @@ typedef struct Body {
 
 // The sizes of a pin in its hole.
 typedef struct Clearance {
-    double hole_radius; // m
-    double pin_radius;  // m
-    double width;       // m, the length over which pin and hole touch
-    Vec2 start;         // eccentricity at time zero: pin centre minus hole centre, m, world frame
+    double hole_radius;  // m
+    double pin_radius;   // m
+    double width;        // m, the length over which pin and hole touch
+    Vec2 start;          // eccentricity at time zero: pin centre minus hole centre, m, world frame
+    bool is_pin_assumed; // whether nobody gave the size of the pin
 } Clearance;
 
 // The sizes of a block between its guides. The block's middle is the anchor on body b; the guides'

@@ -404,7 +404,8 @@ static Scenario make_links(size_t count, bool is_row)
         Joint *joint = &scenario.linkage.joints[i];
         scenario.linkage.bodies[i].start.omega = 0.1 * (double)(i % 7) - 0.3;
         joint->kind = JOINT_CLEARANCE;
-        joint->clearance = (Clearance){5.01e-3 + 1e-7 * (double)(i % 5), 5e-3, 0.01, {0.0, 0.0}};
+        joint->clearance =
+            (Clearance){5.01e-3 + 1e-7 * (double)(i % 5), 5e-3, 0.01, {0.0, 0.0}, false};
         if (!is_row) {
             joint->anchor_a = (Vec2){0.1 * (double)i, 0.0};
             joint->body_a = LINKAGE_GROUND;

@@ -263,7 +263,7 @@ static void what_the_drive_does_not_determine_is_left_out(void **state)
     // with play in the loop its ideal joints alone do not lock, and without it they do
     assert_int_equal(lock_find(&linkage, LOCK_IDEAL_ONLY, 2.0 * M_PI).state, LOCK_FOUND);
     linkage.joints[1].kind = JOINT_CLEARANCE;
-    linkage.joints[1].clearance = (Clearance){5.02e-3, 5e-3, 1e-2, {2e-5, 0.0}};
+    linkage.joints[1].clearance = (Clearance){5.02e-3, 5e-3, 1e-2, {2e-5, 0.0}, false};
     assert_int_equal(lock_find(&linkage, LOCK_IDEAL_ONLY, 2.0 * M_PI).state, LOCK_UNKNOWN);
     assert_int_equal(lock_find(&linkage, LOCK_ALL_AS_IDEAL, 2.0 * M_PI).state, LOCK_FOUND);
     // without a driver nothing turns

@@ -414,7 +414,7 @@ static RunReport make_many(size_t count, Scenario *scenario, Trajectory **runs,
         *body = (Body){.mass = 1.0, .inertia = 1.0};
         snprintf(body->name, sizeof body->name, "bar-%zu", i);
         *joint = (Joint){.kind = JOINT_CLEARANCE, .body_a = LINKAGE_GROUND, .body_b = (int)i};
-        joint->clearance = (Clearance){5.1e-3, 5e-3, 1e-2, {0.0, 0.0}};
+        joint->clearance = (Clearance){5.1e-3, 5e-3, 1e-2, {0.0, 0.0}, false};
         snprintf(joint->name, sizeof joint->name, "pin-%zu", i);
     }
     for (size_t run = 0; run < 2; run++) {
