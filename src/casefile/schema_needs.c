@@ -67,6 +67,7 @@ static const Condition WANTS[] = {
     {REMEMBERED, 0, {"a contact.damping but none, viscous, dissipation and step", "contact.damping", false}},
     {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
     {GROWING, 0, {"contact.damping: step", "contact.damping contact.model", true}},
+    {LENGTHWISE, 0, {"a contact.law of cylinders, or space: spatial", "contact.law", false}},
     {COMMON_DEPTH, 0, {"a joint with play that has no full-damping-depth of its own", "", false}},
     {UNSTEADY, 0, {"a drive.speed, angle, torque or force over time", "drive.speed", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
@@ -322,14 +323,14 @@ static unsigned shared_bits(const Scenario *scenario)
             continue;
         }
         const DampingKind damping = law_options(contact, joint).damping;
-        met |=
-            bit(COMMON_STIFFNESS, (joint_bits(scenario, joint) & OWN_STIFFNESS) == 0) |
-            bit(COMMON_DAMPING, has_common_damping(contact, joint)) |
-            bit(COMMON_DEPTH, joint->contact.full_depth == 0.0) |
-            bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
-            bit(REBOUND, (damping_restores(damping) || is_poisson) && !joint->contact.has_restitution) |
-            bit(REMEMBERED, damping_restores(damping) && damping != DAMPING_DISSIPATION) |
-            bit(PIN, joint_has_hole(joint->kind));
+        met |= bit(COMMON_STIFFNESS, (joint_bits(scenario, joint) & OWN_STIFFNESS) == 0) |
+               bit(COMMON_DAMPING, has_common_damping(contact, joint)) |
+               bit(COMMON_DEPTH, joint->contact.full_depth == 0.0) |
+               bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
+               bit(REBOUND,
+                   (damping_restores(damping) || is_poisson) && !joint->contact.has_restitution) |
+               bit(REMEMBERED, damping_restores(damping) && damping != DAMPING_DISSIPATION) |
+               bit(PIN, joint_has_hole(joint->kind));
     }
     return met;
 }
@@ -359,13 +360,25 @@ static unsigned row_bits(const Scenario *scenario)
                             scenario->contact.dissipation == 0.0);
 }
 
+// Whether the length over which a pin touches is felt. A stiffness that is given holds for that of
+// its pin.
+static bool is_lengthwise(const Scenario *scenario, const Joint *joint)
+{
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    return scenario->contact.model != CONTACT_IMPACT || scenario->linkage.is_spatial ||
+           scenario->ode.collider != ODE_COLLIDER_PIN_HOLE || own.stiffness > 0.0 ||
+           law_get(own.law)->needs_width;
+}
+
 static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
     const bool is_joint = row->family == SCHEMA_JOINT && index < scenario->linkage.joint_count;
     const Joint *joint = is_joint ? &scenario->linkage.joints[index] : NULL;
-    const bool is_own = is_joint && (scenario->contact.model == CONTACT_POISSON ||
-                                     damping_restores(law_options(&scenario->contact, joint).damping));
-    return shared_bits(scenario) | row_bits(scenario) | bit(OWN_REBOUND, is_own);
+    const bool is_own =
+        is_joint && (scenario->contact.model == CONTACT_POISSON ||
+                     damping_restores(law_options(&scenario->contact, joint).damping));
+    return shared_bits(scenario) | row_bits(scenario) | bit(OWN_REBOUND, is_own) |
+           bit(LENGTHWISE, is_joint && is_lengthwise(scenario, joint));
 }
 
 // A start is one of play: without, nothing says where a joint starts but its bodies.

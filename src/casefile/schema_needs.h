@@ -56,6 +56,7 @@ enum {
     DERIVED = 1 << 13,         // what is lost follows from a restitution
     UNSTEADY = 1 << 14,        // the drive's speed is not constant
     GROWING = 1 << 15,         // the damping grows with the depth
+    LENGTHWISE = 1 << 17,      // the law of the joint has a length in it, or its space has
     COMMON_DEPTH = 1 << 16,    // some joint with play has no depth of its own for that
     SHUFFLED = 1 << 9,         // the quick solver comes to change the order of the rows
 };
