@@ -302,8 +302,8 @@ JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
  *    step's end the bodies are so far from where its contacts have brought them that a force is
  *    uncertain by a hundredth, or the contacts take more than the limit of work or local steps than
  *    make sense, and were made with rows.
- * JP_ERROR_OUTSIDE: a pin is further beyond the wall of its hole, or a collar, than ten times what
- * jp_pin_create allows, before the step or after it.
+ * JP_ERROR_OUTSIDE: a pin is further beyond the wall of its hole, or a collar, than jp_pin_create
+ * allows, before the step or after it.
  * A step
  * that ODE breaks off costs the memory that ODE had in use for it, once each time. With a threading
  * implementation of yours (keeps_threading) ODE still ends the program where it fails in a thread
@@ -473,8 +473,8 @@ typedef struct JpPinInHole {
 JP_API JpPinInHole jp_pin_default(void);
 
 /* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of
- * its hole, or a collar, by more than the play there or a hundredth of the pin's radius, whichever
- * is more. */
+ * its hole, or a collar, by more than ten times the play there or the pin's diameter, whichever is
+ * more. */
 JP_API JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
                               JpJoint **created, JpError *error);
 
