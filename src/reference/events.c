@@ -62,7 +62,7 @@ static double margin_of(const Press *press, const Contact *contact, int which)
 {
     if (which == MARGIN_FULL) {
         const double beyond = press->depth - contact->law.full_damping_depth;
-        return contact->is_full ? beyond : -beyond;
+        return contact->is_growing ? -beyond : beyond;
     }
     switch (contact->mode) {
     case CONTACT_APART:
@@ -134,7 +134,8 @@ static ContactMode mode_after(ContactMode mode, int which)
     return mode == CONTACT_PRESSING ? CONTACT_SLACK : CONTACT_PRESSING;
 }
 
-// Whether a contact has a margin in its mode.
+// Whether a contact has a margin in its mode; MARGIN_FULL is asked of those alone whose damping
+// grows.
 static bool has_margin(const Contact *contact, int which)
 {
     if (contact->mode == CONTACT_APART) {
@@ -143,9 +144,6 @@ static bool has_margin(const Contact *contact, int which)
     if (which == MARGIN_REST) {
         return contact->mode == CONTACT_PRESSING && contact->law.resting_speed > 0.0 &&
                contact->is_released && !contact->is_resting;
-    }
-    if (which == MARGIN_FULL) {
-        return contact->law.full_damping_depth > 0.0;
     }
     return which != MARGIN_WALL || contact->has_walls;
 }
@@ -270,7 +268,7 @@ static void events_evaluate_at(Margin *margin, const EventPoints *points, Event 
     const System *system = margin->system;
     const Contact *contact = &system->contacts[margin->contact];
     const bool can_turn = contact->mode == CONTACT_APART || margin->which == MARGIN_FULL;
-    const double outward = margin->which == MARGIN_FULL && contact->is_full ? -1.0 : 1.0;
+    const double outward = margin->which == MARGIN_FULL && !contact->is_growing ? -1.0 : 1.0;
     double before = margin->integrator->time;
     for (size_t i = 0; i < points->count; i++) {
         const double time = events_point_time(margin->integrator, points, i);
@@ -303,7 +301,8 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
     found->count = 0;
     for (size_t i = 0; i < system->contact_count; i++) {
         Event event = {.time = INFINITY};
-        for (int which = 0; which < MARGINS; which++) {
+        const bool grows = system->contacts[i].law.full_damping_depth > 0.0;
+        for (int which = 0; which < (grows ? MARGINS : MARGIN_FULL); which++) {
             Margin margin = {system, integrator, i, which};
             if (has_margin(&system->contacts[i], which)) {
                 events_evaluate_at(&margin, points, &event);
@@ -434,7 +433,7 @@ void events_apply(System *system, const EventList *events, double time_s, const 
             contact_rest(contact);
         }
         if (event->is_full) {
-            contact->is_full = !contact->is_full;
+            contact->is_growing = !contact->is_growing;
         }
         contact->mode = event->mode;
     }

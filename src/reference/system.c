@@ -83,9 +83,8 @@ void system_find_places(System *system, const double *y)
         if (contact->has_walls) {
             contact->wall = system->kind->wall(system, i, 0.0, y).wall;
         }
-        const double full_depth = contact->law.full_damping_depth;
-        contact->is_full =
-            full_depth > 0.0 && system->kind->press(system, i, 0.0, y).depth > full_depth;
+        contact->is_growing =
+            system->kind->press(system, i, 0.0, y).depth < contact->law.full_damping_depth;
     }
 }
 
@@ -133,7 +132,7 @@ void system_carry(System *system, Carry *carry)
         CARRY(carry, contact->onset_s);
         CARRY(carry, contact->impact_speed);
         CARRY(carry, contact->damping_rate);
-        CARRY(carry, contact->is_full);
+        CARRY(carry, contact->is_growing);
         CARRY(carry, contact->is_released);
         CARRY(carry, contact->is_resting);
     }

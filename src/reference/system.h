@@ -63,7 +63,7 @@ typedef struct Contact {
     double onset_s;      // when the contact under way began
     double impact_speed; // m/s, closing speed when the contact under way began
     double damping_rate; // s/m, chi / v0, v0 not below the law's floor
-    bool is_full;        // of a damping that grows with the depth: it is whole
+    bool is_growing;     // its damping grows with the depth, and is not whole there
     bool is_released;    // as in kernel/contact_state.h
     bool is_resting;
 } Contact;
@@ -86,14 +86,15 @@ typedef struct PressViscous {
     double slope;
 } PressViscous;
 
-// by how much of itself a step goes on beyond its ends: no stage of a step that is kept lies further
+// by how much of itself a step goes on beyond its ends: no stage of a step that is kept lies
+// further
 static const double PRESS_STEP_BEYOND = 0.25;
 
 // On either side of where it is whole, an event, it goes on smoothly.
 static inline PressViscous press_viscous(const Contact *contact, double depth)
 {
     const ForceLaw *law = &contact->law;
-    if (!(law->full_damping_depth > 0.0) || contact->is_full) {
+    if (!contact->is_growing) {
         return (PressViscous){law->viscous, 0.0};
     }
     const double share = depth / law->full_damping_depth;
@@ -132,7 +133,8 @@ static inline void contact_begin(Contact *contact, double onset_s, double impact
     contact->impact_speed = impact_speed;
     contact->damping_rate =
         contact->law.hysteresis / fmax(impact_speed, contact->law.impact_speed_floor);
-    contact->is_full = contact->is_released = contact->is_resting = false;
+    contact->is_growing = contact->law.full_damping_depth > 0.0;
+    contact->is_released = contact->is_resting = false;
 }
 
 // Lets the impact of a contact be over.
