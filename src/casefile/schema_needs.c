@@ -360,14 +360,24 @@ static unsigned row_bits(const Scenario *scenario)
                             scenario->contact.dissipation == 0.0);
 }
 
-// Whether the length over which a pin touches is felt. A stiffness that is given holds for that of
-// its pin.
+static bool is_law_named(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        if (strcmp(SCHEMA_ROWS[scenario->keys[i].row].path, "contact.law") == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether the length over which a pin touches is felt, or a law is left open that may come to feel
+// it. A stiffness that is given holds for that of its pin.
 static bool is_lengthwise(const Scenario *scenario, const Joint *joint)
 {
     const ContactOptions own = law_options(&scenario->contact, joint);
     return scenario->contact.model != CONTACT_IMPACT || scenario->linkage.is_spatial ||
            scenario->ode.collider != ODE_COLLIDER_PIN_HOLE || own.stiffness > 0.0 ||
-           law_get(own.law)->needs_width;
+           law_get(own.law)->needs_width || !is_law_named(scenario);
 }
 
 static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)
