@@ -83,6 +83,8 @@ typedef enum JpDamping {
     JP_DAMPING_EXACT,
     JP_DAMPING_VISCOUS,     /* D = damper: the spring and damper of kp and kd */
     JP_DAMPING_DISSIPATION, /* D = dissipation F_el: it has no memory of the impact */
+    JP_DAMPING_STEP, /* D = damper x^2 (3 - 2 x), x = d / full_damping_depth, and damper beyond it
+                      */
 } JpDamping;
 
 enum { JP_SERIES_TERMS = 24 };
@@ -95,7 +97,7 @@ typedef struct JpContact {
     double offset;     /* B, 1, F in N */
     JpDamping damping;
     double restitution; /* 1, 0 to 1, of the hysteretic kinds; some want more than 0 */
-    double damper;      /* N s/m, of JP_DAMPING_VISCOUS */
+    double damper;      /* N s/m, of JP_DAMPING_VISCOUS and JP_DAMPING_STEP */
     double dissipation; /* s/m, of JP_DAMPING_DISSIPATION */
     double speed_floor; /* m/s, > 0: slower impacts are damped as if they had this speed */
     /* m/s, of the hysteretic kinds: a contact that has outlasted its impact (it was compressed,
@@ -105,6 +107,7 @@ typedef struct JpContact {
      * linear in ln(1 + ln(1 + play / d)), -1 at 30 plays and 1 at 1e-8 (JP_PIN_ELASTIC) */
     double play;
     double series[JP_SERIES_TERMS];
+    double full_damping_depth; /* m, > 0, of JP_DAMPING_STEP */
 } JpContact;
 
 /* No stiffness yet; exponent 1, JP_DAMPING_EXACT, restitution .5, speed floor 1e-6, no resting
@@ -314,8 +317,8 @@ JP_API JpStatus jp_world_add_all(JpWorld *world, JpError *error);
  *    step's end the bodies are so far from where its contacts have brought them that a force is
  *    uncertain by a hundredth, or the contacts take more than the limit of work or local steps than
  *    make sense, and were made with rows.
- * JP_ERROR_OUTSIDE: a pin is further beyond the wall of its hole, or a collar, than ten times what
- * jp_pin_create allows, before the step or after it.
+ * JP_ERROR_OUTSIDE: a pin is further beyond the wall of its hole, or a collar, than jp_pin_create
+ * allows, before the step or after it.
  * A step
  * that ODE breaks off costs the memory that ODE had in use for it, once each time. With a threading
  * implementation of yours (keeps_threading) ODE still ends the program where it fails in a thread
@@ -485,8 +488,8 @@ typedef struct JpPinInHole {
 JP_API JpPinInHole jp_pin_default(void);
 
 /* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of
- * its hole, or a collar, by more than the play there or a hundredth of the pin's radius, whichever
- * is more. */
+ * its hole, or a collar, by more than ten times the play there or the pin's diameter, whichever is
+ * more. */
 JP_API JpStatus jp_pin_create(JpWorld *world, dBodyID hole, dBodyID pin, const JpPinInHole *given,
                               JpJoint **created, JpError *error);
 

@@ -127,10 +127,17 @@ static bool check_contact(const Entries *entries, const Scenario *scenario, Err 
     if (damping == NULL || contact->model != CONTACT_IMPACT) {
         return true;
     }
-    if (contact->damping == DAMPING_VISCOUS && contact->viscous_coefficient == 0.0) {
+    const bool is_step = contact->damping == DAMPING_STEP;
+    if ((contact->damping == DAMPING_VISCOUS || is_step) && contact->viscous_coefficient == 0.0) {
         return entries_refuse(entries_find(entries, "contact.damping", 0), err,
-                              "damping viscous needs contact.viscous-coefficient\nallowed: another "
-                              "damping, or contact.viscous-coefficient such as 100 N s/m");
+                              "damping %s needs contact.viscous-coefficient\nallowed: another "
+                              "damping, or contact.viscous-coefficient such as 100 N s/m",
+                              OPTIONS_DAMPINGS[contact->damping]);
+    }
+    if (is_step && contact->full_damping_depth == 0.0) {
+        return entries_refuse(entries_find(entries, "contact.damping", 0), err,
+                              "damping step needs contact.full-damping-depth\nallowed: another "
+                              "damping, or contact.full-damping-depth such as 0.1 mm");
     }
     if (contact->restitution == 0.0 && !isfinite(damping_factor(contact->damping, 0.0))) {
         return entries_refuse(entries_blame(entries, "contact.restitution contact.damping", 0), err,

@@ -157,14 +157,32 @@ static bool check_restitution(const Entries *entries, size_t index, const Scenar
                           OPTIONS_DAMPINGS[scenario->contact.damping]);
 }
 
-static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+// A joint has one damping, with all that this needs.
+static bool check_damping(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
 {
     const Joint *joint = &scenario->linkage.joints[index];
-    if (joint->contact.viscous > 0.0 && joint->contact.dissipation > 0.0) {
+    const JointContact *own = &joint->contact;
+    if (own->dissipation > 0.0 && (own->viscous > 0.0 || own->full_depth > 0.0)) {
         return entries_refuse(entries_find(entries, "joints.*.dissipation", index), err,
                               "joint '%s' has two dampings\nallowed: a viscous-coefficient or a "
                               "dissipation",
                               joint->name);
+    }
+    const bool has_coefficient =
+        own->viscous > 0.0 || (!linkage_is_torsional(joint) &&
+                               law_options(&scenario->contact, joint).viscous_coefficient > 0.0);
+    return own->full_depth == 0.0 || has_coefficient ||
+           entries_refuse(entries_find(entries, "joints.*.full-damping-depth", index), err,
+                          "joint '%s' has a full-damping-depth and no "
+                          "viscous-coefficient\nallowed: viscous-coefficient: %s here",
+                          joint->name, linkage_is_torsional(joint) ? "0.1 N m s/rad" : "100 N s/m");
+}
+
+static bool check_joint(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    if (!check_damping(entries, index, scenario, err)) {
+        return false;
     }
     if (joint_has_teeth(joint->kind) || joint->limits.kind != LIMIT_NONE) {
         return limits_check(entries, index, scenario, err) &&

@@ -32,6 +32,18 @@ Limits limits_prepare(const Entries *entries, size_t joint)
     };
 }
 
+Dimension limits_turning_damper(Dimension dimension)
+{
+    switch (dimension) {
+    case DIMENSION_DISSIPATION:
+        return DIMENSION_TORSION_DISSIPATION;
+    case DIMENSION_LENGTH:
+        return DIMENSION_ANGLE;
+    default:
+        return DIMENSION_TORSION_DAMPING;
+    }
+}
+
 // The row of a key of a joint whose coordinate is an angle.
 static SchemaRow as_angle(const SchemaRow *row)
 {
@@ -41,8 +53,7 @@ static SchemaRow as_angle(const SchemaRow *row)
         angular.dimension = DIMENSION_TORSION_SPRING;
         break;
     case SCHEMA_DAMPER:
-        angular.dimension = row->dimension == DIMENSION_DISSIPATION ? DIMENSION_TORSION_DISSIPATION
-                                                                    : DIMENSION_TORSION_DAMPING;
+        angular.dimension = limits_turning_damper(row->dimension);
         break;
     default:
         angular.dimension = DIMENSION_ANGLE;

@@ -9,6 +9,9 @@ bool limits_are_given(const Entries *entries, size_t joint);
 // Prepares the limits of a joint before values are stored.
 Limits limits_prepare(const Entries *entries, size_t joint);
 
+// The dimension of a SCHEMA_DAMPER of a joint whose coordinate is an angle, from that of others.
+Dimension limits_turning_damper(Dimension dimension);
+
 // The row of such a key as a value for a joint of that kind has it: that of an angle, or of a
 // length. Every other row stays as it is.
 SchemaRow limits_row(const SchemaRow *row, JointKind kind, const Node *value);

@@ -44,11 +44,19 @@ static bool check_damping(const Entries *entries, size_t index, const Scenario *
     const Joint *joint = &scenario->linkage.joints[index];
     const ContactOptions *contact = &scenario->contact;
     const EntryGroup *group = entries_group(entries, "joints.*", index);
-    if (!joint_has_angle(joint->kind) || joint->contact.viscous > 0.0 ||
-        joint->contact.dissipation > 0.0) {
+    const JointContact *own = &joint->contact;
+    if (!joint_has_angle(joint->kind) || own->dissipation > 0.0) {
         return true;
     }
-    if (contact->damping == DAMPING_VISCOUS) {
+    if (own->viscous > 0.0) {
+        return contact->damping != DAMPING_STEP || own->full_depth > 0.0 ||
+               entries_refuse_group(group, err,
+                                    "joint '%s', %s, needs its own full-damping-depth: that of "
+                                    "the contact is a length\nallowed: full-damping-depth: 0.1 "
+                                    "deg, or another contact.damping",
+                                    joint->name, describe(joint));
+    }
+    if (contact->damping == DAMPING_VISCOUS || contact->damping == DAMPING_STEP) {
         return entries_refuse_group(group, err,
                                     "joint '%s', %s, needs its own viscous-coefficient: that of "
                                     "the contact is a force over a speed\nallowed: "

@@ -4,6 +4,7 @@
 #include "casefile/build.h"
 #include "casefile/drives.h"
 #include "casefile/loads.h"
+#include "contact/damping.h"
 #include "contact/law.h"
 
 #include <math.h>
@@ -34,7 +35,7 @@ static const Condition CONDITIONS[] = {
     {POISSON, PLAY, {"contact.model: poisson", "contact.model", true}},
     {STIFFNESS, IMPACT, {"contact.model: impact", "contact.model", false}},
     {LAW, IMPACT, {"a pin with play that has no stiffness of its own", "contact.stiffness", false}},
-    {VISCOUS, IMPACT, {"contact.damping: viscous", "contact.damping contact.model", true}},
+    {VISCOUS, IMPACT, {"contact.damping: viscous or step", "contact.damping contact.model", true}},
     {DISSIPATING, IMPACT, {"contact.damping: dissipation", "contact.damping contact.model", true}},
     {MATERIAL, PLAY, {"contact.law, or contact.model: poisson without contact.penalty", "contact.model", false}},
     {FRICTION, PLAY, {"a friction above 0", "contact.friction", false}},
@@ -54,8 +55,8 @@ static const Condition CONDITIONS[] = {
 static const Condition WANTS[] = {
     {COMMON_STIFFNESS, 0, {"a joint with play that has no stiffness of its own", "", false}},
     {COMMON_DAMPING, 0, {"a joint with play that has no viscous-coefficient or dissipation of its own", "", false}},
-    {REBOUND, 0, {"a contact.damping but none and viscous, at a joint without values of its own", "contact.damping", false}},
-    {OWN_REBOUND, 0, {"a contact.damping but none and viscous", "contact.damping", false}},
+    {REBOUND, 0, {"a contact.damping but none, viscous and step, at a joint without values of its own", "contact.damping", false}},
+    {OWN_REBOUND, 0, {"a contact.damping but none, viscous and step", "contact.damping", false}},
     {COMMON_FRICTION, 0, {"a joint with play whose sides slide and that has no friction of its own", "", false}},
     {PIN, 0, {"a pin with play in its hole", "", false}},
     {HELD_ROWS, 0, {"an ideal joint", "", false}},
@@ -63,8 +64,11 @@ static const Condition WANTS[] = {
     {SMOOTHED, 0, {"contact.model: impact, and reference among run.backends or ode.solver: direct", "", false}},
     {SHUFFLED, 0, {"ode.iterations above 8", "ode.iterations", false}},
     {SETTLED, 0, {"run.start: settled", "run.start", false}},
-    {REMEMBERED, 0, {"a contact.damping but none, viscous and dissipation", "contact.damping", false}},
+    {REMEMBERED, 0, {"a contact.damping but none, viscous, dissipation and step", "contact.damping", false}},
     {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
+    {GROWING, 0, {"contact.damping: step", "contact.damping contact.model", true}},
+    {LENGTHWISE, 0, {"a contact.law of cylinders, or space: spatial", "contact.law", false}},
+    {COMMON_DEPTH, 0, {"a joint with play that has no full-damping-depth of its own", "", false}},
     {UNSTEADY, 0, {"a drive.speed, angle, torque or force over time", "drive.speed", false}},
     {ELASTIC_PIN, 0, {"contact.law: elastic, or auto and a width, and no stiffness of its own", "contact.law", false}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
@@ -213,7 +217,8 @@ static unsigned contact_bits(const Scenario *scenario)
            bit(POISSON, is_poisson) | bit(LAW, has_law) |
            bit(STIFFNESS, is_impact && contact->stiffness > 0.0) |
            bit(MATERIAL, has_law || (is_poisson && contact->penalty == 0.0)) |
-           bit(VISCOUS, is_impact && contact->damping == DAMPING_VISCOUS) |
+           bit(VISCOUS, is_impact && (contact->damping == DAMPING_VISCOUS ||
+                                      contact->damping == DAMPING_STEP)) |
            bit(DISSIPATING, is_impact && contact->damping == DAMPING_DISSIPATION) |
            bit(FRICTION, law_has_friction(scenario)) | step_bits(scenario, is_impact);
 }
@@ -299,9 +304,12 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     return (row->needs & ~met) == 0 && has_backend(row, scenario, NULL);
 }
 
-static bool is_restored(DampingKind damping)
+// Whether a joint's damping is that of the contact, at least in its kind.
+static bool has_common_damping(const ContactOptions *contact, const Joint *joint)
 {
-    return damping != DAMPING_NONE && damping != DAMPING_VISCOUS;
+    const JointContact *own = &joint->contact;
+    const bool is_viscous = own->viscous > 0.0 && contact->damping != DAMPING_STEP;
+    return !is_viscous && own->dissipation == 0.0 && own->full_depth == 0.0;
 }
 
 // What the joints of a scenario take from the contact that all share.
@@ -316,14 +324,14 @@ static unsigned shared_bits(const Scenario *scenario)
             continue;
         }
         const DampingKind damping = law_options(contact, joint).damping;
-        met |=
-            bit(COMMON_STIFFNESS, (joint_bits(scenario, joint) & OWN_STIFFNESS) == 0) |
-            bit(COMMON_DAMPING,
-                joint->contact.viscous == 0.0 && joint->contact.dissipation == 0.0) |
-            bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
-            bit(REBOUND, (is_restored(damping) || is_poisson) && !joint->contact.has_restitution) |
-            bit(REMEMBERED, is_restored(damping) && damping != DAMPING_DISSIPATION) |
-            bit(PIN, joint_has_hole(joint->kind));
+        met |= bit(COMMON_STIFFNESS, (joint_bits(scenario, joint) & OWN_STIFFNESS) == 0) |
+               bit(COMMON_DAMPING, has_common_damping(contact, joint)) |
+               bit(COMMON_DEPTH, joint->contact.full_depth == 0.0) |
+               bit(COMMON_FRICTION, !joint->contact.has_friction && !linkage_is_torsional(joint)) |
+               bit(REBOUND,
+                   (damping_restores(damping) || is_poisson) && !joint->contact.has_restitution) |
+               bit(REMEMBERED, damping_restores(damping) && damping != DAMPING_DISSIPATION) |
+               bit(PIN, joint_has_hole(joint->kind));
     }
     return met;
 }
@@ -348,6 +356,7 @@ static unsigned row_bits(const Scenario *scenario)
            bit(SETTLED, scenario->run.start == START_SETTLED) |
            bit(UNSTEADY, scenario->linkage.driver.table.count > 0 ||
                              scenario->linkage.torque.table.count > 1) |
+           bit(GROWING, scenario->contact.damping == DAMPING_STEP) |
            bit(DERIVED, scenario->contact.damping != DAMPING_DISSIPATION ||
                             scenario->contact.dissipation == 0.0);
 }
@@ -358,13 +367,25 @@ static bool has_elastic_law(const Scenario *scenario, const Joint *joint)
     return own.model == CONTACT_IMPACT && own.stiffness == 0.0 && own.law == LAW_ELASTIC;
 }
 
+// Whether the length over which a pin touches is felt. A
+// stiffness that is given holds for that of its pin.
+static bool is_lengthwise(const Scenario *scenario, const Joint *joint)
+{
+    const ContactOptions own = law_options(&scenario->contact, joint);
+    return scenario->contact.model != CONTACT_IMPACT || scenario->linkage.is_spatial ||
+           scenario->ode.collider != ODE_COLLIDER_PIN_HOLE || own.stiffness > 0.0 ||
+           law_get(own.law)->needs_width;
+}
+
 static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)
 {
     const bool is_joint = row->family == SCHEMA_JOINT && index < scenario->linkage.joint_count;
     const Joint *joint = is_joint ? &scenario->linkage.joints[index] : NULL;
-    const bool is_own = is_joint && (scenario->contact.model == CONTACT_POISSON ||
-                                     is_restored(law_options(&scenario->contact, joint).damping));
+    const bool is_own =
+        is_joint && (scenario->contact.model == CONTACT_POISSON ||
+                     damping_restores(law_options(&scenario->contact, joint).damping));
     return shared_bits(scenario) | row_bits(scenario) | bit(OWN_REBOUND, is_own) |
+           bit(LENGTHWISE, is_joint && is_lengthwise(scenario, joint)) |
            bit(ELASTIC_PIN, is_joint && has_elastic_law(scenario, joint));
 }
 

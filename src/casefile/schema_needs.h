@@ -42,7 +42,7 @@ enum {
 // Likewise, of a key that stays a setting of a run without them: it is named as one without effect.
 enum {
     COMMON_STIFFNESS = 1 << 0, // some joint with play has no stiffness of its own
-    COMMON_DAMPING = 1 << 1,   // or no viscous coefficient
+    COMMON_DAMPING = 1 << 1,   // or no damping
     REBOUND = 1 << 2,          // a restitution of the contact sets the damping of some joint
     OWN_REBOUND = 1 << 3,      // or that of the joint sets its own
     PIN = 1 << 4,              // a pin has play in its hole
@@ -55,6 +55,9 @@ enum {
     REMEMBERED = 1 << 12,      // the damping divides by the speed of the impact
     DERIVED = 1 << 13,         // what is lost follows from a restitution
     UNSTEADY = 1 << 14,        // the drive's speed is not constant
-    ELASTIC_PIN = 1 << 15,     // the joint's stiffness is that of the elastic law
+    ELASTIC_PIN = 1 << 18,     // the joint's stiffness is that of the elastic law
+    GROWING = 1 << 15,         // the damping grows with the depth
+    LENGTHWISE = 1 << 17,      // the law of the joint has a length in it, or its space has
+    COMMON_DEPTH = 1 << 16,    // some joint with play has no depth of its own for that
     SHUFFLED = 1 << 9,         // the quick solver comes to change the order of the rows
 };

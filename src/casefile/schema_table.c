@@ -368,6 +368,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      AT(contact.viscous_coefficient), .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "none", .needs = VISCOUS,
      .doc = "force over penetration rate"},
+    {.path = "contact.full-damping-depth", .dimension = DIMENSION_LENGTH,
+     AT(contact.full_damping_depth), .low = 1e-9, .high = 1e2, .default_words = "none",
+     .needs = IMPACT | VALUED, .wants = GROWING | COMMON_DEPTH,
+     .doc = "penetration from which on damping step has all of viscous-coefficient; before it "
+            "x^2 (3 - 2 x) of that, x the share of this depth"},
     {.path = "contact.friction", AT(contact.friction), .low = 0.0, .high = 1.0,
      .needs = PLAY, .wants = COMMON_FRICTION, .doc = "Coulomb's friction coefficient"},
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),

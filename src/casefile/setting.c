@@ -1,6 +1,7 @@
 // Walks over the settings of a scenario, as a case file would name them.
 #include "casefile/casefile.h"
 
+#include "casefile/limits.h"
 #include "casefile/loads.h"
 #include "casefile/schema.h"
 #include "casefile/slider.h"
@@ -298,9 +299,7 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
         break;
     case SCHEMA_DAMPER:
         set_number(setting, *(const double *)field);
-        set_turning(setting, joint,
-                    row->dimension == DIMENSION_DISSIPATION ? DIMENSION_TORSION_DISSIPATION
-                                                            : DIMENSION_TORSION_DAMPING);
+        set_turning(setting, joint, limits_turning_damper(row->dimension));
         break;
     case SCHEMA_PIVOTS:
         set_pivots(setting, scenario, &joint->gear);

@@ -22,7 +22,8 @@ static const double ROUNDING = 1e-9; // of a radial clearance, and far below a n
 // Makes the hole of a pin; the row of the pin stands before.
 static void store_radial_clearance(double radial, Clearance *clearance)
 {
-    clearance->pin_radius = clearance->pin_radius > 0.0 ? clearance->pin_radius : PIN_RADIUS;
+    clearance->is_pin_assumed = !(clearance->pin_radius > 0.0);
+    clearance->pin_radius = clearance->is_pin_assumed ? PIN_RADIUS : clearance->pin_radius;
     clearance->hole_radius = clearance->pin_radius + radial;
 }
 

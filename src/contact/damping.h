@@ -4,9 +4,15 @@
 #include "model/options.h"
 
 // chi, 1, of one kind of hysteretic damping, F = F_el (1 + chi d'/v0), for the restitution asked
-// for, 0 <= e <= 1; 0 of DAMPING_NONE and DAMPING_VISCOUS. Every law gives 0 at e = 1; some are
+// for, 0 <= e <= 1; 0 of those that ask for none (damping_restores). Every law gives 0 at e = 1; some are
 // infinite at 0.
 double damping_factor(DampingKind kind, double restitution);
+
+// Whether a restitution says how much a damping takes.
+static inline bool damping_restores(DampingKind kind)
+{
+    return kind != DAMPING_NONE && kind != DAMPING_VISCOUS && kind != DAMPING_STEP;
+}
 
 // The restitution that F = K d^n (1 + chi d'/v0) really delivers, whatever n, K, mass and speed;
 // 1 for chi = 0. chi >= 0.

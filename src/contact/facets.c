@@ -104,6 +104,8 @@ static double effective_mass(const Linkage *linkage, const Motion *motions, int 
     return least;
 }
 
+static const double DEPTH_FIRST_M = 1e-4;
+
 double facets_expected_depth(const Scenario *scenario, int joint)
 {
     const Linkage *linkage = &scenario->linkage;
@@ -128,7 +130,11 @@ double facets_expected_depth(const Scenario *scenario, int joint)
     const double square = start * start + 4.0 * pull * linkage_radial_clearance(data);
     Impact impact = {&law, 0.5 * effective_mass(linkage, motions, joint) * square};
     free(motions);
-    double depth = law_depth_max(&law, data->clearance.pin_radius);
+    double depth = law_depth_max(&law, data);
+    if (isinf(depth)) {
+        for (depth = DEPTH_FIRST_M; energy_left(depth, &impact) > 0.0; depth *= 2.0) {
+        }
+    }
     root_find(energy_left, &impact, 0.0, depth, 1e-6 * depth, &depth);
     return impact.energy > 0.0 ? depth : 0.0;
 }

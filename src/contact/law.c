@@ -97,6 +97,9 @@ double law_restitution(const ForceLaw *law, double speed)
     return damping_delivered(law->hysteresis * speed / fmax(speed, law->impact_speed_floor));
 }
 
+// of the pin's radius: the laws are for depths small against it, and steel has yielded long before
+static const double LAW_DEPTH_SHARE = 0.1;
+
 bool law_build(const ContactOptions *contact, const MaterialOptions *material,
                const Clearance *clearance, double speed, ForceLaw *law, Err *err)
 {
@@ -108,6 +111,7 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
         if (!law_make(contact->law, &pair, &built, err)) {
             return false;
         }
+        built.depth_most = fmin(built.depth_most, LAW_DEPTH_SHARE * clearance->pin_radius);
     }
     built.impact_speed_floor = contact->impact_speed_floor;
     built.friction = contact->friction;
@@ -116,6 +120,9 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
         built.hysteresis = 0.0; // some factors are infinite there, and its loss is the bounce
     } else if (contact->damping == DAMPING_VISCOUS) {
         built.viscous = contact->viscous_coefficient;
+    } else if (contact->damping == DAMPING_STEP) {
+        built.viscous = contact->viscous_coefficient;
+        built.full_damping_depth = contact->full_damping_depth;
     } else if (contact->damping == DAMPING_DISSIPATION) {
         law_set_dissipation(contact->dissipation > 0.0
                                 ? contact->dissipation

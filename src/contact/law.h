@@ -76,6 +76,9 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint);
 // Whether the stiffness of any joint with play is that of the law that the options name.
 bool law_is_asked(const Scenario *scenario);
 
+// Whether a force of the contact opposes its speed: none where its restitution is 1.
+bool law_is_damped(const ContactOptions *contact);
+
 // Whether any joint with play has friction; whether any is damped.
 bool law_has_friction(const Scenario *scenario);
 bool law_has_damping(const Scenario *scenario);
@@ -95,10 +98,11 @@ double law_reference_tolerance(const Scenario *scenario);
 // front, and where a joint that is no pin in its hole has no stiffness that is given.
 bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, Err *err);
 
-// The deepest penetration, m, at which a law of a pin of this radius, m, still means anything: a
-// tenth of the radius, for the laws are for depths small against it and steel has yielded long
-// before, or the law's own limit.
-double law_depth_max(const ForceLaw *law, double pin_radius);
+// The deepest penetration, m, at which the contact of a joint still means anything: of a law of the
+// material a tenth of the pin's radius, or the law's own limit. A stiffness that is given holds at
+// any depth up to where the whole part is inside the other: a pin, a block, a gear, whose sizes are
+// given.
+double law_depth_max(const ForceLaw *law, const Joint *joint);
 
 // The radius, m, of what touches in a joint with play: of a pin its own, of a block half its height
 // or half of what it slides in, of a stop the smaller disc. Infinite of a point at a line.

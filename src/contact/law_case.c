@@ -17,6 +17,13 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
         own.damping = DAMPING_VISCOUS;
         own.viscous_coefficient = joint->contact.viscous;
     }
+    // one depth for all joints is a length
+    if (joint->contact.full_depth > 0.0) {
+        own.damping = DAMPING_STEP;
+        own.full_damping_depth = joint->contact.full_depth;
+    } else if (contact->damping == DAMPING_STEP && !linkage_is_torsional(joint)) {
+        own.damping = DAMPING_STEP;
+    }
     if (joint->contact.dissipation > 0.0) {
         own.damping = DAMPING_DISSIPATION;
         own.dissipation = joint->contact.dissipation;
@@ -91,11 +98,11 @@ bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, E
     return true;
 }
 
-// Whether a force of the contact opposes its speed: none where its restitution is 1.
-static bool is_damped(const ContactOptions *contact)
+bool law_is_damped(const ContactOptions *contact)
 {
     switch (contact->damping) {
     case DAMPING_VISCOUS:
+    case DAMPING_STEP:
         return contact->viscous_coefficient > 0.0;
     case DAMPING_DISSIPATION:
         return contact->dissipation > 0.0 ||
@@ -110,7 +117,7 @@ bool law_has_damping(const Scenario *scenario)
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         const ContactOptions own = law_options(&scenario->contact, joint);
-        if (linkage_has_play(joint) && is_damped(&own)) {
+        if (linkage_has_play(joint) && law_is_damped(&own)) {
             return true;
         }
     }

@@ -4,12 +4,6 @@
 
 #include <math.h>
 
-double law_depth_max(const ForceLaw *law, double radius)
-{
-    const double share = 0.1;
-    return fmin(share * radius, force_law_depth_limit(law));
-}
-
 double law_touching_radius(const Joint *joint)
 {
     const Stop *stop = &joint->stop;
@@ -29,6 +23,34 @@ double law_touching_radius(const Joint *joint)
         break;
     }
     return joint->clearance.pin_radius;
+}
+
+// How deep what touches is where all of it is inside the other body, m. What meets a line or a disc
+// from outside may sink in as far as its stiffness says.
+static double whole_part(const Joint *joint)
+{
+    switch (joint_touches(joint->kind)) {
+    case JOINT_TOUCHES_HOLE:
+        return joint->clearance.is_pin_assumed ? INFINITY : 2.0 * law_touching_radius(joint);
+    case JOINT_TOUCHES_GUIDES:
+    case JOINT_TOUCHES_TEETH:
+        return 2.0 * law_touching_radius(joint);
+    case JOINT_TOUCHES_DISC:
+        return joint->stop.slot > 0.0 ? 2.0 * law_touching_radius(joint) : INFINITY;
+    case JOINT_TOUCHES_NOTHING:
+        break;
+    }
+    return INFINITY;
+}
+
+static double law_range(const ForceLaw *law)
+{
+    return fmin(law->depth_most, force_law_depth_limit(law));
+}
+
+double law_depth_max(const ForceLaw *law, const Joint *joint)
+{
+    return fmin(law_range(law), whole_part(joint));
 }
 
 // What a joint's body b is inside which part of body a.
@@ -60,11 +82,20 @@ static Parts parts_of(const Joint *joint)
 
 bool law_check_depth(const ForceLaw *law, const Joint *joint, double depth, double share, Err *err)
 {
-    const double allowed = law_depth_max(law, law_touching_radius(joint));
-    if (depth <= share * allowed) {
+    const double allowed = law_depth_max(law, joint);
+    if (depth <= share * allowed && depth < INFINITY) {
         return true;
     }
     const Parts parts = parts_of(joint);
+    if (isinf(allowed)) {
+        return err_set(err, ERR_SOLVER, "how deep the %s of %s is inside %s is no number",
+                       parts.inner, joint->name, parts.outer);
+    }
+    if (allowed < law_range(law)) {
+        return err_set(err, ERR_SOLVER,
+                       "the %s of %s is %.4g mm inside %s, which is all of it: its size is %.4g mm",
+                       parts.inner, joint->name, 1e3 * depth, parts.outer, 1e3 * allowed);
+    }
     return err_set(err, ERR_SOLVER,
                    "the %s of %s is %.4g mm inside %s; no contact law holds beyond %.4g mm",
                    parts.inner, joint->name, 1e3 * depth, parts.outer, 1e3 * allowed);

@@ -1,7 +1,7 @@
 // Makes ERP and CFM of a contact in a step.
 //
-// k = F(d) / d, c = D(d, v0) - c_v (1 - share): in a step in which the contact begins or ends its
-// constant damper c_v acts for a part (contact/overlap.h). A map is stable below its limit of
+// k = F(d) / d, c = D(d, v0) - c_v (1 - share): in a step in which the contact begins or ends, what
+// damps at the wall already, c_v, acts for a part (contact/overlap.h). A map is stable below its limit of
 // omega h, omega^2 = (dF/dd) / m.
 #include "contact/law_row.h"
 
@@ -12,7 +12,7 @@ MapContact law_row_contact(const ForceLaw *law, const LawRow *row, double step_s
     const double damping = force_law_damping(law, row->depth, row->impact_speed);
     return (MapContact){
         .stiffness = force_law_secant(law, row->depth),
-        .damping = damping - law->viscous * (1.0 - row->share),
+        .damping = damping - force_law_viscous(law, 0.0) * (1.0 - row->share),
         .step = step_s,
         .mass = row->mass,
         .depth = row->depth,

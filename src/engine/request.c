@@ -138,8 +138,9 @@ static json_t *law_object(const ForceLaw *law)
 {
     json_t *object = elastic_object(law);
     const int is_added = json_object_update_new(
-        object, json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "hysteresis", law->hysteresis,
-                          "viscous_N_s_m", law->viscous, "impact_speed_floor_m_s",
+        object, json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "hysteresis", law->hysteresis,
+                          "viscous_N_s_m", law->viscous, "full_damping_depth_m",
+                          law->full_damping_depth, "impact_speed_floor_m_s",
                           law->impact_speed_floor, "resting_speed_m_s", law->resting_speed,
                           "friction", law->friction, "friction_speed_m_s", law->friction_speed));
     assert(is_added == 0);

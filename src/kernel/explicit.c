@@ -221,8 +221,9 @@ double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const Ker
         if (contact->law.friction > 0.0) {
             fastest = fmax(fastest, 1.0 / kernel_force_friction_time(kernel, i, from->force));
         }
-        const bool is_linear =
-            contact->law.family == FORCE_LAW_POWER && contact->law.exponent == 1.0;
+        const bool is_linear = contact->law.family == FORCE_LAW_POWER &&
+                               contact->law.exponent == 1.0 &&
+                               contact->law.full_damping_depth == 0.0;
         if (!is_linear && depth > 0.0) {
             fastest = fmax(fastest, 1.5 * fabs(pose.approach_speed) / depth);
         }

@@ -28,7 +28,7 @@
 // Along the motion, with ' the derivative in time, a = u'' = g + W f:
 //     n' = -t (t . v) / |e|,  t' = n (t . v) / |e|
 //     d'' = o . a + (t . v)^2 / |e|
-//     N' = k (1 + chi d' / v0) d' + (chi F_el / v0 + c) d''
+//     N' = k (1 + chi d' / v0) d' + c_d d'^2 + (chi F_el / v0 + c) d'',  c_d = dc / dd
 //     v_t' = t . a + t' . v + R w_a' - (R - |e|) w_b' + d' w_b,   H' = mu (N tanh(v_t / v_s))'
 // of the friction of a pin in space H_t and H_z likewise, with their share phi of the sliding.
 #include "kernel/friction_law.h"
@@ -131,7 +131,7 @@ static double pressing(const KernelContact *contact, const KernelTouch *touch)
     const double rate = touch->pose.approach_speed;
     const double speed = fmax(contact->state.damping_speed, contact->law.impact_speed_floor);
     const double total = touch->elastic * (1.0 + contact->law.hysteresis * rate / speed) +
-                         contact->law.viscous * rate;
+                         force_law_viscous(&contact->law, touch->pose.penetration) * rate;
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
 }
 
@@ -278,12 +278,16 @@ static double find_normal(const KernelContact *contact, const PinHole *pose, Vec
     const double tangent_stiffness = force_law_tangent(law, depth);
     const double floored = fmax(contact->state.damping_speed, law->impact_speed_floor);
     const double rise = 1.0 + law->hysteresis * pose->approach_speed / floored;
-    const double by_depth = tangent_stiffness * (below < 0.0 ? 1.0 : rise);
-    const double by_rate = law->hysteresis * elastic / floored + law->viscous;
+    const double viscous = force_law_viscous(law, depth);
+    const double by_depth =
+        below < 0.0 ? tangent_stiffness
+                    : tangent_stiffness * rise +
+                          force_law_viscous_slope(law, depth) * pose->approach_speed;
+    const double by_rate = law->hysteresis * elastic / floored + viscous;
     const double turning = by_rate * vec2_dot(tangent, velocity) / pose->eccentricity_size;
     *gradient = along(vec2_add(vec2_scale(by_depth, outward), vec2_scale(turning, tangent)),
                       vec2_scale(by_rate, outward));
-    return elastic * rise + law->viscous * pose->approach_speed + tangent_stiffness * below;
+    return elastic * rise + viscous * pose->approach_speed + tangent_stiffness * below;
 }
 
 // The derivatives of x g, with those of g.
@@ -601,6 +605,17 @@ static Rated rate_friction(MovingContact *moving)
     return power;
 }
 
+// What a viscous damper presses with at a depth, m.
+static inline Rated rate_viscous(const ForceLaw *law, double depth, Rated closing)
+{
+    if (!(law->full_damping_depth > 0.0)) {
+        return rated_scale(law->viscous, closing);
+    }
+    const Rated coefficient = {force_law_viscous(law, depth),
+                               force_law_viscous_slope(law, depth) * closing.value};
+    return rated_times(coefficient, closing);
+}
+
 // What a contact presses with, from how it is and its closing speed, and the part of it that is
 // lost.
 static Rated rate_pressing(const KernelContact *contact, const KernelTouch *touch, Rated closing,
@@ -613,7 +628,7 @@ static Rated rate_pressing(const KernelContact *contact, const KernelTouch *touc
     const double slope = touch->tangent < INFINITY ? touch->tangent : 0.0;
     const Rated elastic = {touch->elastic, slope * closing.value};
     const Rated damping = rated_plus(rated_times(rated_scale(factor, elastic), closing),
-                                     rated_scale(law->viscous, closing));
+                                     rate_viscous(law, touch->pose.penetration, closing));
     const Rated sum = rated_plus(elastic, damping);
     if (sum.value < 0.0 || (touch->pose.penetration <= 0.0 && closing.value <= 0.0)) {
         *lost = rated_scale(-1.0, elastic);

@@ -6,14 +6,17 @@
 //                        dF/dd = 1 / (A (y - 1)),  W = A F^2 (2 y - 1) / 4
 //   The branch y > 1 is the physical one: F grows with d. It ends at y = 1, d = A e^(B-1).
 // Conforming family      kernel/conforming.h
-// Damping                F_total = max(0, F + (chi F / max(v0, floor) + c) d')
+// Damping                F_total = max(0, F + (chi F / max(v0, floor) + c(d)) d')
+//   c(d) = c x^2 (3 - 2 x), x = d / d_full, up to d_full and c beyond it; c where d_full is 0
 //
 // d penetration, m; F force, N; K stiffness, N/m^n; n exponent, 1; A compliance, m/N; B offset, 1
 // (with F in N); W elastic energy, J; chi hysteresis factor, 1; c viscous coefficient, N s/m;
-// v0 closing speed at the onset of contact, m/s; d' rate of d, m/s.
+// d_full depth of full damping, m; v0 closing speed at the onset of contact, m/s; d' rate of d,
+// m/s.
 //
 // Sources: K. L. Johnson, Contact Mechanics (1985), ch. 4 and 5; ESDU 78035 (1978); Hunt and
-// Crossley, J. Appl. Mech. 42 (1975) 440, for the damping term F chi d' / v0.
+// Crossley, J. Appl. Mech. 42 (1975) 440, for the damping term F chi d' / v0; MSC Adams, function
+// IMPACT, for the damping that grows with the depth.
 #include "kernel/force_law.h"
 
 #include <assert.h>
@@ -39,6 +42,7 @@ ForceLaw force_law_power(double stiffness, double exponent)
         .family = FORCE_LAW_POWER,
         .stiffness = stiffness,
         .exponent = exponent,
+        .depth_most = INFINITY,
         .impact_speed_floor = DEFAULT_SPEED_FLOOR,
     };
 }
@@ -50,6 +54,7 @@ ForceLaw force_law_logarithmic(double compliance, double offset)
         .compliance = compliance,
         .offset = offset,
         .log_scale = offset + log(compliance),
+        .depth_most = INFINITY,
         .impact_speed_floor = DEFAULT_SPEED_FLOOR,
     };
 }
@@ -59,6 +64,7 @@ ForceLaw force_law_conforming(double stiffness, double play, const double *serie
     ForceLaw law = {
         .family = FORCE_LAW_CONFORMING,
         .conforming = {.stiffness = stiffness, .play = play},
+        .depth_most = INFINITY,
         .impact_speed_floor = DEFAULT_SPEED_FLOOR,
     };
     memcpy(law.conforming.series, series, sizeof law.conforming.series);
@@ -73,6 +79,12 @@ static bool is_conforming_sound(const Conforming *law)
     }
     return law->stiffness > 0.0 && isfinite(law->stiffness) && law->play > 0.0 &&
            isfinite(law->play) && width > 0.0 && isfinite(width);
+}
+
+bool force_law_is_linear(const ForceLaw *law)
+{
+    return law->family == FORCE_LAW_POWER && law->exponent == 1.0 && law->hysteresis == 0.0 &&
+           law->full_damping_depth == 0.0;
 }
 
 bool force_law_is_sound(const ForceLaw *law)
@@ -221,11 +233,12 @@ double force_law_secant(const ForceLaw *law, double penetration)
 
 double force_law_damping(const ForceLaw *law, double penetration, double impact_speed)
 {
+    const double viscous = force_law_viscous(law, penetration);
     if (law->hysteresis == 0.0) {
-        return law->viscous;
+        return viscous;
     }
     const double speed = fmax(impact_speed, law->impact_speed_floor);
-    return law->hysteresis * force_law_elastic(law, penetration) / speed + law->viscous;
+    return law->hysteresis * force_law_elastic(law, penetration) / speed + viscous;
 }
 
 double force_law_force(const ForceLaw *law, double penetration, double rate, double impact_speed)
@@ -235,7 +248,8 @@ double force_law_force(const ForceLaw *law, double penetration, double rate, dou
     }
     const double elastic = force_law_elastic(law, penetration);
     const double speed = fmax(impact_speed, law->impact_speed_floor);
-    const double total = elastic * (1.0 + law->hysteresis * rate / speed) + law->viscous * rate;
+    const double total = elastic * (1.0 + law->hysteresis * rate / speed) +
+                         force_law_viscous(law, penetration) * rate;
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
 }
 

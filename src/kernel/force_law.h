@@ -23,8 +23,11 @@ typedef struct ForceLaw {
     double compliance;         // A, m/N, of FORCE_LAW_LOGARITHMIC
     double offset;             // B, 1, of FORCE_LAW_LOGARITHMIC
     double log_scale;          // B + ln(A / (m/N)), 1: set by force_law_logarithmic
+    double depth_most;         // m, up to which what the law is made of holds; infinite: any depth
     double hysteresis;         // chi, 1: F = F_el (1 + chi d'/v0); 0 for none
     double viscous;            // c, N s/m: F = F_el + c d'; 0 for none
+    double full_damping_depth; // m, > 0: c grows from 0 at the wall to its value at this depth, by
+                               // a cubic step; 0: it is whole from the onset on
     double impact_speed_floor; // m/s, > 0: smallest v0 the hysteretic damping divides by
     double resting_speed;      // m/s: v0 of a contact that has outlasted its impact
                                // (kernel/contact_state.h); 0: that of its impact for ever
@@ -33,8 +36,8 @@ typedef struct ForceLaw {
     Conforming conforming;     // of FORCE_LAW_CONFORMING
 } ForceLaw;
 
-// The families, without damping and friction, with an impact speed floor of 1 mm/s. Every number
-// must be > 0 (B and the series' may be anything).
+// The families, of any depth, without damping and friction, with an impact speed floor of 1 mm/s.
+// Every number must be > 0 (B and the series' may be anything).
 ForceLaw force_law_power(double stiffness, double exponent);
 ForceLaw force_law_logarithmic(double compliance, double offset);
 ForceLaw force_law_conforming(double stiffness, double play, const double *series);
@@ -46,6 +49,9 @@ static inline ForceLaw force_law_with_friction(ForceLaw law, double friction, do
     law.friction_speed = speed;
     return law;
 }
+
+// Whether a spring and a damper of constants make the whole of it.
+bool force_law_is_linear(const ForceLaw *law);
 
 // Whether all numbers of the elastic part are finite and of the right sign.
 bool force_law_is_sound(const ForceLaw *law);
@@ -72,6 +78,26 @@ void force_law_both(const ForceLaw *law, double penetration, double *elastic, do
 // Elastic force over penetration, N/m: the spring that gives the exact force there. At no
 // penetration: its limit, as for the tangent.
 double force_law_secant(const ForceLaw *law, double penetration);
+
+// The viscous coefficient c(d), N s/m, at a penetration, m.
+static inline double force_law_viscous(const ForceLaw *law, double penetration)
+{
+    if (!(law->full_damping_depth > 0.0) || penetration >= law->full_damping_depth) {
+        return law->viscous;
+    }
+    const double share = penetration / law->full_damping_depth;
+    return penetration > 0.0 ? law->viscous * share * share * (3.0 - 2.0 * share) : 0.0;
+}
+
+// Its slope, N s/m^2.
+static inline double force_law_viscous_slope(const ForceLaw *law, double penetration)
+{
+    if (!(penetration > 0.0 && penetration < law->full_damping_depth)) {
+        return 0.0;
+    }
+    const double share = penetration / law->full_damping_depth;
+    return law->viscous * 6.0 * share * (1.0 - share) / law->full_damping_depth;
+}
 
 // The damping coefficient c, N s/m, in F = F_el + c d' at a penetration, m, in a contact that
 // began with an impact speed, m/s (raised to the floor).

@@ -4,7 +4,9 @@
 #include "measure/error.h"
 #include "base/sorted.h"
 #include "base/zeroed.h"
+#include "model/forces.h"
 #include "model/kinematics.h"
+#include "model/space.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -154,6 +156,13 @@ static void add_rates(const Trajectory *trajectory, const Trajectory *reference,
     }
 }
 
+static double kinetic_at(const Trajectory *run, size_t sample)
+{
+    return run->space_motions != NULL
+               ? space_kinetic_energy(&run->linkage, trajectory_space_motion(run, sample, 0))
+               : linkage_kinetic_energy(&run->linkage, trajectory_motion(run, sample, 0));
+}
+
 double error_energy(const Trajectory *run)
 {
     const Energy *energy = &run->energy;
@@ -161,11 +170,7 @@ double error_energy(const Trajectory *run)
     largest = fmax(largest, fabs(energy->load_work));
     largest = fmax(largest, fabs(energy->dissipated) + fabs(energy->friction));
     for (size_t i = 0; i < run->sample_count; i++) {
-        const double kinetic =
-            run->space_motions != NULL
-                ? space_kinetic_energy(&run->linkage, trajectory_space_motion(run, i, 0))
-                : linkage_kinetic_energy(&run->linkage, trajectory_motion(run, i, 0));
-        largest = fmax(largest, kinetic);
+        largest = fmax(largest, kinetic_at(run, i));
     }
     return fmax(largest, run->floor.energy);
 }
@@ -547,6 +552,49 @@ bool error_fail_unstable(Trajectory *run, const Trajectory *reference, Trajector
              "%.3g J; a shorter step may help",
              fabs(run->energy.residual), reference->backend, error_energy(reference));
     *error = (TrajectoryError){.against = "none"};
+    return true;
+}
+
+static double potential_at(const Scenario *scenario, const Trajectory *run, size_t sample)
+{
+    return run->space_motions != NULL
+               ? space_potential_energy(&run->linkage, trajectory_space_motion(run, sample, 0),
+                                        scenario->gravity)
+               : linkage_potential_energy(&run->linkage, trajectory_motion(run, sample, 0),
+                                          scenario_gravity(scenario));
+}
+
+// What a run began with and was given, J: works, the bodies' motion, springs, and all that they
+// may have fallen.
+static double energy_given(const Scenario *scenario, const Trajectory *run)
+{
+    double fallen = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        fallen =
+            fmax(fallen, fabs(potential_at(scenario, run, i) - potential_at(scenario, run, 0)));
+    }
+    const double sprung = run->space_motions != NULL
+                              ? 0.0
+                              : forces_energy(&run->linkage, trajectory_motion(run, 0, 0));
+    return fabs(run->energy.drive_work) + fabs(run->energy.load_work) + kinetic_at(run, 0) +
+           sprung + fallen + run->floor.energy;
+}
+
+bool error_fail_runaway(const Scenario *scenario, Trajectory *run)
+{
+    const double lost = fabs(run->energy.residual);
+    if (!(run->is_complete && run->sample_count > 0 && lost > 0.5 * error_energy(run))) {
+        return false;
+    }
+    const double given = energy_given(scenario, run);
+    if (!(lost > ERROR_ENERGY_RUNAWAY * given)) {
+        return false;
+    }
+    run->is_complete = false;
+    snprintf(run->message, sizeof run->message,
+             "it is unstable: its energy is off by %.3g J, and all that it began with and was "
+             "given is %.3g J; a shorter step may help",
+             lost, given);
     return true;
 }
 

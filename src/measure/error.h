@@ -19,6 +19,10 @@ static const double ERROR_UNSTABLE = 2.0;
 // a joint that an impact met between two samples has no force at any of them.
 static const double ERROR_FORCE_FLOOR = 1e-3;
 
+// times the energy that a run began with and was given: a step too long by far leaves a share or a
+// multiple of it, and a motion that runs away powers of it
+static const double ERROR_ENERGY_RUNAWAY = 1e3;
+
 // More energy than there is in the true motion comes from nowhere but the solver.
 static const double ERROR_ENERGY_LOST = 1.0;
 
@@ -125,6 +129,10 @@ const char *error_is_unstable(const TrajectoryError *error, bool is_limited);
 // Makes a run that has more energy from nowhere than there is in the reference one that failed,
 // with its message and no error. Returns whether it did.
 bool error_fail_unstable(Trajectory *run, const Trajectory *reference, TrajectoryError *error);
+
+// The same of a run that there is no reference for: where what came from nowhere is a thousand
+// times the energy that it began with and was given, and the largest of all its energies.
+bool error_fail_runaway(const Scenario *scenario, Trajectory *run);
 
 // The same measure sample by sample: writes the largest distance at each sample, in scales that are
 // mostly those of the reference, into an array of the trajectories' length. Returns false, the

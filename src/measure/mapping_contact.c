@@ -53,7 +53,7 @@ static MapImpactCase mapping_case(const MappingContact *contact, OdeMap map, dou
     impact.step = step_s;
     // where the engine ends a run
     const Joint *at = &contact->scenario.linkage.joints[contact->joint.joint];
-    impact.end = law_depth_max(&impact.law, law_touching_radius(at));
+    impact.end = law_depth_max(&impact.law, at);
     if (mapping_contact_is_poisson(contact)) {
         impact.rows = (MapImpactRows){
             .cfm = map_poisson_cfm(options->penalty),
@@ -101,7 +101,7 @@ const char *mapping_law_name(const Scenario *scenario, const Joint *joint)
 static bool mapping_contact_ask(MappingContact *contact, const Joint *at, Err *err)
 {
     const MapImpactCase *impact = &contact->impact;
-    const double holds = law_depth_max(&impact->law, law_touching_radius(at)); // m
+    const double holds = law_depth_max(&impact->law, at); // m
     MapImpactCase undamped = *impact;
     undamped.law.viscous = undamped.law.hysteresis = 0.0;
     contact->asked = map_impact_law(impact);
@@ -540,7 +540,7 @@ double verdict_least_penalty(const MappingContact *contact, double step_s)
 static double law_end(const MappingContact *contact)
 {
     const Joint *at = &contact->scenario.linkage.joints[contact->joint.joint];
-    return law_depth_max(&contact->impact.law, law_touching_radius(at));
+    return law_depth_max(&contact->impact.law, at);
 }
 
 static void say_fault(const MappingContact *contact, const MappingRow *row, Text *words)

@@ -68,13 +68,14 @@ typedef struct Body {
 
 // The sizes of a pin in its hole.
 typedef struct Clearance {
-    double hole_radius; // m
-    double pin_radius;  // m
-    double width;       // m, the length over which pin and hole touch
-    double eye_radius;  // m, of the outside of the eye around the hole; 0: twice that of the hole
-    double modulus[2];  // Pa, of the materials of hole and pin; 0: that of the scenario's
-    double poisson[2];  // 1, likewise Poisson's ratios
-    Vec2 start;         // eccentricity at time zero: pin centre minus hole centre, m, world frame
+    double hole_radius;  // m
+    double pin_radius;   // m
+    double width;        // m, the length over which pin and hole touch
+    double eye_radius;   // m, of the outside of the eye around the hole; 0: twice that of the hole
+    double modulus[2];   // Pa, of the materials of hole and pin; 0: that of the scenario's
+    double poisson[2];   // 1, likewise Poisson's ratios
+    Vec2 start;          // eccentricity at time zero: pin centre minus hole centre, m, world frame
+    bool is_pin_assumed; // whether nobody gave the size of the pin
 } Clearance;
 
 // The sizes of a block between its guides. The block's middle is the anchor on body b; the guides'
@@ -155,6 +156,7 @@ typedef struct JointContact {
     bool has_restitution; // whether it has its own
     double restitution;   // 1
     double viscous;       // N s/m: its damping is viscous, with this; 0: none of its own
+    double full_depth;    // m (rad of an angle): and grows up to this depth; 0: none of its own
     double dissipation;   // s/m (s/rad of an angle): its damping is a dissipation, with this; 0:
                           // none of its own
     bool has_friction;    // whether it has its own

@@ -71,6 +71,7 @@ ContactOptions contact_options_default(void)
         .damping = DAMPING_EXACT, // the one that gives back what was asked for
         .damping_scale = 1.0,
         .viscous_coefficient = 0.0,
+        .full_damping_depth = 0.0,
         .restitution = 0.9, // hard steel on hard steel at about 1 m/s
         .friction = 0.0,
         // a hundredth of the sliding speed of the pin in the paper's joint, 0.5 m/s, and more

@@ -35,7 +35,8 @@
     member(HU_GUO, "hu-guo", "3 (1 - e) / (2 e)", 1.5 * (1.0 - e) / e) \
     member(EXACT, "exact", "the root of chi (1 + e) = ln((1 + chi) / (1 - chi e))", exact_factor(e)) \
     member(VISCOUS, "viscous", "0, and viscous-coefficient in its place", 0.0) \
-    member(DISSIPATION, "dissipation", "of exact at restitution-speed, by which it divides whatever the impact", exact_factor(e))
+    member(DISSIPATION, "dissipation", "of exact at restitution-speed, by which it divides whatever the impact", exact_factor(e)) \
+    member(STEP, "step", "0, and in its place viscous-coefficient times a cubic step from 0 at the wall to 1 at full-damping-depth", 0.0)
 
 // How stiffness and damping become ERP and CFM of a row; see contact/map.h. The name follows
 // ODE_MAP_ here and JP_MAP_ in the library; the row is that of contact/map.c. After them comes
@@ -192,7 +193,8 @@ typedef struct ContactOptions {
     double exponent;  // 1, of a given stiffness
     bool is_for_all;  // whether it holds for joints that have a stiffness of their own, too
     DampingKind damping;
-    double viscous_coefficient; // N s/m, of DAMPING_VISCOUS
+    double viscous_coefficient; // N s/m, of DAMPING_VISCOUS, and of DAMPING_STEP at the depth of:
+    double full_damping_depth;  // m
     double dissipation;         // s/m, c of DAMPING_DISSIPATION, F = F_el (1 + c d'); 0: that which
                                 // gives back the restitution of an impact at the speed below
     double restitution_speed;   // m/s

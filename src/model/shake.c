@@ -75,6 +75,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake(&joint->contact.stiffness, seed);
     }
     shake(&joint->contact.viscous, seed);
+    if (joint->contact.full_depth > 0.0) {
+        shake(&joint->contact.full_depth, seed);
+    }
     if (joint->contact.dissipation > 0.0) {
         shake(&joint->contact.dissipation, seed);
     }
@@ -229,6 +232,9 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
     };
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         shake(values[i], seed);
+    }
+    if (scenario->contact.full_damping_depth > 0.0) {
+        shake(&scenario->contact.full_damping_depth, seed);
     }
     scenario->gravity.y = -downward;
     // more than everything no contact gives back

@@ -6,6 +6,8 @@
 //     slack:     d, -release
 // A pressing contact that has moved out and comes back (kernel/contact_state.h) also has the margin
 // -d': where that is used up its impact is over.
+// One whose damping grows with the depth has as well how far it is from where that is whole: beyond
+// it the damping goes on by another formula.
 // A contact that touches in a slot has as well how far the end of the wall is that it meets: where
 // that is used up it goes on at the next one.
 // A margin that is negative at one of a few points of a step has crossed zero before it. The
@@ -25,7 +27,14 @@
 #include <float.h>
 #include <math.h>
 
-enum { HALVINGS = 24, LANDING_ITERATIONS = 4, MARGIN_REST = 2, MARGIN_WALL = 3, MARGINS = 4 };
+enum {
+    HALVINGS = 24,
+    LANDING_ITERATIONS = 4,
+    MARGIN_REST = 2,
+    MARGIN_WALL = 3,
+    MARGIN_FULL = 4,
+    MARGINS = 5,
+};
 
 // m: a thousandth of the depth that rounding of positions of 0.3 m leaves uncertain
 static const double LANDING_DEPTH_M = 1e-19;
@@ -49,9 +58,13 @@ typedef struct Margin {
     int which;
 } Margin;
 
-static double margin_of(const Press *press, ContactMode mode, int which)
+static double margin_of(const Press *press, const Contact *contact, int which)
 {
-    switch (mode) {
+    if (which == MARGIN_FULL) {
+        const double beyond = press->depth - contact->law.full_damping_depth;
+        return contact->is_growing ? -beyond : beyond;
+    }
+    switch (contact->mode) {
     case CONTACT_APART:
         return -press->depth;
     case CONTACT_PRESSING:
@@ -73,7 +86,7 @@ static double rounding_of(const System *system, const SystemState *state, size_t
     if (which == MARGIN_WALL) {
         return fmax(depth, WALL_SHARE * contact->clearance);
     }
-    if (mode == CONTACT_APART || which == 0) {
+    if (mode == CONTACT_APART || which == 0 || which == MARGIN_FULL) {
         return depth;
     }
     if (which == MARGIN_REST) {
@@ -82,7 +95,9 @@ static double rounding_of(const System *system, const SystemState *state, size_t
     if (contact->law.viscous > 0.0) {
         const double reached = fmax(state->contacts[number].depth, depth);
         return force_law_tangent(&contact->law, reached) * depth +
-               contact->law.viscous * EVENTS_ROUNDING * speed;
+               press_viscous(contact, reached).coefficient * EVENTS_ROUNDING * speed +
+               fabs(press_viscous(contact, reached).slope * state->contacts[number].closing) *
+                   depth;
     }
     return contact->damping_rate * EVENTS_ROUNDING * speed;
 }
@@ -101,7 +116,7 @@ static double margin_at(double time, void *context)
         return system_wall(system, margin->integrator, margin->contact, time).within;
     }
     const Press press = press_at(margin, time);
-    return margin_of(&press, system->contacts[margin->contact].mode, margin->which);
+    return margin_of(&press, &system->contacts[margin->contact], margin->which);
 }
 
 // The mode that follows when a margin of the present one is used up.
@@ -113,13 +128,14 @@ static ContactMode mode_after(ContactMode mode, int which)
     if (which == 0) {
         return CONTACT_APART;
     }
-    if (which == MARGIN_REST || which == MARGIN_WALL) {
+    if (which == MARGIN_REST || which == MARGIN_WALL || which == MARGIN_FULL) {
         return mode;
     }
     return mode == CONTACT_PRESSING ? CONTACT_SLACK : CONTACT_PRESSING;
 }
 
-// Whether a contact has a margin in its mode.
+// Whether a contact has a margin in its mode; MARGIN_FULL is asked of those alone whose damping
+// grows.
 static bool has_margin(const Contact *contact, int which)
 {
     if (contact->mode == CONTACT_APART) {
@@ -190,6 +206,7 @@ static void note_event(const Margin *margin, double time, double beyond, Event *
             .contact = margin->contact,
             .mode = mode_after(mode, margin->which),
             .is_rest = margin->which == MARGIN_REST,
+            .is_full = margin->which == MARGIN_FULL,
         };
         if (margin->which == MARGIN_WALL) {
             // as it is beyond the end: a short one may lie wholly behind
@@ -217,12 +234,14 @@ static bool is_used_up(const Margin *margin, const SystemState *state, double le
     return left < 0.0 && left < -rounding_of(system, state, margin->contact, mode, margin->which);
 }
 
-// A free pin that went towards its wall and comes back may have been there in between: where the
-// penetration has its maximum it is evaluated once more.
+// A free pin that went towards its wall and comes back may have been there in between, and one that
+// presses where its damping is whole: where the penetration has its extreme it is evaluated once
+// more. `outward` is 1 where the margin ends at a depth that grows, -1 where at one that falls.
 static bool has_been_there(Margin *margin, double first, double last, const SystemState *state,
-                           double *top)
+                           double outward, double *top)
 {
-    return state->contacts[margin->contact].closing < 0.0 && approach_at(first, margin) > 0.0 &&
+    return outward * state->contacts[margin->contact].closing < 0.0 &&
+           outward * approach_at(first, margin) > 0.0 &&
            root_find(approach_at, margin, first, last, 0.0, top) &&
            is_used_up(margin, state, margin_at(*top, margin));
 }
@@ -247,8 +266,9 @@ static bool has_left_wall(Margin *margin, double first, double last, const Syste
 static void events_evaluate_at(Margin *margin, const EventPoints *points, Event *event)
 {
     const System *system = margin->system;
-    const ContactMode mode = system->contacts[margin->contact].mode;
-    const bool is_free = mode == CONTACT_APART;
+    const Contact *contact = &system->contacts[margin->contact];
+    const bool can_turn = contact->mode == CONTACT_APART || margin->which == MARGIN_FULL;
+    const double outward = margin->which == MARGIN_FULL && !contact->is_growing ? -1.0 : 1.0;
     double before = margin->integrator->time;
     for (size_t i = 0; i < points->count; i++) {
         const double time = events_point_time(margin->integrator, points, i);
@@ -263,11 +283,11 @@ static void events_evaluate_at(Margin *margin, const EventPoints *points, Event 
             before = time;
             continue;
         }
-        if (is_free && has_been_there(margin, before, time, state, &top)) {
+        if (can_turn && has_been_there(margin, before, time, state, outward, &top)) {
             note_event(margin, crossing(margin, before, top), top, event);
             return;
         }
-        if (is_used_up(margin, state, margin_of(press, mode, margin->which))) {
+        if (is_used_up(margin, state, margin_of(press, contact, margin->which))) {
             note_event(margin, crossing(margin, before, time), time, event);
             return;
         }
@@ -281,7 +301,8 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
     found->count = 0;
     for (size_t i = 0; i < system->contact_count; i++) {
         Event event = {.time = INFINITY};
-        for (int which = 0; which < MARGINS; which++) {
+        const bool grows = system->contacts[i].law.full_damping_depth > 0.0;
+        for (int which = 0; which < (grows ? MARGINS : MARGIN_FULL); which++) {
             Margin margin = {system, integrator, i, which};
             if (has_margin(&system->contacts[i], which)) {
                 events_evaluate_at(&margin, points, &event);
@@ -410,6 +431,9 @@ void events_apply(System *system, const EventList *events, double time_s, const 
         }
         if (event->is_rest) {
             contact_rest(contact);
+        }
+        if (event->is_full) {
+            contact->is_growing = !contact->is_growing;
         }
         contact->mode = event->mode;
     }

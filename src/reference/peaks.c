@@ -1,7 +1,7 @@
 // Finds when the force and the depth of a contact stop growing.
 //
-//     F = F_el(d) (1 + chi d'/v0) + c d'
-//     dF/dt = F_el' d' (1 + chi d'/v0) + (F_el chi / v0 + c) d''
+//     F = F_el(d) (1 + chi d'/v0) + c(d) d'
+//     dF/dt = F_el' d' (1 + chi d'/v0) + c' d'^2 + (F_el chi / v0 + c) d''
 // A maximum lies where such a rate turns from positive to negative; it is found on the polynomial
 // of the step.
 #include "reference/peaks.h"

@@ -568,7 +568,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     assert(stepper->events.events != NULL && stepper->found.events != NULL);
     system_take_contacts(system);
     system->kind->start(system, integrator->y);
-    system_find_walls(system, integrator->y);
+    system_find_places(system, integrator->y);
     integrator->rates = system->kind->rates;
     integrator->slopes = system->kind->slopes;
     integrator->coupling = system->coupling;
@@ -663,7 +663,8 @@ static bool is_onset(const Stepper *stepper)
 {
     for (size_t i = 0; i < stepper->events.count; i++) {
         const Event *event = &stepper->events.events[i];
-        if (event->mode == CONTACT_PRESSING && !event->is_rest && event->wall == WALL_NEAREST) {
+        if (event->mode == CONTACT_PRESSING && !event->is_rest && !event->is_full &&
+            event->wall == WALL_NEAREST) {
             return true;
         }
     }

@@ -13,6 +13,7 @@ typedef struct Event {
     size_t contact;
     ContactMode mode; // the mode that begins
     bool is_rest;     // it stays in its mode, and its impact is over
+    bool is_full;     // it stays in its mode, and passes where its damping is whole
     ContactWall wall; // of a slot that it comes to, in its mode; WALL_NEAREST: it is no such event
 } Event;
 

@@ -73,13 +73,18 @@ WallPlace system_wall(const System *system, Dop853 *integrator, size_t contact, 
     return system->kind->wall(system, contact, time, needed_at(system, integrator, contact, time));
 }
 
-void system_find_walls(System *system, const double *y)
+void system_find_places(System *system, const double *y)
 {
     for (size_t i = 0; i < system->contact_count; i++) {
         Contact *contact = &system->contacts[i];
-        if (contact->has_walls && contact->mode != CONTACT_APART) {
+        if (contact->mode == CONTACT_APART) {
+            continue;
+        }
+        if (contact->has_walls) {
             contact->wall = system->kind->wall(system, i, 0.0, y).wall;
         }
+        contact->is_growing =
+            system->kind->press(system, i, 0.0, y).depth < contact->law.full_damping_depth;
     }
 }
 
@@ -127,6 +132,7 @@ void system_carry(System *system, Carry *carry)
         CARRY(carry, contact->onset_s);
         CARRY(carry, contact->impact_speed);
         CARRY(carry, contact->damping_rate);
+        CARRY(carry, contact->is_growing);
         CARRY(carry, contact->is_released);
         CARRY(carry, contact->is_resting);
     }

@@ -18,7 +18,7 @@
 // How hard a contact presses: its law in the mode that it is in, as a function of depth and closing
 // speed alone. The same in the plane and in space.
 //
-//     N = F_el(d) (1 + chi d'/v0) + c d'
+//     N = F_el(d) (1 + chi d'/v0) + c(d) d'
 
 // What a contact is doing. It changes at events only.
 typedef enum ContactMode {
@@ -63,6 +63,7 @@ typedef struct Contact {
     double onset_s;      // when the contact under way began
     double impact_speed; // m/s, closing speed when the contact under way began
     double damping_rate; // s/m, chi / v0, v0 not below the law's floor
+    bool is_growing;     // its damping grows with the depth, and is not whole there
     bool is_released;    // as in kernel/contact_state.h
     bool is_resting;
 } Contact;
@@ -79,6 +80,32 @@ typedef struct Press {
     double friction_power; // W, lost in sliding; friction is added by who knows the geometry
 } Press;
 
+// What its viscous damper has at a depth, N s/m, and how fast that grows, N s/m^2.
+typedef struct PressViscous {
+    double coefficient;
+    double slope;
+} PressViscous;
+
+// by how much of itself a step goes on beyond its ends: no stage of a step that is kept lies
+// further
+static const double PRESS_STEP_BEYOND = 0.25;
+
+// On either side of where it is whole, an event, it goes on smoothly.
+static inline PressViscous press_viscous(const Contact *contact, double depth)
+{
+    const ForceLaw *law = &contact->law;
+    if (!contact->is_growing) {
+        return (PressViscous){law->viscous, 0.0};
+    }
+    const double share = depth / law->full_damping_depth;
+    if (!(fabs(share - 0.5) < 0.5 + PRESS_STEP_BEYOND)) {
+        const double end = share > 0.5 ? 1.0 + PRESS_STEP_BEYOND : -PRESS_STEP_BEYOND;
+        return (PressViscous){law->viscous * end * end * (3.0 - 2.0 * end), 0.0};
+    }
+    return (PressViscous){law->viscous * share * share * (3.0 - 2.0 * share),
+                          law->viscous * 6.0 * share * (1.0 - share) / law->full_damping_depth};
+}
+
 // What the law of a contact makes of a depth and its rate.
 static inline Press press_find(const Contact *contact, double depth, double closing)
 {
@@ -90,7 +117,7 @@ static inline Press press_find(const Contact *contact, double depth, double clos
     // odd below zero depth: a step that overshoots the end of a contact stays smooth
     press.elastic = copysign(force_law_elastic(law, fabs(depth)), depth);
     const double rise = 1.0 + contact->damping_rate * closing;
-    press.pressing = press.elastic * rise + law->viscous * closing;
+    press.pressing = press.elastic * rise + press_viscous(contact, depth).coefficient * closing;
     press.release = law->viscous > 0.0 ? press.pressing : rise;
     // a slack spring relaxes by itself: what it had stored is lost like the damper's work
     press.normal = contact->mode == CONTACT_PRESSING ? press.pressing : 0.0;
@@ -106,6 +133,7 @@ static inline void contact_begin(Contact *contact, double onset_s, double impact
     contact->impact_speed = impact_speed;
     contact->damping_rate =
         contact->law.hysteresis / fmax(impact_speed, contact->law.impact_speed_floor);
+    contact->is_growing = contact->law.full_damping_depth > 0.0;
     contact->is_released = contact->is_resting = false;
 }
 
@@ -120,15 +148,25 @@ static inline void contact_rest(Contact *contact)
 // How strongly a contact is damped, N s/m.
 static inline double press_damping(const Contact *contact, const Press *press)
 {
-    return press->elastic * contact->damping_rate + contact->law.viscous;
+    return press->elastic * contact->damping_rate +
+           press_viscous(contact, press->depth).coefficient;
+}
+
+// How fast the force of a contact that presses grows with its depth, N/m.
+static inline double press_stiffness(const Contact *contact, const Press *press)
+{
+    const double rise = 1.0 + contact->damping_rate * press->closing;
+    return rise * force_law_tangent(&contact->law, fabs(press->depth)) +
+           press_viscous(contact, press->depth).slope * press->closing;
 }
 
 // The rate of the normal force, N/s, of a contact that presses, from the second rate of its depth.
 static inline double press_rate(const Contact *contact, const Press *press, double second)
 {
     const double rise = 1.0 + contact->damping_rate * press->closing;
+    const double growing = press_viscous(contact, press->depth).slope * press->closing;
     return force_law_tangent(&contact->law, press->depth) * press->closing * rise +
-           press_damping(contact, press) * second;
+           growing * press->closing + press_damping(contact, press) * second;
 }
 
 // What is added up, behind the rates.
@@ -260,8 +298,9 @@ Press system_press(const System *system, Dop853 *integrator, size_t contact, dou
 // The same of the walls of its slot.
 WallPlace system_wall(const System *system, Dop853 *integrator, size_t contact, double time);
 
-// Finds the walls that contacts which touch at the start meet, from the integrator's vector there.
-void system_find_walls(System *system, const double *y);
+// Finds where contacts are that touch at the start, from the integrator's vector there: the walls
+// that they meet, and whether their damping is whole.
+void system_find_places(System *system, const double *y);
 
 // Lets contacts begin as the linkage has it, and the other way round: writes what they carry at a
 // time, s, in the mode that they are in.

@@ -2,7 +2,6 @@
 #include "run/settle.h"
 
 #include "base/zeroed.h"
-#include "contact/damping.h"
 #include "contact/law.h"
 #include "model/perturb.h"
 #include "run/pressed.h"
@@ -33,10 +32,7 @@ static bool contact_dissipates(const Scenario *scenario, const Joint *joint)
     }
     const ContactOptions own = law_options(&scenario->contact, joint);
     const double friction = scenario_friction(scenario, joint);
-    return friction > 0.0 || (own.damping == DAMPING_VISCOUS ? own.viscous_coefficient > 0.0
-                              : own.damping == DAMPING_DISSIPATION
-                                  ? true
-                                  : damping_factor(own.damping, own.restitution) > 0.0);
+    return friction > 0.0 || law_is_damped(&own);
 }
 
 bool settle_dissipates(const Scenario *scenario)

@@ -84,6 +84,10 @@ static JpStatus check_damping(const JpContact *contact, JpError *error)
         return JP_OK;
     case JP_DAMPING_VISCOUS:
         return refusal_of_negative(contact->damper, "the contact's damper", error);
+    case JP_DAMPING_STEP:
+        REFUSAL_TRY(refusal_of_negative(contact->damper, "the contact's damper", error));
+        return refusal_of_positive(contact->full_damping_depth,
+                                   "the contact's depth of full damping", error);
     case JP_DAMPING_DISSIPATION:
         return refusal_of_negative(contact->dissipation, "the contact's dissipation", error);
     default:
@@ -116,8 +120,10 @@ JpStatus contact_law(const JpContact *contact, ForceLaw *law, JpError *error)
                        contact->compliance, contact->offset);
     }
     law->impact_speed_floor = contact->speed_floor;
-    if (contact->damping == JP_DAMPING_VISCOUS) {
+    if (contact->damping == JP_DAMPING_VISCOUS || contact->damping == JP_DAMPING_STEP) {
         law->viscous = contact->damper;
+        law->full_damping_depth =
+            contact->damping == JP_DAMPING_STEP ? contact->full_damping_depth : 0.0;
     } else if (contact->damping == JP_DAMPING_DISSIPATION) {
         law_set_dissipation(contact->dissipation, law);
     } else if (contact->damping != JP_DAMPING_NONE) {

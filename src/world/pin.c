@@ -227,12 +227,11 @@ void pin_find(JpJoint *joint, bool has_rows)
     }
 }
 
-// How deep a pin may be in the wall, of its radius, or of its play where that is more. At creation:
-// a contact of steel yields at a thousandth, and a rubber one is not made pressed in. In a step: at
-// a tenth no law for depths that are small beside the radius holds, and a pin with more play than
-// that has crossed its hole ten times over.
-static const double DEPTH_AT_CREATION = 0.01;
-static const double STEP_DEPTHS = 10.0; // of the depth at creation
+// How deep a pin may be in the wall, of its radius, or of its play where that is more: a stiffness
+// holds at any depth, but a pin that is deeper than its diameter has left its hole, and one with
+// more play than that has crossed it ten times over.
+static const double DEPTH_OF_RADIUS = 2.0;
+static const double DEPTH_OF_PLAY = 10.0;
 
 static double pin_depth(const JpJoint *joint, size_t number)
 {
@@ -249,11 +248,10 @@ JpStatus pin_check_inside(const JpJoint *joint, PinMoment moment, JpError *error
 {
     const Place *hole = &joint->places[0];
     const double radius = hole->hole_radius - hole->clearance;
-    const double times = moment == PIN_MADE ? 1.0 : STEP_DEPTHS;
     for (size_t i = 0; i < joint->place_count; i++) {
         const Place *place = &joint->places[i];
         const double play = place->shape == PLACE_HOLE ? place->clearance : place->sides[1].limit;
-        const double most = times * fmax(play, DEPTH_AT_CREATION * radius);
+        const double most = fmax(DEPTH_OF_PLAY * play, DEPTH_OF_RADIUS * radius);
         const double depth = pin_depth(joint, i);
         static const char *const WHEN[] = {
             [PIN_MADE] = "is",

@@ -241,7 +241,7 @@ int main(int argc, char **argv)
     static const CaseKind *const KINDS[] = {
         &CASE_FOUR_BAR, &CASE_BODIES,  &CASE_SPRUNG,    &CASE_SLIDERS, &CASE_LIMITS,
         &CASE_BALLS,    &CASE_PENDULA, &CASE_FOUR_BARS, &CASE_HOLES,   &CASE_RACKS,
-        &CASE_GEARS,    &CASE_CAMS,    &CASE_SLOTS};
+        &CASE_GEARS,    &CASE_CAMS,    &CASE_SLOTS,     &CASE_GROWING};
     const CaseKind *kind = NULL;
     for (size_t i = 0; argc > 3 && i < sizeof KINDS / sizeof *KINDS; i++) {
         kind = strcmp(argv[1], KINDS[i]->name) == 0 ? KINDS[i] : kind;

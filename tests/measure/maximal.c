@@ -9,7 +9,7 @@
 //
 // Between events every contact keeps its mode:
 //     apart    no force; ends where the depth d becomes positive: v0 is then the closing speed d'
-//     pressed  F(d) (1 + chi d' / v0) + c d'; ends where d or the force becomes negative
+//     pressed  F(d) (1 + chi d' / v0) + c(d) d'; ends where d or the force becomes negative
 //     slack    no force; ends where d becomes negative or the force would be positive
 // A pressed contact that has moved out and comes back has outlasted its impact: from where d' is
 // zero on v0 is the law's resting speed. A step in which a mode ends is repeated until it ends
@@ -98,6 +98,16 @@ static Real elastic_force(const ForceLaw *law, Real depth)
     return force;
 }
 
+// The viscous coefficient at a depth, N s/m.
+static Real viscous_at(const ForceLaw *law, Real depth)
+{
+    if (!(law->full_damping_depth > 0.0) || depth >= law->full_damping_depth) {
+        return law->viscous;
+    }
+    const Real share = depth / law->full_damping_depth;
+    return law->viscous * share * share * (3.0L - 2.0L * share);
+}
+
 // The force that would press and the sign by which a pressing contact goes slack.
 static Real pressing(const MaximalContact *contact, MaximalGap gap, Real *release)
 {
@@ -106,7 +116,7 @@ static Real pressing(const MaximalContact *contact, MaximalGap gap, Real *releas
     // odd below zero depth: a step beyond the end of a contact stays smooth
     const Real elastic = gap.depth < 0.0L ? -size : size;
     const Real rise = 1.0L + contact->damping_rate * gap.closing;
-    const Real force = elastic * rise + law->viscous * gap.closing;
+    const Real force = elastic * rise + viscous_at(law, gap.depth) * gap.closing;
     *release = law->viscous > 0.0 ? force : rise;
     return force;
 }
@@ -417,18 +427,31 @@ static Real dip_of(const Motor *motor, size_t contact, Real length)
 // m: nearer than this a step that begins or ends at a corner is at it
 static const Real AT_CORNER = 1e-12L;
 
-// Where within a step the gap of a contact that touches has a corner in its curvature, by a secant;
-// 1 where it has none. Extrapolation does not see what it loses there.
+// Where something passes zero within a step, by a secant; 1 where it does not.
+static Real passing(Real a, Real b)
+{
+    const bool passes = a < 0.0L ? b > AT_CORNER : b < -AT_CORNER;
+    return passes && fabsl(a) > AT_CORNER ? a / (a - b) : 1.0L;
+}
+
+// Where within a step the gap of a contact that touches has a corner in its curvature, or its
+// damping is whole; 1 where nothing is. Extrapolation does not see what it loses there.
 static Real corner_of(const Motor *motor, size_t contact)
 {
     const Maximal *maximal = motor->maximal;
-    if (maximal->kind->corner == NULL || maximal->contacts[contact].mode == MAXIMAL_APART) {
+    const Real full = maximal->contacts[contact].law.full_damping_depth;
+    if (maximal->contacts[contact].mode == MAXIMAL_APART) {
         return 1.0L;
     }
-    const Real a = maximal->kind->corner(maximal, contact, motor->y);
-    const Real b = maximal->kind->corner(maximal, contact, motor->next);
-    const bool passes = a < 0.0L ? b > AT_CORNER : b < -AT_CORNER;
-    return passes && fabsl(a) > AT_CORNER ? a / (a - b) : 1.0L;
+    Real first = 1.0L;
+    if (full > 0.0L) {
+        first = passing(maximal->kind->gap(maximal, contact, motor->y).depth - full,
+                        maximal->kind->gap(maximal, contact, motor->next).depth - full);
+    }
+    return maximal->kind->corner == NULL
+               ? first
+               : fminl(first, passing(maximal->kind->corner(maximal, contact, motor->y),
+                                      maximal->kind->corner(maximal, contact, motor->next)));
 }
 
 static void change_mode(Motor *motor, size_t contact, MaximalMode after)

@@ -23,6 +23,7 @@ extern const CaseKind CASE_GEARS;
 extern const CaseKind CASE_CAMS;
 extern const CaseKind CASE_SLOTS;
 extern const CaseKind CASE_HOLES;
+extern const CaseKind CASE_GROWING;
 extern const CaseKind CASE_RUN_UPS;
 extern const CaseKind CASE_SPACE;
 extern const CaseKind CASE_SPACE_DRIVEN;

@@ -84,7 +84,7 @@ static void a_step_that_cannot_catch_the_wall_fails_and_says_when_and_why(void *
     (void)state;
     Scenario scenario = mechanism_paper();
     mechanism_loosen(&scenario, "crank-coupler");
-    scenario.contact.stiffness = 1e11;
+    scenario.contact.stiffness = 0.0; // the law of its steel, which has an end
     scenario.run.step = 1e-3;
     Trajectory *trajectory = run_ode(&scenario);
     assert_false(trajectory->is_complete);

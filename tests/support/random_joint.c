@@ -94,7 +94,8 @@ static bool try_joint(unsigned short *state, int number, RandomJoint *drawn)
     if (is_cylinder) {
         return length_of(drawn) < clearance->hole_radius - clearance->pin_radius;
     }
-    const double share = law_depth_max(&drawn->contact.impact.law, 1.0); // of a radius
+    const Joint unit = {.kind = JOINT_CLEARANCE, .clearance.pin_radius = 1.0};
+    const double share = law_depth_max(&drawn->contact.impact.law, &unit); // of a radius
     clearance->pin_radius = depths * drawn->contact.asked.penetration_max / share;
     clearance->hole_radius = clearance->pin_radius + length_of(drawn);
     return true;

@@ -153,6 +153,37 @@ static void a_joints_own_dissipation_goes_before_the_contacts_damping(void **sta
                 (1.0 + 1e-3) * force_law_force(&law, 1e-4, 0.5, 2.0));
 }
 
+// A depth of full damping of its own, with its own coefficient or the contact's; without one the
+// coefficient alone is that of a damper that is whole at the wall.
+static void a_joints_own_damping_may_grow_with_the_depth(void **state)
+{
+    (void)state;
+    Scenario balls = load_sliding(BALLS);
+    Joint joint = balls.linkage.joints[2];
+    ForceLaw law;
+    Err err = {0};
+    joint.contact.viscous = 40.0;
+    assert_true(law_of_joint(&balls, &joint, &law, &err));
+    assert_near(law.full_damping_depth, 0.0, 0.0);
+    assert_near(force_law_damping(&law, 1e-5, 1.0), 40.0, 0.0);
+    joint.contact.full_depth = 2e-5;
+    assert_true(law_of_joint(&balls, &joint, &law, &err));
+    assert_near(force_law_damping(&law, 1e-5, 1.0), 20.0, 1e-13);
+    // that of the contact, and of both in their parts
+    balls.contact.damping = DAMPING_STEP;
+    balls.contact.viscous_coefficient = 10.0;
+    balls.contact.full_damping_depth = 1e-5;
+    joint.contact.full_depth = joint.contact.viscous = 0.0;
+    assert_true(law_of_joint(&balls, &joint, &law, &err));
+    assert_near(force_law_damping(&law, 5e-6, 1.0), 5.0, 1e-13);
+    joint.contact.viscous = 40.0;
+    assert_true(law_of_joint(&balls, &joint, &law, &err));
+    assert_near(force_law_damping(&law, 5e-6, 1.0), 20.0, 1e-13);
+    joint.contact.full_depth = 2e-5;
+    assert_true(law_of_joint(&balls, &joint, &law, &err));
+    assert_near(force_law_damping(&law, 1e-5, 1.0), 20.0, 1e-13);
+}
+
 // What tune and map try goes before both.
 static void one_stiffness_for_all_joints_goes_before_their_own(void **state)
 {
@@ -279,6 +310,7 @@ int main(void)
         cmocka_unit_test(a_stop_is_between_the_places_that_the_case_gives),
         cmocka_unit_test(a_joints_own_stiffness_and_restitution_go_before_those_of_the_contact),
         cmocka_unit_test(a_joints_own_dissipation_goes_before_the_contacts_damping),
+        cmocka_unit_test(a_joints_own_damping_may_grow_with_the_depth),
         cmocka_unit_test(one_stiffness_for_all_joints_goes_before_their_own),
         cmocka_unit_test(settings_hold_what_the_case_says),
         cmocka_unit_test(limits_and_gears_are_what_the_case_gives),

@@ -47,7 +47,7 @@ static const char *const UNWRITTEN[] = {
     "run.tolerance",
     "run.tolerance-of",
     "reference.tolerance",
-    // replaced in this case: by its revolutions and its viscous damping
+    // replaced in this case: by its revolutions and its damping that grows with the depth
     "run.duration",
     "contact.restitution",
     "contact.resting-speed",
@@ -181,12 +181,15 @@ static bool change(const SchemaRow *row, Scenario *scenario)
 static void every_setting_of_the_library_is_in_the_program(void **state)
 {
     (void)state;
-    const char *const overrides[] = {
-        "run.step=1 us",           "contact.law=johnson",
-        "contact.damping=viscous", "contact.viscous-coefficient=100 N s/m",
-        "contact.friction=0.1",    "ode.solver=quick",
-        "ode.stepping=plain"};
-    const Scenario as_it_is = load("cases/paper/stackup-impact.yaml", overrides, 7);
+    const char *const overrides[] = {"run.step=1 us",
+                                     "contact.law=johnson",
+                                     "contact.damping=step",
+                                     "contact.viscous-coefficient=100 N s/m",
+                                     "contact.full-damping-depth=0.1 mm",
+                                     "contact.friction=0.1",
+                                     "ode.solver=quick",
+                                     "ode.stepping=plain"};
+    const Scenario as_it_is = load("cases/paper/stackup-impact.yaml", overrides, 8);
     Text before;
     write_code(&as_it_is, &before);
     size_t checked = 0;

@@ -93,10 +93,37 @@ static void a_step_below_the_rounding_of_time_ends(void **state)
     test_free(stepper);
 }
 
-static void a_pin_beyond_the_end_of_its_law_ends(void **state)
+// A pin of 9.986 mm on a stiffness that is given: it may be as deep as that, and of a size that
+// nobody gave as deep as it likes.
+static void a_given_stiffness_holds_at_any_depth(void **state)
 {
     (void)state;
     const Scenario scenario = mechanism_loose(1);
+    Joint *joint = &scenario.linkage.joints[linkage_find_joint(&scenario.linkage, "crank-coupler")];
+    Dynamics dynamics = loose(&scenario);
+    SystemState *at = &dynamics_state_create(&dynamics)->shared;
+    Err err = {ERR_NONE, ""};
+    at->contacts[0].depth = 9.9e-3;
+    assert_true(system_check_depth(&dynamics.system, at, 1.0, &err));
+    at->contacts[0].depth = 1e-2;
+    assert_false(system_check_depth(&dynamics.system, at, 1.0, &err));
+    assert_non_null(strstr(err.text, "which is all of it"));
+    joint->clearance.is_pin_assumed = true;
+    at->contacts[0].depth = 1.0;
+    err = (Err){ERR_NONE, ""};
+    assert_true(system_check_depth(&dynamics.system, at, 1.0, &err));
+    at->contacts[0].depth = INFINITY;
+    assert_false(system_check_depth(&dynamics.system, at, 1.0, &err));
+    assert_non_null(strstr(err.text, "is no number"));
+    free(at);
+    dynamics_finish(&dynamics);
+}
+
+static void a_pin_beyond_the_end_of_its_law_ends(void **state)
+{
+    (void)state;
+    Scenario scenario = mechanism_loose(1);
+    scenario.contact.stiffness = 0.0; // the law of its material
     Dynamics dynamics = loose(&scenario);
     SystemState *at = &dynamics_state_create(&dynamics)->shared;
     Err err = {ERR_NONE, ""};
@@ -121,6 +148,7 @@ int main(void)
         cmocka_unit_test(events_at_one_instant_end),
         cmocka_unit_test(a_step_below_the_rounding_of_time_ends),
         cmocka_unit_test(a_pin_beyond_the_end_of_its_law_ends),
+        cmocka_unit_test(a_given_stiffness_holds_at_any_depth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,6 +69,8 @@ static void check_run_measure(const void *context, void *target)
                                   backend_run_probe(&piece->scenario));
     if (run->is_complete && piece->truth != NULL) {
         keep_error(piece, run, result);
+    } else {
+        error_fail_runaway(&piece->scenario, run);
     }
     result->is_complete = run->is_complete;
     result->is_short = run->is_complete && run->is_short;

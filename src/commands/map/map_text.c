@@ -1,5 +1,6 @@
 // Writes the text of a mapping: the settings of each contact and what they deliver.
 #include "commands/map/map.h"
+#include "contact/damping.h"
 #include "contact/law.h"
 #include "write/settled.h"
 #include "write/units.h"
@@ -19,7 +20,7 @@ static void write_settings(const MappingContact *contact, const MappingRow *rows
     mapping_rows_write_table(rows, contact->row_count, style, text);
     if (!mapping_contact_is_poisson(contact)) {
         text_append(text, "  ERP and CFM at the law's deepest point%s\n",
-                    law->family == FORCE_LAW_POWER && law->exponent == 1.0 && law->hysteresis == 0.0
+                    force_law_is_linear(law)
                         ? "; of a linear spring and damper they hold at any depth, but for the "
                           "midpoint's ERP."
                         : "; the engine gets them recomputed at the depth of each step.");
@@ -402,7 +403,7 @@ static void write_law(const MappingReport *report, const MappingContact *contact
         return;
     }
     char damping[LAW_DAMPING_SIZE] = "";
-    if (options->damping != DAMPING_VISCOUS && options->damping != DAMPING_NONE) {
+    if (damping_restores(options->damping)) {
         snprintf(damping, sizeof damping, " (%s for %.4g)", OPTIONS_DAMPINGS[options->damping],
                  options->restitution);
     }

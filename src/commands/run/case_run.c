@@ -84,6 +84,9 @@ static void measure_errors(CaseRun *run)
             run->failed_count += error_fail_unstable(run->runs[i], truth, &run->errors[i]) ? 1 : 0;
         }
     }
+    for (size_t i = 0; truth == NULL && i < run->scenario.run.backend_count; i++) {
+        run->failed_count += error_fail_runaway(&run->scenario, run->runs[i]) ? 1 : 0;
+    }
 }
 
 // The contacts of every run that lets the play happen, beside the truth's.

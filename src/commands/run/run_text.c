@@ -739,9 +739,15 @@ static void run_text_write_damping(const ContactOptions *contact, const ForceLaw
                                    bool is_turning, Text *text)
 {
     text_append(text, ", damping %s", OPTIONS_DAMPINGS[contact->damping]);
-    if (contact->damping == DAMPING_VISCOUS) {
-        text_append(text, " %.4g %s", contact->viscous_coefficient,
-                    is_turning ? "N m s/rad" : "N s/m");
+    if (contact->damping == DAMPING_VISCOUS || contact->damping == DAMPING_STEP) {
+        text_append(text, " %s%.4g %s", contact->damping == DAMPING_STEP ? "to " : "",
+                    contact->viscous_coefficient, is_turning ? "N m s/rad" : "N s/m");
+        if (contact->damping == DAMPING_STEP) {
+            text_append(text, " at a depth of %.4g %s",
+                        is_turning ? contact->full_damping_depth
+                                   : contact->full_damping_depth * UNITS_MM,
+                        is_turning ? "rad" : "mm");
+        }
     } else if (contact->damping == DAMPING_DISSIPATION) {
         if (law != NULL) {
             run_text_write_dissipation(law, is_turning, text);

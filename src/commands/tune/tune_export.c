@@ -260,7 +260,7 @@ void tune_mujoco_write(const TuneReport *report, Text *text)
 // Lines for a loop of the user's own that do what the setting does.
 //
 // The row that ODE makes of a contact, at the depth d found before the step:
-//     k = F(d) / d,  c = chi F(d) / v0 (or the constant damper)
+//     k = F(d) / d,  c = chi F(d) / v0 (or the damper at that depth)
 // and from them soft_erp and soft_cfm by the map of the setting, as contact/map.c.
 
 static void write_conforming(const ForceLaw *law, Text *text)
@@ -319,6 +319,13 @@ static void tune_export_write_damping(const ForceLaw *law, bool is_angle, Text *
                     "    const double c =\n        %s * k * depth / fmax(v0, %s);\n",
                     unit, is_angle ? "rad/s" : "m/s", number_shortest(law->hysteresis).text,
                     number_shortest(law->impact_speed_floor).text);
+    } else if (law->full_damping_depth > 0.0) {
+        text_append(text,
+                    "    const double share = fmin(depth / %s, 1.0); // of that of full damping, %s\n"
+                    "    const double c = %s * share * share * (3.0 - 2.0 * share); // %s\n"
+                    "    (void)v0;\n",
+                    number_shortest(law->full_damping_depth).text, is_angle ? "rad" : "m",
+                    number_shortest(law->viscous).text, unit);
     } else {
         text_append(text, "    const double c = %s; // %s\n    (void)v0;\n",
                     number_shortest(law->viscous).text, unit);

@@ -10,6 +10,7 @@
 #include "commands/tune/tune_runs.h"
 #include "contact/damping.h"
 #include "contact/law.h"
+#include "contact/map_impact.h"
 #include "contact/touch.h"
 #include "model/coordinate.h"
 #include "model/response.h"
@@ -400,21 +401,33 @@ static void add_linear(Tune *tune, double depth, double stiffness, double dampin
     };
 }
 
+// The restitution that a law delivers in an impact, 1; NAN of a viscous damper, which stays what it
+// is, and where the pin is not let go.
+static double tune_linear_restitution(const ForceLaw *law, const TuneContact *contact)
+{
+    if (!(law->viscous > 0.0)) {
+        return law_restitution(law, contact->speed);
+    }
+    const MapImpactCase impact = {.law = *law, .mass = contact->mass, .speed = contact->speed};
+    const MapImpact made =
+        law->full_damping_depth > 0.0 ? map_impact_law(&impact) : (MapImpact){.is_ended = false};
+    return made.is_ended && made.restitution > 0.0 ? made.restitution : NAN;
+}
+
 // Lists the constants to run: a law that is linear already has one spring.
 static void list_linears(const TuneSearch *search, const ForceLaw *law, Tune *tune)
 {
     const Scenario *scenario = search->scenario;
     TuneContact *contact = &tune->contact;
-    const Joint *joint = &scenario->linkage.joints[contact->joint];
-    const bool is_viscous = law_options(&scenario->contact, joint).damping == DAMPING_VISCOUS;
     const bool is_linear = law->family == FORCE_LAW_POWER && law->exponent == 1.0;
-    contact->restitution = is_viscous ? NAN : law_restitution(law, contact->speed);
+    contact->restitution = tune_linear_restitution(law, contact);
     for (size_t i = 0; i < (is_linear ? 1 : SHARE_COUNT); i++) {
         const double depth = SHARES[i] * contact->depth;
         const double stiffness = force_law_secant(law, depth);
         const double damping =
-            is_viscous ? law->viscous
-                       : tune_linear_damping(stiffness, contact->mass, contact->restitution);
+            isnan(contact->restitution)
+                ? law->viscous
+                : tune_linear_damping(stiffness, contact->mass, contact->restitution);
         if (tune->held_s > 0.0) {
             add_linear(tune, depth, stiffness, damping, tune->held_s);
             continue;

@@ -10,6 +10,7 @@
 #include "base/zeroed.h"
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_world.h"
+#include "contact/damping.h"
 #include "contact/law.h"
 #include "measure/child.h"
 #include "model/coordinate.h"
@@ -249,12 +250,12 @@ static bool tune_program_fill_contact(const Scenario *scenario, const Joint *joi
     }
     contact_set_elastic(&law, contact);
     contact->damping = DAMPINGS[own.damping];
-    if (own.damping == DAMPING_VISCOUS) {
-        contact->damper = law.viscous;
-    } else if (own.damping == DAMPING_DISSIPATION) {
+    contact->damper = law.viscous;
+    contact->full_damping_depth = law.full_damping_depth;
+    if (own.damping == DAMPING_DISSIPATION) {
         contact->dissipation = law_dissipation(&law);
         return true;
-    } else if (own.damping != DAMPING_NONE) {
+    } else if (damping_restores(own.damping)) {
         contact->restitution = own.restitution;
     }
     contact->speed_floor = law.impact_speed_floor;

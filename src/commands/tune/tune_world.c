@@ -6,6 +6,7 @@
 #include "commands/tune/tune_world.h"
 #include "base/shell.h"
 #include "base/zeroed.h"
+#include "contact/damping.h"
 #include "contact/law.h"
 #include "model/coordinate.h"
 #include "model/forces.h"
@@ -262,12 +263,16 @@ static bool tune_world_write_contact(const Scenario *scenario, const Joint *join
         write_series(name, law.conforming.series, text);
     }
     text_append(text, "    %s.damping = %s;\n", name, DAMPINGS[own.damping]);
-    if (own.damping == DAMPING_VISCOUS) {
+    if (law.viscous > 0.0) {
         write_field(name, "damper", law.viscous, is_turn ? "N m s/rad" : "N s/m", text);
+    }
+    if (own.damping == DAMPING_STEP) {
+        write_field(name, "full_damping_depth", law.full_damping_depth, is_turn ? "rad" : "m",
+                    text);
     } else if (own.damping == DAMPING_DISSIPATION) {
         write_field(name, "dissipation", law_dissipation(&law), is_turn ? "s/rad" : "s/m", text);
         return true;
-    } else if (own.damping != DAMPING_NONE) {
+    } else if (damping_restores(own.damping)) {
         write_field(name, "restitution", own.restitution, "", text);
     }
     write_field(name, "speed_floor", law.impact_speed_floor, is_turn ? "rad/s" : "m/s", text);

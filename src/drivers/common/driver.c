@@ -142,6 +142,7 @@ static ForceLaw read_law(const json_t *object)
     }
     law.hysteresis = number(object, "hysteresis");
     law.viscous = number(object, "viscous_N_s_m");
+    law.full_damping_depth = number(object, "full_damping_depth_m");
     law.impact_speed_floor = number(object, "impact_speed_floor_m_s");
     law.resting_speed = number(object, "resting_speed_m_s");
     law.friction = number(object, "friction");

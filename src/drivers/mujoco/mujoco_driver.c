@@ -227,11 +227,8 @@ static bool are_linear(const DriverCase *of)
 {
     bool are_all = true;
     for (size_t i = 0; i < of->joint_count; i++) {
-        const ForceLaw *law = &of->joints[i].law;
-        are_all =
-            are_all &&
-            (of->joints[i].kind != DRIVER_PIN_IN_HOLE ||
-             (law->family == FORCE_LAW_POWER && law->exponent == 1.0 && law->hysteresis == 0.0));
+        are_all = are_all && (of->joints[i].kind != DRIVER_PIN_IN_HOLE ||
+                              force_law_is_linear(&of->joints[i].law));
     }
     return are_all;
 }

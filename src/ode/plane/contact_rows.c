@@ -213,7 +213,7 @@ static void begin(ContactRow *row, bool is_staggered, const TouchPose *pose, dou
     row->state = contact_state_begun(
         is_staggered ? onset_speed(&row->onset, row->closing, pose->gap, row->inside, step_s)
                      : row->closing);
-    contact_peaks_begin(&row->peaks, row->law.viscous * row->state.impact_speed,
+    contact_peaks_begin(&row->peaks, force_law_viscous(&row->law, 0.0) * row->state.impact_speed,
                         0.5 * step_s - onset_s);
 }
 

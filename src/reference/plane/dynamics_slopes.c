@@ -192,8 +192,7 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
         pressing.bend = -vec2_length(pose->offset);
         break;
     }
-    pressing.stiffness = (1.0 + contact->damping_rate * pose->approach_speed) *
-                         force_law_tangent(&contact->law, fabs(pose->gap));
+    pressing.stiffness = press_stiffness(contact, &pressing.force.press);
     pressing.damping = press_damping(contact, &pressing.force.press);
     find_row(&dynamics->tree, state, &pressing);
     if (contact->law.friction > 0.0) {
@@ -411,8 +410,7 @@ static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *st
                        coupled, &loads);
     }
     slopes_solve_parts(dynamics, coupled, &loads, dynamics->room.pushed[0]);
-    const double stiffness = (1.0 + contact->damping_rate * force.pose.approach_speed) *
-                             force_law_tangent(&contact->law, fabs(force.pose.gap));
+    const double stiffness = press_stiffness(contact, &force.press);
     const double damping = press_damping(contact, &force.press);
     for (int part = 0; part < TREE_COORDINATE_PARTS; part++) {
         if (parts[part].body != LINKAGE_GROUND) {

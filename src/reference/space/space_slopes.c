@@ -54,8 +54,7 @@ static void space_slopes_resolve(const SpaceDynamics *dynamics, const SpaceState
     const Contact *contact = &dynamics->system.contacts[number];
     pressing->contact = contact;
     pressing->force = force;
-    pressing->stiffness = (1.0 + contact->damping_rate * force->press.closing) *
-                          force_law_tangent(&contact->law, fabs(force->press.depth));
+    pressing->stiffness = press_stiffness(contact, &force->press);
     pressing->damping = press_damping(contact, &force->press);
     pressing->parts = &dynamics->system.coupling->joints[site->joint];
     find_points(dynamics, &state->tree, site, force->from_a, force->from_b, pressing->centre);
@@ -264,8 +263,7 @@ static void space_slopes_add_turn_slopes(const SpaceDynamics *dynamics, const Sp
         }
     }
     space_slopes_solve_parts(dynamics, parts, state, pushed);
-    const double stiffness = (1.0 + contact->damping_rate * press->closing) *
-                             force_law_tangent(&contact->law, fabs(press->depth));
+    const double stiffness = press_stiffness(contact, press);
     const double damping = press_damping(contact, press);
     const TurnColumns of = {parts, row, pushed, stiffness, damping};
     for (size_t i = 0; i < parts->count; i++) {
