@@ -31,9 +31,8 @@ typedef struct ForceLaw {
     double friction_speed;     // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
 } ForceLaw;
 
-// The two families, of any depth, without damping and friction, with an impact speed floor of 1
-// mm/s. Every
-// number must be > 0 (B alone may be anything).
+// The two families, of any depth, without damping and friction, with an impact speed floor of
+// 1 mm/s. Every number must be > 0 (B alone may be anything).
 ForceLaw force_law_power(double stiffness, double exponent);
 ForceLaw force_law_logarithmic(double compliance, double offset);
 
