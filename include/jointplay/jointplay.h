@@ -83,8 +83,7 @@ typedef enum JpDamping {
     JP_DAMPING_EXACT,
     JP_DAMPING_VISCOUS,     /* D = damper: the spring and damper of kp and kd */
     JP_DAMPING_DISSIPATION, /* D = dissipation F_el: it has no memory of the impact */
-    JP_DAMPING_STEP, /* D = damper x^2 (3 - 2 x), x = d / full_damping_depth, and damper beyond it
-                      */
+    JP_DAMPING_STEP,        /* D = damper x^2 (3 - 2 x), x = min(1, d / full_damping_depth) */
 } JpDamping;
 
 enum { JP_SERIES_TERMS = 24 };

@@ -4,8 +4,8 @@
 #include "model/options.h"
 
 // chi, 1, of one kind of hysteretic damping, F = F_el (1 + chi d'/v0), for the restitution asked
-// for, 0 <= e <= 1; 0 of those that ask for none (damping_restores). Every law gives 0 at e = 1; some are
-// infinite at 0.
+// for, 0 <= e <= 1; 0 of those that ask for none (damping_restores). Every law gives 0 at e = 1;
+// some are infinite at 0.
 double damping_factor(DampingKind kind, double restitution);
 
 // Whether a restitution says how much a damping takes.

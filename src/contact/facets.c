@@ -104,7 +104,7 @@ static double effective_mass(const Linkage *linkage, const Motion *motions, int 
     return least;
 }
 
-static const double DEPTH_FIRST_M = 1e-4;
+static const double DEPTH_FIRST_M = 1e-4; // doubled until it holds the energy
 
 double facets_expected_depth(const Scenario *scenario, int joint)
 {

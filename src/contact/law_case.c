@@ -4,6 +4,24 @@
 
 #include <math.h>
 
+static void take_own_damping(const Joint *joint, ContactOptions *own)
+{
+    // one depth for all joints is a length
+    const bool grows = own->damping == DAMPING_STEP && !linkage_is_torsional(joint);
+    if (joint->contact.viscous > 0.0) {
+        own->damping = grows ? DAMPING_STEP : DAMPING_VISCOUS;
+        own->viscous_coefficient = joint->contact.viscous;
+    }
+    if (joint->contact.full_depth > 0.0) {
+        own->damping = DAMPING_STEP;
+        own->full_damping_depth = joint->contact.full_depth;
+    }
+    if (joint->contact.dissipation > 0.0) {
+        own->damping = DAMPING_DISSIPATION;
+        own->dissipation = joint->contact.dissipation;
+    }
+}
+
 ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
 {
     ContactOptions own = *contact;
@@ -13,20 +31,8 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
         own.stiffness = joint->contact.stiffness;
         own.exponent = joint->contact.exponent;
     }
-    if (joint->contact.viscous > 0.0) {
-        own.damping = DAMPING_VISCOUS;
-        own.viscous_coefficient = joint->contact.viscous;
-    }
-    // one depth for all joints is a length
-    if (joint->contact.full_depth > 0.0) {
-        own.damping = DAMPING_STEP;
-        own.full_damping_depth = joint->contact.full_depth;
-    } else if (contact->damping == DAMPING_STEP && !linkage_is_torsional(joint)) {
-        own.damping = DAMPING_STEP;
-    }
-    if (joint->contact.dissipation > 0.0) {
-        own.damping = DAMPING_DISSIPATION;
-        own.dissipation = joint->contact.dissipation;
+    if (!contact->is_damping_for_all) {
+        take_own_damping(joint, &own);
     }
     if (joint->contact.has_restitution) {
         own.restitution = joint->contact.restitution;

@@ -1,8 +1,8 @@
 // Makes ERP and CFM of a contact in a step.
 //
 // k = F(d) / d, c = D(d, v0) - c_v (1 - share): in a step in which the contact begins or ends, what
-// damps at the wall already, c_v, acts for a part (contact/overlap.h). A map is stable below its limit of
-// omega h, omega^2 = (dF/dd) / m.
+// damps at the wall already, c_v, acts for a part (contact/overlap.h). A map is stable below its
+// limit of omega h, omega^2 = (dF/dd) / m.
 #include "contact/law_row.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 // ODE's row, F >= 0      F = ((ERP / h) d + d') / (CFM + h / m)
 // then                   d'_new = d' - h F / m, d_new = d + h d'_new
 // with bounce            e d' stands in place of (ERP / h) d where it is larger
-// the law                m d'' = -max(0, F_el(d) (1 + chi d'/v) + c d'), d(0) = 0, d'(0) = v
+// the law                m d'' = -max(0, F_el(d) (1 + chi d'/v) + c(d) d'), d(0) = 0, d'(0) = v
 //
 // The law is integrated by the classic Runge-Kutta method of order 4. At the onset F_el goes with
 // d^n, n >= 1, so that the first step is wrong by (dt / T)^(n+2) of the whole, and all others by

@@ -280,9 +280,9 @@ static double find_normal(const KernelContact *contact, const PinHole *pose, Vec
     const double rise = 1.0 + law->hysteresis * pose->approach_speed / floored;
     const double viscous = force_law_viscous(law, depth);
     const double by_depth =
-        below < 0.0 ? tangent_stiffness
-                    : tangent_stiffness * rise +
-                          force_law_viscous_slope(law, depth) * pose->approach_speed;
+        below < 0.0
+            ? tangent_stiffness
+            : tangent_stiffness * rise + force_law_viscous_slope(law, depth) * pose->approach_speed;
     const double by_rate = law->hysteresis * elastic / floored + viscous;
     const double turning = by_rate * vec2_dot(tangent, velocity) / pose->eccentricity_size;
     *gradient = along(vec2_add(vec2_scale(by_depth, outward), vec2_scale(turning, tangent)),

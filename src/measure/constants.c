@@ -314,6 +314,7 @@ void constants_apply(const ConstantsSetting *setting, Scenario *scenario)
     ContactOptions *options = &scenario->contact;
     scenario_set_stiffness(scenario, setting->stiffness, 1.0);
     options->damping = DAMPING_VISCOUS;
+    options->is_damping_for_all = true;
     options->viscous_coefficient = setting->damping;
     if (setting->map != ODE_MAP_MIDPOINT) {
         options->model = CONTACT_POISSON;

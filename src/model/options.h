@@ -193,6 +193,7 @@ typedef struct ContactOptions {
     double exponent;  // 1, of a given stiffness
     bool is_for_all;  // whether it holds for joints that have a stiffness of their own, too
     DampingKind damping;
+    bool is_damping_for_all;    // no key: whether it holds for joints that have their own, too
     double viscous_coefficient; // N s/m, of DAMPING_VISCOUS, and of DAMPING_STEP at the depth of:
     double full_damping_depth;  // m
     double dissipation;         // s/m, c of DAMPING_DISSIPATION, F = F_el (1 + c d'); 0: that which

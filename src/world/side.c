@@ -29,7 +29,8 @@ void side_begin(Side *side, double closing)
     side->state = contact_state_begun(fmax(closing, 0.0));
     side->impacts++;
     side->mobility = 0.0;
-    contact_peaks_begin(&side->peaks, force_law_viscous(&side->law, 0.0) * side->state.impact_speed, 0.0);
+    contact_peaks_begin(&side->peaks, force_law_viscous(&side->law, 0.0) * side->state.impact_speed,
+                        0.0);
 }
 
 void side_find(Side *side, const SideMotion *motion, double step)

@@ -16,7 +16,7 @@ static const char ESCAPE[] =
     "bodies:\n  pin: {mass: 0.1 kg, inertia: 2 kg mm^2, at: [0 mm, 0 mm], velocity: [10 m/s, 0 "
     "m/s]}\n"
     "joints:\n  hole: {between: [ground, pin], at: [0 mm, 0 mm], hole: 20.2 mm, pin: 20 mm}\n"
-    "contact: {stiffness: 1e6 N/m^1.5, restitution: 0.9}\n"
+    "contact: {stiffness: 1e4 N/m^1.5, restitution: 0.9}\n"
     "run: {duration: 5 ms, samples: 100, step: 5 us, backends: [reference, ode]}\n";
 
 // A pin that starts inside the wall.

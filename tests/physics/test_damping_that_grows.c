@@ -297,7 +297,7 @@ static void twenty_impacts_end_in_the_reference_as_the_truth_says(void **state)
         assert_true(fabs(run->joints[0].spikes[0].force_max / truth.force_max - 1.0) > 1e-4);
         trajectory_destroy(run);
     }
-    print_message("reference: off by %.2g at most\n", worst);
+    print_message("# reference: off by %.2g at most\n", worst);
 }
 
 static void in_ode_twenty_steps_a_contact_do_by_map_impulse(void **state)
@@ -321,7 +321,7 @@ static void in_ode_twenty_steps_a_contact_do_by_map_impulse(void **state)
                      made.duration_s, truth.duration_s);
         }
     }
-    print_message("ODE: off by %.2g at most\n", worst);
+    print_message("# ODE: off by %.2g at most\n", worst);
 }
 
 int main(void)

@@ -321,7 +321,7 @@ static void tune_export_write_damping(const ForceLaw *law, bool is_angle, Text *
                     number_shortest(law->impact_speed_floor).text);
     } else if (law->full_damping_depth > 0.0) {
         text_append(text,
-                    "    const double share = fmin(depth / %s, 1.0); // of that of full damping, %s\n"
+                    "    const double share = fmin(depth / %s, 1.0); // %s, of full damping\n"
                     "    const double c = %s * share * share * (3.0 - 2.0 * share); // %s\n"
                     "    (void)v0;\n",
                     number_shortest(law->full_damping_depth).text, is_angle ? "rad" : "m",

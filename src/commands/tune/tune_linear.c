@@ -255,6 +255,7 @@ Scenario tune_linear_scenario(const Scenario *scenario, const TuneLinear *linear
     } else {
         scenario_set_stiffness(&changed, linear->stiffness, 1.0);
         changed.contact.damping = DAMPING_VISCOUS;
+        changed.contact.is_damping_for_all = true;
         changed.contact.viscous_coefficient = linear->damping;
     }
     changed.run.step = linear->step_s;

@@ -131,7 +131,8 @@ static void find_contact(SpaceStops *stops, SpaceStop *stop, double step_s)
             contact_state_begun(stops->is_staggered ? onset_speed(&stop->onset, stop->closing,
                                                                   stop->gap, -stop->gap, step_s)
                                                     : stop->closing);
-        contact_peaks_begin(&stop->peaks, force_law_viscous(&stop->law, 0.0) * stop->state.impact_speed,
+        contact_peaks_begin(&stop->peaks,
+                            force_law_viscous(&stop->law, 0.0) * stop->state.impact_speed,
                             0.5 * step_s - overlap.onset);
     }
     onset_note(&stop->onset, stop->state.is_touching, stop->gap);
