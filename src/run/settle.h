@@ -37,6 +37,12 @@ bool settle_is_clear(const Scenario *scenario);
 // none is known.
 bool settle_is_same(const Scenario *a, const Scenario *b, double *apart);
 
+// Gives a scenario that differs from another in its numbers alone the start of that one's settled
+// motion: pins as far on their way to the wall, or as deep in it, speeds in proportion to the
+// drive's, and what has been counted since the start as written. `written` is the other linkage
+// there, `settled` in its motion. False, the scenario untouched, where it has no such start.
+bool settle_lend(const Linkage *written, const Linkage *settled, Scenario *scenario);
+
 // Gives a scenario the settled start of another that differs from it in how it is run alone.
 void settle_take(Scenario *scenario, const Scenario *settled);
 
