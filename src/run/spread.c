@@ -24,8 +24,10 @@ const char *const SPREAD_FORM_KINDS[] = {"laws", "damping", "resting speed", "fr
 // Of the reference: its peaks are off by less than a thousandth, and the range has two digits.
 static const double DRAW_REFERENCE = 1e-6;
 
-// 1: what may still be to come of forces of which three digits are shown at the most
-static const double DRAW_REPEATS = 1e-3;
+// 1: what may still be to come of forces of which three digits are shown; and where the case itself
+// does not repeat, for chance brings such a motion as near as that to an earlier revolution
+static const double DRAW_REPEATS = 2e-4;
+static const double RANDOM_REPEATS = 2e-5;
 
 enum {
     TURNS_MOST = 32,  // revolutions of a draw: what has not repeated by then does not
@@ -669,6 +671,13 @@ static void make_draws_and_forms(Work *work, Spread *spread)
     free(runs);
 }
 
+// To what a draw has to repeat: a motion that does to fewer digits does so with other numbers, too.
+static double repeats_of(const Scenario *scenario)
+{
+    const SettledMotion *motion = &scenario->settled.motions[0];
+    return motion->period > 0 ? fmax(DRAW_REPEATS, 2.0 * motion->change) : RANDOM_REPEATS;
+}
+
 Spread spread_find(const SpreadCase *of, const Scenario *scenario, const SpreadOptions *options,
                    RunWatch watch)
 {
@@ -685,8 +694,7 @@ Spread spread_find(const SpreadCase *of, const Scenario *scenario, const SpreadO
         .scenario = scenario,
         .inputs = &spread.inputs,
         .motion_count = spread.motion_count,
-        // one that repeats to fewer digits does so with other numbers, too
-        .repeats = fmax(DRAW_REPEATS, 2.0 * scenario->settled.motions[0].change),
+        .repeats = repeats_of(scenario),
         .began_s = clock_processor_s(),
         .budget_s = options->budget_s,
         .watch = turn_watch_begin(watch),

@@ -107,20 +107,25 @@ void units_append_within(Text *text, double value, double low, double high, cons
     text_append(text, " %s%s", PREFIXES[prefix], unit);
 }
 
+void units_append_ends(Text *text, double value, double low, double high)
+{
+    const int place = last_place(value, low, high);
+    const int prefix = prefix_of(value, place);
+    const double digit = pow(10.0, place);
+    // by less than rounding adds to a number of whole digits
+    append_to(text, floor(low / digit + 1e-9) * digit, place, prefix);
+    text_append(text, " to ");
+    append_to(text, ceil(high / digit - 1e-9) * digit, place, prefix);
+}
+
 void units_append_interval(Text *text, double value, double low, double high, const char *unit)
 {
     units_append_within(text, value, low, high, unit);
     if (isinf(high) || !(high > low)) {
         return;
     }
-    const int place = last_place(value, low, high);
-    const int prefix = prefix_of(value, place);
-    const double digit = pow(10.0, place);
-    // by less than rounding adds to a number of whole digits
     text_append(text, " (");
-    append_to(text, floor(low / digit + 1e-9) * digit, place, prefix);
-    text_append(text, " to ");
-    append_to(text, ceil(high / digit - 1e-9) * digit, place, prefix);
+    units_append_ends(text, value, low, high);
     text_append(text, ")");
 }
 

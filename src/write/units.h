@@ -43,6 +43,9 @@ void units_append_within(Text *text, double value, double low, double high, cons
 // The same and its interval, whose ends are rounded away from it: "3.4 kN (3.2 to 3.6)".
 void units_append_interval(Text *text, double value, double low, double high, const char *unit);
 
+// Both ends alone, rounded away from the value, with the prefix that it has: "3.2 to 3.6".
+void units_append_ends(Text *text, double value, double low, double high);
+
 // As a number alone, with the prefix that `units_append_within` gives another value and interval:
 // the second column of a table whose first has the unit.
 void units_append_beside(Text *text, double value, double low, double high, double beside,

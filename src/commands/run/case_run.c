@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/side_by_side.h"
 #include "base/zeroed.h"
+#include "casefile/input.h"
 #include "cli/long_work.h"
 #include "cli/results.h"
 #include "cli/written.h"
@@ -175,15 +176,37 @@ static void ask_closed_form(CaseRun *run)
     }
 }
 
+// How far inputs and assumptions move the settled motion. A case that cannot be read once more has
+// no range.
+static void find_spread(CaseRun *run, Progress *progress)
+{
+    const char *name = scenario_path(&run->scenario);
+    char *text;
+    size_t size;
+    Err unused = {ERR_NONE, ""};
+    const bool is_stdin = strcmp(run->path, "-") == 0;
+    if (run->is_quick || !spread_is_of(&run->scenario) ||
+        !(is_stdin ? input_read_stdin("case", &text, &size, &unused)
+                   : input_read("case", run->path, &text, &size, &unused))) {
+        return;
+    }
+    const SpreadCase of = {name, text, size, run->options->overrides, run->options->override_count};
+    SpreadOptions options = spread_options_default();
+    options.budget_s = run->scenario.run.budget;
+    run->spread = spread_find(&of, &run->scenario, &options,
+                              progress_watch(progress, "draws of the inputs, of run.budget"));
+    progress_end(progress);
+    run->report.spread = &run->spread;
+    free(text);
+}
+
 // What lies beside the settled motion: the growth of small changes is not on the first screen.
 static void look_beside(CaseRun *run, Progress *progress)
 {
     if (run->is_whole) {
-        const char *watched = "half and twice the damping, growth of small changes";
-        settle_beside(&run->scenario, progress_watch(progress, watched));
-    } else {
-        settle_damping(&run->scenario, progress_watch(progress, "half and twice the damping"));
+        settle_growth(&run->scenario, progress_watch(progress, "growth of small changes"));
     }
+    find_spread(run, progress);
 }
 
 // Hands on what the reference says, before anything else is run.
@@ -245,6 +268,7 @@ void case_run_finish(CaseRun *run)
         run->runs[i] = NULL;
         free(run->matches[i].joints);
     }
+    spread_free(&run->spread);
     truth_finish(&run->truth);
     scenario_free(&run->scenario);
 }

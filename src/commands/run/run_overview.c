@@ -13,6 +13,7 @@
 #include "write/assumed.h"
 #include "write/json_value.h"
 #include "write/settled.h"
+#include "write/spread.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -763,10 +764,10 @@ static void write_answer(const RunReport *report, Text *text)
     write_assumed(report->scenario, text);
 }
 
-// What takes longer: other damping, and the engines.
+// What takes longer: other inputs and assumptions, and the engines.
 static void write_beside(const RunReport *report, Text *text)
 {
-    settled_damping_sentence(report->scenario, text);
+    spread_sentences(report->spread, text);
     write_engines(report, text);
     write_time(report, text);
 }
