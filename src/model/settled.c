@@ -36,8 +36,6 @@ SettledStart settled_start_copy(const SettledStart *settled, const Linkage *link
         copy.motions[i] = copy_motion(&settled->motions[i], linkage);
     }
     copy.others = NULL;
-    copy.halved = copy_motion(&settled->halved, linkage);
-    copy.doubled = copy_motion(&settled->doubled, linkage);
     return copy;
 }
 
@@ -52,8 +50,6 @@ void settled_start_free(SettledStart *settled)
     free(settled->others);
     free(settled->motions);
     free(settled->first);
-    settled_motion_free(&settled->halved);
-    settled_motion_free(&settled->doubled);
     *settled = (SettledStart){0};
 }
 

@@ -46,18 +46,9 @@ bool settle_lend(const Linkage *written, const Linkage *settled, Scenario *scena
 // Gives a scenario the settled start of another that differs from it in how it is run alone.
 void settle_take(Scenario *scenario, const Scenario *settled);
 
-// What lies beside the settled motion of a scenario: nothing of one that has none.
-
-// Finds how the largest forces move when its damping is halved and doubled, to the four digits that
-// are shown of them. A motion that does not repeat within 32 revolutions has the median of half of
-// them.
-void settle_damping(Scenario *scenario, RunWatch watch);
-
-// Finds by what factor a small change of the state grows in a revolution.
+// Finds by what factor a small change of the state grows in a revolution of the settled motion of a
+// scenario: nothing of one that has none.
 void settle_growth(Scenario *scenario, RunWatch watch);
-
-// Finds both at the same time, with the same numbers.
-void settle_beside(Scenario *scenario, RunWatch watch);
 
 // Gives the bodies of a scenario other velocities, by that of the drive at their reach times a
 // size; the member is the seed. False where joints and drive leave no freedom.

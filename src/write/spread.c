@@ -83,7 +83,7 @@ static void append_ranges(const Spread *spread, Text *text)
     text_append(&line, "  ");
     text_append_shown(&line, spread->scenario->linkage.joints[joint].name);
     text_append(&line, " ");
-    units_append_within(&line, nominal, range->low, range->high, unit_of(spread, joint));
+    units_append_spread(&line, nominal, range->low, range->high, unit_of(spread, joint));
     text_append(&line, " (");
     units_append_ends(&line, nominal, range->low, range->high);
     text_append(&line, " over the inputs' spread, %zu", spread->draw_count);
@@ -161,13 +161,15 @@ static void append_touch(const Spread *spread, Text *text)
     const SpreadInput *input = &spread->inputs.inputs[touch->input];
     Text line;
     text_init(&line);
-    text_append(&line, "  A touch %s within %.2g %% of ",
-                touch->impacts >= touch->was_impacts ? "begins" : "ends",
-                fmax(0.01, fabs(touch->at / input->nominal - 1.0) * UNITS_PERCENT));
+    const double way = touch->at / input->nominal - 1.0;
+    text_append(&line, "  A touch %s %.2g %% %s ",
+                touch->impacts >= touch->was_impacts ? "begins" : "ends", fabs(way) * UNITS_PERCENT,
+                way * input->nominal > 0.0 ? "above" : "below");
     append_key(input->key, &line);
-    text_append(&line, " (%.4g%s%s): ", touch->at, input->unit[0] != '\0' ? " " : "", input->unit);
-    text_append_shown(&line, spread->scenario->linkage.joints[spread->joint].name);
-    text_append(&line, " ");
+    if (input->unit[0] == '\0') {
+        text_append(&line, " %.4g", input->nominal);
+    }
+    text_append(&line, ": ");
     units_append(&line, touch->force, unit_of(spread, spread->joint));
     text_append(&line, " there, not firm.");
     screen_sentence(&line, text);

@@ -223,6 +223,7 @@ static void hand_on_answer(CaseRun *run)
         .runs = &truth,
         .errors = errors,
         .truth = &run->truth,
+        .is_quick = run->is_quick,
     };
     run->answered(&report, run->listener);
 }
@@ -236,6 +237,7 @@ void case_run_execute(CaseRun *run, Progress *progress)
         .run_count = options->backend_count,
         .runs = run->runs,
         .errors = run->errors,
+        .is_quick = run->is_quick,
     };
     const bool is_announced = long_work_announce(&run->scenario, progress->line.is_quiet);
     case_run_make_truth(run, progress);

@@ -33,6 +33,7 @@ typedef struct RunReport {
     const RunMatches *matches;      // one a run; NULL without a reference
     const Ensemble *ensembles;      // one a run, some empty; NULL where the motion is predictable
     const Spread *spread;           // NULL where nobody looked
+    bool is_quick;                  // whether nothing beside the runs was looked at
     bool has_log_forces;            // whether the picture has forces in decades
 } RunReport;
 
