@@ -85,8 +85,8 @@ typedef struct SettledStart {
     SettledMotion *motions; // that of most starts first, which runs start in; owned
     Linkage *others; // by motion, but for the first: the linkage where it starts in it; owned, and
                      // no copy has them
-    bool has_growth;        // somebody has looked for the growth of small changes
-    SettledGrowth growth;   // of the motion that runs start in
+    bool has_growth; // somebody has looked for the growth of small changes
+    SettledGrowth growth;        // of the motion that runs start in
     char message[ERR_TEXT_SIZE]; // why there is none
 } SettledStart;
 

@@ -24,7 +24,7 @@ static const Assumption ASSUMPTIONS[] = {
     {"contact.resting-speed", "resting speed"},
     {"contact.restitution-speed", "at"},
     {"contact.friction", "friction"},
-    {"contact.friction-speed", "over"},
+    {"contact.friction-speed", "friction speed"},
     {"contact.impact-speed-floor", "speed floor"},
     {"contact.penalty", "penalty"},
     {"gravity", "gravity"},

@@ -199,6 +199,7 @@ static json_t *inputs_json(const Spread *spread)
         json_value_set(object, "nominal", input->nominal);
         json_value_set(object, "lower", input->lower);
         json_value_set(object, "upper", input->upper);
+        json_value_set(object, "share", fmax(-input->lower, input->upper) / fabs(input->nominal));
         json_object_set_new(object, "is_given", json_boolean(input->is_given));
         json_value_set(object, "rank_correlation", spread->ranks[i]);
         json_array_append_new(array, object);
@@ -306,6 +307,7 @@ static json_t *touch_json(const Spread *spread)
     json_t *object = json_object();
     json_object_set_new(object, "key", json_value_text(spread->inputs.inputs[touch->input].key));
     json_value_set(object, "at", touch->at);
+    json_value_set(object, "share", touch->at / spread->inputs.inputs[touch->input].nominal - 1.0);
     set_force(object, spread, spread->joint, "force", touch->force);
     json_value_set(object, "impacts_per_revolution", touch->impacts);
     return object;

@@ -194,7 +194,7 @@ static void find_spread(CaseRun *run, Progress *progress)
     SpreadOptions options = spread_options_default();
     options.budget_s = run->scenario.run.budget;
     run->spread = spread_find(&of, &run->scenario, &options,
-                              progress_watch(progress, "draws of the inputs, of run.budget"));
+                              progress_watch(progress, "the range over the inputs"));
     progress_end(progress);
     run->report.spread = &run->spread;
     free(text);
