@@ -7,6 +7,7 @@
 #include "casefile/check_joints.h"
 #include "casefile/check_space.h"
 #include "casefile/drives.h"
+#include "casefile/fit.h"
 #include "casefile/joint_kind.h"
 #include "casefile/keys.h"
 #include "casefile/target.h"
@@ -76,6 +77,11 @@ static bool is_wanted(const Entries *entries, const JointKind *kinds, const Sche
         return false;
     }
     if (row->excused_by != NULL && entries_find(entries, row->excused_by, index) != NULL) {
+        return false;
+    }
+    const Entry *hole = entries_find(entries, "joints.*.hole", index);
+    if (row->family == SCHEMA_JOINT && strcmp(row->path, "joints.*.pin") == 0 && hole != NULL &&
+        hole->node->kind == NODE_SCALAR && fit_is_of_both(hole->node->text)) {
         return false;
     }
     const bool is_drive = strncmp(row->path, "drive.", strlen("drive.")) == 0;

@@ -29,8 +29,14 @@ static bool check_sizes(const Entries *entries, size_t index, const Joint *joint
 {
     const Entry *hole = entries_find(entries, "joints.*.hole", index);
     const Entry *pin = entries_find(entries, "joints.*.pin", index);
-    if (hole == NULL || pin == NULL || linkage_radial_clearance(joint) > 0.0) {
+    if (hole == NULL || linkage_radial_clearance(joint) > 0.0) {
         return true;
+    }
+    if (pin == NULL) {
+        return entries_refuse(hole, err,
+                              "in the middle of its limits the pin of the fit %.60s is not smaller "
+                              "than the hole\nallowed: a fit with play, such as 30 H7/g6",
+                              hole->node->text);
     }
     const Entry *culprit = entries_blame(entries, "joints.*.pin joints.*.hole", index);
     const bool hole_is_new = culprit == hole;

@@ -56,6 +56,8 @@ static const char EXPECT_EXAMPLE[] = "expect:\n"
 static const char *const RULES[] = {
     "A case is one YAML document of at most 16 MiB. Every quantity but 0 has its unit; the "
     "decimal separator is a point.",
+    "Numbers of the mechanism, its loads and contacts may have a tolerance, 108 +- 0.3 mm, 108 "
+    "+0.1/-0.2 mm, 1000 rpm +- 1 %, and hole and pin a fit, 30 H7 and 30 g6: run draws from them.",
     "A case has four-bar, slider-crank, or, for any linkage, bodies.",
     "Unknown and doubled keys are errors, as are anchors, aliases and tags.",
     "A key that the case makes no use of is an error where another key was forgotten, such as "

@@ -13,6 +13,7 @@
 #include "casefile/limits.h"
 #include "casefile/store.h"
 #include "casefile/target.h"
+#include "casefile/tolerance.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -150,10 +151,12 @@ bool probe_number(const Source *source, const ProbeKey *key, const Node *value, 
         return source_error(source, keys_span(value), units_example(row->dimension), err,
                             "expected a single value");
     }
-    if (!target_read(row, value->text, &read, &complaint)) {
+    Tolerated cut;
+    if (!tolerance_read(row, value->text, &cut, &complaint) ||
+        (!cut.is_there && !target_read(row, value->text, &read, &complaint))) {
         return source_error(source, value->span, complaint.allowed, err, "%s", complaint.text);
     }
-    if (read.length.lower < read.length.upper) {
+    if (cut.is_there) {
         return source_error(source, value->span, "a length alone", err,
                             "this value has a tolerance");
     }

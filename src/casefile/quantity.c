@@ -2,10 +2,12 @@
 //
 //     number     = [+-] digits [. digits] [e [+-] digits]
 //     quantity   = number unit
-//     tolerated  = number [unit] [ (+- | +/- | PLUS-MINUS) number unit | +number/-number unit ]
+//     tolerated  = number [unit] (+- | +/- | PLUS-MINUS) number (unit | %)
+//                | number [unit] +number/-number (unit | %)
 #include "casefile/quantity.h"
 
 #include "base/printable.h"
+#include "base/text.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -125,7 +127,7 @@ static bool take_number(const char **text, Dimension dimension, double *value, C
 bool quantity_number(const char *text, double *value, Complaint *complaint)
 {
     complaint->allowed[0] = '\0';
-    double read;
+    double read = 0.0;
     if (!take_number(&text, DIMENSION_NONE, &read, complaint)) {
         return false;
     }
@@ -224,75 +226,67 @@ static const char *find_sign(const char *text, size_t *size)
     return NULL;
 }
 
-// Reads what stands behind the sign: `0.3 mm`, or `0.1/-0.2 mm` where it is not symmetric.
-static bool take_tolerance(const char *text, bool is_symmetric, ToleratedLength *length,
-                           const Unit **unit, Complaint *complaint)
+// Reads what stands behind the sign: `0.3 mm`, `1 %`, or `0.1/-0.2 mm` where it is not symmetric.
+static bool cut_limits(const char *text, bool is_symmetric, Dimension dimension, QuantityCut *cut,
+                       Complaint *complaint)
 {
-    double upper;
-    if (!take_number(&text, DIMENSION_LENGTH, &upper, complaint)) {
+    if (!take_number(&text, dimension, &cut->upper, complaint)) {
         return false;
     }
-    double lower = -upper;
+    cut->lower = -cut->upper;
     if (!is_symmetric && *text != '/') {
         return complain(complaint, "a one-sided tolerance has two limits");
     }
     if (!is_symmetric) {
         text++;
-        if (!take_number(&text, DIMENSION_LENGTH, &lower, complaint)) {
+        if (!take_number(&text, dimension, &cut->lower, complaint)) {
             return false;
         }
     }
-    if (!(upper >= 0.0 && lower <= 0.0)) {
+    if (!(cut->upper >= 0.0 && cut->lower <= 0.0)) {
         return complain(complaint, "the upper limit must be 0 or above, the lower 0 or below");
     }
-    if (*text == '\0') {
+    if (*text == '\0' && dimension != DIMENSION_NONE) {
         return complain(complaint, "the tolerance has no unit");
     }
-    *unit = read_unit(text, DIMENSION_LENGTH, complaint);
-    if (*unit == NULL) {
-        return false;
-    }
-    length->upper = upper * (*unit)->numerator / (*unit)->denominator;
-    length->lower = lower * (*unit)->numerator / (*unit)->denominator;
+    cut->is_percent = strcmp(text, "%") == 0;
+    text_copy(cut->limit_unit, sizeof cut->limit_unit, cut->is_percent ? "" : text);
     return true;
 }
 
-bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint)
+bool quantity_cut(const char *text, Dimension dimension, QuantityCut *cut, Complaint *complaint)
 {
     // the sign of a tolerance stands behind the first number; that number's own sign does not count
-    const char *behind = text;
-    ToleratedLength read = {0};
+    const char *start = skip_blanks(text);
+    const char *end = number_end(start);
+    const char *behind = end != NULL ? skip_blanks(end) : NULL;
+    size_t sign_size = 0;
+    const char *sign = behind != NULL ? find_sign(behind, &sign_size) : NULL;
+    QuantityCut read = {.is_there = sign != NULL};
     complaint->allowed[0] = '\0';
-    if (!take_number(&behind, DIMENSION_LENGTH, &read.nominal, complaint)) {
-        return false;
-    }
-    size_t sign_size;
-    const char *sign = find_sign(behind, &sign_size);
     if (sign == NULL) {
-        if (!quantity_parse(text, DIMENSION_LENGTH, &read.nominal, complaint)) {
-            return false;
-        }
-        *length = read;
+        cut->is_there = false;
         return true;
     }
-    snprintf(complaint->allowed, sizeof complaint->allowed,
-             "a tolerance such as 108 +- 0.3 mm or 108 +0.1/-0.2 mm");
     const bool is_symmetric = strncmp(sign, "+", sign_size) != 0;
-    const Unit *unit = NULL;
-    if (!take_tolerance(sign + sign_size, is_symmetric, &read, &unit, complaint)) {
+    if (!take_number(&start, dimension, &read.nominal, complaint)) {
         return false;
     }
-    char own_unit[QUANTITY_TEXT_SIZE];
-    snprintf(own_unit, sizeof own_unit, "%.*s", (int)(sign - behind), behind);
-    unit = own_unit[0] != '\0' ? read_unit(own_unit, DIMENSION_LENGTH, complaint) : unit;
-    if (unit == NULL) {
+    snprintf(complaint->allowed, sizeof complaint->allowed,
+             "a tolerance such as 108 +- 0.3 mm, 108 +0.1/-0.2 mm or 108 mm +- 1 %%");
+    if (!cut_limits(sign + sign_size, is_symmetric, dimension, &read, complaint)) {
         return false;
     }
-    read.nominal = read.nominal * unit->numerator / unit->denominator;
-    if (!(isfinite(read.nominal) && isfinite(read.upper) && isfinite(read.lower))) {
-        return complain(complaint, "'%.*s' is too large for a number", SHOWN_MAX, text);
+    size_t own = (size_t)(sign - behind);
+    while (own > 0 && (behind[own - 1] == ' ' || behind[own - 1] == '\t')) {
+        own--;
     }
-    *length = read;
+    if (own == 0 && read.is_percent && dimension != DIMENSION_NONE) {
+        return complain(complaint, "'%.*s' has no unit", SHOWN_MAX, text);
+    }
+    snprintf(read.unit, sizeof read.unit, "%.*s", (int)(own > 0 ? own : sizeof read.unit),
+             own > 0 ? behind : read.limit_unit);
+    *cut = read;
     return true;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "casefile/units.h"
-#include "model/fourbar.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,9 +29,21 @@ bool quantity_parse(const char *text, Dimension dimension, double *si, Complaint
 bool quantity_parse_unit(const char *text, Dimension dimension, double *si, const Unit **unit,
                          Complaint *complaint);
 
-// A length, bare or with a tolerance: `108 mm`, `108 +- 0.3 mm`, `108 mm +0.1/-0.2 mm`. A unit
-// that is missing in front is that of the tolerance.
-bool quantity_tolerated(const char *text, ToleratedLength *length, Complaint *complaint);
+// A number that is written with a tolerance, in parts: `12.08 +- 0.02 mm` is 12.08 in mm, with
+// limits of 0.02 and -0.02 in mm. A unit that is missing in front is that of the tolerance.
+typedef struct QuantityCut {
+    bool is_there;                       // it has a tolerance; else nothing below is set
+    double nominal;                      // of its unit
+    double lower;                        // of the unit of the limits, or in percent; 0 or below
+    double upper;                        // 0 or above
+    bool is_percent;                     // limits in percent of the number
+    char unit[QUANTITY_TEXT_SIZE];       // as it is written; empty of a plain number
+    char limit_unit[QUANTITY_TEXT_SIZE]; // likewise
+} QuantityCut;
+
+// Cuts the tolerance off a number of the dimension. Of the units it is looked alone whether they
+// are there.
+bool quantity_cut(const char *text, Dimension dimension, QuantityCut *cut, Complaint *complaint);
 
 // A stiffness and the exponent n that its unit gives (1 to 3): in N/m^n or N/mm^n of
 // DIMENSION_STIFFNESS, in N m/rad^n of DIMENSION_TORSION_SPRING.

@@ -4,8 +4,7 @@
 // clang-format off
 const SchemaGroup SCHEMA_GROUPS[] = {
     {"", "Keys outside any group."},
-    {"four-bar", "The links of a four-bar. A length may have a tolerance: 108 +- 0.3 mm, "
-                 "108 +0.1/-0.2 mm."},
+    {"four-bar", "The links of a four-bar, whose closed form stacks up the tolerances of lengths."},
     {"slider-crank", "The links of a slider-crank, instead of four-bar, in the plane. The crank turns "
                      "about the origin; the rod joins its end to the slider. The rod is longer than "
                      "crank and offset together where the crank is to turn fully."},

@@ -432,12 +432,20 @@ static bool is_of_computing(const SchemaRow *row)
     return false;
 }
 
+// Whether draws of the inputs make use of a row that is one of engines: run.budget.
+static bool is_of_draws(const SchemaRow *row, const Scenario *scenario)
+{
+    return row->holder == SCHEMA_SINGLE && row->offset == offsetof(Scenario, run.budget) &&
+           row->family == SCHEMA_SINGLE && scenario_settles(scenario) &&
+           scenario_has_clearance(scenario);
+}
+
 bool schema_lacks(const SchemaRow *row, const Scenario *scenario, size_t index, unsigned met,
                   SchemaLack *lack)
 {
     const unsigned missing = needs_of(row) & ~met;
     const bool applies = schema_applies(row, scenario, index, met);
-    if (!has_backend(row, scenario, lack)) {
+    if (!has_backend(row, scenario, lack) && !is_of_draws(row, scenario)) {
         return true;
     }
     for (size_t i = 0; !applies && i < CONDITION_COUNT; i++) {

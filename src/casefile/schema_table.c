@@ -423,7 +423,7 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "run.budget", .dimension = DIMENSION_TIME, AT(run.budget), .low = 0.0, .high = 1e9,
      .low_is_open = true, .zero_word = "none", .backends = SCHEMA_STEPPED,
      .doc = "processor time of each engine in `run` for the trials of a step that is chosen and for "
-            "starts beside this one; what is beyond it is said, and not run"},
+            "starts beside this one, and of draws of the inputs; what is beyond it is said, and not run"},
     {.path = "run.tolerance", AT(run.tolerance), .low = 1e-9, .high = 0.1,
      .needs = CHOSEN_STEP, .backends = SCHEMA_STEPPED,
      .doc = "largest error of any velocity of bodies and of pins in their holes, over its own "

@@ -437,6 +437,22 @@ const char *schema_member_name(const Scenario *scenario, SchemaFamily family, si
     }
 }
 
+// The tolerance of a number, which is written in a unit of its own.
+static void set_tolerance(CasefileSetting *setting, const Scenario *scenario, size_t row,
+                          size_t member)
+{
+    for (size_t i = 0; i < scenario->tolerance_count && setting->number_count == 1; i++) {
+        const ScenarioTolerance *given = &scenario->tolerances[i];
+        if (given->row == row && given->member == member && given->nominal != 0.0) {
+            const double per_unit = setting->numbers[0] / given->nominal;
+            setting->kind = CASEFILE_TOLERATED;
+            setting->number_count = 3;
+            setting->numbers[1] = given->lower * per_unit;
+            setting->numbers[2] = given->upper * per_unit;
+        }
+    }
+}
+
 CasefileWalk casefile_walk(const Scenario *scenario)
 {
     return (CasefileWalk){.scenario = scenario, .met = schema_met(scenario)};
@@ -460,6 +476,7 @@ bool casefile_next(CasefileWalk *walk, CasefileSetting *setting)
     schema_path(row, schema_member_name(scenario, row->family, member), setting->key);
     text_copy(setting->unit, sizeof setting->unit, schema_unit(row));
     set_value(setting, row, scenario, member);
+    set_tolerance(setting, scenario, walk->row, member);
     setting->applies = schema_applies(row, scenario, member, walk->met);
     return true;
 }

@@ -2,6 +2,7 @@
 #include "casefile/store.h"
 
 #include "casefile/expect.h"
+#include "casefile/fit.h"
 #include "casefile/limits.h"
 #include "casefile/loads.h"
 #include "casefile/over_time.h"
@@ -9,6 +10,7 @@
 #include "casefile/slot.h"
 #include "casefile/target.h"
 #include "casefile/teeth.h"
+#include "casefile/tolerance.h"
 
 #include <float.h>
 #include <math.h>
@@ -48,12 +50,7 @@ static bool store_number(const Target *target, Scenario *scenario)
         *(size_t *)target->field = (size_t)number.value;
         break;
     case SCHEMA_TOLERATED:
-        if (!(number.length.nominal + number.length.lower > 0.0)) {
-            return source_error(target->entry->source, node->span,
-                                "a tolerance smaller than the length", target->err,
-                                "with its tolerance %s falls to 0 or below", target->path);
-        }
-        *(ToleratedLength *)target->field = number.length;
+        *(ToleratedLength *)target->field = (ToleratedLength){.nominal = number.value};
         break;
     case SCHEMA_STIFFNESS:
         scenario->contact.stiffness = number.value;
@@ -374,7 +371,8 @@ static bool store_speed(const Target *target)
     return true;
 }
 
-bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
+// Stores a value that has no tolerance, or no longer has one.
+static bool store_plain(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
     Target target = {.entries = entries, .entry = entry, .err = err};
     schema_path(entry->row, entries_name(entries, entry->row, entry->index), target.path);
@@ -444,4 +442,54 @@ bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario,
     default:
         return store_number(&target, scenario);
     }
+}
+
+// The kind of the joint whose key a row is, as far as values depend on it.
+static SchemaRow own_row(const Entry *entry, const Scenario *scenario)
+{
+    return entry->row->family == SCHEMA_JOINT && entry->index < scenario->linkage.joint_count
+               ? limits_row(entry->row, scenario->linkage.joints[entry->index].kind, entry->node)
+               : *entry->row;
+}
+
+// The limits of a length of a four-bar, in SI, for its closed form.
+static void store_limits(const Scenario *scenario, ToleratedLength *length)
+{
+    const ScenarioTolerance *last = &scenario->tolerances[scenario->tolerance_count - 1];
+    length->lower = last->lower * (length->nominal / last->nominal);
+    length->upper = last->upper * (length->nominal / last->nominal);
+}
+
+// A fit of both is that of the pin, too.
+static bool store_fit(const Entries *entries, const Entry *hole, Scenario *scenario, Err *err)
+{
+    const Entry pin = {schema_find("joints.*.pin"), hole->index, hole->node, hole->source};
+    if (strcmp(hole->row->path, "joints.*.hole") != 0 || hole->node->kind != NODE_SCALAR ||
+        !fit_is_of_both(hole->node->text)) {
+        return true;
+    }
+    const Entry *given = entries_find(entries, "joints.*.pin", hole->index);
+    return given == NULL ? store_value(entries, &pin, scenario, err)
+                         : entries_refuse(given, err,
+                                          "the fit of the hole says the size of the pin\nallowed: "
+                                          "no pin, or a hole with one class such as 30 H7");
+}
+
+bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
+{
+    const SchemaRow row = own_row(entry, scenario);
+    const size_t before = scenario->tolerance_count;
+    PlainNode plain;
+    if (!tolerance_take(entry, &row, scenario, &plain, err)) {
+        return false;
+    }
+    Entry stored = *entry;
+    stored.node = plain.node;
+    if (!store_plain(entries, &stored, scenario, err)) {
+        return false;
+    }
+    if (row.type == SCHEMA_TOLERATED && scenario->tolerance_count > before) {
+        store_limits(scenario, schema_field(entry->row, scenario, entry->index));
+    }
+    return store_fit(entries, entry, scenario, err);
 }

@@ -84,10 +84,6 @@ bool target_read(const SchemaRow *row, const char *text, TargetNumber *number, C
                                   complaint);
     case SCHEMA_SPAN:
         return quantity_span(text, &number->value, &number->is_in_turns, complaint);
-    case SCHEMA_TOLERATED:
-        is_read = quantity_tolerated(text, &number->length, complaint);
-        number->value = number->length.nominal;
-        return is_read;
     default:
         return quantity_parse(text, row->dimension, &number->value, complaint);
     }
@@ -103,8 +99,8 @@ bool target_number(const Target *target, const Node *node, TargetNumber *number)
     if (target_read(row, node->text, number, &complaint)) {
         return check_range(target, node, number->value);
     }
-    const bool is_special = row->type == SCHEMA_INTEGER || row->type == SCHEMA_STIFFNESS ||
-                            row->type == SCHEMA_SPAN || row->type == SCHEMA_TOLERATED;
+    const bool is_special =
+        row->type == SCHEMA_INTEGER || row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_SPAN;
     // a size with a tolerance is a fair thing to try
     const char *sign = is_special                         ? NULL
                        : strstr(node->text, "+-") != NULL ? "+-"

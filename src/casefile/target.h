@@ -16,9 +16,8 @@ typedef struct Target {
 // A number as it is written, in SI; of a diameter the diameter.
 typedef struct TargetNumber {
     double value;
-    ToleratedLength length; // of SCHEMA_TOLERATED
-    double exponent;        // of SCHEMA_STIFFNESS
-    bool is_in_turns;       // of SCHEMA_SPAN
+    double exponent;  // of SCHEMA_STIFFNESS
+    bool is_in_turns; // of SCHEMA_SPAN
 } TargetNumber;
 
 // Reads the number of a row whose value is one, whatever its range. On failure the complaint says

@@ -36,6 +36,8 @@ Scenario scenario_copy(const Scenario *scenario)
     copy.expectations = zeroed_copy(scenario->expectations, scenario->expectation_count,
                                     sizeof *scenario->expectations);
     copy.keys = zeroed_copy(scenario->keys, scenario->key_count, sizeof *scenario->keys);
+    copy.tolerances =
+        zeroed_copy(scenario->tolerances, scenario->tolerance_count, sizeof *scenario->tolerances);
     copy.settled = settled_start_copy(&scenario->settled, &scenario->linkage);
     copy.outcomes =
         zeroed_copy(scenario->outcomes, scenario->outcome_count, sizeof *scenario->outcomes);
@@ -54,6 +56,8 @@ Scenario scenario_around(const Scenario *scenario, Linkage linkage)
     around.outcomes = NULL;
     around.keys = NULL;
     around.key_count = 0;
+    around.tolerances = NULL;
+    around.tolerance_count = 0;
     around.expectation_count = around.outcome_count = 0;
     return around;
 }
@@ -77,11 +81,13 @@ void scenario_free(Scenario *scenario)
     settled_start_free(&scenario->settled);
     free(scenario->outcomes);
     free(scenario->keys);
+    free(scenario->tolerances);
     scenario->path = NULL;
     scenario->expectations = NULL;
     scenario->outcomes = NULL;
     scenario->keys = NULL;
-    scenario->key_count = 0;
+    scenario->tolerances = NULL;
+    scenario->key_count = scenario->tolerance_count = 0;
     scenario->expectation_count = scenario->outcome_count = 0;
 }
 

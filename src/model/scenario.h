@@ -32,6 +32,19 @@ typedef struct ScenarioKey {
     size_t line;   // of the case file, from 1; 0 of the command line
 } ScenarioKey;
 
+enum { SCENARIO_UNIT_SIZE = 32 };
+
+// A number of the case that has a tolerance, in the unit that it is written with.
+typedef struct ScenarioTolerance {
+    size_t row;     // of the table of keys, casefile/schema.h
+    size_t member;  // of its family
+    size_t item;    // of a vector; else 0
+    double nominal; // as the case has it, of a fit the middle of its limits
+    double lower;   // as deviations from it: 0 or below
+    double upper;   // 0 or above
+    char unit[SCENARIO_UNIT_SIZE];
+} ScenarioTolerance;
+
 // It owns the arrays of its linkage and its own. An assignment shares them: it is for a scenario of
 // other options that does not outlive the first. What is to have other bodies, joints or a life of
 // its own needs scenario_copy.
@@ -60,6 +73,9 @@ typedef struct Scenario {
     SettledStart settled;      // of START_SETTLED and START_PRESSED
     size_t key_count;
     ScenarioKey *keys; // that were given, in the order of the text; no solver reads them; owned
+    size_t tolerance_count;
+    ScenarioTolerance *tolerances; // that the case gives, in the order of the table of keys;
+                                   // likewise
 } Scenario;
 
 // A scenario with every option at its default and an empty linkage, without arrays.

@@ -35,8 +35,7 @@ SettledStart settled_start_copy(const SettledStart *settled, const Linkage *link
     for (size_t i = 0; i < settled->motion_count; i++) {
         copy.motions[i] = copy_motion(&settled->motions[i], linkage);
     }
-    copy.halved = copy_motion(&settled->halved, linkage);
-    copy.doubled = copy_motion(&settled->doubled, linkage);
+    copy.others = NULL;
     return copy;
 }
 
@@ -45,10 +44,12 @@ void settled_start_free(SettledStart *settled)
     for (size_t i = 0; i < settled->motion_count; i++) {
         settled_motion_free(&settled->motions[i]);
     }
+    for (size_t i = 1; i < settled->motion_count && settled->others != NULL; i++) {
+        linkage_free(&settled->others[i - 1]);
+    }
+    free(settled->others);
     free(settled->motions);
     free(settled->first);
-    settled_motion_free(&settled->halved);
-    settled_motion_free(&settled->doubled);
     *settled = (SettledStart){0};
 }
 

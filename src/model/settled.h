@@ -83,10 +83,10 @@ typedef struct SettledStart {
                             // start as written; owned
     size_t motion_count;    // different ones
     SettledMotion *motions; // that of most starts first, which runs start in; owned
-    SettledMotion halved;   // from there with half the damping; no joints: nobody has looked
-    SettledMotion doubled;  // and with twice as much
-    bool has_growth;        // somebody has looked for the growth of small changes
-    SettledGrowth growth;   // of the motion that runs start in
+    Linkage *others; // by motion, but for the first: the linkage where it starts in it; owned, and
+                     // no copy has them
+    bool has_growth; // somebody has looked for the growth of small changes
+    SettledGrowth growth;        // of the motion that runs start in
     char message[ERR_TEXT_SIZE]; // why there is none
 } SettledStart;
 

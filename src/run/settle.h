@@ -37,21 +37,18 @@ bool settle_is_clear(const Scenario *scenario);
 // none is known.
 bool settle_is_same(const Scenario *a, const Scenario *b, double *apart);
 
+// Gives a scenario that differs from another in its numbers alone the start of that one's settled
+// motion: pins as far on their way to the wall, or as deep in it, speeds in proportion to the
+// drive's, and what has been counted since the start as written. `written` is the other linkage
+// there, `settled` in its motion. False, the scenario untouched, where it has no such start.
+bool settle_lend(const Linkage *written, const Linkage *settled, Scenario *scenario);
+
 // Gives a scenario the settled start of another that differs from it in how it is run alone.
 void settle_take(Scenario *scenario, const Scenario *settled);
 
-// What lies beside the settled motion of a scenario: nothing of one that has none.
-
-// Finds how the largest forces move when its damping is halved and doubled, to the four digits that
-// are shown of them. A motion that does not repeat within 32 revolutions has the median of half of
-// them.
-void settle_damping(Scenario *scenario, RunWatch watch);
-
-// Finds by what factor a small change of the state grows in a revolution.
+// Finds by what factor a small change of the state grows in a revolution of the settled motion of a
+// scenario: nothing of one that has none.
 void settle_growth(Scenario *scenario, RunWatch watch);
-
-// Finds both at the same time, with the same numbers.
-void settle_beside(Scenario *scenario, RunWatch watch);
 
 // Gives the bodies of a scenario other velocities, by that of the drive at their reach times a
 // size; the member is the seed. False where joints and drive leave no freedom.

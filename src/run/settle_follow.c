@@ -2,6 +2,7 @@
 // key.
 #include "base/zeroed.h"
 #include "model/nearest.h"
+#include "model/space.h"
 #include "run/settle_parts.h"
 
 #include <math.h>
@@ -68,27 +69,26 @@ static void follow_joint(const Joint *from, Joint *to)
 }
 
 // How much faster the drive turns than the neighbour's.
-static double drive_ratio(const Scenario *scenario, const Scenario *neighbour)
+static double drive_ratio(const Linkage *own, const Linkage *other)
 {
-    const Driver *own = &scenario->linkage.driver;
-    const Driver *other = &neighbour->linkage.driver;
-    return drive_is_steady(own) && drive_is_steady(other) ? own->speed / other->speed : 1.0;
+    return drive_is_steady(&own->driver) && drive_is_steady(&other->driver)
+               ? own->driver.speed / other->driver.speed
+               : 1.0;
 }
 
-// The neighbour's start with the scenario's own sizes: positions moved as little as these need, and
+// The neighbour's start with the linkage's own sizes: positions moved as little as these need, and
 // speeds in proportion to the drive's. False where there is none.
-static bool start_as_neighbour(const Scenario *neighbour, Scenario *scenario)
+static bool start_as_neighbour(const Linkage *neighbour, Linkage *linkage)
 {
-    Linkage *linkage = &scenario->linkage;
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
-    linkage_start(&neighbour->linkage, motions);
-    const double ratio = drive_ratio(scenario, neighbour);
+    linkage_start(neighbour, motions);
+    const double ratio = drive_ratio(linkage, neighbour);
     for (size_t i = 0; i < linkage->body_count; i++) {
         motions[i].velocity = vec2_scale(ratio, motions[i].velocity);
         motions[i].omega *= ratio;
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
-        follow_joint(&neighbour->linkage.joints[i], &linkage->joints[i]);
+        follow_joint(&neighbour->joints[i], &linkage->joints[i]);
     }
     const bool is_placed = nearest_positions(linkage, motions);
     if (is_placed) {
@@ -98,6 +98,87 @@ static bool start_as_neighbour(const Scenario *neighbour, Scenario *scenario)
         }
     }
     free(motions);
+    return is_placed;
+}
+
+// The same in space, where every place is as the neighbour's.
+static void start_as_neighbour_in_space(const Linkage *neighbour, Linkage *linkage)
+{
+    SpaceMotion *motions = zeroed(linkage->body_count, sizeof *motions);
+    space_start(neighbour, motions);
+    const double ratio = drive_ratio(linkage, neighbour);
+    for (size_t i = 0; i < linkage->body_count; i++) {
+        motions[i].velocity = vec3_scale(ratio, motions[i].velocity);
+        motions[i].omega = vec3_scale(ratio, motions[i].omega);
+        space_set_place(&motions[i], &linkage->bodies[i]);
+    }
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        follow_joint(&neighbour->joints[i], &linkage->joints[i]);
+    }
+    free(motions);
+}
+
+// By how much a number that counts turns has moved since the start as written; 0 of an end that a
+// joint does not have.
+static double moved(double now, double written)
+{
+    return isfinite(now) ? now - written : 0.0;
+}
+
+// What joints, springs, loads and drives have counted since the start as written.
+static void follow_counts(const Linkage *written, const Linkage *settled, Linkage *linkage)
+{
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *from = &written->joints[i];
+        const Joint *now = &settled->joints[i];
+        Joint *joint = &linkage->joints[i];
+        joint->held_angle += now->held_angle - from->held_angle;
+        joint->gear.zero += now->gear.zero - from->gear.zero;
+        joint->limits.middle += moved(now->limits.middle, from->limits.middle);
+        joint->limits.low += moved(now->limits.low, from->limits.low);
+        joint->limits.high += moved(now->limits.high, from->limits.high);
+    }
+    for (size_t i = 0; i < linkage->torsion_count; i++) {
+        linkage->torsions[i].angle += settled->torsions[i].angle - written->torsions[i].angle;
+    }
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        linkage->loads[i].shift = settled->loads[i].shift;
+    }
+    linkage->driver.start += settled->driver.start - written->driver.start;
+    for (size_t i = 0; i < linkage->further_count; i++) {
+        linkage->further[i].start += settled->further[i].start - written->further[i].start;
+    }
+    linkage->torque.followed.start +=
+        settled->torque.followed.start - written->torque.followed.start;
+}
+
+static bool has_same_parts(const Linkage *a, const Linkage *b)
+{
+    bool has = a->is_spatial == b->is_spatial && a->body_count == b->body_count &&
+               a->joint_count == b->joint_count && a->torsion_count == b->torsion_count &&
+               a->load_count == b->load_count && a->further_count == b->further_count;
+    for (size_t i = 0; has && i < a->joint_count; i++) {
+        has = a->joints[i].kind == b->joints[i].kind;
+    }
+    return has;
+}
+
+bool settle_lend(const Linkage *written, const Linkage *settled, Scenario *scenario)
+{
+    if (!has_same_parts(written, settled) || !has_same_parts(settled, &scenario->linkage)) {
+        return false;
+    }
+    Linkage lent = linkage_copy(&scenario->linkage);
+    follow_counts(written, settled, &lent);
+    bool is_placed = true;
+    if (lent.is_spatial) {
+        start_as_neighbour_in_space(settled, &lent);
+    } else {
+        is_placed = start_as_neighbour(settled, &lent);
+    }
+    Linkage unused = is_placed ? scenario->linkage : lent;
+    scenario->linkage = is_placed ? lent : scenario->linkage;
+    linkage_free(&unused);
     return is_placed;
 }
 
@@ -112,7 +193,7 @@ static bool search_from(Scenario *scenario, const Scenario *neighbour, bool is_b
         scenario->run.settle_least = scenario->run.settle_most = BRIEF_TURNS;
     }
     const bool is_found =
-        start_as_neighbour(neighbour, &first) && settle_search(scenario, &first, 1, watch);
+        start_as_neighbour(&neighbour->linkage, &first.linkage) && settle_search(scenario, &first, 1, watch);
     scenario->run.settle_least = asked.settle_least;
     scenario->run.settle_most = asked.settle_most;
     scenario_free(&first);

@@ -23,16 +23,8 @@ bool settle_search(Scenario *scenario, const Scenario *first, size_t count, RunW
 // Positions, velocities and all that counts of the start of one linkage become that of another.
 void settle_take_start(const Linkage *from, Linkage *to);
 
-// The runs with other damping, in pieces. NULL where nothing is settled or damped; the watch, which
-// outlives them, then has their revolutions.
-typedef struct DampingRuns DampingRuns;
-DampingRuns *damping_runs_begin(const Scenario *scenario, TurnWatch *watch);
-SideBySideTasks damping_runs_tasks(DampingRuns *runs);
-
-// Puts what they have come to into the scenario, and frees them.
-void damping_runs_end(DampingRuns *runs, Scenario *scenario);
-
-// The runs of a period from starts beside the settled one, likewise, where few of them tell all.
+// The runs of a period from starts beside the settled one, in pieces, where few of them tell all;
+// the watch, which outlives them, has their revolutions.
 typedef struct MonodromyRuns MonodromyRuns;
 MonodromyRuns *monodromy_runs_begin(const Scenario *scenario, TurnWatch *watch);
 SideBySideTasks monodromy_runs_tasks(MonodromyRuns *runs);

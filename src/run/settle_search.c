@@ -563,6 +563,10 @@ static void take_motions(const Search *search, Scenario *scenario)
     for (size_t i = 0; i < settled->motion_count; i++) {
         settled->motions[i] = found[i].motion;
     }
+    settled->others = zeroed(settled->motion_count, sizeof *settled->others);
+    for (size_t i = 1; i < settled->motion_count; i++) {
+        settled->others[i - 1] = linkage_copy(&found[i].settling->scenario.linkage);
+    }
     settled->revolutions = found[0].settling->count;
     settle_take_start(&found[0].settling->scenario.linkage, &scenario->linkage);
     free(found);

@@ -25,6 +25,8 @@ static const Assumption ASSUMPTIONS[] = {
     {"contact.resting-speed", "resting speed"},
     {"contact.restitution-speed", "at"},
     {"contact.friction", "friction"},
+    {"contact.friction-speed", "friction speed"},
+    {"contact.impact-speed-floor", "speed floor"},
     {"contact.penalty", "penalty"},
     {"gravity", "gravity"},
     {"run.start", "start"},
@@ -89,6 +91,33 @@ static void append_value(const Scenario *scenario, const CasefileSetting *settin
     }
 }
 
+// Whether a key of a member is given: of one of these names.
+static bool is_given_of(const Scenario *scenario, const SchemaRow *row, size_t member)
+{
+    bool is = false;
+    for (size_t i = 0; i < scenario->key_count; i++) {
+        const ScenarioKey *key = &scenario->keys[i];
+        is = is || (&SCHEMA_ROWS[key->row] == row && key->member == member);
+    }
+    // a fit of both gives the pin, too
+    for (size_t i = 0; i < scenario->tolerance_count; i++) {
+        const ScenarioTolerance *given = &scenario->tolerances[i];
+        is = is || (&SCHEMA_ROWS[given->row] == row && given->member == member);
+    }
+    return is;
+}
+
+// A pin whose diameter nobody gave, beside a radial clearance: it says how deep a contact may be.
+static bool is_assumed_pin(const Scenario *scenario, const CasefileWalk *walk)
+{
+    const SchemaRow *row = &SCHEMA_ROWS[walk->row];
+    const size_t member = walk->member - 1;
+    return strcmp(row->path, "joints.*.pin") == 0 &&
+           member < schema_member_count(scenario, SCHEMA_JOINT) &&
+           joint_has_hole(scenario->linkage.joints[member].kind) &&
+           !is_given_of(scenario, row, member);
+}
+
 // Calls back with each assumption.
 static void each_assumption(const Scenario *scenario,
                             void (*take)(const Scenario *, const CasefileSetting *,
@@ -99,6 +128,10 @@ static void each_assumption(const Scenario *scenario,
     CasefileSetting setting;
     CasefileWalk walk = casefile_walk(scenario);
     while (casefile_next(&walk, &setting)) {
+        if (is_assumed_pin(scenario, &walk)) {
+            take(scenario, &setting, "pin", context);
+            continue;
+        }
         const char *word = word_of(setting.key);
         if (word == NULL || !setting.applies || is_given(scenario, setting.key)) {
             continue;

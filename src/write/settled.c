@@ -100,37 +100,6 @@ static void append_budget(const Scenario *scenario, Text *text)
 
 // All that is known.
 
-// The force of a joint with other damping: where it does not repeat the median.
-static void append_damped(const Scenario *scenario, size_t number, const SettledMotion *motion,
-                          Text *text)
-{
-    const SettledNumber *force = &motion->joints[number].force;
-    if (motion->period > 0) {
-        append_force(scenario, number, force->headline, text);
-        return;
-    }
-    const char *unit = joint_force_unit(scenario, number);
-    units_append_within(text, force->median, force->median_low, force->median_high, unit);
-    text_append(text, " in the median");
-}
-
-static bool has_damped(const SettledStart *settled)
-{
-    return settled->halved.joints != NULL && settled->doubled.joints != NULL;
-}
-
-static void append_damped_joint(const Scenario *scenario, size_t number, Text *text)
-{
-    const SettledStart *settled = &scenario->settled;
-    if (has_damped(settled)) {
-        text_append(text, "                with half the damping ");
-        append_damped(scenario, number, &settled->halved, text);
-        text_append(text, "\n                with twice as much ");
-        append_damped(scenario, number, &settled->doubled, text);
-        text_append(text, "\n");
-    }
-}
-
 // The largest force of a revolution of a motion that does not repeat.
 static void append_spread(const Scenario *scenario, size_t number, const SettledMotion *motion,
                           Text *text)
@@ -161,7 +130,6 @@ static void append_joint(const Scenario *scenario, size_t number, Text *text)
     } else {
         text_append(text, ": %.5g %s\n", motion->joints[number].force.headline, unit);
     }
-    append_damped_joint(scenario, number, text);
     text_append(text, "                from the assumed start %.5g %s, not counted\n",
                 settled->first[number], unit);
 }
@@ -364,26 +332,6 @@ static void append_first(const Scenario *scenario, Text *text)
     screen_sentence(&line, text);
 }
 
-void settled_damping_sentence(const Scenario *scenario, Text *text)
-{
-    const SettledStart *settled = &scenario->settled;
-    size_t numbers[SHOWN_JOINTS];
-    if (settled->motion_count == 0 || !has_damped(settled) ||
-        largest_joints(scenario, numbers) == 0) {
-        return;
-    }
-    Text line;
-    text_init(&line);
-    text_append(&line, "  With half the damping: ");
-    text_append_shown(&line, scenario->linkage.joints[numbers[0]].name);
-    text_append(&line, " ");
-    append_damped(scenario, numbers[0], &settled->halved, &line);
-    text_append(&line, ", with twice as much: ");
-    append_damped(scenario, numbers[0], &settled->doubled, &line);
-    text_append(&line, ".");
-    screen_sentence(&line, text);
-}
-
 void settled_louder(const Scenario *scenario, const char *where, Text *text)
 {
     const SettledStart *settled = &scenario->settled;
@@ -447,6 +395,5 @@ void settled_lines(const Scenario *scenario, Text *text)
     const size_t start = text->length;
     settled_louder(scenario, "of the motion here", text);
     settled_sentences(scenario, false, text);
-    settled_damping_sentence(scenario, text);
     text_fold_behind(text, start, STYLE_WIDTH);
 }

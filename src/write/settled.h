@@ -24,9 +24,6 @@ void settled_lines(const Scenario *scenario, Text *text);
 // forces.
 void settled_sentences(const Scenario *scenario, bool is_below_table, Text *text);
 
-// Likewise, how the largest force moves with the damping, where that is known.
-void settled_damping_sentence(const Scenario *scenario, Text *text);
-
 // A sentence, not folded, where starts come to another motion in which a joint has a larger force
 // than in that of the case's results, which stand `where`: "below". Nothing where none does.
 void settled_louder(const Scenario *scenario, const char *where, Text *text);

@@ -204,11 +204,5 @@ void settled_json(json_t *object, const Scenario *scenario)
         json_array_append_new(others, motion_json(scenario, &settled->motions[i]));
     }
     json_object_set_new(found, "other_motions", others);
-    if (settled->halved.joints != NULL) {
-        json_object_set_new(found, "half_damping", motion_json(scenario, &settled->halved));
-    }
-    if (settled->doubled.joints != NULL) {
-        json_object_set_new(found, "double_damping", motion_json(scenario, &settled->doubled));
-    }
     json_object_set_new(object, "settled", found);
 }

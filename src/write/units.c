@@ -107,6 +107,16 @@ void units_append_within(Text *text, double value, double low, double high, cons
     text_append(text, " %s%s", PREFIXES[prefix], unit);
 }
 
+// Both ends to a place, rounded away from what is between them by more than rounding adds to a
+// number of whole digits.
+static void append_ends(Text *text, double low, double high, int place, int prefix)
+{
+    const double digit = pow(10.0, place);
+    append_to(text, floor(low / digit + 1e-9) * digit, place, prefix);
+    text_append(text, " to ");
+    append_to(text, ceil(high / digit - 1e-9) * digit, place, prefix);
+}
+
 void units_append_interval(Text *text, double value, double low, double high, const char *unit)
 {
     units_append_within(text, value, low, high, unit);
@@ -114,14 +124,31 @@ void units_append_interval(Text *text, double value, double low, double high, co
         return;
     }
     const int place = last_place(value, low, high);
-    const int prefix = prefix_of(value, place);
-    const double digit = pow(10.0, place);
-    // by less than rounding adds to a number of whole digits
     text_append(text, " (");
-    append_to(text, floor(low / digit + 1e-9) * digit, place, prefix);
-    text_append(text, " to ");
-    append_to(text, ceil(high / digit - 1e-9) * digit, place, prefix);
+    append_ends(text, low, high, place, prefix_of(value, place));
     text_append(text, ")");
+}
+
+// The last digit of what has a range: two digits of the value are shown however wide it is.
+static int spread_place(double value, double low, double high)
+{
+    const int place = last_place(value, low, high);
+    const int second = first_place(value) - 1;
+    return place < second ? place : second;
+}
+
+void units_append_spread(Text *text, double value, double low, double high, const char *unit)
+{
+    const int place = spread_place(value, low, high);
+    const int prefix = prefix_of(value, place);
+    append_to(text, value, place, prefix);
+    text_append(text, " %s%s", PREFIXES[prefix], unit);
+}
+
+void units_append_ends(Text *text, double value, double low, double high)
+{
+    const int place = spread_place(value, low, high);
+    append_ends(text, low, high, place, prefix_of(value, place));
 }
 
 void units_append_beside(Text *text, double value, double low, double high, double beside,

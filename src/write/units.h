@@ -43,6 +43,11 @@ void units_append_within(Text *text, double value, double low, double high, cons
 // The same and its interval, whose ends are rounded away from it: "3.4 kN (3.2 to 3.6)".
 void units_append_interval(Text *text, double value, double low, double high, const char *unit);
 
+// A number that moves over a range is shown with two digits at least: "2.7 kN"; and both ends of
+// such a range alone, rounded away from it, with the prefix that the number has: "1.6 to 4.2".
+void units_append_spread(Text *text, double value, double low, double high, const char *unit);
+void units_append_ends(Text *text, double value, double low, double high);
+
 // As a number alone, with the prefix that `units_append_within` gives another value and interval:
 // the second column of a table whose first has the unit.
 void units_append_beside(Text *text, double value, double low, double high, double beside,

@@ -129,30 +129,6 @@ static void a_pressed_pin_lies_where_the_reaction_holds_it(void **state)
     trajectory_destroy(ideal);
 }
 
-// Half the damping and twice as much are runs of the same case with another law: here, where the
-// damper is given, of the case with that damper.
-static void the_damping_is_halved_and_doubled(void **state)
-{
-    (void)state;
-    static const char *const WHOLE[] = {"run.start=settled", "contact.damping=viscous",
-                                        "contact.viscous-coefficient=1000 N s/m"};
-    static const char *const TWICE[] = {"run.start=settled", "contact.damping=viscous",
-                                        "contact.viscous-coefficient=2000 N s/m"};
-    Scenario scenario = load(CASE, WHOLE, 3);
-    settle_scenario(&scenario, (RunWatch){.progress = NULL});
-    settle_damping(&scenario, (RunWatch){.progress = NULL});
-    kept_settled(&scenario);
-    const Scenario twice = settled(TWICE, 3);
-    for (size_t i = 0; i < scenario.linkage.joint_count; i++) {
-        if (linkage_has_play(&scenario.linkage.joints[i])) {
-            assert_close(scenario.settled.doubled.joints[i].force.headline,
-                         twice.settled.motions[0].joints[i].force.headline, 1e-6);
-            assert_true(scenario.settled.halved.joints[i].force.headline >
-                        scenario.settled.doubled.joints[i].force.headline);
-        }
-    }
-}
-
 // The extremes within the steps are looked for.
 static Trajectory *traced_run(const Scenario *scenario, const Solver *solver)
 {
@@ -280,7 +256,6 @@ int main(void)
         cmocka_unit_test(different_motions_are_told_apart),
         cmocka_unit_test(a_mode_that_dies_out_is_no_motion_of_its_own),
         cmocka_unit_test(a_pressed_pin_lies_where_the_reaction_holds_it),
-        cmocka_unit_test(the_damping_is_halved_and_doubled),
         cmocka_unit_test(it_is_what_a_long_run_comes_to),
         cmocka_unit_test(a_speed_that_repeats_settles_as_its_periods_in_a_row),
         cmocka_unit_test(ode_starts_in_it),

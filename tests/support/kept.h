@@ -90,12 +90,7 @@ static inline void kept_settled(const Scenario *scenario)
     kept_hold(scenario->linkage.further);
     kept_hold(scenario->settled.first);
     kept_hold(scenario->settled.motions);
-    kept_hold(scenario->settled.halved.joints);
-    kept_hold(scenario->settled.halved.alpha);
-    kept_hold(scenario->settled.halved.sections);
-    kept_hold(scenario->settled.doubled.joints);
-    kept_hold(scenario->settled.doubled.alpha);
-    kept_hold(scenario->settled.doubled.sections);
+    kept_hold(scenario->settled.others);
 }
 
 // One that was read or built otherwise: it is freed.
@@ -106,6 +101,7 @@ static inline Scenario kept_instead(Scenario *scenario)
     kept_hold(copy.expectations);
     kept_hold(copy.outcomes);
     kept_hold(copy.keys);
+    kept_hold(copy.tolerances);
     kept_settled(&copy);
     linkage_free(&scenario->linkage);
     return copy;

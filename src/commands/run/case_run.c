@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/side_by_side.h"
 #include "base/zeroed.h"
+#include "casefile/input.h"
 #include "cli/long_work.h"
 #include "cli/results.h"
 #include "cli/written.h"
@@ -178,15 +179,37 @@ static void ask_closed_form(CaseRun *run)
     }
 }
 
+// How far inputs and assumptions move the settled motion. A case that cannot be read once more has
+// no range.
+static void find_spread(CaseRun *run, Progress *progress)
+{
+    const char *name = scenario_path(&run->scenario);
+    char *text;
+    size_t size;
+    Err unused = {ERR_NONE, ""};
+    const bool is_stdin = strcmp(run->path, "-") == 0;
+    if (run->is_quick || !spread_is_of(&run->scenario) ||
+        !(is_stdin ? input_read_stdin("case", &text, &size, &unused)
+                   : input_read("case", run->path, &text, &size, &unused))) {
+        return;
+    }
+    const SpreadCase of = {name, text, size, run->options->overrides, run->options->override_count};
+    SpreadOptions options = spread_options_default();
+    options.budget_s = run->scenario.run.budget;
+    run->spread = spread_find(&of, &run->scenario, &options,
+                              progress_watch(progress, "the range over the inputs"));
+    progress_end(progress);
+    run->report.spread = &run->spread;
+    free(text);
+}
+
 // What lies beside the settled motion: the growth of small changes is not on the first screen.
 static void look_beside(CaseRun *run, Progress *progress)
 {
     if (run->is_whole) {
-        const char *watched = "half and twice the damping, growth of small changes";
-        settle_beside(&run->scenario, progress_watch(progress, watched));
-    } else {
-        settle_damping(&run->scenario, progress_watch(progress, "half and twice the damping"));
+        settle_growth(&run->scenario, progress_watch(progress, "growth of small changes"));
     }
+    find_spread(run, progress);
 }
 
 // Hands on what the reference says, before anything else is run.
@@ -203,6 +226,7 @@ static void hand_on_answer(CaseRun *run)
         .runs = &truth,
         .errors = errors,
         .truth = &run->truth,
+        .is_quick = run->is_quick,
     };
     run->answered(&report, run->listener);
 }
@@ -216,6 +240,7 @@ void case_run_execute(CaseRun *run, Progress *progress)
         .run_count = options->backend_count,
         .runs = run->runs,
         .errors = run->errors,
+        .is_quick = run->is_quick,
     };
     const bool is_announced = long_work_announce(&run->scenario, progress->line.is_quiet);
     case_run_make_truth(run, progress);
@@ -248,6 +273,7 @@ void case_run_finish(CaseRun *run)
         run->runs[i] = NULL;
         free(run->matches[i].joints);
     }
+    spread_free(&run->spread);
     truth_finish(&run->truth);
     scenario_free(&run->scenario);
 }

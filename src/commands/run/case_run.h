@@ -7,9 +7,12 @@
 
 typedef struct CaseRun {
     Scenario scenario;
-    bool is_uncertified; // whether the reference runs alone
-    bool is_whole;       // whether somebody reads more of it than the first screen
-    const char *columns; // of the series, as --columns takes them; NULL: all
+    bool is_uncertified;          // whether the reference runs alone
+    bool is_whole;                // whether somebody reads more of it than the first screen
+    bool is_quick;                // whether nothing beside the runs is looked at
+    const CommonOptions *options; // that it was loaded by; not owned
+    const char *path;             // likewise, as given
+    const char *columns;          // of the series, as --columns takes them; NULL: all
     Trajectory *runs[BACKEND_COUNT];
     TrajectoryError errors[BACKEND_COUNT];
     AnalyticSummary summary;
@@ -19,6 +22,7 @@ typedef struct CaseRun {
     Truth truth;     // its trajectory is among the runs where its backend is
     RunMatches matches[BACKEND_COUNT];
     Ensemble ensembles[BACKEND_COUNT];
+    Spread spread;
     double
         spent_s[BACKEND_COUNT]; // of processor time by each backend, but for starts beside its run
     RunReport report;           // points into this CaseRun, which must not be moved

@@ -123,6 +123,9 @@ bool run_choices_load(const RunChoices *choices, const char *path, CaseRun *run,
 {
     const CommonOptions *common = &choices->common;
     run->is_uncertified = choices->is_uncertified;
+    run->is_quick = choices->is_quick;
+    run->options = common;
+    run->path = path;
     return casefile_load(path, common->overrides, common->override_count, &run->scenario, err) &&
            common_options_take_drivers(common, &run->scenario, err) &&
            (!run->is_uncertified || check_uncertified(&run->scenario, err)) &&

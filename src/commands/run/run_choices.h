@@ -12,6 +12,7 @@ typedef struct RunChoices {
     size_t owned_count;
     Text backends; // names, separated by commas
     bool is_uncertified;
+    bool is_quick; // without the range over the inputs
 } RunChoices;
 
 // Rows of a list of options, in a group of its help.
@@ -21,14 +22,16 @@ typedef struct RunChoices {
      OPTION_READ, .read = run_choices_read_backend, .words = OPTIONS_BACKENDS}, \
     {"step", "TIME", "The step, such as '2 us': short for --set run.step=TIME", help_group, \
      OPTION_READ, .read = run_choices_read_step}, \
-    {"budget", "TIME", "Processor time of each engine, or none: short for --set run.budget=TIME", \
+    {"budget", "TIME", "Processor time of each engine and of draws, or none: short for --set run.budget=TIME", \
      help_group, OPTION_READ, .read = run_choices_read_budget}, \
     COMMON_SET(help_group), \
     COMMON_DRIVERS(help_group), \
     COMMON_TIME_LIMIT(help_group, "A driver's run that takes longer has failed (default: 600 s)"), \
     {"uncertified", NULL, \
      "Run the reference alone, in a fifth of the time: its uncertainty and horizon are not known", \
-     help_group, OPTION_FLAG, .offset = offsetof(RunChoices, is_uncertified)}
+     help_group, OPTION_FLAG, .offset = offsetof(RunChoices, is_uncertified)}, \
+    {"quick", NULL, "Leave out how far the inputs' limits and other assumptions move the forces", \
+     help_group, OPTION_FLAG, .offset = offsetof(RunChoices, is_quick)}
 // clang-format on
 bool run_choices_read_backend(const char *names, void *choices, Err *err);
 bool run_choices_read_step(const char *step, void *choices, Err *err);

@@ -6,6 +6,7 @@
 #include "write/json_value.h"
 #include "write/measured_fields.h"
 #include "write/settings_json.h"
+#include "write/spread.h"
 #include "write/units.h"
 
 #include <inttypes.h>
@@ -443,6 +444,7 @@ json_t *run_json_build(const void *of)
     settings_json_begin(object, report->scenario);
     assumed_json(object, report->scenario);
     run_overview_json(object, report);
+    spread_json(object, report->spread);
     if (report->summary != NULL) {
         json_object_set_new(object, "kinematics", analytic_json_kinematics(report));
         json_object_set_new(object, "inverse_dynamics", analytic_json_forces(report));

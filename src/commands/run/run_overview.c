@@ -13,6 +13,7 @@
 #include "write/assumed.h"
 #include "write/json_value.h"
 #include "write/settled.h"
+#include "write/spread.h"
 #include "write/units.h"
 
 #include <math.h>
@@ -763,10 +764,10 @@ static void write_answer(const RunReport *report, Text *text)
     write_assumed(report->scenario, text);
 }
 
-// What takes longer: other damping, and the engines.
+// What takes longer: other inputs and assumptions, and the engines.
 static void write_beside(const RunReport *report, Text *text)
 {
-    settled_damping_sentence(report->scenario, text);
+    spread_sentences(report->spread, text);
     write_engines(report, text);
     write_time(report, text);
 }
@@ -802,15 +803,15 @@ static size_t count_lines(const char *text)
     return lines;
 }
 
-enum { TITLE_LINES = 3, ENGINE_LINES = 2, BUDGET_LINES = 1, DAMPING_LINES = 2, LAST_LINES = 2 };
+enum { TITLE_LINES = 3, ENGINE_LINES = 2, BUDGET_LINES = 1, SPREAD_LINES = 6, LAST_LINES = 2 };
 
 // How many lines the rest will take at the most, before it is known.
-static size_t lines_of_rest(const Scenario *scenario)
+static size_t lines_of_rest(const RunReport *report)
 {
+    const Scenario *scenario = report->scenario;
     const RunOptions *options = &scenario->run;
     size_t lines = LAST_LINES;
-    lines +=
-        scenario->settled.motion_count > 0 && scenario_has_clearance(scenario) ? DAMPING_LINES : 0;
+    lines += !report->is_quick && spread_is_of(scenario) ? SPREAD_LINES : 0;
     for (size_t i = 0; i < options->backend_count; i++) {
         const BackendKind backend = options->backends[i];
         const bool is_engine = backend != BACKEND_ANALYTIC && backend != BACKEND_REFERENCE;
@@ -832,7 +833,7 @@ static bool append_answer(const RunReport *report, size_t width, Text *text)
         Text own;
         text_init(&own);
         is_full_named = write_table_and_answer(report, &overview, rows, &own);
-        const bool fits = count_lines(own.data) + lines_of_rest(report->scenario) <= most;
+        const bool fits = count_lines(own.data) + lines_of_rest(report) <= most;
         // ideal joints first, then bodies, then joints: --full has what is left out
         if (fits || (rows.ideals == 0 && rows.bodies == 0 && rows.joints == JOINTS_LEAST)) {
             text_append(text, "%s", own.data);

@@ -8,6 +8,7 @@
 #include "measure/error.h"
 #include "measure/truth.h"
 #include "model/trajectory.h"
+#include "run/spread.h"
 #include "write/number_fields.h"
 #include "write/table.h"
 
@@ -31,6 +32,8 @@ typedef struct RunReport {
     const Truth *truth;             // NULL where no reference was asked for
     const RunMatches *matches;      // one a run; NULL without a reference
     const Ensemble *ensembles;      // one a run, some empty; NULL where the motion is predictable
+    const Spread *spread;           // NULL where nobody looked
+    bool is_quick;                  // whether nothing beside the runs was looked at
     bool has_log_forces;            // whether the picture has forces in decades
 } RunReport;
 

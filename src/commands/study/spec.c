@@ -622,23 +622,19 @@ static bool spec_take_tolerance(const Reading *reading, const Node *node)
 {
     Variable *variable = reading->variable;
     const Scenario *base = reading->spec->base;
-    const ToleratedLength *length = NULL;
-    if (reading->key.row->type == SCHEMA_TOLERATED) {
-        length = schema_field_const(reading->key.row, base, reading->key.index);
+    CasefileSetting setting;
+    CasefileWalk walk = casefile_walk(base);
+    while (casefile_next(&walk, &setting)) {
+        if (setting.kind == CASEFILE_TOLERATED && strcmp(setting.key, variable->key) == 0) {
+            text_copy(variable->unit, sizeof variable->unit, setting.unit);
+            variable->low = setting.numbers[0] + setting.numbers[1];
+            variable->high = setting.numbers[0] + setting.numbers[2];
+            return true;
+        }
     }
-    if (length == NULL || !(length->lower < length->upper)) {
-        return spec_read_refuse(
-            reading, node,
-            length != NULL ? "a tolerance in the case such as 108 +- 0.3 mm, or "
-                             "{uniform: [low, high]}"
-                           : "{uniform: [low, high]}; lengths of a four-bar alone have "
-                             "tolerances",
-            "%s has no tolerance in %s", variable->key, reading->spec->case_path);
-    }
-    text_copy(variable->unit, sizeof variable->unit, units_si(DIMENSION_LENGTH));
-    variable->low = length->nominal + length->lower;
-    variable->high = length->nominal + length->upper;
-    return true;
+    return spec_read_refuse(
+        reading, node, "a tolerance in the case such as 108 +- 0.3 mm, or {uniform: [low, high]}",
+        "%s has no tolerance in %s", variable->key, reading->spec->case_path);
 }
 
 static bool spec_check_limits(const Reading *reading, const Node *node)
