@@ -67,7 +67,7 @@ static const Condition WANTS[] = {
     {REMEMBERED, 0, {"a contact.damping but none, viscous, dissipation and step", "contact.damping", false}},
     {DERIVED, 0, {"no contact.dissipation", "contact.dissipation", false}},
     {GROWING, 0, {"contact.damping: step", "contact.damping contact.model", true}},
-    {LENGTHWISE, 0, {"a contact.law of cylinders, or space: spatial", "contact.law", false}},
+    {LENGTHWISE, 0, {"a contact.law of cylinders, run.start: settled, or space: spatial", "contact.law run.start", false}},
     {COMMON_DEPTH, 0, {"a joint with play that has no full-damping-depth of its own", "", false}},
     {UNSTEADY, 0, {"a drive.speed, angle, torque or force over time", "drive.speed", false}},
     {ELASTIC_PIN, 0, {"contact.law: elastic, or auto and a width, and no stiffness of its own", "contact.law", false}},
@@ -367,14 +367,15 @@ static bool has_elastic_law(const Scenario *scenario, const Joint *joint)
     return own.model == CONTACT_IMPACT && own.stiffness == 0.0 && own.law == LAW_ELASTIC;
 }
 
-// Whether the length over which a pin touches is felt. A
-// stiffness that is given holds for that of its pin.
+// Whether the length over which a pin touches is felt, by its law or, of a settled motion, by the
+// other laws that its force is held against (run/spread.h). A stiffness that is given holds for
+// that of its pin.
 static bool is_lengthwise(const Scenario *scenario, const Joint *joint)
 {
     const ContactOptions own = law_options(&scenario->contact, joint);
     return scenario->contact.model != CONTACT_IMPACT || scenario->linkage.is_spatial ||
            scenario->ode.collider != ODE_COLLIDER_PIN_HOLE || own.stiffness > 0.0 ||
-           law_get(own.law)->needs_width;
+           law_get(own.law)->needs_width || scenario->run.start == START_SETTLED;
 }
 
 static unsigned wants_met(const SchemaRow *row, const Scenario *scenario, size_t index)

@@ -352,7 +352,7 @@ static size_t silent_widths(const char *text)
 static void a_key_that_is_passed_over_is_seen(void **state)
 {
     (void)state;
-    static const char RUN[] = "run: {revolutions: 0.02, step: 5 us}\n";
+    static const char RUN[] = "run: {revolutions: 0.02, step: 5 us, start: centred}\n";
     char text[2048];
     snprintf(text, sizeof text, "%scontact: {stiffness: 1e8 N/m}\n%s", FOUR_BAR, RUN);
     assert_int_equal(silent_widths(text), 1);
