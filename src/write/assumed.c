@@ -64,7 +64,9 @@ static void append_value(const CasefileSetting *setting, Text *text)
     }
 }
 
-// Whether a key of a member is given: of one of these names.
+static const char PIN[] = "joints.*.pin";
+
+// Whether a key of a member is given.
 static bool is_given_of(const Scenario *scenario, const SchemaRow *row, size_t member)
 {
     bool is = false;
@@ -85,8 +87,7 @@ static bool is_assumed_pin(const Scenario *scenario, const CasefileWalk *walk)
 {
     const SchemaRow *row = &SCHEMA_ROWS[walk->row];
     const size_t member = walk->member - 1;
-    return strcmp(row->path, "joints.*.pin") == 0 &&
-           member < schema_member_count(scenario, SCHEMA_JOINT) &&
+    return strcmp(row->path, PIN) == 0 && member < schema_member_count(scenario, SCHEMA_JOINT) &&
            joint_has_hole(scenario->linkage.joints[member].kind) &&
            !is_given_of(scenario, row, member);
 }
@@ -97,11 +98,17 @@ static void each_assumption(const Scenario *scenario,
                             void *context)
 {
     const unsigned met = schema_met(scenario);
+    bool has_pin = false;
     CasefileSetting setting;
     CasefileWalk walk = casefile_walk(scenario);
     while (casefile_next(&walk, &setting)) {
         if (is_assumed_pin(scenario, &walk)) {
-            take(&setting, "pin", context);
+            // the same diameter of all of them
+            if (!has_pin) {
+                text_copy(setting.key, sizeof setting.key, PIN);
+                take(&setting, "pins", context);
+            }
+            has_pin = true;
             continue;
         }
         const char *word = word_of(setting.key);
