@@ -132,7 +132,7 @@ static size_t add_settings(const Work *work, const SpreadRun *run, Text *texts)
 }
 
 // The scenario of a run, not settled. Fails where its numbers make no case.
-static bool read_run(const Work *work, const SpreadRun *run, Scenario *scenario)
+static bool read_run(const Work *work, const SpreadRun *run, Scenario *scenario, Err *err)
 {
     const SpreadCase *of = work->of;
     const size_t most = of->override_count + work->inputs->count + 1;
@@ -145,9 +145,8 @@ static bool read_run(const Work *work, const SpreadRun *run, Scenario *scenario)
     for (size_t i = 0; i < added; i++) {
         overrides[of->override_count + i] = texts[i].data;
     }
-    Err unused = {ERR_NONE, ""};
     const bool is_read = casefile_load_text(of->name, of->text, of->size, overrides,
-                                            of->override_count + added, scenario, &unused);
+                                            of->override_count + added, scenario, err);
     for (size_t i = 0; i < added; i++) {
         text_finish(&texts[i]);
     }
@@ -219,15 +218,20 @@ static const Linkage *motion_start(const Work *work, size_t motion)
 static void run_piece(size_t index, bool is_callers, void *context)
 {
     Work *work = context;
-    const SpreadRun *run = work->runs[index / work->motion_count];
+    SpreadRun *run = work->runs[index / work->motion_count];
     const size_t motion = index % work->motion_count;
     SpreadAnswer *answer = &run->answers[motion];
     Scenario drawn;
     if (is_over_budget(work)) {
         return;
     }
-    if (!read_run(work, run, &drawn)) {
+    Err err = {ERR_NONE, ""};
+    if (!read_run(work, run, &drawn, &err)) {
         answer->is_made = true;
+        // the same from every motion: one of them says it
+        if (motion == 0) {
+            text_copy(run->why, sizeof run->why, err.text);
+        }
         return;
     }
     drawn.contact.damping_scale *= run->damping_scale;
@@ -439,6 +443,9 @@ static void sum_up_draws(Spread *spread)
             widen_all(spread, draw, spread->ranges);
         } else if (!is_undone(draw, spread->motion_count)) {
             spread->without++;
+            spread->why_without = spread->why_without == NULL && draw->why[0] != '\0'
+                                      ? draw->why
+                                      : spread->why_without;
         }
         spread->is_spent = spread->is_spent || is_undone(draw, spread->motion_count);
     }
@@ -719,7 +726,8 @@ Spread spread_find(const SpreadCase *of, const Scenario *scenario, const SpreadO
         .watch = turn_watch_begin(watch),
     };
     const SpreadRun none = {.damping_scale = 1.0};
-    if (!read_run(&work, &none, &work.written)) {
+    Err unused = {ERR_NONE, ""};
+    if (!read_run(&work, &none, &work.written, &unused)) {
         return spread;
     }
     if (options->has_forms) {

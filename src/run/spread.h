@@ -71,7 +71,8 @@ typedef struct SpreadRun {
     char value[SPREAD_FORM_SIZE];
     char name[SPREAD_FORM_SIZE]; // of a form, for people: "law johnson"
     SpreadFormKind kind;
-    SpreadAnswer *answers; // by motion; owned
+    SpreadAnswer *answers;   // by motion; owned
+    char why[ERR_TEXT_SIZE]; // its numbers make no case; empty: they do
 } SpreadRun;
 
 // From the least to the largest.
@@ -99,9 +100,10 @@ typedef struct Spread {
                    // the draws; NAN: not known; owned
     size_t joint;  // the one with play whose force is largest
     size_t asked;  // draws
-    size_t draw_count; // that came to an answer
-    size_t without;    // draws that make no case, such as a pin without play, or that failed
-    SpreadRun *draws;  // `asked`; owned
+    size_t draw_count;       // that came to an answer
+    size_t without;          // draws that make no case, such as a pin without play, or that failed
+    const char *why_without; // of the first of them that makes no case; NULL: none
+    SpreadRun *draws;        // `asked`; owned
     size_t form_count;
     SpreadRun *forms;                      // owned
     SpreadRange *ranges;                   // N, by joint, over the draws; owned

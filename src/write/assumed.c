@@ -56,21 +56,17 @@ static bool is_given(const Scenario *scenario, const char *key)
 static void append_laws(const Scenario *scenario, Text *text)
 {
     bool has_law[LAW_COUNT] = {false};
-    bool is_eye_open = false;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         const ContactOptions own = law_options(&scenario->contact, joint);
         if (joint_has_hole(joint->kind) && own.stiffness == 0.0) {
             has_law[own.law] = true;
-            is_eye_open |= own.law == LAW_ELASTIC && joint->clearance.eye_radius == 0.0;
         }
     }
     const char *between = "";
     for (int i = 0; i < LAW_COUNT; i++) {
         if (has_law[i]) {
             text_append(text, "%s%s", between, OPTIONS_LAWS[i]);
-            text_append(text, "%s",
-                        i == LAW_ELASTIC && is_eye_open ? " (eyes twice their holes)" : "");
             between = " and ";
         }
     }
@@ -91,7 +87,9 @@ static void append_value(const Scenario *scenario, const CasefileSetting *settin
     }
 }
 
-// Whether a key of a member is given: of one of these names.
+static const char PIN[] = "joints.*.pin";
+
+// Whether a key of a member is given.
 static bool is_given_of(const Scenario *scenario, const SchemaRow *row, size_t member)
 {
     bool is = false;
@@ -112,10 +110,23 @@ static bool is_assumed_pin(const Scenario *scenario, const CasefileWalk *walk)
 {
     const SchemaRow *row = &SCHEMA_ROWS[walk->row];
     const size_t member = walk->member - 1;
-    return strcmp(row->path, "joints.*.pin") == 0 &&
-           member < schema_member_count(scenario, SCHEMA_JOINT) &&
+    return strcmp(row->path, PIN) == 0 && member < schema_member_count(scenario, SCHEMA_JOINT) &&
            joint_has_hole(scenario->linkage.joints[member].kind) &&
            !is_given_of(scenario, row, member);
+}
+
+// Whether some pin presses on an eye whose size nobody gave.
+static bool has_assumed_eye(const Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        const ContactOptions own = law_options(&scenario->contact, joint);
+        if (joint_has_hole(joint->kind) && own.model == CONTACT_IMPACT && own.stiffness == 0.0 &&
+            own.law == LAW_ELASTIC && joint->clearance.eye_radius == 0.0) {
+            return true;
+        }
+    }
+    return false;
 }
 
 // Calls back with each assumption.
@@ -125,11 +136,17 @@ static void each_assumption(const Scenario *scenario,
                             void *context)
 {
     const unsigned met = schema_met(scenario);
+    bool has_pin = false;
     CasefileSetting setting;
     CasefileWalk walk = casefile_walk(scenario);
     while (casefile_next(&walk, &setting)) {
         if (is_assumed_pin(scenario, &walk)) {
-            take(scenario, &setting, "pin", context);
+            // the same diameter of all of them
+            if (!has_pin) {
+                text_copy(setting.key, sizeof setting.key, PIN);
+                take(scenario, &setting, "pins", context);
+            }
+            has_pin = true;
             continue;
         }
         const char *word = word_of(setting.key);
@@ -140,6 +157,12 @@ static void each_assumption(const Scenario *scenario,
         if (!schema_lacks(schema_find(setting.key), scenario, 0, met, &lack)) {
             take(scenario, &setting, word, context);
         }
+    }
+    if (has_assumed_eye(scenario)) {
+        CasefileSetting eye = {.kind = CASEFILE_WORD};
+        text_copy(eye.key, sizeof eye.key, "joints.*.eye-radius");
+        text_copy(eye.text, sizeof eye.text, "twice their holes");
+        take(scenario, &eye, "eyes", context);
     }
 }
 

@@ -71,6 +71,25 @@ static bool has_forms(const Spread *spread)
     return has;
 }
 
+// How many draws have no answer, and why the first of them makes no case: in the first line of its
+// message, behind the place that it names.
+static void append_without(const Spread *spread, Text *text)
+{
+    text_append(text, " %zu of the draws %s", spread->without,
+                spread->why_without != NULL ? "make no case" : "fail");
+    if (spread->why_without != NULL) {
+        const char *colon = strstr(spread->why_without, ": ");
+        const char *why = colon != NULL ? colon + strlen(": ") : spread->why_without;
+        text_append(text, ": ");
+        Text first;
+        text_init(&first);
+        text_append(&first, "%.*s", (int)strcspn(why, "\n"), why);
+        text_append_shown(text, first.data);
+        text_finish(&first);
+    }
+    text_append(text, ".");
+}
+
 // "crank-coupler 2.4 kN (2.0 to 2.5 over the inputs' spread; 1.8 to 2.5 over laws and damping)."
 static void append_ranges(const Spread *spread, Text *text)
 {
@@ -102,7 +121,7 @@ static void append_ranges(const Spread *spread, Text *text)
         text_append(&line, " run.budget ended the draws.");
     }
     if (spread->without > 0) {
-        text_append(&line, " %zu make no case, as without play.", spread->without);
+        append_without(spread, &line);
     }
     screen_sentence(&line, text);
 }
@@ -322,6 +341,9 @@ void spread_json(json_t *object, const Spread *spread)
     json_object_set_new(made, "draws_asked", json_integer((json_int_t)spread->asked));
     json_object_set_new(made, "draws_made", json_integer((json_int_t)spread->draw_count));
     json_object_set_new(made, "draws_without", json_integer((json_int_t)spread->without));
+    json_object_set_new(made, "without_because",
+                        spread->why_without != NULL ? json_value_text(spread->why_without)
+                                                    : json_null());
     json_object_set_new(made, "is_spent", json_boolean(spread->is_spent));
     json_value_set(made, "covered", COVERED);
     json_value_set(made, "confidence", spread_confidence(spread->draw_count));

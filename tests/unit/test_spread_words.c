@@ -96,7 +96,10 @@ static void the_ranges_stand_beside_the_number(void **state)
     made.spread.without = 3;
     assert_words(&made, "9 of 38 draws", true);
     assert_words(&made, "run.budget ended the draws.", true);
-    assert_words(&made, "3 make no case", true);
+    assert_words(&made, "3 of the draws fail.", true);
+    made.spread.why_without =
+        "--set joints.wrist.hole=12 mm: the pin (12.01 mm) must be smaller\nx";
+    assert_words(&made, "3 of the draws make no case: the pin (12.01 mm) must be smaller.", true);
     made_finish(&made);
 }
 
