@@ -35,6 +35,8 @@ typedef struct BodyRecord {
     dVector3 last_alpha;
     bool has_last;
     double opening[6]; // m and rad: what it was moved by so that ODE's joints are as open as found
+    bool is_closed;    // whether its ODE joints were closed at the end of the step before
+    bool was_closed;   // as a step finds it
     bool is_gyrating;  // its gyroscopic torque is ours in the step under way
 } BodyRecord;
 
@@ -99,6 +101,12 @@ void bodies_drift(const Bodies *bodies, double time);
 
 // The same from where they were kept.
 void bodies_drift_kept(const Bodies *bodies, double time);
+
+// Moves a body on by six speeds times a time or another share.
+void bodies_move(dBodyID id, const double *speeds, double times);
+
+// The six speeds of a body.
+void bodies_read_speeds(const BodyRecord *record, double *speeds);
 
 // The quaternion turned on for a time, s, at an angular velocity in the world's frame.
 void bodies_turn(const dReal *from, const dReal *omega, double time, dQuaternion turned);

@@ -27,11 +27,13 @@
 // forces has to be as promised, and n steps are saved.
 #include "world/impulse.h"
 
+#include "kernel/columns.h"
 #include "world/closing.h"
 #include "world/coarse.h"
 #include "world/inside.h"
 #include "world/opening.h"
 #include "world/response_cache.h"
+#include "world/response_rate.h"
 #include "world/trial.h"
 
 #include <math.h>
@@ -140,6 +142,7 @@ static JpStatus find_contacts(WorldResponse *response, double step, bool can_reu
         }
         REFUSAL_TRY(world_response_find_columns(response, step, error));
         set_free(response, step);
+        response_rate_find(response);
         REFUSAL_TRY(inside_run(response, step, is_found, error));
     } while (*is_found && activate_near(response, step));
     if (*is_found && !response->is_cached && !response_cache_keep(response)) {
@@ -186,53 +189,128 @@ static JpStatus make_rounds(WorldResponse *response, double step, bool *is_done,
     }
 }
 
-// Which bodies the joints with play can move in the step.
-static void find_reach(JpWorld *world)
+void impulse_reach(JpWorld *world)
 {
     for (const JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         bodies_reach_from(&world->bodies, joint->bodies[0]);
         bodies_reach_from(&world->bodies, joint->bodies[1]);
     }
     bodies_reach(&world->bodies);
+    world->bodies.moving = world->bodies.count; // until then
+}
+
+// Whether the joints of all bodies that are reached were closed at the end of the step before.
+static bool are_closed(const Bodies *bodies)
+{
+    for (size_t i = 0; i < bodies->reach; i++) {
+        if (!bodies->records[i].is_closed) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Finds whether the world is linear, and lists its joints.
+static JpStatus find_linear(WorldResponse *response, JpError *error)
+{
+    JpWorld *world = response->world;
+    closing_free(&response->closing);
+    response->is_linear = closing_is_linear(world);
+    return !response->is_linear || closing_make(world, &response->closing)
+               ? JP_OK
+               : refusal(error, JP_ERROR_MEMORY, "there is no memory for the joints of a step");
+}
+
+// The step without contacts, from which the others differ.
+static JpStatus find_base(WorldResponse *response, double step, JpError *error)
+{
+    REFUSAL_TRY(world_response_step(response, step, response->base, error));
+    world_response_read_bodies(response->world, response->speeds);
+    set_free(response, step);
+    return JP_OK;
+}
+
+// The step without contacts of all bodies, which stays for those that are not reached. Joints that
+// are closed are held so, if that is of no matter to others: else the reached make it again.
+static JpStatus find_bases(WorldResponse *response, double step, JpError *error)
+{
+    JpWorld *world = response->world;
+    if (!are_closed(&world->bodies)) {
+        return find_base(response, step, error);
+    }
+    if (world->bodies.reach < world->bodies.count) {
+        REFUSAL_TRY(find_base(response, step, error));
+        bodies_rest(&world->bodies);
+        bodies_put_back(&world->bodies);
+    }
+    REFUSAL_TRY(find_linear(response, error));
+    response->is_held = response->is_linear && closing_is_possible(response->world, step);
+    if (response->is_held) {
+        closing_hold(world, &response->closing, CLOSING_ERP);
+    }
+    return find_base(response, step, error);
+}
+
+// Contacts in places that come near their sides: all of the step but what is done at its end.
+static JpStatus find_impulses(WorldResponse *response, double step, bool *is_done, JpError *error)
+{
+    JpWorld *world = response->world;
+    bodies_put_back(&world->bodies);
+    bodies_rest(&world->bodies);
+    if (!response->is_held) {
+        REFUSAL_TRY(find_linear(response, error));
+        REFUSAL_TRY(close_joints(response, step, error));
+    }
+    response->is_closed = response->is_linear && closing_is_possible(response->world, step);
+    world->flown = 0;
+    for (size_t i = 0; i < response->place_count; i++) {
+        world->stats.rows += response->places[i].is_active ? 1 : 0;
+    }
+    const JpStatus status = make_rounds(response, step, is_done, error);
+    closing_release(world, &response->closing);
+    return status;
+}
+
+// so many steps ahead a contact is seen to come: it begins with closed joints
+static const double AHEAD = 2.0;
+
+// so many steps joints stay closed after a contact, for the next one: what they open by is an error
+// of positions, and these steps take two more of ODE each
+enum { STAY_CLOSED = 16 };
+
+// A step in which nothing touches: its end has closed joints if something may in the next one.
+static JpStatus fly(WorldResponse *response, double step, JpError *error)
+{
+    JpWorld *world = response->world;
+    bool is_soon = response->is_held && ++world->flown <= STAY_CLOSED;
+    for (size_t i = 0; i < response->place_count; i++) {
+        is_soon = is_soon || is_near(response, &response->places[i], AHEAD * step);
+    }
+    closing_release(world, &response->closing);
+    if (is_soon) {
+        bodies_rest(&world->bodies);
+        REFUSAL_TRY(find_linear(response, error));
+        response->is_closed = response->is_linear && closing_is_possible(response->world, step);
+    }
+    if (response->is_held && !response->is_closed) {
+        bodies_put_back(&world->bodies);
+        return opening_open(world, &response->closing, step, response->speeds, error);
+    }
+    return JP_OK;
 }
 
 JpStatus world_impulse_step(JpWorld *world, double step, WorldResponse *response, bool *is_done,
                             JpError *error)
 {
-    find_reach(world);
+    world->bodies.moving = world->bodies.reach;
     if (!world_response_make(world, step, response)) {
         return refusal(error, JP_ERROR_MEMORY, "there is no memory for the contacts of a step");
     }
     REFUSAL_TRY(trial_check(world, error));
-    REFUSAL_TRY(world_response_step(response, step, response->base, error));
-    world_response_read_bodies(world, response->speeds);
-    set_free(response, step);
+    REFUSAL_TRY(find_bases(response, step, error));
     *is_done = true;
-    if (!activate_near(response, step)) {
-        return JP_OK;
-    }
-    bodies_put_back(&world->bodies);
-    bodies_rest(&world->bodies);
-    response->is_linear = closing_is_linear(world);
-    if (response->is_linear && !closing_make(world, &response->closing)) {
-        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the joints of a step");
-    }
-    REFUSAL_TRY(close_joints(response, step, error));
-    for (size_t i = 0; i < response->place_count; i++) {
-        world->stats.rows += response->places[i].is_active ? 1 : 0;
-    }
-    return make_rounds(response, step, is_done, error);
-}
-
-// Moves a body on along what an impulse in a row does to it, times a moment, N s^2.
-static void move_on(dBodyID body, const double *speeds, double moment)
-{
-    const dReal *at = dBodyGetPosition(body);
-    dBodySetPosition(body, at[0] + moment * speeds[0], at[1] + moment * speeds[1],
-                     at[2] + moment * speeds[2]);
-    dQuaternion turned;
-    bodies_turn(dBodyGetQuaternion(body), &speeds[3], moment, turned);
-    dBodySetQuaternion(body, turned);
+    return activate_near(response, step) ? find_impulses(response, step, is_done, error)
+                                         : fly(response, step, error);
 }
 
 // Rotors, and the mean forces on pins.
@@ -254,17 +332,39 @@ static void finish_place(const ResponsePlace *of, const WorldResponse *response,
     }
 }
 
-void impulse_finish(JpWorld *world, double step, WorldResponse *response)
+// Moves the bodies by when in the step the impulses came, and adds to their speeds what the world's
+// step has not.
+static JpStatus move_on(WorldResponse *response, double step, JpError *error)
 {
-    const size_t reach = world->bodies.reach;
-    const size_t numbers = BODY_NUMBERS * reach;
-    for (size_t i = 0; i < response->row_count; i++) {
-        const double late = response->moment[i] - 0.5 * step * response->net[i];
-        for (size_t b = 0; late != 0.0 && b < reach; b++) {
-            move_on(world->bodies.records[b].id, &response->bodies[i * numbers + BODY_NUMBERS * b],
-                    late);
-        }
+    const size_t moving = response->world->bodies.moving;
+    const size_t numbers = BODY_NUMBERS * moving;
+    double *pushed = calloc(3 * numbers + 1, sizeof *pushed);
+    if (pushed == NULL) {
+        return refusal(error, JP_ERROR_MEMORY, "there is no memory for the end of a step");
     }
+    double *moved = pushed + numbers;
+    double *turned = moved + numbers;
+    response_rate_push(response, pushed, moved, turned);
+    for (size_t i = 0; i < numbers; i++) {
+        moved[i] = kernel_columns_late(0.5 * step, moved[i], pushed[i], turned[i]);
+    }
+    for (size_t i = 0; i < moving; i++) {
+        const dBodyID id = response->world->bodies.records[i].id;
+        const double *by = &turned[BODY_NUMBERS * i];
+        const dReal *velocity = dBodyGetLinearVel(id);
+        const dReal *omega = dBodyGetAngularVel(id);
+        bodies_move(id, &moved[BODY_NUMBERS * i], 1.0);
+        dBodySetLinearVel(id, velocity[0] + by[0], velocity[1] + by[1], velocity[2] + by[2]);
+        dBodySetAngularVel(id, omega[0] + by[3], omega[1] + by[4], omega[2] + by[5]);
+    }
+    free(pushed);
+    return JP_OK;
+}
+
+JpStatus impulse_finish(JpWorld *world, double step, WorldResponse *response, JpError *error)
+{
+    bodies_rest(&world->bodies);
+    const JpStatus status = move_on(response, step, error);
     for (JpJoint *joint = world->joints; joint != NULL; joint = joint->next) {
         joint->force = (Vec3){0.0, 0.0, 0.0};
     }
@@ -275,9 +375,12 @@ void impulse_finish(JpWorld *world, double step, WorldResponse *response)
         joint->rotor.position += 0.5 * step * joint->rotor.speed;
     }
     inside_book(response);
-    if (response->is_linear) {
-        bodies_rest(&world->bodies);
-        closing_run(world, &response->closing, step);
-        bodies_wake(&world->bodies);
+    if (response->is_closed || (response->is_linear && response->side_count > 0)) {
+        closing_run(world, &response->closing, step, response->is_closed);
     }
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        world->bodies.records[i].is_closed = response->is_closed;
+    }
+    bodies_wake(&world->bodies);
+    return status;
 }

@@ -7,13 +7,14 @@
 // world responded so is seen from the step under the contacts' forces (world/impulse.c).
 #include "world/response_cache.h"
 
+#include "kernel/columns.h"
 #include "world/bodies.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    SETS = 3,
+    SETS = KERNEL_COLUMNS_KNOWN,
     STEPS_BETWEEN = 4, // from one to the next that is found
     STEPS_OVER = 12,   // that the three may lie apart
     SHORTEST_PAUSE = 16,
@@ -26,6 +27,7 @@ struct ResponseCache {
     size_t place_count;
     size_t count; // sets that are kept, the newest first
     double step;  // s
+    double mass;  // kg and kg m^2, of all bodies: others respond otherwise
     size_t found_at[SETS];
     double *sets[SETS]; // the columns, then the bodies
     dBodyID *bodies;
@@ -46,12 +48,25 @@ void response_cache_free(ResponseCache *cache)
     }
 }
 
+// A sum that changes with the mass or inertia of any body.
+static double mass_of(const Bodies *bodies)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < bodies->moving; i++) {
+        dMass mass;
+        dBodyGetMass(bodies->records[i].id, &mass);
+        sum += mass.mass + mass.I[0] + mass.I[5] + mass.I[10];
+    }
+    return sum;
+}
+
 // Whether a step is of the places, rows and bodies that are kept.
 static bool is_alike(const ResponseCache *cache, const WorldResponse *response)
 {
     const Bodies *bodies = &response->world->bodies;
     if (cache->row_count != response->row_count || cache->body_count != bodies->moving ||
-        cache->place_count != response->place_count || cache->step != response->step) {
+        cache->place_count != response->place_count || cache->step != response->step ||
+        cache->mass != mass_of(bodies)) {
         return false;
     }
     for (size_t i = 0; i < bodies->moving; i++) {
@@ -77,6 +92,16 @@ static bool is_found_as_soon(const WorldResponse *response)
     return response->is_linear && rows < 2;
 }
 
+// What the newest sets tell of a step.
+static KernelShares shares_of(const ResponseCache *cache, size_t sets, size_t now)
+{
+    double times_s[SETS];
+    for (size_t i = 0; i < sets; i++) {
+        times_s[i] = cache->step * ((double)cache->found_at[i] - (double)now);
+    }
+    return kernel_columns_shares(times_s, sets, 0.0);
+}
+
 void response_cache_fill(WorldResponse *response)
 {
     const ResponseCache *cache = response->world->cache;
@@ -86,26 +111,63 @@ void response_cache_fill(WorldResponse *response)
         now - cache->found_at[SETS - 1] > STEPS_OVER || !is_alike(cache, response)) {
         return;
     }
-    double shares[SETS];
-    for (int i = 0; i < SETS; i++) {
-        shares[i] = 1.0;
-        for (int k = 0; k < SETS; k++) {
-            if (k != i) {
-                shares[i] *= ((double)now - (double)cache->found_at[k]) /
-                             ((double)cache->found_at[i] - (double)cache->found_at[k]);
-            }
-        }
-    }
+    const KernelShares shares = shares_of(cache, cache->count, now);
     const size_t columns = cache->row_count * cache->row_count;
     for (size_t i = 0; i < set_size(cache); i++) {
         double *number = i < columns ? &response->columns[i] : &response->bodies[i - columns];
-        *number = shares[0] * cache->sets[0][i] + shares[1] * cache->sets[1][i] +
-                  shares[2] * cache->sets[2][i];
+        *number = shares.value[0] * cache->sets[0][i] + shares.value[1] * cache->sets[1][i] +
+                  shares.value[2] * cache->sets[2][i];
     }
     for (size_t i = 0; i < response->place_count; i++) {
         response->places[i].is_known = response->places[i].is_active;
     }
     response->is_cached = true;
+}
+
+// Sets that are recent enough to tell a rate.
+static size_t recent_sets(const ResponseCache *cache, size_t now)
+{
+    size_t recent = 0;
+    while (recent < cache->count && now - cache->found_at[recent] <= STEPS_OVER) {
+        recent++;
+    }
+    return recent > 0 && now - cache->found_at[0] <= STEPS_BETWEEN ? recent : 0;
+}
+
+bool response_cache_rates(WorldResponse *response)
+{
+    const ResponseCache *cache = response->world->cache;
+    const size_t now = response->world->stats.steps;
+    if (cache == NULL || !is_alike(cache, response)) {
+        return false;
+    }
+    // in another round the newest set is this step's
+    const bool is_kept = cache->count > 0 && cache->found_at[0] == now;
+    const size_t known = recent_sets(cache, now);
+    if (known < (is_kept ? 2 : 1)) {
+        return false;
+    }
+    const size_t columns = cache->row_count * cache->row_count;
+    const size_t numbers = set_size(cache) - columns;
+    // a step that has found its own has these first
+    const bool is_own = !response->is_cached;
+    const size_t first = is_own && is_kept ? 1 : 0;
+    double times_s[SETS] = {0.0};
+    const double *sets[SETS] = {response->bodies};
+    size_t count = is_own ? 1 : 0;
+    for (size_t i = first; i < known && count < SETS; i++, count++) {
+        times_s[count] = cache->step * ((double)cache->found_at[i] - (double)now);
+        sets[count] = cache->sets[i] + columns;
+    }
+    const KernelShares shares = kernel_columns_shares(times_s, count, 0.0);
+    for (size_t i = 0; i < numbers; i++) {
+        double rate = 0.0;
+        for (size_t k = 0; k < count; k++) {
+            rate += shares.rate[k] * sets[k][i];
+        }
+        response->rates[i] = rate;
+    }
+    return true;
 }
 
 void response_cache_note(JpWorld *world, bool is_promised)
@@ -132,6 +194,7 @@ static ResponseCache *start(const WorldResponse *response)
     cache->body_count = response->world->bodies.moving;
     cache->place_count = response->place_count;
     cache->step = response->step;
+    cache->mass = mass_of(&response->world->bodies);
     const size_t numbers = SETS * set_size(cache) * sizeof(double);
     cache->memory = calloc(1, numbers + cache->body_count * sizeof *cache->bodies +
                                   cache->place_count * sizeof *cache->is_active + 1);

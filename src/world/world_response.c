@@ -46,7 +46,7 @@ static bool make_room(WorldResponse *response)
     count(world, response);
     const size_t n = response->row_count;
     const size_t body = BODY_NUMBERS * world->bodies.moving;
-    const size_t numbers = (8 + INSIDE_ROWS) * n + n * n + (n + 1) * body;
+    const size_t numbers = (9 + INSIDE_ROWS) * n + 2 * n * n + (2 * n + 1) * body;
     const size_t size = numbers * sizeof(double) + response->place_count * sizeof(ResponsePlace) +
                         n * (sizeof(Direction *) + INSIDE_ROWS * sizeof(size_t));
     double *at = response->memory = calloc(1, size + 1);
@@ -54,14 +54,17 @@ static bool make_room(WorldResponse *response)
         return false;
     }
     double **const by_row[] = {&response->frozen, &response->base, &response->found,
-                               &response->pushed, &response->net,  &response->moment,
-                               &response->rotors, &response->free};
+                               &response->pushed, &response->net,  &response->rotors,
+                               &response->free};
     for (size_t i = 0; i < sizeof by_row / sizeof *by_row; i++) {
         *by_row[i] = take(&at, n);
     }
+    response->moment = take(&at, 2 * n);
     response->signs = take(&at, INSIDE_ROWS * n);
     response->columns = take(&at, n * n);
+    response->drift = take(&at, n * n);
     response->bodies = take(&at, n * body);
+    response->rates = take(&at, n * body);
     response->speeds = take(&at, body);
     response->places = (ResponsePlace *)at;
     response->rows = (const Direction **)(response->places + response->place_count);
