@@ -242,8 +242,9 @@ bool closing_make(const JpWorld *world, Closing *closing)
     *closing = (Closing){.count = count,
                          .erp = dWorldGetERP(world->id),
                          .joints = calloc(count + 1, sizeof *closing->joints),
-                         .speeds = calloc(numbers + 1, sizeof *closing->speeds)};
-    if (closing->joints == NULL || closing->speeds == NULL) {
+                         .speeds = calloc(numbers + 1, sizeof *closing->speeds),
+                         .kept = calloc(world->bodies.moving + 1, sizeof *closing->kept)};
+    if (closing->joints == NULL || closing->speeds == NULL || closing->kept == NULL) {
         return false;
     }
     list_joints(world, closing->joints);
@@ -261,6 +262,7 @@ void closing_free(Closing *closing)
 {
     free(closing->joints);
     free(closing->speeds);
+    free(closing->kept);
     *closing = (Closing){0};
 }
 
@@ -306,6 +308,9 @@ void closing_run(JpWorld *world, Closing *closing, double step, bool has_positio
     set_aside(closing);
     dWorldGetGravity(world->id, gravity);
     dWorldSetGravity(world->id, 0.0, 0.0, 0.0);
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        closing->kept[i] = world->bodies.records[i].kept;
+    }
     bodies_keep(&world->bodies);
     step_freely(world, closing, step, 0.0, speeds);
     if (has_positions) {
@@ -316,6 +321,7 @@ void closing_run(JpWorld *world, Closing *closing, double step, bool has_positio
     for (size_t i = 0; i < world->bodies.moving; i++) {
         const dBodyID id = world->bodies.records[i].id;
         const double *of = &speeds[BODY_NUMBERS * i];
+        world->bodies.records[i].kept = closing->kept[i];
         double *by = &moved[BODY_NUMBERS * i];
         for (size_t k = 0; k < BODY_NUMBERS; k++) {
             by[k] -= of[k];
