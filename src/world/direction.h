@@ -19,6 +19,9 @@ Direction direction_along(const dBodyID bodies[2], const dReal *axis, const dRea
                           const dReal *second);
 Direction direction_about(const dBodyID bodies[2], const dReal *axis);
 
+// The same a time later, s: its arms have gone on with the bodies, its axis has not.
+Direction direction_later(const Direction *direction, double time);
+
 // How fast the first body goes in it against the second, with their present velocities.
 double direction_rate(const Direction *direction);
 

@@ -142,7 +142,7 @@ static JpStatus find_contacts(WorldResponse *response, double step, bool can_reu
         }
         REFUSAL_TRY(world_response_find_columns(response, step, error));
         set_free(response, step);
-        response_rate_find(response);
+        REFUSAL_TRY(response_rate_find(response, step, error));
         REFUSAL_TRY(inside_run(response, step, is_found, error));
     } while (*is_found && activate_near(response, step));
     if (*is_found && !response->is_cached && !response_cache_keep(response)) {

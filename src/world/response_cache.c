@@ -10,6 +10,7 @@
 #include "kernel/columns.h"
 #include "world/bodies.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,7 +30,8 @@ struct ResponseCache {
     double step;  // s
     double mass;  // kg and kg m^2, of all bodies: others respond otherwise
     size_t found_at[SETS];
-    double *sets[SETS]; // the columns, then the bodies
+    double *sets[SETS];   // the columns, then the bodies
+    double *speeds[SETS]; // of all bodies, six each, as those steps began
     dBodyID *bodies;
     bool *is_active; // by place
     void *memory;    // owned, of all of the above
@@ -124,11 +126,40 @@ void response_cache_fill(WorldResponse *response)
     response->is_cached = true;
 }
 
-// Sets that are recent enough to tell a rate.
-static size_t recent_sets(const ResponseCache *cache, size_t now)
+// Of the speeds of a step: what they may differ by from those of another one whose responses tell
+// how its own change. An impact turns speeds round, and with them the way that responses go.
+static const double CALM = 0.1;
+
+// of the fastest turning: what turns no faster changes responses by nothing to speak of
+static const double SLOW = 0.01;
+
+// Whether each body turns as it did in the step of a set.
+static bool turns_alike(const ResponseCache *cache, const Bodies *bodies, size_t set)
+{
+    double fastest = 0.0;
+    for (size_t i = 0; i < cache->body_count; i++) {
+        const dReal *omega = bodies->records[i].kept.omega;
+        fastest = fmax(fastest, sqrt(dCalcVectorDot3(omega, omega)));
+    }
+    for (size_t i = 0; i < cache->body_count; i++) {
+        const dReal *omega = bodies->records[i].kept.omega;
+        const double *before = &cache->speeds[set][BODY_NUMBERS * i + 3];
+        const dVector3 change = {omega[0] - before[0], omega[1] - before[1],
+                                 omega[2] - before[2], 0.0};
+        const double own = sqrt(dCalcVectorDot3(omega, omega));
+        if (!(sqrt(dCalcVectorDot3(change, change)) <= CALM * own + SLOW * fastest)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Sets that are recent enough to tell a rate, of steps in which bodies went as in this one.
+static size_t recent_sets(const ResponseCache *cache, const Bodies *bodies, size_t now)
 {
     size_t recent = 0;
-    while (recent < cache->count && now - cache->found_at[recent] <= STEPS_OVER) {
+    while (recent < cache->count && now - cache->found_at[recent] <= STEPS_OVER &&
+           turns_alike(cache, bodies, recent)) {
         recent++;
     }
     return recent > 0 && now - cache->found_at[0] <= STEPS_BETWEEN ? recent : 0;
@@ -143,7 +174,7 @@ bool response_cache_rates(WorldResponse *response)
     }
     // in another round the newest set is this step's
     const bool is_kept = cache->count > 0 && cache->found_at[0] == now;
-    const size_t known = recent_sets(cache, now);
+    const size_t known = recent_sets(cache, &response->world->bodies, now);
     if (known < (is_kept ? 2 : 1)) {
         return false;
     }
@@ -195,7 +226,8 @@ static ResponseCache *start(const WorldResponse *response)
     cache->place_count = response->place_count;
     cache->step = response->step;
     cache->mass = mass_of(&response->world->bodies);
-    const size_t numbers = SETS * set_size(cache) * sizeof(double);
+    const size_t speeds = BODY_NUMBERS * cache->body_count;
+    const size_t numbers = SETS * (set_size(cache) + speeds) * sizeof(double);
     cache->memory = calloc(1, numbers + cache->body_count * sizeof *cache->bodies +
                                   cache->place_count * sizeof *cache->is_active + 1);
     if (cache->memory == NULL) {
@@ -203,9 +235,10 @@ static ResponseCache *start(const WorldResponse *response)
         return NULL;
     }
     for (int i = 0; i < SETS; i++) {
-        cache->sets[i] = (double *)cache->memory + (size_t)i * set_size(cache);
+        cache->sets[i] = (double *)cache->memory + (size_t)i * (set_size(cache) + speeds);
+        cache->speeds[i] = cache->sets[i] + set_size(cache);
     }
-    cache->bodies = (dBodyID *)(cache->sets[0] + SETS * set_size(cache));
+    cache->bodies = (dBodyID *)(cache->sets[0] + SETS * (set_size(cache) + speeds));
     cache->is_active = (bool *)(cache->bodies + cache->body_count);
     for (size_t i = 0; i < cache->body_count; i++) {
         cache->bodies[i] = response->world->bodies.records[i].id;
@@ -231,6 +264,9 @@ bool response_cache_keep(const WorldResponse *response)
     const bool is_again = cache->count > 0 && cache->found_at[0] == now; // in another round
     if (!is_again) {
         double *oldest = cache->sets[SETS - 1];
+        double *oldest_speeds = cache->speeds[SETS - 1];
+        memmove(&cache->speeds[1], &cache->speeds[0], (SETS - 1) * sizeof *cache->speeds);
+        cache->speeds[0] = oldest_speeds;
         memmove(&cache->sets[1], &cache->sets[0], (SETS - 1) * sizeof *cache->sets);
         memmove(&cache->found_at[1], &cache->found_at[0], (SETS - 1) * sizeof *cache->found_at);
         cache->sets[0] = oldest;
@@ -241,5 +277,10 @@ bool response_cache_keep(const WorldResponse *response)
     memcpy(cache->sets[0], response->columns, columns * sizeof(double));
     memcpy(cache->sets[0] + columns, response->bodies,
            (set_size(cache) - columns) * sizeof(double));
+    for (size_t i = 0; i < cache->body_count; i++) {
+        const BodyMoment *kept = &world->bodies.records[i].kept;
+        memcpy(&cache->speeds[0][BODY_NUMBERS * i], kept->velocity, 3 * sizeof(double));
+        memcpy(&cache->speeds[0][BODY_NUMBERS * i + 3], kept->omega, 3 * sizeof(double));
+    }
     return true;
 }

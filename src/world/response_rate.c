@@ -98,13 +98,15 @@ static void add_body(WorldResponse *response, size_t number)
     }
 }
 
-void response_rate_find(WorldResponse *response)
+JpStatus response_rate_find(WorldResponse *response, double step, JpError *error)
 {
     const Bodies *bodies = &response->world->bodies;
-    response->has_rates =
-        inside_may_drift(response) && !is_any_askew(response) && response_cache_rates(response);
+    response->has_rates = inside_may_drift(response) && !is_any_askew(response);
     if (!response->has_rates) {
-        return;
+        return JP_OK;
+    }
+    if (!response_cache_rates(response)) {
+        REFUSAL_TRY(world_response_find_rates(response, step, error));
     }
     memset(response->drift, 0, response->row_count * response->row_count * sizeof(double));
     for (size_t i = 0; i < bodies->moving; i++) {
@@ -112,6 +114,7 @@ void response_rate_find(WorldResponse *response)
             add_body(response, i);
         }
     }
+    return JP_OK;
 }
 
 void response_rate_push(const WorldResponse *response, double *speeds, double *positions,

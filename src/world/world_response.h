@@ -43,6 +43,7 @@ typedef struct WorldResponse {
     double *rates;   // likewise, how these change with time, 1/s of it
     double *drift;   // S, row by row, 1/(kg s): W changes by S + S'
     double *speeds;  // of all bodies after the base
+    double *later;   // likewise, where they are a little later
     size_t *inside;  // of rows of the kernel: which row it is, and 1; 0 of one that is still
     double *signs;   // likewise
     void *memory;    // owned, of all of the above
@@ -71,6 +72,10 @@ void world_response_take(const WorldResponse *response);
 // Finds the responses to pushes in the rows of all active places beside the base, but for those
 // that are known.
 JpStatus world_response_find_columns(WorldResponse *response, double step, JpError *error);
+
+// Finds how the responses change as all bodies go on along their speeds, by trials where bodies are
+// a little later: of all active places, whose responses are known.
+JpStatus world_response_find_rates(WorldResponse *response, double step, JpError *error);
 
 // Whether the responses that are not known yet, and contacts in all active places, can be found
 // within the limit of work.
