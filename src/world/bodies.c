@@ -311,7 +311,7 @@ void bodies_find_all(Bodies *bodies)
         BodyRecord *record = &bodies->records[i];
         keep_moment(record->id, &record->found);
         record->is_gyroscopic = dBodyGetGyroscopicMode(record->id);
-        record->was_closed = record->is_closed;
+        record->found_past = record->past;
     }
 }
 
@@ -322,7 +322,7 @@ void bodies_put_back_all(Bodies *bodies)
         put_back_moment(record->id, &record->found);
         dBodySetGyroscopicMode(record->id, record->is_gyroscopic);
         record->is_gyrating = record->is_resting = false;
-        record->is_closed = record->was_closed;
+        record->past = record->found_past;
     }
     bodies->moving = bodies->count;
 }
@@ -372,6 +372,27 @@ void bodies_move(dBodyID id, const double *speeds, double times)
     dQuaternion turned;
     bodies_turn(dBodyGetQuaternion(id), &speeds[3], times, turned);
     dBodySetQuaternion(id, turned);
+}
+
+void bodies_add_speeds(const BodyRecord *record, const double *speeds)
+{
+    double sums[BODY_NUMBERS];
+    bodies_read_speeds(record, sums);
+    for (int k = 0; k < BODY_NUMBERS; k++) {
+        sums[k] += speeds[k];
+    }
+    dBodySetLinearVel(record->id, sums[0], sums[1], sums[2]);
+    dBodySetAngularVel(record->id, sums[3], sums[4], sums[5]);
+}
+
+void bodies_move_kept(BodyRecord *record, const double *speeds, double times)
+{
+    dQuaternion turned;
+    bodies_turn(record->kept.turn, &speeds[3], times, turned);
+    memcpy(record->kept.turn, turned, sizeof record->kept.turn);
+    for (int k = 0; k < 3; k++) {
+        record->kept.position[k] += times * speeds[k];
+    }
 }
 
 void bodies_read_speeds(const BodyRecord *record, double *speeds)

@@ -188,7 +188,7 @@ void closing_release(JpWorld *world, Closing *closing)
 
 // What ODE's joints may yield in a step by their CFM, of what the same forces do to the heaviest
 // body by itself: joints that stay open take that back in the next steps, closed ones never do.
-static const double YIELD_MOST = 5e-6;
+static const double YIELD_MOST = 2e-5;
 
 static bool is_hard(const JpWorld *world, double step)
 {
@@ -235,6 +235,13 @@ static void step_freely(JpWorld *world, const Closing *closing, double step, dou
     bodies_put_back(&world->bodies);
 }
 
+static bool holds(dJointID joint)
+{
+    const dJointType type = dJointGetType(joint);
+    return dJointIsEnabled(joint) && (type == dJointTypeHinge || type == dJointTypeSlider ||
+                                      type == dJointTypeBall || type == dJointTypeFixed);
+}
+
 bool closing_make(const JpWorld *world, Closing *closing)
 {
     const size_t count = list_joints(world, NULL);
@@ -252,6 +259,7 @@ bool closing_make(const JpWorld *world, Closing *closing)
         if (has_own_erp(closing->joints[i].joint)) {
             closing->joints[i].erp = own_erp(closing->joints[i].joint);
         }
+        closing->has_any = closing->has_any || holds(closing->joints[i].joint);
         closing->joints[i].yields =
             dJointIsEnabled(closing->joints[i].joint) && yields(world, closing->joints[i].joint);
     }
@@ -302,6 +310,9 @@ static void set_aside(Closing *closing)
 void closing_run(JpWorld *world, Closing *closing, double step, bool has_positions)
 {
     const size_t numbers = BODY_NUMBERS * world->bodies.moving;
+    if (!closing->has_any) {
+        return;
+    }
     double *speeds = closing->speeds;
     double *moved = closing->speeds + numbers;
     dVector3 gravity;

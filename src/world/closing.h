@@ -24,6 +24,7 @@ typedef struct Closing {
     ClosingJoint *joints; // owned
     double *speeds;       // owned: room for those of all bodies, twice
     BodyMoment *kept;     // owned: room for how the step has kept them
+    bool has_any;         // whether one of them holds
     double erp;           // the world's own
     bool is_held;         // while joints have another ERP
     bool is_open;         // while feedback is set aside, too

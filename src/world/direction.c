@@ -51,6 +51,22 @@ Direction direction_later(const Direction *direction, double time)
     return later;
 }
 
+void direction_move(Direction *direction, const Bodies *bodies, const double *moves)
+{
+    for (int i = 0; i < 2 && !direction->is_turn; i++) {
+        const BodyRecord *record =
+            direction->bodies[i] != NULL ? bodies_find(bodies, direction->bodies[i]) : NULL;
+        if (record != NULL) {
+            const double *move = &moves[BODY_NUMBERS * (size_t)(record - bodies->records)];
+            dVector3 carried;
+            dCalcVectorCross3(carried, move + 3, direction->arms[i]);
+            for (int k = 0; k < 3; k++) {
+                direction->arms[i][k] += carried[k];
+            }
+        }
+    }
+}
+
 double direction_of_move(const Direction *direction, int number, const double move[6])
 {
     const dVector3 turn = {move[3], move[4], move[5], 0.0};

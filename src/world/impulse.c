@@ -141,7 +141,9 @@ static JpStatus find_contacts(WorldResponse *response, double step, bool can_reu
             break;
         }
         REFUSAL_TRY(world_response_find_columns(response, step, error));
-        set_free(response, step);
+        if (!response->is_beyond) {
+            set_free(response, step);
+        }
         REFUSAL_TRY(response_rate_find(response, step, error));
         REFUSAL_TRY(inside_run(response, step, is_found, error));
     } while (*is_found && activate_near(response, step));
@@ -165,7 +167,7 @@ static JpStatus make_rounds(WorldResponse *response, double step, bool *is_done,
             world_response_take(response);
             return JP_OK;
         }
-        double *before = response->free; // which is found anew
+        double *before = response->before;
         memcpy(before, response->pushed, size);
         memcpy(response->pushed, response->net, size);
         REFUSAL_TRY(world_response_step(response, step, response->found, error));
@@ -203,7 +205,7 @@ void impulse_reach(JpWorld *world)
 static bool are_closed(const Bodies *bodies)
 {
     for (size_t i = 0; i < bodies->reach; i++) {
-        if (!bodies->records[i].is_closed) {
+        if (!bodies->records[i].past.is_closed) {
             return false;
         }
     }
@@ -251,6 +253,69 @@ static JpStatus find_bases(WorldResponse *response, double step, JpError *error)
     return find_base(response, step, error);
 }
 
+// How much further bodies are to be expected at mid-step than half a step along the speeds of the
+// step's start: (h^2/8) a, a their mean acceleration in the step before, contacts included.
+static void find_beyond(WorldResponse *response, double step)
+{
+    const JpWorld *world = response->world;
+    const double share = world->last_step > 0.0 ? 0.125 * step * step / world->last_step : 0.0;
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        const BodyRecord *record = &world->bodies.records[i];
+        double *beyond = &response->beyond[BODY_NUMBERS * i];
+        for (size_t k = 0; k < BODY_NUMBERS; k++) {
+            const double now = k < 3 ? record->kept.velocity[k] : record->kept.omega[k - 3];
+            beyond[k] = record->past.has_speeds ? share * (now - record->past.speeds[k]) : 0.0;
+        }
+    }
+}
+
+static void move_beyond(WorldResponse *response, double times)
+{
+    Bodies *bodies = &response->world->bodies;
+    for (size_t i = 0; i < bodies->moving; i++) {
+        bodies_move_kept(&bodies->records[i], &response->beyond[BODY_NUMBERS * i], times);
+    }
+}
+
+// Moves bodies and rows to where they are to be expected at mid-step, for what pushes do. The step
+// that stays is made where ODE's joints are open as it needs them (world/closing.c): what it gives
+// without contacts is kept, and a step from here is what the others differ from.
+static JpStatus go_beyond(WorldResponse *response, double step, JpError *error)
+{
+    JpWorld *world = response->world;
+    const size_t size = BODY_NUMBERS * world->bodies.moving * sizeof(double);
+    find_beyond(response, step);
+    for (size_t i = 0; i < response->place_count; i++) {
+        Place *place = response->places[i].place;
+        for (size_t k = 0; k < place->row_count; k++) {
+            direction_move(&place->rows[k], &world->bodies, response->beyond);
+        }
+    }
+    move_beyond(response, 1.0);
+    bodies_put_back(&world->bodies);
+    world_response_read_rates(response, response->frozen);
+    memcpy(response->later, response->speeds, size);
+    REFUSAL_TRY(world_response_step(response, step, response->base, error));
+    world_response_read_bodies(world, response->speeds);
+    bodies_put_back(&world->bodies);
+    for (size_t i = 0; i < BODY_NUMBERS * world->bodies.moving; i++) {
+        response->apart[i] = response->later[i] - response->speeds[i];
+    }
+    response->is_beyond = true;
+    return JP_OK;
+}
+
+// Takes bodies back from there, with what the step gives where they are.
+static void come_back(WorldResponse *response)
+{
+    const Bodies *bodies = &response->world->bodies;
+    for (size_t i = 0; i < bodies->moving; i++) {
+        bodies_add_speeds(&bodies->records[i], &response->apart[BODY_NUMBERS * i]);
+    }
+    move_beyond(response, -1.0);
+    bodies_put_back_positions(bodies);
+}
+
 // Contacts in places that come near their sides: all of the step but what is done at its end.
 static JpStatus find_impulses(WorldResponse *response, double step, bool *is_done, JpError *error)
 {
@@ -266,9 +331,15 @@ static JpStatus find_impulses(WorldResponse *response, double step, bool *is_don
     for (size_t i = 0; i < response->place_count; i++) {
         world->stats.rows += response->places[i].is_active ? 1 : 0;
     }
-    const JpStatus status = make_rounds(response, step, is_done, error);
+    if (response->is_closed && inside_may_drift(response)) {
+        REFUSAL_TRY(go_beyond(response, step, error));
+    }
+    REFUSAL_TRY(make_rounds(response, step, is_done, error));
     closing_release(world, &response->closing);
-    return status;
+    if (response->is_beyond) {
+        come_back(response);
+    }
+    return JP_OK;
 }
 
 // so many steps ahead a contact is seen to come: it begins with closed joints
@@ -350,15 +421,19 @@ static JpStatus move_on(WorldResponse *response, double step, JpError *error)
     }
     for (size_t i = 0; i < moving; i++) {
         const dBodyID id = response->world->bodies.records[i].id;
-        const double *by = &turned[BODY_NUMBERS * i];
-        const dReal *velocity = dBodyGetLinearVel(id);
-        const dReal *omega = dBodyGetAngularVel(id);
         bodies_move(id, &moved[BODY_NUMBERS * i], 1.0);
-        dBodySetLinearVel(id, velocity[0] + by[0], velocity[1] + by[1], velocity[2] + by[2]);
-        dBodySetAngularVel(id, omega[0] + by[3], omega[1] + by[4], omega[2] + by[5]);
+        bodies_add_speeds(&response->world->bodies.records[i], &turned[BODY_NUMBERS * i]);
     }
     free(pushed);
     return JP_OK;
+}
+
+// Keeps the speeds with which the step began.
+static void keep_speeds(BodyRecord *record)
+{
+    memcpy(record->past.speeds, record->kept.velocity, 3 * sizeof *record->past.speeds);
+    memcpy(record->past.speeds + 3, record->kept.omega, 3 * sizeof *record->past.speeds);
+    record->past.has_speeds = true;
 }
 
 JpStatus impulse_finish(JpWorld *world, double step, WorldResponse *response, JpError *error)
@@ -379,7 +454,8 @@ JpStatus impulse_finish(JpWorld *world, double step, WorldResponse *response, Jp
         closing_run(world, &response->closing, step, response->is_closed);
     }
     for (size_t i = 0; i < world->bodies.moving; i++) {
-        world->bodies.records[i].is_closed = response->is_closed;
+        world->bodies.records[i].past.is_closed = response->is_closed;
+        keep_speeds(&world->bodies.records[i]);
     }
     bodies_wake(&world->bodies);
     return status;

@@ -36,17 +36,6 @@ static double share_at_ends(double erp)
     return 1.0 - 0.25 * erp;
 }
 
-// Moves the kept bodies, and the bodies themselves.
-static void move_kept(BodyRecord *record, const double *by, double times)
-{
-    dQuaternion turned;
-    bodies_turn(record->kept.turn, &by[3], times, turned);
-    memcpy(record->kept.turn, turned, sizeof record->kept.turn);
-    for (int k = 0; k < 3; k++) {
-        record->kept.position[k] += times * by[k];
-    }
-}
-
 // Makes a step at half of the ERP, beside one whose speeds are given, and tells X.
 static JpStatus try_half(JpWorld *world, double step, double erp, const double *speeds,
                          JpError *error)
@@ -97,8 +86,8 @@ JpStatus opening_open(JpWorld *world, Closing *closing, double step, const doubl
     for (size_t i = 0; i < world->bodies.moving; i++) {
         BodyRecord *record = &world->bodies.records[i];
         const double *now = &speeds[BODY_NUMBERS * i];
-        move_kept(record, record->opening, CLOSING_ERP / closing->erp - 1.0);
-        record->is_closed = false;
+        bodies_move_kept(record, record->opening, CLOSING_ERP / closing->erp - 1.0);
+        record->past.is_closed = false;
         dBodySetLinearVel(record->id, now[0], now[1], now[2]);
         dBodySetAngularVel(record->id, now[3], now[4], now[5]);
         dBodySetForce(record->id, 0, 0, 0);
@@ -193,8 +182,8 @@ static JpStatus open_joints(JpWorld *world, double step, const double *speeds, J
     REFUSAL_TRY(opening_find(world, step, speeds, error));
     for (size_t i = 0; i < world->bodies.moving; i++) {
         BodyRecord *record = &world->bodies.records[i];
-        if (!record->is_closed) {
-            move_kept(record, record->opening, open_too_little(world, step));
+        if (!record->past.is_closed) {
+            bodies_move_kept(record, record->opening, open_too_little(world, step));
         }
     }
     bodies_put_back_positions(&world->bodies);
@@ -225,7 +214,7 @@ static JpStatus settle(JpWorld *world, double step, double *speeds, JpError *err
         closing_is_possible(world, step)) {
         // contacts within the step want them closed
         for (size_t i = 0; i < world->bodies.reach; i++) {
-            world->bodies.records[i].is_closed = true;
+            world->bodies.records[i].past.is_closed = true;
         }
         return JP_OK;
     }

@@ -163,7 +163,9 @@ static void walk_body(Walk *walk, BodyRecord *record)
     walk_numbers(walk, record->last_alpha, 3, FINITE, "a body's angular acceleration before");
     walk_flag(walk, &record->has_last, "whether a body was stepped before");
     walk_numbers(walk, record->opening, 6, FINITE, "how far ODE's joints moved a body");
-    walk_flag(walk, &record->was_closed, "whether a body's joints are closed");
+    walk_flag(walk, &record->found_past.is_closed, "whether a body's joints are closed");
+    walk_flag(walk, &record->found_past.has_speeds, "whether a body was stepped before");
+    walk_numbers(walk, record->found_past.speeds, BODY_NUMBERS, OF_BODY, "a body's speeds before");
 }
 
 static void walk_state(Walk *walk, ContactState *state)

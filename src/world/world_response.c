@@ -46,7 +46,7 @@ static bool make_room(WorldResponse *response)
     count(world, response);
     const size_t n = response->row_count;
     const size_t body = BODY_NUMBERS * world->bodies.moving;
-    const size_t numbers = (9 + INSIDE_ROWS) * n + 2 * n * n + (2 * n + 2) * body;
+    const size_t numbers = (10 + INSIDE_ROWS) * n + 2 * n * n + (2 * n + 4) * body;
     const size_t size = numbers * sizeof(double) + response->place_count * sizeof(ResponsePlace) +
                         n * (sizeof(Direction *) + INSIDE_ROWS * sizeof(size_t));
     double *at = response->memory = calloc(1, size + 1);
@@ -66,6 +66,9 @@ static bool make_room(WorldResponse *response)
     response->bodies = take(&at, n * body);
     response->rates = take(&at, n * body);
     response->later = take(&at, body);
+    response->beyond = take(&at, body);
+    response->apart = take(&at, body);
+    response->before = take(&at, n);
     response->speeds = take(&at, body);
     response->places = (ResponsePlace *)at;
     response->rows = (const Direction **)(response->places + response->place_count);

@@ -21,6 +21,7 @@ typedef struct WorldResponse {
     bool is_linear; // whether no bound can be passed (world/closing.h)
     bool is_held;   // whether ODE's joints are closed at its start and are held so (likewise)
     bool is_closed; // whether they are at its end
+    bool is_beyond; // whether bodies are where they are expected at mid-step
     bool has_rates; // whether it is known how the responses change in it (world/response_rate.h)
     bool is_cached; // whether the responses to pushes are those of steps before
                     // (world/response_cache.h)
@@ -43,6 +44,9 @@ typedef struct WorldResponse {
     double *rates;   // likewise, how these change with time, 1/s of it
     double *drift;   // S, row by row, 1/(kg s): W changes by S + S'
     double *speeds;  // of all bodies after the base
+    double *beyond;  // of all bodies: how much further they are expected at mid-step, m, rad
+    double *apart;   // likewise: what speeds after the base have more where they are not
+    double *before;  // impulses of the base in the round before
     double *later;   // likewise, where they are a little later
     size_t *inside;  // of rows of the kernel: which row it is, and 1; 0 of one that is still
     double *signs;   // likewise
