@@ -188,7 +188,7 @@ void closing_release(JpWorld *world, Closing *closing)
 
 // What ODE's joints may yield in a step by their CFM, of what the same forces do to the heaviest
 // body by itself: joints that stay open take that back in the next steps, closed ones never do.
-static const double YIELD_MOST = 2e-5;
+static const double YIELD_MOST = 5e-6;
 
 static bool is_hard(const JpWorld *world, double step)
 {
