@@ -272,8 +272,7 @@ static void move_end(KernelStep *step)
                             speeds);
     }
     for (size_t i = 0; i < step->coordinate_count; i++) {
-        positions[i] =
-            kernel_columns_late(half_s, step->moved[1][i], step->moved[0][i], speeds[i]);
+        positions[i] = kernel_columns_late(half_s, step->moved[1][i], step->moved[0][i], speeds[i]);
         if (step->has_drift && step->is_calm) {
             // accelerations that change beside the contacts'
             positions[i] -= cube * step->free_rate[i];

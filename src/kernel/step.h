@@ -83,10 +83,10 @@ typedef struct KernelStep {
     bool has_drift;
     bool is_calm; // whether the contacts did not change the accelerations much in the last step
     double *columns[KERNEL_COLUMNS_KNOWN];  // by row what 1 N s there does to the speeds, by
-                                           // coordinate, in this step and in those before
+                                            // coordinate, in this step and in those before
     double middles_s[KERNEL_COLUMNS_KNOWN]; // when these had their middles
-    const double *rates;                   // of this step's columns
-    const double *drift;                   // S of the mobility (kernel/motion.c)
+    const double *rates;                    // of this step's columns
+    const double *drift;                    // S of the mobility (kernel/motion.c)
     KernelStepWork work;
 } KernelStep;
 

@@ -1,6 +1,6 @@
 // Steps a world whose contacts are shorter than the step.
 //
-// A world that is not at a bound responses linearly to pushes in the places at which its joints
+// A world that is not at a bound responds linearly to pushes in the places at which its joints
 // with play touch. Rows J of these are frozen at mid-step: of a hinge or slider its coordinate, of
 // a pin two directions across its axis. Their response is found by steps that are taken back: one
 // without contacts gives their accelerations g; one with a push in a row, a column of their
@@ -15,16 +15,21 @@
 // friction, of a motor, of a contact that opened. Then g and W are found again about that step, up
 // to ROUNDS times; if they still differ, the step stands as it is and is counted as a fallback.
 //
-// In a world whose joints of ODE only hold, that step is what g + W P promise, and is not made
-// unless somebody reads their forces (dJointSetFeedback). One more step closes the velocities
-// (world/closing.h).
+// In a world that has no bounds (world/closing.h) that step is what g + W P promise, and is not
+// made unless somebody reads the forces of its joints (dJointSetFeedback). There
+// - A and W change in the step, W' = S + S' (world/response_rate.h), by the formulas of
+//   kernel/columns.h; and they are found where bodies are expected at mid-step, (h^2/8) a further
+//   than along the speeds of the step's start;
+// - ODE's joints are closed at both ends of a step (world/closing.h), from the one before contacts
+//   may come until some after they have ended.
 //
 // The first of these steps is that of all bodies, and stays for those that no joint with play can
 // move in the step, by joints and contacts. In the others these are disabled.
 //
-// With n rows in which joints touch a step costs n + 3 steps of ODE, and 1 where none does. W and A
-// may be those of the steps before (world/response_cache.h): then the step under the contacts'
-// forces has to be as promised, and n steps are saved.
+// With n rows in which joints touch a step costs n + 4 steps of ODE, n + 1 more where the change of
+// A is found by trials; n + 3 in a world with bounds; 1 where nothing touches, and 3 while joints
+// are kept closed. W and A may be those of the steps before (world/response_cache.h): then the step
+// under the contacts' forces has to be as promised, and n steps are saved.
 #include "world/impulse.h"
 
 #include "kernel/columns.h"

@@ -144,8 +144,8 @@ static bool turns_alike(const ResponseCache *cache, const Bodies *bodies, size_t
     for (size_t i = 0; i < cache->body_count; i++) {
         const dReal *omega = bodies->records[i].kept.omega;
         const double *before = &cache->speeds[set][BODY_NUMBERS * i + 3];
-        const dVector3 change = {omega[0] - before[0], omega[1] - before[1],
-                                 omega[2] - before[2], 0.0};
+        const dVector3 change = {omega[0] - before[0], omega[1] - before[1], omega[2] - before[2],
+                                 0.0};
         const double own = sqrt(dCalcVectorDot3(omega, omega));
         if (!(sqrt(dCalcVectorDot3(change, change)) <= CALM * own + SLOW * fastest)) {
             return false;
@@ -175,7 +175,7 @@ bool response_cache_rates(WorldResponse *response)
     // in another round the newest set is this step's
     const bool is_kept = cache->count > 0 && cache->found_at[0] == now;
     const size_t known = recent_sets(cache, &response->world->bodies, now);
-    if (known < (is_kept ? 2 : 1)) {
+    if (known < (is_kept || response->is_cached ? 2 : 1)) { // of a rate: two times
         return false;
     }
     const size_t columns = cache->row_count * cache->row_count;
