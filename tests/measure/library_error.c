@@ -28,9 +28,8 @@ static const double TOLERANCE = 1e-11; // of the reference
 static const RunWatch NOBODY = {NULL, NULL};
 
 static const CaseKind *const KINDS[] = {
-    &CASE_FOUR_BAR, &CASE_BODIES,  &CASE_PENDULA, &CASE_FOUR_BARS, &CASE_SPRUNG,
-    &CASE_SLIDERS,  &CASE_TOUCHING, &CASE_LIMITS,  &CASE_HOLES,    &CASE_ROTORS,
-    &CASE_RUN_UPS,
+    &CASE_FOUR_BAR, &CASE_BODIES, &CASE_PENDULA, &CASE_FOUR_BARS, &CASE_SPRUNG,  &CASE_SLIDERS,
+    &CASE_TOUCHING, &CASE_LIMITS, &CASE_HOLES,   &CASE_ROTORS,    &CASE_RUN_UPS,
 };
 
 static bool load(const char *name, const char *const *settings, size_t count, Scenario *scenario,
