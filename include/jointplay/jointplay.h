@@ -256,7 +256,7 @@ typedef enum JpStepping {
     JP_STEPPING_STAGGERED, /* forces at mid-step: order 2 at the same cost; rows of JP_MAP_MIDPOINT
                             */
     JP_STEPPING_IMPULSE,   /* the same with the library's contacts integrated within the step,
-                              however short they are: n + 3 steps of ODE where joints touch in
+                              however short they are: n + 4 steps of ODE where joints touch in
                               n rows, one of a hinge or slider, two to nine of an end of a pin;
                               fewer where steps are short, more where bounds are passed */
 } JpStepping;

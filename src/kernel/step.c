@@ -34,10 +34,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// of the free accelerations, what impulses may change them by: their own change, which comes of the
-// second power of speeds, is then known to as much
-static const double CALM = 0.1;
-
 // a last step that is shorter than this share of the others tells no accelerations: rounding and
 // the corrections would stand in them
 static const double SHORT = 0.1;
@@ -73,7 +69,7 @@ void kernel_step_make_drift(KernelStep *step, const double *rates, const double 
     step->rates = rates;
     step->drift = drift;
     kernel_make_drift(&step->kernel);
-    for (size_t i = 0; i < KERNEL_STEP_COLUMNS; i++) {
+    for (size_t i = 0; i < KERNEL_COLUMNS_KNOWN; i++) {
         step->columns[i] =
             zeroed(step->coordinate_count * kernel_rows(&step->kernel), sizeof *step->columns[i]);
     }
@@ -92,7 +88,7 @@ void kernel_step_finish(KernelStep *step)
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         free(arrays[i]);
     }
-    for (size_t i = 0; i < KERNEL_STEP_COLUMNS; i++) {
+    for (size_t i = 0; i < KERNEL_COLUMNS_KNOWN; i++) {
         free(step->columns[i]);
     }
 }
@@ -112,10 +108,21 @@ void kernel_step_carry(KernelStep *step, Carry *carry)
     CARRY_ARRAY(carry, step->closed, step->coordinate_count);
     CARRY_ARRAY(carry, step->pressing, rows);
     CARRY_ARRAY(carry, step->total.impulse, rows);
-    for (size_t i = 0; step->has_drift && i < KERNEL_STEP_COLUMNS; i++) {
+    for (size_t i = 0; step->has_drift && i < KERNEL_COLUMNS_KNOWN; i++) {
         CARRY_ARRAY(carry, step->columns[i], step->coordinate_count * rows);
     }
     CARRY(carry, step->middles_s);
+}
+
+// What pushes do in a step with drift.
+static KernelColumns columns_of(const KernelStep *step)
+{
+    return (KernelColumns){
+        .rows = kernel_rows(&step->kernel),
+        .coordinates = step->coordinate_count,
+        .columns = step->columns[0],
+        .rates = step->rates,
+    };
 }
 
 void kernel_step_push(const KernelStep *step, double since_s, const KernelSums *sums,
@@ -126,37 +133,11 @@ void kernel_step_push(const KernelStep *step, double since_s, const KernelSums *
         step->adapter->push(step->own, 0.0, sums->moment, positions);
         return;
     }
-    const size_t count = step->coordinate_count;
-    const size_t rows = kernel_rows(&step->kernel);
-    const double off_s = since_s - 0.5 * step->width_s;
-    memset(speeds, 0, count * sizeof *speeds);
-    memset(positions, 0, count * sizeof *positions);
-    for (size_t row = 0; row < rows; row++) {
-        const double *column = step->columns[0] + row * count;
-        const double *rate = step->rates + row * count;
-        const double pushed = sums->impulse[row];
-        const double moved = sums->moment[row];
-        const double turned = off_s * pushed - moved;
-        const double carried = off_s * moved - 2.0 * sums->moment[rows + row];
-        for (size_t i = 0; i < count; i++) {
-            speeds[i] += pushed * column[i] + turned * rate[i];
-            positions[i] += moved * column[i] + carried * rate[i];
-        }
-    }
-}
-
-// Writes what the turning of the rows does in the whole step to the speeds.
-static void push_by_turning(const KernelStep *step, double *speeds)
-{
-    const size_t count = step->coordinate_count;
-    memset(speeds, 0, count * sizeof *speeds);
-    for (size_t row = 0; step->has_drift && row < kernel_rows(&step->kernel); row++) {
-        const double turned =
-            0.5 * step->width_s * step->total.impulse[row] - step->total.moment[row];
-        for (size_t i = 0; i < count; i++) {
-            speeds[i] += turned * step->rates[row * count + i];
-        }
-    }
+    memset(speeds, 0, step->coordinate_count * sizeof *speeds);
+    memset(positions, 0, step->coordinate_count * sizeof *positions);
+    const KernelColumns columns = columns_of(step);
+    kernel_columns_push(&columns, since_s - 0.5 * step->width_s, sums->impulse, sums->moment,
+                        speeds, positions);
 }
 
 // Sets what the accelerations beside the contacts' will be at mid-step: those of the step before,
@@ -196,28 +177,18 @@ static const double *find_beyond(KernelStep *step)
 // the start.
 static void keep_free(KernelStep *step, double *free_before)
 {
-    const size_t rows = kernel_rows(&step->kernel);
-    double size = 0.0;
-    double pushed = 0.0;
-    for (size_t i = 0; i < rows; i++) {
-        double change = 0.0;
-        for (size_t k = 0; step->steady > 0 && k < rows; k++) {
-            change += 2.0 * step->drift[i * rows + k] * step->total.impulse[k];
-        }
-        free_before[i] = step->kernel.free[i] + change;
-        size = fmax(size, fabs(step->kernel.free[i]));
-        pushed = fmax(pushed, fabs(change));
-    }
-    step->is_calm = pushed <= CALM * size;
+    const double *impulse = step->steady > 0 ? step->total.impulse : NULL;
+    step->is_calm = kernel_columns_free_after(kernel_rows(&step->kernel), step->drift, impulse,
+                                              step->kernel.free, free_before);
 }
 
 // The columns become those of the step before.
 static void age_columns(KernelStep *step)
 {
-    double *oldest = step->columns[KERNEL_STEP_COLUMNS - 1];
-    memmove(step->columns + 1, step->columns, (KERNEL_STEP_COLUMNS - 1) * sizeof *step->columns);
+    double *oldest = step->columns[KERNEL_COLUMNS_KNOWN - 1];
+    memmove(step->columns + 1, step->columns, (KERNEL_COLUMNS_KNOWN - 1) * sizeof *step->columns);
     memmove(step->middles_s + 1, step->middles_s,
-            (KERNEL_STEP_COLUMNS - 1) * sizeof *step->middles_s);
+            (KERNEL_COLUMNS_KNOWN - 1) * sizeof *step->middles_s);
     step->columns[0] = oldest;
     step->middles_s[0] = step->start_s + 0.5 * step->width_s;
 }
@@ -294,9 +265,14 @@ static void move_end(KernelStep *step)
     double *positions = step->work.changes[0];
     double *speeds = step->work.changes[1];
     // the world's step has the impulse along the rows of mid-step
-    push_by_turning(step, speeds);
+    memset(speeds, 0, step->coordinate_count * sizeof *speeds);
+    if (step->has_drift) {
+        const KernelColumns columns = columns_of(step);
+        kernel_columns_turn(&columns, step->width_s, step->total.impulse, step->total.moment,
+                            speeds);
+    }
     for (size_t i = 0; i < step->coordinate_count; i++) {
-        positions[i] = step->moved[1][i] - half_s * (step->moved[0][i] - speeds[i]);
+        positions[i] = kernel_columns_late(half_s, step->moved[1][i], step->moved[0][i], speeds[i]);
         if (step->has_drift && step->is_calm) {
             // accelerations that change beside the contacts'
             positions[i] -= cube * step->free_rate[i];

@@ -6,9 +6,8 @@
 // by, m/s and rad/s, in an order of the adapter's. Arrays "by row" have the rows of the kernel.
 #pragma once
 
+#include "kernel/columns.h"
 #include "kernel/kernel.h"
-
-enum { KERNEL_STEP_COLUMNS = 3 }; // steps of which it is known what rows do: a parabola in time
 
 // What a step asks of the world, in the order in which it asks. All are given what the step has in
 // `own`. Driven bodies are where they are at any time: what changes others leaves them alone.
@@ -83,11 +82,11 @@ typedef struct KernelStep {
     // what pushes do, and how that changes in the step; else as at mid-step
     bool has_drift;
     bool is_calm; // whether the contacts did not change the accelerations much in the last step
-    double *columns[KERNEL_STEP_COLUMNS];  // by row what 1 N s there does to the speeds, by
-                                           // coordinate, in this step and in those before
-    double middles_s[KERNEL_STEP_COLUMNS]; // when these had their middles
-    const double *rates;                   // of this step's columns
-    const double *drift;                   // S of the mobility (kernel/motion.c)
+    double *columns[KERNEL_COLUMNS_KNOWN];  // by row what 1 N s there does to the speeds, by
+                                            // coordinate, in this step and in those before
+    double middles_s[KERNEL_COLUMNS_KNOWN]; // when these had their middles
+    const double *rates;                    // of this step's columns
+    const double *drift;                    // S of the mobility (kernel/motion.c)
     KernelStepWork work;
 } KernelStep;
 

@@ -311,6 +311,7 @@ void bodies_find_all(Bodies *bodies)
         BodyRecord *record = &bodies->records[i];
         keep_moment(record->id, &record->found);
         record->is_gyroscopic = dBodyGetGyroscopicMode(record->id);
+        record->found_past = record->past;
     }
 }
 
@@ -321,6 +322,7 @@ void bodies_put_back_all(Bodies *bodies)
         put_back_moment(record->id, &record->found);
         dBodySetGyroscopicMode(record->id, record->is_gyroscopic);
         record->is_gyrating = record->is_resting = false;
+        record->past = record->found_past;
     }
     bodies->moving = bodies->count;
 }
@@ -360,6 +362,43 @@ void bodies_turn(const dReal *from, const dReal *by, double time, dQuaternion tu
     const double along = 0.5 * time * sinc(half);
     const dQuaternion step = {sinc_cos(half), along * by[0], along * by[1], along * by[2]};
     dQMultiply0(turned, step, from);
+}
+
+void bodies_move(dBodyID id, const double *speeds, double times)
+{
+    const dReal *at = dBodyGetPosition(id);
+    dBodySetPosition(id, at[0] + times * speeds[0], at[1] + times * speeds[1],
+                     at[2] + times * speeds[2]);
+    dQuaternion turned;
+    bodies_turn(dBodyGetQuaternion(id), &speeds[3], times, turned);
+    dBodySetQuaternion(id, turned);
+}
+
+void bodies_add_speeds(const BodyRecord *record, const double *speeds)
+{
+    double sums[BODY_NUMBERS];
+    bodies_read_speeds(record, sums);
+    for (int k = 0; k < BODY_NUMBERS; k++) {
+        sums[k] += speeds[k];
+    }
+    dBodySetLinearVel(record->id, sums[0], sums[1], sums[2]);
+    dBodySetAngularVel(record->id, sums[3], sums[4], sums[5]);
+}
+
+void bodies_move_kept(BodyRecord *record, const double *speeds, double times)
+{
+    dQuaternion turned;
+    bodies_turn(record->kept.turn, &speeds[3], times, turned);
+    memcpy(record->kept.turn, turned, sizeof record->kept.turn);
+    for (int k = 0; k < 3; k++) {
+        record->kept.position[k] += times * speeds[k];
+    }
+}
+
+void bodies_read_speeds(const BodyRecord *record, double *speeds)
+{
+    memcpy(speeds, dBodyGetLinearVel(record->id), 3 * sizeof *speeds);
+    memcpy(speeds + 3, dBodyGetAngularVel(record->id), 3 * sizeof *speeds);
 }
 
 // Moves a body on from a position and an orientation.

@@ -21,6 +21,13 @@ typedef struct BodyMoment {
     bool is_enabled;
 } BodyMoment;
 
+// What a step leaves for the next one.
+typedef struct BodyPast {
+    bool is_closed;              // whether ODE's joints of the body were closed at its end
+    bool has_speeds;             // whether there was one
+    double speeds[BODY_NUMBERS]; // m/s, rad/s: with which it began
+} BodyPast;
+
 typedef struct BodyRecord {
     dBodyID id;
     bool is_added;      // by hand: stays known without a joint
@@ -35,7 +42,9 @@ typedef struct BodyRecord {
     dVector3 last_alpha;
     bool has_last;
     double opening[6]; // m and rad: what it was moved by so that ODE's joints are as open as found
-    bool is_gyrating;  // its gyroscopic torque is ours in the step under way
+    BodyPast past;
+    BodyPast found_past; // as a step finds it
+    bool is_gyrating;    // its gyroscopic torque is ours in the step under way
 } BodyRecord;
 
 typedef struct Bodies {
@@ -99,6 +108,18 @@ void bodies_drift(const Bodies *bodies, double time);
 
 // The same from where they were kept.
 void bodies_drift_kept(const Bodies *bodies, double time);
+
+// Moves a body on by six speeds times a time or another share.
+void bodies_move(dBodyID id, const double *speeds, double times);
+
+// Likewise where it is kept.
+void bodies_move_kept(BodyRecord *record, const double *speeds, double times);
+
+// The six speeds of a body.
+void bodies_read_speeds(const BodyRecord *record, double *speeds);
+
+// Adds to them.
+void bodies_add_speeds(const BodyRecord *record, const double *speeds);
 
 // The quaternion turned on for a time, s, at an angular velocity in the world's frame.
 void bodies_turn(const dReal *from, const dReal *omega, double time, dQuaternion turned);

@@ -35,6 +35,38 @@ Direction direction_along(const dBodyID bodies[2], const dReal *axis, const dRea
     return made;
 }
 
+Direction direction_later(const Direction *direction, double time)
+{
+    Direction later = *direction;
+    for (int i = 0; i < 2 && !direction->is_turn; i++) {
+        if (direction->bodies[i] != NULL) {
+            dVector3 carried;
+            dCalcVectorCross3(carried, dBodyGetAngularVel(direction->bodies[i]),
+                              direction->arms[i]);
+            for (int k = 0; k < 3; k++) {
+                later.arms[i][k] += time * carried[k];
+            }
+        }
+    }
+    return later;
+}
+
+void direction_move(Direction *direction, const Bodies *bodies, const double *moves)
+{
+    for (int i = 0; i < 2 && !direction->is_turn; i++) {
+        const BodyRecord *record =
+            direction->bodies[i] != NULL ? bodies_find(bodies, direction->bodies[i]) : NULL;
+        if (record != NULL) {
+            const double *move = &moves[BODY_NUMBERS * (size_t)(record - bodies->records)];
+            dVector3 carried;
+            dCalcVectorCross3(carried, move + 3, direction->arms[i]);
+            for (int k = 0; k < 3; k++) {
+                direction->arms[i][k] += carried[k];
+            }
+        }
+    }
+}
+
 double direction_of_move(const Direction *direction, int number, const double move[6])
 {
     const dVector3 turn = {move[3], move[4], move[5], 0.0};

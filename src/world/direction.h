@@ -1,6 +1,8 @@
 // A direction in which two bodies move or turn against each other, as it stands at one instant.
 #pragma once
 
+#include "world/bodies.h"
+
 #include <ode/ode.h>
 
 #include <stdbool.h>
@@ -18,6 +20,12 @@ typedef struct Direction {
 Direction direction_along(const dBodyID bodies[2], const dReal *axis, const dReal *first,
                           const dReal *second);
 Direction direction_about(const dBodyID bodies[2], const dReal *axis);
+
+// The same a time later, s: its arms have gone on with the bodies, its axis has not.
+Direction direction_later(const Direction *direction, double time);
+
+// Lets its arms go on with small moves of all bodies, six numbers each.
+void direction_move(Direction *direction, const Bodies *bodies, const double *moves);
 
 // How fast the first body goes in it against the second, with their present velocities.
 double direction_rate(const Direction *direction);

@@ -48,6 +48,7 @@ void found_keep(JpWorld *world)
     WorldFound *found = &world->found;
     found->is_kept = false;
     found->last_step = world->last_step;
+    found->flown = world->flown;
     dWorldGetGravity(world->id, found->gravity);
     found->erp = dWorldGetERP(world->id);
     found->stats = world->stats;
@@ -65,6 +66,7 @@ void found_put_back(JpWorld *world, WorldResponse *response)
     dWorldSetGravity(world->id, found->gravity[0], found->gravity[1], found->gravity[2]);
     dWorldSetERP(world->id, found->erp);
     world->last_step = found->last_step;
+    world->flown = found->flown;
     world->stats = found->stats;
     world->pause = found->pause;
     bodies_put_back_all(&world->bodies);

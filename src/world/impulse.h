@@ -3,6 +3,9 @@
 
 #include "world/world_response.h"
 
+// Finds which bodies the joints with play can move in the step.
+void impulse_reach(JpWorld *world);
+
 // Makes the world's step in velocities, from bodies that are kept at mid-step. `is_done` is false
 // where that could not be done; bodies are as they were kept then.
 JpStatus world_impulse_step(JpWorld *world, double step, WorldResponse *response, bool *is_done,
@@ -10,4 +13,4 @@ JpStatus world_impulse_step(JpWorld *world, double step, WorldResponse *response
 
 // Moves bodies and rotors on to where the impulses of the step were late or early, and books what
 // the contacts did.
-void impulse_finish(JpWorld *world, double step, WorldResponse *response);
+JpStatus impulse_finish(JpWorld *world, double step, WorldResponse *response, JpError *error);

@@ -81,10 +81,21 @@ static bool lay_out(WorldResponse *response, const ResponsePlace *of, size_t sid
 
 static bool count_side(WorldResponse *response, const ResponsePlace *of, size_t side, size_t number)
 {
-    (void)of;
     (void)side;
     response->side_count = number + 1;
+    response->inside_count += rows_of_side(of->place);
     return true;
+}
+
+// rows of the kernel up to which their mobility changes in a step: what each of them moves by takes
+// twice as long then
+enum { FEW_ROWS = 16 };
+
+bool inside_may_drift(WorldResponse *response)
+{
+    response->inside_count = 0;
+    visit_sides(response, count_side);
+    return response->is_linear && response->inside_count <= FEW_ROWS;
 }
 
 // The world's kernel with a joint for each active side. What it keeps is laid out by its rows.
@@ -95,12 +106,16 @@ static Kernel *make_kernel(WorldResponse *response)
         world->kernel = memory_zeroed(1, sizeof *world->kernel);
     }
     Kernel *kernel = world->kernel;
-    visit_sides(response, count_side);
-    if (kernel->contact_count != response->side_count || !visit_sides(response, is_laid_out)) {
+    const bool may_drift = inside_may_drift(response);
+    if (kernel->contact_count != response->side_count || !visit_sides(response, is_laid_out) ||
+        (kernel->drift != NULL) != may_drift) {
         kernel_finish(kernel);
         *kernel = kernel_start(LOCAL_PHASE);
         visit_sides(response, lay_out);
         kernel_make_room(kernel, kernel->row_count);
+        if (may_drift) {
+            kernel_make_drift(kernel);
+        }
         if (world->pace.is_set) {
             memcpy(kernel->longest_s, world->pace.longest_s, sizeof kernel->longest_s);
             kernel->duration_before_s = world->pace.duration_before_s;
@@ -184,6 +199,26 @@ static void fill_mobility(WorldResponse *response)
     }
 }
 
+// How that mobility changes in the step.
+static void fill_drift(WorldResponse *response, double step)
+{
+    Kernel *kernel = response->world->kernel;
+    const size_t rows = kernel->row_count;
+    double drift[FEW_ROWS * FEW_ROWS];
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t k = 0; k < rows; k++) {
+            const size_t row = response->inside[i];
+            const size_t other = response->inside[k];
+            drift[i * rows + k] =
+                response->has_rates && row > 0 && other > 0
+                    ? response->signs[i] * response->signs[k] *
+                          response->drift[(row - 1) * response->row_count + other - 1]
+                    : 0.0;
+        }
+    }
+    kernel_set_drift(kernel, drift, step);
+}
+
 // Sums what the kernel's rows did by row here.
 static void add_totals(WorldResponse *response, double step)
 {
@@ -191,11 +226,15 @@ static void add_totals(WorldResponse *response, double step)
     const KernelSums *total = &response->sums;
     kernel_at(kernel, kernel->node_count - 1, step, &response->sums);
     memset(response->net, 0, response->row_count * sizeof(double));
-    memset(response->moment, 0, response->row_count * sizeof(double));
+    memset(response->moment, 0, 2 * response->row_count * sizeof(double));
     for (size_t i = 0; i < kernel->row_count; i++) {
         if (response->inside[i] > 0) {
-            response->net[response->inside[i] - 1] += response->signs[i] * total->impulse[i];
-            response->moment[response->inside[i] - 1] += response->signs[i] * total->moment[i];
+            const size_t row = response->inside[i] - 1;
+            const double sign = response->signs[i];
+            response->net[row] += sign * total->impulse[i];
+            response->moment[row] += sign * total->moment[i];
+            response->moment[response->row_count + row] +=
+                sign * total->moment[kernel->row_count + i];
         }
     }
 }
@@ -228,6 +267,9 @@ static bool run(WorldResponse *response, double step)
     Kernel *kernel = make_kernel(response);
     visit_sides(response, fill_side);
     fill_mobility(response);
+    if (kernel->drift != NULL) {
+        fill_drift(response, step);
+    }
     kernel_sums_free(&response->sums);
     response->sums = kernel_sums(kernel->row_count);
     JpWorld *world = response->world;
@@ -493,8 +535,9 @@ static void find_drift(const WorldResponse *response, const ResponsePlace *of, s
     drift[0] = drift[1] = 0.0;
     for (size_t i = 0; i < (place->shape == PLACE_LINE ? 1 : PLACE_ROWS_PLANE); i++) {
         const bool is_line = place->shape == PLACE_LINE;
-        const double before =
-            is_line ? place->line_before : vec3_dot(axis_of_row(&place->rows[i]), place->offset);
+        const double before = response->is_closed ? place->start[i]
+                              : is_line           ? place->line_before
+                                        : vec3_dot(axis_of_row(&place->rows[i]), place->offset);
         const double moved =
             is_line ? response->signs[row] * (-pose.penetration - kernel->position[row])
                     : (i == 0 ? pose.eccentricity.x : pose.eccentricity.y) - place->start[i];

@@ -3,6 +3,10 @@
 
 #include "world/world_response.h"
 
+// Whether their mobility may change in the step: where they are few, in a world that passes no
+// bound.
+bool inside_may_drift(WorldResponse *response);
+
 // Integrates the contacts of the active places over a step, s, to the impulses and their integrals.
 // `is_found` is false where there are too many of them, or where that takes more local steps than
 // there can be sense in. Fails where there is no memory.

@@ -13,6 +13,10 @@
 //   (1 - e/4) h0^2 c / 2 e + h^2 c / 8. The bodies are opened to what is wanted before it.
 // Joints that have an ERP of their own (ball, fixed) show nothing of it and stay as they are.
 //
+// Joints that are closed at the step's start, Phi = h^2 c / 8, and held by an ERP of 4
+// (world/closing.c), have speeds that belong to its end. Before steps that close none they are
+// opened to h^2 c / 2e, by (4/e - 1) X.
+//
 // Bodies may come with speeds that joints forbid. ODE corrects these within a step, however short:
 //     v' = v + u + h a,   so   u = 2 (v'(h/2) - v) - (v'(h) - v)
 // They open joints by (h/2) u until mid-step, which is not to be taken for h^2 c / 8 and
@@ -32,38 +36,29 @@ static double share_at_ends(double erp)
     return 1.0 - 0.25 * erp;
 }
 
-// Moves the kept bodies, and the bodies themselves.
-static void move_kept(BodyRecord *record, const double *by, double times)
+// Makes a step at half of the ERP, beside one whose speeds are given, and tells X.
+static JpStatus try_half(JpWorld *world, double step, double erp, const double *speeds,
+                         JpError *error)
 {
-    dQuaternion turned;
-    bodies_turn(record->kept.turn, &by[3], times, turned);
-    memcpy(record->kept.turn, turned, sizeof record->kept.turn);
-    for (int k = 0; k < 3; k++) {
-        record->kept.position[k] += times * by[k];
-    }
-}
-
-static void read_speeds(const BodyRecord *record, double *speeds)
-{
-    memcpy(speeds, dBodyGetLinearVel(record->id), 3 * sizeof *speeds);
-    memcpy(speeds + 3, dBodyGetAngularVel(record->id), 3 * sizeof *speeds);
-}
-
-JpStatus opening_find(JpWorld *world, double step, const double *speeds, JpError *error)
-{
-    const double erp = dWorldGetERP(world->id);
-    dWorldSetERP(world->id, 0.5 * erp);
     const JpStatus status = trial_step(world, step, error);
-    dWorldSetERP(world->id, erp);
     for (size_t i = 0; i < world->bodies.moving; i++) {
         BodyRecord *record = &world->bodies.records[i];
-        read_speeds(record, record->opening);
+        bodies_read_speeds(record, record->opening);
         for (int k = 0; k < BODY_NUMBERS; k++) {
             const double by = record->opening[k] - speeds[BODY_NUMBERS * i + k];
             record->opening[k] = erp > 0.0 ? 2.0 * step / erp * by : 0.0;
         }
     }
     bodies_put_back(&world->bodies);
+    return status;
+}
+
+JpStatus opening_find(JpWorld *world, double step, const double *speeds, JpError *error)
+{
+    const double erp = dWorldGetERP(world->id);
+    dWorldSetERP(world->id, 0.5 * erp);
+    const JpStatus status = try_half(world, step, erp, speeds, error);
+    dWorldSetERP(world->id, erp);
     return status;
 }
 
@@ -79,6 +74,27 @@ double opening_shift(const JpWorld *world, const Direction *direction)
         }
     }
     return share_at_ends(dWorldGetERP(world->id)) * shift;
+}
+
+JpStatus opening_open(JpWorld *world, Closing *closing, double step, const double *speeds,
+                      JpError *error)
+{
+    closing_hold(world, closing, 0.5 * CLOSING_ERP);
+    const JpStatus status = try_half(world, step, CLOSING_ERP, speeds, error);
+    closing_release(world, closing);
+    REFUSAL_TRY(status);
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        BodyRecord *record = &world->bodies.records[i];
+        const double *now = &speeds[BODY_NUMBERS * i];
+        bodies_move_kept(record, record->opening, CLOSING_ERP / closing->erp - 1.0);
+        record->past.is_closed = false;
+        dBodySetLinearVel(record->id, now[0], now[1], now[2]);
+        dBodySetAngularVel(record->id, now[3], now[4], now[5]);
+        dBodySetForce(record->id, 0, 0, 0);
+        dBodySetTorque(record->id, 0, 0, 0);
+    }
+    bodies_put_back_positions(&world->bodies);
+    return JP_OK;
 }
 
 // What the joints are open by at mid-step as they come, and as they are to be, over c.
@@ -146,7 +162,7 @@ static JpStatus find_correction(JpWorld *world, double step, const double *speed
         double by[BODY_NUMBERS];
         memcpy(before, record->kept.velocity, 3 * sizeof *before);
         memcpy(before + 3, record->kept.omega, 3 * sizeof *before);
-        read_speeds(record, by);
+        bodies_read_speeds(record, by);
         for (int k = 0; k < BODY_NUMBERS; k++) {
             by[k] = 2.0 * by[k] - before[k] - speeds[BODY_NUMBERS * i + k];
         }
@@ -166,7 +182,9 @@ static JpStatus open_joints(JpWorld *world, double step, const double *speeds, J
     REFUSAL_TRY(opening_find(world, step, speeds, error));
     for (size_t i = 0; i < world->bodies.moving; i++) {
         BodyRecord *record = &world->bodies.records[i];
-        move_kept(record, record->opening, open_too_little(world, step));
+        if (!record->past.is_closed) {
+            bodies_move_kept(record, record->opening, open_too_little(world, step));
+        }
     }
     bodies_put_back_positions(&world->bodies);
     return JP_OK;
@@ -178,7 +196,7 @@ static JpStatus settle(JpWorld *world, double step, double *speeds, JpError *err
     bool is_large = false;
     REFUSAL_TRY(trial_step(world, step, error));
     for (size_t i = 0; i < world->bodies.moving; i++) {
-        read_speeds(&world->bodies.records[i], &speeds[BODY_NUMBERS * i]);
+        bodies_read_speeds(&world->bodies.records[i], &speeds[BODY_NUMBERS * i]);
     }
     bodies_put_back(&world->bodies);
     if (step > world->last_step) {
@@ -189,6 +207,15 @@ static JpStatus settle(JpWorld *world, double step, double *speeds, JpError *err
                     "ODE's joints are open or forbid the speeds of bodies, and correct that in "
                     "the step of %g s; close them, and give bodies speeds that they allow",
                     step);
+        return JP_OK;
+    }
+    if (world->options.stepping == JP_STEPPING_IMPULSE && world->last_step == 0.0 &&
+        world->bodies.reach == world->bodies.count && closing_is_linear(world) &&
+        closing_is_possible(world, step)) {
+        // contacts within the step want them closed
+        for (size_t i = 0; i < world->bodies.reach; i++) {
+            world->bodies.records[i].past.is_closed = true;
+        }
         return JP_OK;
     }
     return open_joints(world, step, speeds, error);

@@ -85,6 +85,7 @@ typedef struct WorldPace {
 typedef struct WorldFound {
     bool is_kept;     // whether the last step can be taken back
     double last_step; // s, of the step before it
+    size_t flown;     // likewise
     dVector3 gravity; // m/s^2
     double erp;
     JpWorldStats stats;
@@ -103,8 +104,9 @@ struct JpWorld {
     CachePause pause;
     struct ResponseCache *cache; // owned, NULL before the first (world/response_cache.h)
     JpWorldStats stats;
-    double last_step;                     // s, of the step before; 0: there was none
-    size_t known_when_counted;            // bodies, when it was last made sure that all are known
+    double last_step;          // s, of the step before; 0: there was none
+    size_t flown;              // steps with closed joints since contacts (world/impulse.c)
+    size_t known_when_counted; // bodies, when it was last made sure that all are known
     dThreadingImplementationID threading; // owned; NULL: the caller's
     double *settling;                     // owned, of a first step under way (world/opening.h)
     WorldFound found;

@@ -7,13 +7,15 @@
 // world responded so is seen from the step under the contacts' forces (world/impulse.c).
 #include "world/response_cache.h"
 
+#include "kernel/columns.h"
 #include "world/bodies.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
-    SETS = 3,
+    SETS = KERNEL_COLUMNS_KNOWN,
     STEPS_BETWEEN = 4, // from one to the next that is found
     STEPS_OVER = 12,   // that the three may lie apart
     SHORTEST_PAUSE = 16,
@@ -26,8 +28,10 @@ struct ResponseCache {
     size_t place_count;
     size_t count; // sets that are kept, the newest first
     double step;  // s
+    double mass;  // kg and kg m^2, of all bodies: others respond otherwise
     size_t found_at[SETS];
-    double *sets[SETS]; // the columns, then the bodies
+    double *sets[SETS];   // the columns, then the bodies
+    double *speeds[SETS]; // of all bodies, six each, as those steps began
     dBodyID *bodies;
     bool *is_active; // by place
     void *memory;    // owned, of all of the above
@@ -46,12 +50,25 @@ void response_cache_free(ResponseCache *cache)
     }
 }
 
+// A sum that changes with the mass or inertia of any body.
+static double mass_of(const Bodies *bodies)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < bodies->moving; i++) {
+        dMass mass;
+        dBodyGetMass(bodies->records[i].id, &mass);
+        sum += mass.mass + mass.I[0] + mass.I[5] + mass.I[10];
+    }
+    return sum;
+}
+
 // Whether a step is of the places, rows and bodies that are kept.
 static bool is_alike(const ResponseCache *cache, const WorldResponse *response)
 {
     const Bodies *bodies = &response->world->bodies;
     if (cache->row_count != response->row_count || cache->body_count != bodies->moving ||
-        cache->place_count != response->place_count || cache->step != response->step) {
+        cache->place_count != response->place_count || cache->step != response->step ||
+        cache->mass != mass_of(bodies)) {
         return false;
     }
     for (size_t i = 0; i < bodies->moving; i++) {
@@ -77,6 +94,16 @@ static bool is_found_as_soon(const WorldResponse *response)
     return response->is_linear && rows < 2;
 }
 
+// What the newest sets tell of a step.
+static KernelShares shares_of(const ResponseCache *cache, size_t sets, size_t now)
+{
+    double times_s[SETS];
+    for (size_t i = 0; i < sets; i++) {
+        times_s[i] = cache->step * ((double)cache->found_at[i] - (double)now);
+    }
+    return kernel_columns_shares(times_s, sets, 0.0);
+}
+
 void response_cache_fill(WorldResponse *response)
 {
     const ResponseCache *cache = response->world->cache;
@@ -86,26 +113,92 @@ void response_cache_fill(WorldResponse *response)
         now - cache->found_at[SETS - 1] > STEPS_OVER || !is_alike(cache, response)) {
         return;
     }
-    double shares[SETS];
-    for (int i = 0; i < SETS; i++) {
-        shares[i] = 1.0;
-        for (int k = 0; k < SETS; k++) {
-            if (k != i) {
-                shares[i] *= ((double)now - (double)cache->found_at[k]) /
-                             ((double)cache->found_at[i] - (double)cache->found_at[k]);
-            }
-        }
-    }
+    const KernelShares shares = shares_of(cache, cache->count, now);
     const size_t columns = cache->row_count * cache->row_count;
     for (size_t i = 0; i < set_size(cache); i++) {
         double *number = i < columns ? &response->columns[i] : &response->bodies[i - columns];
-        *number = shares[0] * cache->sets[0][i] + shares[1] * cache->sets[1][i] +
-                  shares[2] * cache->sets[2][i];
+        *number = shares.value[0] * cache->sets[0][i] + shares.value[1] * cache->sets[1][i] +
+                  shares.value[2] * cache->sets[2][i];
     }
     for (size_t i = 0; i < response->place_count; i++) {
         response->places[i].is_known = response->places[i].is_active;
     }
     response->is_cached = true;
+}
+
+// Of the speeds of a step: what they may differ by from those of another one whose responses tell
+// how its own change. An impact turns speeds round, and with them the way that responses go.
+static const double CALM = 0.1;
+
+// of the fastest turning: what turns no faster changes responses by nothing to speak of
+static const double SLOW = 0.01;
+
+// Whether each body turns as it did in the step of a set.
+static bool turns_alike(const ResponseCache *cache, const Bodies *bodies, size_t set)
+{
+    double fastest = 0.0;
+    for (size_t i = 0; i < cache->body_count; i++) {
+        const dReal *omega = bodies->records[i].kept.omega;
+        fastest = fmax(fastest, sqrt(dCalcVectorDot3(omega, omega)));
+    }
+    for (size_t i = 0; i < cache->body_count; i++) {
+        const dReal *omega = bodies->records[i].kept.omega;
+        const double *before = &cache->speeds[set][BODY_NUMBERS * i + 3];
+        const dVector3 change = {omega[0] - before[0], omega[1] - before[1], omega[2] - before[2],
+                                 0.0};
+        const double own = sqrt(dCalcVectorDot3(omega, omega));
+        if (!(sqrt(dCalcVectorDot3(change, change)) <= CALM * own + SLOW * fastest)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Sets that are recent enough to tell a rate, of steps in which bodies went as in this one.
+static size_t recent_sets(const ResponseCache *cache, const Bodies *bodies, size_t now)
+{
+    size_t recent = 0;
+    while (recent < cache->count && now - cache->found_at[recent] <= STEPS_OVER &&
+           turns_alike(cache, bodies, recent)) {
+        recent++;
+    }
+    return recent > 0 && now - cache->found_at[0] <= STEPS_BETWEEN ? recent : 0;
+}
+
+bool response_cache_rates(WorldResponse *response)
+{
+    const ResponseCache *cache = response->world->cache;
+    const size_t now = response->world->stats.steps;
+    if (cache == NULL || !is_alike(cache, response)) {
+        return false;
+    }
+    // in another round the newest set is this step's
+    const bool is_kept = cache->count > 0 && cache->found_at[0] == now;
+    const size_t known = recent_sets(cache, &response->world->bodies, now);
+    if (known < (is_kept || response->is_cached ? 2 : 1)) { // of a rate: two times
+        return false;
+    }
+    const size_t columns = cache->row_count * cache->row_count;
+    const size_t numbers = set_size(cache) - columns;
+    // a step that has found its own has these first
+    const bool is_own = !response->is_cached;
+    const size_t first = is_own && is_kept ? 1 : 0;
+    double times_s[SETS] = {0.0};
+    const double *sets[SETS] = {response->bodies};
+    size_t count = is_own ? 1 : 0;
+    for (size_t i = first; i < known && count < SETS; i++, count++) {
+        times_s[count] = cache->step * ((double)cache->found_at[i] - (double)now);
+        sets[count] = cache->sets[i] + columns;
+    }
+    const KernelShares shares = kernel_columns_shares(times_s, count, 0.0);
+    for (size_t i = 0; i < numbers; i++) {
+        double rate = 0.0;
+        for (size_t k = 0; k < count; k++) {
+            rate += shares.rate[k] * sets[k][i];
+        }
+        response->rates[i] = rate;
+    }
+    return true;
 }
 
 void response_cache_note(JpWorld *world, bool is_promised)
@@ -132,7 +225,9 @@ static ResponseCache *start(const WorldResponse *response)
     cache->body_count = response->world->bodies.moving;
     cache->place_count = response->place_count;
     cache->step = response->step;
-    const size_t numbers = SETS * set_size(cache) * sizeof(double);
+    cache->mass = mass_of(&response->world->bodies);
+    const size_t speeds = BODY_NUMBERS * cache->body_count;
+    const size_t numbers = SETS * (set_size(cache) + speeds) * sizeof(double);
     cache->memory = calloc(1, numbers + cache->body_count * sizeof *cache->bodies +
                                   cache->place_count * sizeof *cache->is_active + 1);
     if (cache->memory == NULL) {
@@ -140,9 +235,10 @@ static ResponseCache *start(const WorldResponse *response)
         return NULL;
     }
     for (int i = 0; i < SETS; i++) {
-        cache->sets[i] = (double *)cache->memory + (size_t)i * set_size(cache);
+        cache->sets[i] = (double *)cache->memory + (size_t)i * (set_size(cache) + speeds);
+        cache->speeds[i] = cache->sets[i] + set_size(cache);
     }
-    cache->bodies = (dBodyID *)(cache->sets[0] + SETS * set_size(cache));
+    cache->bodies = (dBodyID *)(cache->sets[0] + SETS * (set_size(cache) + speeds));
     cache->is_active = (bool *)(cache->bodies + cache->body_count);
     for (size_t i = 0; i < cache->body_count; i++) {
         cache->bodies[i] = response->world->bodies.records[i].id;
@@ -168,6 +264,9 @@ bool response_cache_keep(const WorldResponse *response)
     const bool is_again = cache->count > 0 && cache->found_at[0] == now; // in another round
     if (!is_again) {
         double *oldest = cache->sets[SETS - 1];
+        double *oldest_speeds = cache->speeds[SETS - 1];
+        memmove(&cache->speeds[1], &cache->speeds[0], (SETS - 1) * sizeof *cache->speeds);
+        cache->speeds[0] = oldest_speeds;
         memmove(&cache->sets[1], &cache->sets[0], (SETS - 1) * sizeof *cache->sets);
         memmove(&cache->found_at[1], &cache->found_at[0], (SETS - 1) * sizeof *cache->found_at);
         cache->sets[0] = oldest;
@@ -178,5 +277,10 @@ bool response_cache_keep(const WorldResponse *response)
     memcpy(cache->sets[0], response->columns, columns * sizeof(double));
     memcpy(cache->sets[0] + columns, response->bodies,
            (set_size(cache) - columns) * sizeof(double));
+    for (size_t i = 0; i < cache->body_count; i++) {
+        const BodyMoment *kept = &world->bodies.records[i].kept;
+        memcpy(&cache->speeds[0][BODY_NUMBERS * i], kept->velocity, 3 * sizeof(double));
+        memcpy(&cache->speeds[0][BODY_NUMBERS * i + 3], kept->omega, 3 * sizeof(double));
+    }
     return true;
 }

@@ -12,6 +12,10 @@ void response_cache_free(ResponseCache *cache);
 // recent and of the same places, rows and bodies; says so in the response.
 void response_cache_fill(WorldResponse *response);
 
+// Writes how the responses of all active places change with time at mid-step, from what they are
+// there and in the steps before. Returns false where nothing is known of these.
+bool response_cache_rates(WorldResponse *response);
+
 // Notes whether the world responded to a step as the cache had promised: where it did not, the
 // steps to come find their responses anew for a while.
 void response_cache_note(JpWorld *world, bool is_promised);

@@ -21,7 +21,7 @@
 static const char MAGIC[16] = "jointplay state";
 
 // Counts up where the words of a state or their meaning change.
-static const uint64_t FORMAT = 1;
+static const uint64_t FORMAT = 2;
 
 enum { WORD = 8 };
 
@@ -163,6 +163,9 @@ static void walk_body(Walk *walk, BodyRecord *record)
     walk_numbers(walk, record->last_alpha, 3, FINITE, "a body's angular acceleration before");
     walk_flag(walk, &record->has_last, "whether a body was stepped before");
     walk_numbers(walk, record->opening, 6, FINITE, "how far ODE's joints moved a body");
+    walk_flag(walk, &record->found_past.is_closed, "whether a body's joints are closed");
+    walk_flag(walk, &record->found_past.has_speeds, "whether a body was stepped before");
+    walk_numbers(walk, record->found_past.speeds, BODY_NUMBERS, OF_BODY, "a body's speeds before");
 }
 
 static void walk_state(Walk *walk, ContactState *state)
@@ -287,6 +290,7 @@ static void walk_world(Walk *walk, JpWorld *world)
     walk_own(walk, count_joints(world));
     walk_own(walk, world->options.stepping);
     walk_number(walk, &world->found.last_step, SIZE, "the step before");
+    walk_count(walk, &world->found.flown);
     walk_stats(walk, &world->found.stats);
     walk_pace(walk, &world->pace);
     for (size_t i = 0; i < world->bodies.count; i++) {

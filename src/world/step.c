@@ -377,13 +377,14 @@ static void book_joints(JpWorld *world, double step)
     }
 }
 
-static void move_on(JpWorld *world, double step, WorldResponse *response, bool is_impulse)
+static JpStatus move_on(JpWorld *world, double step, WorldResponse *response, bool is_impulse,
+                        JpError *error)
 {
     if (is_staggered(world)) {
         bodies_drift_kept(&world->bodies, 0.5 * step);
     }
     if (is_impulse) {
-        impulse_finish(world, step, response);
+        REFUSAL_TRY(impulse_finish(world, step, response, error));
     } else {
         book_joints(world, step);
     }
@@ -393,6 +394,7 @@ static void move_on(JpWorld *world, double step, WorldResponse *response, bool i
     if (is_impulse) {
         inside_judge(response);
     }
+    return JP_OK;
 }
 
 // Opens ODE's joints as far as they stay open at the step.
@@ -409,15 +411,17 @@ static JpStatus step_bodies(JpWorld *world, double step, WorldResponse *response
         gyration_push(&world->bodies, step);
     }
     bodies_keep(&world->bodies);
+    const bool has_impulses = world->options.stepping == JP_STEPPING_IMPULSE;
+    if (has_impulses) {
+        impulse_reach(world);
+    }
     if (is_staggered(world) && world->last_step != step) {
         REFUSAL_TRY(settle(world, step, error));
     }
-    const bool has_impulses = world->options.stepping == JP_STEPPING_IMPULSE;
     bool is_impulse = false;
     REFUSAL_TRY(has_impulses ? step_with_impulses(world, step, response, &is_impulse, error)
                              : step_with_rows(world, step, error));
-    move_on(world, step, response, is_impulse);
-    return JP_OK;
+    return move_on(world, step, response, is_impulse, error);
 }
 
 static JpStatus check_bodies(const JpWorld *world, double step, bool is_after, JpError *error)

@@ -46,7 +46,7 @@ static bool make_room(WorldResponse *response)
     count(world, response);
     const size_t n = response->row_count;
     const size_t body = BODY_NUMBERS * world->bodies.moving;
-    const size_t numbers = (8 + INSIDE_ROWS) * n + n * n + (n + 1) * body;
+    const size_t numbers = (10 + INSIDE_ROWS) * n + 2 * n * n + (2 * n + 4) * body;
     const size_t size = numbers * sizeof(double) + response->place_count * sizeof(ResponsePlace) +
                         n * (sizeof(Direction *) + INSIDE_ROWS * sizeof(size_t));
     double *at = response->memory = calloc(1, size + 1);
@@ -54,14 +54,21 @@ static bool make_room(WorldResponse *response)
         return false;
     }
     double **const by_row[] = {&response->frozen, &response->base, &response->found,
-                               &response->pushed, &response->net,  &response->moment,
-                               &response->rotors, &response->free};
+                               &response->pushed, &response->net,  &response->rotors,
+                               &response->free};
     for (size_t i = 0; i < sizeof by_row / sizeof *by_row; i++) {
         *by_row[i] = take(&at, n);
     }
+    response->moment = take(&at, 2 * n);
     response->signs = take(&at, INSIDE_ROWS * n);
     response->columns = take(&at, n * n);
+    response->drift = take(&at, n * n);
     response->bodies = take(&at, n * body);
+    response->rates = take(&at, n * body);
+    response->later = take(&at, body);
+    response->beyond = take(&at, body);
+    response->apart = take(&at, body);
+    response->before = take(&at, n);
     response->speeds = take(&at, body);
     response->places = (ResponsePlace *)at;
     response->rows = (const Direction **)(response->places + response->place_count);
@@ -183,6 +190,24 @@ static double push_of(const WorldResponse *response, const ResponsePlace *of, si
     return is_up ? push : -push;
 }
 
+// The speeds of all bodies after a step with a push in a row of a place, less those of a step
+// without it, for a push of 1.
+static JpStatus find_push(WorldResponse *response, const ResponsePlace *of, size_t own,
+                          const double *without, double step, double *speeds, JpError *error)
+{
+    JpWorld *world = response->world;
+    const Direction *row = response->rows[of->first_row + own];
+    const size_t numbers = BODY_NUMBERS * world->bodies.moving;
+    const double push = push_of(response, of, own, direction_mobility(row));
+    direction_push(row, push / step);
+    REFUSAL_TRY(trial_step(world, step, error));
+    world_response_read_bodies(world, speeds);
+    for (size_t i = 0; i < numbers; i++) {
+        speeds[i] = (speeds[i] - without[i]) / push;
+    }
+    return JP_OK;
+}
+
 // The response to a push in a row of a place, beside the step that the base is of.
 static JpStatus find_column(WorldResponse *response, const ResponsePlace *of, size_t own,
                             double step, JpError *error)
@@ -209,6 +234,61 @@ static JpStatus find_column(WorldResponse *response, const ResponsePlace *of, si
         bodies[i] = (bodies[i] - response->speeds[i]) / push;
     }
     return status;
+}
+
+// Of the step: how much later bodies are for the rates of responses. What these change by besides
+// in that time is as small a share of what they change by in the step.
+static const double LATER = 1.0 / 64.0;
+
+static void go_on(const JpWorld *world, double time)
+{
+    for (size_t i = 0; i < world->bodies.moving; i++) {
+        double speeds[BODY_NUMBERS];
+        bodies_read_speeds(&world->bodies.records[i], speeds);
+        bodies_move(world->bodies.records[i].id, speeds, time);
+    }
+}
+
+// The rates of one row, whose arms go on with the bodies.
+static JpStatus find_rate(WorldResponse *response, const ResponsePlace *of, size_t own,
+                          const double *without, double step, JpError *error)
+{
+    JpWorld *world = response->world;
+    const size_t row = of->first_row + own;
+    const size_t numbers = BODY_NUMBERS * world->bodies.moving;
+    const Direction *here = response->rows[row];
+    double *rates = &response->rates[row * numbers];
+    if (!(direction_mobility(here) > 0.0)) {
+        return JP_OK; // it moves nothing
+    }
+    Direction later = direction_later(here, LATER * step);
+    go_on(world, LATER * step);
+    response->rows[row] = &later;
+    const JpStatus status = find_push(response, of, own, without, step, rates, error);
+    response->rows[row] = here;
+    bodies_put_back(&world->bodies);
+    for (size_t i = 0; i < numbers; i++) {
+        rates[i] = (rates[i] - response->bodies[row * numbers + i]) / (LATER * step);
+    }
+    return status;
+}
+
+JpStatus world_response_find_rates(WorldResponse *response, double step, JpError *error)
+{
+    JpWorld *world = response->world;
+    const size_t numbers = BODY_NUMBERS * world->bodies.moving;
+    memset(response->rates, 0, response->row_count * numbers * sizeof(double));
+    go_on(world, LATER * step);
+    REFUSAL_TRY(trial_step(world, step, error));
+    world_response_read_bodies(world, response->later);
+    bodies_put_back(&world->bodies);
+    for (size_t i = 0; i < response->place_count; i++) {
+        const ResponsePlace *of = &response->places[i];
+        for (size_t k = 0; of->is_active && k < of->place->row_count; k++) {
+            REFUSAL_TRY(find_rate(response, of, k, response->later, step, error));
+        }
+    }
+    return JP_OK;
 }
 
 bool world_response_is_within_work(const WorldResponse *response)

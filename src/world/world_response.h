@@ -19,11 +19,16 @@ typedef struct WorldResponse {
     JpWorld *world;
     double step;    // s
     bool is_linear; // whether no bound can be passed (world/closing.h)
+    bool is_held;   // whether ODE's joints are closed at its start and are held so (likewise)
+    bool is_closed; // whether they are at its end
+    bool is_beyond; // whether bodies are where they are expected at mid-step
+    bool has_rates; // whether it is known how the responses change in it (world/response_rate.h)
     bool is_cached; // whether the responses to pushes are those of steps before
                     // (world/response_cache.h)
     size_t place_count;
     size_t side_count; // of the active places
     size_t row_count;
+    size_t inside_count;   // rows of the kernel
     ResponsePlace *places; // all, in the world's order
     const Direction **rows;
     double *frozen;  // rates with the velocities of the step's start
@@ -31,12 +36,18 @@ typedef struct WorldResponse {
     double *found;   // after the step
     double *pushed;  // impulses of the base
     double *net;     // impulses of the contacts in the step
-    double *moment;  // integrals of the impulses so far over the step
+    double *moment;  // integrals of the impulses so far over the step; then those of these
     double *rotors;  // 1/kg or 1/(kg m^2): mobility of the rotor, 0 where there is none
     double *free;    // accelerations while nothing presses, less those of rotors
     double *columns; // by row: rates of all rows for an impulse of 1 in it
     double *bodies;  // by row: speeds of all bodies for an impulse of 1 in it
+    double *rates;   // likewise, how these change with time, 1/s of it
+    double *drift;   // S, row by row, 1/(kg s): W changes by S + S'
     double *speeds;  // of all bodies after the base
+    double *beyond;  // of all bodies: how much further they are expected at mid-step, m, rad
+    double *apart;   // likewise: what speeds after the base have more where they are not
+    double *before;  // impulses of the base in the round before
+    double *later;   // likewise, where they are a little later
     size_t *inside;  // of rows of the kernel: which row it is, and 1; 0 of one that is still
     double *signs;   // likewise
     void *memory;    // owned, of all of the above
@@ -65,6 +76,10 @@ void world_response_take(const WorldResponse *response);
 // Finds the responses to pushes in the rows of all active places beside the base, but for those
 // that are known.
 JpStatus world_response_find_columns(WorldResponse *response, double step, JpError *error);
+
+// Finds how the responses change as all bodies go on along their speeds, by trials where bodies are
+// a little later: of all active places, whose responses are known.
+JpStatus world_response_find_rates(WorldResponse *response, double step, JpError *error);
 
 // Whether the responses that are not known yet, and contacts in all active places, can be found
 // within the limit of work.

@@ -365,12 +365,12 @@ static void assert_says(const Scene *scene, size_t first, size_t count, double v
 static void what_is_wrong_is_named(void **state)
 {
     (void)state;
-    enum { FORMAT = 2, BODY_COUNT = 4, LAST_STEP = 7, POSITION = 18, TURN = 21, ENABLED = 37 };
+    enum { FORMAT = 2, BODY_COUNT = 4, LAST_STEP = 7, POSITION = 19, TURN = 22, ENABLED = 38 };
     Scene scene = make(JP_STEPPING_IMPULSE);
-    assert_says(&scene, FORMAT, 1, 2.0, "reads format 1");
+    assert_says(&scene, FORMAT, 1, 2.0, "reads format 2");
     assert_says(&scene, BODY_COUNT, 1, 0.0, "made in another way than this one with 3 bodies");
     assert_says(&scene, LAST_STEP, 1, -1.0, "word 7 of the state, the step before, is -1");
-    assert_says(&scene, POSITION, 1, NAN, "word 18 of the state, a body's position, is nan");
+    assert_says(&scene, POSITION, 1, NAN, "word 19 of the state, a body's position, is nan");
     assert_says(&scene, TURN, 4, 0.0, "the square of the length of a body's quaternion, is 0");
     assert_says(&scene, TURN, 4, 0.51, "a body's quaternion, is 1.0404");
     assert_says(&scene, ENABLED, 1, 1.0, "whether a body is enabled");

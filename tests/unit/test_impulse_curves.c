@@ -8,7 +8,7 @@ enum { BODIES = 2, ROWS = 2, DRIVEN = 0, CURVE_NUMBERS = 3 * BODIES * ROWS };
 // A step that follows two others of other lengths.
 static const double START_S = 2.0e-3;
 static const double WIDTH_S = 0.3e-3;
-static const double MIDDLES_S[KERNEL_STEP_COLUMNS] = {2.15e-3, 1.9e-3, 1.5e-3};
+static const double MIDDLES_S[KERNEL_COLUMNS_KNOWN] = {2.15e-3, 1.9e-3, 1.5e-3};
 
 // What a row does, any parabola in time.
 static double does(size_t number, double time_s)
@@ -36,10 +36,10 @@ static const Linkage LINKAGE = {
 
 static ImpulseCurves make_curves(void)
 {
-    double columns[KERNEL_STEP_COLUMNS][CURVE_NUMBERS];
+    double columns[KERNEL_COLUMNS_KNOWN][CURVE_NUMBERS];
     double rates[CURVE_NUMBERS];
-    double *all[KERNEL_STEP_COLUMNS];
-    for (size_t k = 0; k < KERNEL_STEP_COLUMNS; k++) {
+    double *all[KERNEL_COLUMNS_KNOWN];
+    for (size_t k = 0; k < KERNEL_COLUMNS_KNOWN; k++) {
         for (size_t i = 0; i < CURVE_NUMBERS; i++) {
             columns[k][i] = does(i, MIDDLES_S[k]);
             rates[i] = its_rate(i, MIDDLES_S[0]);

@@ -511,13 +511,33 @@ static void glance(const void *state, double time_s, Sample *sample)
     }
 }
 
+// Steps of ODE's world, trials included, and those that fell back to another way.
+static SolverModel model_world(const void *state)
+{
+    const Stepping *stepping = state;
+    JpWorldStats stats = {0};
+    jp_world_stats(stepping->world.play, &stats, NULL);
+    return (SolverModel){
+        .label = "libjointplay",
+        .step_s = stepping->world.scenario->run.step,
+        .steps = stats.world_steps,
+        .fallback_rows = stats.fallbacks,
+    };
+}
+
 static const Solver LIBRARY = {
     .name = "libjointplay",
     .open = open_world,
     .stride = tune_program_stride,
     .glance = glance,
+    .model = model_world,
     .close = close_world,
 };
+
+const Solver *tune_program_solver(void)
+{
+    return &LIBRARY;
+}
 
 // A setting with which the program could be written: its trial, and the case with it.
 typedef struct Candidate {

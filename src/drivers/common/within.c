@@ -6,10 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// of the free accelerations, what impulses may change them by in a step for these to say how they
-// change by themselves
-static const double CALM = 0.1;
-
 double *within_numbers(size_t count)
 {
     double *room = calloc(count + 1, sizeof *room);
@@ -106,18 +102,9 @@ void within_find_middle(Within *in, double step_s)
 
 void within_keep_free(Within *in)
 {
-    double size = 0.0;
-    double pushed = 0.0;
-    for (size_t i = 0; i < in->rows; i++) {
-        double change = 0.0;
-        for (size_t k = 0; k < in->rows; k++) {
-            change += 2.0 * in->drift[i * in->rows + k] * in->sums.impulse[k];
-        }
-        in->free_before[i] = in->kernel.free[i] + change;
-        size = fmax(size, fabs(in->kernel.free[i]));
-        pushed = fmax(pushed, fabs(change));
-    }
-    in->calm_steps = in->steps > 0 && pushed <= CALM * size ? in->calm_steps + 1 : 0;
+    const bool is_calm = kernel_columns_free_after(in->rows, in->drift, in->sums.impulse,
+                                                   in->kernel.free, in->free_before);
+    in->calm_steps = in->steps > 0 && is_calm ? in->calm_steps + 1 : 0;
 }
 
 void within_find_free_rate(Within *in, double step_s)
@@ -130,20 +117,20 @@ void within_find_free_rate(Within *in, double step_s)
 
 void within_age_responses(Within *in)
 {
-    double *oldest = in->responses[WITHIN_BEFORE - 1];
-    memmove(in->responses + 1, in->responses, (WITHIN_BEFORE - 1) * sizeof *in->responses);
+    double *oldest = in->responses[KERNEL_COLUMNS_KNOWN - 1];
+    memmove(in->responses + 1, in->responses, (KERNEL_COLUMNS_KNOWN - 1) * sizeof *in->responses);
     in->responses[0] = oldest;
 }
 
 void within_find_rate(Within *in, double step_s)
 {
-    for (size_t i = 0; i < in->rows * in->count; i++) {
-        const double now = in->responses[0][i];
-        const double last = in->responses[1][i];
-        const double first = in->responses[2][i];
-        in->rate[i] = in->steps == 0   ? 0.0
-                      : in->steps == 1 ? (now - last) / step_s
-                                       : (1.5 * now - 2.0 * last + 0.5 * first) / step_s;
+    const double times_s[KERNEL_COLUMNS_KNOWN] = {0.0, -step_s, -2.0 * step_s};
+    const size_t known =
+        in->steps + 1 < KERNEL_COLUMNS_KNOWN ? in->steps + 1 : KERNEL_COLUMNS_KNOWN;
+    const KernelShares shares = kernel_columns_shares(times_s, known, 0.0);
+    memset(in->rate, 0, in->rows * in->count * sizeof *in->rate);
+    for (size_t i = 0; i < known; i++) {
+        add(in->rate, in->responses[i], shares.rate[i], in->rows * in->count);
     }
 }
 
@@ -218,15 +205,12 @@ void within_find_inside(const Within *in, double since_s, double step_s, const K
     memcpy(q, in->q, in->count * sizeof *q);
     memcpy(v, in->v, in->count * sizeof *v);
     add_beside(in, since_s, 0.5 * step_s, q, v);
-    within_add_rows(in, in->responses[0], sums->impulse, 1.0, v);
-    within_add_rows(in, in->rate, sums->impulse, off_s, v);
-    within_add_rows(in, in->rate, sums->moment, -1.0, v);
+    const KernelColumns columns = {
+        .rows = in->rows, .coordinates = in->count, .columns = in->responses[0], .rates = in->rate};
+    kernel_columns_push(&columns, off_s, sums->impulse, sums->moment, v, q);
     within_add_rows(in, in->bend, sums->moment, 1.0, v);
     within_add_rows(in, in->bend_rate, sums->moment, off_s, v);
     within_add_rows(in, in->bend_rate, second, -1.0, v);
-    within_add_rows(in, in->responses[0], sums->moment, 1.0, q);
-    within_add_rows(in, in->rate, sums->moment, off_s, q);
-    within_add_rows(in, in->rate, second, -2.0, q);
     within_add_rows(in, in->bend, second, 1.0, q);
 }
 

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "drivers/common/driver.h"
+#include "kernel/columns.h"
 #include "kernel/kernel.h"
-
-enum { WITHIN_BEFORE = 3 }; // A of this step and those before, from which its rate follows
 
 // A step in the coordinates of an engine, in the words of drivers/mujoco/mujoco_kernel.c: what does
 // not depend on how the engine is asked. Rows are two a pin, pin less
@@ -31,10 +30,10 @@ typedef struct Within {
     double *v_middle;
     double *free; // G, at mid-step
     double *nudged;
-    double *responses[WITHIN_BEFORE]; // A: row by row
-    double *rate;                     // A'
-    double *jacobian;                 // row by row
-    double *bend;                     // B
+    double *responses[KERNEL_COLUMNS_KNOWN]; // A: row by row
+    double *rate;                            // A'
+    double *jacobian;                        // row by row
+    double *bend;                            // B
     double *bend_rate;
     double *bend_before;
     double *drift;       // S

@@ -82,8 +82,8 @@ void impulse_curves_set_places(ImpulseCurves *curves, const Kernel *kernel)
     }
 }
 
-void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[KERNEL_STEP_COLUMNS],
-                                const double middles_s[KERNEL_STEP_COLUMNS], const double *rates)
+void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[KERNEL_COLUMNS_KNOWN],
+                                const double middles_s[KERNEL_COLUMNS_KNOWN], const double *rates)
 {
     const double last_s = middles_s[0] - middles_s[1];
     const double per_last = 1.0 / last_s;

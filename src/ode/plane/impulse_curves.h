@@ -73,8 +73,8 @@ void impulse_curves_set_body(ImpulseCurves *curves, size_t body, const Motion *b
 
 // Sets what the rows do: by row and body three numbers, in this step and the two before, the last
 // of them first, and when these had their middles, s; and how it changes in this step.
-void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[KERNEL_STEP_COLUMNS],
-                                const double middles_s[KERNEL_STEP_COLUMNS], const double *rates);
+void impulse_curves_set_columns(ImpulseCurves *curves, double *const columns[KERNEL_COLUMNS_KNOWN],
+                                const double middles_s[KERNEL_COLUMNS_KNOWN], const double *rates);
 
 // Sets how the places go, from a kernel that has run.
 void impulse_curves_set_places(ImpulseCurves *curves, const Kernel *kernel);

@@ -96,7 +96,7 @@ void impulse_step_add_end(const Linkage *linkage, const Touch *place, double pre
 // Whether the curves of the last step are known: of few rows, once there have been steps enough.
 static inline bool impulse_step_has_curves(const ImpulseStep *step)
 {
-    return step->scheme.has_drift && step->scheme.count >= KERNEL_STEP_COLUMNS;
+    return step->scheme.has_drift && step->scheme.count >= KERNEL_COLUMNS_KNOWN;
 }
 
 // Finds the mean forces of the joints with play and the works of the drives, of loads and of
