@@ -9,7 +9,8 @@
 
 #include <string.h>
 
-// A key and its word in the sentence.
+// A key and its word in the sentence; NULL of one that is for programs alone: it keeps a division
+// from 0.
 typedef struct Assumption {
     const char *key;
     const char *word;
@@ -26,17 +27,17 @@ static const Assumption ASSUMPTIONS[] = {
     {"contact.restitution-speed", "at"},
     {"contact.friction", "friction"},
     {"contact.friction-speed", "friction speed"},
-    {"contact.impact-speed-floor", "speed floor"},
+    {"contact.impact-speed-floor", NULL},
     {"contact.penalty", "penalty"},
     {"gravity", "gravity"},
     {"run.start", "start"},
 };
 
-static const char *word_of(const char *key)
+static const Assumption *assumption_of(const char *key)
 {
     for (size_t i = 0; i < sizeof ASSUMPTIONS / sizeof *ASSUMPTIONS; i++) {
         if (strcmp(ASSUMPTIONS[i].key, key) == 0) {
-            return ASSUMPTIONS[i].word;
+            return &ASSUMPTIONS[i];
         }
     }
     return NULL;
@@ -149,13 +150,13 @@ static void each_assumption(const Scenario *scenario,
             has_pin = true;
             continue;
         }
-        const char *word = word_of(setting.key);
-        if (word == NULL || !setting.applies || is_given(scenario, setting.key)) {
+        const Assumption *assumption = assumption_of(setting.key);
+        if (assumption == NULL || !setting.applies || is_given(scenario, setting.key)) {
             continue;
         }
         SchemaLack lack;
         if (!schema_lacks(schema_find(setting.key), scenario, 0, met, &lack)) {
-            take(scenario, &setting, word, context);
+            take(scenario, &setting, assumption->word, context);
         }
     }
     if (has_assumed_eye(scenario)) {
@@ -170,6 +171,9 @@ static void take_text(const Scenario *scenario, const CasefileSetting *setting, 
                       void *context)
 {
     Text *text = context;
+    if (word == NULL) {
+        return;
+    }
     text_append(text, "%s%s ", text->length > 0 ? ", " : "", word);
     append_value(scenario, setting, text);
 }

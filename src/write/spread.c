@@ -30,16 +30,24 @@ static double nominal_of(const Spread *spread, size_t joint)
     return spread->scenario->settled.motions[0].joints[joint].force.headline;
 }
 
-// The last part of a key, with the joint's name where it is of one.
+// A key as the first screen has it: a letter or word of its own, or the key without its group.
 static void append_key(const char *key, Text *text)
 {
-    static const char *const GROUPS[] = {"contact.", "material.", "joints.", "drive."};
+    static const char *const WORDS[][2] = {
+        {"material.youngs-modulus", "E"},
+        {"contact.stiffness", "K"},
+        {"drive.speed", "speed"},
+    };
+    static const char *const GROUPS[] = {"contact.", "material.", "joints."};
     const char *shown = key;
     for (size_t i = 0; i < sizeof GROUPS / sizeof *GROUPS; i++) {
         const size_t length = strlen(GROUPS[i]);
         shown = strncmp(key, GROUPS[i], length) == 0 ? key + length : shown;
     }
-    text_append_shown(text, strcmp(key, "drive.speed") == 0 ? key : shown);
+    for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++) {
+        shown = strcmp(key, WORDS[i][0]) == 0 ? WORDS[i][1] : shown;
+    }
+    text_append_shown(text, shown);
 }
 
 // "laws, damping and friction"
@@ -162,7 +170,7 @@ static void append_inputs(const Spread *spread, Text *text)
     const double rank = inputs->count > 0 ? spread->ranks[most] : NAN;
     if (fabs(rank) >= RANK_LEAST) {
         append_key(inputs->inputs[most].key, &line);
-        text_append(&line, " narrows it most (rank correlation %.2f).", rank);
+        text_append(&line, " narrows it most (correlation %.2f).", rank);
     } else {
         text_append(&line, assumed > 0 ? "no input narrows it alone."
                                        : "No input narrows the range alone.");

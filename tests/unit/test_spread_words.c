@@ -110,7 +110,7 @@ static void assumed_limits_and_the_first_of_the_inputs_are_named(void **state)
     make(&made);
     // what the case gives is not assumed
     assert_words(&made, "Assumed limits +-: restitution 0.02; wrist.hole narrows it most", true);
-    assert_words(&made, "(rank correlation -0.72)", true);
+    assert_words(&made, "(correlation -0.72)", true);
     assert_words(&made, "hole 0", false);
     made.ranks[1] = -0.3;
     assert_words(&made, "no input narrows it alone.", true);

@@ -648,10 +648,9 @@ static void write_restitution(const Scenario *scenario, Text *text)
     Rebound rebound;
     if (find_rebound(scenario, &rebound)) {
         char words[256];
-        snprintf(words, sizeof words,
-                 "Of the restitution asked for, %.3g, damping %s gives back %.3g; damping exact "
-                 "gives back what is asked for.",
-                 rebound.asked, OPTIONS_DAMPINGS[rebound.damping], rebound.delivered);
+        snprintf(
+            words, sizeof words, "Damping %s gives back %.3g for %.3g asked; exact gives %.3g.",
+            OPTIONS_DAMPINGS[rebound.damping], rebound.delivered, rebound.asked, rebound.asked);
         append_paragraph(words, text);
     }
 }
