@@ -32,7 +32,7 @@ int main(void)
     JpError error;
     JpWorld *play;
     JpJoint *pin;
-    if (jp_contact_of_pin(JP_PIN_HERTZ, &sizes, &bearing.contact, &error) != JP_OK ||
+    if (jp_contact_of_pin(JP_PIN_ELASTIC, &sizes, &bearing.contact, &error) != JP_OK ||
         jp_world_create(world, &options, &play, &error) != JP_OK ||
         jp_pin_create(play, 0, rod, &bearing, &pin, &error) != JP_OK) {
         printf("%s\n", error.text);
