@@ -1,5 +1,5 @@
-// Finds what small changes of a settled motion become: in one period, or where that does not tell it
-// in many.
+// Finds what small changes of a settled motion become: in one period, or where that does not tell
+// it in many.
 #include "base/side_by_side.h"
 #include "run/settle_parts.h"
 
