@@ -192,8 +192,8 @@ static bool search_from(Scenario *scenario, const Scenario *neighbour, bool is_b
     if (is_brief) {
         scenario->run.settle_least = scenario->run.settle_most = BRIEF_TURNS;
     }
-    const bool is_found =
-        start_as_neighbour(&neighbour->linkage, &first.linkage) && settle_search(scenario, &first, 1, watch);
+    const bool is_found = start_as_neighbour(&neighbour->linkage, &first.linkage) &&
+                          settle_search(scenario, &first, 1, watch);
     scenario->run.settle_least = asked.settle_least;
     scenario->run.settle_most = asked.settle_most;
     scenario_free(&first);
