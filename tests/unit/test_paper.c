@@ -234,7 +234,8 @@ static void the_contact_under_the_real_force_is_johnsons(void **state)
     assert_near(pin->half_angle * 180.0 / acos(-1.0), 17.0, 0.6);
     assert_near(result.physical.estimated_force, 1.0514, 1e-4);
     assert_near(result.physical.estimated[LAW_JOHNSON - LAW_AUTO - 1].approach * 1e6, 0.0026, 1e-4);
-    assert_near(result.physical.real[LAW_JOHNSON - LAW_AUTO - 1].approach, pin->johnson_approach, 1e-15);
+    assert_near(result.physical.real[LAW_JOHNSON - LAW_AUTO - 1].approach, pin->johnson_approach,
+                1e-15);
 }
 
 static void a_four_bar_that_is_not_one_is_refused(void **state)
