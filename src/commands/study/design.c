@@ -92,16 +92,41 @@ uint64_t draw_stream(const char *key)
     return hash_bytes(HASH_START, key, strlen(key));
 }
 
+// The share of a draw of a Latin hypercube.
+static double latin_share(uint64_t seed, uint64_t stream, uint64_t count, uint64_t draw)
+{
+    const double share = draw_share(seed, stream, draw);
+    const double position = (double)draw_position(seed, stream, count, draw);
+    // what rounding would lift into the next share stays in its own
+    return fmin(position + share, nextafter(position + 1.0, 0.0)) / (double)count;
+}
+
+// Whether a draw of DRAW_SOBOL has a variable of the second sample.
+static bool is_of_second(const Spec *spec, const Variable *variable, uint64_t draw)
+{
+    const uint64_t sample = draw / spec->draw_base;
+    uint64_t number = 2;
+    for (const Variable *other = spec->variables; other < variable; other++) {
+        number += other->is_drawn ? 1 : 0;
+    }
+    return sample == 1 || sample == number;
+}
+
 double draw_variable_share(const Spec *spec, const Variable *variable, uint64_t draw)
 {
     const uint64_t stream = draw_stream(variable->key);
-    const double share = draw_share(spec->seed, stream, draw);
-    if (spec->method == DRAW_RANDOM) {
-        return share;
+    switch (spec->method) {
+    case DRAW_RANDOM:
+        break;
+    case DRAW_LATIN_HYPERCUBE:
+        return latin_share(spec->seed, stream, spec->draws, draw);
+    case DRAW_SOBOL:
+        return latin_share(spec->seed,
+                           is_of_second(spec, variable, draw) ? hash_bytes(stream, "second", 6)
+                                                              : stream,
+                           spec->draw_base, draw % spec->draw_base);
     }
-    const double position = (double)draw_position(spec->seed, stream, spec->draws, draw);
-    // what rounding would lift into the next share stays in its own
-    return fmin(position + share, nextafter(position + 1.0, 0.0)) / (double)spec->draws;
+    return draw_share(spec->seed, stream, draw);
 }
 
 static double normal_value(const Variable *variable, double share)

@@ -65,7 +65,10 @@ uint64_t draw_position(uint64_t seed, uint64_t stream, uint64_t count, uint64_t 
 uint64_t draw_stream(const char *key);
 
 // The share, above 0 and below 1, of a variable's distribution below the value that it has in a
-// draw. Of a Latin hypercube the draws of each variable fall one into each of `draws` equal shares.
+// draw. Of a Latin hypercube the draws of each variable fall one into each of `draws` equal shares;
+// of DRAW_SOBOL those of each sample do, of which draw_base draws follow one another: the first two
+// are independent, and each further one has one of the variables of the second, the others of the
+// first.
 double draw_variable_share(const Spec *spec, const Variable *variable, uint64_t draw);
 
 // The value that has the share of a drawn variable's distribution below it; a whole number where

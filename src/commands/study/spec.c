@@ -405,8 +405,33 @@ static void order_variables(Spec *spec)
     }
 }
 
+// Sobol's indices take two samples of all keys, and for each key one that has it of the second and
+// the others of the first.
+static bool expand_draws(const Reading *reading)
+{
+    Spec *spec = reading->spec;
+    uint64_t drawn = 0;
+    for (size_t i = 0; i < spec->variable_count; i++) {
+        const Variable *variable = &spec->variables[i];
+        drawn += variable->is_drawn ? 1 : 0;
+        if (spec->method == DRAW_SOBOL && !variable->is_drawn) {
+            return source_error(
+                &reading->source, keys_span(reading->vary), "draw alone, or another method",
+                reading->err, "method sobol is for keys that are drawn; %s varies", variable->key);
+        }
+    }
+    if (spec->method == DRAW_SOBOL) {
+        spec->draw_base = spec->draws;
+        spec->draws = spec->draws > RUNS_MAX / (drawn + 2) ? RUNS_MAX : spec->draws * (drawn + 2);
+    }
+    return true;
+}
+
 static bool check_count(const Reading *reading)
 {
+    if (!expand_draws(reading)) {
+        return false;
+    }
     const Spec *spec = reading->spec;
     uint64_t runs = spec->draws;
     for (size_t i = 0; i < spec->variable_count; i++) {

@@ -62,7 +62,7 @@ typedef enum SpecSettle {
     SETTLE_EACH,       // by itself
 } SpecSettle;
 
-typedef enum DrawMethod { DRAW_RANDOM, DRAW_LATIN_HYPERCUBE } DrawMethod;
+typedef enum DrawMethod { DRAW_RANDOM, DRAW_LATIN_HYPERCUBE, DRAW_SOBOL } DrawMethod;
 
 typedef struct Spec {
     char *path; // owned, of the study file
@@ -80,6 +80,8 @@ typedef struct Spec {
                                            // what is drawn, the grid of what does not change it
     uint64_t draws; // each of which is run at every point of the grid; 1 where nothing is drawn
     DrawMethod method;
+    uint64_t draw_base; // of DRAW_SOBOL: of so many draws each two samples, and one more for each
+                        // of the k keys that are drawn; all k + 2 of them are `draws`
     uint64_t seed;
     char follow[CASEFILE_KEY_SIZE]; // the key along which runs start in the motion of the one
                                     // before; empty: each finds its own

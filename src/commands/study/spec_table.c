@@ -16,8 +16,10 @@ enum { PAGE_WIDTH = 80, INDENT = 8 };
 
 static const double EXACT_MAX = 9007199254740992.0; // 2^53: whole numbers up to it are exact
 
-static const char *const METHODS[] = {
-    [DRAW_RANDOM] = "random", [DRAW_LATIN_HYPERCUBE] = "latin-hypercube", NULL};
+static const char *const METHODS[] = {[DRAW_RANDOM] = "random",
+                                      [DRAW_LATIN_HYPERCUBE] = "latin-hypercube",
+                                      [DRAW_SOBOL] = "sobol",
+                                      NULL};
 static const char *const DIRECTIONS[] = {
     [FOLLOW_FORWARD] = "forward", [FOLLOW_BACKWARD] = "backward", [FOLLOW_BOTH] = "both", NULL};
 static const char *const SETTLES[] = {
@@ -68,7 +70,10 @@ const SpecKey SPEC_KEYS[] = {
      .value = "KEY: tolerance, KEY: {distribution: ...}, ...",
      .doc = "Keys of the case that take numbers, with a distribution each"},
     {SPEC_DRAW, "method", SPEC_KEY_CHOICE, AT(method), .words = METHODS, .what = "method",
-     .doc = "latin-hypercube takes one value from each of `count` equal shares of a distribution"},
+     .doc = "latin-hypercube takes one value from each of `count` equal shares of a distribution; "
+            "sobol "
+            "makes count times (keys + 2) runs, from which the study's end says what part of each "
+            "result's variance each key is for"},
     {SPEC_DRAW, "seed", SPEC_KEY_WHOLE, AT(seed), .low = 0.0, .high = EXACT_MAX, .what = "the seed",
      .doc = "The same seed gives the same values on every machine"},
 

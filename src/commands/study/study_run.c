@@ -3,6 +3,7 @@
 #include "cli/interrupt.h"
 #include "cli/output.h"
 #include "cli/status_line.h"
+#include "commands/study/indices.h"
 #include "commands/study/metrics.h"
 #include "commands/study/study.h"
 #include "version.h"
@@ -103,7 +104,8 @@ static bool print_text(const StudyReport *report, Store *store, const CommonOpti
     bool is_written = study_text_status(&part, 1, "", &style, &text, err);
     if (is_written) {
         append_effort(report, &text);
-        is_written = study_text_summary(store, options->is_full, &style, &text, err);
+        is_written = study_text_summary(store, options->is_full, &style, &text, err) &&
+                     indices_text(report->spec, store, &style, &text, err);
     }
     if (is_written) {
         output_text(&text, &style);
@@ -117,7 +119,9 @@ static bool print_report(StudyReport *report, const CommonOptions *options, Err 
     Store *store = store_view(report->store, err);
     bool is_printed = store != NULL && store_count(store, &report->count, err);
     if (is_printed && options->is_json) {
-        output_json(study_json_build(report));
+        json_t *object = study_json_build(report);
+        is_printed = indices_json(report->spec, store, object, err);
+        output_json(object);
     } else {
         is_printed = is_printed && print_text(report, store, options, err);
     }
