@@ -252,6 +252,7 @@ bool closing_make(const JpWorld *world, Closing *closing)
                          .speeds = calloc(numbers + 1, sizeof *closing->speeds),
                          .kept = calloc(world->bodies.moving + 1, sizeof *closing->kept)};
     if (closing->joints == NULL || closing->speeds == NULL || closing->kept == NULL) {
+        closing->count = 0; // nothing is to be put back
         return false;
     }
     list_joints(world, closing->joints);
