@@ -28,7 +28,7 @@ KINDS = re.findall(r"^([a-z-]+): ", call("new", "--help")[1].split("Kinds:")[1],
 
 
 def errors_of(words):
-    status, output, errors = call("run", *words, "--json")
+    status, output, errors = call("run", *words, "--quick", "--json")
     assert status == 0, errors
     # besides progress, and how long settling may take, whatever is said is a complaint
     said = [line for line in errors.splitlines() if line.startswith("jointplay:")]
