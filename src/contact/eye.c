@@ -304,6 +304,7 @@ static bool press_on(const Patch *patch, EyePress *press)
     }
     q[NODES] = 0.0;
     if (!dense_solve(UNKNOWNS, matrix, q)) {
+        *press = (EyePress){NAN, NAN, NAN};
         return false;
     }
     press->force = 0.0;
@@ -424,8 +425,7 @@ bool eye_series(const Eye *eye, double *series)
     }
     double values[CONFORMING_TERMS];
     double log_angle = log(1e-6);
-    for (size_t i = CONFORMING_TERMS; i-- > 0;) { // from x = 1, the least approach
-        const size_t node = CONFORMING_TERMS - 1 - i;
+    for (size_t node = 0; node < CONFORMING_TERMS; node++) { // from x = 1, the least approach
         const double x = cos(PI * ((double)node + 0.5) / CONFORMING_TERMS);
         Search search = {.nodes = &nodes, .influence = &influence, .approach = conforming_depth(x)};
         if (!find_angle(&search, &log_angle)) {

@@ -17,10 +17,11 @@ const Law *law_get(LawKind kind)
 
 double law_effective_modulus(const ContactPair *pair)
 {
-    const double hole = 1.0 - pair->poisson_ratio * pair->poisson_ratio;
     if (pair->pin_modulus == 0.0) {
-        return pair->youngs_modulus / (2.0 * hole);
+        const MaterialOptions both = {pair->youngs_modulus, pair->poisson_ratio};
+        return penalty_effective_modulus(&both);
     }
+    const double hole = 1.0 - pair->poisson_ratio * pair->poisson_ratio;
     const double pin = 1.0 - pair->pin_ratio * pair->pin_ratio;
     return 1.0 / (hole / pair->youngs_modulus + pin / pair->pin_modulus);
 }
@@ -83,7 +84,7 @@ ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material
         .hole_radius = clearance->hole_radius,
         .pin_radius = clearance->pin_radius,
         .width = clearance->width,
-        .eye_radius = law_eye_radius(clearance),
+        .eye_radius = clearance->eye_radius,
         .youngs_modulus = own_or(clearance->modulus[0], material->youngs_modulus),
         .poisson_ratio = own_or(clearance->poisson[0], material->poisson_ratio),
         .pin_modulus = is_one ? 0.0 : own_or(clearance->modulus[1], material->youngs_modulus),

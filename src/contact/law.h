@@ -40,8 +40,9 @@ bool law_make(LawKind kind, const ContactPair *pair, ForceLaw *law, Err *err);
 // driver's speed, rad/s; 0 stands for 1000 rpm.
 ContactPair law_pair(const Clearance *clearance, const MaterialOptions *material, double speed);
 
-// The outer radius, m, of the eye of a joint: given, or twice that of its hole.
-double law_eye_radius(const Clearance *clearance);
+// The outer radius of an eye over that of its hole, m: of one that is given, m, or where that is 0
+// of a usual one.
+double law_eye_ratio(double eye_radius, double hole_radius);
 
 // The whole law of a joint as the options say: given stiffness or law, damping, speed floor,
 // friction. Fails

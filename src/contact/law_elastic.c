@@ -42,14 +42,14 @@ static const Found *find(const Eye *eye)
     return found;
 }
 
-double law_eye_radius(const Clearance *clearance)
+double law_eye_ratio(double eye_radius, double hole_radius)
 {
-    return clearance->eye_radius > 0.0 ? clearance->eye_radius : USUAL_EYE * clearance->hole_radius;
+    return eye_radius > 0.0 ? eye_radius / hole_radius : USUAL_EYE;
 }
 
 static Eye eye_of(const ContactPair *pair)
 {
-    const double outer = pair->eye_radius > 0.0 ? pair->eye_radius / pair->hole_radius : USUAL_EYE;
+    const double outer = law_eye_ratio(pair->eye_radius, pair->hole_radius);
     if (pair->pin_modulus == 0.0) {
         return (Eye){outer, 0.5, pair->poisson_ratio, pair->poisson_ratio};
     }

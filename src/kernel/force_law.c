@@ -73,12 +73,10 @@ ForceLaw force_law_conforming(double stiffness, double play, const double *serie
 
 static bool is_conforming_sound(const Conforming *law)
 {
-    double width = 0.0; // where it is least
-    for (int i = CONFORMING_TERMS - 1; i >= 0; i--) {
-        width = law->series[i] - width;
-    }
-    return law->stiffness > 0.0 && isfinite(law->stiffness) && law->play > 0.0 &&
-           isfinite(law->play) && width > 0.0 && isfinite(width);
+    const double widest = law->play * conforming_depth(-1.0); // where W is least
+    const double secant = conforming_secant(law, widest);
+    return law->stiffness > 0.0 && law->play > 0.0 && isfinite(law->play) && secant > 0.0 &&
+           isfinite(secant);
 }
 
 bool force_law_is_linear(const ForceLaw *law)

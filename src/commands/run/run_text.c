@@ -765,7 +765,7 @@ static void write_eye(const Clearance *clearance, Text *text)
 {
     const bool is_given = clearance->eye_radius > 0.0;
     text_append(text, ", in an eye of %.4g times its hole",
-                law_eye_radius(clearance) / clearance->hole_radius);
+                law_eye_ratio(clearance->eye_radius, clearance->hole_radius));
     text_append(text, "%s", is_given ? "" : " (assumed)");
 }
 

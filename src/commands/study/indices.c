@@ -11,6 +11,7 @@
 #include "commands/study/indices.h"
 
 #include "base/lcg.h"
+#include "base/sorted.h"
 #include "base/zeroed.h"
 #include "commands/study/metrics.h"
 #include "write/json_value.h"
@@ -77,19 +78,12 @@ static double estimate(const Samples *samples, const uint64_t *picked, double *f
     return variance;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The middle 95 % of resamples, which are put in order.
 static IndexEstimate interval(double value, double *resampled)
 {
-    qsort(resampled, RESAMPLES, sizeof *resampled, by_size);
-    return (IndexEstimate){value, resampled[RESAMPLES / 40],
-                           resampled[RESAMPLES - 1 - RESAMPLES / 40]};
+    sorted_make(resampled, RESAMPLES);
+    return (IndexEstimate){value, sorted_quantile(resampled, RESAMPLES, 0.025),
+                           sorted_quantile(resampled, RESAMPLES, 0.975)};
 }
 
 static void resample(const Samples *samples, uint64_t *picked, double *firsts, double *totals)
@@ -234,6 +228,42 @@ static void write_rows(Table *table, const char *result, const char *const *keys
     }
 }
 
+// What is done with the indices of a result.
+typedef void (*IndicesTaker)(const char *result, const char *const *keys, size_t inputs,
+                             const Indices *indices, void *context);
+
+// Passes on the indices of each main result that has them.
+static bool each_result(const Spec *spec, Store *store, IndicesTaker take, void *context, Err *err)
+{
+    const char *keys[INDICES_INPUTS_MOST];
+    const size_t inputs = drawn_keys(spec, keys);
+    Results results;
+    const bool is_read = read_results(spec, store, &results, err);
+    for (size_t i = 0; is_read && i < results.count; i++) {
+        Indices indices;
+        if (indices_find(results.values + i * results.runs, spec->draw_base, inputs, &indices)) {
+            take(store_layout(store)->results[results.columns[i]].name, keys, inputs, &indices,
+                 context);
+        }
+    }
+    free(results.values);
+    return is_read;
+}
+
+// The table, and how many draws tell its rows, at most.
+typedef struct IndicesTable {
+    Table *table;
+    uint64_t used;
+} IndicesTable;
+
+static void take_rows(const char *result, const char *const *keys, size_t inputs,
+                      const Indices *indices, void *context)
+{
+    IndicesTable *rows = context;
+    write_rows(rows->table, result, keys, inputs, indices);
+    rows->used = indices->used > rows->used ? indices->used : rows->used;
+}
+
 bool indices_text(const Spec *spec, Store *store, const Style *style, Text *text, Err *err)
 {
     static const SectionHead HEADS[] = {
@@ -243,28 +273,16 @@ bool indices_text(const Spec *spec, Store *store, const Style *style, Text *text
     if (spec->method != DRAW_SOBOL) {
         return true;
     }
-    const char *keys[INDICES_INPUTS_MOST];
-    const size_t inputs = drawn_keys(spec, keys);
-    Results results;
-    const bool is_read = read_results(spec, store, &results, err);
-    Table *table =
-        section_begin("What part of a result's variance each input is for", 6, HEADS, style, text);
-    uint64_t used = 0;
-    for (size_t i = 0; is_read && i < results.count; i++) {
-        Indices indices;
-        if (indices_find(results.values + i * results.runs, spec->draw_base, inputs, &indices)) {
-            write_rows(table, store_layout(store)->results[results.columns[i]].name, keys, inputs,
-                       &indices);
-            used = indices.used > used ? indices.used : used;
-        }
-    }
-    section_end(table, text);
+    IndicesTable rows = {
+        section_begin("What part of a result's variance each input is for", 6, HEADS, style, text),
+        0};
+    const bool is_read = each_result(spec, store, take_rows, &rows, err);
+    section_end(rows.table, text);
     text_append(
         text,
         "  Of %llu draws. Alone: of the input by itself (first index); in all: with what it\n"
         "  does together with others (total index); 95 %% intervals by resampling: --wide.\n",
-        (unsigned long long)used);
-    free(results.values);
+        (unsigned long long)rows.used);
     return is_read;
 }
 
@@ -274,30 +292,24 @@ static json_t *estimate_json(const IndexEstimate *estimate)
                      json_value_real(estimate->high));
 }
 
+static void take_json(const char *result, const char *const *keys, size_t inputs,
+                      const Indices *indices, void *context)
+{
+    json_t *of = json_object();
+    for (size_t k = 0; k < inputs; k++) {
+        json_object_set_new(of, keys[k],
+                            json_pack("{s:o, s:o}", "first", estimate_json(&indices->first[k]),
+                                      "total", estimate_json(&indices->total[k])));
+    }
+    json_object_set_new(context, result, of);
+}
+
 bool indices_json(const Spec *spec, Store *store, json_t *object, Err *err)
 {
     if (spec->method != DRAW_SOBOL) {
         return true;
     }
-    const char *keys[INDICES_INPUTS_MOST];
-    const size_t inputs = drawn_keys(spec, keys);
-    Results results;
-    const bool is_read = read_results(spec, store, &results, err);
     json_t *all = json_object();
-    for (size_t i = 0; is_read && i < results.count; i++) {
-        Indices indices;
-        if (!indices_find(results.values + i * results.runs, spec->draw_base, inputs, &indices)) {
-            continue;
-        }
-        json_t *of = json_object();
-        for (size_t k = 0; k < inputs; k++) {
-            json_object_set_new(of, keys[k],
-                                json_pack("{s:o, s:o}", "first", estimate_json(&indices.first[k]),
-                                          "total", estimate_json(&indices.total[k])));
-        }
-        json_object_set_new(all, store_layout(store)->results[results.columns[i]].name, of);
-    }
     json_object_set_new(object, "indices", all);
-    free(results.values);
-    return is_read;
+    return each_result(spec, store, take_json, all, err);
 }
