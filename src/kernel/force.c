@@ -124,14 +124,30 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
     return power;
 }
 
+// What the law of a contact has at a depth, from its spring there.
+static inline ForceLawTerms terms_of(const KernelContact *contact, double depth, double elastic,
+                                     double tangent)
+{
+    return (ForceLawTerms){
+        .elastic = elastic,
+        .tangent = tangent,
+        .viscous = force_law_viscous(&contact->law, depth),
+        .viscous_slope = force_law_viscous_slope(&contact->law, depth),
+    };
+}
+
+static inline double damping_rate_of(const KernelContact *contact)
+{
+    return force_law_damping_rate(&contact->law, contact->state.damping_speed);
+}
+
 // What presses along the normal of a contact that touches. Where a contact has just begun its depth
 // is zero but for rounding, of either sign, and a viscous damper presses hardest.
 static double pressing(const KernelContact *contact, const KernelTouch *touch)
 {
-    const double rate = touch->pose.approach_speed;
-    const double speed = fmax(contact->state.damping_speed, contact->law.impact_speed_floor);
-    const double total = touch->elastic * (1.0 + contact->law.hysteresis * rate / speed) +
-                         force_law_viscous(&contact->law, touch->pose.penetration) * rate;
+    const PinHole *pose = &touch->pose;
+    const ForceLawTerms at = terms_of(contact, pose->penetration, touch->elastic, touch->tangent);
+    const double total = force_law_damped(at, damping_rate_of(contact), pose->approach_speed).force;
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
 }
 
@@ -274,20 +290,15 @@ static double find_normal(const KernelContact *contact, const PinHole *pose, Vec
     const Vec2 tangent = vec2_perp(pose->normal);
     const double depth = fmax(pose->penetration, from_depth);
     const double below = pose->penetration - depth;
-    const double elastic = force_law_elastic(law, depth);
-    const double tangent_stiffness = force_law_tangent(law, depth);
-    const double floored = fmax(contact->state.damping_speed, law->impact_speed_floor);
-    const double rise = 1.0 + law->hysteresis * pose->approach_speed / floored;
-    const double viscous = force_law_viscous(law, depth);
-    const double by_depth =
-        below < 0.0
-            ? tangent_stiffness
-            : tangent_stiffness * rise + force_law_viscous_slope(law, depth) * pose->approach_speed;
-    const double by_rate = law->hysteresis * elastic / floored + viscous;
-    const double turning = by_rate * vec2_dot(tangent, velocity) / pose->eccentricity_size;
+    const double stiffness = force_law_tangent(law, depth);
+    const ForceLawTerms at = terms_of(contact, depth, force_law_elastic(law, depth), stiffness);
+    const ForceLawDamped damped =
+        force_law_damped(at, damping_rate_of(contact), pose->approach_speed);
+    const double by_depth = below < 0.0 ? stiffness : damped.by_depth;
+    const double turning = damped.by_rate * vec2_dot(tangent, velocity) / pose->eccentricity_size;
     *gradient = along(vec2_add(vec2_scale(by_depth, outward), vec2_scale(turning, tangent)),
-                      vec2_scale(by_rate, outward));
-    return elastic * rise + viscous * pose->approach_speed + tangent_stiffness * below;
+                      vec2_scale(damped.by_rate, outward));
+    return damped.force + stiffness * below;
 }
 
 // The derivatives of x g, with those of g.
@@ -605,37 +616,25 @@ static Rated rate_friction(MovingContact *moving)
     return power;
 }
 
-// What a viscous damper presses with at a depth, m.
-static inline Rated rate_viscous(const ForceLaw *law, double depth, Rated closing)
-{
-    if (!(law->full_damping_depth > 0.0)) {
-        return rated_scale(law->viscous, closing);
-    }
-    const Rated coefficient = {force_law_viscous(law, depth),
-                               force_law_viscous_slope(law, depth) * closing.value};
-    return rated_times(coefficient, closing);
-}
-
 // What a contact presses with, from how it is and its closing speed, and the part of it that is
 // lost.
 static Rated rate_pressing(const KernelContact *contact, const KernelTouch *touch, Rated closing,
                            Rated *lost)
 {
-    const ForceLaw *law = &contact->law;
-    const double factor =
-        law->hysteresis / fmax(contact->state.damping_speed, law->impact_speed_floor);
     // at no depth the slope of a law of exponent below 1 is infinite
     const double slope = touch->tangent < INFINITY ? touch->tangent : 0.0;
     const Rated elastic = {touch->elastic, slope * closing.value};
-    const Rated damping = rated_plus(rated_times(rated_scale(factor, elastic), closing),
-                                     rate_viscous(law, touch->pose.penetration, closing));
-    const Rated sum = rated_plus(elastic, damping);
-    if (sum.value < 0.0 || (touch->pose.penetration <= 0.0 && closing.value <= 0.0)) {
+    const double depth = touch->pose.penetration;
+    const ForceLawTerms at = terms_of(contact, depth, touch->elastic, slope);
+    const double rate = damping_rate_of(contact);
+    const double force = force_law_damped(at, rate, closing.value).force;
+    if (force < 0.0 || (depth <= 0.0 && closing.value <= 0.0)) {
         *lost = rated_scale(-1.0, elastic);
         return (Rated){0.0, 0.0};
     }
-    *lost = damping;
-    return sum;
+    const double change = force_law_damped_rate(at, rate, closing.value, closing.rate);
+    *lost = (Rated){force - elastic.value, change - elastic.rate};
+    return (Rated){force, change};
 }
 
 // Directions, arms and pressing of a contact from its pose.

@@ -229,14 +229,22 @@ double force_law_secant(const ForceLaw *law, double penetration)
     return penetration <= 0.0 ? 0.0 : 1.0 / (law->compliance * branch_at(law, penetration));
 }
 
+// What the law has at a penetration and a rate but for the slopes.
+static ForceLawDamped damped_at(const ForceLaw *law, double penetration, double rate,
+                                double impact_speed)
+{
+    const ForceLawTerms at = {
+        .elastic = force_law_elastic(law, penetration),
+        .viscous = force_law_viscous(law, penetration),
+    };
+    return force_law_damped(at, force_law_damping_rate(law, impact_speed), rate);
+}
+
 double force_law_damping(const ForceLaw *law, double penetration, double impact_speed)
 {
-    const double viscous = force_law_viscous(law, penetration);
-    if (law->hysteresis == 0.0) {
-        return viscous;
-    }
-    const double speed = fmax(impact_speed, law->impact_speed_floor);
-    return law->hysteresis * force_law_elastic(law, penetration) / speed + viscous;
+    // beyond the law's depths its damper is still known
+    return law->hysteresis == 0.0 ? force_law_viscous(law, penetration)
+                                  : damped_at(law, penetration, 0.0, impact_speed).by_rate;
 }
 
 double force_law_force(const ForceLaw *law, double penetration, double rate, double impact_speed)
@@ -244,10 +252,7 @@ double force_law_force(const ForceLaw *law, double penetration, double rate, dou
     if (penetration <= 0.0) {
         return 0.0;
     }
-    const double elastic = force_law_elastic(law, penetration);
-    const double speed = fmax(impact_speed, law->impact_speed_floor);
-    const double total = elastic * (1.0 + law->hysteresis * rate / speed) +
-                         force_law_viscous(law, penetration) * rate;
+    const double total = damped_at(law, penetration, rate, impact_speed).force;
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
 }
 

@@ -7,6 +7,7 @@
 
 #include "kernel/conforming.h"
 
+#include <math.h>
 #include <stdbool.h>
 
 typedef enum ForceLawFamily {
@@ -99,8 +100,52 @@ static inline double force_law_viscous_slope(const ForceLaw *law, double penetra
     return law->viscous * 6.0 * share * (1.0 - share) / law->full_damping_depth;
 }
 
-// The damping coefficient c, N s/m, in F = F_el + c d' at a penetration, m, in a contact that
-// began with an impact speed, m/s (raised to the floor).
+// r = chi / v0, s/m, of a contact that began with an impact speed, m/s, which is raised to the
+// floor.
+static inline double force_law_damping_rate(const ForceLaw *law, double impact_speed)
+{
+    return law->hysteresis / fmax(impact_speed, law->impact_speed_floor);
+}
+
+// What the law makes of a depth, by what it has there, and of the depth's rate: the force, which
+// may be negative, and its derivatives. Along a motion with the second rate d'' the force changes
+// by by_depth d' + by_rate d''. Nothing else has this formula.
+//     N = F_el (1 + r d') + c d'
+typedef struct ForceLawDamped {
+    double force;    // N
+    double by_depth; // N/m
+    double by_rate;  // N s/m: the damping coefficient
+} ForceLawDamped;
+
+// What a law has at a depth.
+typedef struct ForceLawTerms {
+    double elastic;       // N, F_el
+    double tangent;       // N/m, its slope
+    double viscous;       // N s/m, c
+    double viscous_slope; // N s/m^2
+} ForceLawTerms;
+
+static inline ForceLawDamped force_law_damped(ForceLawTerms at, double damping_rate, double closing)
+{
+    const double rise = 1.0 + damping_rate * closing;
+    return (ForceLawDamped){
+        .force = at.elastic * rise + at.viscous * closing,
+        .by_depth = at.tangent * rise + at.viscous_slope * closing,
+        .by_rate = at.elastic * damping_rate + at.viscous,
+    };
+}
+
+// How fast that force changes, N/s, along a motion whose depth has a second rate, m/s^2.
+static inline double force_law_damped_rate(ForceLawTerms at, double damping_rate, double closing,
+                                           double second)
+{
+    const double rise = 1.0 + damping_rate * closing;
+    return at.tangent * closing * rise + at.viscous_slope * closing * closing +
+           (at.elastic * damping_rate + at.viscous) * second;
+}
+
+// The damping coefficient, N s/m, at a penetration, m, in a contact that began with an impact
+// speed, m/s.
 double force_law_damping(const ForceLaw *law, double penetration, double impact_speed);
 
 // The whole force, N: elastic and damping, never below 0; 0 without penetration.

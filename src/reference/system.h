@@ -106,6 +106,21 @@ static inline PressViscous press_viscous(const Contact *contact, double depth)
                           law->viscous * 6.0 * share * (1.0 - share) / law->full_damping_depth};
 }
 
+// What a contact's law has where it presses so, with a slope of its spring, N/m.
+static inline ForceLawTerms press_terms(const Contact *contact, const Press *press, double tangent)
+{
+    const PressViscous viscous = press_viscous(contact, press->depth);
+    return (ForceLawTerms){press->elastic, tangent, viscous.coefficient, viscous.slope};
+}
+
+// What it makes of that. Of the slope only the derivative by the depth depends.
+static inline ForceLawDamped press_damped(const Contact *contact, const Press *press,
+                                          double tangent)
+{
+    return force_law_damped(press_terms(contact, press, tangent), contact->damping_rate,
+                            press->closing);
+}
+
 // What the law of a contact makes of a depth and its rate.
 static inline Press press_find(const Contact *contact, double depth, double closing)
 {
@@ -116,9 +131,8 @@ static inline Press press_find(const Contact *contact, double depth, double clos
     }
     // odd below zero depth: a step that overshoots the end of a contact stays smooth
     press.elastic = copysign(force_law_elastic(law, fabs(depth)), depth);
-    const double rise = 1.0 + contact->damping_rate * closing;
-    press.pressing = press.elastic * rise + press_viscous(contact, depth).coefficient * closing;
-    press.release = law->viscous > 0.0 ? press.pressing : rise;
+    press.pressing = press_damped(contact, &press, 0.0).force;
+    press.release = law->viscous > 0.0 ? press.pressing : 1.0 + contact->damping_rate * closing;
     // a slack spring relaxes by itself: what it had stored is lost like the damper's work
     press.normal = contact->mode == CONTACT_PRESSING ? press.pressing : 0.0;
     press.damping_power = (press.normal - press.elastic) * closing;
@@ -131,8 +145,7 @@ static inline void contact_begin(Contact *contact, double onset_s, double impact
     contact->mode = CONTACT_PRESSING;
     contact->onset_s = onset_s;
     contact->impact_speed = impact_speed;
-    contact->damping_rate =
-        contact->law.hysteresis / fmax(impact_speed, contact->law.impact_speed_floor);
+    contact->damping_rate = force_law_damping_rate(&contact->law, impact_speed);
     contact->is_growing = contact->law.full_damping_depth > 0.0;
     contact->is_released = contact->is_resting = false;
 }
@@ -142,31 +155,28 @@ static inline void contact_rest(Contact *contact)
 {
     const ForceLaw *law = &contact->law;
     contact->is_resting = true;
-    contact->damping_rate = law->hysteresis / fmax(law->resting_speed, law->impact_speed_floor);
+    contact->damping_rate = force_law_damping_rate(law, law->resting_speed);
 }
 
 // How strongly a contact is damped, N s/m.
 static inline double press_damping(const Contact *contact, const Press *press)
 {
-    return press->elastic * contact->damping_rate +
-           press_viscous(contact, press->depth).coefficient;
+    return press_damped(contact, press, 0.0).by_rate;
 }
 
 // How fast the force of a contact that presses grows with its depth, N/m.
 static inline double press_stiffness(const Contact *contact, const Press *press)
 {
-    const double rise = 1.0 + contact->damping_rate * press->closing;
-    return rise * force_law_tangent(&contact->law, fabs(press->depth)) +
-           press_viscous(contact, press->depth).slope * press->closing;
+    return press_damped(contact, press, force_law_tangent(&contact->law, fabs(press->depth)))
+        .by_depth;
 }
 
 // The rate of the normal force, N/s, of a contact that presses, from the second rate of its depth.
 static inline double press_rate(const Contact *contact, const Press *press, double second)
 {
-    const double rise = 1.0 + contact->damping_rate * press->closing;
-    const double growing = press_viscous(contact, press->depth).slope * press->closing;
-    return force_law_tangent(&contact->law, press->depth) * press->closing * rise +
-           growing * press->closing + press_damping(contact, press) * second;
+    const double tangent = force_law_tangent(&contact->law, press->depth);
+    return force_law_damped_rate(press_terms(contact, press, tangent), contact->damping_rate,
+                                 press->closing, second);
 }
 
 // What is added up, behind the rates.
