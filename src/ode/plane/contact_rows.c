@@ -10,16 +10,13 @@
 #include "ode/plane/contact_rows.h"
 
 #include "base/zeroed.h"
-#include "contact/contact_peaks.h"
 #include "contact/law.h"
-#include "contact/law_row.h"
-#include "contact/onset.h"
 #include "contact/overlap.h"
 #include "contact/penalty.h"
-#include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 #include "model/response.h"
 #include "ode/plane/world.h"
+#include "ode/step_contact.h"
 #include "world/pressing_row.h"
 
 #include <math.h>
@@ -29,33 +26,16 @@
 // The contact at one point of a joint with play; of a pin in its hole as the world's collider finds
 // it.
 struct ContactRow {
-    ForceLaw law;
-    double mass;       // kg, effective along the normal that it was worked out for
-    double stiff_mass; // kg, with which the stiffest motion of the joint's places meets it
+    StepContact at;
     Vec2 mass_normal;
-    bool falls_back; // the map is not stable at this step: the row is the textbook's
-    Onset onset;
-    ContactState state; // touching: the present step has a row; of a contact that does not touch
-                        // the speed is that at which it closes
-    double depth;       // m, of the row, as the collider has it
-    double share;       // 1, of the step in which the place overlaps
-    double inside;      // m, depth where the bodies are, negative outside; of the row it may be
-                        // another where the place overlaps in a part of the step alone
-    double excess;      // m, by how much that is more than the exact penetration
-    Vec2 normal;        // of the row: unit, direction of the force on body b
-    Vec2 point;         // m, in the world, where the force acts
+    double excess;  // m, by how much its depth is more than the exact penetration
+    Vec2 normal;    // of the row: unit, direction of the force on body b
+    Vec2 point;     // m, in the world, where the force acts
     Vec2 arms[2];   // m, from the joint's anchors on bodies a and b to where its force is said to
                     // act (ode/plane/world.h)
     Vec2 lever;     // m, from there to the point
-    double damping; // N s/m, of the row; not of CONTACT_POISSON
-    ContactPeaks peaks; // of the contact under way, where positions stand at mid-step
-    double pressing;    // N, in the step: at a turn N m
-    double closing;     // m/s, before the step, along the normal
-    double faster;      // m/s, by how much that is more than the rate of the exact penetration
-    double sliding;     // m/s, along the wall before the step, where there is friction
-    double elastic;     // J, stored in the contact after the step
-    double dissipated;  // J, lost along the normal in the step
-    double friction;    // J, lost in sliding in the step
+    double faster;  // m/s, by how much its closing speed is more than the exact penetration's
+    double sliding; // m/s, along the wall before the step, where there is friction
     dSurfaceParameters surface; // of CONTACT_POISSON, without friction
     dContact contact;           // as ODE is given it
     dJointFeedback feedback;
@@ -96,15 +76,15 @@ static void share_mass(const ContactMass *mass, ContactRow *rows, size_t number)
 {
     const int joint = mass->world->pairs[number].joint;
     ContactRow *row = &rows[number];
-    const double force = force_law_elastic(&row->law, row->depth);
-    const double slope = force_law_tangent(&row->law, row->depth);
+    const double force = force_law_elastic(&row->at.law, row->at.found.depth);
+    const double slope = force_law_tangent(&row->at.law, row->at.found.depth);
     double own[RESPONSE_ROWS_A_JOINT];
     double together = 0.0;
     double stiffest = 0.0;
     set_along(mass, rows, number, own);
     for (size_t i = 0; i < mass->world->pair_count; i++) {
         const ContactRow *other = &rows[i];
-        if (mass->world->pairs[i].joint != joint || !other->state.is_touching) {
+        if (mass->world->pairs[i].joint != joint || !other->at.state.is_touching) {
             continue;
         }
         double along[RESPONSE_ROWS_A_JOINT];
@@ -112,12 +92,13 @@ static void share_mass(const ContactMass *mass, ContactRow *rows, size_t number)
         const double between =
             response_between(&mass->response, response_first_row(&mass->response, i), along,
                              response_first_row(&mass->response, number), own);
-        const double share = force_law_elastic(&other->law, other->depth) / force;
+        const double share = force_law_elastic(&other->at.law, other->at.found.depth) / force;
         together += i == number ? between : fmax(0.0, between) * fmin(1.0, share);
-        stiffest += fabs(between) * force_law_tangent(&other->law, other->depth) / slope;
+        stiffest +=
+            fabs(between) * force_law_tangent(&other->at.law, other->at.found.depth) / slope;
     }
-    row->mass = 1.0 / together;
-    row->stiff_mass = 1.0 / stiffest;
+    row->at.mass = 1.0 / together;
+    row->at.stiff_mass = 1.0 / stiffest;
 }
 
 // Brings the masses of a row that touches up to date, all rows of the step having been found: each
@@ -138,8 +119,9 @@ static void contact_mass_find(ContactMass *mass, ContactRow *rows, size_t number
         return;
     }
     const Vec2 along = pair_in_rows(pair, row->normal);
-    row->mass = response_mass(&mass->response, response_first_row(&mass->response, number), along);
-    row->stiff_mass = row->mass;
+    row->at.mass =
+        response_mass(&mass->response, response_first_row(&mass->response, number), along);
+    row->at.stiff_mass = row->at.mass;
     row->mass_normal = row->normal;
 }
 
@@ -150,13 +132,12 @@ static void contact_mass_find(ContactMass *mass, ContactRow *rows, size_t number
 // depth. Of all other places everything is.
 
 // Of a place whose bodies say all.
-static bool find_exactly(const WorldPair *pair, const TouchPose *pose, const Overlap *overlap,
-                         ContactRow *row)
+static bool find_exactly(const WorldPair *pair, const TouchPose *pose, ContactRow *row,
+                         StepFound *found)
 {
-    if (!(overlap->depth > 0.0) || !pose->has_normal) {
+    if (!(found->depth > 0.0) || !pose->has_normal) {
         return false;
     }
-    row->depth = overlap->depth;
     row->normal = pose->normal;
     row->point = pair_point(pair, pose->normal);
     pair_arms(pair, pose, row->arms, &row->lever);
@@ -164,12 +145,13 @@ static bool find_exactly(const WorldPair *pair, const TouchPose *pose, const Ove
 }
 
 // Of a pin in its hole, as two circles: the points where its force acts are the circles' own.
-static bool find_in_hole(const WorldPair *pair, const TouchPose *pose, ContactRow *row)
+static bool find_in_hole(const WorldPair *pair, const TouchPose *pose, ContactRow *row,
+                         StepFound *found)
 {
     if (!(pose->gap < 0.0)) {
         return false;
     }
-    row->depth = -pose->gap;
+    found->depth = -pose->gap;
     row->normal = pose->normal;
     row->arms[0] = vec2_scale(-pair->touch.radius_a, pose->normal);
     row->arms[1] = vec2_scale(-pair->touch.radius_b, pose->normal);
@@ -179,77 +161,59 @@ static bool find_in_hole(const WorldPair *pair, const TouchPose *pose, ContactRo
 
 // The contact of a pair.
 static bool find_collision(const World *world, const WorldPair *pair, const TouchPose *pose,
-                           const Overlap *overlap, ContactRow *row)
+                           ContactRow *row, StepFound *found)
 {
     if (pair->hole == NULL) {
-        return pair->touch.shape == TOUCH_HOLE ? find_in_hole(pair, pose, row)
-                                               : find_exactly(pair, pose, overlap, row);
+        return pair->touch.shape == TOUCH_HOLE ? find_in_hole(pair, pose, row, found)
+                                               : find_exactly(pair, pose, row, found);
     }
     Collision collision;
     if (!world->collider->find(pair->collision, pair->hole, pair->pin, &collision)) {
         return false;
     }
-    row->depth = collision.depth;
+    found->depth = found->inside = collision.depth;
     row->normal = collision.normal;
     row->arms[0] = collision.arm_hole;
     row->arms[1] = collision.arm_pin;
     row->point = vec2_add(pair_centre(pair), collision.arm_hole);
+    // of a polygon's side the circles' penetration and its rate are not the row's
+    found->closing = -vec2_dot(row->normal, pose->velocity);
     return true;
 }
 
 // What an end does in the step. Other places do what they do at mid-step: their forces grow gently.
 static Overlap end_overlap(const ContactRow *row, const WorldPair *pair, const TouchPose *pose,
-                           bool is_staggered, double step_s)
+                           StepKind step)
 {
-    return is_staggered && pair->is_end
-               ? overlap_find(&row->law, pose->gap, pose->approach_speed, step_s)
+    return step.is_staggered && pair->is_end
+               ? overlap_find(&row->at.law, pose->gap, pose->approach_speed, step.step_s)
                : (Overlap){.depth = -pose->gap, .share = 1.0};
 }
 
-// A contact begins, at a time since the step's start.
-static void begin(ContactRow *row, bool is_staggered, const TouchPose *pose, double onset_s,
-                  double step_s)
-{
-    row->state = contact_state_begun(
-        is_staggered ? onset_speed(&row->onset, row->closing, pose->gap, row->inside, step_s)
-                     : row->closing);
-    contact_peaks_begin(&row->peaks, force_law_viscous(&row->law, 0.0) * row->state.impact_speed,
-                        0.5 * step_s - onset_s);
-}
-
-// Looks for the contact of a pair, and notes how it is, or that there is none; of a staggered world
-// the speed at its onset is located between steps. Fills in the state of this place: eccentricity
-// (the pose's offset), gap, and whether it touches.
+// Looks for the contact of a pair, and notes how it is, or that there is none. Fills in the state
+// of this place: eccentricity (the pose's offset), gap, and whether it touches.
 static void contact_row_find(ContactRow *row, const World *world, const WorldPair *pair,
-                             bool is_staggered, double step_s, JointState *state)
+                             StepKind step, JointState *state)
 {
-    const bool was_touching = row->state.is_touching;
     const TouchPose pose = pair_pose(pair);
-    const Overlap overlap = end_overlap(row, pair, &pose, is_staggered, step_s);
-    row->share = overlap.share;
-    row->state.is_touching = find_collision(world, pair, &pose, &overlap, row);
-    row->inside = pair->hole == NULL ? -pose.gap : row->depth;
+    const Overlap overlap = end_overlap(row, pair, &pose, step);
+    StepFound found = {
+        .gap = pose.gap,
+        .inside = -pose.gap,
+        .depth = overlap.depth,
+        .share = overlap.share,
+        .closing = pose.approach_speed,
+        .onset_s = overlap.onset,
+    };
+    found.touches = find_collision(world, pair, &pose, row, &found);
+    row->excess = pair->hole == NULL ? 0.0 : found.depth + pose.gap;
+    row->faster = found.closing - pose.approach_speed;
+    step_contact_find(&row->at, &found, step);
     *state = (JointState){
         .eccentricity = pose.offset,
         .gap = pose.gap,
-        .is_touching = row->state.is_touching,
+        .is_touching = found.touches,
     };
-    if (!row->state.is_touching) {
-        row->state.impact_speed = pose.approach_speed;
-    } else {
-        // of a polygon's side the circles' penetration and its rate are not the row's
-        row->excess = pair->hole == NULL ? 0.0 : row->depth + pose.gap;
-        row->closing =
-            pair->hole == NULL ? pose.approach_speed : -vec2_dot(row->normal, pose.velocity);
-        row->faster = row->closing - pose.approach_speed;
-        if (was_touching) {
-            row->state.age_s += step_s;
-            contact_state_follow(&row->state, row->closing, row->law.resting_speed);
-        } else {
-            begin(row, is_staggered, &pose, overlap.onset, step_s);
-        }
-    }
-    onset_note(&row->onset, row->state.is_touching, pose.gap);
 }
 
 // Of the velocity-level model, always the same.
@@ -267,18 +231,10 @@ static dSurfaceParameters poisson_surface(const ContactRows *rows, size_t number
     };
 }
 
-static dSurfaceParameters impact_surface(const ContactRows *rows, ContactRow *row, double step_s)
+static dSurfaceParameters impact_surface(ContactRows *rows, ContactRow *row, double step_s)
 {
-    const LawRow at = {
-        .depth = row->depth,
-        .closing = row->closing,
-        .impact_speed = row->state.damping_speed,
-        .share = row->share,
-        .mass = row->mass,
-    };
-    const MapContact contact = law_row_contact(&row->law, &at, step_s);
-    const ErpCfm soft = law_row_soft(rows->map, row->falls_back, &contact);
-    row->damping = contact.damping;
+    const ErpCfm soft = step_contact_soft(&row->at, rows->map, step_s);
+    rows->fallback_count += row->at.falls_back ? 1 : 0;
     return (dSurfaceParameters){
         .mode = dContactSoftERP | dContactSoftCFM,
         .mu = 0.0,
@@ -292,8 +248,8 @@ static void init_row(ContactRows *rows, size_t number, const Touch *place)
 {
     ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
-    row->law = place->law;
-    row->state = rows->scenario->linkage.joints[place->joint].contacts[place->place];
+    row->at.law = place->law;
+    row->at.state = rows->scenario->linkage.joints[place->joint].contacts[place->place];
     row->surface = rows->map == NULL ? poisson_surface(rows, number) : row->surface;
     row->contact.geom = (dContactGeom){.g1 = pair->hole, .g2 = pair->pin, .side1 = -1, .side2 = -1};
     if (pair->row != NULL) {
@@ -339,7 +295,7 @@ void contact_rows_states(const ContactRows *rows, ContactState (*states)[JOINT_P
 {
     for (size_t i = 0; i < rows->world->pair_count; i++) {
         const Touch *place = &rows->world->pairs[i].touch;
-        states[place->joint][place->place] = rows->rows[i].state;
+        states[place->joint][place->place] = rows->rows[i].at.state;
     }
 }
 
@@ -381,11 +337,11 @@ static FrictionRow contact_rows_friction(const ContactRows *rows, size_t number)
         .pair = pair,
         .first_row = response_first_row(&rows->mass.response, number),
         .normal = row->normal,
-        .closing = row->closing,
+        .closing = row->at.found.closing,
         .cfm = row->contact.surface.soft_cfm,
-        .friction = row->law.friction,
-        .friction_speed = row->law.friction_speed,
-        .bound = row->law.friction,
+        .friction = row->at.law.friction,
+        .friction_speed = row->at.law.friction_speed,
+        .bound = row->at.law.friction,
         .slip = INFINITY,
     };
 }
@@ -416,10 +372,10 @@ static void find_friction(ContactRows *rows, double step_s)
     size_t *numbers = rows->numbers;
     size_t count = 0;
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        if (rows->rows[i].state.is_touching) {
+        if (rows->rows[i].at.state.is_touching) {
             found[count] = contact_rows_friction(rows, i);
             found[count].target =
-                rows->rows[i].contact.surface.soft_erp / step_s * rows->rows[i].depth;
+                rows->rows[i].contact.surface.soft_erp / step_s * rows->rows[i].at.found.depth;
             numbers[count++] = i;
         }
     }
@@ -445,7 +401,7 @@ static void make_row(ContactRows *rows, size_t number, double step_s)
     const dJointID own = rows->world->pairs[number].row;
     if (own != NULL) {
         const dSurfaceParameters *surface = &row->contact.surface;
-        const double speed = surface->soft_erp / step_s * row->depth;
+        const double speed = surface->soft_erp / step_s * row->at.found.depth;
         pressing_row_press(own, surface->soft_cfm, speed, step_s);
         return;
     }
@@ -462,7 +418,7 @@ static void make_contact_rows(ContactRows *rows, double step_s)
         find_friction(rows, step_s);
     }
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        if (rows->rows[i].state.is_touching) {
+        if (rows->rows[i].at.state.is_touching) {
             make_row(rows, i, step_s);
             rows->row_count++;
             row_count += has_friction && !rows->world->pairs[i].is_end ? 2 : 1;
@@ -476,21 +432,15 @@ static bool check_depth(const ContactRows *rows, size_t number, Err *err)
     const ContactRow *row = &rows->rows[number];
     const Joint *joint = &rows->scenario->linkage.joints[rows->world->pairs[number].joint];
     // deeper than any law: the step was too coarse to catch the wall
-    return law_check_depth(&row->law, joint, row->depth, 1.0, err);
+    return law_check_depth(&row->at.law, joint, row->at.found.depth, 1.0, err);
 }
 
-// Whether the row would not be stable under the map at this step.
-static void check_stability(ContactRows *rows, size_t number, double step_s)
+// Finds the masses that a place meets, where its map has a limit to its stability.
+static void find_masses(ContactRows *rows, size_t number)
 {
-    ContactRow *row = &rows->rows[number];
-    row->falls_back = false;
-    if (rows->map == NULL || isinf(rows->map->stability_limit)) {
-        return;
+    if (rows->map != NULL && !isinf(rows->map->stability_limit)) {
+        contact_mass_find(&rows->mass, rows->rows, number, rows->map->needs_mass);
     }
-    contact_mass_find(&rows->mass, rows->rows, number, rows->map->needs_mass);
-    const double slope = force_law_tangent(&row->law, row->depth);
-    row->falls_back = !law_row_is_stable(rows->map, slope / row->stiff_mass, step_s);
-    rows->fallback_count += row->falls_back ? 1 : 0;
 }
 
 // What ODE is to know of a contact; its normal is that of the force on body a.
@@ -503,7 +453,7 @@ static void write_contact(ContactRows *rows, size_t number, double step_s)
     contact->geom.pos[1] = row->point.y;
     contact->geom.normal[0] = -row->normal.x;
     contact->geom.normal[1] = -row->normal.y;
-    contact->geom.depth = row->depth;
+    contact->geom.depth = row->at.found.depth;
     contact->fdir1[0] = -row->normal.y;
     contact->fdir1[1] = row->normal.x;
 }
@@ -524,16 +474,17 @@ static void find_row(ContactRows *rows, size_t number, double step_s, JointState
     JointState *state = &states[pair->joint];
     const bool is_first = contact_rows_is_first(rows, number);
     JointState place;
-    contact_row_find(row, rows->world, pair, rows->is_staggered, step_s, is_first ? state : &place);
+    contact_row_find(row, rows->world, pair, (StepKind){step_s, rows->is_staggered},
+                     is_first ? state : &place);
     if (is_first) {
         approach[pair->joint] =
-            pair->is_corner && !row->state.is_touching ? 0.0 : row->state.impact_speed;
+            pair->is_corner && !row->at.state.is_touching ? 0.0 : row->at.state.impact_speed;
         return;
     }
     state->gap = fmin(state->gap, place.gap);
-    state->is_touching = state->is_touching || row->state.is_touching;
-    if (row->state.is_touching) {
-        approach[pair->joint] = fmax(approach[pair->joint], row->state.impact_speed);
+    state->is_touching = state->is_touching || row->at.state.is_touching;
+    if (row->at.state.is_touching) {
+        approach[pair->joint] = fmax(approach[pair->joint], row->at.state.impact_speed);
     }
 }
 
@@ -544,13 +495,13 @@ bool contact_rows_make(ContactRows *rows, double step_s, JointState *states, dou
     rows->mass.is_placed = false;
     for (size_t i = 0; i < count; i++) {
         find_row(rows, i, step_s, states, approach);
-        if (rows->rows[i].state.is_touching && !check_depth(rows, i, err)) {
+        if (rows->rows[i].at.state.is_touching && !check_depth(rows, i, err)) {
             return false;
         }
     }
     for (size_t i = 0; i < count; i++) {
-        if (rows->rows[i].state.is_touching) {
-            check_stability(rows, i, step_s);
+        if (rows->rows[i].at.state.is_touching) {
+            find_masses(rows, i);
             write_contact(rows, i, step_s);
         }
     }
@@ -571,39 +522,26 @@ static double friction_work(const ContactRows *rows, size_t number, Vec2 force, 
     return -vec2_dot(vec2_perp(row->normal), force) * sliding * step_s;
 }
 
-// What a contact lost and stored in the step, by its law: the damper at the speed after the step,
-// the spring at the depth after it. Where nothing presses that still overlaps, the damper takes all
-// that the spring gives. What the step itself gains or loses beyond that is ODE's error
-// and stays in the residual. The velocity-level model has no spring: all its work is lost.
+// What a contact lost and stored in the step.
 static void book_energy(ContactRows *rows, size_t number, Vec2 force, double step_s)
 {
     ContactRow *row = &rows->rows[number];
-    row->elastic = 0.0;
-    row->dissipated = 0.0;
-    row->friction = 0.0;
-    if (!row->state.is_touching) {
+    row->at.elastic = row->at.dissipated = row->at.friction = 0.0;
+    if (!row->at.state.is_touching) {
         return;
     }
-    const TouchPose pose = pair_pose(&rows->world->pairs[number]);
+    const WorldPair *pair = &rows->world->pairs[number];
+    const TouchPose pose = pair_pose(pair);
     // a polygon's side stays what it is within a step
-    const double penetration = row->excess - pose.gap;
-    const double speed = pose.approach_speed + row->faster;
-    const double pressing =
-        rows->world->pairs[number].row != NULL ? row->pressing : vec2_dot(row->normal, force);
-    // of a staggered world the step stands in the middle between its two speeds, and its end
-    // between two positions
-    const double closing = rows->is_staggered ? 0.5 * (row->closing + speed) : speed;
-    const double depth = rows->is_staggered ? 0.5 * (row->inside + penetration) : penetration;
-    if (rows->scenario->contact.model == CONTACT_POISSON) {
-        row->dissipated = pressing * 0.5 * (row->closing + speed) * step_s;
-    } else {
-        const double damped =
-            pressing > 0.0 ? row->damping * closing : -force_law_elastic(&row->law, row->depth);
-        row->dissipated = damped * closing * step_s;
-        row->elastic = force_law_energy(&row->law, fmax(0.0, depth));
-    }
-    if (row->law.friction > 0.0) {
-        row->friction = friction_work(rows, number, force, step_s);
+    const StepAfter after = {
+        .pressing = pair->row != NULL ? row->at.pressing : vec2_dot(row->normal, force),
+        .depth = row->excess - pose.gap,
+        .closing = pose.approach_speed + row->faster,
+    };
+    step_contact_book(&row->at, rows->scenario->contact.model, after,
+                      (StepKind){step_s, rows->is_staggered});
+    if (row->at.law.friction > 0.0) {
+        row->at.friction = friction_work(rows, number, force, step_s);
     }
 }
 
@@ -612,7 +550,7 @@ static Vec2 row_force(const ContactRows *rows, size_t number)
 {
     const ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
-    if (!row->state.is_touching || pair->row != NULL) {
+    if (!row->at.state.is_touching || pair->row != NULL) {
         return (Vec2){0.0, 0.0};
     }
     const Vec3 on_a = pressing_row_force(&row->feedback, pair->bodies);
@@ -624,10 +562,10 @@ static void add_corner(const ContactRow *row, const WorldPair *pair, const Joint
                        JointState *state)
 {
     state->force_on_b = vec2_add(state->force_on_b, force);
-    state->force += row->pressing;
+    state->force += row->at.pressing;
     state->moment_on_b += vec2_cross(row->lever, force);
     if (pair->row != NULL) {
-        state->moment_on_b += coordinate_sense(joint) * pair->touch.sign * row->pressing;
+        state->moment_on_b += coordinate_sense(joint) * pair->touch.sign * row->at.pressing;
     }
 }
 
@@ -643,18 +581,18 @@ static void read_row(ContactRows *rows, size_t number, Vec2 force, double step_s
 {
     ContactRow *row = &rows->rows[number];
     const WorldPair *pair = &rows->world->pairs[number];
-    row->pressing = pair->row != NULL ? take_torque(row, pair) : vec2_length(force);
+    row->at.pressing = pair->row != NULL ? take_torque(row, pair) : vec2_length(force);
     if (pair->is_corner) {
         const Joint *joint = &rows->scenario->linkage.joints[pair->joint];
         add_corner(row, pair, joint, force, state);
     } else {
         state->force_on_b = force;
-        state->force = row->pressing;
+        state->force = row->at.pressing;
     }
     if (pair->is_end) {
         // whose largest values alone are asked for: contact_rows_peaks
-        contact_peaks_note_step(&row->peaks, row->pressing, fmax(row->inside, 0.0), row->share,
-                                step_s);
+        contact_peaks_note_step(&row->at.peaks, row->at.pressing, fmax(row->at.found.inside, 0.0),
+                                row->at.found.share, step_s);
     }
 }
 
@@ -668,7 +606,7 @@ void contact_rows_clear(ContactRows *rows, double step_s, JointState *states)
             states[pair->joint].force = 0.0;
         }
         const Vec2 force = row_force(rows, i);
-        if (rows->rows[i].state.is_touching) {
+        if (rows->rows[i].at.state.is_touching) {
             read_row(rows, i, force, step_s, &states[pair->joint]);
             any = true;
         }
@@ -692,7 +630,7 @@ static void find_offsets(const ContactRows *rows, int body, Vec2 *offsets)
         const ContactRow *row = &rows->rows[i];
         const int number = rows->world->pairs[i].joint;
         const Joint *joint = &rows->scenario->linkage.joints[number];
-        if (row->state.is_touching) {
+        if (row->at.state.is_touching) {
             offsets[number] = row->arms[joint->body_a == body ? 0 : 1];
         }
     }
@@ -717,9 +655,7 @@ ContactEnergy contact_rows_energy(const ContactRows *rows)
 {
     ContactEnergy sum = {0.0, 0.0, 0.0};
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        sum.dissipated += rows->rows[i].dissipated;
-        sum.friction += rows->rows[i].friction;
-        sum.elastic += rows->rows[i].elastic;
+        step_contact_add_energy(&rows->rows[i].at, &sum);
     }
     return sum;
 }
@@ -730,11 +666,9 @@ void contact_rows_peaks(const ContactRows *rows, JointPeak *peaks)
         peaks[i] = (JointPeak){.force = 0.0};
     }
     for (size_t i = 0; i < rows->world->pair_count; i++) {
-        const ContactRow *row = &rows->rows[i];
-        JointPeak *top = &peaks[rows->world->pairs[i].joint];
-        if (rows->world->pairs[i].is_end && row->state.is_touching) {
-            top->force = fmax(top->force, row->peaks.force);
-            top->depth = fmax(top->depth, row->peaks.depth);
+        const WorldPair *pair = &rows->world->pairs[i];
+        if (pair->is_end) {
+            step_contact_raise(&rows->rows[i].at, &peaks[pair->joint]);
         }
     }
 }

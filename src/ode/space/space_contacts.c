@@ -10,29 +10,21 @@
 #include "contact/penalty.h"
 #include "ode/space/space_friction.h"
 #include "ode/space/space_world.h"
+#include "ode/step_contact.h"
 #include "world/pressing_row.h"
 
 #include <string.h>
 
 // What a pin does at one of its places.
 struct SpaceContact {
-    ContactState state; // as in ode/plane/contact_rows.h
-    double depth;       // m, of the row, like all that follows up to the friction
+    StepContact at;
     PinSpacePose pose;
     Vec3 point;     // m, where the force acts
     Vec3 hole_axis; // unit, of a collar
-    Onset onset;
-    double mass;       // kg, effective along the normal that it was worked out for
-    double stiff_mass; // kg, with which the stiffest motion of the joint's places meets it
     Vec3 mass_normal;
     unsigned mass_places; // the joint's places that touched then, one bit each
-    bool falls_back;      // the map is not stable at this step: the row is the textbook's
-    double damping;       // N s/m
     Vec3 sliding;         // m/s, along the wall before the step, where there is friction
     Vec3 force;           // N, on the pin in the step
-    double elastic;       // J, stored after the step
-    double dissipated;    // J, lost along the normal in the step
-    double friction;      // J, lost in sliding in the step
     dContact contact;     // as ODE is given it
     dJointFeedback feedback;
 };
@@ -68,7 +60,7 @@ static unsigned touching_places(const SpaceContacts *contacts, size_t number)
     unsigned places = 0;
     const size_t end = end_of_joint(contacts, number);
     for (size_t i = first_of_joint(contacts, number); i < end; i++) {
-        places |= contacts->contacts[i].state.is_touching ? 1U << contacts->places[i].place : 0;
+        places |= contacts->contacts[i].at.state.is_touching ? 1U << contacts->places[i].place : 0;
     }
     return places;
 }
@@ -79,7 +71,7 @@ static bool needs_mass(const SpaceContacts *contacts, size_t number)
 {
     static const double SAME_NORMAL = 0.995; // the cosine of 6 degrees
     const SpaceContact *contact = &contacts->contacts[number];
-    return contact->state.is_touching &&
+    return contact->at.state.is_touching &&
            (contacts->map->needs_mass ||
             contact->mass_places != touching_places(contacts, number) ||
             !(vec3_dot(contact->mass_normal, contact->pose.normal) > SAME_NORMAL));
@@ -98,7 +90,7 @@ static bool place_normals(SpaceContacts *contacts, const SpaceMotion *motions)
             contacts->rows[SPACE_CONTACT_ROWS * i + k].body[0] = place->hole.body;
             contacts->rows[SPACE_CONTACT_ROWS * i + k].body[1] = place->pin.body;
         }
-        if (contact->state.is_touching) {
+        if (contact->at.state.is_touching) {
             contacts->rows[SPACE_CONTACT_ROWS * i] =
                 space_row_along(motions, place->hole.body, contact->pose.at_a, place->pin.body,
                                 contact->pose.at_b, contact->pose.normal);
@@ -119,24 +111,24 @@ static void find_mass(SpaceContacts *contacts, size_t number)
 {
     SpaceContact *contact = &contacts->contacts[number];
     const ForceLaw *law = &contacts->places[number].law;
-    const double force = force_law_elastic(law, contact->depth);
-    const double stiffness = force_law_tangent(law, contact->depth);
+    const double force = force_law_elastic(law, contact->at.found.depth);
+    const double stiffness = force_law_tangent(law, contact->at.found.depth);
     double together = mobility_between(contacts, number, number);
     double stiffest = 0.0;
     const size_t end = end_of_joint(contacts, number);
     for (size_t k = first_of_joint(contacts, number); k < end; k++) {
         const SpaceContact *other = &contacts->contacts[k];
         const ForceLaw *of = &contacts->places[k].law;
-        if (!other->state.is_touching) {
+        if (!other->at.state.is_touching) {
             continue;
         }
         const double between = mobility_between(contacts, number, k);
-        const double share = force_law_elastic(of, other->depth) / force;
+        const double share = force_law_elastic(of, other->at.found.depth) / force;
         together += k == number ? 0.0 : fmax(0.0, between) * fmin(1.0, share);
-        stiffest += fabs(between) * force_law_tangent(of, other->depth) / stiffness;
+        stiffest += fabs(between) * force_law_tangent(of, other->at.found.depth) / stiffness;
     }
-    contact->mass = 1.0 / together;
-    contact->stiff_mass = 1.0 / stiffest;
+    contact->at.mass = 1.0 / together;
+    contact->at.stiff_mass = 1.0 / stiffest;
     contact->mass_normal = contact->pose.normal;
     contact->mass_places = touching_places(contacts, number);
 }
@@ -156,7 +148,7 @@ static void space_contact_mass_find(SpaceContacts *contacts, const SpaceMotion *
         is_placed = true;
         const size_t end = end_of_joint(contacts, i);
         for (size_t k = first_of_joint(contacts, i); k < end; k++) {
-            if (contacts->contacts[k].state.is_touching) {
+            if (contacts->contacts[k].at.state.is_touching) {
                 find_mass(contacts, k);
             }
         }
@@ -198,7 +190,7 @@ static SpaceFrictionRow friction_row(SpaceContacts *contacts, size_t number,
         .normal = normal,
         .side = side,
         .has_friction = is_end && place->law.friction > 0.0,
-        .target = surface->soft_erp / step_s * contact->depth,
+        .target = surface->soft_erp / step_s * contact->at.found.depth,
         .cfm = surface->soft_cfm,
         .sliding = contact->sliding,
         .along = speed > 0.0 ? vec3_scale(1.0 / speed, contact->sliding) : side,
@@ -243,7 +235,7 @@ static void space_friction_rows_add(SpaceContacts *contacts, const SpaceMotion *
     size_t *numbers = zeroed(contacts->count, sizeof *numbers);
     size_t count = 0;
     for (size_t i = 0; i < contacts->count; i++) {
-        if (contacts->contacts[i].state.is_touching) {
+        if (contacts->contacts[i].at.state.is_touching) {
             found[count] = friction_row(contacts, i, motions, step_s);
             numbers[count++] = i;
         }
@@ -272,7 +264,9 @@ bool space_contacts_list(SpaceContacts *contacts, const Scenario *scenario, Err 
     contacts->motions = zeroed(bodies, sizeof *contacts->motions);
     for (size_t i = 0; i < contacts->count; i++) {
         const PinSpace *place = &contacts->places[i];
-        contacts->contacts[i].state = scenario->linkage.joints[place->joint].contacts[place->place];
+        contacts->contacts[i].at.law = place->law;
+        contacts->contacts[i].at.state =
+            scenario->linkage.joints[place->joint].contacts[place->place];
     }
     return contacts->places != NULL;
 }
@@ -321,24 +315,16 @@ static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMoti
 {
     const PinSpace *place = &contacts->places[number];
     SpaceContact *contact = &contacts->contacts[number];
-    const bool was_touching = contact->state.is_touching;
     contact->pose = pin_space_pose(place, motions);
-    contact->depth = -contact->pose.gap;
-    contact->state.is_touching = contact->pose.gap < 0.0;
-    if (!contact->state.is_touching) {
-        contact->state.impact_speed = contact->pose.approach_speed;
-    } else if (was_touching) {
-        contact->state.age_s += step_s;
-        contact_state_follow(&contact->state, contact->pose.approach_speed,
-                             place->law.resting_speed);
-    } else {
-        const PinSpacePose *pose = &contact->pose;
-        contact->state = contact_state_begun(
-            contacts->is_staggered ? onset_speed(&contact->onset, pose->approach_speed, pose->gap,
-                                                 contact->depth, step_s)
-                                   : pose->approach_speed);
-    }
-    onset_note(&contact->onset, contact->state.is_touching, contact->pose.gap);
+    const StepFound found = {
+        .touches = contact->pose.gap < 0.0,
+        .gap = contact->pose.gap,
+        .inside = -contact->pose.gap,
+        .depth = -contact->pose.gap,
+        .share = 1.0,
+        .closing = contact->pose.approach_speed,
+    };
+    step_contact_find(&contact->at, &found, (StepKind){step_s, contacts->is_staggered});
     const Clearance *clearance = &contacts->scenario->linkage.joints[place->joint].clearance;
     contact->point = contact->pose.at_a;
     if (place->place == PIN_SPACE_COLLAR) {
@@ -353,19 +339,6 @@ static void find_contact(SpaceContacts *contacts, size_t number, const SpaceMoti
 static bool has_limit(const SpaceContacts *contacts)
 {
     return contacts->map != NULL && !isinf(contacts->map->stability_limit);
-}
-
-// Whether the row would not be stable under the map at this step.
-static void check_stability(SpaceContacts *contacts, size_t number, double step_s)
-{
-    SpaceContact *contact = &contacts->contacts[number];
-    contact->falls_back = false;
-    if (!has_limit(contacts)) {
-        return;
-    }
-    const double slope = force_law_tangent(&contacts->places[number].law, contact->depth);
-    contact->falls_back = !law_row_is_stable(contacts->map, slope / contact->stiff_mass, step_s);
-    contacts->fallback_count += contact->falls_back ? 1 : 0;
 }
 
 static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, double step_s)
@@ -385,16 +358,8 @@ static dSurfaceParameters surface_of(SpaceContacts *contacts, size_t number, dou
             map_poisson_cfm(contacts->penalty / (is_end ? (double)PIN_SPACE_ENDS : 1.0));
         return surface;
     }
-    const LawRow at = {
-        .depth = contact->depth,
-        .closing = contact->pose.approach_speed,
-        .impact_speed = contact->state.damping_speed,
-        .share = 1.0,
-        .mass = contact->mass,
-    };
-    const MapContact row = law_row_contact(&place->law, &at, step_s);
-    const ErpCfm soft = law_row_soft(contacts->map, contact->falls_back, &row);
-    contact->damping = row.damping;
+    const ErpCfm soft = step_contact_soft(&contact->at, contacts->map, step_s);
+    contacts->fallback_count += contact->at.falls_back ? 1 : 0;
     surface.soft_erp = soft.erp;
     surface.soft_cfm = soft.cfm;
     return surface;
@@ -409,7 +374,7 @@ static void fill_contact(SpaceContacts *contacts, size_t number, double step_s)
         .surface = surface_of(contacts, number, step_s),
         .geom = {.pos = {contact->point.x, contact->point.y, contact->point.z},
                  .normal = {-normal.x, -normal.y, -normal.z},
-                 .depth = contact->depth},
+                 .depth = contact->at.found.depth},
     };
 }
 
@@ -420,7 +385,7 @@ static size_t make_joints(SpaceContacts *contacts)
     for (size_t i = 0; i < contacts->count; i++) {
         SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
-        if (contact->state.is_touching) {
+        if (contact->at.state.is_touching) {
             const dBodyID bodies[2] = {world_body(contacts->world, place->hole.body),
                                        world_body(contacts->world, place->pin.body)};
             pressing_row_of_way(contacts->world->id, contacts->group, &contact->contact, bodies,
@@ -444,17 +409,16 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
     for (size_t i = 0; i < contacts->count; i++) {
         SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
-        if (place->place == 0 || (place->place == 1 && contact->state.is_touching)) {
-            approach[place->joint] = contact->state.impact_speed;
+        if (place->place == 0 || (place->place == 1 && contact->at.state.is_touching)) {
+            approach[place->joint] = contact->at.state.impact_speed;
         }
-        if (!contact->state.is_touching) {
+        if (!contact->at.state.is_touching) {
             continue;
         }
-        if (!law_check_depth(&place->law, &linkage->joints[place->joint], contact->depth, 1.0,
-                             err)) {
+        if (!law_check_depth(&place->law, &linkage->joints[place->joint], contact->at.found.depth,
+                             1.0, err)) {
             return false;
         }
-        check_stability(contacts, i, step_s);
         fill_contact(contacts, i, step_s);
     }
     if (contacts->has_friction) {
@@ -465,13 +429,13 @@ bool space_contacts_make(SpaceContacts *contacts, const SpaceMotion *motions,
     return true;
 }
 
-// What a contact lost and stored in the step, by its law; as in ode/plane/contact_rows.c.
+// What a contact lost and stored in the step.
 static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotion *motions,
                         double step_s)
 {
     SpaceContact *contact = &contacts->contacts[number];
-    contact->elastic = contact->dissipated = contact->friction = 0.0;
-    if (!contact->state.is_touching) {
+    contact->at.elastic = contact->at.dissipated = contact->at.friction = 0.0;
+    if (!contact->at.state.is_touching) {
         return;
     }
     const PinSpace *place = &contacts->places[number];
@@ -482,19 +446,15 @@ static void book_energy(SpaceContacts *contacts, size_t number, const SpaceMotio
             place, motions, vec3_add(contact->point, moved), contact->pose.normal);
         const Vec3 mean_sliding =
             contacts->is_staggered ? vec3_scale(0.5, vec3_add(contact->sliding, sliding)) : sliding;
-        contact->friction = -step_s * vec3_dot(contact->force, mean_sliding);
+        contact->at.friction = -step_s * vec3_dot(contact->force, mean_sliding);
     }
-    const double before = contact->pose.approach_speed;
-    const double mean = 0.5 * (before + after.approach_speed);
-    const double pressing = vec3_dot(contact->pose.normal, contact->force);
-    if (contacts->scenario->contact.model == CONTACT_POISSON) {
-        contact->dissipated = pressing * mean * step_s;
-        return;
-    }
-    const double closing = contacts->is_staggered ? mean : after.approach_speed;
-    const double depth = contacts->is_staggered ? 0.5 * (contact->depth - after.gap) : -after.gap;
-    contact->dissipated = pressing > 0.0 ? contact->damping * closing * closing * step_s : 0.0;
-    contact->elastic = force_law_energy(&place->law, fmax(0.0, depth));
+    const StepAfter stood = {
+        .pressing = vec3_dot(contact->pose.normal, contact->force),
+        .depth = -after.gap,
+        .closing = after.approach_speed,
+    };
+    step_contact_book(&contact->at, contacts->scenario->contact.model, stood,
+                      (StepKind){step_s, contacts->is_staggered});
 }
 
 void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *joints)
@@ -502,7 +462,7 @@ void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *j
     SpaceMotion *motions = contacts->motions;
     bool any = false;
     for (size_t i = 0; i < contacts->count; i++) {
-        any = any || contacts->contacts[i].state.is_touching;
+        any = any || contacts->contacts[i].at.state.is_touching;
     }
     for (size_t i = 0; any && i < contacts->scenario->linkage.body_count; i++) {
         motions[i] = space_world_motion(contacts->world, i);
@@ -511,7 +471,7 @@ void space_contacts_clear(SpaceContacts *contacts, double step_s, SpaceJoints *j
         const PinSpace *place = &contacts->places[i];
         SpaceContact *contact = &contacts->contacts[i];
         contact->force = (Vec3){0.0, 0.0, 0.0};
-        if (contact->state.is_touching) {
+        if (contact->at.state.is_touching) {
             const dBodyID bodies[2] = {world_body(contacts->world, place->hole.body),
                                        world_body(contacts->world, place->pin.body)};
             contact->force = vec3_scale(-1.0, pressing_row_force(&contact->feedback, bodies));
@@ -529,7 +489,8 @@ void space_contacts_load(const SpaceContacts *contacts, int body, Vec3 centre, S
     for (size_t i = 0; i < contacts->count && body != LINKAGE_GROUND; i++) {
         const SpaceContact *contact = &contacts->contacts[i];
         const PinSpace *place = &contacts->places[i];
-        if (contact->state.is_touching && (place->hole.body == body || place->pin.body == body)) {
+        if (contact->at.state.is_touching &&
+            (place->hole.body == body || place->pin.body == body)) {
             const double sign = place->pin.body == body ? 1.0 : -1.0;
             const Vec3 force = vec3_scale(sign, contact->force);
             load->move = vec3_add(load->move, force);
@@ -555,9 +516,7 @@ ContactEnergy space_contacts_energy(const SpaceContacts *contacts)
 {
     ContactEnergy sum = {0.0, 0.0, 0.0};
     for (size_t i = 0; i < contacts->count; i++) {
-        sum.dissipated += contacts->contacts[i].dissipated;
-        sum.friction += contacts->contacts[i].friction;
-        sum.elastic += contacts->contacts[i].elastic;
+        step_contact_add_energy(&contacts->contacts[i].at, &sum);
     }
     return sum;
 }
@@ -566,7 +525,7 @@ void space_contacts_states(const SpaceContacts *contacts, ContactState (*states)
 {
     for (size_t i = 0; i < contacts->count; i++) {
         const PinSpace *place = &contacts->places[i];
-        states[place->joint][place->place] = contacts->contacts[i].state;
+        states[place->joint][place->place] = contacts->contacts[i].at.state;
     }
 }
 

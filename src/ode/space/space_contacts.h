@@ -2,8 +2,7 @@
 // contact of ODE each while they last.
 #pragma once
 
-#include "contact/law_row.h"
-#include "contact/onset.h"
+#include "contact/map.h"
 #include "contact/pin_space.h"
 #include "model/space_response.h"
 #include "ode/plane/world.h"

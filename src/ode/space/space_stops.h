@@ -2,9 +2,7 @@
 // for ends in the plane.
 #pragma once
 
-#include "contact/contact_peaks.h"
 #include "contact/map.h"
-#include "contact/onset.h"
 #include "model/space_coordinate.h"
 #include "model/space_response.h"
 #include "ode/plane/world.h"
