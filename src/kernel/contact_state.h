@@ -7,6 +7,8 @@
 // what lasts does not depend on an impact of long ago.
 #pragma once
 
+#include "kernel/bristle.h"
+
 #include <stdbool.h>
 
 typedef struct ContactState {
@@ -17,6 +19,8 @@ typedef struct ContactState {
     double impact_speed;  // m/s, closing speed where the contact began; rad/s at an angle
     double damping_speed; // m/s, v0 in the damping: that, or the law's resting speed
     double age_s;         // s, since then
+    double bend;          // m, of its friction's bristle (kernel/bristle.h)
+    BristleMode bristle;
 } ContactState;
 
 // One that begins with a closing speed.
@@ -31,6 +35,8 @@ static inline ContactState contact_state_begun(double speed)
         .impact_speed = speed,
         .damping_speed = speed,
         .age_s = 0.0,
+        .bend = 0.0,
+        .bristle = BRISTLE_STICKING,
     };
 }
 

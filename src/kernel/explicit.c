@@ -75,6 +75,7 @@ static void find_middle_point(const Kernel *kernel, const KernelPoint *from, dou
             since_s * (from->impulse[i] + since_s * (0.5 * from->force[i] + half / 3.0));
     }
     add_second(kernel, from, all_rows(kernel), since_s, point->moment);
+    kernel_bends_middle(kernel, from, since_s, point);
 }
 
 static void finish_order_4(const Kernel *kernel, const KernelPoint *from, double h,
@@ -87,6 +88,7 @@ static void finish_order_4(const Kernel *kernel, const KernelPoint *from, double
         to->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         to->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
+    kernel_bends_finish(kernel, from, h, inside, NULL, to);
     for (size_t i = 0; i < POWERS; i++) {
         const double rates = h * (from->power_rates[i] / 6.0 + inside->power_rates[i] / 3.0);
         to->losses[i] = from->losses[i] + h * (from->powers[i] + rates);
@@ -106,6 +108,7 @@ static void finish_order_5(Kernel *kernel, const KernelPoint *from, double h,
         last->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
     add_second(kernel, from, all_rows(kernel), h, last->moment);
+    kernel_bends_last(kernel, from, h, inside, last);
     // what others do may jump at the end of the step, not inside it
     kernel_input_look(kernel, true);
     kernel_rates_find(kernel, last);
@@ -118,6 +121,7 @@ static void finish_order_5(Kernel *kernel, const KernelPoint *from, double h,
         to->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         to->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
+    kernel_bends_finish(kernel, from, h, inside, last, to);
     for (size_t i = 0; i < POWERS; i++) {
         const double rates =
             h * (from->power_rates[i] / 8.0 + 25.0 / 72.0 * inside->power_rates[i] +
@@ -172,6 +176,21 @@ void kernel_explicit_inside(const Kernel *kernel, const ExplicitStep *step, cons
                         (from->force[i] / 2.0 + s * (slope / 6.0 + s * (a / 12.0 + s * b / 20.0)));
     }
     add_second(kernel, from, span, h * s, moment);
+}
+
+double kernel_explicit_bend(const ExplicitStep *step, const KernelPoint *from, size_t contact,
+                            double since_s)
+{
+    const double h = step->width_s;
+    const double s = since_s / h;
+    const KernelBend *start = &from->bends[contact];
+    const KernelBend *inside = &step->inside->bends[contact];
+    const double slope = h * start->bending_rate;
+    double a;
+    double b;
+    find_cubic(step->middle, start->bending, slope, inside->bending, h * inside->bending_rate, &a,
+               &b);
+    return start->bend + h * s * (start->bending + s * (slope / 2.0 + s * (a / 3.0 + s * b / 4.0)));
 }
 
 void kernel_explicit_extend(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,

@@ -82,15 +82,41 @@ static double sliding_along(const double *speed, Vec2 tangent, double hole_arm, 
            pin_arm * (tangent.x * pin[0] + tangent.y * pin[1]);
 }
 
+// The share of mu N that is held against a sliding.
+static double held_share(const KernelPoint *point, const KernelContact *of, size_t contact,
+                         double sliding)
+{
+    return kernel_has_bristle(of) ? bristle_hold(&of->law.bristle, of->state.bristle,
+                                                 point->bends[contact].bend, sliding)
+                                        .share
+                                  : friction_hold(sliding, of->law.friction_speed).held;
+}
+
+double kernel_force_sliding(const Kernel *kernel, const KernelPoint *point, size_t contact)
+{
+    const KernelContact *of = &kernel->contacts[contact];
+    const PinHole *pose = kernel_point_pose(kernel, point, contact);
+    double speed[KERNEL_ROWS_MOST] = {point->known[contact].speed[0],
+                                      point->known[contact].speed[1]};
+    if (of->shape == KERNEL_LINE) {
+        return speed[1];
+    }
+    for (size_t i = KERNEL_ROWS_PLAIN; i < of->row_count; i++) {
+        speed[i] = kernel_motion_speed(kernel, of->first_row + i, point->time_s, point->impulse,
+                                       point->moment);
+    }
+    return sliding_round(speed, vec2_perp(pose->normal), hole_arm_of(of, pose),
+                         pin_arm_of(of, pose));
+}
+
 // Adds friction to a contact's rows that press with a normal force; returns the power it takes, W.
-static double add_friction(const Kernel *kernel, size_t contact, const double *speed,
-                           const PinHole *pose, double normal, double *force)
+static double add_friction(const Kernel *kernel, const KernelPoint *point, size_t contact,
+                           const double *speed, const PinHole *pose, double normal, double *force)
 {
     const KernelContact *of = &kernel->contacts[contact];
     const size_t row = of->first_row;
     if (of->shape == KERNEL_LINE) {
-        const double taken =
-            of->law.friction * normal * friction_hold(speed[1], of->law.friction_speed).held;
+        const double taken = of->law.friction * normal * held_share(point, of, contact, speed[1]);
         force[row + 1] -= taken;
         return taken * speed[1];
     }
@@ -101,7 +127,7 @@ static double add_friction(const Kernel *kernel, size_t contact, const double *s
     double held;
     double power;
     if (of->row_count < KERNEL_ROWS_MOST) {
-        held = of->law.friction * normal * friction_hold(sliding, of->law.friction_speed).held;
+        held = of->law.friction * normal * held_share(point, of, contact, sliding);
         power = held * sliding;
     } else {
         const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
@@ -199,7 +225,7 @@ void kernel_force_find_touching(Kernel *kernel, const KernelPoint *point, double
         own[1] = normal * pose->normal.y;
         powers[0] += (normal - touch->elastic) * pose->approach_speed;
         if (contact->has_friction) {
-            powers[1] += add_friction(kernel, i, touch->speed, pose, normal, force);
+            powers[1] += add_friction(kernel, point, i, touch->speed, pose, normal, force);
         }
     }
     kernel->evaluations += is_any ? 1 : 0;
@@ -265,8 +291,13 @@ double kernel_force_friction_time(const Kernel *kernel, size_t contact, const do
         const bool is_turn = k >= KERNEL_ROWS_PLAIN && k != KERNEL_ROW_AXIAL;
         mobility += is_turn ? arm * arm * diagonal : diagonal;
     }
-    const double held = kernel->contacts[contact].law.friction * hypot(force[row], force[row + 1]);
-    return held > 0.0 ? kernel->contacts[contact].law.friction_speed / (held * mobility) : INFINITY;
+    const KernelContact *of = &kernel->contacts[contact];
+    const double pull = of->law.friction * hypot(force[row], force[row + 1]) * mobility;
+    if (!(pull > 0.0)) {
+        return INFINITY;
+    }
+    return kernel_has_bristle(of) ? bristle_time(&of->law.bristle, of->state.bristle, pull)
+                                  : of->law.friction_speed / pull;
 }
 
 enum { POSITIONS = 2, SPEEDS = KERNEL_ROWS_MOST, PARTS = POSITIONS + SPEEDS };
@@ -521,13 +552,6 @@ static inline Rated rated_scale(double factor, Rated a)
     return (Rated){factor * a.value, factor * a.rate};
 }
 
-// The share of mu N that is held against a sliding.
-static inline Rated rated_hold(Rated sliding, double speed)
-{
-    const FrictionHold hold = friction_hold(sliding.value, speed);
-    return (Rated){hold.held, hold.slope * sliding.rate};
-}
-
 // What is known of a contact that touches: rows' speeds and accelerations, directions, and what
 // presses.
 typedef struct MovingContact {
@@ -537,9 +561,23 @@ typedef struct MovingContact {
     Rated tangent[2]; // that turned by a quarter turn
     Rated pin_arm;    // R - |e|
     Rated pressing;   // N
+    KernelBend *bend; // of its bristle
     double *force;    // of its rows
     double *rate;
 } MovingContact;
+
+// The share of mu N that is held against a sliding.
+static Rated rated_hold(const MovingContact *moving, Rated sliding)
+{
+    const KernelContact *contact = moving->contact;
+    if (kernel_has_bristle(contact)) {
+        const BristleRates held =
+            kernel_bristle_rates(contact, moving->bend, sliding.value, sliding.rate);
+        return (Rated){held.share, held.share_rate};
+    }
+    const FrictionHold hold = friction_hold(sliding.value, contact->law.friction_speed);
+    return (Rated){hold.held, hold.slope * sliding.rate};
+}
 
 static inline Rated directed(const Rated direction[2], const Rated vector[2])
 {
@@ -589,8 +627,7 @@ static Rated rate_friction(MovingContact *moving)
     const KernelContact *contact = moving->contact;
     const Rated grip = rated_scale(contact->law.friction, moving->pressing);
     if (contact->shape == KERNEL_LINE) {
-        const Rated held =
-            rated_times(grip, rated_hold(moving->speed[1], contact->law.friction_speed));
+        const Rated held = rated_times(grip, rated_hold(moving, moving->speed[1]));
         push_row(moving, 1, rated_scale(-1.0, held));
         return rated_times(held, moving->speed[1]);
     }
@@ -605,7 +642,7 @@ static Rated rate_friction(MovingContact *moving)
     if (contact->row_count == KERNEL_ROWS_MOST) {
         power = rate_space_friction(moving, sliding, &held);
     } else {
-        held = rated_times(grip, rated_hold(sliding, contact->law.friction_speed));
+        held = rated_times(grip, rated_hold(moving, sliding));
         power = rated_times(held, sliding);
     }
     for (size_t i = 0; i < 2; i++) {
@@ -706,6 +743,7 @@ void kernel_rates_find(Kernel *kernel, KernelPoint *point)
         if (contact->state.is_touching) {
             MovingContact moving = {
                 .contact = contact,
+                .bend = &point->bends[i],
                 .force = point->force + contact->first_row,
                 .rate = point->rate + contact->first_row,
             };

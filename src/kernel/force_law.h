@@ -5,6 +5,7 @@
 // pressing force along the normal and never negative.
 #pragma once
 
+#include "kernel/bristle.h"
 #include "kernel/conforming.h"
 
 #include <math.h>
@@ -34,6 +35,7 @@ typedef struct ForceLaw {
                                // (kernel/contact_state.h); 0: that of its impact for ever
     double friction;           // mu, 1: Coulomb's coefficient; 0 for none
     double friction_speed;     // v_s, m/s: mu N tanh(v / v_s); > 0 where there is friction
+    BristlePair bristle;       // of friction that holds, in place of that
     Conforming conforming;     // of FORCE_LAW_CONFORMING
 } ForceLaw;
 

@@ -170,6 +170,13 @@ typedef struct KernelKnownPose {
     double speed[2];
 } KernelKnownPose;
 
+// The bristle of a contact's friction (kernel/bristle.h).
+typedef struct KernelBend {
+    double bend;         // m
+    double bending;      // m/s, its rate
+    double bending_rate; // m/s^2, and that one's
+} KernelBend;
+
 // The state of a kernel at one time.
 typedef struct KernelPoint {
     double time_s;
@@ -181,6 +188,7 @@ typedef struct KernelPoint {
     double powers[2];       // W, lost in damping and in friction
     double power_rates[2];  // W/s
     double losses[2];       // J, likewise, since the start
+    KernelBend *bends;      // by contact; owned with `known`
 } KernelPoint;
 
 // A point of so many rows and contacts, all zero.
@@ -288,6 +296,8 @@ typedef struct KernelWork {
     double *errors[KERNEL_ERRORS]; // of an implicit step
     double *crossings_s;           // when contacts' depths are zero
     bool *has_event;               // whether a contact begins or ends at the end of a local step
+    double *mode_ends_s;           // when in a local step the modes of bristles end; INFINITY: not
+    BristleMode *modes;            // which follow there
 } KernelWork;
 
 // Moments, here and below, are by row the integrals of the impulses and then those of the
@@ -309,6 +319,9 @@ double kernel_force_frequency(const Kernel *kernel, size_t contact, Vec2 normal,
 
 // The time in which friction takes hold of what slides in a contact, s, under the forces given.
 double kernel_force_friction_time(const Kernel *kernel, size_t contact, const double *force);
+
+// How fast a contact slides at a point, m/s; of one in the plane that has rows for it.
+double kernel_force_sliding(const Kernel *kernel, const KernelPoint *point, size_t contact);
 
 // Forgets the nodes of the step before, and gives back room that it alone needed.
 void kernel_nodes_begin(Kernel *kernel);
@@ -389,6 +402,10 @@ void kernel_explicit_step(Kernel *kernel, const KernelPoint *from, int order, do
 void kernel_explicit_inside(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
                             KernelSpan span, double share, double *impulse, double *moment);
 
+// The bend of a contact's bristle at a time since the step's start, likewise, m.
+double kernel_explicit_bend(const ExplicitStep *step, const KernelPoint *from, size_t contact,
+                            double since_s);
+
 // Writes the forces and powers at the end of a step by the same cubic.
 void kernel_explicit_extend(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
                             KernelPoint *to);
@@ -436,6 +453,48 @@ typedef struct LocalStep {
     const KernelPoint *from; // completed: with forces and rates
     ExplicitStep explicit;
 } LocalStep;
+
+// Puts the trial of the kernel's work to a part of an explicit step that was taken, of what moves
+// one contact, and its bristle.
+void kernel_local_step_inside(Kernel *kernel, LocalStep *step, size_t contact, double width_s);
+
+// Bristles of contacts with friction that holds, in a kernel that has some.
+
+// Whether a contact's friction holds: in the plane alone.
+bool kernel_has_bristle(const KernelContact *contact);
+
+// What a bristle holds of mu N, how that changes in time, and how fast it bends, which is written.
+typedef struct BristleRates {
+    double share;      // 1
+    double share_rate; // 1/s
+} BristleRates;
+
+BristleRates kernel_bristle_rates(const KernelContact *contact, KernelBend *bend, double speed,
+                                  double speed_rate);
+
+// The bends at the points of an explicit step: in it, at the last point of one of order 5, and at
+// its end, where of order 4 there is no last point; and where nothing touches.
+void kernel_bends_middle(const Kernel *kernel, const KernelPoint *from, double since_s,
+                         KernelPoint *point);
+void kernel_bends_last(const Kernel *kernel, const KernelPoint *from, double h,
+                       const KernelPoint *inside, KernelPoint *point);
+void kernel_bends_finish(const Kernel *kernel, const KernelPoint *from, double h,
+                         const KernelPoint *inside, const KernelPoint *last, KernelPoint *to);
+void kernel_bends_keep(const Kernel *kernel, const KernelPoint *from, KernelPoint *to);
+
+// A contact begins at a point with a bristle that is not bent.
+void kernel_bristle_begin(Kernel *kernel, size_t number, KernelPoint *point);
+
+// At the start of a step of the world: takes the bends from the contacts, and lets those change
+// their mode whose bodies that step has moved; and gives them back at its end.
+void kernel_bristles_take(Kernel *kernel, KernelPoint *point);
+void kernel_bristles_give(Kernel *kernel, const KernelPoint *point);
+
+// Shortens a local step to where the first mode of a bristle ends in it; returns whether one does.
+// Once it is taken the modes that have ended within its width change; returns whether any has.
+bool kernel_bristles_shorten(Kernel *kernel, LocalStep *step, const KernelPoint *to,
+                             double *width_s);
+bool kernel_bristles_follow(Kernel *kernel, double width_s);
 
 // Takes a local step of at most `left_s` up to the first time at which contacts begin or end in it;
 // `events` is how many do so there, which is in the kernel's work. Returns false where the step is

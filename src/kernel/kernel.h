@@ -92,6 +92,7 @@ typedef struct Kernel {
     size_t row_count;        // all contacts together
     int *contact_of;         // of a row: which of the contacts here
     size_t contact_room;     // of these arrays
+    bool has_bristles;       // whether the friction of any of them holds
     size_t row_room;
     double phase;        // rad of a contact's oscillation in one local step; 0: as many as suit
     double stiff_phase;  // rad, likewise, where steps are implicit

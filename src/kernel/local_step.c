@@ -170,6 +170,7 @@ static void fly(const Kernel *kernel, const KernelPoint *from, double width_s, K
         to->force[i] = to->rate[i] = 0.0;
     }
     memcpy(to->losses, from->losses, sizeof to->losses);
+    kernel_bends_keep(kernel, from, to);
 }
 
 // A step from there of a given length by the same method. Returns false where an implicit one
@@ -189,6 +190,19 @@ static bool try_local_step(Kernel *kernel, LocalStep *step, double width_s, Kern
         return true;
     }
     return false;
+}
+
+void kernel_local_step_inside(Kernel *kernel, LocalStep *step, size_t contact, double width_s)
+{
+    KernelPoint *at = &kernel->work->trial;
+    const KernelContact *of = &kernel->contacts[contact];
+    const KernelSpan span = {kernel_span(kernel, of->first_row).first,
+                             kernel_span(kernel, of->first_row + of->row_count - 1).end};
+    at->time_s = step->from->time_s + width_s;
+    at->known[contact].is_known = false;
+    kernel_explicit_inside(kernel, &step->explicit, step->from, span,
+                           width_s / step->explicit.width_s, at->impulse, at->moment);
+    at->bends[contact].bend = kernel_explicit_bend(&step->explicit, step->from, contact, width_s);
 }
 
 // The depth of a contact after a part of a step that was taken, m.
@@ -408,7 +422,7 @@ static double take_local_step(Kernel *kernel, LocalStep *step, double left_s, Ke
     const double limit_s = limit_explicit(kernel, step->from, &may_be_stiff);
     double frictionless_s;
     double explicit_s;
-    if (may_be_stiff) {
+    if (may_be_stiff && !kernel->has_bristles) {
         explicit_s = choose_width(kernel, step->from, left_s, &frictionless_s);
         if (kernel_implicit_is_needed(kernel, step->from, explicit_s, frictionless_s)) {
             step->method = LOCAL_STEP_IMPLICIT;
@@ -657,6 +671,10 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
         shorten_to_part(kernel, step, to, &width_s)) {
         is_solved = try_local_step(kernel, step, width_s, to);
     }
+    if (is_solved && kernel->has_bristles && step->method == LOCAL_STEP_EXPLICIT &&
+        kernel_bristles_shorten(kernel, step, to, &width_s)) {
+        is_solved = try_local_step(kernel, step, width_s, to);
+    }
     *events = is_solved ? find_events(kernel, step, to, &width_s) : 0;
     if (*events != 0) {
         is_solved = step_to_first_event(kernel, step, &width_s, to);
@@ -668,6 +686,9 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
     for (size_t i = 0; i < kernel->contact_count; i++) {
         kernel->contacts[i].state.age_s += width_s;
     }
-    step->is_ended = !kernel_slots_follow(kernel, to) && step->is_ended;
+    const bool has_moved = kernel_slots_follow(kernel, to);
+    const bool has_changed = kernel->has_bristles && step->method == LOCAL_STEP_EXPLICIT &&
+                             kernel_bristles_follow(kernel, width_s);
+    step->is_ended = !has_moved && !has_changed && step->is_ended;
     return true;
 }

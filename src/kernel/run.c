@@ -70,6 +70,7 @@ void kernel_add(Kernel *kernel, const KernelContact *contact, size_t rows)
     added->row_count = rows;
     added->has_friction =
         added->law.friction > 0.0 && (rows > KERNEL_ROWS_PLAIN || added->shape == KERNEL_LINE);
+    kernel->has_bristles = kernel->has_bristles || kernel_has_bristle(added);
     for (size_t i = 0; i < rows; i++) {
         kernel->contact_of[kernel->row_count++] = (int)kernel->contact_count;
     }
@@ -80,9 +81,12 @@ KernelPoint kernel_point(size_t rows, size_t contacts)
 {
     // one piece of memory, so that there is no moment at which half of it has no owner
     const size_t bytes = 5 * rows * sizeof(double);
-    double *numbers = zeroed(1, bytes + contacts * sizeof(KernelKnownPose));
+    const size_t each = sizeof(KernelKnownPose) + sizeof(KernelBend);
+    double *numbers = zeroed(1, bytes + contacts * each);
+    KernelKnownPose *known = (KernelKnownPose *)(numbers + 5 * rows);
     return (KernelPoint){
-        .known = (KernelKnownPose *)(numbers + 5 * rows),
+        .known = known,
+        .bends = (KernelBend *)(known + contacts),
         .impulse = numbers,
         .moment = numbers + rows,
         .force = numbers + 3 * rows,
@@ -116,6 +120,8 @@ static void make_work(Kernel *kernel)
     }
     work->crossings_s = zeroed(contacts, sizeof *work->crossings_s);
     work->has_event = zeroed(contacts, sizeof *work->has_event);
+    work->mode_ends_s = zeroed(contacts, sizeof *work->mode_ends_s);
+    work->modes = zeroed(contacts, sizeof *work->modes);
 }
 
 static void free_work(KernelWork *work)
@@ -137,6 +143,8 @@ static void free_work(KernelWork *work)
     }
     free(work->crossings_s);
     free(work->has_event);
+    free(work->mode_ends_s);
+    free(work->modes);
     free(work);
 }
 
@@ -522,6 +530,7 @@ static void begin_contact(Kernel *kernel, size_t number, KernelPoint *point)
     const PinHole pose = *kernel_point_pose(kernel, point, number);
     kernel->contacts[number].state = contact_state_begun(pose.approach_speed);
     expect_contact(kernel, number, pose.normal);
+    kernel_bristle_begin(kernel, number, point);
     if (kernel->contacts[number].shape == KERNEL_SLOT) {
         kernel_slot_find_part(kernel, number, point);
     }
@@ -624,6 +633,7 @@ bool kernel_run(Kernel *kernel, double duration)
     kernel->event_count = 0;
     set_tolerances(kernel, duration);
     resume_contacts(kernel, from);
+    kernel_bristles_take(kernel, from);
     settle_contacts(kernel, from);
     kernel_rates_find(kernel, from);
     kernel_nodes_add(kernel, from);
@@ -666,5 +676,6 @@ bool kernel_run(Kernel *kernel, double duration)
         from = to;
         to = spare;
     }
+    kernel_bristles_give(kernel, from);
     return leave_parts(kernel, true);
 }
