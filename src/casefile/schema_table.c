@@ -101,6 +101,7 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     JOINT(guide.field), .form = SCHEMA_LONG | SCHEMA_SLIDER_CRANK, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
     .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = JOINTS_WITH_GUIDES
 #define STOP .form = SCHEMA_LONG, .needs = MEMBER, .kinds = JOINTS_WITH_DISC
+#define FRICTION_OF(field) JOINT(friction.field), .form = SCHEMA_LONG, .needs = MEMBER | VALUED
 #define APART(field) \
     .type = SCHEMA_ANCHOR, .form = SCHEMA_LONG, JOINT(field), .flag = offsetof(Joint, is_apart), \
     .dimension = DIMENSION_LENGTH, .low = -1e3, .high = 1e3, .is_required = true, \

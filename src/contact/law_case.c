@@ -37,7 +37,8 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
     if (joint->contact.has_restitution) {
         own.restitution = joint->contact.restitution;
     }
-    if (joint->contact.has_friction) {
+    // that of an ideal joint is its own (model/joint_friction.h)
+    if (joint->contact.has_friction && !joint_is_ideal(joint->kind)) {
         own.friction = joint->contact.friction;
     }
     return own;

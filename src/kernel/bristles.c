@@ -12,12 +12,6 @@ static const double MARGIN_PASSED = 1e-9;
 
 enum { MARGINS = 2, ROOT_HALVINGS = 50, SETTLES_MOST = 4 };
 
-bool kernel_has_bristle(const KernelContact *contact)
-{
-    return contact->has_friction && contact->row_count < KERNEL_ROWS_MOST &&
-           contact->law.bristle.law != BRISTLE_REGULARIZED;
-}
-
 // Contacts to go through: none where no friction holds.
 static inline size_t count_of(const Kernel *kernel)
 {
@@ -104,7 +98,7 @@ void kernel_bristle_begin(Kernel *kernel, size_t number, KernelPoint *point)
     KernelContact *contact = &kernel->contacts[number];
     point->bends[number] = (KernelBend){0.0, 0.0, 0.0};
     contact->state.bend = 0.0;
-    if (kernel_has_bristle(contact)) {
+    if (contact->has_bristle) {
         contact->state.bristle =
             bristle_begin(&contact->law.bristle, 0.0, kernel_force_sliding(kernel, point, number));
     }
@@ -125,7 +119,7 @@ void kernel_bristles_take(Kernel *kernel, KernelPoint *point)
     for (size_t i = 0; i < count_of(kernel); i++) {
         KernelContact *contact = &kernel->contacts[i];
         point->bends[i] = (KernelBend){.bend = contact->state.bend};
-        if (!contact->state.is_touching || !kernel_has_bristle(contact)) {
+        if (!contact->state.is_touching || !contact->has_bristle) {
             continue;
         }
         for (int k = 0; k < SETTLES_MOST * MARGINS; k++) {
@@ -167,7 +161,7 @@ bool kernel_bristles_shorten(Kernel *kernel, LocalStep *step, const KernelPoint 
     for (size_t i = 0; i < count_of(kernel); i++) {
         const KernelContact *contact = &kernel->contacts[i];
         kernel->work->mode_ends_s[i] = INFINITY;
-        if (!contact->state.is_touching || !kernel_has_bristle(contact)) {
+        if (!contact->state.is_touching || !contact->has_bristle) {
             continue;
         }
         for (int which = 0; which < MARGINS; which++) {

@@ -75,7 +75,9 @@ static void find_middle_point(const Kernel *kernel, const KernelPoint *from, dou
             since_s * (from->impulse[i] + since_s * (0.5 * from->force[i] + half / 3.0));
     }
     add_second(kernel, from, all_rows(kernel), since_s, point->moment);
-    kernel_bends_middle(kernel, from, since_s, point);
+    if (kernel->has_bristles) {
+        kernel_bends_middle(kernel, from, since_s, point);
+    }
 }
 
 static void finish_order_4(const Kernel *kernel, const KernelPoint *from, double h,
@@ -88,7 +90,9 @@ static void finish_order_4(const Kernel *kernel, const KernelPoint *from, double
         to->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         to->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
-    kernel_bends_finish(kernel, from, h, inside, NULL, to);
+    if (kernel->has_bristles) {
+        kernel_bends_finish(kernel, from, h, inside, NULL, to);
+    }
     for (size_t i = 0; i < POWERS; i++) {
         const double rates = h * (from->power_rates[i] / 6.0 + inside->power_rates[i] / 3.0);
         to->losses[i] = from->losses[i] + h * (from->powers[i] + rates);
@@ -108,7 +112,9 @@ static void finish_order_5(Kernel *kernel, const KernelPoint *from, double h,
         last->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
     add_second(kernel, from, all_rows(kernel), h, last->moment);
-    kernel_bends_last(kernel, from, h, inside, last);
+    if (kernel->has_bristles) {
+        kernel_bends_last(kernel, from, h, inside, last);
+    }
     // what others do may jump at the end of the step, not inside it
     kernel_input_look(kernel, true);
     kernel_rates_find(kernel, last);
@@ -121,7 +127,9 @@ static void finish_order_5(Kernel *kernel, const KernelPoint *from, double h,
         to->impulse[i] = from->impulse[i] + h * (from->force[i] + rates);
         to->moment[i] = from->moment[i] + h * (from->impulse[i] + h * second);
     }
-    kernel_bends_finish(kernel, from, h, inside, last, to);
+    if (kernel->has_bristles) {
+        kernel_bends_finish(kernel, from, h, inside, last, to);
+    }
     for (size_t i = 0; i < POWERS; i++) {
         const double rates =
             h * (from->power_rates[i] / 8.0 + 25.0 / 72.0 * inside->power_rates[i] +

@@ -86,10 +86,10 @@ static double sliding_along(const double *speed, Vec2 tangent, double hole_arm, 
 static double held_share(const KernelPoint *point, const KernelContact *of, size_t contact,
                          double sliding)
 {
-    return kernel_has_bristle(of) ? bristle_hold(&of->law.bristle, of->state.bristle,
-                                                 point->bends[contact].bend, sliding)
-                                        .share
-                                  : friction_hold(sliding, of->law.friction_speed).held;
+    return of->has_bristle ? bristle_hold(&of->law.bristle, of->state.bristle,
+                                          point->bends[contact].bend, sliding)
+                                 .share
+                           : friction_hold(sliding, of->law.friction_speed).held;
 }
 
 double kernel_force_sliding(const Kernel *kernel, const KernelPoint *point, size_t contact)
@@ -296,8 +296,8 @@ double kernel_force_friction_time(const Kernel *kernel, size_t contact, const do
     if (!(pull > 0.0)) {
         return INFINITY;
     }
-    return kernel_has_bristle(of) ? bristle_time(&of->law.bristle, of->state.bristle, pull)
-                                  : of->law.friction_speed / pull;
+    return of->has_bristle ? bristle_time(&of->law.bristle, of->state.bristle, pull)
+                           : of->law.friction_speed / pull;
 }
 
 enum { POSITIONS = 2, SPEEDS = KERNEL_ROWS_MOST, PARTS = POSITIONS + SPEEDS };
@@ -570,7 +570,7 @@ typedef struct MovingContact {
 static Rated rated_hold(const MovingContact *moving, Rated sliding)
 {
     const KernelContact *contact = moving->contact;
-    if (kernel_has_bristle(contact)) {
+    if (contact->has_bristle) {
         const BristleRates held =
             kernel_bristle_rates(contact, moving->bend, sliding.value, sliding.rate);
         return (Rated){held.share, held.share_rate};

@@ -460,9 +460,6 @@ void kernel_local_step_inside(Kernel *kernel, LocalStep *step, size_t contact, d
 
 // Bristles of contacts with friction that holds, in a kernel that has some.
 
-// Whether a contact's friction holds: in the plane alone.
-bool kernel_has_bristle(const KernelContact *contact);
-
 // What a bristle holds of mu N, how that changes in time, and how fast it bends, which is written.
 typedef struct BristleRates {
     double share;      // 1

@@ -72,6 +72,7 @@ typedef struct KernelContact {
     int siblings[2];         // the first and the last contact that can touch together with this
                              // one, counted from here; 0 and 0 where there is none
     bool has_friction;
+    bool has_bristle; // whether that holds
     size_t first_row;
     size_t row_count;
     ContactState state;

@@ -111,6 +111,12 @@
     member(CONTACT_IMPACT, "impact") \
     member(CONTACT_POISSON, "poisson")
 
+// The law of friction; its members are those of kernel/bristle.h, in their order.
+#define OPTIONS_FRICTION_LAW_LIST(member) \
+    member(BRISTLE_REGULARIZED, "regularized") \
+    member(BRISTLE_STICK, "stick") \
+    member(BRISTLE_LUGRE, "lugre")
+
 // The polygon that a collider takes a round hole for: its sides touch the circle at their middles,
 // or its corners lie on the circle, as those of meshes from CAD do.
 #define OPTIONS_ODE_POLYGON_LIST(member) \
@@ -159,6 +165,7 @@ typedef enum OdePolygon {
 // The words that stand for the choices above, in their order; each list ends in NULL.
 extern const char *const OPTIONS_CONTACT_MODELS[];
 extern const char *const OPTIONS_LAWS[];
+extern const char *const OPTIONS_FRICTION_LAWS[];
 extern const char *const OPTIONS_DAMPINGS[];
 extern const char *const OPTIONS_RUN_STARTS[];
 extern const char *const OPTIONS_ODE_SOLVERS[];

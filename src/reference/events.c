@@ -176,7 +176,8 @@ double events_point_time(const Dop853 *integrator, const EventPoints *points, si
 
 bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *points)
 {
-    points->count = EVENTS_POINTS_MAX;
+    // without contacts bristles look between the ends themselves
+    points->count = system->contact_count == 0 && system->bristle_count > 0 ? 1 : EVENTS_POINTS_MAX;
     for (size_t i = 0; i < system->contact_count; i++) {
         points->count = system->contacts[i].mode == CONTACT_PRESSING ? 1 : points->count;
     }
@@ -312,6 +313,9 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
             found->events[found->count++] = event;
         }
     }
+    if (system->bristle_count > 0) {
+        bristle_events_find(system, integrator, points, found);
+    }
 }
 
 const Event *events_first(const EventList *found)
@@ -326,7 +330,8 @@ const Event *events_first(const EventList *found)
 // Whether an event begins or ends at the wall.
 static bool is_at_wall(const System *system, const Event *event)
 {
-    return event->mode == CONTACT_APART || system->contacts[event->contact].mode == CONTACT_APART;
+    return !event->is_bristle && (event->mode == CONTACT_APART ||
+                                  system->contacts[event->contact].mode == CONTACT_APART);
 }
 
 // The contact at the end of the tried step.
@@ -398,7 +403,9 @@ void events_gather(const System *system, const Dop853 *integrator, const EventPo
     found->count = 0;
     for (size_t i = 0; i < all; i++) {
         const Event *event = &found->events[i];
-        bool is_now = event->contact == landed->contact || fabs(event->time - time_s) <= same_s;
+        bool is_now =
+            (event->contact == landed->contact && event->is_bristle == landed->is_bristle) ||
+            fabs(event->time - time_s) <= same_s;
         if (!is_now && is_at_wall(system, event)) {
             const double rounding = rounding_of(system, end, event->contact, CONTACT_APART, 0);
             const Press press =
@@ -415,6 +422,9 @@ void events_apply(System *system, const EventList *events, double time_s, const 
 {
     for (size_t i = 0; i < events->count; i++) {
         const Event *event = &events->events[i];
+        if (event->is_bristle) {
+            continue; // bristle_events_apply
+        }
         Contact *contact = &system->contacts[event->contact];
         if (contact->mode == CONTACT_APART) {
             contact_begin(contact, system->kind->time(system, time_s),

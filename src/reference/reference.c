@@ -153,7 +153,7 @@ static bool record_onset(Mechanism *mechanism, Err *err)
     memcpy(mechanism->y, stepper->integrator.y, stepper->integrator.size * sizeof *mechanism->y);
     memcpy(mechanism->before, mechanism->y, stepper->integrator.size * sizeof *mechanism->y);
     if (!system->kind->evaluate(system, 0.0, mechanism->y, mechanism->scratch, NULL)) {
-        return pace_undetermined(err);
+        return pace_undetermined(system, err);
     }
     mechanism->start_s = mechanism->end_s;
     mechanism->peaks.has_peaks = false;
@@ -381,6 +381,9 @@ static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_P
     system_give_contacts(system, mechanism->end_s, states);
     for (size_t i = 0; i < stepper->events.count; i++) {
         const Event *event = &stepper->events.events[i];
+        if (event->is_bristle) {
+            continue;
+        }
         const Contact *contact = &system->contacts[event->contact];
         ContactState *changed = &states[contact->joint][contact->place];
         if (event->mode == CONTACT_APART) {

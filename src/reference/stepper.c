@@ -72,10 +72,15 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
         pace->events = 0;
     }
     pace->events += events->count;
-    if (pace->events > EVENTS_MOST * system->contact_count) {
+    if (pace->events > EVENTS_MOST * (system->contact_count + system->bristle_count)) {
+        const Event *event = &events->events[0];
+        const char *name =
+            event->is_bristle
+                ? system->scenario->linkage.joints[system->bristles[event->contact].joint].name
+                : joint_name(system, event->contact);
         return err_set(err, ERR_SOLVER,
-                       "the contact of %s keeps beginning and ending: %zu changes within %.3g s",
-                       joint_name(system, events->events[0].contact), pace->events,
+                       "the %s of %s keeps beginning and ending: %zu changes within %.3g s",
+                       event->is_bristle ? "friction" : "contact", name, pace->events,
                        time_s - pace->instant_s);
     }
     pace->steps++;
@@ -106,8 +111,17 @@ static bool pace_torn(const System *system, Err *err)
                    system->scenario->linkage.joints[system->torn].name);
 }
 
-bool pace_undetermined(Err *err)
+bool pace_undetermined(const System *system, Err *err)
 {
+    const int jammed = system->kind->jammed != NULL ? system->kind->jammed(system) : -1;
+    if (jammed >= 0) {
+        return err_set(err, ERR_SOLVER,
+                       "the friction of joint %s has no single answer: it changes what presses "
+                       "there by as much as that changes it, as where its coefficient times the "
+                       "radius of its pin comes up to the arm that it works on; lower friction or "
+                       "friction-radius",
+                       system->scenario->linkage.joints[jammed].name);
+    }
     return err_set(err, ERR_SOLVER,
                    "the accelerations are not determined: the ideal joints stand at a change "
                    "point, or are redundant; give one of them play, or start elsewhere");
@@ -383,6 +397,9 @@ static void stiffness_follow(Stiffness *stiffness, const System *system, const S
                              Dop853 *integrator)
 {
     const double depth = smallest_depth(system, state, integrator->step);
+    if (system->bristle_count > 0) {
+        return; // the implicit method knows no bends
+    }
     const bool is_implicit = integrator->method != NULL;
     // of many coordinates events follow one another at once
     const bool starts_anew = is_event && system->coordinate_count <= STIFFNESS_COORDINATES_FEW;
@@ -466,6 +483,11 @@ static void set_tolerances(Stepper *stepper)
         const double allowed = body < 0 ? moving : TURNING_SHARE * tolerance * scale->turning[body];
         integrator->fixed[n + i] = allowed;
         integrator->grown[i] = POSITION_SHARE * allowed;
+    }
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        const size_t bend = system_bristle_index(system, i);
+        integrator->fixed[bend] = tolerance * system->bristles[i].pair.limit;
+        integrator->grown[bend] = POSITION_SHARE * moving;
     }
     // the bodies' mean speed is some tenth of the largest scale, and work goes to and fro
     const double energy_share = 3e-2;
@@ -563,12 +585,16 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     Dop853 *integrator = &stepper->integrator;
     system_find_needs(system);
     dop853_init(integrator, system_size(system), system_sum_index(system, 0));
-    stepper->events.events = calloc(system->contact_count + 1, sizeof(Event));
-    stepper->found.events = calloc(system->contact_count + 1, sizeof(Event));
+    const size_t event_most = system->contact_count + system->bristle_count + 1;
+    stepper->events.events = calloc(event_most, sizeof(Event));
+    stepper->found.events = calloc(event_most, sizeof(Event));
     assert(stepper->events.events != NULL && stepper->found.events != NULL);
     system_take_contacts(system);
     system->kind->start(system, integrator->y);
     system_find_places(system, integrator->y);
+    if (system->bristle_count > 0) {
+        bristle_events_start(system, integrator->y);
+    }
     integrator->rates = system->kind->rates;
     integrator->slopes = system->kind->slopes;
     integrator->coupling = system->coupling;
@@ -589,7 +615,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     }
     stepper->points.count = 1;
     if (!system->kind->evaluate(system, 0.0, integrator->y, stepper->points.states[0], NULL)) {
-        return pace_undetermined(err);
+        return pace_undetermined(system, err);
     }
     return true;
 }
@@ -663,8 +689,8 @@ static bool is_onset(const Stepper *stepper)
 {
     for (size_t i = 0; i < stepper->events.count; i++) {
         const Event *event = &stepper->events.events[i];
-        if (event->mode == CONTACT_PRESSING && !event->is_rest && !event->is_full &&
-            event->wall == WALL_NEAREST) {
+        if (!event->is_bristle && event->mode == CONTACT_PRESSING && !event->is_rest &&
+            !event->is_full && event->wall == WALL_NEAREST) {
             return true;
         }
     }
@@ -689,6 +715,11 @@ static void apply_events(Stepper *stepper)
     System *system = stepper->system;
     const bool was_flight = is_flight(system);
     events_apply(system, &stepper->events, integrator->time, integrator->y);
+    for (size_t i = 0; i < stepper->events.count; i++) {
+        if (stepper->events.events[i].is_bristle) {
+            bristle_events_apply(system, &stepper->events.events[i], integrator->y);
+        }
+    }
     if (was_flight) {
         stepper->flight_step = integrator->step;
     } else if (is_flight(system)) {
@@ -767,7 +798,7 @@ static bool fail_to_step(const Stepper *stepper, Err *err)
     const System *system = stepper->system;
     SystemState *state = stepper->points.states[0];
     if (!system->kind->evaluate(system, integrator->time, integrator->y, state, NULL)) {
-        return pace_undetermined(err);
+        return pace_undetermined(system, err);
     }
     if (!system_check_depth(system, state, DEPTH_LIMIT_SHARE, err)) {
         return false;
@@ -801,9 +832,9 @@ static bool step_to_event(Stepper *stepper, Err *err)
     const double same_s = SIMULTANEOUS_SHARE * integrator->tried;
     Event landed = {.time = INFINITY};
     stepper->events.count = 0;
-    for (size_t i = 0; i <= system->contact_count; i++) {
+    for (size_t i = 0; i <= system->contact_count + system->bristle_count; i++) {
         if (!events_evaluate(system, integrator, &stepper->points)) {
-            return pace_undetermined(err);
+            return pace_undetermined(system, err);
         }
         // a shorter step sees better: it may show an event before the one it was cut to
         events_find(system, integrator, &stepper->points, &stepper->found);

@@ -15,9 +15,13 @@ typedef struct Event {
     bool is_rest;     // it stays in its mode, and its impact is over
     bool is_full;     // it stays in its mode, and passes where its damping is whole
     ContactWall wall; // of a slot that it comes to, in its mode; WALL_NEAREST: it is no such event
+    // of a bristle (reference/bristle_events.c), whose number stands in place of the contact's:
+    bool is_bristle;
+    BristleMode bends; // the mode that begins
+    int face;          // of a guide that presses then
 } Event;
 
-// Events of a step, at most one a contact.
+// Events of a step, at most one a contact, and behind them one a bristle.
 typedef struct EventList {
     size_t count;
     Event *events; // owned by the stepper, one a contact
@@ -43,6 +47,16 @@ double events_point_time(const Dop853 *integrator, const EventPoints *points, si
 // The first event of each contact in the step, as far as there is one.
 void events_find(const System *system, Dop853 *integrator, const EventPoints *points,
                  EventList *found);
+
+// The same of the bristles alone, which are added to those of contacts.
+void bristle_events_find(const System *system, Dop853 *integrator, const EventPoints *points,
+                         EventList *found);
+
+// Changes a bristle's mode at the base, and its bend to what that has. Returns whether it has.
+void bristle_events_apply(System *system, const Event *event, double *y);
+
+// Lets all bristles begin at the start.
+void bristle_events_start(System *system, double *y);
 
 // The earliest of those that were found; NULL where there is none.
 const Event *events_first(const EventList *found);
@@ -76,9 +90,9 @@ typedef struct Pace {
 // blame where steps or events have come so close together that the run would not end.
 bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err);
 
-// The equations for the accelerations have no solution: joints hold each other up. Returns false,
-// with ERR_SOLVER.
-bool pace_undetermined(Err *err);
+// The equations for the accelerations have no solution: joints hold each other up, or friction has
+// no single answer. Returns false, with ERR_SOLVER.
+bool pace_undetermined(const System *system, Err *err);
 
 // Which of the two methods takes the next step: the explicit one, or the implicit one where a
 // contact is damped so strongly that explicit steps are far shorter than the motion is smooth.

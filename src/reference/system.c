@@ -136,6 +136,11 @@ void system_carry(System *system, Carry *carry)
         CARRY(carry, contact->is_released);
         CARRY(carry, contact->is_resting);
     }
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        CARRY(carry, system->bristles[i].mode);
+        CARRY(carry, system->bristles[i].face);
+        CARRY(carry, system->bristles[i].pair.damping);
+    }
     CARRY(carry, system->is_astray);
     CARRY(carry, system->torn);
     system->kind->carry(system, carry);

@@ -3,11 +3,12 @@
 // reference/space/space_system.c; each puts a System first in a structure of its own.
 //
 // The integrator's vector holds the coordinates since the base (where the linkage stood at the
-// start of the present step), their rates, and what is added up over time. Times are those since
-// the base, s.
+// start of the present step), their rates, how far bristles are bent (kernel/bristle.h), and what
+// is added up over time. Times are those since the base, s.
 #pragma once
 
 #include "contact/pin_space.h"
+#include "kernel/bristle.h"
 #include "kernel/force_law.h"
 #include "model/trajectory.h"
 #include "reference/integrators.h"
@@ -179,7 +180,34 @@ static inline double press_rate(const Contact *contact, const Press *press, doub
                                  press->closing, second);
 }
 
-// What is added up, behind the rates.
+// The friction of a joint, and its bristle. Its mode changes at events only, like that of a contact.
+typedef struct Bristle {
+    int joint;
+    BristlePair pair; // in what the joint's coordinate is in: rad or m
+    double arm;       // m, or 1: friction (a torque, or a force) over what presses times the sliding
+                      // coefficient; 0: it is
+    double steady;    // N m or N, whatever presses
+    double zeta;      // 1, the damping ratio that the bristle is given where it begins to stick
+    double length;    // m, of a guide, over which it takes a moment; 0: none does
+    BristleMode mode;
+    int face; // of a guide: what presses there (reference/plane/rub.h)
+} Bristle;
+
+// How a bristle is at one instant.
+typedef struct BristleAt {
+    double bend;     // rad or m
+    double speed;    // rad/s or m/s, of the sliding
+    double rounding; // of that
+} BristleAt;
+
+// How the face of a guide that presses is to the others.
+typedef struct BristleFace {
+    double margin;   // N: by how much it presses more
+    double rounding; // N, of that
+    int next;        // the one that follows where it is used up
+} BristleFace;
+
+// What is added up, behind the bristles.
 typedef enum SystemSum {
     SYSTEM_DRIVE_WORK, // J
     SYSTEM_DISSIPATED, // J
@@ -220,6 +248,17 @@ typedef struct SystemKind {
     Dop853Slopes slopes; // or NULL
     // One contact at a time, for events: cheaper than the whole state.
     Press (*press)(const System *system, size_t contact, double since_s, const double *y);
+    // The same of a bristle, and of the face of a guide with one, which takes as much as the whole
+    // state. NULL where there are none.
+    BristleAt (*bristle)(const System *system, size_t bristle, double since_s, const double *y);
+    BristleFace (*face)(const System *system, size_t bristle, double since_s, const double *y);
+    // Lets a bristle begin to stick at the base: finds its damping.
+    void (*stick)(System *system, size_t bristle, const double *y);
+    // Bends the bristles of joints that stand at the start so that they hold what acts there.
+    void (*hold)(System *system, double *y);
+    // The number of the joint whose friction had no single answer, where a state had none for that
+    // reason; else -1.
+    int (*jammed)(const System *system);
     // How a contact is to the walls of its slot; NULL where there are no slots.
     WallPlace (*wall)(const System *system, size_t contact, double since_s, const double *y);
     // Writes the coordinates that press depends on. Returns how many there are; 0 where it
@@ -271,6 +310,8 @@ struct System {
     int torn; // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
     Contact *contacts;
+    size_t bristle_count;
+    Bristle *bristles; // owned by the equations
     // Of the integrator's vector, those that the press of a contact depends on: from its first in
     // the list to the next one's. One with none in the list depends on all.
     size_t *need_firsts; // by contact, and one more; owned, like the list
@@ -280,7 +321,18 @@ struct System {
 // Where a sum is in the integrator's vector, and how long that is.
 static inline size_t system_sum_index(const System *system, size_t sum)
 {
-    return 2 * system->coordinate_count + sum;
+    return 2 * system->coordinate_count + system->bristle_count + sum;
+}
+
+static inline bool system_has_bristles(const System *system)
+{
+    return system->bristle_count > 0;
+}
+
+// Likewise the bend of a bristle, rad or m.
+static inline size_t system_bristle_index(const System *system, size_t bristle)
+{
+    return 2 * system->coordinate_count + bristle;
 }
 
 static inline size_t system_size(const System *system)

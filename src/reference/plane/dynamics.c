@@ -15,6 +15,7 @@
 #include "model/forces.h"
 #include "model/mesh.h"
 #include "reference/plane/articulated.h"
+#include "reference/plane/rub.h"
 #include "reference/plane/tree.h"
 
 #include <assert.h>
@@ -526,6 +527,7 @@ static void dynamics_lay(Dynamics *dynamics, size_t contact_most, MemoryLayout *
     DynamicsRoom *room = &dynamics->room;
     system->coordinates = layout_take(layout, n, sizeof *system->coordinates);
     system->contacts = layout_take(layout, contact_most, sizeof *system->contacts);
+    system->bristles = layout_take(layout, linkage->joint_count, sizeof *system->bristles);
     dynamics->sites = layout_take(layout, contact_most, sizeof *dynamics->sites);
     dynamics->reach = layout_take(layout, bodies, sizeof *dynamics->reach);
     dynamics->weights = layout_take(layout, bodies, sizeof *dynamics->weights);
@@ -534,7 +536,7 @@ static void dynamics_lay(Dynamics *dynamics, size_t contact_most, MemoryLayout *
     room->added = layout_take(layout, bodies, sizeof *room->added);
     room->sides = layout_take(layout, rows, sizeof *room->sides);
     room->solved = layout_take(layout, n + rows, sizeof *room->solved);
-    room->closed = layout_take(layout, 2 * n, sizeof *room->closed);
+    room->closed = layout_take(layout, 2 * n + linkage->joint_count, sizeof *room->closed);
     room->row = layout_take(layout, n, sizeof *room->row);
     room->arms = layout_take(layout, n, sizeof *room->arms);
     for (int i = 0; i < DYNAMICS_PUSHED; i++) {
@@ -590,6 +592,8 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
         dynamics_finish(dynamics);
         return false;
     }
+    rub_list(scenario, dynamics);
+    dynamics->rub = system_has_bristles(&dynamics->system) ? rub_create(dynamics) : NULL;
     dynamics->articulated = articulated_create(tree, tree->loop_count, tree->loops);
     dynamics->system.coupling = dynamics_couple(dynamics);
     dynamics->hinged = hinged_create(dynamics);
@@ -600,6 +604,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
 void dynamics_finish(Dynamics *dynamics)
 {
     free(dynamics->room.state);
+    rub_destroy(dynamics->rub);
     hinged_destroy(dynamics->hinged);
     coupling_destroy(dynamics->system.coupling);
     articulated_destroy(dynamics->articulated);
@@ -617,6 +622,7 @@ static void dynamics_lay_state(const Dynamics *dynamics, MemoryLayout *layout, D
     state->contacts = layout_take(layout, contacts, sizeof *state->contacts);
     state->reactions = layout_take(layout, joints, sizeof *state->reactions);
     state->couples = layout_take(layout, joints, sizeof *state->couples);
+    state->rubs = layout_take(layout, dynamics->system.bristle_count, sizeof *state->rubs);
 }
 
 DynamicsState *dynamics_state_create(const Dynamics *dynamics)
@@ -730,6 +736,9 @@ static bool dynamics_find_rates(const Dynamics *dynamics, double since_s, const 
         room->sides[2 * loop] = -bias.x;
         room->sides[2 * loop + 1] = -bias.y;
     }
+    if (dynamics->rub != NULL) {
+        return rub_solve(dynamics, y, are_closed, state, loads);
+    }
     return (are_closed ? articulated_accelerate_again : articulated_accelerate)(
         dynamics->articulated, &state->tree, loads->pushes, room->sides, room->solved);
 }
@@ -755,6 +764,26 @@ static inline void dynamics_find_drives(const Dynamics *dynamics, const Loads *l
     }
 }
 
+bool dynamics_solve(const Dynamics *dynamics, bool again, const DynamicsState *state,
+                    const Loads *loads)
+{
+    const DynamicsRoom *room = &dynamics->room;
+    // trees without loops are not factored apart
+    return (again && !dynamics->articulated->is_plain ? articulated_accelerate_again
+                                                      : articulated_accelerate)(
+        dynamics->articulated, &state->tree, loads->pushes, room->sides, room->solved);
+}
+
+bool dynamics_react(const Dynamics *dynamics, bool again, DynamicsState *state, Loads *loads)
+{
+    if (!dynamics_solve(dynamics, again, state, loads)) {
+        return false;
+    }
+    dynamics_reactions_find(dynamics, dynamics->room.solved, loads, state);
+    dynamics_find_drives(dynamics, loads, state);
+    return true;
+}
+
 static void dynamics_fill_sums(const Dynamics *dynamics, const DynamicsState *state, double *sums)
 {
     sums[SYSTEM_DRIVE_WORK] = state->drive_power;
@@ -765,6 +794,9 @@ static void dynamics_fill_sums(const Dynamics *dynamics, const DynamicsState *st
         sums[SYSTEM_DISSIPATED] += state->contacts[i].press.damping_power;
         sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
         sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force)) + fabs(state->contacts[i].couple);
+    }
+    for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
+        sums[SYSTEM_FRICTION] += state->rubs[i].friction * state->rubs[i].speed;
     }
     if (dynamics->system.has_loads) {
         sums[system_load_sum(&dynamics->system)] = state->load_power;
@@ -780,7 +812,10 @@ static void dynamics_fill_rates(const Dynamics *dynamics, const DynamicsState *s
         rates[i] = y[n + i];
         rates[n + i] = dynamics->room.solved[i];
     }
-    dynamics_fill_sums(dynamics, state, rates + 2 * n);
+    for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
+        rates[system_bristle_index(&dynamics->system, i)] = state->rubs[i].bending;
+    }
+    dynamics_fill_sums(dynamics, state, rates + system_sum_index(&dynamics->system, 0));
 }
 
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
@@ -846,7 +881,7 @@ __attribute__((noinline)) static void find_all_rates(const Dynamics *dynamics, d
         // distance from a change point
         double *closed = dynamics->room.closed;
         const LoopsRoom room = dynamics_loops(dynamics);
-        memcpy(closed, y, 2 * n * sizeof *y);
+        memcpy(closed, y, (2 * n + dynamics->system.bristle_count) * sizeof *y);
         loops_project(&room, since_s, closed, closed + n);
         y = closed;
     }

@@ -25,6 +25,16 @@ typedef struct ContactForce {
     double couple; // N m, on body b, of a turn, which has no force
 } ContactForce;
 
+// The friction of an ideal joint at one instant (reference/plane/rub.h).
+typedef struct RubState {
+    double speed;    // rad/s or m/s
+    double share;    // 1, of what it may hold
+    double bending;  // rad/s or m/s, of its bristle
+    double friction; // N m or N, against the sliding
+    double pressing; // N m or N, what sliding holds
+    Vec2 press;      // N, what presses
+} RubState;
+
 // Everything at one instant.
 typedef struct DynamicsState {
     SystemState shared;     // the first
@@ -32,6 +42,7 @@ typedef struct DynamicsState {
     ContactForce *contacts; // by contact
     Vec2 *reactions;        // N, on body b, of ideal joints
     double *couples;        // N m, on body b, of prismatic joints, about its anchor
+    RubState *rubs;         // by bristle
     double drive_power;     // W, of all drives, or a torque
     double load_power;      // W, of loads
     double damping_power;   // W, that the dampers take
@@ -63,12 +74,14 @@ typedef struct DynamicsRoom {
 } DynamicsRoom;
 
 typedef struct Hinged Hinged; // of reference/plane/hinged.h
+typedef struct RubRoom RubRoom; // of reference/plane/rub.c
 
 typedef struct Dynamics {
     System system; // the first
     Tree tree;
     Articulated *articulated; // owned
     Hinged *hinged;           // owned; NULL where it has no such rates
+    RubRoom *rub;             // owned; NULL where no ideal joint has friction
     void *memory;             // owned; where all arrays are
     PlaneSite *sites;         // by contact
     double *reach;            // m, of each body's points
@@ -185,6 +198,12 @@ DynamicsState *dynamics_state_create(const Dynamics *dynamics);
 // of loops as open as they are. Returns false where the accelerations are not determined.
 bool dynamics_evaluate(const Dynamics *dynamics, double since_s, const double *y,
                        DynamicsState *state, double *rates);
+
+// From the forces on the bodies, in the room: the coordinates' second rates; and with the
+// accelerations and reactions from them. `again` is as of articulated_accelerate_again.
+bool dynamics_solve(const Dynamics *dynamics, bool again, const DynamicsState *state,
+                    const Loads *loads);
+bool dynamics_react(const Dynamics *dynamics, bool again, DynamicsState *state, Loads *loads);
 
 // Rates of the integrator's vector; NaN where they are not determined. The context is a Dynamics.
 void dynamics_rates(double since_s, const double *y, double *rates, void *context);

@@ -4,6 +4,7 @@
 #include "model/forces.h"
 #include "model/scale.h"
 #include "reference/plane/articulated.h"
+#include "reference/plane/rub.h"
 #include "reference/plane/tree.h"
 #include "reference/system.h"
 
@@ -103,6 +104,33 @@ static bool plane_evaluate(const System *system, double since_s, const double *y
 static Press plane_press(const System *system, size_t contact, double since_s, const double *y)
 {
     return dynamics_contact(plane_dynamics_of(system), contact, since_s, y).press;
+}
+
+static BristleAt plane_bristle(const System *system, size_t bristle, double since_s,
+                               const double *y)
+{
+    return rub_bristle(plane_dynamics_of(system), bristle, since_s, y);
+}
+
+static BristleFace plane_face(const System *system, size_t bristle, double since_s,
+                              const double *y)
+{
+    return rub_face(plane_dynamics_of(system), bristle, since_s, y);
+}
+
+static void plane_stick(System *system, size_t bristle, const double *y)
+{
+    rub_stick((Dynamics *)system, bristle, y);
+}
+
+static void plane_hold(System *system, double *y)
+{
+    rub_hold((Dynamics *)system, y);
+}
+
+static int plane_jammed(const System *system)
+{
+    return plane_dynamics_of(system)->rub != NULL ? rub_jammed(plane_dynamics_of(system)) : -1;
 }
 
 static WallPlace plane_wall(const System *system, size_t contact, double since_s, const double *y)
@@ -299,6 +327,19 @@ static void place_on_line(const Tree *tree, const TreeState *state, int joint, J
     to->tilt = tree_tilt(tree, state, joint);
 }
 
+// Adds the friction of an ideal joint to what it gives its body b.
+static void add_friction(const Tree *tree, const DynamicsState *at, int joint, double friction,
+                         JointState *to)
+{
+    if (tree->measures[joint] != TREE_LINE) {
+        to->moment_on_b -= friction;
+        return;
+    }
+    const Vec2 normal = tree_normal(tree, &at->tree, joint);
+    to->force_on_b = vec2_sub(to->force_on_b, vec2_scale(friction, (Vec2){normal.y, -normal.x}));
+    to->force = vec2_length(to->force_on_b);
+}
+
 static void fill_ideal(const Dynamics *dynamics, const DynamicsState *at, int joint, JointState *to)
 {
     const Tree *tree = &dynamics->tree;
@@ -313,6 +354,11 @@ static void fill_ideal(const Dynamics *dynamics, const DynamicsState *at, int jo
     if (tree->measures[joint] == TREE_LINE) {
         place_on_line(tree, &at->tree, joint, to);
         to->moment_on_b = at->couples[joint];
+    }
+    for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
+        if (dynamics->system.bristles[i].joint == joint) {
+            add_friction(tree, at, joint, at->rubs[i].friction, to);
+        }
     }
 }
 
@@ -459,6 +505,11 @@ static const SystemKind PLANE = {
     .rates = dynamics_rates,
     .slopes = dynamics_slopes,
     .press = plane_press,
+    .bristle = plane_bristle,
+    .face = plane_face,
+    .stick = plane_stick,
+    .hold = plane_hold,
+    .jammed = plane_jammed,
     .wall = plane_wall,
     .needs = dynamics_contact_needs,
     .sizes = plane_sizes,

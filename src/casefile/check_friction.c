@@ -1,0 +1,116 @@
+// Checks that the keys of an ideal joint's friction go together, and that what solves it knows it.
+#include "casefile/check_friction.h"
+
+#include "model/joint_friction.h"
+
+static const char STEADY[] = "joints.*.friction-torque joints.*.friction-force";
+static const char OF_BRISTLE[] =
+    "joints.*.presliding-damping joints.*.presliding joints.*.breakaway-ratio";
+static const char OF_ANY[] = "joints.*.friction-law joints.*.friction-speed "
+                             "joints.*.friction-length joints.*.friction-radius "
+                             "joints.*.presliding-damping joints.*.presliding "
+                             "joints.*.breakaway-ratio";
+
+// One that has what presses on it times a coefficient, or a value of its own.
+static bool check_kinds(const Entries *entries, size_t index, const Joint *joint, Err *err)
+{
+    const Entry *steady = entries_blame(entries, STEADY, index);
+    const Entry *friction = entries_find(entries, "joints.*.friction", index);
+    const bool slides = joint_slides(joint->kind);
+    if (steady != NULL && friction != NULL) {
+        return entries_refuse(steady, err,
+                              "joint '%s' has a friction coefficient and a friction that does not "
+                              "depend on what presses\nallowed: one of the two",
+                              joint->name);
+    }
+    if (friction != NULL && !slides && joint->contact.friction > 0.0 &&
+        joint->friction.radius == 0.0) {
+        return entries_refuse(friction, err,
+                              "the friction of the ideal pivot '%s' needs the radius of its pin\n"
+                              "allowed: friction-radius: 10 mm beside it, friction-torque: 0.1 N m "
+                              "instead, or a joint with play",
+                              joint->name);
+    }
+    const Entry *length = entries_find(entries, "joints.*.friction-length", index);
+    if (length != NULL && friction == NULL) {
+        return entries_refuse(length, err,
+                              "joint '%s' has no friction of what presses over that "
+                              "length\nallowed: friction: 0.1 beside it",
+                              joint->name);
+    }
+    return true;
+}
+
+static bool check_law(const Entries *entries, size_t index, const Joint *joint, Err *err)
+{
+    const Entry *any = entries_blame(entries, OF_ANY, index);
+    const bool is_given = entries_find(entries, "joints.*.friction", index) != NULL ||
+                          entries_blame(entries, STEADY, index) != NULL;
+    if (any != NULL && !is_given) {
+        return entries_refuse(any, err,
+                              "joint '%s' has no friction\nallowed: %s beside it", joint->name,
+                              joint_slides(joint->kind)
+                                  ? "friction: 0.1, or friction-force: 1 N"
+                                  : "friction: 0.1 and friction-radius: 10 mm, or "
+                                    "friction-torque: 0.1 N m");
+    }
+    const Entry *bristle = entries_blame(entries, OF_BRISTLE, index);
+    if (bristle != NULL && joint->friction.law == BRISTLE_REGULARIZED) {
+        return entries_refuse(bristle, err,
+                              "regularized friction, as that of joint '%s', has no "
+                              "bristle\nallowed: friction-law: stick, or lugre, beside it",
+                              joint->name);
+    }
+    const Entry *speed = entries_find(entries, "joints.*.friction-speed", index);
+    if (speed != NULL && joint->friction.law == BRISTLE_STICK &&
+        joint_friction_ratio(joint) == 1.0) {
+        return entries_refuse(speed, err,
+                              "the friction of joint '%s' does not change with the speed: it "
+                              "sticks, and its breakaway-ratio is 1\nallowed: a breakaway-ratio "
+                              "above 1, or no friction-speed",
+                              joint->name);
+    }
+    return true;
+}
+
+// Where friction of ideal joints is not known.
+static bool check_solvers(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    const int first = joint_friction_first(&scenario->linkage);
+    if (first < 0) {
+        return true;
+    }
+    const char *name = scenario->linkage.joints[first].name;
+    const Entry *culprit = entries_blame(
+        entries, "joints.*.friction joints.*.friction-torque joints.*.friction-force",
+        (size_t)first);
+    if (scenario->linkage.is_spatial) {
+        return entries_refuse(culprit, err,
+                              "in space the ideal joint '%s' has no friction\nallowed: space: "
+                              "planar, or a joint with play",
+                              name);
+    }
+    for (size_t i = 0; i < scenario->run.backend_count; i++) {
+        const BackendKind backend = scenario->run.backends[i];
+        if (backend != BACKEND_REFERENCE) {
+            const Entry *asked = entries_find(entries, "run.backends", 0);
+            return entries_refuse(asked != NULL ? asked : culprit, err,
+                                  "the backend %s does not know the friction of ideal joints, as "
+                                  "of joint '%s'\nallowed: run.backends: [reference]",
+                                  OPTIONS_BACKENDS[backend], name);
+        }
+    }
+    return true;
+}
+
+bool check_friction(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint_is_ideal(joint->kind) && (!check_kinds(entries, i, joint, err) ||
+                                            !check_law(entries, i, joint, err))) {
+            return false;
+        }
+    }
+    return check_solvers(entries, scenario, err);
+}
