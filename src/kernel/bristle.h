@@ -160,7 +160,7 @@ static inline double bristle_damping(const BristlePair *pair, double ratio, doub
 // so much, m/s^2; of LuGre's law while it sticks.
 static inline double bristle_time(const BristlePair *pair, BristleMode mode, double most)
 {
-    if (pair->law == BRISTLE_STICK && bristle_way(mode) != 0.0) {
+    if (pair->law == BRISTLE_STICK && bristle_slides(mode)) {
         return INFINITY;
     }
     return 1.0 / fmax(most * pair->damping, sqrt(most * pair->ratio / pair->limit));
