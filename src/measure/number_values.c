@@ -1,6 +1,7 @@
 // Finds the numbers of model/number_list.h in a run.
 #include "measure/number_values.h"
 
+#include "measure/creep.h"
 #include "measure/section.h"
 #include "measure/spectrum.h"
 

@@ -215,7 +215,11 @@ enum {
         "largest distance of the pin's middle from the hole's, along the axis") \
     row(JOINT, CONTACT_FRACTION, "contact_fraction", SHARE, "in contact", NULL, "%.1f", \
         NUMBER_EVERYWHERE, NUMBER_PLAY, trajectory_contact_share(run, member), \
-        "share of the time in contact")
+        "share of the time in contact") \
+    row(JOINT, CREEP_FRACTION, "creep_fraction", SHARE, "creeping", NULL, "%.1f", \
+        NUMBER_JSON | NUMBER_EXPECT, NUMBER_PLAY | NUMBER_LACKED, \
+        creep_share(of->scenario, run, member), \
+        "share of the loaded time in which it slides slower than regularized friction sets in")
 
 // Of a spike of a signal, of a body or of a joint: `spike`. In checks and limits that of the
 // strongest, with alpha_spike_ or force_spike_ before the name; studies look for no spikes.

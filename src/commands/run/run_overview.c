@@ -8,6 +8,7 @@
 #include "base/zeroed.h"
 #include "contact/damping.h"
 #include "contact/law.h"
+#include "measure/creep.h"
 #include "run/drive_torque.h"
 #include "run/ideal.h"
 #include "write/assumed.h"
@@ -655,6 +656,25 @@ static void write_restitution(const Scenario *scenario, Text *text)
     }
 }
 
+// Where friction is regularized, and that decides.
+static void write_creep(const RunReport *report, Text *text)
+{
+    const Trajectory *run = overview_run(report);
+    const int joint = run != NULL ? creep_worst(report->scenario, run) : -1;
+    if (joint < 0) {
+        return;
+    }
+    const Joint *of = &run->linkage.joints[joint];
+    Text words;
+    text_init(&words);
+    text_append(&words, "Friction of %s creeps: it slides slower than ", of->name);
+    units_append(&words, law_options(&report->scenario->contact, of).friction_speed, "m/s");
+    text_append(&words, " for %.3g %% of the time in which it is loaded. friction-law: stick holds.",
+                100.0 * creep_share(report->scenario, run, (size_t)joint));
+    append_paragraph(words.data, text);
+    text_finish(&words);
+}
+
 static void write_assumed(const Scenario *scenario, Text *text)
 {
     Text assumed;
@@ -760,6 +780,7 @@ static void write_answer(const RunReport *report, Text *text)
     write_shared(report, text);
     write_certainty(report, text);
     write_restitution(report->scenario, text);
+    write_creep(report, text);
     write_assumed(report->scenario, text);
 }
 
