@@ -10,11 +10,13 @@
 #include "reference/stepper.h"
 
 #include "base/root.h"
+#include "base/zeroed.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-// in a step: where a margin is looked at beside its end. Where it has come back by then its least is
-// looked for.
+// in a step: where a margin is looked at beside its end. Where it has come back by then its least
+// is looked for.
 enum { BRISTLE_POINTS = 4 };
 
 // Halvings of the way to where a margin is used up: it may be zero at the start of the step, where
@@ -99,7 +101,8 @@ static double used_up(BristleMargin *margin)
         if (i > 0 && margins[i] < -margin->rounding) {
             return bristle_crossing(margin, time - apart, time);
         }
-        const bool has_turned = i > 1 && margins[i - 1] < margins[i - 2] && margins[i - 1] < margins[i];
+        const bool has_turned =
+            i > 1 && margins[i - 1] < margins[i - 2] && margins[i - 1] < margins[i];
         if (has_turned) {
             const double least = least_between(time - apart, apart, margins + i - 2);
             if (bristle_margin_at(least, margin) < -margin->rounding) {
@@ -126,8 +129,8 @@ void bristle_events_find(const System *system, Dop853 *integrator, const EventPo
     for (size_t i = 0; i < system->bristle_count && integrator->tried > 0.0; i++) {
         Event event = {.time = INFINITY};
         for (int which = 0; which < BRISTLE_MARGINS; which++) {
-            BristleMargin margin = {.system = system, .integrator = integrator, .bristle = i,
-                                    .which = which};
+            BristleMargin margin = {
+                .system = system, .integrator = integrator, .bristle = i, .which = which};
             const double time = has_margin(system, i, which) ? used_up(&margin) : INFINITY;
             if (time < event.time) {
                 event = (Event){
@@ -174,10 +177,18 @@ static void find_faces(System *system, const double *y)
 
 void bristle_events_start(System *system, double *y)
 {
+    double *dampings = zeroed(system->bristle_count, sizeof *dampings);
     find_faces(system, y);
+    // each as if the others held nothing yet
     for (size_t i = 0; i < system->bristle_count; i++) {
         system->kind->stick(system, i, y);
+        dampings[i] = system->bristles[i].pair.damping;
+        system->bristles[i].pair.damping = 0.0;
     }
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        system->bristles[i].pair.damping = dampings[i];
+    }
+    free(dampings);
     system->kind->hold(system, y);
     find_faces(system, y);
     for (size_t i = 0; i < system->bristle_count; i++) {
