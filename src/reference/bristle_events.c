@@ -2,7 +2,7 @@
 //
 // The margins of its modes (kernel/bristle.h) depend on its bend and on the sliding speed alone.
 // Of a guide it also is an event where another of its faces comes to press most (reference/plane/
-// rub.h): what presses has a corner there.
+// rub.c): what presses has a corner there.
 //
 // As of contacts (reference/events.c) a margin counts as used up beyond its rounding only, and the
 // crossing is found on the step's polynomial. Friction is continuous across all these events, so

@@ -180,7 +180,7 @@ typedef struct Bristle {
     double zeta;      // 1, the damping ratio that the bristle is given where it begins to stick
     double length;    // m, of a guide, over which it takes a moment; 0: none does
     BristleMode mode;
-    int face; // of a guide: what presses there (reference/plane/rub.h)
+    int face; // of a guide: what presses there (reference/plane/rub.c)
 } Bristle;
 
 // How a bristle is at one instant.

@@ -15,7 +15,6 @@
 #include "model/forces.h"
 #include "model/mesh.h"
 #include "reference/plane/articulated.h"
-#include "reference/plane/rub.h"
 #include "reference/plane/tree.h"
 
 #include <assert.h>

@@ -4,7 +4,6 @@
 #include "model/forces.h"
 #include "model/scale.h"
 #include "reference/plane/articulated.h"
-#include "reference/plane/rub.h"
 #include "reference/plane/tree.h"
 #include "reference/system.h"
 

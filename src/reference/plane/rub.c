@@ -14,7 +14,7 @@
 //
 // Of a guide N has corners, where another of the faces Q, -Q, 2 M / l, -2 M / l presses most: those
 // are events, between which the face that presses goes on by itself.
-#include "reference/plane/rub.h"
+#include "reference/plane/dynamics.h"
 
 #include "base/dense.h"
 #include "base/zeroed.h"
