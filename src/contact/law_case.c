@@ -41,6 +41,9 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
     if (joint->contact.has_friction && !joint_is_ideal(joint->kind)) {
         own.friction = joint->contact.friction;
     }
+    if (joint->friction.speed > 0.0) {
+        own.friction_speed = joint->friction.speed;
+    }
     return own;
 }
 

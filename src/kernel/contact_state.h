@@ -17,6 +17,7 @@ typedef struct ContactState {
     double impact_speed;  // m/s, closing speed where the contact began; rad/s at an angle
     double damping_speed; // m/s, v0 in the damping: that, or the law's resting speed
     double age_s;         // s, since then
+    double bend;          // m, or rad, of the bristle of its friction (kernel/bristle.h)
 } ContactState;
 
 // One that begins with a closing speed.
@@ -31,6 +32,7 @@ static inline ContactState contact_state_begun(double speed)
         .impact_speed = speed,
         .damping_speed = speed,
         .age_s = 0.0,
+        .bend = 0.0,
     };
 }
 

@@ -253,6 +253,12 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
     if (scenario->contact.full_damping_depth > 0.0) {
         shake(&scenario->contact.full_damping_depth, seed);
     }
+    if (scenario->contact.friction_law != BRISTLE_REGULARIZED) {
+        shake(&scenario->contact.breakaway_ratio, seed);
+        scenario->contact.breakaway_ratio = fmax(scenario->contact.breakaway_ratio, 1.0);
+        shake(&scenario->contact.presliding, seed);
+        shake(&scenario->contact.presliding_damping, seed);
+    }
     scenario->gravity.y = -downward;
     // more than everything no contact gives back
     scenario->contact.restitution = fmin(scenario->contact.restitution, 1.0);

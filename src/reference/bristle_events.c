@@ -60,9 +60,10 @@ static double bristle_margin_at(double time, void *context)
         return face.margin;
     }
     const BristleAt at = system->kind->bristle(system, margin->bristle, time, y);
-    const BristlePair *pair = &bristle->pair;
-    margin->rounding = BRISTLE_ROUNDING + at.rounding * (pair->damping + 1.0 / pair->speed);
-    return bristle_margin(pair, bristle->mode, margin->which, at.bend, at.speed, &margin->next);
+    BristlePair pair = bristle->pair;
+    pair.damping = at.damping;
+    margin->rounding = BRISTLE_ROUNDING + at.rounding * (pair.damping + 1.0 / pair.speed);
+    return bristle_margin(&pair, bristle->mode, margin->which, at.bend, at.speed, &margin->next);
 }
 
 // Where a margin turns negative between two times.
@@ -117,6 +118,9 @@ static bool has_margin(const System *system, size_t number, int which)
 {
     const Bristle *bristle = &system->bristles[number];
     BristleMode next;
+    if (bristle->contact >= 0 && system->contacts[bristle->contact].mode != CONTACT_PRESSING) {
+        return false;
+    }
     return which == BRISTLE_FACE
                ? bristle->face >= 0
                : bristle_margin(&bristle->pair, bristle->mode, which, 0.0, 0.0, &next) < INFINITY;
@@ -158,8 +162,37 @@ void bristle_events_apply(System *system, const Event *event, double *y)
         y[system_bristle_index(system, event->contact)] =
             bristle_way(event->bends) * bristle->pair.limit;
     }
-    if (slid && event->bends == BRISTLE_STICKING) {
+    if (slid && event->bends == BRISTLE_STICKING && bristle->contact < 0) {
         system->kind->stick(system, event->contact, y);
+    }
+}
+
+// The mode of a bristle that begins at the base.
+static void find_mode(System *system, size_t number, const double *y)
+{
+    Bristle *bristle = &system->bristles[number];
+    const BristleAt at = system->kind->bristle(system, number, 0.0, y);
+    BristlePair pair = bristle->pair;
+    pair.damping = at.damping;
+    if (pair.law == BRISTLE_STICK && fabs(at.bend) >= pair.limit) {
+        bristle->mode = at.bend > 0.0 ? BRISTLE_SLIDING_FORTH : BRISTLE_SLIDING_BACK;
+    } else if (bristle->contact >= 0 && pair.law == BRISTLE_STICK && at.damping == 0.0) {
+        // where hardly anything presses yet, whatever slides yields
+        bristle->mode = fabs(at.speed) <= at.rounding ? BRISTLE_STICKING
+                        : at.speed > 0.0              ? BRISTLE_YIELDING_FORTH
+                                                      : BRISTLE_YIELDING_BACK;
+    } else {
+        bristle->mode = bristle_begin(&pair, at.bend, at.speed);
+    }
+}
+
+void bristle_events_onset(System *system, size_t contact, double *y)
+{
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        if (system->bristles[i].contact == (int)contact) {
+            y[system_bristle_index(system, i)] = 0.0;
+            find_mode(system, i, y);
+        }
     }
 }
 
@@ -178,6 +211,7 @@ static void find_faces(System *system, const double *y)
 void bristle_events_start(System *system, double *y)
 {
     double *dampings = zeroed(system->bristle_count, sizeof *dampings);
+    const Joint *joints = system->scenario->linkage.joints;
     find_faces(system, y);
     // each as if the others held nothing yet
     for (size_t i = 0; i < system->bristle_count; i++) {
@@ -187,13 +221,13 @@ void bristle_events_start(System *system, double *y)
     }
     for (size_t i = 0; i < system->bristle_count; i++) {
         system->bristles[i].pair.damping = dampings[i];
+        y[system_bristle_index(system, i)] =
+            joints[system->bristles[i].joint].contacts[system_bristle_place(system, i)].bend;
     }
     free(dampings);
     system->kind->hold(system, y);
     find_faces(system, y);
     for (size_t i = 0; i < system->bristle_count; i++) {
-        Bristle *bristle = &system->bristles[i];
-        const BristleAt at = system->kind->bristle(system, i, 0.0, y);
-        bristle->mode = bristle_begin(&bristle->pair, at.bend, at.speed);
+        find_mode(system, i, y);
     }
 }

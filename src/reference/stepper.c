@@ -716,8 +716,11 @@ static void apply_events(Stepper *stepper)
     const bool was_flight = is_flight(system);
     events_apply(system, &stepper->events, integrator->time, integrator->y);
     for (size_t i = 0; i < stepper->events.count; i++) {
-        if (stepper->events.events[i].is_bristle) {
-            bristle_events_apply(system, &stepper->events.events[i], integrator->y);
+        const Event *event = &stepper->events.events[i];
+        if (event->is_bristle) {
+            bristle_events_apply(system, event, integrator->y);
+        } else if (event->mode == CONTACT_PRESSING && !event->is_rest && !event->is_full) {
+            bristle_events_onset(system, event->contact, integrator->y);
         }
     }
     if (was_flight) {

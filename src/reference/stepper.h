@@ -55,6 +55,9 @@ void bristle_events_find(const System *system, Dop853 *integrator, const EventPo
 // Changes a bristle's mode at the base, and its bend to what that has. Returns whether it has.
 void bristle_events_apply(System *system, const Event *event, double *y);
 
+// Lets the bristle of a contact that begins to press at the base begin, unbent.
+void bristle_events_onset(System *system, size_t contact, double *y);
+
 // Lets all bristles begin at the start.
 void bristle_events_start(System *system, double *y);
 

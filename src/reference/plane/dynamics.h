@@ -21,8 +21,10 @@ typedef struct PlaneSite {
 typedef struct ContactForce {
     Press press;
     TouchPose pose;
-    Vec2 force;    // N, on body b, friction included
-    double couple; // N m, on body b, of a turn, which has no force
+    Vec2 force;     // N, on body b, friction included
+    double couple;  // N m, on body b, of a turn, which has no force
+    double sliding; // m/s, with friction: body b against body a, at right angles to the normal
+    double bending; // m/s, of the bristle, where it has one
 } ContactForce;
 
 // The friction of an ideal joint at one instant (reference/plane/rub.c).
@@ -42,7 +44,7 @@ typedef struct DynamicsState {
     ContactForce *contacts; // by contact
     Vec2 *reactions;        // N, on body b, of ideal joints
     double *couples;        // N m, on body b, of prismatic joints, about its anchor
-    RubState *rubs;         // by bristle
+    RubState *rubs;         // by ideal joint with friction
     double drive_power;     // W, of all drives, or a torque
     double load_power;      // W, of loads
     double damping_power;   // W, that the dampers take
@@ -73,7 +75,7 @@ typedef struct DynamicsRoom {
     double *pushed[DYNAMICS_PUSHED];
 } DynamicsRoom;
 
-typedef struct Hinged Hinged; // of reference/plane/hinged.h
+typedef struct Hinged Hinged;   // of reference/plane/hinged.h
 typedef struct RubRoom RubRoom; // of reference/plane/rub.c
 
 typedef struct Dynamics {
@@ -82,6 +84,8 @@ typedef struct Dynamics {
     Articulated *articulated; // owned
     Hinged *hinged;           // owned; NULL where it has no such rates
     RubRoom *rub;             // owned; NULL where no ideal joint has friction
+    size_t rub_count;         // of the system's bristles those of ideal joints, the first
+    int *bristle_of;          // by contact: its bristle, or -1
     void *memory;             // owned; where all arrays are
     PlaneSite *sites;         // by contact
     double *reach;            // m, of each body's points
@@ -97,9 +101,9 @@ typedef struct Dynamics {
 
 // The forces of the contacts in the coordinates of a tree.
 
-// One contact's quantities from the state of the tree.
+// One contact's quantities from the state of the tree and the integrator's vector.
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
-                           ContactForce *force);
+                           const double *y, ContactForce *force);
 
 // The points of body a and of body b at which the force acts, seen from the ends of the contact's
 // pair; of two circles without friction the ends themselves.
@@ -243,7 +247,8 @@ typedef struct RubPress {
     double most; // N
 } RubPress;
 
-// Lists the joints with friction among the bristles of the system, for which there is room.
+// Lists the ideal joints with friction, and the contacts whose friction has bristles, among those
+// of the system, for which there is room.
 void rub_list(const Scenario *scenario, Dynamics *dynamics);
 
 // Room to work in, for so many; rub_destroy frees it, and accepts NULL.
@@ -264,6 +269,9 @@ BristleAt rub_bristle(const Dynamics *dynamics, size_t number, double since_s, c
 BristleFace rub_face(const Dynamics *dynamics, size_t number, double since_s, const double *y);
 void rub_stick(Dynamics *dynamics, size_t number, const double *y);
 void rub_hold(Dynamics *dynamics, double *y);
+
+// The bristle of a contact as its law has it where it presses with a force, N.
+BristlePair dynamics_contact_bristle(const Dynamics *dynamics, size_t number, double normal);
 
 // The rates of a mechanism whose bodies hang on hinges, or on nothing, and touch at pins in their
 // holes alone: what most mechanisms with play are, and what an integrator asks for most.

@@ -1,4 +1,4 @@
-// Does the friction of ideal joints hold, slide and lose what it must?
+// Does friction hold, slide and lose what it must, in ideal joints and those with play?
 //
 // The truths are closed forms, the published motion of LuGre's block (values of the model's own
 // equations by others, to nine digits), and integrations by equations of their own (rubbing.h).
@@ -201,6 +201,51 @@ static void lugre_has_its_published_numbers(void **state)
     }
     assert_int_equal(slips, 3);
     trajectory_destroy(run);
+}
+
+// A lever whose hole of 100.1 mm hangs on a pin of 100 mm, with friction 0.3: how far it turns in
+// the second half of 2 s, and what its energy is short of.
+typedef struct HungLever {
+    double turned;
+    double unbalanced;
+} HungLever;
+
+static HungLever hung_lever(double arm, const char *law)
+{
+    char text[TEXT_SIZE];
+    snprintf(text, sizeof text,
+             "bodies:\n  lever: {mass: 1 kg, inertia: 0.002 kg m^2, at: [%.17g m, 0 m]}\n"
+             "joints:\n  pin: {between: [lever, ground], at: [0 m, 0 m], hole: 100.1 mm, pin: 100 "
+             "mm, friction: 0.3, friction-law: %s}\n"
+             "contact: {stiffness: 1e7 N/m, damping: exact, restitution: 0.3}\n"
+             "gravity: 9.80665 m/s^2\nrun: {duration: 2 s, samples: 200, backends: [reference]}\n",
+             arm, law);
+    Trajectory *run = run_text(text);
+    const HungLever lever = {
+        .turned = fabs(motion_at_end(run, 0)->angle - run->motions[100].angle),
+        .unbalanced = fabs(run->energy.residual),
+    };
+    trajectory_destroy(run);
+    return lever;
+}
+
+static void a_pin_with_play_holds_inside_its_friction_circle(void **state)
+{
+    (void)state;
+    // the force is at the friction angle where it touches the pin
+    const double circle = 0.05 * sin(atan(0.3));
+    const double presliding = 5e-6 / 0.05;
+    for (int side = -1; side <= 1; side += 2) {
+        const HungLever holds = hung_lever(0.995 * side * circle, "stick");
+        const HungLever slips = hung_lever(1.005 * side * circle, "stick");
+        assert_true(holds.turned < presliding);
+        assert_true(slips.turned > 100.0 * presliding);
+        assert_near(holds.unbalanced, 0.0, 1e-12);
+        assert_near(slips.unbalanced, 0.0, 1e-12);
+    }
+    // regularized friction creeps by v_s, and LuGre's model holds in its presliding
+    assert_true(hung_lever(0.5 * circle, "regularized").turned > 100.0 * presliding);
+    assert_true(hung_lever(0.5 * circle, "lugre").turned < presliding);
 }
 
 // Random mechanisms.
@@ -447,6 +492,7 @@ int main(void)
         cmocka_unit_test(a_pendulum_stops_at_the_angle_of_the_closed_form),
         cmocka_unit_test(friction_without_an_answer_is_refused),
         cmocka_unit_test(lugre_has_its_published_numbers),
+        cmocka_unit_test(a_pin_with_play_holds_inside_its_friction_circle),
         cmocka_unit_test(random_mechanisms_move_as_by_other_equations),
         cmocka_unit_test(another_friction_moves_them_otherwise),
     };
