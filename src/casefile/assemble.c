@@ -18,6 +18,7 @@
 #include "casefile/teeth.h"
 #include "casefile/unused.h"
 #include "model/common_period.h"
+#include "model/joint_friction.h"
 #include "model/space.h"
 
 #include <string.h>
@@ -196,6 +197,21 @@ static void complete_motor(const Entries *entries, Linkage *linkage)
     }
 }
 
+// Gives joints with friction the law of the contact, where they have none of their own; others hold
+// none.
+static void take_friction_laws(Scenario *scenario)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        Joint *joint = &scenario->linkage.joints[i];
+        const bool has_friction =
+            joint_friction_is(joint) ||
+            (!joint_is_ideal(joint->kind) && scenario_friction(scenario, joint) > 0.0);
+        if (has_friction && !joint->friction.has_law) {
+            joint->friction.law = scenario->contact.friction_law;
+        }
+    }
+}
+
 // Stores every value in the order of the schema, so that the same mistake is reported first
 // wherever the keys stand.
 static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
@@ -225,6 +241,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     }
     scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
     space_complete(&scenario->linkage);
+    take_friction_laws(scenario);
     return true;
 }
 

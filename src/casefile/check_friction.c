@@ -47,13 +47,29 @@ static bool check_law(const Entries *entries, size_t index, const Joint *joint, 
     const bool is_given = entries_find(entries, "joints.*.friction", index) != NULL ||
                           entries_blame(entries, STEADY, index) != NULL;
     if (any != NULL && !is_given) {
-        return entries_refuse(any, err,
-                              "joint '%s' has no friction\nallowed: %s beside it", joint->name,
-                              joint_slides(joint->kind)
-                                  ? "friction: 0.1, or friction-force: 1 N"
-                                  : "friction: 0.1 and friction-radius: 10 mm, or "
-                                    "friction-torque: 0.1 N m");
+        return entries_refuse(
+            any, err, "joint '%s' has no friction\nallowed: %s beside it", joint->name,
+            joint_slides(joint->kind) ? "friction: 0.1, or friction-force: 1 N"
+                                      : "friction: 0.1 and friction-radius: 10 mm, or "
+                                        "friction-torque: 0.1 N m");
     }
+    return true;
+}
+
+// A joint with play, of which nothing slides against friction.
+static bool check_sliding(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
+    const Entry *any = entries_blame(entries, OF_ANY, index);
+    return any == NULL || scenario_friction(scenario, joint) > 0.0 ||
+           entries_refuse(any, err, "joint '%s' has no friction\nallowed: friction: 0.1 beside it",
+                          joint->name);
+}
+
+// What a law of friction has no use for.
+static bool check_bristle(const Entries *entries, size_t index, const Scenario *scenario, Err *err)
+{
+    const Joint *joint = &scenario->linkage.joints[index];
     const Entry *bristle = entries_blame(entries, OF_BRISTLE, index);
     if (bristle != NULL && joint->friction.law == BRISTLE_REGULARIZED) {
         return entries_refuse(bristle, err,
@@ -63,12 +79,58 @@ static bool check_law(const Entries *entries, size_t index, const Joint *joint, 
     }
     const Entry *speed = entries_find(entries, "joints.*.friction-speed", index);
     if (speed != NULL && joint->friction.law == BRISTLE_STICK &&
-        joint_friction_ratio(joint) == 1.0) {
+        joint_friction_whole(&scenario->contact, joint).ratio == 1.0) {
         return entries_refuse(speed, err,
                               "the friction of joint '%s' does not change with the speed: it "
                               "sticks, and its breakaway-ratio is 1\nallowed: a breakaway-ratio "
                               "above 1, or no friction-speed",
                               joint->name);
+    }
+    return true;
+}
+
+// Whether ODE does: where contacts are integrated within the step.
+static bool knows_bristles(const Scenario *scenario)
+{
+    const Scenario chosen = scenario_with_step(scenario, 1.0);
+    return scenario_integrates_contacts(scenario->run.step > 0.0 ? scenario : &chosen);
+}
+
+// Where the bristles of contacts are not known.
+static bool check_contacts(const Entries *entries, const Scenario *scenario, Err *err)
+{
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint_is_ideal(joint->kind) || joint->friction.law == BRISTLE_REGULARIZED) {
+            continue;
+        }
+        const Entry *own = entries_find(entries, "joints.*.friction-law", i);
+        const Entry *law = own != NULL ? own : entries_find(entries, "contact.friction-law", 0);
+        const char *word = OPTIONS_FRICTION_LAWS[joint->friction.law];
+        if (scenario->linkage.is_spatial) {
+            return entries_refuse(law, err,
+                                  "in space the friction of joint '%s' is regularized\nallowed: "
+                                  "friction-law: regularized, or space: planar",
+                                  joint->name);
+        }
+        for (size_t k = 0; k < scenario->run.backend_count; k++) {
+            const BackendKind backend = scenario->run.backends[k];
+            if (backend == BACKEND_ODE && !knows_bristles(scenario)) {
+                return entries_refuse(law, err,
+                                      "ODE knows friction-law %s, as of joint '%s', only where it "
+                                      "integrates contacts\nallowed: regularized, or ode.stepping: "
+                                      "staggered with ode.map: impulse",
+                                      word, joint->name);
+            }
+            if (backend != BACKEND_REFERENCE && backend != BACKEND_ODE &&
+                OPTIONS_BACKEND_HAS_PLAY[backend]) {
+                return entries_refuse(law, err,
+                                      "the backend %s does not know friction-law %s, as of joint "
+                                      "'%s'\nallowed: regularized, or run.backends: [reference, "
+                                      "ode]",
+                                      OPTIONS_BACKENDS[backend], word, joint->name);
+            }
+        }
     }
     return true;
 }
@@ -81,9 +143,9 @@ static bool check_solvers(const Entries *entries, const Scenario *scenario, Err 
         return true;
     }
     const char *name = scenario->linkage.joints[first].name;
-    const Entry *culprit = entries_blame(
-        entries, "joints.*.friction joints.*.friction-torque joints.*.friction-force",
-        (size_t)first);
+    const Entry *culprit =
+        entries_blame(entries, "joints.*.friction joints.*.friction-torque joints.*.friction-force",
+                      (size_t)first);
     if (scenario->linkage.is_spatial) {
         return entries_refuse(culprit, err,
                               "in space the ideal joint '%s' has no friction\nallowed: space: "
@@ -107,10 +169,16 @@ bool check_friction(const Entries *entries, const Scenario *scenario, Err *err)
 {
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
-        if (joint_is_ideal(joint->kind) && (!check_kinds(entries, i, joint, err) ||
-                                            !check_law(entries, i, joint, err))) {
+        if (joint_is_ideal(joint->kind) &&
+            (!check_kinds(entries, i, joint, err) || !check_law(entries, i, joint, err))) {
+            return false;
+        }
+        if (!joint_is_ideal(joint->kind) && !check_sliding(entries, i, scenario, err)) {
+            return false;
+        }
+        if (!check_bristle(entries, i, scenario, err)) {
             return false;
         }
     }
-    return check_solvers(entries, scenario, err);
+    return check_contacts(entries, scenario, err) && check_solvers(entries, scenario, err);
 }

@@ -71,6 +71,7 @@ static const Condition WANTS[] = {
     {COMMON_DEPTH, 0, {"a joint with play that has no full-damping-depth of its own", "", false}},
     {UNSTEADY, 0, {"a drive.speed, angle, torque or force over time", "drive.speed", false}},
     {ELASTIC_PIN, 0, {"contact.law: elastic, or auto and a width, and no stiffness of its own", "contact.law", false}},
+    {BRISTLED, 0, {"friction-law: stick or lugre", "contact.friction-law", true}},
     {MOVED, 0, {"a drive that determines the motion", "", false}},
 };
 // clang-format on
@@ -342,8 +343,11 @@ static unsigned row_bits(const Scenario *scenario)
     const RunOptions *run = &scenario->run;
     bool is_held = false;
     bool is_smoothed = scenario->ode.solver != ODE_QUICK;
+    bool is_bristled = false;
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         is_held = is_held || joint_is_ideal(scenario->linkage.joints[i].kind);
+        is_bristled =
+            is_bristled || scenario->linkage.joints[i].friction.law != BRISTLE_REGULARIZED;
     }
     for (size_t i = 0; i < run->backend_count; i++) {
         is_smoothed = is_smoothed || run->backends[i] == BACKEND_REFERENCE;
@@ -352,7 +356,7 @@ static unsigned row_bits(const Scenario *scenario)
     return bit(HELD_ROWS, is_held) | bit(ANY_ROWS, is_held || has_contacts) |
            bit(SMOOTHED, is_smoothed && scenario->contact.model == CONTACT_IMPACT) |
            bit(SHUFFLED, scenario->ode.iterations > SHUFFLE_ITERATIONS) |
-           bit(MOVED, build_is_determined(&scenario->linkage)) |
+           bit(BRISTLED, is_bristled) | bit(MOVED, build_is_determined(&scenario->linkage)) |
            bit(SETTLED, scenario->run.start == START_SETTLED) |
            bit(UNSTEADY, scenario->linkage.driver.table.count > 0 ||
                              scenario->linkage.torque.table.count > 1) |

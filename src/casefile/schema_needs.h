@@ -49,6 +49,7 @@ enum {
     HELD_ROWS = 1 << 5,        // ODE has rows of an ideal joint
     ANY_ROWS = 1 << 6,         // or any
     SMOOTHED = 1 << 7,         // some solver lets friction set in over a speed
+    BRISTLED = 1 << 19,        // friction has bristles somewhere
     MOVED = 1 << 8,            // a drive determines the motion before time zero
     COMMON_FRICTION = 1 << 10, // some joint with play has no friction of its own
     SETTLED = 1 << 11,         // runs start in the settled motion

@@ -101,12 +101,13 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     JOINT(guide.field), .form = SCHEMA_LONG | SCHEMA_SLIDER_CRANK, .dimension = DIMENSION_LENGTH, .low = 1e-6, \
     .high = 1e2, .is_required = true, .needs = MEMBER, .kinds = JOINTS_WITH_GUIDES
 #define STOP .form = SCHEMA_LONG, .needs = MEMBER, .kinds = JOINTS_WITH_DISC
-#define FRICTION_OF(field) JOINT(friction.field), .form = SCHEMA_LONG, .needs = MEMBER | VALUED
+#define FRICTION_OF(field) JOINT(friction.field), .needs = MEMBER | VALUED
 #define APART(field) \
     .type = SCHEMA_ANCHOR, .form = SCHEMA_LONG, JOINT(field), .flag = offsetof(Joint, is_apart), \
     .dimension = DIMENSION_LENGTH, .low = -1e3, .high = 1e3, .is_required = true, \
     .rivalry = SCHEMA_PLACING, .kinds = JOINTS_WITH_DISC | JOINTS_WITH_HOLE, .needs = MEMBER | OWN
 #define LIMITED (JOINTS_WITH_ANGLE | JOINTS_WITH_POSITION)
+#define SLIDING (JOINTS_WITH_HOLE | JOINTS_WITH_GUIDES | JOINTS_WITH_DISC | LIMITED)
 #define TOUCHING (JOINTS_WITH_PLAY | JOINTS_WITH_COORDINATE)
 #define SPRING(field) \
     .family = SCHEMA_SPRING, \
@@ -379,6 +380,21 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "contact.friction-speed", .dimension = DIMENSION_SPEED, AT(contact.friction_speed),
      .low = 0.0, .high = 1e3, .low_is_open = true, .needs = FRICTION, .wants = SMOOTHED,
      .doc = "sliding speed over which friction sets in"},
+    {.path = "contact.friction-law", .type = SCHEMA_CHOICE, AT(contact.friction_law),
+     .words = OPTIONS_FRICTION_LAWS, .needs = FRICTION | IMPACT,
+     .doc = "regularized: sets in over friction-speed, and creeps at rest; stick: holds at rest, by "
+            "a bristle that bends up to presliding; lugre: the model of that name"},
+    {.path = "contact.breakaway-ratio", AT(contact.breakaway_ratio), .low = 1.0, .high = 1e2,
+     .needs = FRICTION | IMPACT, .wants = BRISTLED,
+     .doc = "of friction-law stick and lugre: static over sliding friction; it falls as "
+            "exp(-(v / friction-speed)^2)"},
+    {.path = "contact.presliding", .dimension = DIMENSION_LENGTH, AT(contact.presliding),
+     .low = 0.0, .high = 1.0, .low_is_open = true, .needs = FRICTION | IMPACT, .wants = BRISTLED,
+     .doc = "of friction-law stick and lugre: how far the bristle bends before it slides; 5 um is "
+            "usual of steel"},
+    {.path = "contact.presliding-damping", AT(contact.presliding_damping), .low = 0.0,
+     .high = 1e3, .low_is_open = true, .needs = FRICTION | IMPACT, .wants = BRISTLED,
+     .doc = "of friction-law stick and lugre: damping ratio of what moves on the bristle"},
     {.path = "contact.penalty", .dimension = DIMENSION_DAMPING, AT(contact.penalty),
      .low = 0.0, .high = 1e12, .low_is_open = true,
      .default_words = "the paper's Eq. (9) at the drive's speed", .needs = POISSON,

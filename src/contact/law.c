@@ -117,6 +117,11 @@ bool law_build(const ContactOptions *contact, const MaterialOptions *material,
     built.impact_speed_floor = contact->impact_speed_floor;
     built.friction = contact->friction;
     built.friction_speed = contact->friction_speed;
+    built.bristle = (BristlePair){.law = contact->friction_law,
+                                  .ratio = contact->breakaway_ratio,
+                                  .limit = contact->presliding,
+                                  .speed = contact->friction_speed,
+                                  .zeta = contact->presliding_damping};
     if (contact->model == CONTACT_POISSON && contact->restitution == 0.0) {
         built.hysteresis = 0.0; // some factors are infinite there, and its loss is the bounce
     } else if (contact->damping == DAMPING_VISCOUS) {

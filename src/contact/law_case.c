@@ -1,6 +1,7 @@
 // Makes the force law of a joint of a case.
 #include "contact/damping.h"
 #include "contact/law.h"
+#include "model/joint_friction.h"
 
 #include <math.h>
 
@@ -41,6 +42,12 @@ ContactOptions law_options(const ContactOptions *contact, const Joint *joint)
     if (joint->contact.has_friction && !joint_is_ideal(joint->kind)) {
         own.friction = joint->contact.friction;
     }
+    const JointFriction friction = joint_friction_whole(contact, joint);
+    own.friction_law = friction.law;
+    own.friction_speed = friction.speed;
+    own.breakaway_ratio = friction.ratio;
+    own.presliding = friction.presliding;
+    own.presliding_damping = friction.damping;
     return own;
 }
 
@@ -102,6 +109,7 @@ bool law_of_joint(const Scenario *scenario, const Joint *joint, ForceLaw *law, E
         err_prefix(err, joint->name);
         return false;
     }
+    law->bristle.mass = joint_friction_mass(&scenario->linkage, joint);
     return true;
 }
 

@@ -40,6 +40,8 @@ typedef struct BristlePair {
     double limit;   // m, D
     double speed;   // m/s, v_s
     double damping; // s/m, d
+    double zeta;    // 1, of a contact: the damping ratio; d follows what presses (bristle_pressed)
+    double mass;    // kg, of a contact: what moves on the bristle
 } BristlePair;
 
 // What it holds, 1, and how fast it bends, m/s.
@@ -156,12 +158,34 @@ static inline double bristle_damping(const BristlePair *pair, double ratio, doub
     return pressing > 0.0 ? 2.0 * ratio * sqrt(pair->ratio * mass / (pair->limit * pressing)) : 0.0;
 }
 
+// The pair of a contact where its friction is up to so much, N: mu times what presses.
+static inline BristlePair bristle_pressed(const BristlePair *pair, double pressing)
+{
+    BristlePair pressed = *pair;
+    pressed.damping = bristle_damping(pair, pair->zeta, pressing, pair->mass);
+    return pressed;
+}
+
+// The mode in which a contact begins, whose bristle is straight and damped without bound, for
+// nothing presses yet.
+static inline BristleMode bristle_onset(const BristlePair *pair, double speed)
+{
+    if (pair->law == BRISTLE_LUGRE) {
+        return bristle_begin(pair, 0.0, speed);
+    }
+    return speed == 0.0 || pair->law == BRISTLE_REGULARIZED ? BRISTLE_STICKING
+           : speed > 0.0                                    ? BRISTLE_YIELDING_FORTH
+                                                            : BRISTLE_YIELDING_BACK;
+}
+
 // The shortest time in which friction changes what slides, s, if all of it would accelerate that by
-// so much, m/s^2; of LuGre's law while it sticks.
-static inline double bristle_time(const BristlePair *pair, BristleMode mode, double most)
+// so much, m/s^2, that it is up to so much, N; of LuGre's law while it sticks.
+static inline double bristle_time(const BristlePair *pair, BristleMode mode, double pressing,
+                                  double most)
 {
     if (pair->law == BRISTLE_STICK && bristle_slides(mode)) {
         return INFINITY;
     }
-    return 1.0 / fmax(most * pair->damping, sqrt(most * pair->ratio / pair->limit));
+    const double damping = bristle_damping(pair, pair->zeta, pressing, pair->mass);
+    return 1.0 / fmax(most * damping, sqrt(most * pair->ratio / pair->limit));
 }

@@ -26,27 +26,36 @@ static double left_slope(const BristlePair *pair, double speed)
                               : -2.0 * (pair->ratio - 1.0) * over / pair->speed * exp(-over * over);
 }
 
-BristleRates kernel_bristle_rates(const KernelContact *contact, KernelBend *bend, double speed,
-                                  double speed_rate)
+BristleRates kernel_bristle_rates(const KernelContact *contact, KernelBend *bend,
+                                  const double pressing[2], const double speed[2])
 {
-    const BristlePair *pair = &contact->law.bristle;
+    if (pressing[0] == 0.0 && pressing[1] == 0.0) {
+        // it overlaps, but nothing presses any more
+        bend->bending = bend->bending_rate = 0.0;
+        return (BristleRates){0.0, 0.0};
+    }
+    const BristlePair pair = bristle_pressed(&contact->law.bristle, pressing[0]);
     const BristleMode mode = contact->state.bristle;
-    const BristleHold hold = bristle_hold(pair, mode, bend->bend, speed);
+    const BristleHold hold = bristle_hold(&pair, mode, bend->bend, speed[0]);
     const double way = bristle_way(mode);
-    const double slope = left_slope(pair, speed) * speed_rate;
-    const double stiffness = pair->ratio / pair->limit;
+    const double slope = left_slope(&pair, speed[0]) * speed[1];
+    const double stiffness = pair.ratio / pair.limit;
+    const double damping_rate =
+        pressing[0] > 0.0 ? -0.5 * pair.damping * pressing[1] / pressing[0] : 0.0;
     BristleRates rates = {.share = hold.share};
     bend->bending = hold.bending;
-    if (pair->law == BRISTLE_LUGRE) {
-        const double left = bristle_left(pair, speed);
-        bend->bending_rate = speed_rate - stiffness * way / left *
-                                              (speed_rate * bend->bend + speed * hold.bending -
-                                               speed * bend->bend * slope / left);
-        rates.share_rate = stiffness * hold.bending + pair->damping * bend->bending_rate;
-        return rates;
+    if (pair.law == BRISTLE_LUGRE) {
+        const double left = bristle_left(&pair, speed[0]);
+        bend->bending_rate = speed[1] - stiffness * way / left *
+                                            (speed[1] * bend->bend + speed[0] * hold.bending -
+                                             speed[0] * bend->bend * slope / left);
+    } else {
+        bend->bending_rate = bristle_slides(mode) ? 0.0 : speed[1];
     }
-    bend->bending_rate = bristle_slides(mode) ? 0.0 : speed_rate;
-    rates.share_rate = way == 0.0 ? stiffness * speed + pair->damping * speed_rate : way * slope;
+    const bool is_bent = pair.law == BRISTLE_LUGRE || way == 0.0;
+    rates.share_rate = is_bent ? stiffness * hold.bending + damping_rate * hold.bending +
+                                     pair.damping * bend->bending_rate
+                               : way * slope;
     return rates;
 }
 
@@ -100,7 +109,7 @@ void kernel_bristle_begin(Kernel *kernel, size_t number, KernelPoint *point)
     contact->state.bend = 0.0;
     if (contact->has_bristle) {
         contact->state.bristle =
-            bristle_begin(&contact->law.bristle, 0.0, kernel_force_sliding(kernel, point, number));
+            bristle_onset(&contact->law.bristle, kernel_force_sliding(kernel, point, number));
     }
 }
 
@@ -109,9 +118,13 @@ static double margin_at(const Kernel *kernel, const KernelPoint *point, size_t n
                         BristleMode *next)
 {
     const KernelContact *contact = &kernel->contacts[number];
-    return bristle_margin(&contact->law.bristle, contact->state.bristle, which,
-                          point->bends[number].bend, kernel_force_sliding(kernel, point, number),
-                          next);
+    const double pressing = contact->law.friction * kernel_force_pressing(kernel, point, number);
+    if (pressing == 0.0 && kernel_point_pose(kernel, point, number)->approach_speed < 0.0) {
+        return INFINITY;
+    }
+    const BristlePair pair = bristle_pressed(&contact->law.bristle, pressing);
+    return bristle_margin(&pair, contact->state.bristle, which, point->bends[number].bend,
+                          kernel_force_sliding(kernel, point, number), next);
 }
 
 void kernel_bristles_take(Kernel *kernel, KernelPoint *point)

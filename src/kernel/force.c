@@ -84,12 +84,13 @@ static double sliding_along(const double *speed, Vec2 tangent, double hole_arm, 
 
 // The share of mu N that is held against a sliding.
 static double held_share(const KernelPoint *point, const KernelContact *of, size_t contact,
-                         double sliding)
+                         double normal, double sliding)
 {
-    return of->has_bristle ? bristle_hold(&of->law.bristle, of->state.bristle,
-                                          point->bends[contact].bend, sliding)
-                                 .share
-                           : friction_hold(sliding, of->law.friction_speed).held;
+    if (!of->has_bristle) {
+        return friction_hold(sliding, of->law.friction_speed).held;
+    }
+    const BristlePair pair = bristle_pressed(&of->law.bristle, of->law.friction * normal);
+    return bristle_hold(&pair, of->state.bristle, point->bends[contact].bend, sliding).share;
 }
 
 double kernel_force_sliding(const Kernel *kernel, const KernelPoint *point, size_t contact)
@@ -116,7 +117,8 @@ static double add_friction(const Kernel *kernel, const KernelPoint *point, size_
     const KernelContact *of = &kernel->contacts[contact];
     const size_t row = of->first_row;
     if (of->shape == KERNEL_LINE) {
-        const double taken = of->law.friction * normal * held_share(point, of, contact, speed[1]);
+        const double taken =
+            of->law.friction * normal * held_share(point, of, contact, normal, speed[1]);
         force[row + 1] -= taken;
         return taken * speed[1];
     }
@@ -127,7 +129,7 @@ static double add_friction(const Kernel *kernel, const KernelPoint *point, size_
     double held;
     double power;
     if (of->row_count < KERNEL_ROWS_MOST) {
-        held = of->law.friction * normal * held_share(point, of, contact, sliding);
+        held = of->law.friction * normal * held_share(point, of, contact, normal, sliding);
         power = held * sliding;
     } else {
         const double axial = sliding_along(speed, tangent, hole_arm, pin_arm);
@@ -175,6 +177,14 @@ static double pressing(const KernelContact *contact, const KernelTouch *touch)
     const ForceLawTerms at = terms_of(contact, pose->penetration, touch->elastic, touch->tangent);
     const double total = force_law_damped(at, damping_rate_of(contact), pose->approach_speed).force;
     return total < 0.0 ? 0.0 : total; // a comparison that lets NaN through
+}
+
+double kernel_force_pressing(const Kernel *kernel, const KernelPoint *point, size_t contact)
+{
+    const KernelContact *of = &kernel->contacts[contact];
+    KernelTouch touch = {.pose = *kernel_point_pose(kernel, point, contact)};
+    force_law_both(&of->law, touch.pose.penetration, &touch.elastic, &touch.tangent);
+    return pressing(of, &touch);
 }
 
 // How a contact is at a point; of its rows beyond the first two only where there is friction. Many
@@ -292,12 +302,13 @@ double kernel_force_friction_time(const Kernel *kernel, size_t contact, const do
         mobility += is_turn ? arm * arm * diagonal : diagonal;
     }
     const KernelContact *of = &kernel->contacts[contact];
-    const double pull = of->law.friction * hypot(force[row], force[row + 1]) * mobility;
-    if (!(pull > 0.0)) {
+    const double held = of->law.friction * hypot(force[row], force[row + 1]);
+    if (!(held > 0.0)) {
         return INFINITY;
     }
-    return of->has_bristle ? bristle_time(&of->law.bristle, of->state.bristle, pull)
-                           : of->law.friction_speed / pull;
+    return of->has_bristle
+               ? bristle_time(&of->law.bristle, of->state.bristle, held, held * mobility)
+               : of->law.friction_speed / (held * mobility);
 }
 
 enum { POSITIONS = 2, SPEEDS = KERNEL_ROWS_MOST, PARTS = POSITIONS + SPEEDS };
@@ -567,12 +578,13 @@ typedef struct MovingContact {
 } MovingContact;
 
 // The share of mu N that is held against a sliding.
-static Rated rated_hold(const MovingContact *moving, Rated sliding)
+static Rated rated_hold(const MovingContact *moving, Rated grip, Rated sliding)
 {
     const KernelContact *contact = moving->contact;
     if (contact->has_bristle) {
         const BristleRates held =
-            kernel_bristle_rates(contact, moving->bend, sliding.value, sliding.rate);
+            kernel_bristle_rates(contact, moving->bend, (double[]){grip.value, grip.rate},
+                                 (double[]){sliding.value, sliding.rate});
         return (Rated){held.share, held.share_rate};
     }
     const FrictionHold hold = friction_hold(sliding.value, contact->law.friction_speed);
@@ -627,7 +639,7 @@ static Rated rate_friction(MovingContact *moving)
     const KernelContact *contact = moving->contact;
     const Rated grip = rated_scale(contact->law.friction, moving->pressing);
     if (contact->shape == KERNEL_LINE) {
-        const Rated held = rated_times(grip, rated_hold(moving, moving->speed[1]));
+        const Rated held = rated_times(grip, rated_hold(moving, grip, moving->speed[1]));
         push_row(moving, 1, rated_scale(-1.0, held));
         return rated_times(held, moving->speed[1]);
     }
@@ -642,7 +654,7 @@ static Rated rate_friction(MovingContact *moving)
     if (contact->row_count == KERNEL_ROWS_MOST) {
         power = rate_space_friction(moving, sliding, &held);
     } else {
-        held = rated_times(grip, rated_hold(moving, sliding));
+        held = rated_times(grip, rated_hold(moving, grip, sliding));
         power = rated_times(held, sliding);
     }
     for (size_t i = 0; i < 2; i++) {

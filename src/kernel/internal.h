@@ -323,6 +323,9 @@ double kernel_force_friction_time(const Kernel *kernel, size_t contact, const do
 // How fast a contact slides at a point, m/s; of one in the plane that has rows for it.
 double kernel_force_sliding(const Kernel *kernel, const KernelPoint *point, size_t contact);
 
+// What presses along the normal of a contact that touches at a point, N.
+double kernel_force_pressing(const Kernel *kernel, const KernelPoint *point, size_t contact);
+
 // Forgets the nodes of the step before, and gives back room that it alone needed.
 void kernel_nodes_begin(Kernel *kernel);
 
@@ -460,14 +463,15 @@ void kernel_local_step_inside(Kernel *kernel, LocalStep *step, size_t contact, d
 
 // Bristles of contacts with friction that holds, in a kernel that has some.
 
-// What a bristle holds of mu N, how that changes in time, and how fast it bends, which is written.
+// What a bristle holds of mu N, how that changes in time, and how fast it bends, which is written:
+// from mu N, N, and the sliding speed, m/s, both with their rates.
 typedef struct BristleRates {
     double share;      // 1
     double share_rate; // 1/s
 } BristleRates;
 
-BristleRates kernel_bristle_rates(const KernelContact *contact, KernelBend *bend, double speed,
-                                  double speed_rate);
+BristleRates kernel_bristle_rates(const KernelContact *contact, KernelBend *bend,
+                                  const double pressing[2], const double speed[2]);
 
 // The bends at the points of an explicit step: in it, at the last point of one of order 5, and at
 // its end, where of order 4 there is no last point; and where nothing touches.

@@ -1,13 +1,9 @@
-// Finds the friction of ideal joints, and holds its defaults.
+// Finds the friction of joints, with its defaults.
 #include "model/joint_friction.h"
 
 // A bearing of a usual hand-held or table-top mechanism: it only says how a speed and a bend at the
 // pin count as angles.
 const double JOINT_FRICTION_RADIUS = 1e-2;
-
-// Junctions of steel break away after some 2 to 5 um (Armstrong-Helouvry, Dupont, Canudas de Wit,
-// Automatica 30 (1994) 1083).
-const double JOINT_FRICTION_PRESLIDING = 5e-6;
 
 int joint_friction_first(const Linkage *linkage)
 {
@@ -17,4 +13,27 @@ int joint_friction_first(const Linkage *linkage)
         }
     }
     return -1;
+}
+
+JointFriction joint_friction_whole(const ContactOptions *contact, const Joint *joint)
+{
+    JointFriction whole = joint->friction;
+    whole.law = whole.has_law ? whole.law : contact->friction_law;
+    whole.speed = whole.speed > 0.0 ? whole.speed : contact->friction_speed;
+    whole.ratio = whole.ratio > 0.0 ? whole.ratio : contact->breakaway_ratio;
+    whole.presliding = whole.presliding > 0.0 ? whole.presliding : contact->presliding;
+    whole.damping = whole.damping > 0.0 ? whole.damping : contact->presliding_damping;
+    return whole;
+}
+
+double joint_friction_mass(const Linkage *linkage, const Joint *joint)
+{
+    double inverse = 0.0;
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        if (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) < 0) {
+            inverse += 1.0 / linkage->bodies[body].mass;
+        }
+    }
+    return inverse > 0.0 ? 1.0 / inverse : 0.0;
 }

@@ -1,12 +1,12 @@
-// The friction of an ideal joint, with its defaults: how a pivot resists being turned, and a slider
-// being pushed.
+// The friction of joints with its defaults; of an ideal joint how a pivot resists being turned, and
+// a slider being pushed.
 #pragma once
 
 #include "model/linkage.h"
+#include "model/options.h"
 
-// m, the radius at which friction that is given as a torque slides, and that of a bristle's bend
+// m, the radius at which friction that is given as a torque slides
 extern const double JOINT_FRICTION_RADIUS;
-extern const double JOINT_FRICTION_PRESLIDING;
 
 // Whether there is any.
 static inline bool joint_friction_is(const Joint *joint)
@@ -24,21 +24,8 @@ static inline double joint_friction_radius(const Joint *joint)
     return joint->friction.radius > 0.0 ? joint->friction.radius : JOINT_FRICTION_RADIUS;
 }
 
-// 1, static over sliding friction.
-static inline double joint_friction_ratio(const Joint *joint)
-{
-    return joint->friction.ratio > 0.0 ? joint->friction.ratio : 1.0;
-}
+// A joint's friction with what it takes from the contact that all share.
+JointFriction joint_friction_whole(const ContactOptions *contact, const Joint *joint);
 
-// m
-static inline double joint_friction_presliding(const Joint *joint)
-{
-    return joint->friction.presliding > 0.0 ? joint->friction.presliding
-                                            : JOINT_FRICTION_PRESLIDING;
-}
-
-// 1, of the bristle
-static inline double joint_friction_damping(const Joint *joint)
-{
-    return joint->friction.damping > 0.0 ? joint->friction.damping : 1.0;
-}
+// kg, of the two bodies of a joint against each other; 0 where both are held.
+double joint_friction_mass(const Linkage *linkage, const Joint *joint);

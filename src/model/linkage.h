@@ -164,16 +164,16 @@ typedef struct JointContact {
     double friction;      // 1, Coulomb's coefficient
 } JointContact;
 
-// The friction of an ideal joint (model/joint_friction.h), beside JointContact.friction: mu times
-// what presses. A zero stands for its default.
+// The friction of a joint (model/joint_friction.h), beside JointContact.friction. A zero stands for
+// its default.
 typedef struct JointFriction {
-    BristleLaw law;
-    bool has_law;      // whether the case says it
-    double steady;     // N m of a pivot, N of a slider: instead of mu times what presses
-    double radius;     // m, of a pivot's pin
-    double length;     // m, of a slider's guide, over which it takes a moment; 0: none does
-    double speed;      // m/s, sliding speed over which it sets in, or falls to that of sliding; 0:
-                       // that of the contact
+    BristleLaw law;    // that of the contact, unless:
+    bool has_law;      // it has its own
+    double steady;     // of an ideal joint, N m of a pivot, N of a slider: instead of mu times what
+                       // presses
+    double radius;     // m, of an ideal pivot's pin
+    double length;     // m, of an ideal slider's guide, over which it takes a moment; 0: none does
+    double speed;      // m/s, sliding speed over which it sets in, or falls to that of sliding
     double ratio;      // 1, static over sliding friction
     double presliding; // m, how far a bristle bends before it slides
     double damping;    // 1, damping ratio with which it does
@@ -207,7 +207,7 @@ typedef struct Joint {
     Gear gear;
     Limits limits; // of a joint with a coordinate; teeth always have some
     JointContact contact;
-    JointFriction friction; // of an ideal joint
+    JointFriction friction;
     // what its contacts bring along at time zero, in the order of its places (contact/touch.h; in
     // space contact/pin_space.h and the ends of an angle); all zero: none touches yet
     ContactState contacts[JOINT_PLACES];

@@ -77,6 +77,12 @@ ContactOptions contact_options_default(void)
         .friction = 0.0,
         // a hundredth of the sliding speed of the pin in the paper's joint, 0.5 m/s, and more
         .friction_speed = 5e-3,
+        .friction_law = BRISTLE_REGULARIZED,
+        .breakaway_ratio = 1.0,
+        // junctions of steel break away after some 2 to 5 um (Armstrong-Helouvry, Dupont, Canudas
+        // de Wit, Automatica 30 (1994) 1083)
+        .presliding = 5e-6,
+        .presliding_damping = 1.0,
         // a pin that is let go a micron from the wall arrives at 4.4 mm/s; slower arrivals are
         // contact that begins rather than an impact
         .impact_speed_floor = 1e-3,

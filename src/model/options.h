@@ -1,6 +1,8 @@
 // Every choice and every default of the program. Options are SI and radians.
 #pragma once
 
+#include "kernel/bristle.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -210,6 +212,10 @@ typedef struct ContactOptions {
     double friction;            // 1, Coulomb's coefficient; 0 for none
     double damping_scale;       // no key, 1: times which hysteretic and viscous damping are taken
     double friction_speed;      // m/s, sliding speed over which the reference's friction sets in
+    BristleLaw friction_law;    // of all joints without their own, like the next three
+    double breakaway_ratio;     // 1, static over sliding friction
+    double presliding;          // m, how far a bristle bends before it slides
+    double presliding_damping;  // 1, damping ratio with which it does
     double impact_speed_floor;  // m/s, smallest impact speed the damping laws divide by
     double resting_speed;       // m/s, by which they divide where a contact has outlasted its
                           // impact (kernel/contact_state.h); 0: by that of its impact for ever

@@ -124,6 +124,22 @@ static void shake_eye(Clearance *clearance, uint64_t *seed)
     }
 }
 
+// What an ideal joint says of its friction.
+static void shake_friction(JointFriction *friction, uint64_t *seed)
+{
+    double *const numbers[] = {&friction->steady, &friction->radius,     &friction->length,
+                               &friction->speed,  &friction->presliding, &friction->damping};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        if (*numbers[i] > 0.0) {
+            shake(numbers[i], seed);
+        }
+    }
+    if (friction->ratio > 0.0) {
+        shake(&friction->ratio, seed);
+        friction->ratio = fmax(friction->ratio, 1.0);
+    }
+}
+
 static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
 {
     shake_vector(&joint->anchor_a, seed);
@@ -135,6 +151,7 @@ static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
     shake_vector(&joint->clearance.start, seed);
     shake_sliding(joint, has_own, seed);
     shake_limits(joint, seed);
+    shake_friction(&joint->friction, seed);
 }
 
 static void shake_torque(Torque *torque, uint64_t *seed)
@@ -235,6 +252,12 @@ static void shake_world(Scenario *scenario, uint64_t *seed)
     }
     if (scenario->contact.full_damping_depth > 0.0) {
         shake(&scenario->contact.full_damping_depth, seed);
+    }
+    if (scenario->contact.friction_law != BRISTLE_REGULARIZED) {
+        shake(&scenario->contact.breakaway_ratio, seed);
+        scenario->contact.breakaway_ratio = fmax(scenario->contact.breakaway_ratio, 1.0);
+        shake(&scenario->contact.presliding, seed);
+        shake(&scenario->contact.presliding_damping, seed);
     }
     scenario->gravity.y = -downward;
     // more than everything no contact gives back

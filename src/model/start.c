@@ -76,6 +76,9 @@ static void walk_contact(Walk *walk, ContactState *contact)
 static void walk_joint(Walk *walk, Joint *joint)
 {
     walk_number(walk, &joint->held_angle);
+    for (size_t i = 0; joint->friction.law != BRISTLE_REGULARIZED && i < JOINT_PLACES; i++) {
+        walk_number(walk, &joint->contacts[i].bend);
+    }
     if (!linkage_has_play(joint)) {
         return;
     }

@@ -2,7 +2,7 @@
 //
 // The margins of its modes (kernel/bristle.h) depend on its bend and on the sliding speed alone.
 // Of a guide it also is an event where another of its faces comes to press most (reference/plane/
-// rub.h): what presses has a corner there.
+// rub.c): what presses has a corner there.
 //
 // As of contacts (reference/events.c) a margin counts as used up beyond its rounding only, and the
 // crossing is found on the step's polynomial. Friction is continuous across all these events, so
@@ -10,11 +10,13 @@
 #include "reference/stepper.h"
 
 #include "base/root.h"
+#include "base/zeroed.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-// in a step: where a margin is looked at beside its end. Where it has come back by then its least is
-// looked for.
+// in a step: where a margin is looked at beside its end. Where it has come back by then its least
+// is looked for.
 enum { BRISTLE_POINTS = 4 };
 
 // Halvings of the way to where a margin is used up: it may be zero at the start of the step, where
@@ -58,9 +60,10 @@ static double bristle_margin_at(double time, void *context)
         return face.margin;
     }
     const BristleAt at = system->kind->bristle(system, margin->bristle, time, y);
-    const BristlePair *pair = &bristle->pair;
-    margin->rounding = BRISTLE_ROUNDING + at.rounding * (pair->damping + 1.0 / pair->speed);
-    return bristle_margin(pair, bristle->mode, margin->which, at.bend, at.speed, &margin->next);
+    BristlePair pair = bristle->pair;
+    pair.damping = at.damping;
+    margin->rounding = BRISTLE_ROUNDING + at.rounding * (pair.damping + 1.0 / pair.speed);
+    return bristle_margin(&pair, bristle->mode, margin->which, at.bend, at.speed, &margin->next);
 }
 
 // Where a margin turns negative between two times.
@@ -99,7 +102,8 @@ static double used_up(BristleMargin *margin)
         if (i > 0 && margins[i] < -margin->rounding) {
             return bristle_crossing(margin, time - apart, time);
         }
-        const bool has_turned = i > 1 && margins[i - 1] < margins[i - 2] && margins[i - 1] < margins[i];
+        const bool has_turned =
+            i > 1 && margins[i - 1] < margins[i - 2] && margins[i - 1] < margins[i];
         if (has_turned) {
             const double least = least_between(time - apart, apart, margins + i - 2);
             if (bristle_margin_at(least, margin) < -margin->rounding) {
@@ -114,6 +118,9 @@ static bool has_margin(const System *system, size_t number, int which)
 {
     const Bristle *bristle = &system->bristles[number];
     BristleMode next;
+    if (bristle->contact >= 0 && system->contacts[bristle->contact].mode != CONTACT_PRESSING) {
+        return false;
+    }
     return which == BRISTLE_FACE
                ? bristle->face >= 0
                : bristle_margin(&bristle->pair, bristle->mode, which, 0.0, 0.0, &next) < INFINITY;
@@ -126,8 +133,8 @@ void bristle_events_find(const System *system, Dop853 *integrator, const EventPo
     for (size_t i = 0; i < system->bristle_count && integrator->tried > 0.0; i++) {
         Event event = {.time = INFINITY};
         for (int which = 0; which < BRISTLE_MARGINS; which++) {
-            BristleMargin margin = {.system = system, .integrator = integrator, .bristle = i,
-                                    .which = which};
+            BristleMargin margin = {
+                .system = system, .integrator = integrator, .bristle = i, .which = which};
             const double time = has_margin(system, i, which) ? used_up(&margin) : INFINITY;
             if (time < event.time) {
                 event = (Event){
@@ -155,8 +162,37 @@ void bristle_events_apply(System *system, const Event *event, double *y)
         y[system_bristle_index(system, event->contact)] =
             bristle_way(event->bends) * bristle->pair.limit;
     }
-    if (slid && event->bends == BRISTLE_STICKING) {
+    if (slid && event->bends == BRISTLE_STICKING && bristle->contact < 0) {
         system->kind->stick(system, event->contact, y);
+    }
+}
+
+// The mode of a bristle that begins at the base.
+static void find_mode(System *system, size_t number, const double *y)
+{
+    Bristle *bristle = &system->bristles[number];
+    const BristleAt at = system->kind->bristle(system, number, 0.0, y);
+    BristlePair pair = bristle->pair;
+    pair.damping = at.damping;
+    if (pair.law == BRISTLE_STICK && fabs(at.bend) >= pair.limit) {
+        bristle->mode = at.bend > 0.0 ? BRISTLE_SLIDING_FORTH : BRISTLE_SLIDING_BACK;
+    } else if (bristle->contact >= 0 && pair.law == BRISTLE_STICK && at.damping == 0.0) {
+        // where hardly anything presses yet, whatever slides yields
+        bristle->mode = fabs(at.speed) <= at.rounding ? BRISTLE_STICKING
+                        : at.speed > 0.0              ? BRISTLE_YIELDING_FORTH
+                                                      : BRISTLE_YIELDING_BACK;
+    } else {
+        bristle->mode = bristle_begin(&pair, at.bend, at.speed);
+    }
+}
+
+void bristle_events_onset(System *system, size_t contact, double *y)
+{
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        if (system->bristles[i].contact == (int)contact) {
+            y[system_bristle_index(system, i)] = 0.0;
+            find_mode(system, i, y);
+        }
     }
 }
 
@@ -174,15 +210,24 @@ static void find_faces(System *system, const double *y)
 
 void bristle_events_start(System *system, double *y)
 {
+    double *dampings = zeroed(system->bristle_count, sizeof *dampings);
+    const Joint *joints = system->scenario->linkage.joints;
     find_faces(system, y);
+    // each as if the others held nothing yet
     for (size_t i = 0; i < system->bristle_count; i++) {
         system->kind->stick(system, i, y);
+        dampings[i] = system->bristles[i].pair.damping;
+        system->bristles[i].pair.damping = 0.0;
     }
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        system->bristles[i].pair.damping = dampings[i];
+        y[system_bristle_index(system, i)] =
+            joints[system->bristles[i].joint].contacts[system_bristle_place(system, i)].bend;
+    }
+    free(dampings);
     system->kind->hold(system, y);
     find_faces(system, y);
     for (size_t i = 0; i < system->bristle_count; i++) {
-        Bristle *bristle = &system->bristles[i];
-        const BristleAt at = system->kind->bristle(system, i, 0.0, y);
-        bristle->mode = bristle_begin(&bristle->pair, at.bend, at.speed);
+        find_mode(system, i, y);
     }
 }

@@ -396,6 +396,13 @@ static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_P
             changed->is_slack = event->mode == CONTACT_SLACK;
         }
     }
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        const Bristle *bristle = &system->bristles[i];
+        ContactState *changed = &states[bristle->joint][system_bristle_place(system, i)];
+        const bool is_there =
+            bristle->contact < 0 || (changed->is_touching && changed->age_s > 0.0);
+        changed->bend = is_there ? mechanism->y[system_bristle_index(system, i)] : 0.0;
+    }
     for (size_t i = 0; system->flat != NULL && i < system->contact_count; i++) {
         const Contact *contact = &system->contacts[i];
         if (joint_has_hole(system->scenario->linkage.joints[contact->joint].kind)) {

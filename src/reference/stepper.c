@@ -714,10 +714,18 @@ static void apply_events(Stepper *stepper)
     Dop853 *integrator = &stepper->integrator;
     System *system = stepper->system;
     const bool was_flight = is_flight(system);
+    for (size_t i = 0; i < stepper->events.count; i++) {
+        Event *event = &stepper->events.events[i];
+        event->is_onset =
+            !event->is_bristle && system->contacts[event->contact].mode == CONTACT_APART;
+    }
     events_apply(system, &stepper->events, integrator->time, integrator->y);
     for (size_t i = 0; i < stepper->events.count; i++) {
-        if (stepper->events.events[i].is_bristle) {
-            bristle_events_apply(system, &stepper->events.events[i], integrator->y);
+        const Event *event = &stepper->events.events[i];
+        if (event->is_bristle) {
+            bristle_events_apply(system, event, integrator->y);
+        } else if (event->is_onset) {
+            bristle_events_onset(system, event->contact, integrator->y);
         }
     }
     if (was_flight) {

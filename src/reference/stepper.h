@@ -15,6 +15,7 @@ typedef struct Event {
     bool is_rest;     // it stays in its mode, and its impact is over
     bool is_full;     // it stays in its mode, and passes where its damping is whole
     ContactWall wall; // of a slot that it comes to, in its mode; WALL_NEAREST: it is no such event
+    bool is_onset;    // nothing touched before: set where it is applied
     // of a bristle (reference/bristle_events.c), whose number stands in place of the contact's:
     bool is_bristle;
     BristleMode bends; // the mode that begins
@@ -54,6 +55,9 @@ void bristle_events_find(const System *system, Dop853 *integrator, const EventPo
 
 // Changes a bristle's mode at the base, and its bend to what that has. Returns whether it has.
 void bristle_events_apply(System *system, const Event *event, double *y);
+
+// Lets the bristle of a contact that begins to press at the base begin, unbent.
+void bristle_events_onset(System *system, size_t contact, double *y);
 
 // Lets all bristles begin at the start.
 void bristle_events_start(System *system, double *y);

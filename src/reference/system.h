@@ -180,17 +180,19 @@ static inline double press_rate(const Contact *contact, const Press *press, doub
                                  press->closing, second);
 }
 
-// The friction of a joint, and its bristle. Its mode changes at events only, like that of a contact.
+// The friction of an ideal joint or of a contact, and its bristle. Its mode changes at events only,
+// like that of a contact.
 typedef struct Bristle {
     int joint;
+    int contact;      // -1: of an ideal joint
     BristlePair pair; // in what the joint's coordinate is in: rad or m
-    double arm;       // m, or 1: friction (a torque, or a force) over what presses times the sliding
-                      // coefficient; 0: it is
-    double steady;    // N m or N, whatever presses
-    double zeta;      // 1, the damping ratio that the bristle is given where it begins to stick
-    double length;    // m, of a guide, over which it takes a moment; 0: none does
+    double arm;    // m, or 1: friction (a torque, or a force) over what presses times the sliding
+                   // coefficient; 0: it is
+    double steady; // N m or N, whatever presses
+    double zeta;   // 1, the damping ratio that the bristle is given where it begins to stick
+    double length; // m, of a guide, over which it takes a moment; 0: none does
     BristleMode mode;
-    int face; // of a guide: what presses there (reference/plane/rub.h)
+    int face; // of a guide: what presses there (reference/plane/rub.c)
 } Bristle;
 
 // How a bristle is at one instant.
@@ -198,6 +200,8 @@ typedef struct BristleAt {
     double bend;     // rad or m
     double speed;    // rad/s or m/s, of the sliding
     double rounding; // of that
+    double damping;  // s/rad or s/m
+    bool is_idle;    // of a contact that does not press
 } BristleAt;
 
 // How the face of a guide that presses is to the others.
@@ -252,7 +256,8 @@ typedef struct SystemKind {
     // state. NULL where there are none.
     BristleAt (*bristle)(const System *system, size_t bristle, double since_s, const double *y);
     BristleFace (*face)(const System *system, size_t bristle, double since_s, const double *y);
-    // Lets a bristle begin to stick at the base: finds its damping.
+    // Lets a bristle begin to stick at the base: finds its damping. That of a contact follows what
+    // presses.
     void (*stick)(System *system, size_t bristle, const double *y);
     // Bends the bristles of joints that stand at the start so that they hold what acts there.
     void (*hold)(System *system, double *y);
@@ -324,9 +329,12 @@ static inline size_t system_sum_index(const System *system, size_t sum)
     return 2 * system->coordinate_count + system->bristle_count + sum;
 }
 
-static inline bool system_has_bristles(const System *system)
+// Where a joint keeps the bend of a bristle: that of a contact with it, that of an ideal joint
+// behind the places of its limits.
+static inline int system_bristle_place(const System *system, size_t bristle)
 {
-    return system->bristle_count > 0;
+    const int contact = system->bristles[bristle].contact;
+    return contact >= 0 ? system->contacts[contact].place : JOINT_PLACES - 1;
 }
 
 // Likewise the bend of a bristle, rad or m.

@@ -15,9 +15,20 @@
 
 // How a run is made and reported: chosen by the user, not measured, and the same on any machine.
 static const char *const UNSHAKEN[] = {
-    "run.revolutions",   "run.duration",        "run.tolerance", "run.spike-threshold",
-    "run.report-from",   "reference.tolerance", "drive.period",  "run.settle-to",
-    "run.settle-budget", "run.budget",
+    "run.revolutions",
+    "run.duration",
+    "run.tolerance",
+    "run.spike-threshold",
+    "run.report-from",
+    "reference.tolerance",
+    "drive.period",
+    "run.settle-to",
+    "run.settle-budget",
+    "run.budget",
+    // shaken where friction has bristles
+    "contact.breakaway-ratio",
+    "contact.presliding",
+    "contact.presliding-damping",
 };
 
 // What has no line in the program for libjointplay that is looked at here.
@@ -53,6 +64,11 @@ static const char *const UNWRITTEN[] = {
     "contact.resting-speed",
     "contact.dissipation",
     "contact.restitution-speed",
+    // of bristles, which the library has not
+    "contact.friction-law",
+    "contact.breakaway-ratio",
+    "contact.presliding",
+    "contact.presliding-damping",
     // of a speed over time, which this case has not (test_tune_world.c)
     "drive.period",
     // refused where it has them

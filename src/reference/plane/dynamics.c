@@ -15,7 +15,6 @@
 #include "model/forces.h"
 #include "model/mesh.h"
 #include "reference/plane/articulated.h"
-#include "reference/plane/rub.h"
 #include "reference/plane/tree.h"
 
 #include <assert.h>
@@ -35,7 +34,7 @@
 
 // Adds what friction does to a contact that presses.
 static void dynamics_add_friction(const Dynamics *dynamics, size_t number, const TreeState *state,
-                                  ContactForce *force)
+                                  const double *y, ContactForce *force)
 {
     const ForceLaw *law = &dynamics->system.contacts[number].law;
     const int end = 2 * dynamics->sites[number].pair;
@@ -47,7 +46,17 @@ static void dynamics_add_friction(const Dynamics *dynamics, size_t number, const
         vec2_sub(dynamics_contact_velocity(&dynamics->tree, state, end + 1, from_b),
                  dynamics_contact_velocity(&dynamics->tree, state, end, from_a));
     const double speed = vec2_dot(tangent, sliding);
-    const double held = friction_hold(speed, law->friction_speed).held;
+    double held = friction_hold(speed, law->friction_speed).held;
+    force->sliding = speed;
+    if (dynamics->bristle_of[number] >= 0) {
+        const size_t bristle = (size_t)dynamics->bristle_of[number];
+        const BristlePair pair = dynamics_contact_bristle(dynamics, number, force->press.normal);
+        const BristleHold hold =
+            bristle_hold(&pair, dynamics->system.bristles[bristle].mode,
+                         y[system_bristle_index(&dynamics->system, bristle)], speed);
+        held = hold.share;
+        force->bending = hold.bending;
+    }
     const double friction = law->friction * force->press.normal * held;
     force->force = vec2_sub(force->force, vec2_scale(friction, tangent));
     force->press.friction_power = friction * speed;
@@ -372,7 +381,7 @@ double dynamics_contact_second(const Dynamics *dynamics, size_t number, const Tr
 }
 
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
-                           ContactForce *force)
+                           const double *y, ContactForce *force)
 {
     const Contact *contact = &dynamics->system.contacts[number];
     const PlaneSite *site = &dynamics->sites[number];
@@ -380,6 +389,7 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
     force->press = press_find(contact, -force->pose.gap, force->pose.approach_speed);
     force->force = (Vec2){0.0, 0.0};
     force->couple = 0.0;
+    force->sliding = force->bending = 0.0;
     if (contact->mode != CONTACT_PRESSING) {
         return;
     }
@@ -389,7 +399,7 @@ void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeSt
         force->couple = site->touch.sign * coordinate_sense(joint) * force->press.normal;
     }
     if (contact->law.friction > 0.0 && !dynamics_contact_is_turn(site)) {
-        dynamics_add_friction(dynamics, number, state, force);
+        dynamics_add_friction(dynamics, number, state, y, force);
     }
 }
 
@@ -527,7 +537,9 @@ static void dynamics_lay(Dynamics *dynamics, size_t contact_most, MemoryLayout *
     DynamicsRoom *room = &dynamics->room;
     system->coordinates = layout_take(layout, n, sizeof *system->coordinates);
     system->contacts = layout_take(layout, contact_most, sizeof *system->contacts);
-    system->bristles = layout_take(layout, linkage->joint_count, sizeof *system->bristles);
+    system->bristles =
+        layout_take(layout, linkage->joint_count + contact_most, sizeof *system->bristles);
+    dynamics->bristle_of = layout_take(layout, contact_most, sizeof *dynamics->bristle_of);
     dynamics->sites = layout_take(layout, contact_most, sizeof *dynamics->sites);
     dynamics->reach = layout_take(layout, bodies, sizeof *dynamics->reach);
     dynamics->weights = layout_take(layout, bodies, sizeof *dynamics->weights);
@@ -536,7 +548,8 @@ static void dynamics_lay(Dynamics *dynamics, size_t contact_most, MemoryLayout *
     room->added = layout_take(layout, bodies, sizeof *room->added);
     room->sides = layout_take(layout, rows, sizeof *room->sides);
     room->solved = layout_take(layout, n + rows, sizeof *room->solved);
-    room->closed = layout_take(layout, 2 * n + linkage->joint_count, sizeof *room->closed);
+    room->closed =
+        layout_take(layout, 2 * n + linkage->joint_count + contact_most, sizeof *room->closed);
     room->row = layout_take(layout, n, sizeof *room->row);
     room->arms = layout_take(layout, n, sizeof *room->arms);
     for (int i = 0; i < DYNAMICS_PUSHED; i++) {
@@ -593,7 +606,7 @@ bool dynamics_init(const Scenario *scenario, Dynamics *dynamics, Err *err)
         return false;
     }
     rub_list(scenario, dynamics);
-    dynamics->rub = system_has_bristles(&dynamics->system) ? rub_create(dynamics) : NULL;
+    dynamics->rub = dynamics->rub_count > 0 ? rub_create(dynamics) : NULL;
     dynamics->articulated = articulated_create(tree, tree->loop_count, tree->loops);
     dynamics->system.coupling = dynamics_couple(dynamics);
     dynamics->hinged = hinged_create(dynamics);
@@ -622,7 +635,7 @@ static void dynamics_lay_state(const Dynamics *dynamics, MemoryLayout *layout, D
     state->contacts = layout_take(layout, contacts, sizeof *state->contacts);
     state->reactions = layout_take(layout, joints, sizeof *state->reactions);
     state->couples = layout_take(layout, joints, sizeof *state->couples);
-    state->rubs = layout_take(layout, dynamics->system.bristle_count, sizeof *state->rubs);
+    state->rubs = layout_take(layout, dynamics->rub_count, sizeof *state->rubs);
 }
 
 DynamicsState *dynamics_state_create(const Dynamics *dynamics)
@@ -726,7 +739,7 @@ static bool dynamics_find_rates(const Dynamics *dynamics, double since_s, const 
     dynamics_start_loads(dynamics, loads);
     load_forces(dynamics, since_s, state, loads);
     for (size_t i = 0; i < dynamics->system.contact_count; i++) {
-        dynamics_contact_find(dynamics, i, &state->tree, &state->contacts[i]);
+        dynamics_contact_find(dynamics, i, &state->tree, y, &state->contacts[i]);
         if (dynamics->system.contacts[i].mode == CONTACT_PRESSING) {
             load_contact(dynamics, i, &state->tree, &state->contacts[i], loads);
         }
@@ -795,7 +808,7 @@ static void dynamics_fill_sums(const Dynamics *dynamics, const DynamicsState *st
         sums[SYSTEM_FRICTION] += state->contacts[i].press.friction_power;
         sums[SYSTEM_IMPULSES + i] = sqrt(vec2_dot(force, force)) + fabs(state->contacts[i].couple);
     }
-    for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
+    for (size_t i = 0; i < dynamics->rub_count; i++) {
         sums[SYSTEM_FRICTION] += state->rubs[i].friction * state->rubs[i].speed;
     }
     if (dynamics->system.has_loads) {
@@ -813,7 +826,9 @@ static void dynamics_fill_rates(const Dynamics *dynamics, const DynamicsState *s
         rates[n + i] = dynamics->room.solved[i];
     }
     for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
-        rates[system_bristle_index(&dynamics->system, i)] = state->rubs[i].bending;
+        const int contact = dynamics->system.bristles[i].contact;
+        rates[system_bristle_index(&dynamics->system, i)] =
+            contact >= 0 ? state->contacts[contact].bending : state->rubs[i].bending;
     }
     dynamics_fill_sums(dynamics, state, rates + system_sum_index(&dynamics->system, 0));
 }
@@ -847,7 +862,7 @@ ContactForce dynamics_contact(const Dynamics *dynamics, size_t contact, double s
     const double *u = y + tree->coordinate_count;
     tree_evaluate_pair(tree, dynamics->sites[contact].pair, since_s, y, u, state);
     ContactForce force;
-    dynamics_contact_find(dynamics, contact, state, &force);
+    dynamics_contact_find(dynamics, contact, state, y, &force);
     return force;
 }
 

@@ -21,11 +21,13 @@ typedef struct PlaneSite {
 typedef struct ContactForce {
     Press press;
     TouchPose pose;
-    Vec2 force;    // N, on body b, friction included
-    double couple; // N m, on body b, of a turn, which has no force
+    Vec2 force;     // N, on body b, friction included
+    double couple;  // N m, on body b, of a turn, which has no force
+    double sliding; // m/s, with friction: body b against body a, at right angles to the normal
+    double bending; // m/s, of the bristle, where it has one
 } ContactForce;
 
-// The friction of an ideal joint at one instant (reference/plane/rub.h).
+// The friction of an ideal joint at one instant (reference/plane/rub.c).
 typedef struct RubState {
     double speed;    // rad/s or m/s
     double share;    // 1, of what it may hold
@@ -42,7 +44,7 @@ typedef struct DynamicsState {
     ContactForce *contacts; // by contact
     Vec2 *reactions;        // N, on body b, of ideal joints
     double *couples;        // N m, on body b, of prismatic joints, about its anchor
-    RubState *rubs;         // by bristle
+    RubState *rubs;         // by ideal joint with friction
     double drive_power;     // W, of all drives, or a torque
     double load_power;      // W, of loads
     double damping_power;   // W, that the dampers take
@@ -73,7 +75,7 @@ typedef struct DynamicsRoom {
     double *pushed[DYNAMICS_PUSHED];
 } DynamicsRoom;
 
-typedef struct Hinged Hinged; // of reference/plane/hinged.h
+typedef struct Hinged Hinged;   // of reference/plane/hinged.h
 typedef struct RubRoom RubRoom; // of reference/plane/rub.c
 
 typedef struct Dynamics {
@@ -82,6 +84,8 @@ typedef struct Dynamics {
     Articulated *articulated; // owned
     Hinged *hinged;           // owned; NULL where it has no such rates
     RubRoom *rub;             // owned; NULL where no ideal joint has friction
+    size_t rub_count;         // of the system's bristles those of ideal joints, the first
+    int *bristle_of;          // by contact: its bristle, or -1
     void *memory;             // owned; where all arrays are
     PlaneSite *sites;         // by contact
     double *reach;            // m, of each body's points
@@ -97,9 +101,9 @@ typedef struct Dynamics {
 
 // The forces of the contacts in the coordinates of a tree.
 
-// One contact's quantities from the state of the tree.
+// One contact's quantities from the state of the tree and the integrator's vector.
 void dynamics_contact_find(const Dynamics *dynamics, size_t number, const TreeState *state,
-                           ContactForce *force);
+                           const double *y, ContactForce *force);
 
 // The points of body a and of body b at which the force acts, seen from the ends of the contact's
 // pair; of two circles without friction the ends themselves.
@@ -232,6 +236,42 @@ size_t dynamics_contact_needs(const System *system, size_t contact, size_t *coor
 // where the accelerations are not determined. The context is a Dynamics.
 void dynamics_slopes(double since_s, const double *y, double *by_position, double *by_rate,
                      void *context);
+
+// The friction of ideal joints.
+
+// What presses on a joint: of a pivot the reaction, N; of a guide x the force across it, N, and y
+// the force at each end of its length that its moment makes, twice. Of a guide one of four faces
+// presses most: x, -x, y, -y.
+typedef struct RubPress {
+    Vec2 of;
+    double most; // N
+} RubPress;
+
+// Lists the ideal joints with friction, and the contacts whose friction has bristles, among those
+// of the system, for which there is room.
+void rub_list(const Scenario *scenario, Dynamics *dynamics);
+
+// Room to work in, for so many; rub_destroy frees it, and accepts NULL.
+RubRoom *rub_create(const Dynamics *dynamics);
+void rub_destroy(RubRoom *room);
+
+// Solves for the coordinates' second rates, as dynamics_react does, with the friction that what
+// presses in the joints makes, which that friction changes: fills in the rubs of the state and adds
+// them to the loads. Returns false where the accelerations, or what presses, are not determined.
+bool rub_solve(const Dynamics *dynamics, const double *y, bool are_closed, DynamicsState *state,
+               Loads *loads);
+
+// The joint whose friction had no single answer in the last rub_solve that failed; -1: none.
+int rub_jammed(const Dynamics *dynamics);
+
+// What the events of a bristle need (reference/system.h).
+BristleAt rub_bristle(const Dynamics *dynamics, size_t number, double since_s, const double *y);
+BristleFace rub_face(const Dynamics *dynamics, size_t number, double since_s, const double *y);
+void rub_stick(Dynamics *dynamics, size_t number, const double *y);
+void rub_hold(Dynamics *dynamics, double *y);
+
+// The bristle of a contact as its law has it where it presses with a force, N.
+BristlePair dynamics_contact_bristle(const Dynamics *dynamics, size_t number, double normal);
 
 // The rates of a mechanism whose bodies hang on hinges, or on nothing, and touch at pins in their
 // holes alone: what most mechanisms with play are, and what an integrator asks for most.

@@ -155,7 +155,7 @@ static void find_row(const Tree *tree, const TreeState *state, SlopesPressing *p
 }
 
 static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *state,
-                                     size_t number)
+                                     const double *y, size_t number)
 {
     const Contact *contact = &dynamics->system.contacts[number];
     const PlaneSite *site = &dynamics->sites[number];
@@ -169,7 +169,7 @@ static SlopesPressing slopes_resolve(const Dynamics *dynamics, const TreeState *
         .parts = &dynamics->system.coupling->joints[contact->joint],
     };
     slopes_clear(dynamics, pressing.parts);
-    dynamics_contact_find(dynamics, number, state, &pressing.force);
+    dynamics_contact_find(dynamics, number, state, y, &pressing.force);
     const TouchPose *pose = &pressing.force.pose;
     pressing.velocity = pose->velocity;
     switch (site->touch.shape) {
@@ -378,8 +378,9 @@ static void slopes_add_way(const Dynamics *dynamics, const TreeState *state, int
 }
 
 // The same of a contact at an end of an angle or of teeth.
-static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *state, size_t number,
-                                   double *by_position, double *by_rate)
+static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *state,
+                                   const double *y, size_t number, double *by_position,
+                                   double *by_rate)
 {
     const Tree *tree = &dynamics->tree;
     const Contact *contact = &dynamics->system.contacts[number];
@@ -388,7 +389,7 @@ static void slopes_add_turn_slopes(const Dynamics *dynamics, const TreeState *st
     TreeCoordinatePart parts[TREE_COORDINATE_PARTS];
     ContactForce force;
     Loads loads = {.pushes = dynamics->room.zeros};
-    dynamics_contact_find(dynamics, number, state, &force);
+    dynamics_contact_find(dynamics, number, state, y, &force);
     const Joint *joint = &tree->linkage->joints[contact->joint];
     tree_coordinate_parts(joint, parts);
     if (joint_has_mesh(joint->kind)) {
@@ -447,9 +448,9 @@ void dynamics_slopes(double since_s, const double *y, double *by_position, doubl
             continue;
         }
         if (dynamics_contact_is_turn(&dynamics->sites[i])) {
-            slopes_add_turn_slopes(dynamics, state, i, by_position, by_rate);
+            slopes_add_turn_slopes(dynamics, state, y, i, by_position, by_rate);
         } else {
-            const SlopesPressing pressing = slopes_resolve(dynamics, state, i);
+            const SlopesPressing pressing = slopes_resolve(dynamics, state, y, i);
             slopes_find_pushed(dynamics, state, &pressing);
             slopes_add_slopes(dynamics, &pressing, by_position, by_rate);
         }

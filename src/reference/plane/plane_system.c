@@ -4,7 +4,6 @@
 #include "model/forces.h"
 #include "model/scale.h"
 #include "reference/plane/articulated.h"
-#include "reference/plane/rub.h"
 #include "reference/plane/tree.h"
 #include "reference/system.h"
 
@@ -38,7 +37,7 @@ static double energy_balance(const Dynamics *dynamics, const double *y, double *
     for (size_t i = 0; i < system->contact_count; i++) {
         if (system->contacts[i].mode != CONTACT_APART) {
             ContactForce force;
-            dynamics_contact_find(dynamics, i, state, &force);
+            dynamics_contact_find(dynamics, i, state, y, &force);
             energy += force_law_energy(&system->contacts[i].law, force.press.depth);
         }
     }
@@ -112,8 +111,7 @@ static BristleAt plane_bristle(const System *system, size_t bristle, double sinc
     return rub_bristle(plane_dynamics_of(system), bristle, since_s, y);
 }
 
-static BristleFace plane_face(const System *system, size_t bristle, double since_s,
-                              const double *y)
+static BristleFace plane_face(const System *system, size_t bristle, double since_s, const double *y)
 {
     return rub_face(plane_dynamics_of(system), bristle, since_s, y);
 }
@@ -355,7 +353,7 @@ static void fill_ideal(const Dynamics *dynamics, const DynamicsState *at, int jo
         place_on_line(tree, &at->tree, joint, to);
         to->moment_on_b = at->couples[joint];
     }
-    for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
+    for (size_t i = 0; i < dynamics->rub_count; i++) {
         if (dynamics->system.bristles[i].joint == joint) {
             add_friction(tree, at, joint, at->rubs[i].friction, to);
         }

@@ -9,12 +9,12 @@
 // D comes from solving the equations of motion with each F_j by itself, F from Newton's method. The
 // right side contracts, and has one fixed point, where the matrix k_i r_i |D_ij| has an eigenvalue
 // below 1, r_i >= |s_i|: it has in a weighted maximum norm what (A x)_i < x_i says for some x > 0
-// (Collatz, Wielandt). Of a single body on a fixed pivot D is about 1 over its arm: where mu r comes
-// up to that, friction may have no answer, or two, and is refused.
+// (Collatz, Wielandt). Of a single body on a fixed pivot D is about 1 over its arm: where mu r
+// comes up to that, friction may have no answer, or two, and is refused.
 //
 // Of a guide N has corners, where another of the faces Q, -Q, 2 M / l, -2 M / l presses most: those
 // are events, between which the face that presses goes on by itself.
-#include "reference/plane/rub.h"
+#include "reference/plane/dynamics.h"
 
 #include "base/dense.h"
 #include "base/zeroed.h"
@@ -28,9 +28,9 @@
 
 enum {
     RUB_FACES = 4,
-    RUB_SOLVES = 4,     // full solutions at most: the first has all but rounding
+    RUB_SOLVES = 4,      // full solutions at most: the first has all but rounding
     RUB_ITERATIONS = 30, // of Newton's method, on the linear reactions
-    RUB_POWERS = 24,    // by which the eigenvalue is bounded
+    RUB_POWERS = 24,     // by which the eigenvalue is bounded
 };
 
 // of what acts on the bodies: what rounding leaves of a friction, and of what presses
@@ -43,19 +43,36 @@ static const double RUB_MOBILITY = 1e-9;
 struct RubRoom {
     size_t count;
     int jammed;
-    double scale;           // N, of what acts on the bodies
-    ArticulatedPush *kept;  // by body: the loads without friction
-    double *friction;       // by bristle, like the next three
-    double *tried;          //
-    RubPress *pressed;      //
-    RubPress *before;       //
-    Vec2 *change;           // D, row by row
-    double *matrix;         // likewise
-    double *side;           //
-    double *weight;         // x
-    double *weighed;        // A x
-    double *mobility;       // by coordinate and by row of a loop
+    double scale;          // N, of what acts on the bodies
+    ArticulatedPush *kept; // by body: the loads without friction
+    double *friction;      // by bristle, like the next three
+    double *tried;         //
+    RubPress *pressed;     //
+    RubPress *before;      //
+    Vec2 *change;          // D, row by row
+    double *matrix;        // likewise
+    double *side;          //
+    double *weight;        // x
+    double *weighed;       // A x
+    double *mobility;      // by coordinate and by row of a loop
 };
+
+// An angle of a pivot counts as a length by its reach, m.
+static Bristle bristle_of(const JointFriction *friction, int joint, double reach)
+{
+    return (Bristle){
+        .joint = joint,
+        .contact = -1,
+        .pair = {.law = friction->law,
+                 .ratio = friction->ratio,
+                 .limit = friction->presliding / reach,
+                 .speed = friction->speed / reach},
+        .steady = friction->steady,
+        .zeta = friction->damping,
+        .length = friction->length,
+        .face = -1,
+    };
+}
 
 void rub_list(const Scenario *scenario, Dynamics *dynamics)
 {
@@ -64,33 +81,42 @@ void rub_list(const Scenario *scenario, Dynamics *dynamics)
     system->bristle_count = 0;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (!joint_friction_is(joint)) {
-            continue;
+        if (joint_friction_is(joint)) {
+            const bool slides = joint_slides(joint->kind);
+            const JointFriction friction = joint_friction_whole(&scenario->contact, joint);
+            const double reach = slides ? 1.0 : joint_friction_radius(joint);
+            Bristle *bristle = &system->bristles[system->bristle_count++];
+            *bristle = bristle_of(&friction, i, reach);
+            bristle->arm = joint->contact.has_friction ? joint->contact.friction * reach : 0.0;
+            bristle->face = slides && joint->contact.has_friction ? 0 : -1;
         }
-        const JointFriction *friction = &joint->friction;
-        const bool slides = joint_slides(joint->kind);
-        // angles of a pivot are lengths at the radius of its pin
-        const double reach = slides ? 1.0 : joint_friction_radius(joint);
-        const double speed =
-            friction->speed > 0.0 ? friction->speed : scenario->contact.friction_speed;
-        system->bristles[system->bristle_count++] = (Bristle){
-            .joint = i,
-            .pair = {.law = friction->law,
-                     .ratio = joint_friction_ratio(joint),
-                     .limit = joint_friction_presliding(joint) / reach,
-                     .speed = speed / reach},
-            .arm = joint->contact.has_friction ? joint->contact.friction * reach : 0.0,
-            .steady = friction->steady,
-            .zeta = joint_friction_damping(joint),
-            .length = friction->length,
-            .face = slides && joint->contact.has_friction ? 0 : -1,
-        };
     }
+    dynamics->rub_count = system->bristle_count;
+    for (size_t i = 0; i < system->contact_count; i++) {
+        const Joint *joint = &linkage->joints[system->contacts[i].joint];
+        dynamics->bristle_of[i] = -1;
+        if (!joint_is_ideal(joint->kind) && joint->friction.law != BRISTLE_REGULARIZED &&
+            system->contacts[i].law.friction > 0.0 &&
+            !dynamics_contact_is_turn(&dynamics->sites[i])) {
+            system->bristles[system->bristle_count] =
+                (Bristle){.joint = system->contacts[i].joint,
+                          .contact = (int)i,
+                          .pair = system->contacts[i].law.bristle,
+                          .face = -1};
+            dynamics->bristle_of[i] = (int)system->bristle_count++;
+        }
+    }
+}
+
+BristlePair dynamics_contact_bristle(const Dynamics *dynamics, size_t number, double normal)
+{
+    const Bristle *bristle = &dynamics->system.bristles[dynamics->bristle_of[number]];
+    return bristle_pressed(&bristle->pair, dynamics->system.contacts[number].law.friction * normal);
 }
 
 RubRoom *rub_create(const Dynamics *dynamics)
 {
-    const size_t n = dynamics->system.bristle_count;
+    const size_t n = dynamics->rub_count;
     const size_t bodies = dynamics->tree.linkage->body_count;
     RubRoom *room = zeroed(1, sizeof *room);
     room->count = n;
@@ -184,9 +210,8 @@ static RubPress rub_press(const Dynamics *dynamics, const DynamicsState *state,
     RubPress press = {.of = state->reactions[bristle->joint]};
     if (bristle->face >= 0) {
         const Vec2 normal = tree_normal(&dynamics->tree, &state->tree, bristle->joint);
-        const double moment = bristle->length > 0.0
-                                  ? 2.0 * state->couples[bristle->joint] / bristle->length
-                                  : 0.0;
+        const double moment =
+            bristle->length > 0.0 ? 2.0 * state->couples[bristle->joint] / bristle->length : 0.0;
         press.of = (Vec2){vec2_dot(normal, press.of), moment};
     }
     press.most = press_of(bristle, press.of);
@@ -203,7 +228,7 @@ static void put_loads(const Dynamics *dynamics, const Loads *bare, const double 
            dynamics->tree.linkage->body_count * sizeof *dynamics->rub->kept);
     *loads = *bare;
     loads->pushes = pushes;
-    for (size_t i = 0; i < system->bristle_count; i++) {
+    for (size_t i = 0; i < dynamics->rub_count; i++) {
         rub_load(&dynamics->tree, &state->tree, system->bristles[i].joint, friction[i], loads);
     }
 }
@@ -217,7 +242,7 @@ static bool try_friction(const Dynamics *dynamics, const Loads *bare, const doub
     if (!dynamics_react(dynamics, true, state, loads)) {
         return false;
     }
-    for (size_t i = 0; i < system->bristle_count; i++) {
+    for (size_t i = 0; i < dynamics->rub_count; i++) {
         pressed[i] = rub_press(dynamics, state, &system->bristles[i]);
     }
     return true;
@@ -232,7 +257,7 @@ static double rub_scale(const Dynamics *dynamics, const DynamicsState *state)
         scale += linkage->bodies[i].mass * vec2_length(state->tree.motions[i].acceleration) +
                  vec2_length(dynamics->weights[i]);
     }
-    for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
+    for (size_t i = 0; i < dynamics->rub_count; i++) {
         scale += vec2_length(dynamics->rub->before[i].of);
     }
     return scale > 0.0 ? scale : 1.0;
@@ -323,8 +348,8 @@ static bool solve_linear(const Dynamics *dynamics, const DynamicsState *state,
             const Bristle *bristle = &system->bristles[i];
             Vec2 of = pressed[i].of;
             for (size_t j = 0; j < n; j++) {
-                of = vec2_add(of, vec2_scale(friction[j] - room->tried[j],
-                                             room->change[i * n + j]));
+                of =
+                    vec2_add(of, vec2_scale(friction[j] - room->tried[j], room->change[i * n + j]));
             }
             const double held = state->rubs[i].share * bristle->arm;
             const double press = press_of(bristle, of);
@@ -374,7 +399,7 @@ static bool find_shares(const Dynamics *dynamics, const double *y, DynamicsState
 {
     const System *system = &dynamics->system;
     bool has_other = false;
-    for (size_t i = 0; i < system->bristle_count; i++) {
+    for (size_t i = 0; i < dynamics->rub_count; i++) {
         const Bristle *bristle = &system->bristles[i];
         RubState *rub = &state->rubs[i];
         rub->speed = rub_speed(&dynamics->tree, &state->tree, bristle->joint);
@@ -393,7 +418,7 @@ bool rub_solve(const Dynamics *dynamics, const double *y, bool are_closed, Dynam
 {
     const System *system = &dynamics->system;
     RubRoom *room = dynamics->rub;
-    const size_t n = system->bristle_count;
+    const size_t n = dynamics->rub_count;
     const Loads bare = *loads;
     room->jammed = -1;
     memcpy(room->kept, loads->pushes, dynamics->tree.linkage->body_count * sizeof *room->kept);
@@ -434,26 +459,47 @@ bool rub_solve(const Dynamics *dynamics, const double *y, bool are_closed, Dynam
     return has_other || dynamics_solve(dynamics, are_closed, state, loads);
 }
 
+// The same of a contact.
+static BristleAt contact_at(const Dynamics *dynamics, size_t number, double since_s,
+                            const double *y)
+{
+    const Tree *tree = &dynamics->tree;
+    const size_t contact = (size_t)dynamics->system.bristles[number].contact;
+    const ContactForce force = dynamics_contact(dynamics, contact, since_s, y);
+    const TreeState *state = &dynamics->room.state->tree;
+    const int end = 2 * dynamics->sites[contact].pair;
+    return (BristleAt){
+        .bend = y[system_bristle_index(&dynamics->system, number)],
+        .speed = force.sliding,
+        .rounding = 4.0 * DBL_EPSILON *
+                    (vec2_length(tree_end_velocity(tree, state, end)) +
+                     vec2_length(tree_end_velocity(tree, state, end + 1))),
+        .damping = dynamics_contact_bristle(dynamics, contact, force.press.normal).damping,
+        .is_idle = dynamics->system.contacts[contact].mode != CONTACT_PRESSING,
+    };
+}
+
 BristleAt rub_bristle(const Dynamics *dynamics, size_t number, double since_s, const double *y)
 {
     const Tree *tree = &dynamics->tree;
     const System *system = &dynamics->system;
     const int joint = system->bristles[number].joint;
+    if (system->bristles[number].contact >= 0) {
+        return contact_at(dynamics, number, since_s, y);
+    }
     TreeState *state = &dynamics->room.state->tree;
     tree_evaluate_pair(tree, joint, since_s, y, y + tree->coordinate_count, state);
     double size = 0.0;
     for (int side = 0; side < 2; side++) {
-        const int body = tree->end_bodies[2 * joint + side];
-        size += fabs(turning_of(state, body));
-    }
-    if (tree->measures[joint] == TREE_LINE) {
-        size = vec2_length(tree_end_velocity(tree, state, 2 * joint)) +
-               vec2_length(tree_end_velocity(tree, state, 2 * joint + 1));
+        size += tree->measures[joint] == TREE_LINE
+                    ? vec2_length(tree_end_velocity(tree, state, 2 * joint + side))
+                    : fabs(turning_of(state, tree->end_bodies[2 * joint + side]));
     }
     return (BristleAt){
         .bend = y[system_bristle_index(system, number)],
         .speed = rub_speed(tree, state, joint),
         .rounding = 4.0 * DBL_EPSILON * size,
+        .damping = system->bristles[number].pair.damping,
     };
 }
 
@@ -522,7 +568,7 @@ void rub_stick(Dynamics *dynamics, size_t number, const double *y)
     Bristle *bristle = &dynamics->system.bristles[number];
     DynamicsState *state = dynamics->room.state;
     bristle->pair.damping = 0.0;
-    if (bristle->pair.law == BRISTLE_REGULARIZED ||
+    if (bristle->contact >= 0 || bristle->pair.law == BRISTLE_REGULARIZED ||
         !dynamics_evaluate(dynamics, 0.0, y, state, NULL)) {
         return;
     }
@@ -533,8 +579,8 @@ void rub_stick(Dynamics *dynamics, size_t number, const double *y)
     }
 }
 
-// Of joints that stand and stick: each in turn is bent by what its acceleration asks for, until none
-// is. What friction cannot hold is left at its end.
+// Of joints that stand and stick: each in turn is bent by what its acceleration asks for, until
+// none is. What friction cannot hold is left at its end.
 
 enum { HOLD_SWEEPS = 1000 }; // of joints that hardly hold each other: what is left starts a swing
 
@@ -553,13 +599,13 @@ static double rub_acceleration(const Tree *tree, const TreeState *state, int joi
 }
 
 // Bends one. Returns by how much, over its presliding.
-static double hold_one(Dynamics *dynamics, size_t number, double *y)
+static double hold_one(Dynamics *dynamics, size_t number, const bool *is_bent, double *y)
 {
     const System *system = &dynamics->system;
     const Bristle *bristle = &system->bristles[number];
     DynamicsState *state = dynamics->room.state;
     const BristleAt at = rub_bristle(dynamics, number, 0.0, y);
-    if (bristle->pair.law != BRISTLE_STICK || fabs(at.speed) > at.rounding ||
+    if (bristle->pair.law != BRISTLE_STICK || is_bent[number] || fabs(at.speed) > at.rounding ||
         !dynamics_evaluate(dynamics, 0.0, y, state, NULL)) {
         return 0.0;
     }
@@ -569,8 +615,7 @@ static double hold_one(Dynamics *dynamics, size_t number, double *y)
         return 0.0;
     }
     const double needed =
-        rub->friction +
-        rub_acceleration(&dynamics->tree, &state->tree, bristle->joint) / mobility;
+        rub->friction + rub_acceleration(&dynamics->tree, &state->tree, bristle->joint) / mobility;
     const double share = needed / (bristle->pair.ratio * rub->pressing);
     double *bend = &y[system_bristle_index(system, number)];
     const double before = *bend;
@@ -581,10 +626,15 @@ static double hold_one(Dynamics *dynamics, size_t number, double *y)
 void rub_hold(Dynamics *dynamics, double *y)
 {
     double most = 1.0;
+    bool *is_bent = zeroed(dynamics->rub_count, sizeof *is_bent); // by another run
+    for (size_t i = 0; i < dynamics->rub_count; i++) {
+        is_bent[i] = y[system_bristle_index(&dynamics->system, i)] != 0.0;
+    }
     for (int sweep = 0; sweep < HOLD_SWEEPS && most > HOLD_SETTLED; sweep++) {
         most = 0.0;
-        for (size_t i = 0; i < dynamics->system.bristle_count; i++) {
-            most = fmax(most, hold_one(dynamics, i, y));
+        for (size_t i = 0; i < dynamics->rub_count; i++) {
+            most = fmax(most, hold_one(dynamics, i, is_bent, y));
         }
     }
+    free(is_bent);
 }
