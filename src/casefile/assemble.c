@@ -4,6 +4,7 @@
 #include "casefile/assemble.h"
 
 #include "casefile/build.h"
+#include "casefile/bushings.h"
 #include "casefile/cam.h"
 #include "casefile/check.h"
 #include "casefile/closure.h"
@@ -46,6 +47,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         .joints = names[SCHEMA_JOINT].count,
         .springs = names[SCHEMA_SPRING].count,
         .torsions = names[SCHEMA_TORSION_SPRING].count,
+        .bushings = names[SCHEMA_BUSHING].count,
         .loads = names[SCHEMA_LOAD_FAMILY].count,
         .further = names[SCHEMA_DRIVE].count,
         .profiles = profiles_count(entries),
@@ -78,6 +80,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         text_copy(linkage->torsions[i].name, LINKAGE_NAME_SIZE,
                   names[SCHEMA_TORSION_SPRING].names[i]);
     }
+    bushings_prepare(entries, linkage);
     loads_prepare(entries, linkage);
     drives_prepare(entries, linkage);
     const bool has_torque =

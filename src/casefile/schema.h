@@ -33,11 +33,13 @@ typedef enum SchemaType {
     SCHEMA_TEETH,      // [number, number] -> the teeth of a Gear
     SCHEMA_DISCS,      // [diameter, diameter] -> the radii of a Stop
     SCHEMA_SLOT,       // [length, width] -> the slot of a Stop
-    SCHEMA_HEADING,    // angle of the world -> Joint.direction, of body a once it is placed
+    SCHEMA_HEADING,    // angle of the world -> direction of a joint or bushing, of body a once it is placed
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
     SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass
     SCHEMA_ANCHOR,           // [x, y] of the world -> an anchor, of a body once it is placed
-    SCHEMA_BETWEEN,          // [body, body] -> body_a and body_b of a joint or spring
+    SCHEMA_BETWEEN,          // [body, body] -> body_a and body_b of a joint, spring or bushing
+    SCHEMA_PAIR,             // one number for both axes, or [x, y] -> Vec2
+    SCHEMA_CURVE,            // list of [length, force] or [angle, torque] -> ForceCurve
     SCHEMA_BODY_NAME,        // name of a body -> int
     SCHEMA_JOINT_NAME,       // name of a joint -> int
     SCHEMA_TORQUE,           // torque, or list of [time, torque] -> TimeTable
@@ -48,7 +50,7 @@ typedef enum SchemaType {
     SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 
-// Keys that come once, or once a body, joint, traced point, spring, load or drive. A `*` in the
+// Keys that come once, or once a body, joint, traced point, spring, bushing, load or drive. A `*` in the
 // path stands for the name of that.
 typedef enum SchemaFamily {
     SCHEMA_SINGLE,
@@ -57,6 +59,7 @@ typedef enum SchemaFamily {
     SCHEMA_POINT,
     SCHEMA_SPRING,
     SCHEMA_TORSION_SPRING,
+    SCHEMA_BUSHING,
     SCHEMA_LOAD_FAMILY,
     SCHEMA_DRIVE,
     SCHEMA_FAMILY_COUNT,
@@ -96,6 +99,8 @@ typedef enum SchemaRivalry {
     SCHEMA_STOPPING,   // the normal of a line, and a radius, against two discs
     SCHEMA_LIMITING,   // backlash against low and high
     SCHEMA_PLACING,    // one place of a joint against one for each of its bodies
+    SCHEMA_PULLING,    // stiffness of a bushing against points of its forces
+    SCHEMA_TWISTING,   // torsional-stiffness against points of its torque
 } SchemaRivalry;
 
 // The bit of a backend, and those of all that take steps of run.step.

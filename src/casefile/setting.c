@@ -154,6 +154,13 @@ static void set_start(CasefileSetting *setting, const Joint *joint)
     }
 }
 
+// Where the x axis of a bushing points in the world at time zero.
+static double bushing_heading(const Linkage *linkage, const Bushing *bushing)
+{
+    const bool is_held = bushing->body_a != LINKAGE_GROUND && linkage->body_count > 0;
+    return bushing->direction + (is_held ? linkage->bodies[bushing->body_a].start.angle : 0.0);
+}
+
 // The direction of a joint's line in the world at time zero.
 static double heading(const Linkage *linkage, const Joint *joint)
 {
@@ -184,6 +191,11 @@ static Vec2 anchor_place(const SchemaRow *row, const Scenario *scenario, size_t 
         return start_point(&scenario->linkage, is_first ? spring->body_a : spring->body_b,
                            is_first ? spring->anchor_a : spring->anchor_b);
     }
+    if (row->family == SCHEMA_BUSHING) {
+        const Bushing *bushing = &scenario->linkage.bushings[index];
+        return start_point(&scenario->linkage, is_first ? bushing->body_a : bushing->body_b,
+                           is_first ? bushing->anchor_a : bushing->anchor_b);
+    }
     if (row->family == SCHEMA_LOAD_FAMILY) {
         const Load *load = &scenario->linkage.loads[index];
         return start_point(&scenario->linkage, load->body, load->anchor);
@@ -211,11 +223,17 @@ static void set_between(CasefileSetting *setting, const SchemaRow *row, const Sc
                         size_t index)
 {
     const Linkage *linkage = &scenario->linkage;
-    const bool is_spring = row->family == SCHEMA_SPRING;
-    const Spring *spring = is_spring ? schema_member(scenario, SCHEMA_SPRING, index) : NULL;
-    const Joint *joint = is_spring ? NULL : schema_member(scenario, SCHEMA_JOINT, index);
-    set_words(setting, body_name(linkage, is_spring ? spring->body_a : joint->body_a),
-              body_name(linkage, is_spring ? spring->body_b : joint->body_b));
+    const void *member = schema_member(scenario, row->family, index);
+    const Spring *spring = row->family == SCHEMA_SPRING ? member : NULL;
+    const Bushing *bushing = row->family == SCHEMA_BUSHING ? member : NULL;
+    const Joint *joint = row->family == SCHEMA_JOINT ? member : NULL;
+    const int body_a = spring != NULL    ? spring->body_a
+                       : bushing != NULL ? bushing->body_a
+                                         : joint->body_a;
+    const int body_b = spring != NULL    ? spring->body_b
+                       : bushing != NULL ? bushing->body_b
+                                         : joint->body_b;
+    set_words(setting, body_name(linkage, body_a), body_name(linkage, body_b));
 }
 
 // What is constant is one number; else it is pairs of what it is over and its value.
@@ -238,6 +256,23 @@ static void set_points(CasefileSetting *setting, size_t count, const double *at,
 static void set_over_time(CasefileSetting *setting, const SchemaRow *row, const TimeTable *table)
 {
     set_points(setting, table->count, table->times, table->values, "s", units_si(row->dimension));
+}
+
+static void set_curve(CasefileSetting *setting, const SchemaRow *row, const ForceCurve *curve)
+{
+    const bool is_torque = row->dimension == DIMENSION_TORQUE;
+    set_points(setting, curve->count, curve->at, curve->values, is_torque ? "rad" : "m",
+               units_si(row->dimension));
+}
+
+// One number where both axes have it.
+static void set_pair(CasefileSetting *setting, Vec2 pair)
+{
+    if (pair.x == pair.y) {
+        set_number(setting, pair.x);
+    } else {
+        set_vector(setting, pair);
+    }
 }
 
 static void set_load(CasefileSetting *setting, const SchemaRow *row, const Linkage *linkage,
@@ -314,7 +349,10 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
         set_vector(setting, (Vec2){joint->stop.slot, 2.0 * joint->stop.radius_a});
         break;
     case SCHEMA_HEADING:
-        set_number(setting, heading(linkage, joint));
+        set_number(setting,
+                   row->family == SCHEMA_BUSHING
+                       ? bushing_heading(linkage, schema_member(scenario, SCHEMA_BUSHING, index))
+                       : heading(linkage, joint));
         break;
     case SCHEMA_PROFILE:
         if (*(const size_t *)field > 0) {
@@ -390,6 +428,12 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     case SCHEMA_BODY_NAME:
         set_words(setting, body_name(linkage, *(const int *)field), NULL);
         break;
+    case SCHEMA_PAIR:
+        set_pair(setting, *(const Vec2 *)field);
+        break;
+    case SCHEMA_CURVE:
+        set_curve(setting, row, field);
+        break;
     case SCHEMA_TORQUE:
         set_over_time(setting, row, field);
         break;
@@ -428,6 +472,8 @@ const char *schema_member_name(const Scenario *scenario, SchemaFamily family, si
         return ((const Spring *)named)->name;
     case SCHEMA_TORSION_SPRING:
         return ((const TorsionSpring *)named)->name;
+    case SCHEMA_BUSHING:
+        return ((const Bushing *)named)->name;
     case SCHEMA_LOAD_FAMILY:
         return ((const Load *)named)->name;
     case SCHEMA_DRIVE:

@@ -1,6 +1,7 @@
 // Stores the values of a case, each if it is in its range.
 #include "casefile/store.h"
 
+#include "casefile/bushings.h"
 #include "casefile/expect.h"
 #include "casefile/fit.h"
 #include "casefile/limits.h"
@@ -379,6 +380,7 @@ static bool store_plain(const Entries *entries, const Entry *entry, Scenario *sc
     target.field = schema_field(entry->row, scenario, entry->index);
     Joint *joint;
     Spring *spring;
+    Bushing *bushing;
     switch (entry->row->type) {
     case SCHEMA_CHOICE:
         return find_word(&target, entry->node, target.field); // an enumeration is an int
@@ -419,12 +421,20 @@ static bool store_plain(const Entries *entries, const Entry *entry, Scenario *sc
             spring = &scenario->linkage.springs[entry->index];
             return store_between(&target, &spring->body_a, &spring->body_b);
         }
+        if (entry->row->family == SCHEMA_BUSHING) {
+            bushing = &scenario->linkage.bushings[entry->index];
+            return store_between(&target, &bushing->body_a, &bushing->body_b);
+        }
         joint = &scenario->linkage.joints[entry->index];
         return store_between(&target, &joint->body_a, &joint->body_b);
     case SCHEMA_BODY_NAME:
         return find_name(&target, entry->node, SCHEMA_BODY, false, target.field);
     case SCHEMA_JOINT_NAME:
         return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
+    case SCHEMA_PAIR:
+        return bushings_store_pair(&target, target.field);
+    case SCHEMA_CURVE:
+        return bushings_store_curve(&target, target.field);
     case SCHEMA_TORQUE:
         return over_time_store(entry, target.field, err);
     case SCHEMA_SPEED:

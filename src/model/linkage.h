@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "base/force_curve.h"
 #include "base/load_table.h"
 #include "base/vec2.h"
 #include "base/vec3.h"
@@ -220,6 +221,29 @@ typedef struct TorsionSpring {
     double damping;   // N m s/rad
 } TorsionSpring;
 
+enum { BUSHING_ROWS = 3 }; // of a bushing: along its x axis, along its y axis, and by angle
+
+// Holds two bodies at a point by springs and dampers in two directions and by angle, as rubber does
+// (model/bushing.h). Its axes turn with body a.
+typedef struct Bushing {
+    char name[LINKAGE_NAME_SIZE];
+    int body_a; // carries its axes; number of a body or LINKAGE_GROUND
+    int body_b;
+    bool is_apart; // whether the case says of each anchor where it is; else they start at one point
+    Vec2 anchor_a; // in body a's frame, m; it is relaxed where both are at one point
+    Vec2 anchor_b;
+    double direction;           // rad, of its x axis in body a's frame
+    double angle;               // rad, where it is relaxed: of body b less that of body a
+    Vec2 stiffness;             // N/m, along its axes
+    Vec2 damping;               // N s/m
+    double torsional_stiffness; // N m/rad
+    double torsional_damping;   // N m s/rad
+    ForceCurve force_x;         // what pulls it back over its deflection, in place of a stiffness
+    ForceCurve force_y;
+    ForceCurve torque;
+    ForceCurveShape interpolation; // of these
+} Bushing;
+
 // Pushes the turned body of a joint, and the other one the other way (linkage_turning), by a torque
 // over time. At a prismatic joint it is a force on body b along the joint's line, at the anchor of
 // body b, and the other way on body a. With the joint's angle phi and its rate,
@@ -269,6 +293,8 @@ typedef struct Linkage {
     Spring *springs;
     size_t torsion_count;
     TorsionSpring *torsions;
+    size_t bushing_count;
+    Bushing *bushings;
     size_t load_count;
     Load *loads;
     Driver driver; // the crank's: angles of the crank are those of its body
@@ -285,6 +311,7 @@ typedef struct LinkageRoom {
     size_t joints;
     size_t springs;
     size_t torsions;
+    size_t bushings;
     size_t loads;
     size_t further;
     size_t profiles;

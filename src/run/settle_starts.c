@@ -3,6 +3,7 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "model/bushing.h"
 #include "model/perturb.h"
 #include "run/pressed.h"
 #include "run/settle_parts.h"
@@ -48,6 +49,9 @@ bool settle_dissipates(const Scenario *scenario)
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         dissipates = dissipates || linkage->torsions[i].damping > 0.0;
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        dissipates = dissipates || bushing_damps(&linkage->bushings[i]);
     }
     return dissipates;
 }
