@@ -54,5 +54,8 @@ const char *tune_world_lacks(const Scenario *scenario)
             lacks = "the program has springs that turn the two sides of a hinge alone";
         }
     }
+    if (linkage->bushing_count > 0 && lacks == NULL) {
+        lacks = "the program has no bushings";
+    }
     return lacks;
 }
