@@ -192,9 +192,8 @@ static bool check_one(const Entries *entries, const Bushing *bushing, size_t ind
                               "torque of bushing '%s'",
                               bushing->name);
     }
-    if (angle != NULL && entries_blame(entries,
-                                       "bushings.*.torsional-stiffness bushings.*.torque",
-                                       index) == NULL) {
+    if (angle != NULL &&
+        entries_blame(entries, "bushings.*.torsional-stiffness bushings.*.torque", index) == NULL) {
         return entries_refuse(angle, err,
                               "bushing '%s' has no stiffness by angle that it could be relaxed "
                               "at\nallowed: with torsional-stiffness or torque",

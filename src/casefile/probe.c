@@ -59,6 +59,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_INTEGER:
         return PROBE_WHOLE;
     case SCHEMA_CHOICE:
+    case SCHEMA_STIFFNESS_FOR:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
         return PROBE_WORD;

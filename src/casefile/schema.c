@@ -123,6 +123,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                           "centred, or [x, y] such as [5 um, 0 um]"},
         [SCHEMA_COORDINATE] = {"an angle, or a length", "an angle such as 0.6 deg, or a length "
                                                         "such as 0.2 mm"},
+        [SCHEMA_STIFFNESS_FOR] = {"a depth at a force", "a depth at a force such as 0.1 mm at 500 N"},
         [SCHEMA_PIVOTS] = {"[joint, joint]",
                            "two joints such as [pinion, wheel], or [guide, pinion] of a rack"},
         [SCHEMA_PROFILE] = {"list of [angle, length]",

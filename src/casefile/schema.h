@@ -20,6 +20,7 @@ typedef enum SchemaType {
     SCHEMA_BACKENDS,   // list of words -> run.backends and run.backend_count
     SCHEMA_TEXT,       // text -> title
     SCHEMA_STIFFNESS,  // N/m^n -> stiffness and exponent of the contact or of a joint
+    SCHEMA_STIFFNESS_FOR, // a depth at a force -> the same
     SCHEMA_SPAN,       // time or turns of the driver -> run.report_from
     SCHEMA_VECTOR,     // [x, y], or `centred` where the row has it as default -> Vec2
     SCHEMA_GRAVITY,    // acceleration along -y, [x, y], or in space [x, y, z] -> Vec3

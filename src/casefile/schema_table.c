@@ -408,6 +408,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      .rivalry = SCHEMA_ELASTICITY, .side = 1, .default_words = "from the law",
      .needs = STIFFNESS, .wants = COMMON_STIFFNESS,
      .doc = "K in F = K d^n, instead of a law; n follows from the unit: N/m^1.5, N/mm^1.5, N/m"},
+    {.path = "contact.stiffness-for", .type = SCHEMA_STIFFNESS_FOR, AT(contact.for_depth),
+     .rivalry = SCHEMA_ELASTICITY, .side = 2, .default_words = "none",
+     .needs = STIFFNESS | VALUED, .wants = COMMON_STIFFNESS,
+     .doc = "instead of law or stiffness: the depth at a force that it is for, 0.1 mm at 500 N; "
+            "with exponent 1.5 behind it K d^1.5"},
     {.path = "contact.damping", .type = SCHEMA_CHOICE, AT(contact.damping),
      .words = OPTIONS_DAMPINGS, .needs = IMPACT, .wants = COMMON_DAMPING,
      .doc = "damping law of the impact model, by its hysteresis factor chi for a restitution e"

@@ -6,6 +6,7 @@
 #include "casefile/schema.h"
 #include "casefile/slider.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,6 +71,28 @@ static void set_turning(CasefileSetting *setting, const Joint *joint, Dimension 
 {
     if (linkage_is_torsional(joint)) {
         text_copy(setting->unit, sizeof setting->unit, units_si(dimension));
+    }
+}
+
+// The depth that a stiffness was given for, and the force there.
+static void set_stiffness_for(CasefileSetting *setting, const SchemaRow *row,
+                              const Scenario *scenario, size_t index)
+{
+    const bool is_of_joint = row->family == SCHEMA_JOINT;
+    const Joint *joint = is_of_joint ? schema_member(scenario, SCHEMA_JOINT, index) : NULL;
+    const bool is_turning = is_of_joint && linkage_is_torsional(joint);
+    const double depth = is_of_joint ? joint->contact.for_depth : scenario->contact.for_depth;
+    const double stiffness = is_of_joint ? joint->contact.stiffness : scenario->contact.stiffness;
+    const double exponent = is_of_joint ? joint->contact.exponent : scenario->contact.exponent;
+    setting->kind = CASEFILE_TEXT;
+    if (depth > 0.0) {
+        const int used = snprintf(setting->text, sizeof setting->text, "%.10g %s at %.10g %s",
+                                  depth, is_turning ? "rad" : "m", stiffness * pow(depth, exponent),
+                                  is_turning ? "N m" : "N");
+        if (exponent != 1.0) {
+            snprintf(setting->text + used, sizeof setting->text - (size_t)used,
+                     " with exponent %.6g", exponent);
+        }
     }
 }
 
@@ -406,6 +429,9 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         break;
     case SCHEMA_STIFFNESS:
         set_own_stiffness(setting, row, scenario, index);
+        break;
+    case SCHEMA_STIFFNESS_FOR:
+        set_stiffness_for(setting, row, scenario, index);
         break;
     case SCHEMA_SPAN:
         set_number(setting, scenario_report_from(scenario));

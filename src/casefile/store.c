@@ -9,6 +9,7 @@
 #include "casefile/over_time.h"
 #include "casefile/profiles.h"
 #include "casefile/slot.h"
+#include "casefile/stiffness_for.h"
 #include "casefile/target.h"
 #include "casefile/teeth.h"
 #include "casefile/tolerance.h"
@@ -399,6 +400,8 @@ static bool store_plain(const Entries *entries, const Entry *entry, Scenario *sc
             return store_number(&target, scenario);
         }
         return limits_store(&target, &scenario->linkage.joints[entry->index]);
+    case SCHEMA_STIFFNESS_FOR:
+        return stiffness_for_store(&target, scenario);
     case SCHEMA_COORDINATE:
     case SCHEMA_DAMPER:
         return limits_store(&target, &scenario->linkage.joints[entry->index]);

@@ -154,6 +154,7 @@ typedef struct Gear {
 typedef struct JointContact {
     double stiffness;     // N/m^exponent; 0: none of its own
     double exponent;      // 1, of that stiffness
+    double for_depth;     // m (rad of an angle): the depth that it was given for; 0: it was not
     bool has_restitution; // whether it has its own
     double restitution;   // 1
     double viscous;       // N s/m: its damping is viscous, with this; 0: none of its own
