@@ -226,6 +226,10 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     if (!store_run_start(entries, scenario, err)) {
         return false;
     }
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const bool is_damped = scenario->linkage.joints[i].contact.gap_damping > 0.0;
+        scenario->linkage.gap_damper_count += is_damped ? 1 : 0;
+    }
     scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
     space_complete(&scenario->linkage);
     return true;

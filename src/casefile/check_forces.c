@@ -26,6 +26,12 @@ static bool check_forces_in_space(const Entries *entries, const Linkage *linkage
         return entries_refuse_group(entries_group(entries, "bushings", 0), err, FORMAT,
                                     "bushings are");
     }
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        if (linkage->joints[i].contact.gap_damping > 0.0) {
+            return entries_refuse(entries_find(entries, "joints.*.gap-damping", i), err, FORMAT,
+                                  "damping in a gap is");
+        }
+    }
     if (linkage->load_count > 0) {
         return entries_refuse_group(entries_group(entries, "loads", 0), err, FORMAT, "loads are");
     }

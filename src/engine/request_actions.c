@@ -21,6 +21,12 @@ static bool has_torque(const Linkage *linkage)
 int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE])
 {
     what[0] = '\0';
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        if (linkage->joints[i].contact.gap_damping > 0.0) {
+            snprintf(what, ENGINE_NEED_SIZE, "damping in a gap ('%s')", linkage->joints[i].name);
+            return 3;
+        }
+    }
     if (linkage->bushing_count > 0) {
         snprintf(what, ENGINE_NEED_SIZE, "bushings ('%s')", linkage->bushings[0].name);
         return 3;
@@ -76,6 +82,20 @@ static json_t *bushing_object(const Bushing *bushing)
     json_object_set_new(object, "force_y", curve_points(&bushing->force_y));
     json_object_set_new(object, "torque", curve_points(&bushing->torque));
     return object;
+}
+
+// The damper in the gap of a pin, the only one whose joint the protocol has words for, is a bushing
+// without stiffness.
+static json_t *gap_object(const Joint *joint)
+{
+    const double damping = joint->contact.gap_damping;
+    Bushing bushing = {.body_a = joint->body_a,
+                       .body_b = joint->body_b,
+                       .anchor_a = joint->anchor_a,
+                       .anchor_b = joint->anchor_b,
+                       .damping = {damping, damping}};
+    snprintf(bushing.name, sizeof bushing.name, "%s", joint->name);
+    return bushing_object(&bushing);
 }
 
 static json_t *load_object(const Linkage *linkage, const Load *load)
@@ -165,13 +185,18 @@ void engine_add_actions(const Scenario *scenario, json_t *request)
     for (size_t i = 0; i < linkage->bushing_count; i++) {
         json_array_append_new(bushings, bushing_object(&linkage->bushings[i]));
     }
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        if (linkage->joints[i].contact.gap_damping > 0.0) {
+            json_array_append_new(bushings, gap_object(&linkage->joints[i]));
+        }
+    }
     for (size_t i = 0; i < linkage->load_count; i++) {
         json_array_append_new(loads, load_object(linkage, &linkage->loads[i]));
     }
     if (has_torque(linkage)) {
         add_torque(scenario, torsions, loads);
     }
-    if (linkage->bushing_count > 0) {
+    if (json_array_size(bushings) > 0) {
         json_object_set_new(request, "bushings", bushings);
     } else {
         json_decref(bushings); // protocol 2 has no word for it

@@ -109,6 +109,7 @@ static void share_out(const Linkage *whole, const size_t *member_of, Component *
         own_joint[i] = (int)linkage->joint_count;
         component->joints[linkage->joint_count] = (int)i;
         linkage->joints[linkage->joint_count++] = joint;
+        linkage->gap_damper_count += joint.contact.gap_damping > 0.0 ? 1 : 0;
         take_drive(whole, (int)i, own_joint[i], linkage);
         if (whole->torque.table.count > 0 && whole->torque.joint == (int)i) {
             linkage->torque = whole->torque;

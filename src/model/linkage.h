@@ -161,6 +161,8 @@ typedef struct JointContact {
     double full_depth;    // m (rad of an angle): and grows up to this depth; 0: none of its own
     double dissipation;   // s/m (s/rad of an angle): its damping is a dissipation, with this; 0:
                           // none of its own
+    double gap_damping;   // N s/m (N m s/rad of an angle), of a damper that acts in the gap, too;
+                          // 0: there is none
     bool has_friction;    // whether it has its own
     double friction;      // 1, Coulomb's coefficient
 } JointContact;
@@ -290,6 +292,7 @@ typedef struct Linkage {
     Body *bodies; // owned, like the arrays below, by whom linkage_create gave them to
     size_t joint_count;
     Joint *joints;
+    size_t gap_damper_count; // how many of the joints have a gap damping
     size_t spring_count;
     Spring *springs;
     size_t torsion_count;

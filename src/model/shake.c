@@ -75,6 +75,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake(&joint->contact.stiffness, seed);
     }
     shake(&joint->contact.viscous, seed);
+    if (joint->contact.gap_damping > 0.0) {
+        shake(&joint->contact.gap_damping, seed);
+    }
     if (joint->contact.full_depth > 0.0) {
         shake(&joint->contact.full_depth, seed);
     }

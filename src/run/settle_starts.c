@@ -40,7 +40,8 @@ bool settle_dissipates(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     const Torque *torque = &linkage->torque;
-    bool dissipates = torque->table.count > 0 && torque->slope > 0.0;
+    bool dissipates =
+        (torque->table.count > 0 && torque->slope > 0.0) || linkage->gap_damper_count > 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         dissipates = dissipates || contact_dissipates(scenario, &linkage->joints[i]);
     }

@@ -57,5 +57,8 @@ const char *tune_world_lacks(const Scenario *scenario)
     if (linkage->bushing_count > 0 && lacks == NULL) {
         lacks = "the program has no bushings";
     }
+    if (linkage->gap_damper_count > 0 && lacks == NULL) {
+        lacks = "the program has no damping within a gap";
+    }
     return lacks;
 }

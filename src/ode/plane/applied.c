@@ -96,6 +96,39 @@ static void make_bushing(const Applied *applied, dWorldID world, const Bushing *
     }
 }
 
+// How many rows of dampers in gaps there is room for.
+static size_t gap_room(const Linkage *linkage)
+{
+    return linkage->gap_damper_count > 0 ? GAP_DAMPING_ROWS * linkage->joint_count : 0;
+}
+
+// The body that comes first in the rows of a joint, which is not the ground: 0 that of body a.
+static int first_side(const Joint *joint)
+{
+    return joint->body_a == LINKAGE_GROUND ? 1 : 0;
+}
+
+// The rows of a joint's damper in its gap. Those of forces are placed before every step.
+static void make_gap(const Applied *applied, dWorldID world, const Motion *motions, int number,
+                     AppliedRow *rows)
+{
+    const Joint *joint = &applied->linkage->joints[number];
+    const int side = first_side(joint);
+    const int first = linkage_end(joint, side).body;
+    const int second = linkage_end(joint, 1 - side).body;
+    GapDampingRow drags[GAP_DAMPING_ROWS];
+    const size_t count = gap_damping_rows(applied->linkage, motions, number, drags);
+    for (size_t i = 0; i < count; i++) {
+        if (drags[i].is_turn) {
+            make_angle(applied, world, first, second, &rows[i]);
+            continue;
+        }
+        rows[i].row = dJointCreateDBall(world, 0);
+        dJointAttach(rows[i].row, id_of(applied, first), id_of(applied, second));
+        dJointSetFeedback(rows[i].row, &rows[i].feedback);
+    }
+}
+
 void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
                   const Motion *motions, Applied *applied)
 {
@@ -107,6 +140,8 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
     applied->torsions = zeroed(linkage->torsion_count, sizeof *applied->torsions);
     applied->bushings = zeroed(BUSHING_ROWS * linkage->bushing_count, sizeof *applied->bushings);
     applied->poses = zeroed(linkage->bushing_count, sizeof *applied->poses);
+    applied->gaps = zeroed(gap_room(linkage), sizeof *applied->gaps);
+    applied->drags = zeroed(gap_room(linkage), sizeof *applied->drags);
     applied->lines = zeroed(linkage->spring_count, sizeof *applied->lines);
     applied->motions = zeroed(linkage->body_count, sizeof *applied->motions);
     applied->seen = zeroed(linkage->body_count, sizeof *applied->seen);
@@ -130,6 +165,9 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
     for (size_t i = 0; i < linkage->bushing_count; i++) {
         make_bushing(applied, world, &linkage->bushings[i], &applied->bushings[BUSHING_ROWS * i]);
     }
+    for (size_t i = 0; i < gap_room(linkage) / GAP_DAMPING_ROWS; i++) {
+        make_gap(applied, world, motions, (int)i, &applied->gaps[GAP_DAMPING_ROWS * i]);
+    }
     if (linkage->torque.slope > 0.0) {
         make_turn(applied, world, linkage->torque.joint, &applied->motor);
     }
@@ -142,6 +180,8 @@ void applied_finish(Applied *applied)
     free(applied->torsions);
     free(applied->bushings);
     free(applied->poses);
+    free(applied->gaps);
+    free(applied->drags);
     free(applied->lines);
     free(applied->motions);
     free(applied->seen);
@@ -160,6 +200,7 @@ void applied_carry(Applied *applied, Carry *carry)
     CARRY_ARRAY(carry, applied->loads, count);
     CARRY_ARRAY(carry, applied->lines, applied->linkage->spring_count);
     CARRY_ARRAY(carry, applied->poses, applied->linkage->bushing_count);
+    CARRY_ARRAY(carry, applied->drags, gap_room(applied->linkage));
     CARRY_ARRAY(carry, applied->pushed, applied->linkage->load_count);
     CARRY_ARRAY(carry, applied->rates, applied->linkage->load_count);
     CARRY(carry, applied->torque);
@@ -209,8 +250,8 @@ static void set_turn(const Applied *applied, dJointID row, int joint, double sof
     }
 }
 
-// Puts the row of a bushing along one of its axes where it stands: its line is as long as its wanted
-// rate needs for little rounding, and one that no direction is lost on.
+// Puts the row of a bushing along one of its axes where it stands: its line is as long as its
+// wanted rate needs for little rounding, and one that no direction is lost on.
 static void set_axis(const AppliedRow *row, const Bushing *bushing, const BushingPose *pose,
                      size_t axis, double softness, double wanted, double step_s)
 {
@@ -250,6 +291,44 @@ static void set_bushings(Applied *applied, double step_s, double share, bool is_
     }
 }
 
+// Puts the row of a force in a gap on its line where it stands, and that of a torque to its rate.
+static void set_gap(const Joint *joint, const Motion *motions, const AppliedRow *row,
+                    const GapDampingRow *drag, double share, bool is_mean, double step_s)
+{
+    const int side = first_side(joint);
+    const double softness = 1.0 / (share * drag->damping);
+    const double wanted = is_mean ? -drag->rate : 0.0;
+    if (drag->is_turn) {
+        dJointSetAMotorParam(row->row, dParamCFM, softness);
+        dJointSetAMotorParam(row->row, dParamVel, drag->row.turn[side] * wanted);
+        return;
+    }
+    // the line goes from body a to body b, so that its length has the row's rate
+    const double length = fmax(LINE_BUSHING, fabs(wanted));
+    const Vec2 along = {drag->row.x[1], drag->row.y[1]};
+    const Vec2 b = gap_damping_point(drag, motions, 1, joint->body_b);
+    const Vec2 a = vec2_sub(b, vec2_scale(length, along));
+    const Vec2 first = side == 0 ? a : b;
+    const Vec2 second = side == 0 ? b : a;
+    dJointSetDBallAnchor1(row->row, first.x, first.y, 0.0);
+    dJointSetDBallAnchor2(row->row, second.x, second.y, 0.0);
+    const SpringLine line = {.distance = length};
+    set_line(row, &line, softness, wanted, step_s);
+}
+
+static void set_gaps(Applied *applied, double step_s, double share, bool is_mean)
+{
+    const Linkage *linkage = applied->linkage;
+    for (size_t i = 0; i < gap_room(linkage); i++) {
+        AppliedRow *row = &applied->gaps[i];
+        row->late = 0.0;
+        if (row->row != NULL) {
+            set_gap(&linkage->joints[i / GAP_DAMPING_ROWS], applied->motions, row,
+                    &applied->drags[i], share, is_mean, step_s);
+        }
+    }
+}
+
 static void set_rows(Applied *applied, double step_s, AppliedRule rule, int direction)
 {
     applied->motor.late = 0.0;
@@ -271,6 +350,7 @@ static void set_rows(Applied *applied, double step_s, AppliedRule rule, int dire
                  is_mean);
     }
     set_bushings(applied, step_s, share, is_mean);
+    set_gaps(applied, step_s, share, is_mean);
     set_turn(applied, applied->motor.row, linkage->torque.joint,
              1.0 / (share * linkage->torque.slope), is_mean);
 }
@@ -315,6 +395,9 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
     for (size_t i = 0; i < linkage->bushing_count; i++) {
         applied->poses[i] = bushing_pose(&linkage->bushings[i], motions);
     }
+    for (size_t i = 0; i < gap_room(linkage) / GAP_DAMPING_ROWS; i++) {
+        gap_damping_rows(linkage, motions, (int)i, &applied->drags[GAP_DAMPING_ROWS * i]);
+    }
     const double from_s = fmin(start_s, end_s);
     const double to_s = fmax(start_s, end_s);
     // positions are those of the middle of the step, or of its start
@@ -352,6 +435,13 @@ void applied_push_late(Applied *applied, const Motion *beyond)
         for (size_t row = 0; row < BUSHING_ROWS; row++) {
             applied->bushings[BUSHING_ROWS * i + row].late =
                 bushing_drag(&linkage->bushings[i], &pose, row);
+        }
+    }
+    for (size_t i = 0; i < gap_room(linkage) / GAP_DAMPING_ROWS; i++) {
+        GapDampingRow drags[GAP_DAMPING_ROWS];
+        const size_t count = gap_damping_rows(linkage, beyond, (int)i, drags);
+        for (size_t k = 0; k < count; k++) {
+            applied->gaps[GAP_DAMPING_ROWS * i + k].late = drags[k].damping * drags[k].rate;
         }
     }
     if (applied->motor.row != NULL) {
@@ -442,6 +532,30 @@ static double take_bushings(Applied *applied, double step_s)
     return work;
 }
 
+// Adds what the rows of dampers in gaps did in the step. Returns the work they took, J.
+static double take_gaps(Applied *applied, double step_s)
+{
+    const Linkage *linkage = applied->linkage;
+    double work = 0.0;
+    for (size_t i = 0; i < gap_room(linkage); i++) {
+        const AppliedRow *row = &applied->gaps[i];
+        const GapDampingRow *drag = &applied->drags[i];
+        const Joint *joint = &linkage->joints[i / GAP_DAMPING_ROWS];
+        if (row->row == NULL) {
+            continue;
+        }
+        const int side = first_side(joint);
+        const dReal *force = row->feedback.f1;
+        const double along = drag->is_turn
+                                 ? row->feedback.t1[2] * drag->row.turn[side]
+                                 : force[0] * drag->row.x[side] + force[1] * drag->row.y[side];
+        const double pull = row->late - along;
+        forces_add_drag(joint, drag, pull, applied->loads);
+        work += step_s * pull * pull / drag->damping;
+    }
+    return work;
+}
+
 AppliedWork applied_book(Applied *applied, double step_s)
 {
     const Linkage *linkage = applied->linkage;
@@ -457,7 +571,8 @@ AppliedWork applied_book(Applied *applied, double step_s)
     for (size_t i = 0; i < linkage->load_count; i++) {
         load_add(linkage, &linkage->loads[i], applied->pushed[i], applied->motions, applied->loads);
     }
-    work.damping = take_dampers(applied, step_s) + take_bushings(applied, step_s);
+    work.damping =
+        take_dampers(applied, step_s) + take_bushings(applied, step_s) + take_gaps(applied, step_s);
     work.slope =
         -take_turn(applied, &applied->motor, linkage->torque.joint, linkage->torque.slope, step_s);
     if (linkage->torque.table.count > 0 || linkage->load_count > 0) {

@@ -27,6 +27,8 @@ typedef struct Applied {
     AppliedRow *torsions;  // of the torsion springs
     AppliedRow *bushings;  // of the bushings, BUSHING_ROWS of each
     BushingPose *poses;    // of these, at the positions of the step
+    AppliedRow *gaps;      // of dampers in gaps, GAP_DAMPING_ROWS of each joint
+    GapDampingRow *drags;  // likewise, at the positions of the step
     SpringLine *lines;     // at the positions of the step
     Motion *motions;       // likewise, with the speeds of its start
     Motion *seen;          // as the engine holds them
