@@ -54,7 +54,8 @@ static const struct {
      "bodies: {lever: {mass: 1 kg, inertia: 0.01 kg m^2, at: [10 mm, 0 mm], velocity: [0 m/s, -0.1 "
      "m/s], spin: -10 rad/s}}\n"
      "joints: {hinge: {between: [ground, lever], at: [0 mm, 0 mm], low: -1 deg, high: 1 deg,\n"
-     "                 stiffness: 1e4 N m/rad, viscous-coefficient: 1 N m s/rad}}\n"
+     "                 stiffness: 1e4 N m/rad, viscous-coefficient: 1 N m s/rad,\n"
+     "                 gap-damping: 0.1 N m s/rad}}\n"
      "run: {duration: 10 ms, samples: 50, step: 20 us}\n"},
     {"gears", "bodies:\n"
               "  pinion: {mass: 0.2 kg, inertia: 40 kg mm^2, at: [0 mm, 0 mm], spin: 30 rad/s}\n"

@@ -666,6 +666,10 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
         write_eye(&joint->clearance, text);
     }
     run_text_write_damping(&own, is_built ? &law : NULL, is_turning, text);
+    if (joint->contact.gap_damping > 0.0) {
+        text_append(text, ", in the gap %.4g %s", joint->contact.gap_damping,
+                    is_turning ? "N m s/rad" : "N s/m");
+    }
 }
 
 static void write_penalty(const Scenario *scenario, const Joint *joint, Text *text)
