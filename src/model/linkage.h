@@ -155,7 +155,6 @@ typedef struct JointContact {
     double stiffness;     // N/m^exponent; 0: none of its own
     double exponent;      // 1, of that stiffness
     double for_depth;     // m (rad of an angle): the depth that it was given for; 0: it was not
-    bool has_restitution; // whether it has its own
     double restitution;   // 1
     double viscous;       // N s/m: its damping is viscous, with this; 0: none of its own
     double full_depth;    // m (rad of an angle): and grows up to this depth; 0: none of its own
@@ -163,8 +162,9 @@ typedef struct JointContact {
                           // none of its own
     double gap_damping;   // N s/m (N m s/rad of an angle), of a damper that acts in the gap, too;
                           // 0: there is none
-    bool has_friction;    // whether it has its own
     double friction;      // 1, Coulomb's coefficient
+    bool has_restitution; // whether it has its own
+    bool has_friction;    // likewise
 } JointContact;
 
 enum { JOINT_PLACES = 4 }; // at which a joint with play can touch, at most
@@ -182,10 +182,10 @@ typedef struct Joint {
     JointKind kind;
     int body_a;        // carries the hole; number of a body or LINKAGE_GROUND
     int body_b;        // carries the pin
-    Vec2 anchor_a;     // hole centre in body a's frame, m
-    Vec2 anchor_b;     // pin centre in body b's frame, m
     bool is_apart;     // whether the case says of each anchor where it is, of a stop or of a pin
                        // that stands apart from its hole's centre; else they start at one point
+    Vec2 anchor_a;     // hole centre in body a's frame, m
+    Vec2 anchor_b;     // pin centre in body b's frame, m
     double direction;  // rad, in body a's frame: of the line or the guides; of a stop's normal
     double held_angle; // rad: angle of body b less that of body a where what slides is not tilted
     // sizes of what touches in it (joint_touches)
