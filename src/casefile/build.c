@@ -170,8 +170,8 @@ static double angle_of(const Motion *motions, int body)
     return body == LINKAGE_GROUND ? 0.0 : motions[body].angle;
 }
 
-// The ends of springs and bushings, and where forces act on bodies; a force whose place the case does not give
-// acts at the centre of mass.
+// The ends of springs and bushings, and where forces act on bodies; a force whose place the case
+// does not give acts at the centre of mass.
 static void set_force_anchors(const Entries *entries, Linkage *linkage, const Motion *motions)
 {
     for (size_t i = 0; i < linkage->spring_count; i++) {

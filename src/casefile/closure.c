@@ -321,10 +321,11 @@ static bool check_bodies(const Entries *entries, const Linkage *linkage, const B
     for (size_t i = 0; i < linkage->body_count; i++) {
         if (ends->firsts[i] == ends->firsts[i + 1] && !is_bushed(linkage, i)) {
             const EntryGroup *group = entries_group(entries, "bodies.*", i);
-            return entries_refuse_group(group, err,
-                                        "the body '%s' has no joint: nothing holds it\nallowed: a "
-                                        "joint or bushing between it and the ground or another body",
-                                        linkage->bodies[i].name);
+            return entries_refuse_group(
+                group, err,
+                "the body '%s' has no joint: nothing holds it\nallowed: a "
+                "joint or bushing between it and the ground or another body",
+                linkage->bodies[i].name);
         }
     }
     return true;

@@ -48,7 +48,8 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
 static bool is_of_play(const SchemaRow *row)
 {
     return row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_STIFFNESS_FOR ||
-           row->type == SCHEMA_DAMPER || row->type == SCHEMA_START || strcmp(row->path, "joints.*.restitution") == 0;
+           row->type == SCHEMA_DAMPER || row->type == SCHEMA_START ||
+           strcmp(row->path, "joints.*.restitution") == 0;
 }
 
 // Refuses a key of another kind with those that the joint may have.

@@ -103,10 +103,10 @@ static void describe_curve(const SchemaRow *row, bool with_example, Text *text)
 {
     const bool is_torque = row->dimension == DIMENSION_TORQUE;
     text_append(text, "%s",
-                !with_example ? (is_torque ? "a list of [angle, torque]"
-                                           : "a list of [length, force]")
-                : is_torque   ? "points in order such as [[-5 deg, -2 N m], [5 deg, 2 N m]]"
-                              : "points in order such as [[-1 mm, -50 N], [1 mm, 50 N]]");
+                !with_example
+                    ? (is_torque ? "a list of [angle, torque]" : "a list of [length, force]")
+                : is_torque ? "points in order such as [[-5 deg, -2 N m], [5 deg, 2 N m]]"
+                            : "points in order such as [[-1 mm, -50 N], [1 mm, 50 N]]");
 }
 
 void schema_describe(const SchemaRow *row, bool with_example, Text *text)
@@ -123,7 +123,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                           "centred, or [x, y] such as [5 um, 0 um]"},
         [SCHEMA_COORDINATE] = {"an angle, or a length", "an angle such as 0.6 deg, or a length "
                                                         "such as 0.2 mm"},
-        [SCHEMA_STIFFNESS_FOR] = {"a depth at a force", "a depth at a force such as 0.1 mm at 500 N"},
+        [SCHEMA_STIFFNESS_FOR] = {"a depth at a force",
+                                  "a depth at a force such as 0.1 mm at 500 N"},
         [SCHEMA_PIVOTS] = {"[joint, joint]",
                            "two joints such as [pinion, wheel], or [guide, pinion] of a rack"},
         [SCHEMA_PROFILE] = {"list of [angle, length]",

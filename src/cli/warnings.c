@@ -139,7 +139,8 @@ static size_t count_freedoms(const Linkage *linkage)
     return freedoms;
 }
 
-// How many of these something else holds, at most: springs, bushings, loads, stops, teeth and limits.
+// How many of these something else holds, at most: springs, bushings, loads, stops, teeth and
+// limits.
 static size_t count_holds(const Linkage *linkage)
 {
     size_t count = linkage->spring_count + linkage->torsion_count + linkage->load_count +

@@ -317,8 +317,8 @@ static bool check_bushing(const Linkage *linkage, const Bushing *bushing, Err *e
         is_good = is_good && bushing_damping(bushing, row) >= 0.0 && curve->count != 1 &&
                   isfinite(force_curve_steepest(curve));
     }
-    return is_good || err_set(err, ERR_CASE, "bushing '%s' has a number that is out of range",
-                              bushing->name);
+    return is_good ||
+           err_set(err, ERR_CASE, "bushing '%s' has a number that is out of range", bushing->name);
 }
 
 static bool check_bushings(const Linkage *linkage, Err *err)
@@ -396,6 +396,6 @@ bool linkage_check(const Linkage *linkage, Err *err)
             return false;
         }
     }
-    return check_springs(linkage, err) && check_bushings(linkage, err) && check_drivers(linkage, err) &&
-           check_torque(linkage, err) && check_loads(linkage, err);
+    return check_springs(linkage, err) && check_bushings(linkage, err) &&
+           check_drivers(linkage, err) && check_torque(linkage, err) && check_loads(linkage, err);
 }

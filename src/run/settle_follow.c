@@ -23,8 +23,8 @@ static bool can_follow(const Scenario *scenario, const Scenario *neighbour)
     const Linkage *other = &neighbour->linkage;
     bool can = neighbour->settled.motion_count > 0 && scenario->run.start == START_SETTLED &&
                !own->is_spatial && !other->is_spatial && own->torsion_count == 0 &&
-               own->bushing_count == 0 &&
-               own->body_count == other->body_count && own->joint_count == other->joint_count;
+               own->bushing_count == 0 && own->body_count == other->body_count &&
+               own->joint_count == other->joint_count;
     for (size_t i = 0; can && i < own->joint_count; i++) {
         can = own->joints[i].kind == other->joints[i].kind &&
               own->joints[i].limits.kind == LIMIT_NONE && !joint_has_teeth(own->joints[i].kind);

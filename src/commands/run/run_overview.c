@@ -483,7 +483,8 @@ static bool write_table(const Overview *overview, const Scenario *scenario, Over
     if (joints + ideals + bushings + bodies == 0) {
         return false;
     }
-    const OverviewTable made = begin_table(overview, has_crank, joints + ideals + bushings > 0, rows.width);
+    const OverviewTable made =
+        begin_table(overview, has_crank, joints + ideals + bushings > 0, rows.width);
     add_rows(&made, overview->joints, joints);
     add_rows(&made, overview->ideal_joints, ideals);
     add_rows(&made, overview->bushings, bushings);
@@ -943,8 +944,7 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_object_set_new(made, "ideal_joints",
                         rows_json(overview.ideal_joints, overview.ideal_count));
     if (overview.bushing_count > 0) {
-        json_object_set_new(made, "bushings",
-                            rows_json(overview.bushings, overview.bushing_count));
+        json_object_set_new(made, "bushings", rows_json(overview.bushings, overview.bushing_count));
     }
     json_object_set_new(made, "bodies", rows_json(overview.bodies, overview.body_count));
     json_t *drives = rows_json(overview.drives, overview.drive_count);

@@ -98,11 +98,11 @@ static inline bool run_overview_has_ideal(const Overview *overview)
 void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *text);
 
 // Of the run that is taken for the truth, or the last that is complete, or of the settled motion
-// where that is more than the run shows: of each joint with play and each bushing its largest force, of each body
-// its largest angular acceleration, of each drive its largest torque, each beside that with ideal
-// joints; how the motion settled and what the damping does to it; how far ODE is off; and what was
-// assumed. The width is that of a style (write/table.h). `is_alone` without the tables of
-// run_text.c below it.
+// where that is more than the run shows: of each joint with play and each bushing its largest
+// force, of each body its largest angular acceleration, of each drive its largest torque, each
+// beside that with ideal joints; how the motion settled and what the damping does to it; how far
+// ODE is off; and what was assumed. The width is that of a style (write/table.h). `is_alone`
+// without the tables of run_text.c below it.
 void run_overview_write(const RunReport *report, size_t width, bool is_alone, Text *text);
 
 // What the first screen begins with, as soon as there is a reference, of a report of it alone:

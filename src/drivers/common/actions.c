@@ -81,8 +81,8 @@ static DriverMotion motion_of(const DriverMotion *motions, int body)
 static double pull_of(const DriverBushing *bushing, size_t row, double deflection, double rate)
 {
     const ForceCurve *curve = &bushing->curves[row];
-    const double pull = curve->count > 0 ? force_curve_at(curve, deflection)
-                                         : bushing->stiffness[row] * deflection;
+    const double pull =
+        curve->count > 0 ? force_curve_at(curve, deflection) : bushing->stiffness[row] * deflection;
     return pull + bushing->damping[row] * rate;
 }
 
@@ -94,15 +94,14 @@ static void add_bushing(const DriverBushing *bushing, const DriverMotion *motion
     const DriverMotion second = motion_of(motions, bodies[1]);
     const Vec2 b = driver_point(motions, bodies[1], bushing->anchors[1]);
     const Vec2 apart = vec2_sub(b, driver_point(motions, bodies[0], bushing->anchors[0]));
-    const Vec2 moving =
-        vec2_sub(driver_point_velocity(motions, bodies[1], bushing->anchors[1]),
-                 driver_point_velocity(motions, bodies[0], bushing->anchors[0]));
+    const Vec2 moving = vec2_sub(driver_point_velocity(motions, bodies[1], bushing->anchors[1]),
+                                 driver_point_velocity(motions, bodies[0], bushing->anchors[0]));
     const Vec2 against = vec2_sub(moving, vec2_scale(first.omega, vec2_perp(apart)));
     const Vec2 x = vec2_rotate(first.angle + bushing->direction, (Vec2){1.0, 0.0});
     const Vec2 axes[2] = {x, vec2_perp(x)};
     for (size_t row = 0; row < 2; row++) {
-        const double pull = pull_of(bushing, row, vec2_dot(axes[row], apart),
-                                    vec2_dot(axes[row], against));
+        const double pull =
+            pull_of(bushing, row, vec2_dot(axes[row], apart), vec2_dot(axes[row], against));
         const Vec2 force = vec2_scale(pull, axes[row]);
         add_at(motions, bodies[0], b, force, actions);
         add_at(motions, bodies[1], b, vec2_scale(-1.0, force), actions);

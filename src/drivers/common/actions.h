@@ -13,8 +13,8 @@ typedef struct DriverAction {
 // Whether there are springs, bushings or loads.
 bool actions_any(const DriverCase *of);
 
-// Writes what springs, bushings and loads do with the bodies so; of loads over time the mean between two
-// times, s, which may be equal.
+// Writes what springs, bushings and loads do with the bodies so; of loads over time the mean
+// between two times, s, which may be equal.
 void actions_find(const DriverCase *of, const DriverMotion *motions, double from_s, double to_s,
                   DriverAction *actions);
 
