@@ -174,18 +174,10 @@ static bool acts(const Bushing *bushing)
     return is_any;
 }
 
-// Whether both axes do the same, so that it does not matter where they point.
-static bool is_isotropic(const Bushing *bushing)
-{
-    return bushing->force_x.count + bushing->force_y.count == 0 &&
-           bushing->stiffness.x == bushing->stiffness.y && bushing->damping.x == bushing->damping.y;
-}
-
 static bool check_one(const Entries *entries, const Bushing *bushing, size_t index, Err *err)
 {
     const Entry *interpolation = entries_find(entries, "bushings.*.interpolation", index);
     const Entry *angle = entries_find(entries, "bushings.*.angle", index);
-    const Entry *direction = entries_find(entries, "bushings.*.direction", index);
     if (interpolation != NULL && entries_blame(entries, BUSHINGS_CURVES, index) == NULL) {
         return entries_refuse(interpolation, err,
                               "only points are interpolated\nallowed: with force-x, force-y or "
@@ -197,12 +189,6 @@ static bool check_one(const Entries *entries, const Bushing *bushing, size_t ind
         return entries_refuse(angle, err,
                               "bushing '%s' has no stiffness by angle that it could be relaxed "
                               "at\nallowed: with torsional-stiffness or torque",
-                              bushing->name);
-    }
-    if (direction != NULL && is_isotropic(bushing)) {
-        return entries_refuse(direction, err,
-                              "bushing '%s' is alike in all directions\nallowed: with two "
-                              "stiffnesses [x, y], two dampings, or points",
                               bushing->name);
     }
     return acts(bushing) ||

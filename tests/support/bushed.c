@@ -148,10 +148,8 @@ static size_t put_mount(const BushedMount *mount, size_t number, char *text, siz
                                      : "-b",
                          mount->at[side][0], mount->at[side][1]);
     }
-    if (mount->direction != 0.0) {
-        used += snprintf(text + used, size - (size_t)used, "    direction: %.17g rad\n",
-                         mount->direction);
-    }
+    used +=
+        snprintf(text + used, size - (size_t)used, "    direction: %.17g rad\n", mount->direction);
     used += snprintf(text + used, size - (size_t)used, "    damping: [%.17g N s/m, %.17g N s/m]\n",
                      mount->damping[0], mount->damping[1]);
     used += snprintf(text + used, size - (size_t)used, "    torsional-damping: %.17g N m s/rad\n",

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/err.h"
 #include "base/zeroed.h"
+#include "commands/tune/tune_bushings.h"
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_world.h"
 #include "contact/damping.h"
@@ -29,9 +30,10 @@
 typedef struct LibraryWorld {
     const Scenario *scenario;
     dWorldID world;
-    dBodyID *bodies;   // owned; by body
-    dJointID *joints;  // owned; by joint, NULL where it is none of ODE's
-    dJointID *dampers; // owned; by spring, NULL where it has none
+    dBodyID *bodies;       // owned; by body
+    dJointID *joints;      // owned; by joint, NULL where it is none of ODE's
+    dJointID *dampers;     // owned; by spring, NULL where it has none
+    TuneBushing *bushings; // owned
     JpWorld *play;
     size_t steps;
 } LibraryWorld;
@@ -138,6 +140,12 @@ static void make_motors(LibraryWorld *world, const Motion *motions)
             make_damper(world, i, motions);
         }
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const Bushing *bushing = &linkage->bushings[i];
+        world->bushings[i] =
+            tune_bushing_make(world->world, bushing, tune_program_body_of(world, bushing->body_a),
+                              tune_program_body_of(world, bushing->body_b));
+    }
 }
 
 // A point of a body, NULL being the world, and its velocity.
@@ -192,6 +200,10 @@ static void tune_program_push(dWorldID pushed, void *data)
     const Linkage *linkage = &world->scenario->linkage;
     for (size_t i = 0; i < linkage->spring_count; i++) {
         pull(world, i);
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        tune_bushing_push(linkage, &linkage->bushings[i], &world->bushings[i],
+                          world->scenario->run.step);
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
@@ -383,6 +395,7 @@ static bool library_world_open(const Scenario *scenario, LibraryWorld *world, Er
         .bodies = zeroed(linkage->body_count, sizeof(dBodyID)),
         .joints = zeroed(linkage->joint_count, sizeof(dJointID)),
         .dampers = zeroed(linkage->spring_count, sizeof(dJointID)),
+        .bushings = zeroed(linkage->bushing_count, sizeof(TuneBushing)),
     };
     dWorldSetGravity(world->world, 0.0 + scenario->gravity.x, 0.0 + scenario->gravity.y, 0);
     dWorldSetERP(world->world,
@@ -447,6 +460,7 @@ static void library_world_close(LibraryWorld *world)
     free(world->bodies);
     free(world->joints);
     free(world->dampers);
+    free(world->bushings);
     *world = (LibraryWorld){.scenario = NULL};
 }
 

@@ -6,6 +6,7 @@
 #include "commands/tune/tune_world.h"
 #include "base/shell.h"
 #include "base/zeroed.h"
+#include "commands/tune/tune_bushings.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "model/coordinate.h"
@@ -107,7 +108,7 @@ static void write_unique(const Linkage *linkage, Named named, int number, Text *
     }
 }
 
-static void tune_world_body(const Linkage *linkage, int body, Text *text)
+void tune_world_body(const Linkage *linkage, int body, Text *text)
 {
     if (body == LINKAGE_GROUND) {
         text_append(text, "NULL");
@@ -420,7 +421,8 @@ bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring)
 
 bool tune_world_pushes(const Linkage *linkage)
 {
-    bool is_any = linkage->spring_count > 0 || linkage->torque.table.count > 0;
+    bool is_any =
+        linkage->spring_count > 0 || linkage->bushing_count > 0 || linkage->torque.table.count > 0;
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
         is_any = is_any || (tune_world_has_effect(linkage, spring) && spring->stiffness > 0.0);
@@ -569,11 +571,13 @@ static void tune_world_push(const Linkage *linkage, Text *text)
             text_append(text, "\nstatic dJointID damper_%zu;\n", i);
         }
     }
+    tune_bushings_write_functions(linkage, text);
     if (tune_world_pushes(linkage)) {
         text_append(text, "\n// where the step evaluates forces\n"
                           "static void push(dWorldID pushed, void *data)\n{\n"
                           "    (void)pushed;\n    (void)data;\n");
         tune_world_write_springs(linkage, text);
+        tune_bushings_write_pushing(linkage, text);
         write_torsions(linkage, text);
         tune_world_write_torque(linkage, text);
         text_append(text, "}\n");
@@ -640,6 +644,7 @@ static void tune_world_motors(const Linkage *linkage, Text *text)
             write_damper(linkage, i, text);
         }
     }
+    tune_bushings_write_making(linkage, text);
 }
 
 // Appends what is set before each step.

@@ -51,6 +51,9 @@ bool tune_world_is_ideal(const Linkage *linkage, int joint);
 bool tune_world_is_led(const Linkage *linkage, int body);
 Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local);
 
+// Appends the name of a body in the program; NULL for the ground.
+void tune_world_body(const Linkage *linkage, int body, Text *text);
+
 // What drives and pushes the bodies of a case as lines of a C program against libjointplay.
 
 // Whether a spring at a joint moves anything: not where a drive says how the joint turns.
@@ -59,5 +62,5 @@ bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring);
 // The angle, rad, at which a hinge of ODE's, which counts from where it starts, is at 0.
 double tune_world_angle_at_start(const Linkage *linkage, int joint);
 
-// Whether anything pushes where a step evaluates forces: springs, or a torque over time.
+// Whether anything pushes where a step evaluates forces: springs, bushings, a torque over time.
 bool tune_world_pushes(const Linkage *linkage);

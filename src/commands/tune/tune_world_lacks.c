@@ -1,5 +1,5 @@
 // Says what a program against libjointplay has no words for, of a mechanism and of a setting.
-#include "commands/tune/tune_world.h"
+#include "commands/tune/tune_bushings.h"
 
 #include "contact/law.h"
 
@@ -54,8 +54,8 @@ const char *tune_world_lacks(const Scenario *scenario)
             lacks = "the program has springs that turn the two sides of a hinge alone";
         }
     }
-    if (linkage->bushing_count > 0 && lacks == NULL) {
-        lacks = "the program has no bushings";
+    if (lacks == NULL) {
+        lacks = tune_bushings_lack(linkage);
     }
     if (linkage->gap_damper_count > 0 && lacks == NULL) {
         lacks = "the program has no damping within a gap";
