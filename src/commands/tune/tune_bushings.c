@@ -7,6 +7,7 @@
 // after the step. The program and tune_bushing_push do the same in the same order.
 #include "commands/tune/tune_bushings.h"
 
+#include "commands/tune/tune_bodies.h"
 #include "model/bushing.h"
 #include "write/number.h"
 
@@ -116,8 +117,8 @@ static void write_curve(size_t number, size_t row, const ForceCurve *curve, Text
 static void write_bushing(const Linkage *linkage, size_t number, Text *text)
 {
     const Bushing *of = &linkage->bushings[number];
-    const Vec2 a = tune_world_local(linkage, of->body_a, of->anchor_a);
-    const Vec2 b = tune_world_local(linkage, of->body_b, of->anchor_b);
+    const Vec2 a = tune_bodies_local(linkage, of->body_a, of->anchor_a);
+    const Vec2 b = tune_bodies_local(linkage, of->body_b, of->anchor_b);
     for (size_t row = 0; row < BUSHING_ROWS; row++) {
         write_curve(number, row, bushing_curve(of, row), text);
     }
@@ -154,9 +155,9 @@ void tune_bushings_write_making(const Linkage *linkage, Text *text)
 {
     for (size_t i = 0; i < linkage->bushing_count; i++) {
         text_append(text, "    make_bushing(&bushing_%zu, ", i);
-        tune_world_body(linkage, linkage->bushings[i].body_a, text);
+        tune_bodies_name(linkage, linkage->bushings[i].body_a, text);
         text_append(text, ", ");
-        tune_world_body(linkage, linkage->bushings[i].body_b, text);
+        tune_bodies_name(linkage, linkage->bushings[i].body_b, text);
         text_append(text, ");\n");
     }
 }
@@ -218,8 +219,8 @@ void tune_bushing_push(const Linkage *linkage, const Bushing *bushing, const Tun
 {
     const Motion motions[2] = {motion_of(made->a), motion_of(made->b)};
     Bushing own = *bushing;
-    own.anchor_a = tune_world_local(linkage, bushing->body_a, bushing->anchor_a);
-    own.anchor_b = tune_world_local(linkage, bushing->body_b, bushing->anchor_b);
+    own.anchor_a = tune_bodies_local(linkage, bushing->body_a, bushing->anchor_a);
+    own.anchor_b = tune_bodies_local(linkage, bushing->body_b, bushing->anchor_b);
     own.body_a = made->a != NULL ? 0 : LINKAGE_GROUND;
     own.body_b = made->b != NULL ? 1 : LINKAGE_GROUND;
     BushingPose pose = bushing_pose(&own, motions);

@@ -1,7 +1,8 @@
 // Bushings in the programs against libjointplay that tune writes, and in the world it measures.
 #pragma once
 
-#include "commands/tune/tune_world.h"
+#include "base/text.h"
+#include "model/linkage.h"
 
 #include <jointplay/jointplay.h>
 

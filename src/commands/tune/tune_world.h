@@ -45,15 +45,6 @@ bool tune_world_write(const TuneCode *code, Text *text, Err *err);
 // Whether a joint is one of ODE's in the program.
 bool tune_world_is_ideal(const Linkage *linkage, int joint);
 
-// Whether a body is driven at constant speed: it is one of ODE's without dynamics, whose origin is
-// the pivot about which it turns, so that it stays exactly on its path. And a point of a body where
-// its origin is.
-bool tune_world_is_led(const Linkage *linkage, int body);
-Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local);
-
-// Appends the name of a body in the program; NULL for the ground.
-void tune_world_body(const Linkage *linkage, int body, Text *text);
-
 // What drives and pushes the bodies of a case as lines of a C program against libjointplay.
 
 // Whether a spring at a joint moves anything: not where a drive says how the joint turns.

@@ -1,6 +1,7 @@
 // Says what a program against libjointplay has no words for, of a mechanism and of a setting.
-#include "commands/tune/tune_bushings.h"
+#include "commands/tune/tune_world.h"
 
+#include "commands/tune/tune_bushings.h"
 #include "contact/law.h"
 
 static const char *lacks_setting(const Scenario *scenario)
