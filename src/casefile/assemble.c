@@ -4,6 +4,7 @@
 #include "casefile/assemble.h"
 
 #include "casefile/build.h"
+#include "casefile/bushings.h"
 #include "casefile/cam.h"
 #include "casefile/check.h"
 #include "casefile/closure.h"
@@ -47,6 +48,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         .joints = names[SCHEMA_JOINT].count,
         .springs = names[SCHEMA_SPRING].count,
         .torsions = names[SCHEMA_TORSION_SPRING].count,
+        .bushings = names[SCHEMA_BUSHING].count,
         .loads = names[SCHEMA_LOAD_FAMILY].count,
         .further = names[SCHEMA_DRIVE].count,
         .profiles = profiles_count(entries),
@@ -79,6 +81,7 @@ static void store_presence(const Entries *entries, Scenario *scenario)
         text_copy(linkage->torsions[i].name, LINKAGE_NAME_SIZE,
                   names[SCHEMA_TORSION_SPRING].names[i]);
     }
+    bushings_prepare(entries, linkage);
     loads_prepare(entries, linkage);
     drives_prepare(entries, linkage);
     const bool has_torque =
@@ -238,6 +241,10 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     store_partners(entries, scenario);
     if (!store_run_start(entries, scenario, err)) {
         return false;
+    }
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const bool is_damped = scenario->linkage.joints[i].contact.gap_damping > 0.0;
+        scenario->linkage.gap_damper_count += is_damped ? 1 : 0;
     }
     scenario->linkage.is_spatial = scenario->space == SCENARIO_SPATIAL;
     space_complete(&scenario->linkage);

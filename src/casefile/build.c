@@ -7,6 +7,7 @@
 #include "casefile/build.h"
 
 #include "base/zeroed.h"
+#include "casefile/bushings.h"
 #include "casefile/drives.h"
 #include "casefile/keys.h"
 #include "casefile/limits.h"
@@ -169,8 +170,8 @@ static double angle_of(const Motion *motions, int body)
     return body == LINKAGE_GROUND ? 0.0 : motions[body].angle;
 }
 
-// The ends of springs, and where forces act on bodies; a force whose place the case does not give
-// acts at the centre of mass.
+// The ends of springs and bushings, and where forces act on bodies; a force whose place the case
+// does not give acts at the centre of mass.
 static void set_force_anchors(const Entries *entries, Linkage *linkage, const Motion *motions)
 {
     for (size_t i = 0; i < linkage->spring_count; i++) {
@@ -178,6 +179,7 @@ static void set_force_anchors(const Entries *entries, Linkage *linkage, const Mo
         spring->anchor_a = to_body(motions, spring->body_a, spring->anchor_a);
         spring->anchor_b = to_body(motions, spring->body_b, spring->anchor_b);
     }
+    bushings_place(linkage, motions);
     for (size_t i = 0; i < linkage->load_count; i++) {
         Load *load = &linkage->loads[i];
         const Entry *at = entries_find(entries, "loads.*.at", i);
@@ -284,7 +286,7 @@ static bool refuse_positions(const Entries *entries, const Linkage *linkage, Err
                                           "are\nallowed: joints and bodies of one size");
 }
 
-// Springs of which the case does not say where they are relaxed are so at time zero.
+// Springs and bushings of which the case does not say where they are relaxed are so at time zero.
 static void relax_springs(const Entries *entries, Linkage *linkage)
 {
     Motion *motions = zeroed(linkage->body_count, sizeof *motions);
@@ -300,6 +302,7 @@ static void relax_springs(const Entries *entries, Linkage *linkage)
             spring->angle = forces_turn(linkage, spring->joint, motions).angle;
         }
     }
+    bushings_relax(entries, motions, linkage);
     free(motions);
 }
 

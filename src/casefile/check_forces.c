@@ -1,5 +1,7 @@
-// Checks that springs, dampers and a torque go with the rest of a case.
+// Checks that springs, bushings, dampers and a torque go with the rest of a case.
 #include "casefile/check_forces.h"
+
+#include "casefile/bushings.h"
 
 #define MOTOR "drive.no-load-speed drive.rotor-inertia"
 #define SOFT  "drive.stiffness drive.damping"
@@ -19,6 +21,16 @@ static bool check_forces_in_space(const Entries *entries, const Linkage *linkage
     }
     if (linkage->torsion_count > 0) {
         return entries_refuse_group(torsions, err, FORMAT, "torsion springs are");
+    }
+    if (linkage->bushing_count > 0) {
+        return entries_refuse_group(entries_group(entries, "bushings", 0), err, FORMAT,
+                                    "bushings are");
+    }
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        if (linkage->joints[i].contact.gap_damping > 0.0) {
+            return entries_refuse(entries_find(entries, "joints.*.gap-damping", i), err, FORMAT,
+                                  "damping in a gap is");
+        }
     }
     if (linkage->load_count > 0) {
         return entries_refuse_group(entries_group(entries, "loads", 0), err, FORMAT, "loads are");
@@ -101,5 +113,6 @@ bool check_forces(const Entries *entries, const Scenario *scenario, Err *err)
     return check_forces_in_space(entries, &scenario->linkage, err) &&
            check_lines(entries, &scenario->linkage, err) &&
            check_turns(entries, &scenario->linkage, err) &&
+           bushings_check(entries, &scenario->linkage, err) &&
            check_motor(entries, &scenario->linkage, err);
 }

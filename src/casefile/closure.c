@@ -304,16 +304,28 @@ static BodyEnds list_ends(const Linkage *linkage)
     return ends;
 }
 
+// Whether a bushing holds a body.
+static bool is_bushed(const Linkage *linkage, size_t body)
+{
+    bool is_held = false;
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const Bushing *bushing = &linkage->bushings[i];
+        is_held = is_held || bushing->body_a == (int)body || bushing->body_b == (int)body;
+    }
+    return is_held;
+}
+
 static bool check_bodies(const Entries *entries, const Linkage *linkage, const BodyEnds *ends,
                          Err *err)
 {
     for (size_t i = 0; i < linkage->body_count; i++) {
-        if (ends->firsts[i] == ends->firsts[i + 1]) {
+        if (ends->firsts[i] == ends->firsts[i + 1] && !is_bushed(linkage, i)) {
             const EntryGroup *group = entries_group(entries, "bodies.*", i);
-            return entries_refuse_group(group, err,
-                                        "the body '%s' has no joint: nothing holds it\nallowed: a "
-                                        "joint between it and the ground or another body",
-                                        linkage->bodies[i].name);
+            return entries_refuse_group(
+                group, err,
+                "the body '%s' has no joint: nothing holds it\nallowed: a "
+                "joint or bushing between it and the ground or another body",
+                linkage->bodies[i].name);
         }
     }
     return true;

@@ -117,6 +117,9 @@ static void describe_default(size_t row_number, Text *text)
                               ? "required without angle, torque, force or stall-torque"
                           : row->rivalry == SCHEMA_STOPPING
                               ? "required of a stop, or discs, or profile"
+                          : row->rivalry == SCHEMA_PLACING && row->family == SCHEMA_BUSHING
+                              ? row->side == SCHEMA_PLACE_OF_BOTH ? "required without at-a and at-b"
+                                                                  : "required without at"
                           : row->side == SCHEMA_PLACE_OF_BOTH
                               ? "required without at-a and at-b, but of a stop"
                           : row->rivalry == SCHEMA_PLACING ? "required of a stop"

@@ -47,8 +47,9 @@ JointKind joint_kind_find(const Entries *entries, size_t joint)
 // Whether a key says how bodies touch, which those of an ideal joint do at its limits alone.
 static bool is_of_play(const SchemaRow *row)
 {
-    return row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_DAMPER ||
-           row->type == SCHEMA_START || strcmp(row->path, "joints.*.restitution") == 0;
+    return row->type == SCHEMA_STIFFNESS || row->type == SCHEMA_STIFFNESS_FOR ||
+           row->type == SCHEMA_DAMPER || row->type == SCHEMA_START ||
+           strcmp(row->path, "joints.*.restitution") == 0;
 }
 
 // Refuses a key of another kind with those that the joint may have.

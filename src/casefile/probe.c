@@ -59,6 +59,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_INTEGER:
         return PROBE_WHOLE;
     case SCHEMA_CHOICE:
+    case SCHEMA_STIFFNESS_FOR:
     case SCHEMA_BODY_NAME:
     case SCHEMA_JOINT_NAME:
         return PROBE_WORD;
@@ -71,6 +72,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_SLOT:
     case SCHEMA_ANCHOR:
     case SCHEMA_BETWEEN:
+    case SCHEMA_CURVE:
     case SCHEMA_EXPECT:
         return PROBE_OTHER;
     default:
@@ -116,10 +118,10 @@ static Scenario *scratch_scenario(const ProbeKey *key)
     *scratch = scenario_default();
     const size_t room = key->row->member + key->index + 1;
     Linkage *linkage = &scratch->linkage;
-    *linkage = linkage_create((LinkageRoom){room, room, room, room, room, room, room});
+    *linkage = linkage_create((LinkageRoom){room, room, room, room, room, room, room, room});
     linkage->body_count = linkage->joint_count = room;
     linkage->spring_count = linkage->torsion_count = linkage->load_count = room;
-    linkage->further_count = room;
+    linkage->further_count = linkage->bushing_count = room;
     scratch->point_count = SCENARIO_POINT_MAX;
     return scratch;
 }

@@ -98,6 +98,17 @@ static void describe_torque(const SchemaRow *row, bool with_example, Text *text)
     }
 }
 
+// A force or torque over a deflection.
+static void describe_curve(const SchemaRow *row, bool with_example, Text *text)
+{
+    const bool is_torque = row->dimension == DIMENSION_TORQUE;
+    text_append(text, "%s",
+                !with_example
+                    ? (is_torque ? "a list of [angle, torque]" : "a list of [length, force]")
+                : is_torque ? "points in order such as [[-5 deg, -2 N m], [5 deg, 2 N m]]"
+                            : "points in order such as [[-1 mm, -50 N], [1 mm, 50 N]]");
+}
+
 void schema_describe(const SchemaRow *row, bool with_example, Text *text)
 {
     // what a page says of a type, and what a message says
@@ -112,6 +123,8 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                           "centred, or [x, y] such as [5 um, 0 um]"},
         [SCHEMA_COORDINATE] = {"an angle, or a length", "an angle such as 0.6 deg, or a length "
                                                         "such as 0.2 mm"},
+        [SCHEMA_STIFFNESS_FOR] = {"a depth at a force",
+                                  "a depth at a force such as 0.1 mm at 500 N"},
         [SCHEMA_PIVOTS] = {"[joint, joint]",
                            "two joints such as [pinion, wheel], or [guide, pinion] of a rack"},
         [SCHEMA_PROFILE] = {"list of [angle, length]",
@@ -142,6 +155,13 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         break;
     case SCHEMA_TORQUE:
         describe_torque(row, with_example, text);
+        break;
+    case SCHEMA_PAIR:
+        describe_quantity(row, with_example, text);
+        text_append(text, with_example ? ", or [x, y]" : ", or two in [x, y]");
+        break;
+    case SCHEMA_CURVE:
+        describe_curve(row, with_example, text);
         break;
     case SCHEMA_LOAD:
         text_append(text,
@@ -254,6 +274,7 @@ size_t schema_member_count(const Scenario *scenario, SchemaFamily family)
                                                 scenario->point_count,
                                                 linkage->spring_count,
                                                 linkage->torsion_count,
+                                                linkage->bushing_count,
                                                 linkage->load_count,
                                                 linkage->further_count};
     return counts[family];
@@ -266,6 +287,7 @@ const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t 
     static const TracedPoint NO_POINT;
     static const Spring NO_SPRING;
     static const TorsionSpring NO_TORSION;
+    static const Bushing NO_BUSHING;
     static const Load NO_LOAD;
     static const Driver NO_DRIVE;
     const Linkage *linkage = &scenario->linkage;
@@ -281,6 +303,8 @@ const void *schema_member(const Scenario *scenario, SchemaFamily family, size_t 
         return is_there ? &linkage->springs[index] : &NO_SPRING;
     case SCHEMA_TORSION_SPRING:
         return is_there ? &linkage->torsions[index] : &NO_TORSION;
+    case SCHEMA_BUSHING:
+        return is_there ? &linkage->bushings[index] : &NO_BUSHING;
     case SCHEMA_LOAD_FAMILY:
         return is_there ? &linkage->loads[index] : &NO_LOAD;
     case SCHEMA_DRIVE:

@@ -12,32 +12,36 @@ enum { SCHEMA_PATH_SIZE = 160, SCHEMA_CHILD_MAX = 64 };
 
 // How a value is written, and what it becomes in the scenario.
 typedef enum SchemaType {
-    SCHEMA_QUANTITY,   // number with a unit (or plain) -> double
-    SCHEMA_DIAMETER,   // length -> double, half of it
-    SCHEMA_TOLERATED,  // length, bare or with a tolerance -> ToleratedLength
-    SCHEMA_INTEGER,    // whole number -> size_t
-    SCHEMA_CHOICE,     // one of the words -> enumeration
-    SCHEMA_BACKENDS,   // list of words -> run.backends and run.backend_count
-    SCHEMA_TEXT,       // text -> title
-    SCHEMA_STIFFNESS,  // N/m^n -> stiffness and exponent of the contact or of a joint
-    SCHEMA_SPAN,       // time or turns of the driver -> run.report_from
-    SCHEMA_VECTOR,     // [x, y], or `centred` where the row has it as default -> Vec2
-    SCHEMA_GRAVITY,    // acceleration along -y, [x, y], or in space [x, y, z] -> Vec3
-    SCHEMA_DIRECTION,  // [x, y, z] without units, of any length -> Vec3 of length 1
-    SCHEMA_START,      // [x, y] of a pin, [distance, tilt] of a block, of a backlash one number,
-                       // or `centred`
-    SCHEMA_COORDINATE, // angle of a hinge, length of a slider or of gears -> double of a Limits
-    SCHEMA_DAMPER,     // damping of a joint's contact -> double
-    SCHEMA_PIVOTS,     // [joint, joint] -> the joints that guide teeth: pivots of a Gear
-    SCHEMA_PROFILE,    // a list of [angle, length] -> size_t, which of the linkage's profiles
-    SCHEMA_TEETH,      // [number, number] -> the teeth of a Gear
-    SCHEMA_DISCS,      // [diameter, diameter] -> the radii of a Stop
-    SCHEMA_SLOT,       // [length, width] -> the slot of a Stop
-    SCHEMA_HEADING,    // angle of the world -> Joint.direction, of body a once it is placed
+    SCHEMA_QUANTITY,      // number with a unit (or plain) -> double
+    SCHEMA_DIAMETER,      // length -> double, half of it
+    SCHEMA_TOLERATED,     // length, bare or with a tolerance -> ToleratedLength
+    SCHEMA_INTEGER,       // whole number -> size_t
+    SCHEMA_CHOICE,        // one of the words -> enumeration
+    SCHEMA_BACKENDS,      // list of words -> run.backends and run.backend_count
+    SCHEMA_TEXT,          // text -> title
+    SCHEMA_STIFFNESS,     // N/m^n -> stiffness and exponent of the contact or of a joint
+    SCHEMA_STIFFNESS_FOR, // a depth at a force -> the same
+    SCHEMA_SPAN,          // time or turns of the driver -> run.report_from
+    SCHEMA_VECTOR,        // [x, y], or `centred` where the row has it as default -> Vec2
+    SCHEMA_GRAVITY,       // acceleration along -y, [x, y], or in space [x, y, z] -> Vec3
+    SCHEMA_DIRECTION,     // [x, y, z] without units, of any length -> Vec3 of length 1
+    SCHEMA_START,         // [x, y] of a pin, [distance, tilt] of a block, of a backlash one number,
+                          // or `centred`
+    SCHEMA_COORDINATE,    // angle of a hinge, length of a slider or of gears -> double of a Limits
+    SCHEMA_DAMPER,        // damping of a joint's contact -> double
+    SCHEMA_PIVOTS,        // [joint, joint] -> the joints that guide teeth: pivots of a Gear
+    SCHEMA_PROFILE,       // a list of [angle, length] -> size_t, which of the linkage's profiles
+    SCHEMA_TEETH,         // [number, number] -> the teeth of a Gear
+    SCHEMA_DISCS,         // [diameter, diameter] -> the radii of a Stop
+    SCHEMA_SLOT,          // [length, width] -> the slot of a Stop
+    SCHEMA_HEADING, // angle of the world -> direction of a joint or bushing, of body a once it is
+                    // placed
     SCHEMA_RADIAL_CLEARANCE, // length -> Clearance: both radii
     SCHEMA_ALONG,            // length from a link's first joint -> double from its centre of mass
     SCHEMA_ANCHOR,           // [x, y] of the world -> an anchor, of a body once it is placed
-    SCHEMA_BETWEEN,          // [body, body] -> body_a and body_b of a joint or spring
+    SCHEMA_BETWEEN,          // [body, body] -> body_a and body_b of a joint, spring or bushing
+    SCHEMA_PAIR,             // one number for both axes, or [x, y] -> Vec2
+    SCHEMA_CURVE,            // list of [length, force] or [angle, torque] -> ForceCurve
     SCHEMA_BODY_NAME,        // name of a body -> int
     SCHEMA_JOINT_NAME,       // name of a joint -> int
     SCHEMA_TORQUE,           // torque, or list of [time, torque] -> TimeTable
@@ -48,8 +52,8 @@ typedef enum SchemaType {
     SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 
-// Keys that come once, or once a body, joint, traced point, spring, load or drive. A `*` in the
-// path stands for the name of that.
+// Keys that come once, or once a body, joint, traced point, spring, bushing, load or drive. A `*`
+// in the path stands for the name of that.
 typedef enum SchemaFamily {
     SCHEMA_SINGLE,
     SCHEMA_BODY,
@@ -57,6 +61,7 @@ typedef enum SchemaFamily {
     SCHEMA_POINT,
     SCHEMA_SPRING,
     SCHEMA_TORSION_SPRING,
+    SCHEMA_BUSHING,
     SCHEMA_LOAD_FAMILY,
     SCHEMA_DRIVE,
     SCHEMA_FAMILY_COUNT,
@@ -96,6 +101,8 @@ typedef enum SchemaRivalry {
     SCHEMA_STOPPING,   // the normal of a line, and a radius, against two discs
     SCHEMA_LIMITING,   // backlash against low and high
     SCHEMA_PLACING,    // one place of a joint against one for each of its bodies
+    SCHEMA_PULLING,    // stiffness of a bushing against points of its forces
+    SCHEMA_TWISTING,   // torsional-stiffness against points of its torque
 } SchemaRivalry;
 
 // The bit of a backend, and those of all that take steps of run.step.

@@ -24,6 +24,8 @@ const SchemaGroup SCHEMA_GROUPS[] = {
     {"springs", "Springs with dampers along the line between two points, in the plane."},
     {"torsion-springs", "Springs with dampers that turn the two bodies of a joint against each "
                         "other, in the plane."},
+    {"bushings", "Rubber bushings and other mounts, in the plane: each holds two bodies at a point by "
+                 "springs and dampers along two axes and by angle, instead of a pin."},
     {"loads", "Forces and torques from outside, in the plane: on a body, or along the coordinate of a "
               "joint, such as a gas force on a piston; constant, or over time, the crank's angle or "
               "the joint's position."},

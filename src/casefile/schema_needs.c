@@ -2,6 +2,7 @@
 #include "casefile/schema_needs.h"
 
 #include "casefile/build.h"
+#include "casefile/bushings.h"
 #include "casefile/drives.h"
 #include "casefile/loads.h"
 #include "contact/damping.h"
@@ -296,6 +297,10 @@ bool schema_applies(const SchemaRow *row, const Scenario *scenario, size_t index
     }
     if (row->family == SCHEMA_DRIVE && is_member &&
         !drives_apply(row, &scenario->linkage.further[index])) {
+        return false;
+    }
+    if (row->family == SCHEMA_BUSHING && is_member &&
+        !bushings_apply(row, &scenario->linkage.bushings[index])) {
         return false;
     }
     if (row->family == SCHEMA_LOAD_FAMILY && is_member &&

@@ -32,6 +32,7 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_POINT] = {"points", "point", SCENARIO_POINT_MAX},
     [SCHEMA_SPRING] = {"springs", "spring", SIZE_MAX},
     [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", SIZE_MAX},
+    [SCHEMA_BUSHING] = {"bushings", "bushing", SIZE_MAX},
     [SCHEMA_LOAD_FAMILY] = {"loads", "load", SIZE_MAX},
     [SCHEMA_DRIVE] = {"drives", "drive", SIZE_MAX},
 };
@@ -115,6 +116,12 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
 #define TORSION(field) \
     .family = SCHEMA_TORSION_SPRING, \
     .holder = SCHEMA_TORSION_SPRING, .offset = offsetof(TorsionSpring, field), .needs = MEMBER
+#define BUSHING(field) \
+    .family = SCHEMA_BUSHING, \
+    .holder = SCHEMA_BUSHING, .offset = offsetof(Bushing, field), .needs = MEMBER
+#define BUSHING_PLACE(field) \
+    .type = SCHEMA_ANCHOR, BUSHING(field), .dimension = DIMENSION_LENGTH, .low = -1e3, \
+    .high = 1e3, .is_required = true, .rivalry = SCHEMA_PLACING
 #define LOAD(field) \
     .family = SCHEMA_LOAD_FAMILY, .holder = SCHEMA_LOAD_FAMILY, \
     .offset = offsetof(Load, field), .needs = MEMBER
@@ -233,6 +240,49 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "torsion-springs.*.damping", TORSION(damping),
      .dimension = DIMENSION_TORSION_DAMPING, .low = 0.0, .high = 1e12,
      .doc = "torque over angular velocity"},
+
+    {.path = "bushings.*.between", .type = SCHEMA_BETWEEN, BUSHING(body_a), .is_required = true,
+     .doc = "[body, body]: two bodies, or a body and ground; its axes turn with the first"},
+    {.path = "bushings.*.at", BUSHING_PLACE(anchor_a), .side = SCHEMA_PLACE_OF_BOTH,
+     .doc = "position [x, y] in the world at time zero, where it is relaxed"},
+    {.path = "bushings.*.at-a", BUSHING_PLACE(anchor_a), .side = 0,
+     .doc = "with at-b instead of at, of one that is deflected at time zero: position [x, y] then of "
+            "its centre on the first body"},
+    {.path = "bushings.*.at-b", BUSHING_PLACE(anchor_b), .side = 1,
+     .doc = "likewise on the second body; it is relaxed where both are at one point"},
+    {.path = "bushings.*.direction", .type = SCHEMA_HEADING, BUSHING(direction),
+     .dimension = DIMENSION_ANGLE, .low = -FULL_TURN, .high = FULL_TURN,
+     .doc = "of its x axis at time zero, counter-clockwise from the world's"},
+    {.path = "bushings.*.stiffness", .type = SCHEMA_PAIR, BUSHING(stiffness),
+     .dimension = DIMENSION_SPRING, .low = 0.0, .high = 1e12, .rivalry = SCHEMA_PULLING, .side = 0,
+     .doc = "force over deflection along both axes, or along x and y"},
+    {.path = "bushings.*.damping", .type = SCHEMA_PAIR, BUSHING(damping),
+     .dimension = DIMENSION_DAMPING, .low = 0.0, .high = 1e12,
+     .doc = "force over the rate of the deflection, likewise"},
+    {.path = "bushings.*.torsional-stiffness", BUSHING(torsional_stiffness),
+     .dimension = DIMENSION_TORSION_SPRING, .low = 0.0, .high = 1e12, .rivalry = SCHEMA_TWISTING,
+     .side = 0, .doc = "torque over angle"},
+    {.path = "bushings.*.torsional-damping", BUSHING(torsional_damping),
+     .dimension = DIMENSION_TORSION_DAMPING, .low = 0.0, .high = 1e12,
+     .doc = "torque over angular velocity"},
+    {.path = "bushings.*.angle", BUSHING(angle), .dimension = DIMENSION_ANGLE, .low = -1e4,
+     .high = 1e4, .default_words = "that at time zero",
+     .doc = "where it has no torque: angle of the second body less that of the first"},
+    {.path = "bushings.*.interpolation", .type = SCHEMA_CHOICE, BUSHING(interpolation),
+     .words = FORCE_CURVE_SHAPES,
+     .doc = "between points; smooth: a cubic that keeps to their range and has no kinks"},
+    {.path = "bushings.*.force-x", .type = SCHEMA_CURVE, BUSHING(force_x),
+     .dimension = DIMENSION_FORCE, .low = -1e9, .high = 1e9, .rivalry = SCHEMA_PULLING, .side = 1,
+     .default_words = "none",
+     .doc = "instead of stiffness: 2 to 64 points of the force that pulls it back over its "
+            "deflection along x, of the sign of the deflection; beyond them it goes on straight"},
+    {.path = "bushings.*.force-y", .type = SCHEMA_CURVE, BUSHING(force_y),
+     .dimension = DIMENSION_FORCE, .low = -1e9, .high = 1e9, .rivalry = SCHEMA_PULLING, .side = 1,
+     .default_words = "none", .doc = "likewise along y; an axis without points has no stiffness"},
+    {.path = "bushings.*.torque", .type = SCHEMA_CURVE, BUSHING(torque),
+     .dimension = DIMENSION_TORQUE, .low = -1e9, .high = 1e9, .rivalry = SCHEMA_TWISTING,
+     .side = 1, .default_words = "none",
+     .doc = "instead of torsional-stiffness: likewise over the angle from where it is relaxed"},
 
     {.path = "loads.*.joint", .type = SCHEMA_JOINT_NAME, LOAD(joint),
      .doc = "the joint along whose coordinate it acts, instead of body: a force along a slider's "
@@ -360,6 +410,11 @@ const SchemaRow SCHEMA_ROWS[] = {
      .rivalry = SCHEMA_ELASTICITY, .side = 1, .default_words = "from the law",
      .needs = STIFFNESS, .wants = COMMON_STIFFNESS,
      .doc = "K in F = K d^n, instead of a law; n follows from the unit: N/m^1.5, N/mm^1.5, N/m"},
+    {.path = "contact.stiffness-for", .type = SCHEMA_STIFFNESS_FOR, AT(contact.for_depth),
+     .rivalry = SCHEMA_ELASTICITY, .side = 2, .default_words = "none",
+     .needs = STIFFNESS | VALUED, .wants = COMMON_STIFFNESS,
+     .doc = "instead of law or stiffness: the depth at a force that it is for, 0.1 mm at 500 N; "
+            "with exponent 1.5 behind it K d^1.5"},
     {.path = "contact.damping", .type = SCHEMA_CHOICE, AT(contact.damping),
      .words = OPTIONS_DAMPINGS, .needs = IMPACT, .wants = COMMON_DAMPING,
      .doc = "damping law of the impact model, by its hysteresis factor chi for a restitution e"

@@ -6,6 +6,7 @@
 #include "casefile/schema.h"
 #include "casefile/slider.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,6 +71,28 @@ static void set_turning(CasefileSetting *setting, const Joint *joint, Dimension 
 {
     if (linkage_is_torsional(joint)) {
         text_copy(setting->unit, sizeof setting->unit, units_si(dimension));
+    }
+}
+
+// The depth that a stiffness was given for, and the force there.
+static void set_stiffness_for(CasefileSetting *setting, const SchemaRow *row,
+                              const Scenario *scenario, size_t index)
+{
+    const bool is_of_joint = row->family == SCHEMA_JOINT;
+    const Joint *joint = is_of_joint ? schema_member(scenario, SCHEMA_JOINT, index) : NULL;
+    const bool is_turning = is_of_joint && linkage_is_torsional(joint);
+    const double depth = is_of_joint ? joint->contact.for_depth : scenario->contact.for_depth;
+    const double stiffness = is_of_joint ? joint->contact.stiffness : scenario->contact.stiffness;
+    const double exponent = is_of_joint ? joint->contact.exponent : scenario->contact.exponent;
+    setting->kind = CASEFILE_TEXT;
+    if (depth > 0.0) {
+        const int used = snprintf(setting->text, sizeof setting->text, "%.10g %s at %.10g %s",
+                                  depth, is_turning ? "rad" : "m", stiffness * pow(depth, exponent),
+                                  is_turning ? "N m" : "N");
+        if (exponent != 1.0) {
+            snprintf(setting->text + used, sizeof setting->text - (size_t)used,
+                     " with exponent %.6g", exponent);
+        }
     }
 }
 
@@ -154,6 +177,13 @@ static void set_start(CasefileSetting *setting, const Joint *joint)
     }
 }
 
+// Where the x axis of a bushing points in the world at time zero.
+static double bushing_heading(const Linkage *linkage, const Bushing *bushing)
+{
+    const bool is_held = bushing->body_a != LINKAGE_GROUND && linkage->body_count > 0;
+    return bushing->direction + (is_held ? linkage->bodies[bushing->body_a].start.angle : 0.0);
+}
+
 // The direction of a joint's line in the world at time zero.
 static double heading(const Linkage *linkage, const Joint *joint)
 {
@@ -184,6 +214,11 @@ static Vec2 anchor_place(const SchemaRow *row, const Scenario *scenario, size_t 
         return start_point(&scenario->linkage, is_first ? spring->body_a : spring->body_b,
                            is_first ? spring->anchor_a : spring->anchor_b);
     }
+    if (row->family == SCHEMA_BUSHING) {
+        const Bushing *bushing = &scenario->linkage.bushings[index];
+        return start_point(&scenario->linkage, is_first ? bushing->body_a : bushing->body_b,
+                           is_first ? bushing->anchor_a : bushing->anchor_b);
+    }
     if (row->family == SCHEMA_LOAD_FAMILY) {
         const Load *load = &scenario->linkage.loads[index];
         return start_point(&scenario->linkage, load->body, load->anchor);
@@ -211,11 +246,17 @@ static void set_between(CasefileSetting *setting, const SchemaRow *row, const Sc
                         size_t index)
 {
     const Linkage *linkage = &scenario->linkage;
-    const bool is_spring = row->family == SCHEMA_SPRING;
-    const Spring *spring = is_spring ? schema_member(scenario, SCHEMA_SPRING, index) : NULL;
-    const Joint *joint = is_spring ? NULL : schema_member(scenario, SCHEMA_JOINT, index);
-    set_words(setting, body_name(linkage, is_spring ? spring->body_a : joint->body_a),
-              body_name(linkage, is_spring ? spring->body_b : joint->body_b));
+    const void *member = schema_member(scenario, row->family, index);
+    const Spring *spring = row->family == SCHEMA_SPRING ? member : NULL;
+    const Bushing *bushing = row->family == SCHEMA_BUSHING ? member : NULL;
+    const Joint *joint = row->family == SCHEMA_JOINT ? member : NULL;
+    const int body_a = spring != NULL    ? spring->body_a
+                       : bushing != NULL ? bushing->body_a
+                                         : joint->body_a;
+    const int body_b = spring != NULL    ? spring->body_b
+                       : bushing != NULL ? bushing->body_b
+                                         : joint->body_b;
+    set_words(setting, body_name(linkage, body_a), body_name(linkage, body_b));
 }
 
 // What is constant is one number; else it is pairs of what it is over and its value.
@@ -238,6 +279,23 @@ static void set_points(CasefileSetting *setting, size_t count, const double *at,
 static void set_over_time(CasefileSetting *setting, const SchemaRow *row, const TimeTable *table)
 {
     set_points(setting, table->count, table->times, table->values, "s", units_si(row->dimension));
+}
+
+static void set_curve(CasefileSetting *setting, const SchemaRow *row, const ForceCurve *curve)
+{
+    const bool is_torque = row->dimension == DIMENSION_TORQUE;
+    set_points(setting, curve->count, curve->at, curve->values, is_torque ? "rad" : "m",
+               units_si(row->dimension));
+}
+
+// One number where both axes have it.
+static void set_pair(CasefileSetting *setting, Vec2 pair)
+{
+    if (pair.x == pair.y) {
+        set_number(setting, pair.x);
+    } else {
+        set_vector(setting, pair);
+    }
 }
 
 static void set_load(CasefileSetting *setting, const SchemaRow *row, const Linkage *linkage,
@@ -314,7 +372,10 @@ static void set_of_joint(CasefileSetting *setting, const SchemaRow *row, const S
         set_vector(setting, (Vec2){joint->stop.slot, 2.0 * joint->stop.radius_a});
         break;
     case SCHEMA_HEADING:
-        set_number(setting, heading(linkage, joint));
+        set_number(setting,
+                   row->family == SCHEMA_BUSHING
+                       ? bushing_heading(linkage, schema_member(scenario, SCHEMA_BUSHING, index))
+                       : heading(linkage, joint));
         break;
     case SCHEMA_PROFILE:
         if (*(const size_t *)field > 0) {
@@ -369,6 +430,9 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
     case SCHEMA_STIFFNESS:
         set_own_stiffness(setting, row, scenario, index);
         break;
+    case SCHEMA_STIFFNESS_FOR:
+        set_stiffness_for(setting, row, scenario, index);
+        break;
     case SCHEMA_SPAN:
         set_number(setting, scenario_report_from(scenario));
         break;
@@ -389,6 +453,12 @@ static void set_value(CasefileSetting *setting, const SchemaRow *row, const Scen
         break;
     case SCHEMA_BODY_NAME:
         set_words(setting, body_name(linkage, *(const int *)field), NULL);
+        break;
+    case SCHEMA_PAIR:
+        set_pair(setting, *(const Vec2 *)field);
+        break;
+    case SCHEMA_CURVE:
+        set_curve(setting, row, field);
         break;
     case SCHEMA_TORQUE:
         set_over_time(setting, row, field);
@@ -428,6 +498,8 @@ const char *schema_member_name(const Scenario *scenario, SchemaFamily family, si
         return ((const Spring *)named)->name;
     case SCHEMA_TORSION_SPRING:
         return ((const TorsionSpring *)named)->name;
+    case SCHEMA_BUSHING:
+        return ((const Bushing *)named)->name;
     case SCHEMA_LOAD_FAMILY:
         return ((const Load *)named)->name;
     case SCHEMA_DRIVE:

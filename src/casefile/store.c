@@ -1,6 +1,7 @@
 // Stores the values of a case, each if it is in its range.
 #include "casefile/store.h"
 
+#include "casefile/bushings.h"
 #include "casefile/expect.h"
 #include "casefile/fit.h"
 #include "casefile/limits.h"
@@ -8,6 +9,7 @@
 #include "casefile/over_time.h"
 #include "casefile/profiles.h"
 #include "casefile/slot.h"
+#include "casefile/stiffness_for.h"
 #include "casefile/target.h"
 #include "casefile/teeth.h"
 #include "casefile/tolerance.h"
@@ -379,6 +381,7 @@ static bool store_plain(const Entries *entries, const Entry *entry, Scenario *sc
     target.field = schema_field(entry->row, scenario, entry->index);
     Joint *joint;
     Spring *spring;
+    Bushing *bushing;
     switch (entry->row->type) {
     case SCHEMA_CHOICE:
         return find_word(&target, entry->node, target.field); // an enumeration is an int
@@ -397,6 +400,8 @@ static bool store_plain(const Entries *entries, const Entry *entry, Scenario *sc
             return store_number(&target, scenario);
         }
         return limits_store(&target, &scenario->linkage.joints[entry->index]);
+    case SCHEMA_STIFFNESS_FOR:
+        return stiffness_for_store(&target, scenario);
     case SCHEMA_COORDINATE:
     case SCHEMA_DAMPER:
         return limits_store(&target, &scenario->linkage.joints[entry->index]);
@@ -419,12 +424,20 @@ static bool store_plain(const Entries *entries, const Entry *entry, Scenario *sc
             spring = &scenario->linkage.springs[entry->index];
             return store_between(&target, &spring->body_a, &spring->body_b);
         }
+        if (entry->row->family == SCHEMA_BUSHING) {
+            bushing = &scenario->linkage.bushings[entry->index];
+            return store_between(&target, &bushing->body_a, &bushing->body_b);
+        }
         joint = &scenario->linkage.joints[entry->index];
         return store_between(&target, &joint->body_a, &joint->body_b);
     case SCHEMA_BODY_NAME:
         return find_name(&target, entry->node, SCHEMA_BODY, false, target.field);
     case SCHEMA_JOINT_NAME:
         return find_name(&target, entry->node, SCHEMA_JOINT, false, target.field);
+    case SCHEMA_PAIR:
+        return bushings_store_pair(&target, target.field);
+    case SCHEMA_CURVE:
+        return bushings_store_curve(&target, target.field);
     case SCHEMA_TORQUE:
         return over_time_store(entry, target.field, err);
     case SCHEMA_SPEED:

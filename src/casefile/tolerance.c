@@ -15,8 +15,9 @@
 
 // Groups whose keys describe the mechanism and what acts on it.
 static const char *const GROUPS[] = {
-    "four-bar.", "slider-crank.", "bodies.", "joints.", "springs.",  "torsion-springs.",
-    "loads.",    "drive.",        "drives.", "gravity", "material.", "contact.",
+    "four-bar.",        "slider-crank.", "bodies.",  "joints.", "springs.",
+    "torsion-springs.", "bushings.",     "loads.",   "drive.",  "drives.",
+    "gravity",          "material.",     "contact.",
 };
 
 // Keys among them that say when or from where it moves, or how a force is smoothed.
@@ -44,6 +45,7 @@ static bool is_number(SchemaType type)
     case SCHEMA_SPEED:
     case SCHEMA_LOAD:
     case SCHEMA_VECTOR:
+    case SCHEMA_PAIR:
     case SCHEMA_ANCHOR:
     case SCHEMA_GRAVITY:
         return true;
@@ -212,7 +214,8 @@ bool tolerance_take(const Entry *entry, const SchemaRow *row, Scenario *scenario
         }
         return true;
     }
-    const bool is_vector = row->type == SCHEMA_VECTOR || row->type == SCHEMA_ANCHOR;
+    const bool is_vector =
+        row->type == SCHEMA_VECTOR || row->type == SCHEMA_ANCHOR || row->type == SCHEMA_PAIR;
     size_t count = 0;
     bool is_any = false;
     for (const Node *item = node->kind == NODE_LIST ? node->first : NULL;

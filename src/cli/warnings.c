@@ -139,10 +139,12 @@ static size_t count_freedoms(const Linkage *linkage)
     return freedoms;
 }
 
-// How many of these something else holds, at most: springs, loads, stops, teeth and limits.
+// How many of these something else holds, at most: springs, bushings, loads, stops, teeth and
+// limits.
 static size_t count_holds(const Linkage *linkage)
 {
-    size_t count = linkage->spring_count + linkage->torsion_count + linkage->load_count;
+    size_t count = linkage->spring_count + linkage->torsion_count + linkage->load_count +
+                   BUSHING_ROWS * linkage->bushing_count;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const bool has_rows = joint_rows_count(joint->kind) > 0;

@@ -8,7 +8,7 @@
 #include "model/trajectory.h"
 
 enum {
-    ENGINE_PROTOCOL = 2,   // the newest; drivers of older ones get what these have words for
+    ENGINE_PROTOCOL = 3,   // the newest; drivers of older ones get what these have words for
     ENGINE_NAME_SIZE = 32, // of drivers and ways
     ENGINE_TEXT_SIZE = 128,
     ENGINE_WAY_MAX = 8,

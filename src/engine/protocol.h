@@ -22,8 +22,8 @@ json_t *engine_pair(Vec2 value);
 enum { ENGINE_NEED_SIZE = 96 };
 int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE]);
 
-// Adds what acts on the bodies beside joints and gravity to the request: springs, torsion springs
-// and loads, a drive's torque being one (docs/drivers.md).
+// Adds what acts on the bodies beside joints and gravity to the request: springs, torsion springs,
+// bushings and loads, a drive's torque being one (docs/drivers.md).
 void engine_add_actions(const Scenario *scenario, json_t *request);
 
 // The request that asks a driver what it is.

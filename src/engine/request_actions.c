@@ -1,5 +1,5 @@
 // Writes what acts on the bodies of a case beside joints and gravity as a part of the request of
-// the driver protocol (docs/drivers.md): springs, torsion springs, and loads.
+// the driver protocol (docs/drivers.md): springs, torsion springs, bushings, and loads.
 //
 // A drive by torque is a load over time along its joint's coordinate; what it takes per speed, of a
 // motor or a soft drive, is a torsion damper. A soft drive that follows phi_0 + w t by a spring k
@@ -21,6 +21,16 @@ static bool has_torque(const Linkage *linkage)
 int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE])
 {
     what[0] = '\0';
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        if (linkage->joints[i].contact.gap_damping > 0.0) {
+            snprintf(what, ENGINE_NEED_SIZE, "damping in a gap ('%s')", linkage->joints[i].name);
+            return 3;
+        }
+    }
+    if (linkage->bushing_count > 0) {
+        snprintf(what, ENGINE_NEED_SIZE, "bushings ('%s')", linkage->bushings[0].name);
+        return 3;
+    }
     if (linkage->spring_count > 0) {
         snprintf(what, ENGINE_NEED_SIZE, "springs ('%s')", linkage->springs[0].name);
     } else if (linkage->torsion_count > 0) {
@@ -47,6 +57,45 @@ static json_t *torsion_object(const char *name, int joint, double stiffness, dou
 {
     return json_pack("{s:s, s:i, s:f, s:f, s:f}", "name", name, "joint", joint, "stiffness_N_m_rad",
                      stiffness, "angle_rad", angle, "damping_N_m_s_rad", damping);
+}
+
+static json_t *curve_points(const ForceCurve *curve)
+{
+    json_t *points = json_array();
+    for (size_t i = 0; i < curve->count; i++) {
+        json_array_append_new(points, engine_pair((Vec2){curve->at[i], curve->values[i]}));
+    }
+    return points;
+}
+
+static json_t *bushing_object(const Bushing *bushing)
+{
+    json_t *object = json_pack(
+        "{s:s, s:i, s:i, s:o, s:o, s:f, s:f, s:o, s:o, s:f, s:f}", "name", bushing->name, "body_a",
+        bushing->body_a, "body_b", bushing->body_b, "anchor_a_m", engine_pair(bushing->anchor_a),
+        "anchor_b_m", engine_pair(bushing->anchor_b), "direction_rad", bushing->direction,
+        "angle_rad", bushing->angle, "stiffness_N_m", engine_pair(bushing->stiffness),
+        "damping_N_s_m", engine_pair(bushing->damping), "stiffness_N_m_rad",
+        bushing->torsional_stiffness, "damping_N_m_s_rad", bushing->torsional_damping);
+    json_object_set_new(object, "shape", json_string(FORCE_CURVE_SHAPES[bushing->interpolation]));
+    json_object_set_new(object, "force_x", curve_points(&bushing->force_x));
+    json_object_set_new(object, "force_y", curve_points(&bushing->force_y));
+    json_object_set_new(object, "torque", curve_points(&bushing->torque));
+    return object;
+}
+
+// The damper in the gap of a pin, the only one whose joint the protocol has words for, is a bushing
+// without stiffness.
+static json_t *gap_object(const Joint *joint)
+{
+    const double damping = joint->contact.gap_damping;
+    Bushing bushing = {.body_a = joint->body_a,
+                       .body_b = joint->body_b,
+                       .anchor_a = joint->anchor_a,
+                       .anchor_b = joint->anchor_b,
+                       .damping = {damping, damping}};
+    snprintf(bushing.name, sizeof bushing.name, "%s", joint->name);
+    return bushing_object(&bushing);
 }
 
 static json_t *load_object(const Linkage *linkage, const Load *load)
@@ -123,6 +172,7 @@ void engine_add_actions(const Scenario *scenario, json_t *request)
     const Linkage *linkage = &scenario->linkage;
     json_t *springs = json_array();
     json_t *torsions = json_array();
+    json_t *bushings = json_array();
     json_t *loads = json_array();
     for (size_t i = 0; i < linkage->spring_count; i++) {
         json_array_append_new(springs, spring_object(&linkage->springs[i]));
@@ -132,11 +182,24 @@ void engine_add_actions(const Scenario *scenario, json_t *request)
         json_array_append_new(
             torsions, torsion_object(of->name, of->joint, of->stiffness, of->angle, of->damping));
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        json_array_append_new(bushings, bushing_object(&linkage->bushings[i]));
+    }
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        if (linkage->joints[i].contact.gap_damping > 0.0) {
+            json_array_append_new(bushings, gap_object(&linkage->joints[i]));
+        }
+    }
     for (size_t i = 0; i < linkage->load_count; i++) {
         json_array_append_new(loads, load_object(linkage, &linkage->loads[i]));
     }
     if (has_torque(linkage)) {
         add_torque(scenario, torsions, loads);
+    }
+    if (json_array_size(bushings) > 0) {
+        json_object_set_new(request, "bushings", bushings);
+    } else {
+        json_decref(bushings); // protocol 2 has no word for it
     }
     json_object_set_new(request, "springs", springs);
     json_object_set_new(request, "torsion_springs", torsions);

@@ -1,6 +1,6 @@
 // Divides a linkage into mechanisms that share nothing but the ground.
 //
-// Those whose bodies no joint and no spring connects, not by way of the driven body either.
+// Those whose bodies no joint, spring or bushing connects, not by way of the driven body either.
 #include "model/components.h"
 
 #include "base/union_find.h"
@@ -25,6 +25,9 @@ static size_t number_components(const Linkage *linkage, size_t *member_of)
     }
     for (size_t i = 0; i < linkage->spring_count; i++) {
         connect(parents, linkage->springs[i].body_a, linkage->springs[i].body_b);
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        connect(parents, linkage->bushings[i].body_a, linkage->bushings[i].body_b);
     }
     // the crank's angle is that of all: what further drives turn goes with it
     for (size_t i = 1; i < linkage_drive_count(linkage); i++) {
@@ -106,6 +109,7 @@ static void share_out(const Linkage *whole, const size_t *member_of, Component *
         own_joint[i] = (int)linkage->joint_count;
         component->joints[linkage->joint_count] = (int)i;
         linkage->joints[linkage->joint_count++] = joint;
+        linkage->gap_damper_count += joint.contact.gap_damping > 0.0 ? 1 : 0;
         take_drive(whole, (int)i, own_joint[i], linkage);
         if (whole->torque.table.count > 0 && whole->torque.joint == (int)i) {
             linkage->torque = whole->torque;
@@ -127,6 +131,14 @@ static void share_out(const Linkage *whole, const size_t *member_of, Component *
         Linkage *linkage = &components[number].scenario->linkage;
         torsion.joint = own_joint[torsion.joint];
         linkage->torsions[linkage->torsion_count++] = torsion;
+    }
+    for (size_t i = 0; i < whole->bushing_count; i++) {
+        Bushing bushing = whole->bushings[i];
+        const size_t number = member_of_pair(member_of, bushing.body_a, bushing.body_b);
+        Linkage *linkage = &components[number].scenario->linkage;
+        bushing.body_a = renumber(own_body, bushing.body_a);
+        bushing.body_b = renumber(own_body, bushing.body_b);
+        linkage->bushings[linkage->bushing_count++] = bushing;
     }
     for (size_t i = 0; i < whole->load_count; i++) {
         Load load = whole->loads[i];
@@ -166,6 +178,10 @@ static LinkageRoom *count_rooms(const Linkage *whole, const size_t *member_of, s
     for (size_t i = 0; i < whole->torsion_count; i++) {
         const Joint *joint = &whole->joints[whole->torsions[i].joint];
         rooms[member_of_pair(member_of, joint->body_a, joint->body_b)].torsions++;
+    }
+    for (size_t i = 0; i < whole->bushing_count; i++) {
+        const Bushing *bushing = &whole->bushings[i];
+        rooms[member_of_pair(member_of, bushing->body_a, bushing->body_b)].bushings++;
     }
     for (size_t i = 0; i < whole->load_count; i++) {
         rooms[member_of_load(whole, member_of, i)].loads++;

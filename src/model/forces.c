@@ -1,13 +1,13 @@
-// Finds the forces that springs, dampers and the torque of a drive put on the bodies.
+// Finds the forces that springs, bushings, dampers and the torque of a drive put on the bodies.
 //
 // Between points p_a and p_b, d = p_b - p_a, n = d / |d|:
 //     tension  T = k (|d| - l) + c d|d|/dt,   force T n on body a, -T n on body b
 // At a joint, angle phi of its turned body against the other:
 //     moment  M = -k (phi - phi_0) - c dphi/dt  on the turned body, -M on the other
-// Torque of the drive: M on the turned body of its joint, -M on the other. At a prismatic joint it
-// is a force F along the line on body b at its anchor, -F on body a at that point. Of a motor or a
-// soft drive (Torque) what the rate takes, slope times it, counts as a damper's, for the solvers,
-// and as the drive's, for the energy.
+// Bushings: model/bushing.c. Torque of the drive: M on the turned body of its joint, -M on the
+// other. At a prismatic joint it is a force F along the line on body b at its anchor, -F on body a
+// at that point. Of a motor or a soft drive (Torque) what the rate takes, slope times it, counts as
+// a damper's, for the solvers, and as the drive's, for the energy.
 //     energy  sum k (|d| - l)^2 / 2 + sum k (phi - phi_0)^2 / 2
 #include "model/forces.h"
 
@@ -15,18 +15,22 @@
 
 bool forces_any(const Linkage *linkage)
 {
-    return linkage->spring_count > 0 || linkage->torsion_count > 0 ||
-           linkage->torque.table.count > 0 || linkage->load_count > 0;
+    return linkage->spring_count > 0 || linkage->torsion_count > 0 || linkage->bushing_count > 0 ||
+           linkage->gap_damper_count > 0 || linkage->torque.table.count > 0 ||
+           linkage->load_count > 0;
 }
 
 bool forces_damp(const Linkage *linkage)
 {
-    bool is_damped = linkage->torque.slope > 0.0;
+    bool is_damped = linkage->torque.slope > 0.0 || linkage->gap_damper_count > 0;
     for (size_t i = 0; i < linkage->spring_count; i++) {
         is_damped = is_damped || linkage->springs[i].damping > 0.0;
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         is_damped = is_damped || linkage->torsions[i].damping > 0.0;
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        is_damped = is_damped || bushing_damps(&linkage->bushings[i]);
     }
     return is_damped;
 }
@@ -88,6 +92,62 @@ void forces_add_moment(const Linkage *linkage, int joint, double moment, BodyLoa
     }
 }
 
+void forces_add_row(const Bushing *bushing, const BushingPose *pose, size_t row, double pull,
+                    const Motion *motions, BodyLoad *loads)
+{
+    if (row < 2) {
+        const Vec2 force = vec2_scale(pull, pose->axes[row]);
+        forces_add_at(bushing->body_a, pose->point, force, motions, loads);
+        forces_add_at(bushing->body_b, pose->point, vec2_scale(-1.0, force), motions, loads);
+        return;
+    }
+    if (bushing->body_a != LINKAGE_GROUND) {
+        loads[bushing->body_a].moment += pull;
+    }
+    if (bushing->body_b != LINKAGE_GROUND) {
+        loads[bushing->body_b].moment -= pull;
+    }
+}
+
+void forces_add_drag(const Joint *joint, const GapDampingRow *row, double drag, BodyLoad *loads)
+{
+    for (int side = 0; side < 2; side++) {
+        const int body = linkage_end(joint, side).body;
+        if (body != LINKAGE_GROUND) {
+            BodyLoad *load = &loads[body];
+            load->force.x -= drag * row->row.x[side];
+            load->force.y -= drag * row->row.y[side];
+            load->moment -= drag * row->row.turn[side];
+        }
+    }
+}
+
+static void add_gap_dampers(const Linkage *linkage, const Motion *motions, BodyLoad *loads)
+{
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        GapDampingRow rows[GAP_DAMPING_ROWS];
+        const size_t count = gap_damping_rows(linkage, motions, (int)i, rows);
+        for (size_t k = 0; k < count; k++) {
+            const double drag = rows[k].damping * rows[k].rate;
+            forces_add_drag(&linkage->joints[i], &rows[k], drag, loads);
+        }
+    }
+}
+
+// Adds what all rows of the bushings do, their springs or their dampers.
+static void add_bushings(const Linkage *linkage, const Motion *motions,
+                         double (*pull)(const Bushing *, const BushingPose *, size_t),
+                         BodyLoad *loads)
+{
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const Bushing *bushing = &linkage->bushings[i];
+        const BushingPose pose = bushing_pose(bushing, motions);
+        for (size_t row = 0; row < BUSHING_ROWS; row++) {
+            forces_add_row(bushing, &pose, row, pull(bushing, &pose, row), motions, loads);
+        }
+    }
+}
+
 void forces_add_springs(const Linkage *linkage, const Motion *motions, BodyLoad *loads)
 {
     for (size_t i = 0; i < linkage->spring_count; i++) {
@@ -102,6 +162,7 @@ void forces_add_springs(const Linkage *linkage, const Motion *motions, BodyLoad 
         forces_add_moment(linkage, spring->joint, -spring->stiffness * (turn.angle - spring->angle),
                           loads);
     }
+    add_bushings(linkage, motions, bushing_pull, loads);
 }
 
 void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad *loads)
@@ -116,6 +177,8 @@ void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad 
         const JointTurn turn = forces_turn(linkage, spring->joint, motions);
         forces_add_moment(linkage, spring->joint, -spring->damping * turn.rate, loads);
     }
+    add_bushings(linkage, motions, bushing_drag, loads);
+    add_gap_dampers(linkage, motions, loads);
     if (linkage->torque.slope > 0.0) {
         const double rate = forces_drive_rate(linkage, motions);
         forces_add_moment(linkage, linkage->torque.joint, -linkage->torque.slope * rate, loads);
@@ -231,6 +294,10 @@ double forces_energy(const Linkage *linkage, const Motion *motions)
         const double turn = forces_turn(linkage, spring->joint, motions).angle - spring->angle;
         energy += 0.5 * spring->stiffness * turn * turn;
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const BushingPose pose = bushing_pose(&linkage->bushings[i], motions);
+        energy += bushing_energy(&linkage->bushings[i], &pose);
+    }
     return energy;
 }
 
@@ -244,6 +311,17 @@ double forces_damping_power(const Linkage *linkage, const Motion *motions)
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const double rate = forces_turn(linkage, linkage->torsions[i].joint, motions).rate;
         power += linkage->torsions[i].damping * rate * rate;
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const BushingPose pose = bushing_pose(&linkage->bushings[i], motions);
+        power += bushing_power(&linkage->bushings[i], &pose);
+    }
+    for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
+        GapDampingRow rows[GAP_DAMPING_ROWS];
+        const size_t count = gap_damping_rows(linkage, motions, (int)i, rows);
+        for (size_t k = 0; k < count; k++) {
+            power += rows[k].damping * rows[k].rate * rows[k].rate;
+        }
     }
     return power;
 }

@@ -1,8 +1,9 @@
-// What acts on the bodies of a linkage beside gravity, joints and contacts: springs, dampers and
-// the torque of a drive.
+// What acts on the bodies of a linkage beside gravity, joints and contacts: springs, bushings,
+// dampers and the torque of a drive.
 #pragma once
 
-#include "model/linkage.h"
+#include "model/bushing.h"
+#include "model/gap_damping.h"
 
 // Force on a body at its centre of mass, N, and moment about it, N m.
 typedef struct BodyLoad {
@@ -41,8 +42,8 @@ JointTurn forces_coordinate(const Linkage *linkage, int joint, const Motion *mot
 JointTurn forces_drive_turn(const Linkage *linkage, const Motion *motions);
 double forces_drive_rate(const Linkage *linkage, const Motion *motions);
 
-// Add the loads, by body, of all springs, all dampers, and a torque, N m, at the drive's joint (a
-// force, N, along its line).
+// Add the loads, by body, of all springs and what bushings pull, all dampers, and a torque, N m, at
+// the drive's joint (a force, N, along its line).
 void forces_add_springs(const Linkage *linkage, const Motion *motions, BodyLoad *loads);
 void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad *loads);
 void forces_add_torque(const Linkage *linkage, const Motion *motions, double torque,
@@ -64,14 +65,21 @@ double forces_drive_torque(const Linkage *linkage, const Motion *motions, double
 void forces_add_tension(const Spring *spring, const SpringLine *line, const Motion *motions,
                         double tension, BodyLoad *loads);
 
+// Add what a row of a bushing pulls with, N or N m: on body a, and the other way on body b.
+void forces_add_row(const Bushing *bushing, const BushingPose *pose, size_t row, double pull,
+                    const Motion *motions, BodyLoad *loads);
+
+// Add what a damper in a joint's gap drags with, N or N m, against its row's rate.
+void forces_add_drag(const Joint *joint, const GapDampingRow *row, double drag, BodyLoad *loads);
+
 // Add a moment, N m, that a joint's turned body gets and the other one gives.
 void forces_add_moment(const Linkage *linkage, int joint, double moment, BodyLoad *loads);
 
 // Writes the loads of everything of the kind at a time; loads from outside are in model/loads.h.
 void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, BodyLoad *loads);
 
-// Energy stored in the springs, J; power that the dampers take, not those of a motor or a soft
-// drive, and that the drive's torque gives at a time, W; power of a load on a body, W.
+// Energy stored in springs and bushings, J; power that the dampers take, not those of a motor or a
+// soft drive, and that the drive's torque gives at a time, W; power of a load on a body, W.
 double forces_energy(const Linkage *linkage, const Motion *motions);
 double forces_damping_power(const Linkage *linkage, const Motion *motions);
 double forces_torque_power(const Linkage *linkage, const Motion *motions, double time_s);

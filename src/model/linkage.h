@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "base/force_curve.h"
 #include "base/load_table.h"
 #include "base/vec2.h"
 #include "base/vec3.h"
@@ -154,14 +155,17 @@ typedef struct Gear {
 typedef struct JointContact {
     double stiffness;     // N/m^exponent; 0: none of its own
     double exponent;      // 1, of that stiffness
-    bool has_restitution; // whether it has its own
+    double for_depth;     // m (rad of an angle): the depth that it was given for; 0: it was not
     double restitution;   // 1
     double viscous;       // N s/m: its damping is viscous, with this; 0: none of its own
     double full_depth;    // m (rad of an angle): and grows up to this depth; 0: none of its own
     double dissipation;   // s/m (s/rad of an angle): its damping is a dissipation, with this; 0:
                           // none of its own
-    bool has_friction;    // whether it has its own
+    double gap_damping;   // N s/m (N m s/rad of an angle), of a damper that acts in the gap, too;
+                          // 0: there is none
     double friction;      // 1, Coulomb's coefficient
+    bool has_restitution; // whether it has its own
+    bool has_friction;    // likewise
 } JointContact;
 
 // The friction of a joint (model/joint_friction.h), beside JointContact.friction. A zero stands for
@@ -194,10 +198,10 @@ typedef struct Joint {
     JointKind kind;
     int body_a;        // carries the hole; number of a body or LINKAGE_GROUND
     int body_b;        // carries the pin
-    Vec2 anchor_a;     // hole centre in body a's frame, m
-    Vec2 anchor_b;     // pin centre in body b's frame, m
     bool is_apart;     // whether the case says of each anchor where it is, of a stop or of a pin
                        // that stands apart from its hole's centre; else they start at one point
+    Vec2 anchor_a;     // hole centre in body a's frame, m
+    Vec2 anchor_b;     // pin centre in body b's frame, m
     double direction;  // rad, in body a's frame: of the line or the guides; of a stop's normal
     double held_angle; // rad: angle of body b less that of body a where what slides is not tilted
     // sizes of what touches in it (joint_touches)
@@ -236,6 +240,29 @@ typedef struct TorsionSpring {
     double angle;     // rad, of the relaxed spring
     double damping;   // N m s/rad
 } TorsionSpring;
+
+enum { BUSHING_ROWS = 3 }; // of a bushing: along its x axis, along its y axis, and by angle
+
+// Holds two bodies at a point by springs and dampers in two directions and by angle, as rubber does
+// (model/bushing.h). Its axes turn with body a.
+typedef struct Bushing {
+    char name[LINKAGE_NAME_SIZE];
+    int body_a; // carries its axes; number of a body or LINKAGE_GROUND
+    int body_b;
+    bool is_apart; // whether the case says of each anchor where it is; else they start at one point
+    Vec2 anchor_a; // in body a's frame, m; it is relaxed where both are at one point
+    Vec2 anchor_b;
+    double direction;           // rad, of its x axis in body a's frame
+    double angle;               // rad, where it is relaxed: of body b less that of body a
+    Vec2 stiffness;             // N/m, along its axes
+    Vec2 damping;               // N s/m
+    double torsional_stiffness; // N m/rad
+    double torsional_damping;   // N m s/rad
+    ForceCurve force_x;         // what pulls it back over its deflection, in place of a stiffness
+    ForceCurve force_y;
+    ForceCurve torque;
+    ForceCurveShape interpolation; // of these
+} Bushing;
 
 // Pushes the turned body of a joint, and the other one the other way (linkage_turning), by a torque
 // over time. At a prismatic joint it is a force on body b along the joint's line, at the anchor of
@@ -282,10 +309,13 @@ typedef struct Linkage {
     Body *bodies; // owned, like the arrays below, by whom linkage_create gave them to
     size_t joint_count;
     Joint *joints;
+    size_t gap_damper_count; // how many of the joints have a gap damping
     size_t spring_count;
     Spring *springs;
     size_t torsion_count;
     TorsionSpring *torsions;
+    size_t bushing_count;
+    Bushing *bushings;
     size_t load_count;
     Load *loads;
     Driver driver; // the crank's: angles of the crank are those of its body
@@ -302,6 +332,7 @@ typedef struct LinkageRoom {
     size_t joints;
     size_t springs;
     size_t torsions;
+    size_t bushings;
     size_t loads;
     size_t further;
     size_t profiles;

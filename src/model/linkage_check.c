@@ -1,4 +1,5 @@
 // Checks that what a linkage is made of is a linkage.
+#include "model/bushing.h"
 #include "model/coordinate.h"
 
 #include <assert.h>
@@ -300,6 +301,35 @@ static bool check_springs(const Linkage *linkage, Err *err)
     return true;
 }
 
+static bool check_bushing(const Linkage *linkage, const Bushing *bushing, Err *err)
+{
+    const int count = (int)linkage->body_count;
+    if (bushing->body_a < LINKAGE_GROUND || bushing->body_a >= count ||
+        bushing->body_b < LINKAGE_GROUND || bushing->body_b >= count ||
+        bushing->body_a == bushing->body_b) {
+        return err_set(err, ERR_CASE, "bushing '%s' must join two different bodies of the linkage",
+                       bushing->name);
+    }
+    bool is_good = isfinite(bushing->stiffness.x + bushing->stiffness.y + bushing->direction +
+                            bushing->torsional_stiffness + bushing->angle);
+    for (size_t row = 0; row < BUSHING_ROWS; row++) {
+        const ForceCurve *curve = bushing_curve(bushing, row);
+        is_good = is_good && bushing_damping(bushing, row) >= 0.0 && curve->count != 1 &&
+                  isfinite(force_curve_steepest(curve));
+    }
+    return is_good ||
+           err_set(err, ERR_CASE, "bushing '%s' has a number that is out of range", bushing->name);
+}
+
+static bool check_bushings(const Linkage *linkage, Err *err)
+{
+    bool is_good = true;
+    for (size_t i = 0; is_good && i < linkage->bushing_count; i++) {
+        is_good = check_bushing(linkage, &linkage->bushings[i], err);
+    }
+    return is_good;
+}
+
 static bool check_loads(const Linkage *linkage, Err *err)
 {
     for (size_t i = 0; i < linkage->load_count; i++) {
@@ -366,6 +396,6 @@ bool linkage_check(const Linkage *linkage, Err *err)
             return false;
         }
     }
-    return check_springs(linkage, err) && check_drivers(linkage, err) &&
-           check_torque(linkage, err) && check_loads(linkage, err);
+    return check_springs(linkage, err) && check_bushings(linkage, err) &&
+           check_drivers(linkage, err) && check_torque(linkage, err) && check_loads(linkage, err);
 }

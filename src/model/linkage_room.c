@@ -15,6 +15,7 @@ Linkage linkage_create(LinkageRoom room)
         .joints = zeroed(room.joints, sizeof(Joint)),
         .springs = zeroed(room.springs, sizeof(Spring)),
         .torsions = zeroed(room.torsions, sizeof(TorsionSpring)),
+        .bushings = zeroed(room.bushings, sizeof(Bushing)),
         .loads = zeroed(room.loads, sizeof(Load)),
         .further = zeroed(room.further, sizeof(Driver)),
         .profiles = zeroed(room.profiles, sizeof(Profile)),
@@ -34,6 +35,7 @@ Linkage linkage_copy(const Linkage *linkage)
                               .joints = linkage->joint_count,
                               .springs = linkage->spring_count,
                               .torsions = linkage->torsion_count,
+                              .bushings = linkage->bushing_count,
                               .loads = linkage->load_count,
                               .further = linkage->further_count,
                               .profiles = linkage->profile_count};
@@ -42,6 +44,7 @@ Linkage linkage_copy(const Linkage *linkage)
     copy_block(made.joints, linkage->joints, room.joints, sizeof(Joint));
     copy_block(made.springs, linkage->springs, room.springs, sizeof(Spring));
     copy_block(made.torsions, linkage->torsions, room.torsions, sizeof(TorsionSpring));
+    copy_block(made.bushings, linkage->bushings, room.bushings, sizeof(Bushing));
     copy_block(made.loads, linkage->loads, room.loads, sizeof(Load));
     copy_block(made.further, linkage->further, room.further, sizeof(Driver));
     copy_block(made.profiles, linkage->profiles, room.profiles, sizeof(Profile));
@@ -50,6 +53,7 @@ Linkage linkage_copy(const Linkage *linkage)
     copy.joints = made.joints;
     copy.springs = made.springs;
     copy.torsions = made.torsions;
+    copy.bushings = made.bushings;
     copy.loads = made.loads;
     copy.further = made.further;
     copy.profiles = made.profiles;
@@ -62,6 +66,7 @@ void linkage_free(Linkage *linkage)
     free(linkage->joints);
     free(linkage->springs);
     free(linkage->torsions);
+    free(linkage->bushings);
     free(linkage->loads);
     free(linkage->further);
     free(linkage->profiles);

@@ -200,6 +200,7 @@ typedef struct ContactOptions {
     LawKind law;
     double stiffness; // N/m^exponent; 0: from the law, the material and the joint
     double exponent;  // 1, of a given stiffness
+    double for_depth; // m, the depth that the stiffness was given for; 0: it was not given so
     bool is_for_all;  // whether it holds for joints that have a stiffness of their own, too
     DampingKind damping;
     bool is_damping_for_all;    // no key: whether it holds for joints that have their own, too

@@ -75,6 +75,9 @@ static void shake_sliding(Joint *joint, bool has_own, uint64_t *seed)
         shake(&joint->contact.stiffness, seed);
     }
     shake(&joint->contact.viscous, seed);
+    if (joint->contact.gap_damping > 0.0) {
+        shake(&joint->contact.gap_damping, seed);
+    }
     if (joint->contact.full_depth > 0.0) {
         shake(&joint->contact.full_depth, seed);
     }
@@ -178,6 +181,35 @@ static void shake_drive(Driver *driver, uint64_t *seed)
     drive_complete(driver);
 }
 
+// The points' values; where a bushing has none of a number nothing is drawn for it.
+static void shake_curve(ForceCurve *curve, ForceCurveShape shape, uint64_t *seed)
+{
+    for (size_t i = 0; i < curve->count; i++) {
+        shake(&curve->values[i], seed);
+    }
+    force_curve_settle(curve, shape);
+}
+
+static void shake_bushing(Bushing *bushing, uint64_t *seed)
+{
+    double *const numbers[] = {
+        &bushing->direction,           &bushing->angle,
+        &bushing->stiffness.x,         &bushing->stiffness.y,
+        &bushing->damping.x,           &bushing->damping.y,
+        &bushing->torsional_stiffness, &bushing->torsional_damping,
+    };
+    shake_vector(&bushing->anchor_a, seed);
+    shake_vector(&bushing->anchor_b, seed);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        if (*numbers[i] != 0.0) {
+            shake(numbers[i], seed);
+        }
+    }
+    shake_curve(&bushing->force_x, bushing->interpolation, seed);
+    shake_curve(&bushing->force_y, bushing->interpolation, seed);
+    shake_curve(&bushing->torque, bushing->interpolation, seed);
+}
+
 static void shake_forces(Linkage *linkage, uint64_t *seed)
 {
     for (size_t i = 0; i < linkage->spring_count; i++) {
@@ -192,6 +224,9 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
         shake(&linkage->torsions[i].stiffness, seed);
         shake(&linkage->torsions[i].angle, seed);
         shake(&linkage->torsions[i].damping, seed);
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        shake_bushing(&linkage->bushings[i], seed);
     }
     shake_torque(&linkage->torque, seed);
     for (size_t i = 0; i < linkage->load_count; i++) {

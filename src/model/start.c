@@ -112,6 +112,9 @@ static size_t walk_start(Walk *walk, Linkage *linkage)
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         walk_number(walk, &linkage->torsions[i].angle);
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        walk_number(walk, &linkage->bushings[i].angle);
+    }
     return walk->count;
 }
 

@@ -117,6 +117,12 @@ static void turn_back_springs(Linkage *linkage, const double *back_rad)
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         linkage->torsions[i].angle -= turned_back(linkage, linkage->torsions[i].joint, back_rad);
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        Bushing *bushing = &linkage->bushings[i];
+        const double a = bushing->body_a == LINKAGE_GROUND ? 0.0 : back_rad[bushing->body_a];
+        const double b = bushing->body_b == LINKAGE_GROUND ? 0.0 : back_rad[bushing->body_b];
+        bushing->angle -= b - a;
+    }
 }
 
 // Returns by how much the joint of a torque is turned back, rad.

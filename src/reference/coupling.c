@@ -70,6 +70,12 @@ static void link_bodies(CouplingMaker *maker, const Linkage *linkage, const size
         add_part(part_of_body, linkage->springs[i].body_b, &ends);
         link_all(maker, &ends);
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        CouplingJoint ends = {.count = 0};
+        add_part(part_of_body, linkage->bushings[i].body_a, &ends);
+        add_part(part_of_body, linkage->bushings[i].body_b, &ends);
+        link_all(maker, &ends);
+    }
     maker->coupling->joints = joints;
 }
 

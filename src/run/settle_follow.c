@@ -23,7 +23,8 @@ static bool can_follow(const Scenario *scenario, const Scenario *neighbour)
     const Linkage *other = &neighbour->linkage;
     bool can = neighbour->settled.motion_count > 0 && scenario->run.start == START_SETTLED &&
                !own->is_spatial && !other->is_spatial && own->torsion_count == 0 &&
-               own->body_count == other->body_count && own->joint_count == other->joint_count;
+               own->bushing_count == 0 && own->body_count == other->body_count &&
+               own->joint_count == other->joint_count;
     for (size_t i = 0; can && i < own->joint_count; i++) {
         can = own->joints[i].kind == other->joints[i].kind &&
               own->joints[i].limits.kind == LIMIT_NONE && !joint_has_teeth(own->joints[i].kind);
@@ -141,6 +142,9 @@ static void follow_counts(const Linkage *written, const Linkage *settled, Linkag
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         linkage->torsions[i].angle += settled->torsions[i].angle - written->torsions[i].angle;
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        linkage->bushings[i].angle += settled->bushings[i].angle - written->bushings[i].angle;
+    }
     for (size_t i = 0; i < linkage->load_count; i++) {
         linkage->loads[i].shift = settled->loads[i].shift;
     }
@@ -156,7 +160,8 @@ static bool has_same_parts(const Linkage *a, const Linkage *b)
 {
     bool has = a->is_spatial == b->is_spatial && a->body_count == b->body_count &&
                a->joint_count == b->joint_count && a->torsion_count == b->torsion_count &&
-               a->load_count == b->load_count && a->further_count == b->further_count;
+               a->bushing_count == b->bushing_count && a->load_count == b->load_count &&
+               a->further_count == b->further_count;
     for (size_t i = 0; has && i < a->joint_count; i++) {
         has = a->joints[i].kind == b->joints[i].kind;
     }

@@ -480,6 +480,7 @@ void settle_take_start(const Linkage *from, Linkage *to)
     memcpy(to->bodies, from->bodies, to->body_count * sizeof *to->bodies);
     memcpy(to->joints, from->joints, to->joint_count * sizeof *to->joints);
     memcpy(to->torsions, from->torsions, to->torsion_count * sizeof *to->torsions);
+    memcpy(to->bushings, from->bushings, to->bushing_count * sizeof *to->bushings);
     memcpy(to->loads, from->loads, to->load_count * sizeof *to->loads);
     to->driver.start = from->driver.start;
     to->torque.followed.start = from->torque.followed.start;

@@ -3,6 +3,7 @@
 
 #include "base/zeroed.h"
 #include "contact/law.h"
+#include "model/bushing.h"
 #include "model/perturb.h"
 #include "run/pressed.h"
 #include "run/settle_parts.h"
@@ -39,7 +40,8 @@ bool settle_dissipates(const Scenario *scenario)
 {
     const Linkage *linkage = &scenario->linkage;
     const Torque *torque = &linkage->torque;
-    bool dissipates = torque->table.count > 0 && torque->slope > 0.0;
+    bool dissipates =
+        (torque->table.count > 0 && torque->slope > 0.0) || linkage->gap_damper_count > 0;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         dissipates = dissipates || contact_dissipates(scenario, &linkage->joints[i]);
     }
@@ -48,6 +50,9 @@ bool settle_dissipates(const Scenario *scenario)
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         dissipates = dissipates || linkage->torsions[i].damping > 0.0;
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        dissipates = dissipates || bushing_damps(&linkage->bushings[i]);
     }
     return dissipates;
 }

@@ -58,6 +58,14 @@ static bool is_given(const Scenario *scenario, const SchemaRow *row, size_t memb
     return false;
 }
 
+// Whether a joint's stiffness is one that was given by the depth that it is for.
+static bool is_given_for(const Scenario *scenario, const SchemaRow *row, size_t member)
+{
+    const Joint *joint = schema_member(scenario, SCHEMA_JOINT, member);
+    return row->type == SCHEMA_STIFFNESS && row->family == SCHEMA_JOINT &&
+           joint->contact.for_depth > 0.0;
+}
+
 static bool has_tolerance(const Scenario *scenario, const char *path, size_t member)
 {
     for (size_t i = 0; i < scenario->tolerance_count; i++) {
@@ -134,7 +142,8 @@ static double assumed_distance(const Scenario *scenario, const SchemaRow *row, s
 {
     const bool is_star = strchr(setting->key, '*') != NULL;
     // a joint without a value of its own has that of the contact
-    const bool is_own = row->family == SCHEMA_SINGLE || is_given(scenario, row, member);
+    const bool is_own = row->family == SCHEMA_SINGLE || is_given(scenario, row, member) ||
+                        is_given_for(scenario, row, member);
     if (is_star || !is_own || setting->kind != CASEFILE_NUMBER || setting->number_count != 1) {
         return 0.0;
     }

@@ -288,6 +288,43 @@ static inline void hold_load(const char *engine, const char *way, double step_s,
     assert_true(omega_error(engine, way, &changed, &scenario) > 5.0 * found.coarse);
 }
 
+// A link on the ground's bushing that carries another by one with curves, whose axes turn with it:
+// the least order of a way, whose error at a step is known, and without the dampers a wrong result.
+static inline void hold_bushings(const char *engine, const char *way, double step_s, double order,
+                                 double error)
+{
+    static const char TEXT[] =
+        "bodies:\n"
+        "  arm: {mass: 1 kg, inertia: 0.02 kg m^2, at: [0.2 m, 0 m]}\n"
+        "  tip: {mass: 0.5 kg, inertia: 0.01 kg m^2, at: [0.4 m, -0.2 m], angle: -90 deg}\n"
+        "bushings:\n"
+        "  root: {between: [arm, ground], at: [0 m, 0 m], stiffness: [4e3 N/m, 9e3 N/m],\n"
+        "         damping: [20 N s/m, 40 N s/m], direction: 20 deg, torsional-damping: 0.1 N m "
+        "s/rad}\n"
+        "  knee: {between: [arm, tip], at-a: [0.4 m, 0 m], at-b: [0.401 m, 0.001 m],\n"
+        "         damping: 10 N s/m, interpolation: smooth, angle: -85 deg,\n"
+        "         force-x: [[-5 mm, -30 N], [0 mm, 0 N], [5 mm, 10 N]],\n"
+        "         force-y: [[-5 mm, -10 N], [0 mm, 0 N], [5 mm, 40 N]],\n"
+        "         torque: [[-20 deg, -1 N m], [0 deg, 0 N m], [20 deg, 2 N m]]}\n"
+        "run: {duration: 0.3 s, samples: 100}\n";
+    Scenario read;
+    Err err = {0};
+    if (!casefile_load_text("bushings", TEXT, strlen(TEXT), NULL, 0, &read, &err)) {
+        fail_msg("%s", err.text);
+    }
+    const Scenario scenario = kept_instead(&read);
+    const Refined found = refined(engine, way, &scenario, step_s, 0.5 * step_s);
+    if (!(found.order > order - 0.3) || !(found.coarse < error)) {
+        fail_msg("%s %s: order %g, error %g", engine, way, found.order, found.coarse);
+    }
+    Scenario changed = kept_copy(&scenario);
+    changed.linkage.bushings[1].damping = (Vec2){0.0, 0.0};
+    assert_true(omega_error(engine, way, &changed, &scenario) > 5.0 * found.coarse);
+    changed.linkage.bushings[1] = scenario.linkage.bushings[1];
+    changed.linkage.bushings[1].torque.count = 0;
+    assert_true(omega_error(engine, way, &changed, &scenario) > 5.0 * found.coarse);
+}
+
 // Friction of 1 in the pin, contacts within the step and as a force.
 static inline void hold_friction(const char *engine)
 {

@@ -87,6 +87,12 @@ static void springs_and_torques_act(void **state)
     hold_random_springs(BULLET, 41u);
 }
 
+static void bushings_act(void **state)
+{
+    (void)state;
+    hold_bushings(BULLET, "staggered", 100e-6, 2, 1e-4);
+}
+
 static void loads_and_motors_act(void **state)
 {
     (void)state;
@@ -106,6 +112,7 @@ int main(void)
         cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),
         cmocka_unit_test(half_a_step_makes_the_order),

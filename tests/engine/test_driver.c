@@ -226,7 +226,7 @@ static void what_is_no_driver_is_refused(void **state)
     char given[ENGINE_PATH_SIZE];
     snprintf(given, sizeof given, "toy=%s", getenv("JOINTPLAY_TOY_DRIVER"));
     assert_false(engine_given(given, &driver, &err));
-    assert_non_null(strstr(err.text, "its first line is not of protocol 1 to 2"));
+    assert_non_null(strstr(err.text, "its first line is not of protocol 1 to 3"));
     fault("");
 }
 

@@ -118,6 +118,12 @@ static void springs_and_torques_act(void **state)
     hold_random_springs(MUJOCO, 38u);
 }
 
+static void bushings_act(void **state)
+{
+    (void)state;
+    hold_bushings(MUJOCO, "force", 1e-3, 3, 1e-4);
+}
+
 static void loads_and_motors_act(void **state)
 {
     (void)state;
@@ -135,6 +141,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),
         cmocka_unit_test(ideal_joints_are_of_first_order),

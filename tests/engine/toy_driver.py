@@ -234,7 +234,7 @@ def main():
     request = json.loads(line)
     if request.get("jointplay-driver") != 1:
         sys.exit("this driver speaks protocol 1")
-    say(**{"jointplay-driver": 3 if FAULT == "other-protocol" else 1, "engine": "Toy",
+    say(**{"jointplay-driver": 99 if FAULT == "other-protocol" else 1, "engine": "Toy",
            "version": "1.0", "precision": "double", "ways": ["euler", "midpoint"]})
     if request["ask"] == "run":
         run(request)

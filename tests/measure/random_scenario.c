@@ -54,6 +54,11 @@ Scenario moved_scenario(const Scenario *scenario, double tolerance)
         move_anchor(spring->body_a, &spring->anchor_a, BY);
         move_anchor(spring->body_b, &spring->anchor_b, BY);
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        Bushing *bushing = &linkage->bushings[i];
+        move_anchor(bushing->body_a, &bushing->anchor_a, BY);
+        move_anchor(bushing->body_b, &bushing->anchor_b, BY);
+    }
     // closed forms are of a pivot at the origin
     other.has_fourbar = false;
     other.has_slidercrank = false;

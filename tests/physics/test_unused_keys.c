@@ -54,7 +54,8 @@ static const struct {
      "bodies: {lever: {mass: 1 kg, inertia: 0.01 kg m^2, at: [10 mm, 0 mm], velocity: [0 m/s, -0.1 "
      "m/s], spin: -10 rad/s}}\n"
      "joints: {hinge: {between: [ground, lever], at: [0 mm, 0 mm], low: -1 deg, high: 1 deg,\n"
-     "                 stiffness: 1e4 N m/rad, viscous-coefficient: 1 N m s/rad}}\n"
+     "                 stiffness: 1e4 N m/rad, viscous-coefficient: 1 N m s/rad,\n"
+     "                 gap-damping: 0.1 N m s/rad}}\n"
      "run: {duration: 10 ms, samples: 50, step: 20 us}\n"},
     {"gears", "bodies:\n"
               "  pinion: {mass: 0.2 kg, inertia: 40 kg mm^2, at: [0 mm, 0 mm], spin: 30 rad/s}\n"
@@ -100,6 +101,17 @@ static const struct {
      "10 deg}}\n"
      "run: {duration: 20 ms, samples: 50, step: 50 us}\n"
      "ode: {stepping: plain, settle-steps: 5}\n"},
+    {"bushings",
+     "bodies: {arm: {mass: 0.1 kg, inertia: 20 kg mm^2, at: [50 mm, 0 mm]}}\n"
+     "bushings: {soft: {between: [ground, arm], at-a: [0 mm, 0 mm], at-b: [1 mm, 0.5 mm],\n"
+     "                  stiffness: [1000 N/m, 3000 N/m], damping: [1 N s/m, 2 N s/m],\n"
+     "                  direction: 20 deg, torsional-stiffness: 2 N m/rad,\n"
+     "                  torsional-damping: 0.01 N m s/rad, angle: 5 deg},\n"
+     "           hard: {between: [ground, arm], at: [100 mm, 0 mm], interpolation: smooth,\n"
+     "                  force-x: [[-1 mm, -2 N], [0 mm, 0 N], [1 mm, 4 N]],\n"
+     "                  force-y: [[-1 mm, -9 N], [0 mm, 0 N], [1 mm, 4 N]],\n"
+     "                  torque: [[-1 deg, -2 N m], [0 deg, 0 N m], [9 deg, 9 N m]]}}\n"
+     "run: {duration: 20 ms, samples: 50, step: 50 us}\n"},
     {"quick solver with polygons",
      FOUR_BAR "contact: {stiffness: 1e8 N/m, damping: hunt-crossley, friction: 0.1}\n"
               "run: {revolutions: 0.02, samples: 3600, step: 5 us, backends: [ode]}\n"
@@ -220,8 +232,10 @@ static bool other_value(const SchemaRow *row, const CasefileSetting *setting, si
         numbers[i] = setting->kind == CASEFILE_INTEGER ? ceil(numbers[i]) : numbers[i];
     }
     if (setting->kind == CASEFILE_POINTS) {
-        text_append(text, "[[0 s, %.17g %s], [1 s, %.17g %s]]", setting->numbers[1] * factor,
-                    strchr(unit, ' ') + 1, setting->numbers[1], strchr(unit, ' ') + 1);
+        const int over = (int)strcspn(unit, ",");
+        const char *of = strchr(unit, ' ') + 1;
+        text_append(text, "[[0 %.*s, %.17g %s], [1 %.*s, %.17g %s]]", over, unit,
+                    setting->numbers[1] * factor, of, over, unit, setting->numbers[1], of);
         return true;
     }
     if (count == 1) {

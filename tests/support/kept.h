@@ -24,6 +24,7 @@ static inline Linkage kept_linkage(void)
                                                 .joints = 96,
                                                 .springs = 32,
                                                 .torsions = 32,
+                                                .bushings = 32,
                                                 .loads = 8,
                                                 .further = LINKAGE_DRIVE_MAX,
                                                 .profiles = 4}),
@@ -54,6 +55,8 @@ static inline Linkage kept_linkage_copy(const Linkage *linkage)
     copy.springs = memcpy(own.springs, linkage->springs, copy.spring_count * sizeof *own.springs);
     copy.torsions =
         memcpy(own.torsions, linkage->torsions, copy.torsion_count * sizeof *own.torsions);
+    copy.bushings =
+        memcpy(own.bushings, linkage->bushings, copy.bushing_count * sizeof *own.bushings);
     copy.loads = memcpy(own.loads, linkage->loads, copy.load_count * sizeof *own.loads);
     copy.further = memcpy(own.further, linkage->further, copy.further_count * sizeof *own.further);
     copy.profiles =
@@ -86,6 +89,7 @@ static inline void kept_settled(const Scenario *scenario)
     kept_hold(scenario->linkage.joints);
     kept_hold(scenario->linkage.springs);
     kept_hold(scenario->linkage.torsions);
+    kept_hold(scenario->linkage.bushings);
     kept_hold(scenario->linkage.loads);
     kept_hold(scenario->linkage.further);
     kept_hold(scenario->settled.first);

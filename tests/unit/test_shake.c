@@ -49,6 +49,7 @@ static bool is_alike(const Scenario *one, const Scenario *other)
     shared.linkage.joints = one->linkage.joints;
     shared.linkage.springs = one->linkage.springs;
     shared.linkage.torsions = one->linkage.torsions;
+    shared.linkage.bushings = one->linkage.bushings;
     shared.linkage.loads = one->linkage.loads;
     shared.linkage.further = one->linkage.further;
     shared.linkage.profiles = one->linkage.profiles;

@@ -154,6 +154,22 @@ static json_t *springs_json(const Linkage *linkage)
     return springs;
 }
 
+static json_t *bushings_json(const Linkage *linkage)
+{
+    json_t *bushings = json_array();
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const Bushing *bushing = &linkage->bushings[i];
+        json_t *object = json_object();
+        json_object_set_new(object, "name", json_value_text(bushing->name));
+        json_object_set_new(object, "body_a", json_integer(bushing->body_a));
+        json_object_set_new(object, "body_b", json_integer(bushing->body_b));
+        json_object_set_new(object, "anchor_a_m", vector_json(bushing->anchor_a));
+        json_object_set_new(object, "anchor_b_m", vector_json(bushing->anchor_b));
+        json_array_append_new(bushings, object);
+    }
+    return bushings;
+}
+
 static json_t *points_json(const Scenario *scenario)
 {
     json_t *points = json_array();
@@ -593,6 +609,7 @@ void report_data_write(const RunReport *report, const char *command, size_t pict
     json_object_set_new(data, "bodies", bodies_json(linkage));
     json_object_set_new(data, "joints", joints_json(linkage));
     json_object_set_new(data, "springs", springs_json(linkage));
+    json_object_set_new(data, "bushings", bushings_json(linkage));
     json_object_set_new(data, "points", points_json(scenario));
     json_object_set_new(data, "runs", runs_json(report, values_for(picture_size), &pack));
     json_object_set_new(data, "results", run_json_build(report));

@@ -1,5 +1,5 @@
-// Draws the mechanism where it is at a time: links, guides, springs, gears, pins in their holes
-// with the play magnified, the paths of points, and the forces in the joints.
+// Draws the mechanism where it is at a time: links, guides, springs, bushings, gears, pins in their
+// holes with the play magnified, the paths of points, and the forces in the joints.
 
 const GROUND = -1;
 const FIT_SAMPLES = 400; // that the picture is fitted to
@@ -165,6 +165,10 @@ class Mechanism {
         for (const spring of this.data.springs) {
             add(spring.body_a, spring.anchor_a_m);
             add(spring.body_b, spring.anchor_b_m);
+        }
+        for (const bushing of this.data.bushings) {
+            add(bushing.body_a, bushing.anchor_a_m);
+            add(bushing.body_b, bushing.anchor_b_m);
         }
         for (const point of this.data.points) {
             add(point.body, point.at_m);
@@ -332,6 +336,7 @@ class Mechanism {
         this.drawBodies(main.poses, true);
         shown.filter((one) => one !== main).forEach(({ poses }) => this.drawBodies(poses, false));
         this.drawSprings(main.poses);
+        this.drawBushings(main.poses);
         this.drawJoints(main.poses, true);
         shown
             .filter((one) => one !== main && one.poses.run.backend !== "analytic")
@@ -483,6 +488,26 @@ class Mechanism {
                 );
             }
             context.lineTo(...to);
+            context.stroke();
+        }
+    }
+
+    // A ring of rubber on the first body, and the pin of the second in it.
+    drawBushings(poses) {
+        const { context } = this;
+        for (const bushing of this.data.bushings) {
+            const ring = this.toScreen(poses.point(bushing.body_a, bushing.anchor_a_m));
+            const pin = this.toScreen(poses.point(bushing.body_b, bushing.anchor_b_m));
+            context.strokeStyle = colourOf("ink");
+            context.lineWidth = 3.2;
+            context.globalAlpha = 0.45;
+            context.beginPath();
+            context.arc(...ring, 1.5 * this.pin, 0, 2 * Math.PI);
+            context.stroke();
+            context.globalAlpha = 1;
+            context.lineWidth = 1.4;
+            context.beginPath();
+            context.arc(...pin, 0.6 * this.pin, 0, 2 * Math.PI);
             context.stroke();
         }
     }

@@ -2,6 +2,7 @@
 #include "commands/run/run_overview.h"
 #include "commands/run/run_report.h"
 #include "model/coordinate.h"
+#include "run/bushing_load.h"
 #include "write/assumed.h"
 #include "write/json_value.h"
 #include "write/measured_fields.h"
@@ -388,6 +389,30 @@ static json_t *joints_object(const Linkage *linkage, const NumberSource *of)
     return joints;
 }
 
+static void set_extreme(json_t *object, const char *name, const char *unit, const Extreme *extreme)
+{
+    char key[48];
+    snprintf(key, sizeof key, "%s_max_%s", name, unit);
+    json_value_set(object, key, extreme->value);
+    snprintf(key, sizeof key, "%s_max_time_s", name);
+    json_value_set(object, key, extreme->time_s);
+}
+
+static json_t *bushings_object(const Trajectory *run)
+{
+    json_t *bushings = json_object();
+    for (size_t i = 0; i < run->linkage.bushing_count; i++) {
+        const BushingExtremes extremes = bushing_extremes(run, i);
+        json_t *object = json_object();
+        set_extreme(object, "force", "N", &extremes.force);
+        set_extreme(object, "torque", "N_m", &extremes.torque);
+        set_extreme(object, "deflection", "m", &extremes.deflection);
+        set_extreme(object, "angle", "rad", &extremes.angle);
+        json_object_set_new(bushings, run->linkage.bushings[i].name, object);
+    }
+    return bushings;
+}
+
 // What another engine said of itself; null of a solver of our own.
 static json_t *engine_object(const TrajectoryEngine *engine)
 {
@@ -417,6 +442,9 @@ static json_t *run_object(const RunReport *report, size_t index)
     json_object_set_new(object, "engine", engine_object(&run->engine));
     json_object_set_new(object, "bodies", bodies_object(linkage, &source));
     json_object_set_new(object, "joints", joints_object(linkage, &source));
+    if (linkage->bushing_count > 0) {
+        json_object_set_new(object, "bushings", bushings_object(run));
+    }
     json_object_set_new(object, "error", run_truth_json_error(report, index));
     json_t *energy = json_object();
     number_fields_json(energy, NUMBER_OWNER_ENERGY, &source, linkage, 0);

@@ -9,6 +9,7 @@
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "measure/creep.h"
+#include "run/bushing_load.h"
 #include "run/drive_torque.h"
 #include "run/ideal.h"
 #include "write/assumed.h"
@@ -232,6 +233,18 @@ static void add_joints(const RunReport *report, const IdealSizes *ideal, Overvie
     qsort(overview->ideal_joints, overview->ideal_count, sizeof *overview->ideal_joints, by_size);
 }
 
+static void add_bushings(Overview *overview)
+{
+    const Linkage *linkage = &overview->run->linkage;
+    overview->bushings = zeroed(linkage->bushing_count, sizeof *overview->bushings);
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        OverviewRow row = {.name = linkage->bushings[i].name};
+        set_largest(&row, "force", "N", "N", bushing_extremes(overview->run, i).force, NAN);
+        overview->bushings[overview->bushing_count++] = row;
+    }
+    qsort(overview->bushings, overview->bushing_count, sizeof *overview->bushings, by_size);
+}
+
 static void add_bodies(const Linkage *linkage, const IdealSizes *ideal, Overview *overview)
 {
     overview->bodies = zeroed(linkage->body_count, sizeof *overview->bodies);
@@ -258,6 +271,7 @@ Overview run_overview_make(const RunReport *report)
     overview.motion = overview_motion(scenario, overview.run);
     IdealSizes ideal = ideal_sizes(scenario);
     add_joints(report, &ideal, &overview);
+    add_bushings(&overview);
     add_bodies(&scenario->linkage, &ideal, &overview);
     overview.drive_count = drive_torque_count(&scenario->linkage);
     for (size_t i = 0; i < overview.drive_count; i++) {
@@ -274,6 +288,7 @@ void run_overview_free(Overview *overview)
 {
     free(overview->joints);
     free(overview->ideal_joints);
+    free(overview->bushings);
     free(overview->bodies);
 }
 
@@ -465,12 +480,15 @@ static bool write_table(const Overview *overview, const Scenario *scenario, Over
     const size_t ideals =
         run_overview_has_ideal(overview) ? least(overview->ideal_count, rows.ideals) : 0;
     const size_t bodies = least(overview->body_count, rows.bodies);
-    if (joints + ideals + bodies == 0) {
+    const size_t bushings = least(overview->bushing_count, rows.ideals);
+    if (joints + ideals + bushings + bodies == 0) {
         return false;
     }
-    const OverviewTable made = begin_table(overview, has_crank, joints + ideals > 0, rows.width);
+    const OverviewTable made =
+        begin_table(overview, has_crank, joints + ideals + bushings > 0, rows.width);
     add_rows(&made, overview->joints, joints);
     add_rows(&made, overview->ideal_joints, ideals);
+    add_rows(&made, overview->bushings, bushings);
     add_rows(&made, overview->bodies, bodies);
     add_rows(&made, overview->drives, overview->drive_count);
     table_write(made.table, text);
@@ -946,6 +964,9 @@ void run_overview_json(json_t *object, const RunReport *report)
     json_object_set_new(made, "joints", rows_json(overview.joints, overview.joint_count));
     json_object_set_new(made, "ideal_joints",
                         rows_json(overview.ideal_joints, overview.ideal_count));
+    if (overview.bushing_count > 0) {
+        json_object_set_new(made, "bushings", rows_json(overview.bushings, overview.bushing_count));
+    }
     json_object_set_new(made, "bodies", rows_json(overview.bodies, overview.body_count));
     json_t *drives = rows_json(overview.drives, overview.drive_count);
     json_t *first = json_array_get(drives, 0);

@@ -37,7 +37,7 @@ typedef struct OverviewCell {
     double high;
 } OverviewCell;
 
-// One line: a joint, a body or a drive.
+// One line: a joint, a bushing, a body or a drive.
 typedef struct OverviewRow {
     const char *name;
     OverviewCell cells[OVERVIEW_QUANTITY_COUNT];
@@ -50,6 +50,8 @@ typedef struct Overview {
     OverviewRow *joints; // with play, the largest first; owned, as the two below
     size_t ideal_count;
     OverviewRow *ideal_joints; // those without, of the run
+    size_t bushing_count;
+    OverviewRow *bushings; // of the run, at its samples; owned
     size_t body_count;
     OverviewRow *bodies;
     size_t drive_count; // 0 where no torque turns a body
@@ -96,11 +98,11 @@ static inline bool run_overview_has_ideal(const Overview *overview)
 void run_overview_cell(const OverviewRow *row, OverviewQuantity quantity, Text *text);
 
 // Of the run that is taken for the truth, or the last that is complete, or of the settled motion
-// where that is more than the run shows: of each joint with play its largest force, of each body
-// its largest angular acceleration, of each drive its largest torque, each beside that with ideal
-// joints; how the motion settled and what the damping does to it; how far ODE is off; and what was
-// assumed. The width is that of a style (write/table.h). `is_alone` without the tables of
-// run_text.c below it.
+// where that is more than the run shows: of each joint with play and each bushing its largest
+// force, of each body its largest angular acceleration, of each drive its largest torque, each
+// beside that with ideal joints; how the motion settled and what the damping does to it; how far
+// ODE is off; and what was assumed. The width is that of a style (write/table.h). `is_alone`
+// without the tables of run_text.c below it.
 void run_overview_write(const RunReport *report, size_t width, bool is_alone, Text *text);
 
 // What the first screen begins with, as soon as there is a reference, of a report of it alone:

@@ -1,6 +1,7 @@
 // Writes the text of a run: the model, the closed form, and what came out.
 #include "analytic/closed_form.h"
 #include "base/zeroed.h"
+#include "commands/run/run_loads.h"
 #include "commands/run/run_overview.h"
 #include "commands/run/run_report.h"
 #include "contact/law.h"
@@ -16,133 +17,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-// What pushes a mechanism beside its joints: springs, dampers, a torque or force over time.
-
-static void append_damping(Text *said, double damping, const char *unit)
-{
-    if (damping > 0.0) {
-        text_append(said, "%sdamping %.4g %s", said->length > 0 ? ", " : "", damping, unit);
-    } else if (said->length == 0) {
-        text_append(said, "neither stiffness nor damping");
-    }
-}
-
-static void run_text_write_springs(const Linkage *linkage, size_t width, Text *text)
-{
-    Alike *alike = alike_start();
-    for (size_t i = 0; i < linkage->spring_count; i++) {
-        const Spring *spring = &linkage->springs[i];
-        Text said;
-        text_init(&said);
-        if (spring->stiffness > 0.0) {
-            text_append(&said, "%.4g N/m, relaxed at %.6g mm", spring->stiffness,
-                        spring->length * UNITS_MM);
-        }
-        append_damping(&said, spring->damping, "N s/m");
-        alike_add(alike, spring->name, said.data);
-        text_finish(&said);
-    }
-    for (size_t i = 0; i < linkage->torsion_count; i++) {
-        const TorsionSpring *spring = &linkage->torsions[i];
-        Text said;
-        text_init(&said);
-        if (spring->stiffness > 0.0) {
-            text_append(&said, "%.4g N m/rad, relaxed at %.6g deg", spring->stiffness,
-                        spring->angle * UNITS_DEG);
-        }
-        append_damping(&said, spring->damping, "N m s/rad");
-        text_append(&said, " at %s", linkage->joints[spring->joint].name);
-        alike_add(alike, spring->name, said.data);
-        text_finish(&said);
-    }
-    alike_end(alike, "  springs     ", ": ", width, text);
-}
-
-// A motor, or a drive that follows its speed softly; false where the torque is neither.
-static bool write_motor(const Linkage *linkage, Text *text)
-{
-    const Torque *torque = &linkage->torque;
-    const char *name = linkage->joints[torque->joint].name;
-    if (torque->no_load != 0.0) {
-        text_append(text, "  drive       motor at %s, %.6g N m at rest, none at %.6g rpm\n", name,
-                    torque->table.values[0], torque->no_load * UNITS_RPM);
-    } else if (torque->followed.is_present) {
-        text_append(text,
-                    "  drive       follows %.6g rpm at %s by %.4g N m/rad and %.4g N m s/rad\n",
-                    torque->followed.speed * UNITS_RPM, name, torque->stiffness, torque->slope);
-    } else {
-        return false;
-    }
-    return true;
-}
-
-// From the smallest to the largest of some numbers.
-static Range range_of(const double *values, size_t count)
-{
-    Range range = RANGE_EMPTY;
-    for (size_t i = 0; i < count; i++) {
-        range_add(&range, values[i]);
-    }
-    return range;
-}
-
-static void run_text_write_torque(const Linkage *linkage, Text *text)
-{
-    const TimeTable *table = &linkage->torque.table;
-    if (table->count == 0 || write_motor(linkage, text)) {
-        return;
-    }
-    const Joint *joint = &linkage->joints[linkage->torque.joint];
-    const bool is_force = joint_has_position(joint->kind);
-    const char *unit = is_force ? "N" : "N m";
-    const Range values = range_of(table->values, table->count);
-    text_append(text, "  drive       %s ", is_force ? "force" : "torque");
-    if (values.least == values.most) {
-        text_append(text, "%.6g %s", values.least, unit);
-    } else {
-        text_append(text, "%.6g to %.6g %s by %zu points over time", values.least, values.most,
-                    unit, table->count);
-    }
-    text_append(text, " at %s\n", joint->name);
-}
-
-static void write_loads(const Linkage *linkage, size_t width, Text *text)
-{
-    static const char *const OVERS[] = {"time", "the crank's angle", "its position"};
-    Alike *alike = alike_start();
-    for (size_t i = 0; i < linkage->load_count; i++) {
-        const Load *load = &linkage->loads[i];
-        const LoadTable *table = &load->table;
-        const char *unit = load_is_force(linkage, load) ? "N" : "N m";
-        const Range values = range_of(table->values, table->count);
-        Text said;
-        text_init(&said);
-        text_append(&said, "%.6g", values.least);
-        if (table->count > 1) {
-            text_append(&said, " to %.6g %s by %zu points over %s", values.most, unit, table->count,
-                        OVERS[load->over]);
-        } else {
-            text_append(&said, " %s", unit);
-        }
-        text_append(&said, load->kind == LOAD_ALONG ? " along %s" : " on %s",
-                    load->kind == LOAD_ALONG ? linkage->joints[load->joint].name
-                                             : linkage->bodies[load->body].name);
-        alike_add(alike, load->name, said.data);
-        text_finish(&said);
-    }
-    alike_end(alike, "  loads       ", ": ", width, text);
-}
-
-// What pushes the mechanism beside its joints: springs, dampers, loads, a torque or force that
-// drives it. Nothing where there is none.
-static void run_loads_write(const RunReport *report, size_t width, Text *text)
-{
-    const Linkage *linkage = &report->scenario->linkage;
-    run_text_write_springs(linkage, width, text);
-    run_text_write_torque(linkage, text);
-    write_loads(linkage, width, text);
-}
 
 // The closed form of the mechanism, before any solver has taken a step.
 
@@ -792,6 +666,10 @@ static void write_impact_law(const Scenario *scenario, const Joint *joint, Text 
         write_eye(&joint->clearance, text);
     }
     run_text_write_damping(&own, is_built ? &law : NULL, is_turning, text);
+    if (joint->contact.gap_damping > 0.0) {
+        text_append(text, ", in the gap %.4g %s", joint->contact.gap_damping,
+                    is_turning ? "N m s/rad" : "N s/m");
+    }
 }
 
 static void write_penalty(const Scenario *scenario, const Joint *joint, Text *text)
@@ -920,7 +798,7 @@ void run_text_write(const void *of, const Style *style, Text *text)
     run_overview_write(report, style->width, false, text);
     text_append(text, "\n");
     write_mechanism(report, style->width, text);
-    run_loads_write(report, style->width, text);
+    run_loads_write(&report->scenario->linkage, style->width, text);
     write_drive(scenario, text);
     settled_text(scenario, text);
     run_text_write_contact(scenario, style->width, text);

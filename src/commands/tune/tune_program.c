@@ -8,6 +8,8 @@
 #include "base/clock.h"
 #include "base/err.h"
 #include "base/zeroed.h"
+#include "commands/tune/tune_bodies.h"
+#include "commands/tune/tune_bushings.h"
 #include "commands/tune/tune_export.h"
 #include "commands/tune/tune_world.h"
 #include "contact/damping.h"
@@ -29,9 +31,10 @@
 typedef struct LibraryWorld {
     const Scenario *scenario;
     dWorldID world;
-    dBodyID *bodies;   // owned; by body
-    dJointID *joints;  // owned; by joint, NULL where it is none of ODE's
-    dJointID *dampers; // owned; by spring, NULL where it has none
+    dBodyID *bodies;       // owned; by body
+    dJointID *joints;      // owned; by joint, NULL where it is none of ODE's
+    dJointID *dampers;     // owned; by spring, NULL where it has none
+    TuneBushing *bushings; // owned
     JpWorld *play;
     size_t steps;
 } LibraryWorld;
@@ -52,7 +55,7 @@ static void tune_program_make_body(LibraryWorld *world, int number)
 {
     const Linkage *linkage = &world->scenario->linkage;
     const Body *body = &linkage->bodies[number];
-    const bool is_led = tune_world_is_led(linkage, number);
+    const bool is_led = tune_bodies_is_led(linkage, number);
     const Motion *start = &body->start;
     const Vec2 at = is_led ? linkage->joints[linkage->driver.joint].anchor_a : start->position;
     const Vec2 speed = is_led ? (Vec2){0.0, 0.0} : start->velocity;
@@ -121,7 +124,7 @@ static void make_motors(LibraryWorld *world, const Motion *motions)
     const Linkage *linkage = &world->scenario->linkage;
     const Driver *driver = &linkage->driver;
     const int driven = linkage_driven_body(linkage);
-    if (tune_world_is_led(linkage, driven)) {
+    if (tune_bodies_is_led(linkage, driven)) {
         dBodySetKinematic(world->bodies[driven]);
     } else if (driver->is_present) {
         dJointSetHingeParam(world->joints[driver->joint], dParamFMax, dInfinity);
@@ -137,6 +140,12 @@ static void make_motors(LibraryWorld *world, const Motion *motions)
         if (linkage->springs[i].damping > 0.0) {
             make_damper(world, i, motions);
         }
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const Bushing *bushing = &linkage->bushings[i];
+        world->bushings[i] =
+            tune_bushing_make(world->world, bushing, tune_program_body_of(world, bushing->body_a),
+                              tune_program_body_of(world, bushing->body_b));
     }
 }
 
@@ -162,8 +171,8 @@ static void pull(const LibraryWorld *world, size_t number)
     dVector3 to;
     dVector3 v;
     dVector3 w;
-    tune_program_find_end(a, tune_world_local(linkage, spring->body_a, spring->anchor_a), from, v);
-    tune_program_find_end(b, tune_world_local(linkage, spring->body_b, spring->anchor_b), to, w);
+    tune_program_find_end(a, tune_bodies_local(linkage, spring->body_a, spring->anchor_a), from, v);
+    tune_program_find_end(b, tune_bodies_local(linkage, spring->body_b, spring->anchor_b), to, w);
     const double distance = hypot(to[0] - from[0], to[1] - from[1]);
     const double x = (to[0] - from[0]) / distance;
     const double y = (to[1] - from[1]) / distance;
@@ -192,6 +201,10 @@ static void tune_program_push(dWorldID pushed, void *data)
     const Linkage *linkage = &world->scenario->linkage;
     for (size_t i = 0; i < linkage->spring_count; i++) {
         pull(world, i);
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        tune_bushing_push(linkage, &linkage->bushings[i], &world->bushings[i],
+                          world->scenario->run.step);
     }
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
@@ -287,8 +300,8 @@ static bool make_pin(LibraryWorld *world, int number, Err *err)
     const Scenario *scenario = world->scenario;
     const Linkage *linkage = &scenario->linkage;
     const Joint *joint = &linkage->joints[number];
-    const Vec2 hole = tune_world_local(linkage, joint->body_a, joint->anchor_a);
-    const Vec2 centre = tune_world_local(linkage, joint->body_b, joint->anchor_b);
+    const Vec2 hole = tune_bodies_local(linkage, joint->body_a, joint->anchor_a);
+    const Vec2 centre = tune_bodies_local(linkage, joint->body_b, joint->anchor_b);
     JpPinInHole pin = jp_pin_default();
     pin.hole_radius = joint->clearance.hole_radius;
     pin.pin_radius = joint->clearance.pin_radius;
@@ -383,6 +396,7 @@ static bool library_world_open(const Scenario *scenario, LibraryWorld *world, Er
         .bodies = zeroed(linkage->body_count, sizeof(dBodyID)),
         .joints = zeroed(linkage->joint_count, sizeof(dJointID)),
         .dampers = zeroed(linkage->spring_count, sizeof(dJointID)),
+        .bushings = zeroed(linkage->bushing_count, sizeof(TuneBushing)),
     };
     dWorldSetGravity(world->world, 0.0 + scenario->gravity.x, 0.0 + scenario->gravity.y, 0);
     dWorldSetERP(world->world,
@@ -430,10 +444,10 @@ static void library_world_motions(const LibraryWorld *world, Motion *motions)
             .velocity = {velocity[0], velocity[1]},
             .omega = dBodyGetAngularVel(world->bodies[i])[2],
         };
-        if (tune_world_is_led(linkage, i)) {
+        if (tune_bodies_is_led(linkage, i)) {
             // from its pivot to its centre
             const Vec2 arm =
-                vec2_rotate(motions[i].angle, tune_world_local(linkage, i, (Vec2){0.0, 0.0}));
+                vec2_rotate(motions[i].angle, tune_bodies_local(linkage, i, (Vec2){0.0, 0.0}));
             motions[i].position = vec2_add(motions[i].position, arm);
             motions[i].velocity = vec2_scale(motions[i].omega, vec2_perp(arm));
         }
@@ -447,6 +461,7 @@ static void library_world_close(LibraryWorld *world)
     free(world->bodies);
     free(world->joints);
     free(world->dampers);
+    free(world->bushings);
     *world = (LibraryWorld){.scenario = NULL};
 }
 

@@ -6,6 +6,8 @@
 #include "commands/tune/tune_world.h"
 #include "base/shell.h"
 #include "base/zeroed.h"
+#include "commands/tune/tune_bodies.h"
+#include "commands/tune/tune_bushings.h"
 #include "contact/damping.h"
 #include "contact/law.h"
 #include "model/coordinate.h"
@@ -60,70 +62,6 @@ static void tune_code_head(const TuneCode *code, const char *what, const char *c
 // the joint's coordinate less what that is at the start (model/coordinate.h); a prismatic joint is
 // ODE's slider along its line, with the same sign.
 
-static void write_plain(const char *name, Text *text)
-{
-    for (const char *letter = name; *letter != '\0'; letter++) {
-        const bool is_plain = (*letter >= 'a' && *letter <= 'z') ||
-                              (*letter >= 'A' && *letter <= 'Z') ||
-                              (*letter >= '0' && *letter <= '9');
-        text_append(text, "%c", is_plain ? *letter : '_');
-    }
-}
-
-// Whether two names are one where all but letters and digits is one sign.
-static bool tune_world_are_alike(const char *a, const char *b)
-{
-    Text first;
-    Text second;
-    text_init(&first);
-    text_init(&second);
-    write_plain(a, &first);
-    write_plain(b, &second);
-    const bool is_same =
-        first.length == second.length && strncmp(first.data, second.data, first.length) == 0;
-    text_finish(&first);
-    text_finish(&second);
-    return is_same;
-}
-
-typedef enum Named { BODIES, JOINTS } Named;
-
-static const char *tune_world_name_of(const Linkage *linkage, Named named, int number)
-{
-    return named == BODIES ? linkage->bodies[number].name : linkage->joints[number].name;
-}
-
-// The name in letters and digits, with the number behind it where another would be the same.
-static void write_unique(const Linkage *linkage, Named named, int number, Text *text)
-{
-    const size_t count = named == BODIES ? linkage->body_count : linkage->joint_count;
-    const char *name = tune_world_name_of(linkage, named, number);
-    write_plain(name, text);
-    for (int i = 0; i < (int)count; i++) {
-        if (i != number && tune_world_are_alike(tune_world_name_of(linkage, named, i), name)) {
-            text_append(text, "_%d", number);
-            return;
-        }
-    }
-}
-
-static void tune_world_body(const Linkage *linkage, int body, Text *text)
-{
-    if (body == LINKAGE_GROUND) {
-        text_append(text, "NULL");
-        return;
-    }
-    text_append(text, "body_");
-    write_unique(linkage, BODIES, body, text);
-}
-
-// Appends the name in C of a body or joint: no keyword, and no other's.
-static void tune_world_joint(const Linkage *linkage, int joint, Text *text)
-{
-    text_append(text, "joint_");
-    write_unique(linkage, JOINTS, joint, text);
-}
-
 // The number of a joint with play among those that have some.
 static size_t tune_world_number(const Linkage *linkage, int joint)
 {
@@ -132,20 +70,6 @@ static size_t tune_world_number(const Linkage *linkage, int joint)
         number += linkage_has_play(&linkage->joints[i]) ? 1 : 0;
     }
     return number;
-}
-
-bool tune_world_is_led(const Linkage *linkage, int body)
-{
-    return body != LINKAGE_GROUND && linkage_is_driven(linkage, body) &&
-           drive_is_steady(&linkage->driver);
-}
-
-Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local)
-{
-    const int joint = linkage->driver.joint;
-    return tune_world_is_led(linkage, body)
-               ? vec2_sub(local, linkage_end(&linkage->joints[joint], 1).anchor)
-               : local;
 }
 
 bool tune_world_is_ideal(const Linkage *linkage, int joint)
@@ -168,9 +92,9 @@ static void write_call(const Linkage *linkage, const char *name, const int bodie
                        Text *text)
 {
     text_append(text, "%s(", name);
-    tune_world_body(linkage, bodies[0], text);
+    tune_bodies_name(linkage, bodies[0], text);
     text_append(text, ", ");
-    tune_world_body(linkage, bodies[1], text);
+    tune_bodies_name(linkage, bodies[1], text);
     text_append(text, ", %s, %s);\n", number_shortest(at.x).text, number_shortest(at.y).text);
 }
 
@@ -186,7 +110,7 @@ static void tune_world_ideal(const Linkage *linkage, int number, Text *text)
     linkage_turning(linkage, number, &bodies[0], &bodies[1]);
     Motion *motions = motions_of(linkage);
     text_append(text, "    ");
-    tune_world_joint(linkage, number, text);
+    tune_bodies_joint_name(linkage, number, text);
     text_append(text, " = ");
     if (joint_slides(joint->kind)) {
         const Vec2 along = joint_rows_along(linkage, motions, number);
@@ -211,7 +135,8 @@ static void write_field(const char *name, const char *field, double value, const
 }
 
 // A point in the frame of its body, where it is not at the centre.
-static void tune_world_joints_write_point(const char *name, const char *field, Vec2 at, Text *text)
+static void tune_bodies_joint_names_write_point(const char *name, const char *field, Vec2 at,
+                                                Text *text)
 {
     const double numbers[2] = {at.x, at.y};
     for (int i = 0; i < 2; i++) {
@@ -350,18 +275,18 @@ static bool tune_world_write_pin(const Scenario *scenario, int number, Text *tex
     const char *pin = made.options.data;
     write_field(pin, "hole_radius", joint->clearance.hole_radius, "m", text);
     write_field(pin, "pin_radius", joint->clearance.pin_radius, "m", text);
-    tune_world_joints_write_point(pin, "hole",
-                                  tune_world_local(linkage, joint->body_a, joint->anchor_a), text);
-    tune_world_joints_write_point(pin, "pin",
-                                  tune_world_local(linkage, joint->body_b, joint->anchor_b), text);
+    tune_bodies_joint_names_write_point(
+        pin, "hole", tune_bodies_local(linkage, joint->body_a, joint->anchor_a), text);
+    tune_bodies_joint_names_write_point(
+        pin, "pin", tune_bodies_local(linkage, joint->body_b, joint->anchor_b), text);
     const bool is_done = tune_world_write_contact(scenario, joint, made.contact.data, text, err);
     if (contact.friction > 0.0) {
         write_field(pin, "friction", contact.friction, "", text);
         write_field(pin, "friction_speed", contact.friction_speed, "m/s", text);
     }
-    tune_world_body(linkage, joint->body_a, &made.on);
+    tune_bodies_name(linkage, joint->body_a, &made.on);
     text_append(&made.on, ", ");
-    tune_world_body(linkage, joint->body_b, &made.on);
+    tune_bodies_name(linkage, joint->body_b, &made.on);
     end_made(&made, linkage, number, "pin", text);
     return is_done;
 }
@@ -388,7 +313,7 @@ static bool tune_world_write_limits(const Scenario *scenario, int number, Text *
         write_field(limits, "high", joint->limits.high - start, unit, text);
     }
     const bool is_done = tune_world_write_contact(scenario, joint, made.contact.data, text, err);
-    tune_world_joint(linkage, number, &made.on);
+    tune_bodies_joint_name(linkage, number, &made.on);
     end_made(&made, linkage, number, what, text);
     return is_done;
 }
@@ -420,7 +345,8 @@ bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring)
 
 bool tune_world_pushes(const Linkage *linkage)
 {
-    bool is_any = linkage->spring_count > 0 || linkage->torque.table.count > 0;
+    bool is_any =
+        linkage->spring_count > 0 || linkage->bushing_count > 0 || linkage->torque.table.count > 0;
     for (size_t i = 0; i < linkage->torsion_count; i++) {
         const TorsionSpring *spring = &linkage->torsions[i];
         is_any = is_any || (tune_world_has_effect(linkage, spring) && spring->stiffness > 0.0);
@@ -489,8 +415,8 @@ static const char SPRING[] =
 
 static void tune_world_forces_write_point(const Linkage *linkage, int body, Vec2 at, Text *text)
 {
-    const Vec2 local = tune_world_local(linkage, body, at);
-    tune_world_body(linkage, body, text);
+    const Vec2 local = tune_bodies_local(linkage, body, at);
+    tune_bodies_name(linkage, body, text);
     text_append(text, ", %s, %s, ", number_shortest(local.x).text, number_shortest(local.y).text);
 }
 
@@ -527,12 +453,12 @@ static void write_torsions(const Linkage *linkage, Text *text)
             continue;
         }
         text_append(text, "    dJointAddHingeTorque(");
-        tune_world_joint(linkage, spring->joint, text);
+        tune_bodies_joint_name(linkage, spring->joint, text);
         text_append(
             text, ", %s * (%s - dJointGetHingeAngle(", number_shortest(spring->stiffness).text,
             number_shortest(spring->angle - tune_world_angle_at_start(linkage, spring->joint))
                 .text);
-        tune_world_joint(linkage, spring->joint, text);
+        tune_bodies_joint_name(linkage, spring->joint, text);
         text_append(text, "))); // within half a turn\n");
     }
 }
@@ -545,7 +471,7 @@ static void tune_world_write_torque(const Linkage *linkage, Text *text)
     }
     const bool is_hinge = joint_has_angle(linkage->joints[torque->joint].kind);
     text_append(text, "    %s(", is_hinge ? "dJointAddHingeTorque" : "dJointAddSliderForce");
-    tune_world_joint(linkage, torque->joint, text);
+    tune_bodies_joint_name(linkage, torque->joint, text);
     text_append(text, ", at(DRIVE, sizeof DRIVE / sizeof *DRIVE, middle));\n");
 }
 
@@ -569,11 +495,13 @@ static void tune_world_push(const Linkage *linkage, Text *text)
             text_append(text, "\nstatic dJointID damper_%zu;\n", i);
         }
     }
+    tune_bushings_write_functions(linkage, text);
     if (tune_world_pushes(linkage)) {
         text_append(text, "\n// where the step evaluates forces\n"
                           "static void push(dWorldID pushed, void *data)\n{\n"
                           "    (void)pushed;\n    (void)data;\n");
         tune_world_write_springs(linkage, text);
+        tune_bushings_write_pushing(linkage, text);
         write_torsions(linkage, text);
         tune_world_write_torque(linkage, text);
         text_append(text, "}\n");
@@ -584,7 +512,7 @@ static void write_param(const Linkage *linkage, int joint, const char *param, co
                         Text *text)
 {
     text_append(text, "    dJointSetHingeParam(");
-    tune_world_joint(linkage, joint, text);
+    tune_bodies_joint_name(linkage, joint, text);
     text_append(text, ", %s, %s);\n", param, value);
 }
 
@@ -598,9 +526,9 @@ static void write_damper(const Linkage *linkage, size_t number, Text *text)
     text_append(text,
                 "    damper_%zu = dJointCreateDBall(world, 0);\n    dJointAttach(damper_%zu, ",
                 number, number);
-    tune_world_body(linkage, bodies[first], text);
+    tune_bodies_name(linkage, bodies[first], text);
     text_append(text, ", ");
-    tune_world_body(linkage, bodies[1 - first], text);
+    tune_bodies_name(linkage, bodies[1 - first], text);
     text_append(text, ");\n");
     for (int i = 0; i < 2; i++) {
         const int side = i == 0 ? first : 1 - first;
@@ -620,9 +548,9 @@ static void tune_world_motors(const Linkage *linkage, Text *text)
 {
     const Driver *driver = &linkage->driver;
     const int driven = linkage_driven_body(linkage);
-    if (tune_world_is_led(linkage, driven)) {
+    if (tune_bodies_is_led(linkage, driven)) {
         text_append(text, "    dBodySetKinematic(");
-        tune_world_body(linkage, driven, text);
+        tune_bodies_name(linkage, driven, text);
         text_append(text, "); // at its pivot, and at constant speed\n");
     } else if (driver->is_present) {
         write_param(linkage, driver->joint, "dParamFMax", "dInfinity", text);
@@ -640,6 +568,7 @@ static void tune_world_motors(const Linkage *linkage, Text *text)
             write_damper(linkage, i, text);
         }
     }
+    tune_bushings_write_making(linkage, text);
 }
 
 // Appends what is set before each step.
@@ -668,7 +597,7 @@ static void tune_world_drive(const Linkage *linkage, Text *text)
             Text rate;
             text_init(&rate);
             text_append(&rate, "-dJointGetHingeAngleRate(");
-            tune_world_joint(linkage, spring->joint, &rate);
+            tune_bodies_joint_name(linkage, spring->joint, &rate);
             text_append(&rate, ")");
             text_append(text, "    ");
             write_param(linkage, spring->joint, "dParamVel", rate.data, text);
@@ -702,14 +631,14 @@ static void tune_world_write_names(const Linkage *linkage, Text *text)
     text_append(text, "static dBodyID ");
     for (int i = 0; i < (int)linkage->body_count; i++) {
         text_append(text, "%s", i > 0 ? ", " : "");
-        tune_world_body(linkage, i, text);
+        tune_bodies_name(linkage, i, text);
     }
     text_append(text, ";\n");
     bool is_first = true;
     for (int i = 0; i < (int)linkage->joint_count; i++) {
         if (tune_world_is_ideal(linkage, i)) {
             text_append(text, "%s", is_first ? "static dJointID " : ", ");
-            tune_world_joint(linkage, i, text);
+            tune_bodies_joint_name(linkage, i, text);
             is_first = false;
         }
     }
@@ -788,14 +717,14 @@ static void write_functions(const Scenario *scenario, Text *text)
 static void tune_world_write_body(const Linkage *linkage, int number, Text *text)
 {
     const Body *body = &linkage->bodies[number];
-    const bool is_led = tune_world_is_led(linkage, number);
+    const bool is_led = tune_bodies_is_led(linkage, number);
     const Motion *start = &body->start;
     const Vec2 at = is_led ? linkage->joints[linkage->driver.joint].anchor_a : start->position;
     const Vec2 speed = is_led ? (Vec2){0.0, 0.0} : start->velocity;
     const double numbers[] = {body->mass,   body->inertia, at.x,    at.y,
                               start->angle, speed.x,       speed.y, start->omega};
     text_append(text, "    ");
-    tune_world_body(linkage, number, text);
+    tune_bodies_name(linkage, number, text);
     text_append(text, " = make_body(");
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
         text_append(text, "%s%s",
@@ -868,7 +797,7 @@ static void write_list(const Linkage *linkage, Text *text)
     text_append(text, "\n    const dBodyID bodies[] = {");
     for (int i = 0; i < (int)linkage->body_count; i++) {
         text_append(text, "%s", i > 0 ? ", " : "");
-        tune_world_body(linkage, i, text);
+        tune_bodies_name(linkage, i, text);
     }
     text_append(text, "};\n    const int count = sizeof bodies / sizeof *bodies;\n"
                       "    for (int i = 0; i < count; i++) {\n"
@@ -879,7 +808,7 @@ static void write_list(const Linkage *linkage, Text *text)
         text_init(&head);
         const char *name = linkage->bodies[i].name;
         // a body that is led stands at its pivot
-        const char *of = tune_world_is_led(linkage, (int)i) ? "_pivot" : "";
+        const char *of = tune_bodies_is_led(linkage, (int)i) ? "_pivot" : "";
         text_append(&head, ",%s%s_x_m,%s%s_y_m,%s_angle_rad,%s%s_vx_m_s,%s%s_vy_m_s,", name, of,
                     name, of, name, name, of, name, of);
         text_append(&head, "%s_omega_rad_s", name);

@@ -45,12 +45,6 @@ bool tune_world_write(const TuneCode *code, Text *text, Err *err);
 // Whether a joint is one of ODE's in the program.
 bool tune_world_is_ideal(const Linkage *linkage, int joint);
 
-// Whether a body is driven at constant speed: it is one of ODE's without dynamics, whose origin is
-// the pivot about which it turns, so that it stays exactly on its path. And a point of a body where
-// its origin is.
-bool tune_world_is_led(const Linkage *linkage, int body);
-Vec2 tune_world_local(const Linkage *linkage, int body, Vec2 local);
-
 // What drives and pushes the bodies of a case as lines of a C program against libjointplay.
 
 // Whether a spring at a joint moves anything: not where a drive says how the joint turns.
@@ -59,5 +53,5 @@ bool tune_world_has_effect(const Linkage *linkage, const TorsionSpring *spring);
 // The angle, rad, at which a hinge of ODE's, which counts from where it starts, is at 0.
 double tune_world_angle_at_start(const Linkage *linkage, int joint);
 
-// Whether anything pushes where a step evaluates forces: springs, or a torque over time.
+// Whether anything pushes where a step evaluates forces: springs, bushings, a torque over time.
 bool tune_world_pushes(const Linkage *linkage);

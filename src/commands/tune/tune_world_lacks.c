@@ -1,6 +1,7 @@
 // Says what a program against libjointplay has no words for, of a mechanism and of a setting.
 #include "commands/tune/tune_world.h"
 
+#include "commands/tune/tune_bushings.h"
 #include "contact/law.h"
 
 static const char *lacks_setting(const Scenario *scenario)
@@ -53,6 +54,12 @@ const char *tune_world_lacks(const Scenario *scenario)
         if (!joint_has_angle(linkage->joints[linkage->torsions[i].joint].kind)) {
             lacks = "the program has springs that turn the two sides of a hinge alone";
         }
+    }
+    if (lacks == NULL) {
+        lacks = tune_bushings_lack(linkage);
+    }
+    if (linkage->gap_damper_count > 0 && lacks == NULL) {
+        lacks = "the program has no damping within a gap";
     }
     return lacks;
 }

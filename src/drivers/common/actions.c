@@ -1,10 +1,13 @@
-// Finds the forces and moments on the bodies of a case: springs, loads and contacts.
+// Finds the forces and moments on the bodies of a case: springs, bushings, loads and contacts.
 //
 // Between points p_a and p_b, d = p_b - p_a, n = d / |d|:
 //     force (k (|d| - l) + c d|d|/dt) n on body a, the other way on body b
 // About a joint, phi the angle of its turned body, which is b but for one on the ground, less that
 // of the other:
 //     moment -k (phi - phi_0) - c dphi/dt on the turned body, the other way on the other
+// A bushing acts at its point of body b on both bodies, along axes e that turn with body a:
+//     force (k u + c u') e on body a, or by a curve f(u) in place of k u;  u = e . (p_b - p_a),
+//     u' = e . (v_b - v_a), v_a that of the point of body a there;  likewise by angle
 // A load along a sliding joint acts on body b at its anchor, along the line of body a, and the
 // other way on body a at that point; along any other joint it is such a moment.
 #include "drivers/common/actions.h"
@@ -13,7 +16,8 @@
 
 bool actions_any(const DriverCase *of)
 {
-    return of->spring_count > 0 || of->torsion_count > 0 || of->load_count > 0;
+    return of->spring_count > 0 || of->torsion_count > 0 || of->bushing_count > 0 ||
+           of->load_count > 0;
 }
 
 static void add_at(const DriverMotion *motions, int body, Vec2 point, Vec2 force,
@@ -66,6 +70,49 @@ static void add_spring(const DriverSpring *spring, const DriverMotion *motions,
                                   normal);
     add_at(motions, spring->bodies[0], a, force, actions);
     add_at(motions, spring->bodies[1], b, vec2_scale(-1.0, force), actions);
+}
+
+static DriverMotion motion_of(const DriverMotion *motions, int body)
+{
+    return body == DRIVER_GROUND ? (DriverMotion){.angle = 0.0} : motions[body];
+}
+
+// What a bushing pulls with along one of its rows.
+static double pull_of(const DriverBushing *bushing, size_t row, double deflection, double rate)
+{
+    const ForceCurve *curve = &bushing->curves[row];
+    const double pull =
+        curve->count > 0 ? force_curve_at(curve, deflection) : bushing->stiffness[row] * deflection;
+    return pull + bushing->damping[row] * rate;
+}
+
+static void add_bushing(const DriverBushing *bushing, const DriverMotion *motions,
+                        DriverAction *actions)
+{
+    const int *bodies = bushing->bodies;
+    const DriverMotion first = motion_of(motions, bodies[0]);
+    const DriverMotion second = motion_of(motions, bodies[1]);
+    const Vec2 b = driver_point(motions, bodies[1], bushing->anchors[1]);
+    const Vec2 apart = vec2_sub(b, driver_point(motions, bodies[0], bushing->anchors[0]));
+    const Vec2 moving = vec2_sub(driver_point_velocity(motions, bodies[1], bushing->anchors[1]),
+                                 driver_point_velocity(motions, bodies[0], bushing->anchors[0]));
+    const Vec2 against = vec2_sub(moving, vec2_scale(first.omega, vec2_perp(apart)));
+    const Vec2 x = vec2_rotate(first.angle + bushing->direction, (Vec2){1.0, 0.0});
+    const Vec2 axes[2] = {x, vec2_perp(x)};
+    for (size_t row = 0; row < 2; row++) {
+        const double pull =
+            pull_of(bushing, row, vec2_dot(axes[row], apart), vec2_dot(axes[row], against));
+        const Vec2 force = vec2_scale(pull, axes[row]);
+        add_at(motions, bodies[0], b, force, actions);
+        add_at(motions, bodies[1], b, vec2_scale(-1.0, force), actions);
+    }
+    const double moment = pull_of(bushing, 2, second.angle - first.angle - bushing->angle,
+                                  second.omega - first.omega);
+    for (int side = 0; side < 2; side++) {
+        if (bodies[side] != DRIVER_GROUND) {
+            actions[bodies[side]].moment += side == 0 ? moment : -moment;
+        }
+    }
 }
 
 // The angle of a joint, rad, and its rate; or the way along a sliding one, m, and its direction.
@@ -174,6 +221,9 @@ void actions_find(const DriverCase *of, const DriverMotion *motions, double from
         const Coordinate is = angle_of(&of->joints[spring->joint], motions);
         add_moment(&is, -spring->stiffness * (is.value - spring->angle) - spring->damping * is.rate,
                    actions);
+    }
+    for (size_t i = 0; i < of->bushing_count; i++) {
+        add_bushing(&of->bushings[i], motions, actions);
     }
     for (size_t i = 0; i < of->load_count; i++) {
         add_load(of, &of->loads[i], value_of(of, &of->loads[i], motions, from_s, to_s), motions,

@@ -10,11 +10,11 @@ typedef struct DriverAction {
     double moment;
 } DriverAction;
 
-// Whether there are springs or loads.
+// Whether there are springs, bushings or loads.
 bool actions_any(const DriverCase *of);
 
-// Writes what springs and loads do with the bodies so; of loads over time the mean between two
-// times, s, which may be equal.
+// Writes what springs, bushings and loads do with the bodies so; of loads over time the mean
+// between two times, s, which may be equal.
 void actions_find(const DriverCase *of, const DriverMotion *motions, double from_s, double to_s,
                   DriverAction *actions);
 

@@ -16,7 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { PROTOCOL = 2, REQUEST_MOST = 1 << 28 };
+enum { PROTOCOL = 3, REQUEST_MOST = 1 << 28 };
 
 static void *memory(size_t count, size_t size)
 {
@@ -216,6 +216,44 @@ static DriverTorsion read_torsion(const json_t *object)
                            .damping = number(object, "damping_N_m_s_rad")};
 }
 
+// One of the curves of a bushing; without points there is none.
+static void read_curve(const json_t *object, const char *key, ForceCurveShape shape,
+                       ForceCurve *curve)
+{
+    const json_t *points = member(object, key);
+    curve->count = json_array_size(points);
+    if (curve->count > FORCE_CURVE_MAX || curve->count == 1) {
+        driver_fail("a bushing has a curve of %zu points", curve->count);
+    }
+    for (size_t i = 0; i < curve->count; i++) {
+        const json_t *point = json_array_get(points, i);
+        curve->at[i] = json_number_value(json_array_get(point, 0));
+        curve->values[i] = json_number_value(json_array_get(point, 1));
+    }
+    force_curve_settle(curve, shape);
+}
+
+static void read_bushing(const json_t *object, DriverBushing *bushing)
+{
+    const char *word = json_string_value(member(object, "shape"));
+    const bool is_smooth =
+        word != NULL && strcmp(word, FORCE_CURVE_SHAPES[FORCE_CURVE_SMOOTH]) == 0;
+    const ForceCurveShape shape = is_smooth ? FORCE_CURVE_SMOOTH : FORCE_CURVE_LINEAR;
+    const Vec2 stiffness = pair(object, "stiffness_N_m");
+    const Vec2 damping = pair(object, "damping_N_s_m");
+    *bushing = (DriverBushing){
+        .bodies = {(int)number(object, "body_a"), (int)number(object, "body_b")},
+        .anchors = {pair(object, "anchor_a_m"), pair(object, "anchor_b_m")},
+        .direction = number(object, "direction_rad"),
+        .angle = number(object, "angle_rad"),
+        .stiffness = {stiffness.x, stiffness.y, number(object, "stiffness_N_m_rad")},
+        .damping = {damping.x, damping.y, number(object, "damping_N_m_s_rad")},
+    };
+    read_curve(object, "force_x", shape, &bushing->curves[0]);
+    read_curve(object, "force_y", shape, &bushing->curves[1]);
+    read_curve(object, "torque", shape, &bushing->curves[2]);
+}
+
 static void read_table(const json_t *object, LoadTable *table)
 {
     const json_t *points = member(object, "points");
@@ -259,12 +297,18 @@ static void read_load(const json_t *object, DriverLoad *load)
     }
 }
 
-// What acts on the bodies; a request of protocol 1 has nothing of it.
+// What acts on the bodies; a request of protocol 1 has nothing of it, one of 2 no bushings.
 static void read_actions(const json_t *request, DriverCase *of)
 {
     const json_t *springs = json_object_get(request, "springs");
     const json_t *torsions = json_object_get(request, "torsion_springs");
+    const json_t *bushings = json_object_get(request, "bushings");
     const json_t *loads = json_object_get(request, "loads");
+    of->bushing_count = json_array_size(bushings);
+    of->bushings = memory(of->bushing_count, sizeof *of->bushings);
+    for (size_t i = 0; i < of->bushing_count; i++) {
+        read_bushing(json_array_get(bushings, i), &of->bushings[i]);
+    }
     of->spring_count = json_array_size(springs);
     of->torsion_count = json_array_size(torsions);
     of->load_count = json_array_size(loads);

@@ -2,6 +2,7 @@
 // (docs/drivers.md). Everything is in SI units; bodies move in the plane.
 #pragma once
 
+#include "base/force_curve.h"
 #include "base/load_table.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
@@ -61,6 +62,17 @@ typedef struct DriverTorsion {
     double damping;
 } DriverTorsion;
 
+// Holds two bodies by springs and dampers along two axes, which turn with the first, and by angle.
+typedef struct DriverBushing {
+    int bodies[2];
+    Vec2 anchors[2];      // in their frames
+    double direction;     // of its x axis, in body a's frame
+    double angle;         // where it is relaxed
+    double stiffness[3];  // along x, along y, by angle
+    double damping[3];    // likewise
+    ForceCurve curves[3]; // in place of a stiffness, where they have points
+} DriverBushing;
+
 typedef enum DriverLoadKind { DRIVER_FORCE, DRIVER_TORQUE, DRIVER_ALONG } DriverLoadKind;
 
 // A load, whose value is over time, or over the coordinate of a joint.
@@ -92,6 +104,8 @@ typedef struct DriverCase {
     DriverSpring *springs;
     size_t torsion_count;
     DriverTorsion *torsions;
+    size_t bushing_count;
+    DriverBushing *bushings;
     size_t load_count;
     DriverLoad *loads;
     bool has_drive;

@@ -1,4 +1,4 @@
-// Lets springs, dampers and a torque act on bodies in ODE.
+// Lets springs, bushings, dampers and a torque act on bodies in ODE.
 //
 // Springs, at the positions where the step stands, and the torque's mean over the step are forces.
 // A damper with coefficient c takes the rate r of its length (or angle) at the step's start and r'
@@ -9,6 +9,9 @@
 // J v' = r', CFM 2/c or 1/c. The first is the trapezoidal rule, second order and symmetric in time,
 // and both are stable for any c. ODE's distance joint has the row of a line: its right-hand side is
 // ERP / h (wanted distance - distance). An angular motor has that of a turn. The work is h f^2 / c.
+//
+// The row of a bushing along its axis e is that of a line from its point B on body b to B - l e on
+// body a: its rate is e . (v_B - v_a(B)) whatever l is, and its force goes through B.
 #include "ode/plane/applied.h"
 
 #include "base/zeroed.h"
@@ -18,6 +21,9 @@
 
 // m: below it ODE takes any direction for the line
 static const double LINE_LEAST = 1e-6;
+
+// m: the least length of the line of a bushing's row; any of the mechanism's own size would do
+static const double LINE_BUSHING = 1e-2;
 
 static dBodyID id_of(const Applied *applied, int body)
 {
@@ -38,11 +44,10 @@ static void make_line(const Applied *applied, dWorldID world, const Motion *moti
     dJointSetFeedback(row->row, &row->feedback);
 }
 
-static void make_turn(const Applied *applied, dWorldID world, int joint, AppliedRow *row)
+// The row of an angle of one body against another.
+static void make_angle(const Applied *applied, dWorldID world, int turned, int against,
+                       AppliedRow *row)
 {
-    int turned;
-    int against;
-    linkage_turning(applied->linkage, joint, &turned, &against);
     row->row = dJointCreateAMotor(world, 0);
     dJointAttach(row->row, id_of(applied, turned), id_of(applied, against));
     dJointSetAMotorMode(row->row, dAMotorUser);
@@ -50,6 +55,78 @@ static void make_turn(const Applied *applied, dWorldID world, int joint, Applied
     dJointSetAMotorAxis(row->row, 0, 0, 0.0, 0.0, 1.0);
     dJointSetAMotorParam(row->row, dParamFMax, dInfinity);
     dJointSetFeedback(row->row, &row->feedback);
+}
+
+static void make_turn(const Applied *applied, dWorldID world, int joint, AppliedRow *row)
+{
+    int turned;
+    int against;
+    linkage_turning(applied->linkage, joint, &turned, &against);
+    make_angle(applied, world, turned, against, row);
+}
+
+// The body that comes first in a bushing's rows, which is not the ground, and the other one; 1 or
+// -1: the rows' force on the first is that on body a or on body b.
+static double bushing_bodies(const Bushing *bushing, int *first, int *second)
+{
+    const bool is_held = bushing->body_a == LINKAGE_GROUND;
+    *first = is_held ? bushing->body_b : bushing->body_a;
+    *second = is_held ? LINKAGE_GROUND : bushing->body_b;
+    return is_held ? -1.0 : 1.0;
+}
+
+// The rows of a bushing's dampers. Those of its axes are placed before every step.
+static void make_bushing(const Applied *applied, dWorldID world, const Bushing *bushing,
+                         AppliedRow *rows)
+{
+    int first;
+    int second;
+    bushing_bodies(bushing, &first, &second);
+    for (size_t row = 0; row < BUSHING_ROWS; row++) {
+        if (!(bushing_damping(bushing, row) > 0.0)) {
+            continue;
+        }
+        if (row == 2) {
+            make_angle(applied, world, first, second, &rows[row]);
+            continue;
+        }
+        rows[row].row = dJointCreateDBall(world, 0);
+        dJointAttach(rows[row].row, id_of(applied, first), id_of(applied, second));
+        dJointSetFeedback(rows[row].row, &rows[row].feedback);
+    }
+}
+
+// How many rows of dampers in gaps there is room for.
+static size_t gap_room(const Linkage *linkage)
+{
+    return linkage->gap_damper_count > 0 ? GAP_DAMPING_ROWS * linkage->joint_count : 0;
+}
+
+// The body that comes first in the rows of a joint, which is not the ground: 0 that of body a.
+static int first_side(const Joint *joint)
+{
+    return joint->body_a == LINKAGE_GROUND ? 1 : 0;
+}
+
+// The rows of a joint's damper in its gap. Those of forces are placed before every step.
+static void make_gap(const Applied *applied, dWorldID world, const Motion *motions, int number,
+                     AppliedRow *rows)
+{
+    const Joint *joint = &applied->linkage->joints[number];
+    const int side = first_side(joint);
+    const int first = linkage_end(joint, side).body;
+    const int second = linkage_end(joint, 1 - side).body;
+    GapDampingRow drags[GAP_DAMPING_ROWS];
+    const size_t count = gap_damping_rows(applied->linkage, motions, number, drags);
+    for (size_t i = 0; i < count; i++) {
+        if (drags[i].is_turn) {
+            make_angle(applied, world, first, second, &rows[i]);
+            continue;
+        }
+        rows[i].row = dJointCreateDBall(world, 0);
+        dJointAttach(rows[i].row, id_of(applied, first), id_of(applied, second));
+        dJointSetFeedback(rows[i].row, &rows[i].feedback);
+    }
 }
 
 void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
@@ -61,6 +138,10 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
     applied->angles = zeroed(linkage->body_count, sizeof *applied->angles);
     applied->dampers = zeroed(linkage->spring_count, sizeof *applied->dampers);
     applied->torsions = zeroed(linkage->torsion_count, sizeof *applied->torsions);
+    applied->bushings = zeroed(BUSHING_ROWS * linkage->bushing_count, sizeof *applied->bushings);
+    applied->poses = zeroed(linkage->bushing_count, sizeof *applied->poses);
+    applied->gaps = zeroed(gap_room(linkage), sizeof *applied->gaps);
+    applied->drags = zeroed(gap_room(linkage), sizeof *applied->drags);
     applied->lines = zeroed(linkage->spring_count, sizeof *applied->lines);
     applied->motions = zeroed(linkage->body_count, sizeof *applied->motions);
     applied->seen = zeroed(linkage->body_count, sizeof *applied->seen);
@@ -81,6 +162,12 @@ void applied_make(const Linkage *linkage, dWorldID world, const dBodyID *bodies,
             make_turn(applied, world, linkage->torsions[i].joint, &applied->torsions[i]);
         }
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        make_bushing(applied, world, &linkage->bushings[i], &applied->bushings[BUSHING_ROWS * i]);
+    }
+    for (size_t i = 0; i < gap_room(linkage) / GAP_DAMPING_ROWS; i++) {
+        make_gap(applied, world, motions, (int)i, &applied->gaps[GAP_DAMPING_ROWS * i]);
+    }
     if (linkage->torque.slope > 0.0) {
         make_turn(applied, world, linkage->torque.joint, &applied->motor);
     }
@@ -91,6 +178,10 @@ void applied_finish(Applied *applied)
     free(applied->angles);
     free(applied->dampers);
     free(applied->torsions);
+    free(applied->bushings);
+    free(applied->poses);
+    free(applied->gaps);
+    free(applied->drags);
     free(applied->lines);
     free(applied->motions);
     free(applied->seen);
@@ -108,6 +199,8 @@ void applied_carry(Applied *applied, Carry *carry)
     CARRY_ARRAY(carry, applied->motions, count);
     CARRY_ARRAY(carry, applied->loads, count);
     CARRY_ARRAY(carry, applied->lines, applied->linkage->spring_count);
+    CARRY_ARRAY(carry, applied->poses, applied->linkage->bushing_count);
+    CARRY_ARRAY(carry, applied->drags, gap_room(applied->linkage));
     CARRY_ARRAY(carry, applied->pushed, applied->linkage->load_count);
     CARRY_ARRAY(carry, applied->rates, applied->linkage->load_count);
     CARRY(carry, applied->torque);
@@ -157,6 +250,85 @@ static void set_turn(const Applied *applied, dJointID row, int joint, double sof
     }
 }
 
+// Puts the row of a bushing along one of its axes where it stands: its line is as long as its
+// wanted rate needs for little rounding, and one that no direction is lost on.
+static void set_axis(const AppliedRow *row, const Bushing *bushing, const BushingPose *pose,
+                     size_t axis, double softness, double wanted, double step_s)
+{
+    const double length = fmax(LINE_BUSHING, fabs(wanted));
+    const Vec2 far = vec2_sub(pose->point, vec2_scale(length, pose->axes[axis]));
+    const bool is_held = bushing->body_a == LINKAGE_GROUND;
+    const Vec2 first = is_held ? pose->point : far;
+    const Vec2 second = is_held ? far : pose->point;
+    dJointSetDBallAnchor1(row->row, first.x, first.y, 0.0);
+    dJointSetDBallAnchor2(row->row, second.x, second.y, 0.0);
+    const SpringLine line = {.distance = length};
+    set_line(row, &line, softness, wanted, step_s);
+}
+
+static void set_bushings(Applied *applied, double step_s, double share, bool is_mean)
+{
+    const Linkage *linkage = applied->linkage;
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const Bushing *bushing = &linkage->bushings[i];
+        const BushingPose *pose = &applied->poses[i];
+        for (size_t axis = 0; axis < BUSHING_ROWS; axis++) {
+            AppliedRow *row = &applied->bushings[BUSHING_ROWS * i + axis];
+            const double softness = 1.0 / (share * bushing_damping(bushing, axis));
+            const double wanted = is_mean ? -pose->rate[axis] : 0.0;
+            int first;
+            int second;
+            row->late = 0.0;
+            if (row->row != NULL && axis < 2) {
+                set_axis(row, bushing, pose, axis, softness, wanted, step_s);
+            } else if (row->row != NULL) {
+                // the motor's rate is that of its first body
+                const double side = bushing_bodies(bushing, &first, &second);
+                dJointSetAMotorParam(row->row, dParamCFM, softness);
+                dJointSetAMotorParam(row->row, dParamVel, -side * wanted);
+            }
+        }
+    }
+}
+
+// Puts the row of a force in a gap on its line where it stands, and that of a torque to its rate.
+static void set_gap(const Joint *joint, const Motion *motions, const AppliedRow *row,
+                    const GapDampingRow *drag, double share, bool is_mean, double step_s)
+{
+    const int side = first_side(joint);
+    const double softness = 1.0 / (share * drag->damping);
+    const double wanted = is_mean ? -drag->rate : 0.0;
+    if (drag->is_turn) {
+        dJointSetAMotorParam(row->row, dParamCFM, softness);
+        dJointSetAMotorParam(row->row, dParamVel, drag->row.turn[side] * wanted);
+        return;
+    }
+    // the line goes from body a to body b, so that its length has the row's rate
+    const double length = fmax(LINE_BUSHING, fabs(wanted));
+    const Vec2 along = {drag->row.x[1], drag->row.y[1]};
+    const Vec2 b = gap_damping_point(drag, motions, 1, joint->body_b);
+    const Vec2 a = vec2_sub(b, vec2_scale(length, along));
+    const Vec2 first = side == 0 ? a : b;
+    const Vec2 second = side == 0 ? b : a;
+    dJointSetDBallAnchor1(row->row, first.x, first.y, 0.0);
+    dJointSetDBallAnchor2(row->row, second.x, second.y, 0.0);
+    const SpringLine line = {.distance = length};
+    set_line(row, &line, softness, wanted, step_s);
+}
+
+static void set_gaps(Applied *applied, double step_s, double share, bool is_mean)
+{
+    const Linkage *linkage = applied->linkage;
+    for (size_t i = 0; i < gap_room(linkage); i++) {
+        AppliedRow *row = &applied->gaps[i];
+        row->late = 0.0;
+        if (row->row != NULL) {
+            set_gap(&linkage->joints[i / GAP_DAMPING_ROWS], applied->motions, row,
+                    &applied->drags[i], share, is_mean, step_s);
+        }
+    }
+}
+
 static void set_rows(Applied *applied, double step_s, AppliedRule rule, int direction)
 {
     applied->motor.late = 0.0;
@@ -177,6 +349,8 @@ static void set_rows(Applied *applied, double step_s, AppliedRule rule, int dire
         set_turn(applied, applied->torsions[i].row, spring->joint, 1.0 / (share * spring->damping),
                  is_mean);
     }
+    set_bushings(applied, step_s, share, is_mean);
+    set_gaps(applied, step_s, share, is_mean);
     set_turn(applied, applied->motor.row, linkage->torque.joint,
              1.0 / (share * linkage->torque.slope), is_mean);
 }
@@ -218,6 +392,12 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
     for (size_t i = 0; i < linkage->spring_count; i++) {
         applied->lines[i] = forces_line(&linkage->springs[i], motions);
     }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        applied->poses[i] = bushing_pose(&linkage->bushings[i], motions);
+    }
+    for (size_t i = 0; i < gap_room(linkage) / GAP_DAMPING_ROWS; i++) {
+        gap_damping_rows(linkage, motions, (int)i, &applied->drags[GAP_DAMPING_ROWS * i]);
+    }
     const double from_s = fmin(start_s, end_s);
     const double to_s = fmax(start_s, end_s);
     // positions are those of the middle of the step, or of its start
@@ -249,6 +429,20 @@ void applied_push_late(Applied *applied, const Motion *beyond)
         const TorsionSpring *spring = &linkage->torsions[i];
         applied->torsions[i].late =
             -spring->damping * forces_turn(linkage, spring->joint, beyond).rate;
+    }
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const BushingPose pose = bushing_pose(&linkage->bushings[i], beyond);
+        for (size_t row = 0; row < BUSHING_ROWS; row++) {
+            applied->bushings[BUSHING_ROWS * i + row].late =
+                bushing_drag(&linkage->bushings[i], &pose, row);
+        }
+    }
+    for (size_t i = 0; i < gap_room(linkage) / GAP_DAMPING_ROWS; i++) {
+        GapDampingRow drags[GAP_DAMPING_ROWS];
+        const size_t count = gap_damping_rows(linkage, beyond, (int)i, drags);
+        for (size_t k = 0; k < count; k++) {
+            applied->gaps[GAP_DAMPING_ROWS * i + k].late = drags[k].damping * drags[k].rate;
+        }
     }
     if (applied->motor.row != NULL) {
         applied->motor.late = -linkage->torque.slope * forces_drive_rate(linkage, beyond);
@@ -310,6 +504,58 @@ static double take_dampers(Applied *applied, double step_s)
     return work;
 }
 
+// Adds what the rows of the bushings' dampers did in the step. Returns the work they took, J.
+static double take_bushings(Applied *applied, double step_s)
+{
+    const Linkage *linkage = applied->linkage;
+    double work = 0.0;
+    for (size_t i = 0; i < linkage->bushing_count; i++) {
+        const Bushing *bushing = &linkage->bushings[i];
+        const BushingPose *pose = &applied->poses[i];
+        int first;
+        int second;
+        const double side = bushing_bodies(bushing, &first, &second);
+        for (size_t axis = 0; axis < BUSHING_ROWS; axis++) {
+            const AppliedRow *row = &applied->bushings[BUSHING_ROWS * i + axis];
+            if (row->row == NULL) {
+                continue;
+            }
+            const dReal *force = row->feedback.f1;
+            const double on_first =
+                axis < 2 ? force[0] * pose->axes[axis].x + force[1] * pose->axes[axis].y
+                         : row->feedback.t1[2];
+            const double pull = side * on_first + row->late;
+            forces_add_row(bushing, pose, axis, pull, applied->motions, applied->loads);
+            work += step_s * pull * pull / bushing_damping(bushing, axis);
+        }
+    }
+    return work;
+}
+
+// Adds what the rows of dampers in gaps did in the step. Returns the work they took, J.
+static double take_gaps(Applied *applied, double step_s)
+{
+    const Linkage *linkage = applied->linkage;
+    double work = 0.0;
+    for (size_t i = 0; i < gap_room(linkage); i++) {
+        const AppliedRow *row = &applied->gaps[i];
+        const GapDampingRow *drag = &applied->drags[i];
+        const Joint *joint = &linkage->joints[i / GAP_DAMPING_ROWS];
+        if (row->row == NULL) {
+            continue;
+        }
+        const int side = first_side(joint);
+        const dReal *force = row->feedback.f1;
+        const double along = drag->is_turn
+                                 ? row->feedback.t1[2] * drag->row.turn[side]
+                                 : force[0] * drag->row.x[side] + force[1] * drag->row.y[side];
+        const double pull = row->late - along;
+        forces_add_drag(joint, drag, pull, applied->loads);
+        work += step_s * pull * pull / drag->damping;
+    }
+    return work;
+}
+
 AppliedWork applied_book(Applied *applied, double step_s)
 {
     const Linkage *linkage = applied->linkage;
@@ -325,7 +571,8 @@ AppliedWork applied_book(Applied *applied, double step_s)
     for (size_t i = 0; i < linkage->load_count; i++) {
         load_add(linkage, &linkage->loads[i], applied->pushed[i], applied->motions, applied->loads);
     }
-    work.damping = take_dampers(applied, step_s);
+    work.damping =
+        take_dampers(applied, step_s) + take_bushings(applied, step_s) + take_gaps(applied, step_s);
     work.slope =
         -take_turn(applied, &applied->motor, linkage->torque.joint, linkage->torque.slope, step_s);
     if (linkage->torque.table.count > 0 || linkage->load_count > 0) {

@@ -1,5 +1,6 @@
-// Springs, dampers and the torque of a drive in a world. Springs and torque push before a step; a
-// damper is a constraint row with CFM, so that no damper, however strong, makes a step unstable.
+// Springs, bushings, dampers and the torque of a drive in a world. Springs and torque push before a
+// step; a damper is a constraint row with CFM, so that no damper, however strong, makes a step
+// unstable.
 #pragma once
 
 #include "base/carry.h"
@@ -24,6 +25,10 @@ typedef struct Applied {
                            // owned, as all arrays below
     AppliedRow *dampers;   // of the springs
     AppliedRow *torsions;  // of the torsion springs
+    AppliedRow *bushings;  // of the bushings, BUSHING_ROWS of each
+    BushingPose *poses;    // of these, at the positions of the step
+    AppliedRow *gaps;      // of dampers in gaps, GAP_DAMPING_ROWS of each joint
+    GapDampingRow *drags;  // likewise, at the positions of the step
     SpringLine *lines;     // at the positions of the step
     Motion *motions;       // likewise, with the speeds of its start
     Motion *seen;          // as the engine holds them
