@@ -17,6 +17,7 @@
 #include "casefile/store.h"
 #include "casefile/teeth.h"
 #include "casefile/unused.h"
+#include "casefile/waves.h"
 #include "model/common_period.h"
 #include "model/space.h"
 
@@ -214,7 +215,7 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
     cam_complete(entries, &scenario->linkage);
     complete_motor(entries, &scenario->linkage);
-    if (!teeth_join(entries, &scenario->linkage, err) ||
+    if (!waves_check_used(entries, err) || !teeth_join(entries, &scenario->linkage, err) ||
         !drives_complete(entries, &scenario->linkage, err) ||
         !loads_complete(entries, &scenario->linkage, err)) {
         return false;

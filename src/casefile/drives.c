@@ -139,6 +139,10 @@ static bool repeat_speeds(const Entry *entry, Driver *driver, Err *err)
 static bool repeat_torque(const Entries *entries, const Entry *entry, Linkage *linkage, Err *err)
 {
     TimeTable *table = &linkage->torque.table;
+    if (wave_exists(&table->wave)) {
+        return entries_refuse(entry, err,
+                              "a sinusoid repeats by its frequency\nallowed: no period, or points");
+    }
     if (table->count < 2) {
         return entries_refuse(entry, err,
                               "only what changes over time repeats\nallowed: drive.period beside "
@@ -153,6 +157,14 @@ static bool complete(const Entries *entries, const DriveKeys *keys, size_t index
                      Err *err)
 {
     const Entry *entry = entries_find(entries, keys->period, index);
+    if (entry != NULL && driver->table.count > 0 && wave_exists(&driver->table.wave)) {
+        return entries_refuse(entry, err,
+                              "a sinusoid repeats by its frequency\nallowed: no period, or points");
+    }
+    if (entry != NULL && drive_is_held(driver)) {
+        return entries_refuse(entry, err,
+                              "one angle that is held has no period\nallowed: no period, or points");
+    }
     // a constant speed has no use for a period, which is said elsewhere
     const bool is_good = entry == NULL || driver->table.count == 0 ||
                          (driver->has_angles ? repeat_angles : repeat_speeds)(entry, driver, err);

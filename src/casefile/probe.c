@@ -71,6 +71,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_SLOT:
     case SCHEMA_ANCHOR:
     case SCHEMA_BETWEEN:
+    case SCHEMA_SIGNAL:
     case SCHEMA_EXPECT:
         return PROBE_OTHER;
     default:
@@ -92,13 +93,13 @@ bool probe_key(const Probe *probe, const Source *source, const Node *value, Prob
     Entries entries = entries_copy(&probe->entries);
     ProbeKey found = {0};
     bool is_good = entries_key(&entries, value->key->text, keys_text_start(value), source,
-                               &found.row, &found.index, err);
+                               &found.row, &found.index, &found.part, err);
     if (is_good && found.row == NULL) {
         is_good = refuse_group(probe, source, value, err);
     }
     if (is_good) {
         text_copy(found.path, sizeof found.path, value->key->text);
-        found.kind = kind_of(found.row->type);
+        found.kind = found.part == ENTRY_WHOLE ? kind_of(found.row->type) : PROBE_OTHER;
         if (found.row->family == SCHEMA_JOINT) {
             found.joint_kind = joint_kind_find(&entries, found.index);
         }
@@ -127,7 +128,10 @@ static Scenario *scratch_scenario(const ProbeKey *key)
 bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, const Node *value,
                  Err *err)
 {
-    const Entry entry = {key->row, key->index, value, source};
+    const Entry entry = {key->row, key->index, value, source, NULL};
+    if (key->part != ENTRY_WHOLE || key->row->type == SCHEMA_SIGNAL) {
+        return true; // what it is of says what it may be
+    }
     Scenario *scratch = scratch_scenario(key);
     if (key->row->family == SCHEMA_JOINT) {
         Joint *joint = &scratch->linkage.joints[key->index];

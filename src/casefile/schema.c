@@ -7,7 +7,7 @@
 
 bool schema_is_setting(const SchemaRow *row)
 {
-    return row->type != SCHEMA_EXPECT;
+    return row->type != SCHEMA_EXPECT && row->type != SCHEMA_SIGNAL;
 }
 
 const SchemaRow *schema_find(const char *path)
@@ -255,7 +255,8 @@ size_t schema_member_count(const Scenario *scenario, SchemaFamily family)
                                                 linkage->spring_count,
                                                 linkage->torsion_count,
                                                 linkage->load_count,
-                                                linkage->further_count};
+                                                linkage->further_count,
+                                                0}; // signals are used up by what names them
     return counts[family];
 }
 

@@ -34,6 +34,7 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_TORSION_SPRING] = {"torsion-springs", "torsion spring", SIZE_MAX},
     [SCHEMA_LOAD_FAMILY] = {"loads", "load", SIZE_MAX},
     [SCHEMA_DRIVE] = {"drives", "drive", SIZE_MAX},
+    [SCHEMA_SIGNAL_FAMILY] = {"signals", "signal", SIZE_MAX},
 };
 
 static const char *const LOAD_FRAMES[] = {"world", "body", NULL};
@@ -269,6 +270,9 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "loads.*.torque", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_TORQUE,
      .low = -1e9, .high = 1e9, .doc = "likewise; counter-clockwise positive"},
 
+    {.path = "signals.*", .type = SCHEMA_SIGNAL, .family = SCHEMA_SIGNAL_FAMILY,
+     .doc = "what a value of loads, drive.speed, angle, torque or force may be over time, for use by "
+            "its name"},
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
      AT(linkage.driver.joint), .is_required = true, .needs = DRIVEN,
      .doc = "the ideal joint with the ground about which the drive turns a body; of a torque any "

@@ -137,12 +137,22 @@ static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
     shake_limits(joint, seed);
 }
 
+// The amplitude of a sinusoid; most cases have none, and nothing is drawn for it. Its frequency says
+// what period a motion has, and is exact.
+static void shake_wave(Wave *wave, uint64_t *seed)
+{
+    if (wave_exists(wave)) {
+        shake(&wave->amplitude, seed);
+    }
+}
+
 static void shake_torque(Torque *torque, uint64_t *seed)
 {
     shake(&torque->table.values[0], seed); // of a motor the torque at rest
     for (size_t i = 1; i < torque->table.count; i++) {
         shake(&torque->table.values[i], seed);
     }
+    shake_wave(&torque->table.wave, seed);
     shake(&torque->no_load, seed);
     shake(&torque->inertia, seed);
     shake(&torque->stiffness, seed);
@@ -158,6 +168,7 @@ static void shake_drive(Driver *driver, uint64_t *seed)
     for (size_t i = 0; i < driver->table.count; i++) {
         shake(&driver->table.values[i], seed);
     }
+    shake_wave(&driver->table.wave, seed);
     drive_complete(driver);
 }
 
@@ -183,6 +194,7 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
         for (size_t k = 0; k < table->count; k++) {
             shake(&table->values[k], seed);
         }
+        shake_wave(&table->wave, seed);
         load_table_settle(table);
     }
     shake_drive(&linkage->driver, seed);

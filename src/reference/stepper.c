@@ -548,11 +548,27 @@ static void follow_releases(Stepper *stepper)
     }
 }
 
+// The longest step that still sees a sinusoid which acts or drives: with two in each of its periods
+// none passes for something slower.
+static double wave_limit(const Linkage *linkage)
+{
+    const Torque *torque = &linkage->torque;
+    double shortest_s = fmin(loads_shortest_wave(linkage), wave_period(&torque->table.wave));
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        shortest_s = fmin(shortest_s, wave_period(&linkage_drive(linkage, i)->table.wave));
+    }
+    if (torque->followed.is_present) {
+        shortest_s = fmin(shortest_s, wave_period(&torque->followed.table.wave));
+    }
+    return 0.5 * shortest_s;
+}
+
 bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
 {
     memset(stepper, 0, sizeof *stepper);
     stepper->scenario = scenario;
     stepper->duration_s = scenario_duration(scenario);
+    stepper->wave_s = wave_limit(&scenario->linkage);
     stepper->system = !scenario->linkage.is_spatial ? plane_system_create(scenario, err)
                       : space_flat_is(scenario)     ? flat_system_create(scenario, err)
                                                     : space_system_create(scenario, err);
@@ -738,7 +754,7 @@ static double smooth_limit(const Stepper *stepper)
     bend_s = linkage->torque.followed.is_present
                  ? fmin(bend_s, drive_next_kink(&linkage->torque.followed, after_s))
                  : bend_s;
-    return fmin(stepper->duration_s, bend_s) - time_s;
+    return fmin(fmin(stepper->duration_s, bend_s) - time_s, stepper->wave_s);
 }
 
 // The longest step in which no free pin crosses more than its play, nor a stop more than its size:
