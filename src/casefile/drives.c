@@ -180,7 +180,15 @@ bool drives_complete(const Entries *entries, Linkage *linkage, Err *err)
     if (entry != NULL && !linkage->driver.is_present) {
         return repeat_torque(entries, entry, linkage, err);
     }
-    bool is_good = complete(entries, &CRANK_KEYS, 0, &linkage->driver, err);
+    Driver *driver = &linkage->driver;
+    if (entries_blame(entries, SOFT, 0) != NULL && driver->table.count == 0 &&
+        driver->speed == 0.0) {
+        // a soft drive without a speed holds the angle of the start
+        driver->has_angles = true;
+        driver->table.count = 1;
+        driver->table.times[0] = driver->table.values[0] = 0.0;
+    }
+    bool is_good = complete(entries, &CRANK_KEYS, 0, driver, err);
     for (size_t i = 0; is_good && i < linkage->further_count; i++) {
         is_good = complete(entries, &FURTHER_KEYS, i, &linkage->further[i], err);
     }

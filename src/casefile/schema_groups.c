@@ -34,8 +34,10 @@ const SchemaGroup SCHEMA_GROUPS[] = {
                 "for --set and studies: `signals.gust.amplitude`, and without a name "
                 "`loads.left.force.amplitude`."},
     {"drive", "How the crank turns; optional with bodies. At a constant speed, or over time; with bodies "
-              "also by a torque, a force or a motor, or softly after a speed: they then start with "
-              "their own speeds, at rest by default, and the run has a duration."},
+              "also by a torque, a force or a motor: they then start with their own speeds, at rest by "
+              "default, and the run has a duration. A soft drive (stiffness, damping) follows a speed "
+              "or an angle, or holds one angle: it starts with the speed that it follows, and a run "
+              "after a constant speed has revolutions or a duration."},
     {"drives", "Further drives beside `drive`, each named by the joint about which it turns a body, in "
                "the plane: a five-bar has two. Angles of the crank are those of `drive`. The run "
                "has a duration."},

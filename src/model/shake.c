@@ -157,6 +157,9 @@ static void shake_torque(Torque *torque, uint64_t *seed)
     shake(&torque->inertia, seed);
     shake(&torque->stiffness, seed);
     shake(&torque->slope, seed);
+    if (torque->limit > 0.0) {
+        shake(&torque->limit, seed);
+    }
     if (torque->no_load != 0.0) {
         torque->slope = torque->table.values[0] / torque->no_load;
     }

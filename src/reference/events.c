@@ -312,6 +312,10 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
             found->events[found->count++] = event;
         }
     }
+    if (system->kind->torque != NULL && system->scenario->linkage.torque.limit > 0.0 &&
+        drive_limit_find(system, integrator, &found->events[found->count])) {
+        found->count++;
+    }
 }
 
 const Event *events_first(const EventList *found)
@@ -326,7 +330,8 @@ const Event *events_first(const EventList *found)
 // Whether an event begins or ends at the wall.
 static bool is_at_wall(const System *system, const Event *event)
 {
-    return event->mode == CONTACT_APART || system->contacts[event->contact].mode == CONTACT_APART;
+    return event->contact < system->contact_count &&
+           (event->mode == CONTACT_APART || system->contacts[event->contact].mode == CONTACT_APART);
 }
 
 // The contact at the end of the tried step.
@@ -415,6 +420,10 @@ void events_apply(System *system, const EventList *events, double time_s, const 
 {
     for (size_t i = 0; i < events->count; i++) {
         const Event *event = &events->events[i];
+        if (event->contact == system->contact_count) {
+            system->side = event->side;
+            continue;
+        }
         Contact *contact = &system->contacts[event->contact];
         if (contact->mode == CONTACT_APART) {
             contact_begin(contact, system->kind->time(system, time_s),

@@ -381,6 +381,9 @@ static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_P
     system_give_contacts(system, mechanism->end_s, states);
     for (size_t i = 0; i < stepper->events.count; i++) {
         const Event *event = &stepper->events.events[i];
+        if (event->contact == system->contact_count) {
+            continue; // the drive has come to its limit, or away from it
+        }
         const Contact *contact = &system->contacts[event->contact];
         ContactState *changed = &states[contact->joint][contact->place];
         if (event->mode == CONTACT_APART) {

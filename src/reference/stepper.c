@@ -72,11 +72,19 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
         pace->events = 0;
     }
     pace->events += events->count;
-    if (pace->events > EVENTS_MOST * system->contact_count) {
-        return err_set(err, ERR_SOLVER,
-                       "the contact of %s keeps beginning and ending: %zu changes within %.3g s",
-                       joint_name(system, events->events[0].contact), pace->events,
-                       time_s - pace->instant_s);
+    const bool has_limit = system->scenario->linkage.torque.limit > 0.0;
+    const size_t last = events->count > 0 ? events->events[events->count - 1].contact : 0;
+    if (pace->events > EVENTS_MOST * (system->contact_count + (has_limit ? 1 : 0))) {
+        return last == system->contact_count
+                   ? err_set(err, ERR_SOLVER,
+                             "the torque of the drive keeps reaching and leaving its limit: %zu "
+                             "changes within %.3g s",
+                             pace->events, time_s - pace->instant_s)
+                   : err_set(err, ERR_SOLVER,
+                             "the contact of %s keeps beginning and ending: %zu changes within "
+                             "%.3g s",
+                             joint_name(system, events->events[0].contact), pace->events,
+                             time_s - pace->instant_s);
     }
     pace->steps++;
     if (pace->steps == STEPS_COUNTED) {
@@ -585,6 +593,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     system_take_contacts(system);
     system->kind->start(system, integrator->y);
     system_find_places(system, integrator->y);
+    drive_limit_start(system, integrator->y);
     integrator->rates = system->kind->rates;
     integrator->slopes = system->kind->slopes;
     integrator->coupling = system->coupling;

@@ -15,9 +15,11 @@ typedef struct Event {
     bool is_rest;     // it stays in its mode, and its impact is over
     bool is_full;     // it stays in its mode, and passes where its damping is whole
     ContactWall wall; // of a slot that it comes to, in its mode; WALL_NEAREST: it is no such event
+    int side;         // of the drive, whose number follows those of the contacts: where its torque
+                      // is then
 } Event;
 
-// Events of a step, at most one a contact.
+// Events of a step, at most one a contact and one of the drive.
 typedef struct EventList {
     size_t count;
     Event *events; // owned by the stepper, one a contact
@@ -39,6 +41,11 @@ bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *poin
 
 // The time of one point.
 double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
+
+// The first event of a drive with a limit in the tried step (reference/drive_limit.c); false where
+// there is none. At the start it finds where the torque is.
+bool drive_limit_find(const System *system, Dop853 *integrator, Event *event);
+void drive_limit_start(System *system, const double *y);
 
 // The first event of each contact in the step, as far as there is one.
 void events_find(const System *system, Dop853 *integrator, const EventPoints *points,

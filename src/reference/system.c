@@ -136,6 +136,7 @@ void system_carry(System *system, Carry *carry)
         CARRY(carry, contact->is_released);
         CARRY(carry, contact->is_resting);
     }
+    CARRY(carry, system->side);
     CARRY(carry, system->is_astray);
     CARRY(carry, system->torn);
     system->kind->carry(system, carry);
