@@ -342,17 +342,17 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
                               "stepping: plain or staggered, or space: planar",
                               word);
     }
-    if (scenario->linkage.driver.table.count > 0 && !is_general) {
-        return entries_refuse(entries_blame(entries, "ode.stepping drive.speed drive.angle", 0),
-                              err,
-                              "%s stepping is for drives of constant speed: a speed over "
-                              "time has kinks\nallowed: plain, staggered",
-                              word);
-    }
     if (scenario->linkage.torque.limit > 0.0 && !is_general) {
         return entries_refuse(entries_blame(entries, "ode.stepping drive.torque-limit", 0), err,
                               "%s stepping is for smooth forces: a torque has a corner at its "
                               "limit\nallowed: plain, staggered",
+                              word);
+    }
+    if (!drive_is_smooth(&scenario->linkage.driver) && !is_general) {
+        return entries_refuse(entries_blame(entries, "ode.stepping drive.speed drive.angle", 0),
+                              err,
+                              "%s stepping is for drives of constant speed or by a sinusoid: "
+                              "points over time have kinks\nallowed: plain, staggered",
                               word);
     }
     if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {

@@ -13,6 +13,7 @@
 #include "casefile/tolerance.h"
 #include "casefile/waves.h"
 
+#include <ctype.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -482,10 +483,22 @@ static bool store_fit(const Entries *entries, const Entry *hole, Scenario *scena
                                           "no pin, or a hole with one class such as 30 H7");
 }
 
+// A word where a case has signals is the name of none of them; a load may have that of a file.
+static bool is_unknown_signal(const Entries *entries, const Entry *entry)
+{
+    return entries_is_signal(entry->row) && entry->row->type != SCHEMA_SIGNAL &&
+           entries->names[SCHEMA_SIGNAL_FAMILY].count > 0 && entry->node->kind == NODE_SCALAR &&
+           isalpha((unsigned char)entry->node->text[0]) && strchr(entry->node->text, '.') == NULL;
+}
+
 bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
     const SchemaRow row = own_row(entry, scenario);
     const Entry resolved = entries_resolve(entries, entry);
+    if (resolved.signal == NULL && is_unknown_signal(entries, entry)) {
+        return entries_refuse_name(entries, entry->source, SCHEMA_SIGNAL_FAMILY, false,
+                                   entry->node->text, entry->node->span, err);
+    }
     const size_t before = scenario->tolerance_count;
     PlainNode plain;
     if (!tolerance_take(&resolved, &row, scenario, &plain, err)) {

@@ -304,6 +304,11 @@ bool drive_is_steady(const Driver *driver)
     return driver->is_present && is_constant(driver) && !driver->is_one_of_several;
 }
 
+bool drive_is_smooth(const Driver *driver)
+{
+    return is_constant(driver) || drive_is_held(driver) || wave_exists(&driver->table.wave);
+}
+
 bool drive_is_held(const Driver *driver)
 {
     return has_angles(driver) && !time_table_changes(&driver->table);

@@ -85,6 +85,9 @@ bool drive_is_steady(const Driver *driver);
 // The angle by which a drive with a table turns in each period, rad.
 double drive_turned_in_period(const Driver *driver);
 
+// Whether it has no kinks: a constant speed, an angle that is held, or a sinusoid.
+bool drive_is_smooth(const Driver *driver);
+
 // Whether it prescribes one angle that stays.
 bool drive_is_held(const Driver *driver);
 
