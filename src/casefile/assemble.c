@@ -297,8 +297,8 @@ static bool build(const Entries *entries, Scenario *scenario, Err *err)
                : entries_refuse_group(entries_group(entries, "", 0), err, FORMAT, own.text);
 }
 
-// Builds the bodies where the case puts them: a soft drive may follow an angle that is ahead of them
-// from the start.
+// Builds the bodies where the case puts them: a soft drive may follow an angle that is ahead of
+// them from the start.
 static bool build_behind(const Entries *entries, Scenario *scenario, Err *err)
 {
     Driver *driver = &scenario->linkage.driver;

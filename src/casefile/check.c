@@ -199,7 +199,8 @@ static const char *no_revolutions(const Entries *entries)
            : entries_group(entries, "drives", 0) != NULL
                ? "with several drives a run is not counted in the revolutions of one"
            : entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL
-               ? "a soft drive that holds an angle, or whose speed changes, makes no given number of "
+               ? "a soft drive that holds an angle, or whose speed changes, makes no given number "
+                 "of "
                  "revolutions"
            : entries_blame(entries, "drive.speed drive.angle", 0) != NULL
                ? "a run with a drive of changing speed is not counted in revolutions"

@@ -162,8 +162,8 @@ static bool complete(const Entries *entries, const DriveKeys *keys, size_t index
                               "a sinusoid repeats by its frequency\nallowed: no period, or points");
     }
     if (entry != NULL && drive_is_held(driver)) {
-        return entries_refuse(entry, err,
-                              "one angle that is held has no period\nallowed: no period, or points");
+        return entries_refuse(
+            entry, err, "one angle that is held has no period\nallowed: no period, or points");
     }
     // a constant speed has no use for a period, which is said elsewhere
     const bool is_good = entry == NULL || driver->table.count == 0 ||

@@ -32,9 +32,9 @@ bool entries_is_signal(const SchemaRow *row)
 Entry entries_resolve(const Entries *entries, const Entry *entry)
 {
     Entry resolved = *entry;
-    const bool may_be =
-        entries_is_signal(entry->row) && entry->row->type != SCHEMA_SIGNAL &&
-        entries->names[SCHEMA_SIGNAL_FAMILY].count > 0 && entry->node->kind == NODE_SCALAR;
+    const bool may_be = entries_is_signal(entry->row) && entry->row->type != SCHEMA_SIGNAL &&
+                        entries->names[SCHEMA_SIGNAL_FAMILY].count > 0 &&
+                        entry->node->kind == NODE_SCALAR;
     const int number =
         may_be ? entries_number(entries, SCHEMA_SIGNAL_FAMILY, entry->node->text) : -1;
     const Entry *signal = number >= 0 ? entries_find(entries, "signals.*", (size_t)number) : NULL;
@@ -414,9 +414,9 @@ static bool add_part(const Walk *walk, const Position *here, const SchemaRow *ro
                             walk->err, "the case gives no sinusoid here that has %s %s",
                             here->part == ENTRY_AMPLITUDE ? "an" : "a", ENTRY_PARTS[here->part]);
     }
-    while (place < entries->part_count && (entries->parts[place].part != here->part ||
-                                           entries->parts[place].entry.row != row ||
-                                           entries->parts[place].entry.index != here->index)) {
+    while (place < entries->part_count &&
+           (entries->parts[place].part != here->part || entries->parts[place].entry.row != row ||
+            entries->parts[place].entry.index != here->index)) {
         place++;
     }
     if (place == ENTRY_PARTS_GIVEN) {

@@ -10,6 +10,6 @@ bool over_time_store(const Entries *entries, const Entry *entry, TimeTable *tabl
 // The same for the speed of a drive: the same value at all times is a constant speed.
 bool over_time_store_speed(const Entries *entries, const Entry *entry, Driver *driver, Err *err);
 
-// The angles of a drive: two points at least, the first of angle 0, or a sinusoid that begins there.
-// A soft drive may have one angle to hold, and begin with any.
+// The angles of a drive: two points at least, the first of angle 0, or a sinusoid that begins
+// there. A soft drive may have one angle to hold, and begin with any.
 bool over_time_store_angles(const Entries *entries, const Entry *entry, Driver *driver, Err *err);

@@ -23,7 +23,8 @@ static void describe(const Entry *entry, char allowed[QUANTITY_TEXT_SIZE])
 }
 
 // Lets what overrides parts of a value replace them.
-static void override_parts(const Entries *entries, const Entry *whole, Entry parts[ENTRY_PART_COUNT])
+static void override_parts(const Entries *entries, const Entry *whole,
+                           Entry parts[ENTRY_PART_COUNT])
 {
     for (size_t i = 0; i < entries->part_count; i++) {
         const EntryPartGiven *given = &entries->parts[i];

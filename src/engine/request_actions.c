@@ -113,8 +113,7 @@ static void add_torque(const Scenario *scenario, json_t *torsions, json_t *loads
     if (followed->is_present) {
         const double end_s = 2.0 * scenario_duration(scenario); // engines go a step beyond the end
         const double held = drive_is_held(followed) ? followed->table.values[0] : 0.0;
-        const double start =
-            stiffness * (followed->start + held) + torque->slope * followed->speed;
+        const double start = stiffness * (followed->start + held) + torque->slope * followed->speed;
         points = json_pack("[o, o]", engine_pair((Vec2){0.0, start}),
                            engine_pair((Vec2){end_s, start + stiffness * followed->speed * end_s}));
         json_array_append_new(loads, torque_object(linkage, points, 0.0));

@@ -105,7 +105,7 @@ static double period_of(const Driver *driver)
     if (driver->table.count == 0) {
         return driver->speed != 0.0 ? 2.0 * M_PI / fabs(driver->speed) : 0.0;
     }
-    return drive_is_held(driver)           ? 0.0
+    return drive_is_held(driver)        ? 0.0
            : drive_period(driver) > 0.0 ? drive_period(driver)
                                         : INFINITY;
 }

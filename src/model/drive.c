@@ -314,8 +314,8 @@ bool drive_is_held(const Driver *driver)
     return has_angles(driver) && !time_table_changes(&driver->table);
 }
 
-// Periods of a wave in which its mean speed may make whole turns; beyond that some number of them is
-// near any ratio.
+// Periods of a wave in which its mean speed may make whole turns; beyond that some number of them
+// is near any ratio.
 enum { DRIVE_PERIODS_MOST = 64 };
 
 // 1: of a turn, what the digits of a speed and a frequency may leave

@@ -260,8 +260,7 @@ double forces_within_limit(const Torque *torque, double unlimited)
 
 double forces_drive_torque(const Linkage *linkage, const Motion *motions, double time_s)
 {
-    return forces_within_limit(&linkage->torque,
-                               forces_drive_unlimited(linkage, motions, time_s));
+    return forces_within_limit(&linkage->torque, forces_drive_unlimited(linkage, motions, time_s));
 }
 
 double forces_drive_unlimited(const Linkage *linkage, const Motion *motions, double time_s)

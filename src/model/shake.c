@@ -137,8 +137,8 @@ static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
     shake_limits(joint, seed);
 }
 
-// The amplitude of a sinusoid; most cases have none, and nothing is drawn for it. Its frequency says
-// what period a motion has, and is exact.
+// The amplitude of a sinusoid; most cases have none, and nothing is drawn for it. Its frequency
+// says what period a motion has, and is exact.
 static void shake_wave(Wave *wave, uint64_t *seed)
 {
     if (wave_exists(wave)) {

@@ -14,9 +14,8 @@ bool time_table_is_ordered(const TimeTable *table)
             return false;
         }
     }
-    if (wave_exists(&table->wave) &&
-        !(table->count == 1 && isfinite(table->wave.amplitude) && isfinite(table->wave.rate) &&
-          isfinite(table->wave.phase))) {
+    if (wave_exists(&table->wave) && !(table->count == 1 && isfinite(table->wave.amplitude) &&
+                                       isfinite(table->wave.rate) && isfinite(table->wave.phase))) {
         return false;
     }
     const size_t last = table->count - 1;
@@ -186,8 +185,8 @@ long double time_table_integral(const TimeTable *table, long double time_s)
     if (wave_exists(&table->wave)) {
         const Wave *wave = &table->wave;
         const long double half = 0.5L * wave->rate * time_s;
-        return time_s * table->values[0] + 2.0L * wave->amplitude / wave->rate *
-                                               sinl(wave->phase + half) * sinl(half);
+        return time_s * table->values[0] +
+               2.0L * wave->amplitude / wave->rate * sinl(wave->phase + half) * sinl(half);
     }
     if (!(period_s > 0.0L && time_s > period_s)) {
         return integral_to(table, time_s);

@@ -30,8 +30,8 @@ typedef struct Search {
 static double margin_of(const System *system, const DriveTorque *torque)
 {
     const double limit = system->scenario->linkage.torque.limit;
-    const double margin =
-        system->side == 0 ? limit - fabs(torque->unlimited) : system->side * torque->unlimited - limit;
+    const double margin = system->side == 0 ? limit - fabs(torque->unlimited)
+                                            : system->side * torque->unlimited - limit;
     // beyond rounding alone
     return margin + TORQUE_ROUNDING * (torque->terms + limit);
 }

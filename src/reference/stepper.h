@@ -116,7 +116,7 @@ typedef struct Stepper {
     Stiffness stiffness;
     bool has_step;
     double duration_s;
-    double wave_s;     // the longest step that sees every sinusoid, s
+    double wave_s;       // the longest step that sees every sinusoid, s
     SpeedScale scale;    // largest speeds so far
     bool is_after_onset; // whether a contact began where the present step does
     double onset_step;   // s, length that the first step of the last contact had

@@ -266,9 +266,9 @@ struct System {
     Coupling *coupling; // owned by the equations
     int side; // of a soft drive with a limit: +1 or -1 while its torque is at that; it changes at
               // events only
-    bool has_loads;     // whether their work is added up
-    bool is_astray;     // whether the loops' energy has jumped, as it does at a change point
-    int torn; // the number of an ideal joint that its loop could not keep closed; -1: none
+    bool has_loads; // whether their work is added up
+    bool is_astray; // whether the loops' energy has jumped, as it does at a change point
+    int torn;       // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
     Contact *contacts;
     // Of the integrator's vector, those that the press of a contact depends on: from its first in

@@ -327,7 +327,8 @@ static void write_servo(Sketch *sketch, FILE *file)
             fprintf(file, ", stiffness: %.4g N m/rad, damping: %.4g N m s/rad", stiffness,
                     stiffness * draw_log_between(draw, 1e-3, 5e-2));
             if (draw_chance(draw, 0.8)) {
-                fprintf(file, ", torque-limit: %.4g N m", stiffness * draw_log_between(draw, 0.01, 0.5));
+                fprintf(file, ", torque-limit: %.4g N m",
+                        stiffness * draw_log_between(draw, 0.01, 0.5));
             }
         }
         fprintf(file, "}\n");
@@ -337,7 +338,8 @@ static void write_servo(Sketch *sketch, FILE *file)
         const bool is_force = draw_chance(draw, 0.5);
         fprintf(file, "  load-%zu: {body: body-%zu, ", i, i);
         if (is_force) {
-            fprintf(file, "direction: %.4g deg, frame: %s, force: ", draw_between(draw, -180.0, 180.0),
+            fprintf(file,
+                    "direction: %.4g deg, frame: %s, force: ", draw_between(draw, -180.0, 180.0),
                     draw_chance(draw, 0.5) ? "body" : "world");
         } else {
             fprintf(file, "torque: ");

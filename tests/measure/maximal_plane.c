@@ -833,8 +833,9 @@ static void add_torque(const Plane *plane, double since_s, Real time_s, View vie
     }
     const TimePiece piece = time_table_piece(&torque->table, since_s);
     const Wave *wave = &torque->table.wave;
-    Real value = piece.value + piece.slope * (time_s - piece.time_s) +
-                 (wave->rate > 0.0 ? wave->amplitude * sinl(wave->rate * time_s + wave->phase) : 0.0L);
+    Real value =
+        piece.value + piece.slope * (time_s - piece.time_s) +
+        (wave->rate > 0.0 ? wave->amplitude * sinl(wave->rate * time_s + wave->phase) : 0.0L);
     if (torque->followed.is_present) {
         value = followed_torque(plane, time_s, view);
         value = torque->limit > 0.0 ? fminl(fmaxl(value, -torque->limit), torque->limit) : value;
@@ -859,7 +860,8 @@ static void add_loads(const Plane *plane, Real time_s, View view, Real *accelera
         const Wave *wave = &load->table.wave;
         const Vec none = {0.0L, 0.0L};
         Real value = load->table.values[0];
-        value += wave->rate > 0.0 ? wave->amplitude * sinl(wave->rate * time_s + wave->phase) : 0.0L;
+        value +=
+            wave->rate > 0.0 ? wave->amplitude * sinl(wave->rate * time_s + wave->phase) : 0.0L;
         if (load->kind == LOAD_TORQUE) {
             push(plane, load->body, none, none, value, accelerations);
             continue;
@@ -905,9 +907,10 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
     if (plane->driven != LINKAGE_GROUND) {
         const Driver *driver = &linkage->driver;
         const Joint *joint = &linkage->joints[driver->joint];
-        const Real alpha = is_wave(driver)          ? path_of(driver, time_s).alpha
-                           : driver->table.count > 0 ? time_table_piece(&driver->table, since_s).slope
-                                                     : 0.0;
+        const Real alpha = is_wave(driver) ? path_of(driver, time_s).alpha
+                           : driver->table.count > 0
+                               ? time_table_piece(&driver->table, since_s).slope
+                               : 0.0;
         const Real omega = view.v[3 * plane->driven + 2];
         const Vec arm = arm_of(view, plane->driven, joint->anchor_b);
         Real *of = accelerations + 3 * plane->driven;

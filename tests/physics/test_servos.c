@@ -3,9 +3,9 @@
 // An arm on a pivot is turned by a controller of stiffness k, damping c and a limit L. The truth is
 // its one equation,
 //     I phi'' = M - m g r cos phi,   M = k (phi_d - phi) + c (phi_d' - phi') within +-L,
-// integrated here by the classical Runge-Kutta rule of order 4 in long double, whose steps end where
-// the torque reaches its limit or leaves it. At rest it is an equation of angles alone, solved here
-// by bisection. Controls: no limit, or another angle, is far off.
+// integrated here by the classical Runge-Kutta rule of order 4 in long double, whose steps end
+// where the torque reaches its limit or leaves it. At rest it is an equation of angles alone,
+// solved here by bisection. Controls: no limit, or another angle, is far off.
 #include "complete_run.h"
 
 #include "casefile/casefile.h"
@@ -32,7 +32,8 @@ static void assert_refused(const char *text, const char *setting, const char *wo
 {
     Scenario scenario;
     Err err = {ERR_NONE, ""};
-    assert_false(casefile_load_text("servo.yaml", text, strlen(text), &setting, 1, &scenario, &err));
+    assert_false(
+        casefile_load_text("servo.yaml", text, strlen(text), &setting, 1, &scenario, &err));
     if (strstr(err.text, words) == NULL) {
         fail_msg("%s", err.text);
     }
@@ -268,13 +269,12 @@ static void a_limited_drive_answers_a_step_as_its_equation_says(void **state)
     assert_true(apart_from_truth(&free_of_limit, run, &corners) > 0.1);
     // the work of the drive is in the energy, and its torque never above the limit
     const Motion *end = trajectory_motion(run, run->sample_count - 1, 0);
-    const double energy =
-        0.5 * 0.03 * end->omega * end->omega + 2.0 * G * 0.1 * sin(end->angle);
+    const double energy = 0.5 * 0.03 * end->omega * end->omega + 2.0 * G * 0.1 * sin(end->angle);
     assert_near(run->energy.drive_work, energy, 1e-9);
     double largest = 0.0;
     for (size_t i = 0; i < run->sample_count; i++) {
-        largest = fmax(largest, fabs(drive_torque_of(&scenario, trajectory_motion(run, i, 0),
-                                                     NULL, run->times[i], 0)));
+        largest = fmax(largest, fabs(drive_torque_of(&scenario, trajectory_motion(run, i, 0), NULL,
+                                                     run->times[i], 0)));
     }
     assert_true(largest == 8.0);
     trajectory_destroy(run);
@@ -301,8 +301,8 @@ static void ode_keeps_its_order_over_corners(void **state)
             scenario_free(&scenario);
         }
         const double order = log2(errors[0] / errors[3]) / 3.0;
-        print_message("# %s: %.3g %.3g %.3g %.3g, order %.2f\n", STEPPINGS[k], errors[0],
-                      errors[1], errors[2], errors[3], order);
+        print_message("# %s: %.3g %.3g %.3g %.3g, order %.2f\n", STEPPINGS[k], errors[0], errors[1],
+                      errors[2], errors[3], order);
         assert_true(order > 0.9 * ORDERS[k]);
     }
 }
@@ -329,8 +329,8 @@ static void a_chosen_step_holds_over_corners(void **state)
     }
 }
 
-// A servo whose gear has play holds the arm: the rotor is bent back by m g r cos(a) / k, and the arm
-// lies on the flank, half the play and the flank's own depth lower.
+// A servo whose gear has play holds the arm: the rotor is bent back by m g r cos(a) / k, and the
+// arm lies on the flank, half the play and the flank's own depth lower.
 static void a_servo_with_backlash_holds_its_arm(void **state)
 {
     (void)state;

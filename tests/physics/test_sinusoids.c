@@ -60,8 +60,8 @@ static double rotor_error(const Trajectory *run, double phase)
 {
     double largest = 0.0;
     for (size_t i = 0; i < run->sample_count; i++) {
-        largest = fmax(largest, fabs(trajectory_motion(run, i, 0)->omega -
-                                     rotor_omega(run->times[i], phase)));
+        largest = fmax(
+            largest, fabs(trajectory_motion(run, i, 0)->omega - rotor_omega(run->times[i], phase)));
     }
     return largest;
 }
@@ -152,7 +152,8 @@ static const struct {
     {FOUR_BAR "drive: {start: 30 deg, speed: {mean: 300 rpm, amplitude: 40 rpm, frequency: 12 Hz, "
               "phase: 20 deg}}\n",
      by_speed},
-    {FOUR_BAR "drive: {start: 30 deg, angle: {amplitude: 25 deg, frequency: 8 Hz, phase: 50 deg}}\n",
+    {FOUR_BAR
+     "drive: {start: 30 deg, angle: {amplitude: 25 deg, frequency: 8 Hz, phase: 50 deg}}\n",
      by_angle},
 };
 
@@ -176,8 +177,8 @@ static void a_crank_moves_as_its_sinusoid_says(void **state)
                 apart[r] = fmax(apart[r], fabs(trajectory_motion(runs[r], i, 2)->omega -
                                                trajectory_motion(runs[0], i, 2)->omega));
             }
-            alpha_off = fmax(alpha_off,
-                             fabs(trajectory_motion(runs[1], i, 0)->alpha - truth.alpha));
+            alpha_off =
+                fmax(alpha_off, fabs(trajectory_motion(runs[1], i, 0)->alpha - truth.alpha));
         }
         print_message("# crank %zu: off by %.2g, %.2g, %.2g; follower of the reference %.2g, of "
                       "ode %.2g rad/s from the closed form\n",
@@ -197,7 +198,8 @@ static void a_crank_moves_as_its_sinusoid_says(void **state)
     }
 }
 
-// The same angle by 31 points of a spline: the control is far off in what matters, the acceleration.
+// The same angle by 31 points of a spline: the control is far off in what matters, the
+// acceleration.
 static void points_are_no_sinusoid(void **state)
 {
     (void)state;
@@ -257,9 +259,9 @@ static void a_drive_goes_as_far_as_its_sinusoid(void **state)
             const double d = 1e-5;
             assert_near((drive_angle(&driver, 1.3 + d) - drive_angle(&driver, 1.3 - d)) / (2.0 * d),
                         at.omega, 1e-7);
-            assert_near(
-                (drive_at(&driver, 1.3 + d).omega - drive_at(&driver, 1.3 - d).omega) / (2.0 * d),
-                at.alpha, 1e-6);
+            assert_near((drive_at(&driver, 1.3 + d).omega - drive_at(&driver, 1.3 - d).omega) /
+                            (2.0 * d),
+                        at.alpha, 1e-6);
         }
     }
 }
@@ -318,7 +320,8 @@ static void a_shaken_motion_settles_by_its_period(void **state)
         apart = fmax(apart, fabs(omega - trajectory_motion(run, i + 50, 0)->omega));
         half = fmax(half, fabs(omega - trajectory_motion(run, i + 25, 0)->omega));
     }
-    print_message("# settled: %.2g rad/s from a period later, %.2g from half of one\n", apart, half);
+    print_message("# settled: %.2g rad/s from a period later, %.2g from half of one\n", apart,
+                  half);
     assert_true(run_impacts(run) >= 2 && apart < 1e-4 * half);
     trajectory_destroy(run);
     scenario_free(&scenario);

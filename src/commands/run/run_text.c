@@ -62,8 +62,8 @@ static void run_text_write_springs(const Linkage *linkage, size_t width, Text *t
 // A sinusoid about its mean, in the unit given, so many of which make an SI unit.
 static void write_wave(double mean, const Wave *wave, double scale, const char *unit, Text *text)
 {
-    text_append(text, "%.6g %s +- %.6g %s at %.6g Hz", scale * mean, unit,
-                scale * wave->amplitude, unit, wave->rate / (2.0 * M_PI));
+    text_append(text, "%.6g %s +- %.6g %s at %.6g Hz", scale * mean, unit, scale * wave->amplitude,
+                unit, wave->rate / (2.0 * M_PI));
 }
 
 // What a soft drive follows.

@@ -719,8 +719,8 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     }
     state->drive_power = forces_torque_power(linkage, motions, time_s);
     if (linkage->torque.limit > 0.0) {
-        state->drive_power = sided_torque(&dynamics->system, motions, time_s) *
-                             forces_drive_rate(linkage, motions);
+        state->drive_power =
+            sided_torque(&dynamics->system, motions, time_s) * forces_drive_rate(linkage, motions);
     }
     state->damping_power = forces_damping_power(linkage, motions);
     state->load_power = loads_power(linkage, motions, time_s, from_s);
