@@ -16,6 +16,7 @@
 #include "casefile/tolerance.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,6 +88,32 @@ static bool refuse_group(const Probe *probe, const Source *source, const Node *v
                         schema_form(probe->entries.form)->key);
 }
 
+// What a part of a sinusoid takes, by its dimension.
+#define PROBE_PART_ROW(id, ...)                                                                    \
+    [id] = {.path = "signals.*",                                                                   \
+            .type = SCHEMA_QUANTITY,                                                               \
+            .dimension = id,                                                                       \
+            .low = -INFINITY,                                                                      \
+            .high = INFINITY},
+static const SchemaRow PART_ROWS[DIMENSION_COUNT] = {UNITS_DIMENSION_LIST(PROBE_PART_ROW)};
+
+// The row of a part: of mean and amplitude in the dimension of the value, which of a signal is that
+// of a key that uses it.
+static const SchemaRow *part_row(const Entries *entries, const ProbeKey *key)
+{
+    const Entry *own = entries_at(entries, key->row, key->index);
+    Dimension dimension = key->row->dimension;
+    for (size_t i = 0; key->row->type == SCHEMA_SIGNAL && i < entries->count; i++) {
+        const Entry *user = &entries->entries[i];
+        const Entry *signal = entries_resolve(entries, user).signal;
+        dimension = signal != NULL && signal == own ? user->row->dimension : dimension;
+    }
+    dimension = key->part == ENTRY_FREQUENCY ? DIMENSION_FREQUENCY
+                : key->part == ENTRY_PHASE   ? DIMENSION_ANGLE
+                                             : dimension;
+    return &PART_ROWS[dimension];
+}
+
 bool probe_key(const Probe *probe, const Source *source, const Node *value, ProbeKey *key, Err *err)
 {
     // a name that is new must not stay
@@ -99,7 +126,8 @@ bool probe_key(const Probe *probe, const Source *source, const Node *value, Prob
     }
     if (is_good) {
         text_copy(found.path, sizeof found.path, value->key->text);
-        found.kind = found.part == ENTRY_WHOLE ? kind_of(found.row->type) : PROBE_OTHER;
+        found.row = found.part == ENTRY_WHOLE ? found.row : part_row(&entries, &found);
+        found.kind = kind_of(found.row->type);
         if (found.row->family == SCHEMA_JOINT) {
             found.joint_kind = joint_kind_find(&entries, found.index);
         }
@@ -129,8 +157,10 @@ bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, 
                  Err *err)
 {
     const Entry entry = {key->row, key->index, value, source, NULL};
+    ProbeNumber number;
     if (key->part != ENTRY_WHOLE || key->row->type == SCHEMA_SIGNAL) {
-        return true; // what it is of says what it may be
+        // what it is of says what it may be
+        return key->part == ENTRY_WHOLE || probe_number(source, key, value, &number, err);
     }
     Scenario *scratch = scratch_scenario(key);
     if (key->row->family == SCHEMA_JOINT) {

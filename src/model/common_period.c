@@ -215,7 +215,10 @@ static void add_load(Search *search, const Linkage *linkage, const Load *load)
 // Why nothing has a period.
 static const char *no_beat(const Linkage *linkage)
 {
-    return linkage->torque.followed.is_present ? "its drive is soft, and turns it at no given speed"
+    return linkage->torque.followed.is_present && drive_is_held(&linkage->torque.followed)
+               ? "its drive holds an angle, and no load repeats over time"
+           : linkage->torque.followed.is_present
+               ? "its drive is soft, and turns it at no given speed"
            : linkage->torque.table.count > 0
                ? "a torque or force drives it at no given speed, and nothing repeats over time"
                : "nothing drives it at a given speed, and no load repeats over time";
