@@ -198,6 +198,30 @@ static void a_crank_moves_as_its_sinusoid_says(void **state)
     }
 }
 
+// A sinusoid has no kinks: ODE's extrapolated steps keep their order with it, which points do not.
+static void extrapolated_steps_are_for_sinusoids_too(void **state)
+{
+    (void)state;
+    static const char *const SETTINGS[] = {"ode.stepping=extrapolated"};
+    double errors[3];
+    for (int i = 0; i < 3; i++) {
+        Scenario scenario = scenario_of(DRIVES[0].text, SETTINGS, 1);
+        scenario.run.step = 2e-3 / (1 << i);
+        Trajectory *exact = complete_run(&scenario, BACKEND_ANALYTIC);
+        Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+        errors[i] = 0.0;
+        for (size_t k = 0; k < run->sample_count; k++) {
+            errors[i] = fmax(errors[i], fabs(trajectory_motion(run, k, 2)->omega -
+                                             trajectory_motion(exact, k, 2)->omega));
+        }
+        trajectory_destroy(exact);
+        trajectory_destroy(run);
+        scenario_free(&scenario);
+    }
+    print_message("# extrapolated: %.2g, %.2g, %.2g rad/s\n", errors[0], errors[1], errors[2]);
+    assert_true(errors[1] < errors[0] / 10.0 && errors[2] < errors[1] / 10.0);
+}
+
 // The same angle by 31 points of a spline: the control is far off in what matters, the
 // acceleration.
 static void points_are_no_sinusoid(void **state)
@@ -349,6 +373,7 @@ int main(void)
         cmocka_unit_test(a_torque_swings_a_rotor),
         cmocka_unit_test(a_fast_load_is_not_stepped_over),
         cmocka_unit_test(a_crank_moves_as_its_sinusoid_says),
+        cmocka_unit_test(extrapolated_steps_are_for_sinusoids_too),
         cmocka_unit_test(points_are_no_sinusoid),
         cmocka_unit_test(a_drive_goes_as_far_as_its_sinusoid),
         cmocka_unit_test(sinusoids_have_periods_in_common),
