@@ -327,6 +327,10 @@ static bool find_part_of(const Walk *walk, const Position *here, const char *nam
             return true;
         }
     }
+    if (here->part != ENTRY_WHOLE) {
+        return source_error(walk->source, span, "the path of the part alone", walk->err,
+                            "a part of a sinusoid has no parts of its own");
+    }
     return keys_refuse(walk->source, span, "part of a sinusoid", name, ENTRY_PARTS,
                        ENTRY_PART_COUNT, walk->err);
 }

@@ -34,14 +34,13 @@ static void override_parts(const Entries *entries, const Entry *whole,
     }
 }
 
-static bool read_part(const Entry *whole, const Entry *part, const char *name, Dimension dimension,
-                      double *value, Err *err)
+static bool read_part(const Entry *part, const char *name, Dimension dimension, double *value,
+                      Err *err)
 {
     Complaint complaint;
     if (part->node->kind != NODE_SCALAR || part->node->text[0] == '\0') {
         return source_error(part->source, keys_span(part->node), units_example(dimension), err,
-                            "%s of %s is %s", name, whole->row->path,
-                            units_dimension_name(dimension));
+                            "%s takes %s", name, units_dimension_name(dimension));
     }
     return quantity_parse(part->node->text, dimension, value, &complaint) ||
            source_error(part->source, part->node->span, complaint.allowed, err, "%s",
@@ -103,7 +102,7 @@ bool waves_read(const Entries *entries, const Entry *entry, Dimension dimension,
                                 "the sinusoid has no %s", ENTRY_PARTS[i]);
         }
         if (parts[i].node != NULL &&
-            !read_part(entry, &parts[i], ENTRY_PARTS[i], dimensions[i], &values[i], err)) {
+            !read_part(&parts[i], ENTRY_PARTS[i], dimensions[i], &values[i], err)) {
             return false;
         }
     }

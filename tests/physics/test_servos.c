@@ -377,6 +377,42 @@ static void a_servo_with_backlash_holds_its_arm(void **state)
     scenario_free(&scenario);
 }
 
+// ODE's ways in the plane: the same work of the drive, none of it lost, and the same rest.
+static void ode_gives_a_limited_drive_its_work(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *settings[3];
+        double work; // 1: of the drive's work, what it may be off by
+    } WAYS[] = {
+        {{"ode.map=impulse", "ode.stepping=staggered", "ode.solver=direct"}, 1e-5},
+        {{"ode.map=impulse", "ode.stepping=staggered", "ode.solver=quick"}, 1e-5},
+        {{"ode.map=midpoint", "ode.stepping=staggered", "ode.solver=direct"}, 1e-4},
+        {{"ode.map=textbook", "ode.stepping=plain", "ode.solver=direct"}, 1e-2},
+    };
+    Err err = {ERR_NONE, ""};
+    for (size_t i = 0; i < sizeof WAYS / sizeof *WAYS; i++) {
+        Scenario scenario;
+        const char *settings[] = {"run.step=20us", "run.samples=100", WAYS[i].settings[0],
+                                  WAYS[i].settings[1], WAYS[i].settings[2]};
+        if (!casefile_load("cases/mechanisms/servo-arm.yaml", settings, 5, &scenario, &err)) {
+            fail_msg("%s", err.text);
+        }
+        Trajectory *truth = complete_run(&scenario, BACKEND_REFERENCE);
+        Trajectory *run = complete_run(&scenario, BACKEND_ODE);
+        const double off = run->energy.drive_work / truth->energy.drive_work - 1.0;
+        print_message("# %s %s: work off by %.2g, residual %.2g J\n", WAYS[i].settings[0],
+                      WAYS[i].settings[2], off, run->energy.residual);
+        assert_true(fabs(off) < WAYS[i].work);
+        assert_true(fabs(run->energy.residual) < WAYS[i].work * truth->energy.drive_work);
+        assert_near(trajectory_motion(run, run->sample_count - 1, 1)->angle,
+                    trajectory_motion(truth, run->sample_count - 1, 1)->angle, 1e-8);
+        trajectory_destroy(truth);
+        trajectory_destroy(run);
+        scenario_free(&scenario);
+    }
+}
+
 // A drive that follows a sinusoid, limited, against the same equation.
 static void a_limited_drive_follows_a_sinusoid(void **state)
 {
@@ -413,6 +449,7 @@ int main(void)
         cmocka_unit_test(ode_keeps_its_order_over_corners),
         cmocka_unit_test(a_chosen_step_holds_over_corners),
         cmocka_unit_test(a_servo_with_backlash_holds_its_arm),
+        cmocka_unit_test(ode_gives_a_limited_drive_its_work),
         cmocka_unit_test(a_limited_drive_follows_a_sinusoid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
