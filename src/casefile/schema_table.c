@@ -271,7 +271,7 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "loads.*.torque", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_TORQUE,
      .low = -1e9, .high = 1e9, .doc = "likewise; counter-clockwise positive"},
 
-    {.path = "signals.*", .type = SCHEMA_SIGNAL, .family = SCHEMA_SIGNAL_FAMILY,
+    {.path = "signals.*", .type = SCHEMA_SIGNAL, .family = SCHEMA_SIGNAL_FAMILY, .is_required = true,
      .doc = "what a value of loads, drive.speed, angle, torque or force may be over time, for use by "
             "its name"},
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
