@@ -19,8 +19,9 @@ bool load_table_is_ordered(const LoadTable *table)
             return false;
         }
     }
-    if (wave_exists(&table->wave) && !(table->count == 1 && isfinite(table->wave.amplitude) &&
-                                       isfinite(table->wave.rate) && isfinite(table->wave.phase))) {
+    if (table->count > 0 && wave_exists(&table->wave) &&
+        !(table->count == 1 && isfinite(table->wave.amplitude) && isfinite(table->wave.rate) &&
+          isfinite(table->wave.phase))) {
         return false;
     }
     return table->period == 0.0 || table->count == 0 ||

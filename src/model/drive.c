@@ -152,8 +152,11 @@ static DrivePiece piece_of_move(const Move *move, long double tau)
 
 DrivePiece drive_piece(const Driver *driver, double from_s)
 {
+    if (is_constant(driver)) {
+        return (DrivePiece){.is_uniform = true, .terms = {driver->speed}};
+    }
     const Wave *wave = &driver->table.wave;
-    if (!is_constant(driver) && wave_exists(wave)) {
+    if (wave_exists(wave)) {
         DrivePiece piece = {.swing = wave_from(wave, from_s)};
         if (!has_angles(driver)) {
             piece.swing = wave_integral(&piece.swing);
@@ -167,12 +170,9 @@ DrivePiece drive_piece(const Driver *driver, double from_s)
                    ? (DrivePiece){.is_uniform = true}
                    : piece_of_move(&move, ((long double)from_s - move.time_s) / move.width_s);
     }
-    DrivePiece piece = {.is_uniform = true, .terms = {driver->speed}};
-    if (!is_constant(driver)) {
-        piece.terms[0] = time_table_at(&driver->table, from_s);
-        piece.terms[1] = 0.5 * time_table_piece(&driver->table, from_s).slope;
-    }
-    return piece;
+    return (DrivePiece){.is_uniform = true,
+                        .terms = {time_table_at(&driver->table, from_s),
+                                  0.5 * time_table_piece(&driver->table, from_s).slope}};
 }
 
 DriveState drive_piece_at(const DrivePiece *piece, double since_s)
@@ -214,6 +214,10 @@ DriveState drive_at(const Driver *driver, double time_s)
 
 DriveState drive_since(const Driver *driver, double from_s, double time_s)
 {
+    if (is_constant(driver)) {
+        return (DriveState){(time_s - from_s) * driver->speed + drive_angle(driver, from_s),
+                            driver->speed, 0.0};
+    }
     const DrivePiece piece = drive_piece(driver, from_s);
     DriveState state = drive_piece_at(&piece, time_s - from_s);
     state.angle += drive_angle(driver, from_s);

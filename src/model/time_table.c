@@ -14,8 +14,9 @@ bool time_table_is_ordered(const TimeTable *table)
             return false;
         }
     }
-    if (wave_exists(&table->wave) && !(table->count == 1 && isfinite(table->wave.amplitude) &&
-                                       isfinite(table->wave.rate) && isfinite(table->wave.phase))) {
+    if (table->count > 0 && wave_exists(&table->wave) &&
+        !(table->count == 1 && isfinite(table->wave.amplitude) && isfinite(table->wave.rate) &&
+          isfinite(table->wave.phase))) {
         return false;
     }
     const size_t last = table->count - 1;
