@@ -439,6 +439,44 @@ static void a_limited_drive_follows_a_sinusoid(void **state)
     scenario_free(&scenario);
 }
 
+// A limit that the torque passes for a moment only, between two steps that lie below it: by 1e-3 to
+// 1e-9 of itself. A corner that is passed over would cost as much of the torque for that while.
+static void a_moment_beyond_the_limit_is_seen(void **state)
+{
+    (void)state;
+    static const char TEXT[] =
+        ARM "drive: {joint: shoulder, stiffness: 40 N m/rad, damping: 0.6 N m s/rad,\n"
+            "        torque-limit: 1e6 N m,\n"
+            "        angle: {amplitude: 25 deg, frequency: 3 Hz, phase: 40 deg}}\n"
+            "run: {duration: 1 s, samples: 2000}\n";
+    Control control = {{-25.0L * M_PI / 180.0L * sinl(2.0L * M_PI / 9.0L), 25.0L * M_PI / 180.0L,
+                        6.0L * M_PI, 2.0L * M_PI / 9.0L},
+                       40.0L,
+                       0.6L,
+                       1e6L};
+    Scenario scenario = scenario_of(TEXT, NULL, 0);
+    Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
+    double largest = 0.0;
+    for (size_t i = 0; i < run->sample_count; i++) {
+        const Motion *motion = trajectory_motion(run, i, 0);
+        largest = fmax(largest, fabs((double)unlimited(&control, run->times[i],
+                                                       (Arm){motion->angle, motion->omega})));
+    }
+    trajectory_destroy(run);
+    static const double SHARES[] = {1e-3, 1e-5, 1e-7, 1e-9};
+    for (size_t k = 0; k < 4; k++) {
+        scenario.linkage.torque.limit = (1.0 - SHARES[k]) * largest;
+        control.limit = scenario.linkage.torque.limit;
+        run = complete_run(&scenario, BACKEND_REFERENCE);
+        int corners;
+        const double off = apart_from_truth(&control, run, &corners);
+        print_message("# %.0e beyond, %d corners: off by %.2g\n", SHARES[k], corners, off);
+        assert_true(corners == 2 && off < 1e-11);
+        trajectory_destroy(run);
+    }
+    scenario_free(&scenario);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -451,6 +489,7 @@ int main(void)
         cmocka_unit_test(a_servo_with_backlash_holds_its_arm),
         cmocka_unit_test(ode_gives_a_limited_drive_its_work),
         cmocka_unit_test(a_limited_drive_follows_a_sinusoid),
+        cmocka_unit_test(a_moment_beyond_the_limit_is_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
