@@ -5,8 +5,8 @@
 //     by itself    L - |M|
 //     at a limit   side M - L      side +1 or -1
 // Where one is used up the drive changes over. M does not jump, nor does its rate: what follows has
-// a margin that grows. A step is looked at in some points, and where the margin is least among
-// three of them, at its least value, by golden section: M may pass its limit and come back.
+// a margin that grows. A step is looked at in some points, and where the margin has its least value
+// between them, there too, by golden section: M may pass its limit and come back.
 #include "reference/stepper.h"
 
 #include "base/root.h"
@@ -76,6 +76,21 @@ static double least_between(Search *search, double first, double last)
     return at_low < at_high ? low : high;
 }
 
+// The time of a point, or of the least margin where that lies beside the point: between its
+// neighbours, or, by the slope of a parabola through three, in the first or the last part.
+static double dip_near(Search *search, const double *times, const double *margins, int i)
+{
+    const double *m = margins;
+    const bool is_within = i < POINTS && m[i] < m[i - 1] && m[i] <= m[i + 1];
+    const bool is_first = i == 1 && m[1] >= m[0] && 4.0 * m[1] - 3.0 * m[0] - m[2] < 0.0;
+    const bool is_last =
+        i == POINTS && m[i] <= m[i - 1] && 3.0 * m[i] - 4.0 * m[i - 1] + m[i - 2] > 0.0;
+    if (!(m[i] > 0.0) || !(is_within || is_first || is_last)) {
+        return times[i];
+    }
+    return least_between(search, times[i - 1], times[is_within ? i + 1 : i]);
+}
+
 // Which side holds once the present margin is used up.
 static int side_after(const Search *search, double time)
 {
@@ -93,10 +108,7 @@ bool drive_limit_find(const System *system, Dop853 *integrator, Event *event)
         margins[i] = margin_at(times[i], &search);
     }
     for (int i = 1; i <= POINTS; i++) {
-        double beyond = times[i];
-        const bool is_dip = i < POINTS && margins[i] > 0.0 && margins[i] < margins[i - 1] &&
-                            margins[i] < margins[i + 1];
-        beyond = is_dip ? least_between(&search, times[i - 1], times[i + 1]) : beyond;
+        const double beyond = dip_near(&search, times, margins, i);
         if (margin_at(beyond, &search) >= 0.0) {
             continue;
         }
