@@ -19,6 +19,11 @@ bool load_table_is_ordered(const LoadTable *table)
             return false;
         }
     }
+    if (table->count > 0 && wave_exists(&table->wave) &&
+        !(table->count == 1 && isfinite(table->wave.amplitude) && isfinite(table->wave.rate) &&
+          isfinite(table->wave.phase))) {
+        return false;
+    }
     return table->period == 0.0 || table->count == 0 ||
            (table->period > 0.0 && table->at[table->count - 1] - table->at[0] < table->period);
 }
@@ -173,8 +178,18 @@ static double integral_of(const LoadPiece *piece, double from, double to)
     return upper - lower;
 }
 
+double load_table_value(const LoadTable *table, double from, double sign, double at)
+{
+    const LoadPiece piece = load_table_piece(table, from, sign);
+    const double value = load_piece_at(&piece, at);
+    return wave_exists(&table->wave) ? value + wave_at(&table->wave, at) : value;
+}
+
 double load_table_mean(const LoadTable *table, double from, double to)
 {
+    if (wave_exists(&table->wave)) {
+        return table->values[0] + wave_mean(&table->wave, from, to);
+    }
     const double sign = to < from ? -1.0 : 1.0;
     double sum = 0.0;
     double at = from;
@@ -194,5 +209,5 @@ double load_table_largest(const LoadTable *table)
     for (size_t i = 0; i < table->count; i++) {
         largest = fmax(largest, fabs(table->values[i]));
     }
-    return largest;
+    return largest + (wave_exists(&table->wave) ? fabs(table->wave.amplitude) : 0.0);
 }

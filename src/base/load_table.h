@@ -6,6 +6,8 @@
 // neighbours. Source: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
 #pragma once
 
+#include "base/wave.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -22,6 +24,7 @@ typedef struct LoadTable {
     double slopes[LOAD_TABLE_MAX]; // of the cubic, by load_table_settle
     double period;                 // in the unit of `at`, more than from first to last; 0: none
     LoadShape shape;
+    Wave wave; // over time, added to the one point that there is then
 } LoadTable;
 
 // Whether all numbers are finite and the points in order, within one period.
@@ -48,6 +51,10 @@ double load_table_next(const LoadTable *table, double at, double sign);
 
 // The mean between two different arguments, exact.
 double load_table_mean(const LoadTable *table, double from, double to);
+
+// The value there, its wave with it: of the piece that holds from another argument on in a
+// direction.
+double load_table_value(const LoadTable *table, double from, double sign, double at);
 
 // The largest size of a value.
 double load_table_largest(const LoadTable *table);

@@ -18,6 +18,7 @@
 #include "casefile/store.h"
 #include "casefile/teeth.h"
 #include "casefile/unused.h"
+#include "casefile/waves.h"
 #include "model/common_period.h"
 #include "model/joint_friction.h"
 #include "model/space.h"
@@ -124,12 +125,21 @@ static void store_partners(const Entries *entries, Scenario *scenario)
 }
 
 // Lets a drive of which a stiffness or a damping is given follow its speed with these: no body is
-// driven then, and the run has a duration.
+// driven then, and the run has a duration, of so many turns of a constant speed or as it says. The
+// samples of a turn are then those of the run.
 static void soften_drive(const Entries *entries, Scenario *scenario)
 {
     Linkage *linkage = &scenario->linkage;
+    RunOptions *run = &scenario->run;
     if (entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL) {
-        scenario->run.duration = scenario_duration(scenario);
+        if (run->is_report_from_in_turns) {
+            run->report_from = scenario_report_from(scenario);
+            run->is_report_from_in_turns = false;
+        }
+        if (drive_is_steady(&linkage->driver) && entries_find(entries, "run.duration", 0) == NULL) {
+            run->duration = scenario_duration(scenario);
+            run->samples = scenario_sample_count(scenario) - 1;
+        }
         linkage->torque.followed = linkage->driver;
         linkage->torque.table = (TimeTable){.count = 1};
         linkage->driver.is_present = false;
@@ -215,6 +225,17 @@ static void take_friction_laws(Scenario *scenario)
     }
 }
 
+// A soft drive of constant speed may have a duration: so many turns.
+static void store_soft_length(const Entries *entries, Scenario *scenario)
+{
+    const Linkage *linkage = &scenario->linkage;
+    if (entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL &&
+        entries_find(entries, "run.duration", 0) != NULL && drive_is_steady(&linkage->driver) &&
+        linkage->driver.speed != 0.0) {
+        scenario->run.revolutions = scenario->run.duration / linkage_period(linkage);
+    }
+}
+
 // Stores every value in the order of the schema, so that the same mistake is reported first
 // wherever the keys stand.
 static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
@@ -231,9 +252,10 @@ static bool store_entries(const Entries *entries, Scenario *scenario, Err *err)
         }
     }
     scenario->linkage.torque.joint = scenario->linkage.driver.joint;
+    store_soft_length(entries, scenario);
     cam_complete(entries, &scenario->linkage);
     complete_motor(entries, &scenario->linkage);
-    if (!teeth_join(entries, &scenario->linkage, err) ||
+    if (!waves_check_used(entries, err) || !teeth_join(entries, &scenario->linkage, err) ||
         !drives_complete(entries, &scenario->linkage, err) ||
         !loads_complete(entries, &scenario->linkage, err)) {
         return false;
@@ -299,12 +321,29 @@ static bool build(const Entries *entries, Scenario *scenario, Err *err)
                : entries_refuse_group(entries_group(entries, "", 0), err, FORMAT, own.text);
 }
 
+// Builds the bodies where the case puts them: a soft drive may follow an angle that is ahead of
+// them from the start.
+static bool build_behind(const Entries *entries, Scenario *scenario, Err *err)
+{
+    Driver *driver = &scenario->linkage.driver;
+    const TimeTable written = driver->table;
+    if (driver->has_angles && entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL) {
+        const double ahead = drive_angle(driver, 0.0) - driver->start;
+        for (size_t i = 0; i < driver->table.count; i++) {
+            driver->table.values[i] -= ahead;
+        }
+    }
+    const bool is_built = build(entries, scenario, err);
+    driver->table = written;
+    return is_built;
+}
+
 bool assemble_scenario(const Entries *entries, Scenario *scenario, Err *err)
 {
     Scenario built = scenario_default();
     if (!check_required(entries, err) || !store_entries(entries, &built, err) ||
         !check_values(entries, &built, err) || !closure_check_members(entries, &built, err) ||
-        !build(entries, &built, err) || !unused_check(entries, &built, err)) {
+        !build_behind(entries, &built, err) || !unused_check(entries, &built, err)) {
         scenario_free(&built);
         return false;
     }

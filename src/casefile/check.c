@@ -200,14 +200,26 @@ static const char *no_revolutions(const Entries *entries)
                ? "with a torque the drive makes no given number of revolutions"
            : entries_group(entries, "drives", 0) != NULL
                ? "with several drives a run is not counted in the revolutions of one"
+           : entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL
+               ? "a soft drive that holds an angle, or whose speed changes, makes no given number "
+                 "of "
+                 "revolutions"
            : entries_blame(entries, "drive.speed drive.angle", 0) != NULL
                ? "a run with a drive of changing speed is not counted in revolutions"
                : "without a drive there are no revolutions";
 }
 
-// A drive of constant speed counts a run in its revolutions; else it is counted in seconds.
-static bool check_length(const Entries *entries, bool is_turning, Err *err)
+// A drive of constant speed counts a run in its revolutions; else it is counted in seconds. A soft
+// one of constant speed takes either.
+static bool check_length(const Entries *entries, bool is_turning, bool is_soft, Err *err)
 {
+    const Entry *turns = entries_find(entries, "run.revolutions", 0);
+    if (is_turning && is_soft) {
+        return turns == NULL || entries_find(entries, "run.duration", 0) == NULL ||
+               entries_refuse(entries_blame(entries, "run.revolutions run.duration", 0), err,
+                              "the length of the run is given twice\nallowed: revolutions of the "
+                              "soft drive, or a duration");
+    }
     const Entry *wrong = entries_find(entries, is_turning ? "run.duration" : "run.revolutions", 0);
     if (wrong == NULL) {
         return true;
@@ -333,11 +345,17 @@ static bool check_stepping(const Entries *entries, const Scenario *scenario, Err
                               "stepping: plain or staggered, or space: planar",
                               word);
     }
-    if (scenario->linkage.driver.table.count > 0 && !is_general) {
+    if (scenario->linkage.torque.limit > 0.0 && !is_general) {
+        return entries_refuse(entries_blame(entries, "ode.stepping drive.torque-limit", 0), err,
+                              "%s stepping is for smooth forces: a torque has a corner at its "
+                              "limit\nallowed: plain, staggered",
+                              word);
+    }
+    if (!drive_is_smooth(&scenario->linkage.driver) && !is_general) {
         return entries_refuse(entries_blame(entries, "ode.stepping drive.speed drive.angle", 0),
                               err,
-                              "%s stepping is for drives of constant speed: a speed over "
-                              "time has kinks\nallowed: plain, staggered",
+                              "%s stepping is for drives of constant speed or by a sinusoid: "
+                              "points over time have kinks\nallowed: plain, staggered",
                               word);
     }
     if (is_impact && ode->map == ODE_MAP_IMPULSE && ode->stepping != ODE_STAGGERED) {
@@ -358,13 +376,16 @@ static bool check_tolerance(const Entries *entries, const Scenario *scenario, Er
 static bool check_run(const Entries *entries, const Scenario *scenario, Err *err)
 {
     const bool is_driven = scenario->linkage.driver.is_present;
-    if (is_driven && scenario->linkage.driver.speed == 0.0) {
+    const bool is_soft = entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL;
+    if (is_driven && !is_soft && scenario->linkage.driver.speed == 0.0) {
         return entries_refuse(entries_blame(entries, "drive.speed drive.angle", 0), err,
                               "the crank does not turn\nallowed: any speed but 0, or angles that "
                               "differ");
     }
-    const bool is_turning = drive_is_steady(&scenario->linkage.driver);
-    return check_length(entries, is_turning, err) &&
+    const bool has_duration = entries_find(entries, "run.duration", 0) != NULL;
+    const bool is_steady = drive_is_steady(&scenario->linkage.driver);
+    const bool is_turning = is_steady && !(is_soft && has_duration);
+    return check_length(entries, is_steady, is_soft, err) &&
            check_report(entries, scenario, is_turning, err) &&
            check_backends(entries, &scenario->run, err) && check_stepping(entries, scenario, err) &&
            check_tolerance(entries, scenario, err) &&

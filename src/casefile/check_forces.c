@@ -78,6 +78,7 @@ static bool check_motor(const Entries *entries, const Linkage *linkage, Err *err
     const Entry *stall = entries_find(entries, "drive.stall-torque", 0);
     const Entry *motor = entries_blame(entries, MOTOR, 0);
     const Entry *soft = entries_blame(entries, SOFT, 0);
+    const Entry *limit = entries_find(entries, "drive.torque-limit", 0);
     if (stall == NULL && motor != NULL) {
         return entries_refuse(motor, err,
                               "only a motor has this\nallowed: with drive.stall-torque");
@@ -86,6 +87,11 @@ static bool check_motor(const Entries *entries, const Linkage *linkage, Err *err
         return entries_refuse(soft, err,
                               "only a speed or an angle is followed softly\nallowed: with "
                               "drive.speed or drive.angle");
+    }
+    if (limit != NULL && soft == NULL) {
+        return entries_refuse(limit, err,
+                              "only a soft drive has this\nallowed: with drive.stiffness or "
+                              "drive.damping");
     }
     if (stall == NULL) {
         return true;

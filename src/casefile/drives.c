@@ -139,6 +139,10 @@ static bool repeat_speeds(const Entry *entry, Driver *driver, Err *err)
 static bool repeat_torque(const Entries *entries, const Entry *entry, Linkage *linkage, Err *err)
 {
     TimeTable *table = &linkage->torque.table;
+    if (wave_exists(&table->wave)) {
+        return entries_refuse(entry, err,
+                              "a sinusoid repeats by its frequency\nallowed: no period, or points");
+    }
     if (table->count < 2) {
         return entries_refuse(entry, err,
                               "only what changes over time repeats\nallowed: drive.period beside "
@@ -153,6 +157,14 @@ static bool complete(const Entries *entries, const DriveKeys *keys, size_t index
                      Err *err)
 {
     const Entry *entry = entries_find(entries, keys->period, index);
+    if (entry != NULL && driver->table.count > 0 && wave_exists(&driver->table.wave)) {
+        return entries_refuse(entry, err,
+                              "a sinusoid repeats by its frequency\nallowed: no period, or points");
+    }
+    if (entry != NULL && drive_is_held(driver)) {
+        return entries_refuse(
+            entry, err, "one angle that is held has no period\nallowed: no period, or points");
+    }
     // a constant speed has no use for a period, which is said elsewhere
     const bool is_good = entry == NULL || driver->table.count == 0 ||
                          (driver->has_angles ? repeat_angles : repeat_speeds)(entry, driver, err);
@@ -168,7 +180,15 @@ bool drives_complete(const Entries *entries, Linkage *linkage, Err *err)
     if (entry != NULL && !linkage->driver.is_present) {
         return repeat_torque(entries, entry, linkage, err);
     }
-    bool is_good = complete(entries, &CRANK_KEYS, 0, &linkage->driver, err);
+    Driver *driver = &linkage->driver;
+    if (entries_blame(entries, SOFT, 0) != NULL && driver->table.count == 0 &&
+        driver->speed == 0.0) {
+        // a soft drive without a speed holds the angle of the start
+        driver->has_angles = true;
+        driver->table.count = 1;
+        driver->table.times[0] = driver->table.values[0] = 0.0;
+    }
+    bool is_good = complete(entries, &CRANK_KEYS, 0, driver, err);
     for (size_t i = 0; is_good && i < linkage->further_count; i++) {
         is_good = complete(entries, &FURTHER_KEYS, i, &linkage->further[i], err);
     }

@@ -18,7 +18,33 @@ typedef struct Walk {
 typedef struct Position {
     char pattern[SCHEMA_PATH_SIZE]; // with `*` for names
     size_t index;                   // of the joint or point, once known
+    EntryPart part;                 // of the value there
 } Position;
+
+const char *const ENTRY_PARTS[ENTRY_PART_COUNT] = {"mean", "amplitude", "frequency", "phase"};
+
+bool entries_is_signal(const SchemaRow *row)
+{
+    return row->type == SCHEMA_TORQUE || row->type == SCHEMA_SPEED || row->type == SCHEMA_ANGLES ||
+           row->type == SCHEMA_LOAD || row->type == SCHEMA_SIGNAL;
+}
+
+Entry entries_resolve(const Entries *entries, const Entry *entry)
+{
+    Entry resolved = *entry;
+    const bool may_be = entries_is_signal(entry->row) && entry->row->type != SCHEMA_SIGNAL &&
+                        entries->names[SCHEMA_SIGNAL_FAMILY].count > 0 &&
+                        entry->node->kind == NODE_SCALAR;
+    const int number =
+        may_be ? entries_number(entries, SCHEMA_SIGNAL_FAMILY, entry->node->text) : -1;
+    const Entry *signal = number >= 0 ? entries_find(entries, "signals.*", (size_t)number) : NULL;
+    if (signal != NULL) {
+        resolved.node = signal->node;
+        resolved.source = signal->source;
+        resolved.signal = signal;
+    }
+    return resolved;
+}
 
 const char *entries_name(const Entries *entries, const SchemaRow *row, size_t index)
 {
@@ -290,11 +316,35 @@ static bool find_member(const Walk *walk, SchemaFamily family, const char *name,
     return true;
 }
 
+// Goes to a part of a value that may be a sinusoid.
+static bool find_part_of(const Walk *walk, const Position *here, const char *name, Span span,
+                         Position *below)
+{
+    *below = *here;
+    for (int i = 0; i < ENTRY_PART_COUNT; i++) {
+        if (here->part == ENTRY_WHOLE && strcmp(name, ENTRY_PARTS[i]) == 0) {
+            below->part = (EntryPart)i;
+            return true;
+        }
+    }
+    if (here->part != ENTRY_WHOLE) {
+        return source_error(walk->source, span, "the path of the part alone", walk->err,
+                            "a part of a sinusoid has no parts of its own");
+    }
+    return keys_refuse(walk->source, span, "part of a sinusoid", name, ENTRY_PARTS,
+                       ENTRY_PART_COUNT, walk->err);
+}
+
 // Goes one key down: fills `below` for the key `name` in the group at `here`.
 static bool descend(const Walk *walk, const Position *here, const char *name, Span span,
                     Position *below)
 {
     below->index = here->index;
+    below->part = ENTRY_WHOLE;
+    const SchemaRow *value = schema_find(here->pattern);
+    if (value != NULL && entries_is_signal(value)) {
+        return find_part_of(walk, here, name, span, below);
+    }
     const char *segment = name;
     for (SchemaFamily family = SCHEMA_BODY; family < SCHEMA_FAMILY_COUNT; family++) {
         if (strcmp(here->pattern, SCHEMA_FAMILIES[family].group) == 0) {
@@ -341,9 +391,51 @@ static bool settle_rivals(const Walk *walk, const Entry *entry)
     return true;
 }
 
+// What was said before about parts of a value that is given anew.
+static void forget_parts(Entries *entries, const Entry *entry)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < entries->part_count; i++) {
+        const Entry *whole = &entries->parts[i].entry;
+        if (whole->row != entry->row || whole->index != entry->index) {
+            entries->parts[kept++] = entries->parts[i];
+        }
+    }
+    entries->part_count = kept;
+}
+
+// A part replaces that of a sinusoid, which the case must give.
+static bool add_part(const Walk *walk, const Position *here, const SchemaRow *row, const Node *node)
+{
+    Entries *entries = walk->entries;
+    const Entry *whole = entries_at(entries, row, here->index);
+    const Entry resolved = whole != NULL ? entries_resolve(entries, whole) : (Entry){0};
+    const EntryPartGiven given = {here->part, {row, here->index, node, walk->source, NULL}};
+    size_t place = 0;
+    if (whole == NULL || resolved.node->kind != NODE_MAP) {
+        return source_error(walk->source, keys_span(node),
+                            "a value that the case gives as {amplitude: ..., frequency: ...}",
+                            walk->err, "the case gives no sinusoid here that has %s %s",
+                            here->part == ENTRY_AMPLITUDE ? "an" : "a", ENTRY_PARTS[here->part]);
+    }
+    while (place < entries->part_count &&
+           (entries->parts[place].part != here->part || entries->parts[place].entry.row != row ||
+            entries->parts[place].entry.index != here->index)) {
+        place++;
+    }
+    if (place == ENTRY_PARTS_GIVEN) {
+        return source_error(walk->source, keys_span(node), "the sinusoid as a whole", walk->err,
+                            "more than %d parts of sinusoids are overridden", ENTRY_PARTS_GIVEN);
+    }
+    entries->parts[place] = given;
+    entries->part_count += place == entries->part_count ? 1 : 0;
+    return true;
+}
+
 static bool add_entry(const Walk *walk, const SchemaRow *row, size_t index, const Node *node)
 {
-    const Entry entry = {row, index, node, walk->source};
+    const Entry entry = {row, index, node, walk->source, NULL};
+    forget_parts(walk->entries, &entry);
     if (!settle_rivals(walk, &entry)) {
         return false;
     }
@@ -383,6 +475,9 @@ static bool check_single(const Walk *walk, const Node *map, const Node *node, Lo
 static bool walk_node(const Walk *walk, const Position *here, const Node *node)
 {
     const SchemaRow *row = schema_find(here->pattern);
+    if (row != NULL && here->part != ENTRY_WHOLE) {
+        return add_part(walk, here, row, node);
+    }
     if (row != NULL) {
         return add_entry(walk, row, here->index, node);
     }
@@ -431,7 +526,7 @@ bool entries_read(Entries *entries, const Node *root, const Source *source, Err 
         add_names(&entries->names[SCHEMA_JOINT], row->pivots);
     }
     const Walk walk = {entries, source, err};
-    const Position top = {.pattern = ""};
+    const Position top = {.pattern = "", .part = ENTRY_WHOLE};
     return walk_node(&walk, &top, root);
 }
 
@@ -443,7 +538,7 @@ static bool follow(const Walk *walk, const char *key, size_t key_start, const No
     Source in_key = *walk->source;
     in_key.shift = key_start;
     const Walk key_walk = {walk->entries, &in_key, walk->err};
-    *here = (Position){.pattern = ""};
+    *here = (Position){.pattern = "", .part = ENTRY_WHOLE};
     const char *rest = key;
     for (;;) {
         char name[SCHEMA_PATH_SIZE];
@@ -459,7 +554,7 @@ static bool follow(const Walk *walk, const char *key, size_t key_start, const No
         if (rest[length] == '\0') {
             return true;
         }
-        if (value != NULL) {
+        if (value != NULL && schema_find(here->pattern) == NULL) {
             add_group(walk, here, value);
         }
         rest += length + 1;
@@ -475,7 +570,7 @@ bool entries_override(Entries *entries, const char *key, size_t key_start, const
 }
 
 bool entries_key(Entries *entries, const char *key, size_t key_start, const Source *source,
-                 const SchemaRow **row, size_t *index, Err *err)
+                 const SchemaRow **row, size_t *index, EntryPart *part, Err *err)
 {
     const Walk walk = {entries, source, err};
     Position here;
@@ -484,5 +579,6 @@ bool entries_key(Entries *entries, const char *key, size_t key_start, const Sour
     }
     *row = schema_find(here.pattern);
     *index = here.index;
+    *part = here.part;
     return true;
 }

@@ -6,13 +6,32 @@
 #include "casefile/document.h"
 #include "casefile/schema.h"
 
+// The parts of a sinusoid, each of which has a path for overrides.
+enum { ENTRY_PART_COUNT = 4, ENTRY_PARTS_GIVEN = 16 };
+typedef enum EntryPart {
+    ENTRY_MEAN,
+    ENTRY_AMPLITUDE,
+    ENTRY_FREQUENCY,
+    ENTRY_PHASE,
+    ENTRY_WHOLE, // all of the value
+} EntryPart;
+
+extern const char *const ENTRY_PARTS[ENTRY_PART_COUNT];
+
 // One key that was given. Borrows node and source.
 typedef struct Entry {
     const SchemaRow *row;
     size_t index; // of the member of the family
     const Node *node;
     const Source *source;
+    const struct Entry *signal; // of a value that stands under a name: the signal's own entry
 } Entry;
+
+// A part of a sinusoid that overrides what the case says of it.
+typedef struct EntryPartGiven {
+    EntryPart part;
+    Entry entry; // the row and member of the whole, with node and source of the part
+} EntryPartGiven;
 
 // The names of one family, in the order in which the case gives them.
 typedef struct EntryNames {
@@ -44,6 +63,8 @@ typedef struct Entries {
     Entry *entries;    // owned, as the next two
     EntrySlots *slots; // by row of the schema; NULL while there is no entry
     Lookup rows;       // with an entry, now or once, by path
+    size_t part_count;
+    EntryPartGiven parts[ENTRY_PARTS_GIVEN];
     size_t group_count;
     size_t group_room;
     EntryGroup *groups;
@@ -86,7 +107,14 @@ bool entries_override(Entries *entries, const char *key, size_t key_start, const
 // The row of a key that an override would have, and the member of its family; NULL for the key of a
 // group. A name that is new takes its place, as an override's does. Fails on an unknown key.
 bool entries_key(Entries *entries, const char *key, size_t key_start, const Source *source,
-                 const SchemaRow **row, size_t *index, Err *err);
+                 const SchemaRow **row, size_t *index, EntryPart *part, Err *err);
+
+// Whether the value of a row may be a sinusoid, or the name of a signal.
+bool entries_is_signal(const SchemaRow *row);
+
+// The entry with the value that stands under its name, where it is the name of a signal; else the
+// entry itself.
+Entry entries_resolve(const Entries *entries, const Entry *entry);
 
 // The entry of a row's path (with `*`), or NULL where the key was not given.
 const Entry *entries_find(const Entries *entries, const char *path, size_t index);

@@ -128,7 +128,7 @@ bool limits_store(const Target *target, Joint *joint)
         return true;
     }
     const SchemaRow own = limits_row(row, joint->kind, node);
-    const Entry entry = {&own, target->entry->index, node, target->entry->source};
+    const Entry entry = {&own, target->entry->index, node, target->entry->source, NULL};
     Target of_own = *target;
     of_own.entry = &entry;
     TargetNumber number = {.value = 0.0};

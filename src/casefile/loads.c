@@ -2,6 +2,7 @@
 #include "casefile/loads.h"
 
 #include "casefile/input.h"
+#include "casefile/waves.h"
 #include "model/loads.h"
 
 #include <ctype.h>
@@ -386,10 +387,27 @@ static bool is_file(const Node *node)
     return length > 4 && strcmp(node->text + length - 4, ".csv") == 0;
 }
 
+static bool read_wave(const Target *target, Load *load)
+{
+    const SchemaRow *row = target->entry->row;
+    WaveRead read;
+    if (!waves_read(target->entries, target->entry, loads_value_dimension(row, load),
+                    value_scale(row, load), &read, target->err)) {
+        return false;
+    }
+    add_point(&load->table, 0.0, read.mean);
+    load->table.wave = read.wave;
+    return true;
+}
+
 bool loads_store_value(const Target *target, const Linkage *linkage, Load *load)
 {
     const Node *node = target->entry->node;
     load->table.count = 0;
+    load->table.wave = (Wave){.rate = 0.0};
+    if (waves_is_one(target->entry)) {
+        return read_wave(target, load);
+    }
     if (node->kind == NODE_LIST) {
         return read_points(target, linkage, load);
     }
@@ -476,6 +494,10 @@ static bool check_points(const Entries *entries, const Linkage *linkage, size_t 
     const Load *load = &linkage->loads[i];
     const bool has_crank = linkage->driver.is_present || linkage->torque.table.count > 0;
     const bool is_steady = drive_is_steady(&linkage->driver);
+    if (wave_exists(&load->table.wave) && load->over != LOAD_OVER_TIME) {
+        return refuse(entries, "loads.*.over", i, err, "a sinusoid is over time",
+                      "over: time, or points over the crank's angle or a position");
+    }
     if (load->table.count > 1 && load->over == LOAD_OVER_CRANK && !has_crank) {
         return refuse(entries, "loads.*.over", i, err,
                       "nothing drives this mechanism: it has no crank",

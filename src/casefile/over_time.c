@@ -2,12 +2,17 @@
 #include "casefile/over_time.h"
 
 #include "casefile/quantity.h"
+#include "casefile/waves.h"
 
 #include "model/drive.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
+
+// 1: of an amplitude, what the digits of a mean that lets an angle begin with 0 may leave
+static const double ANGLE_ROUNDING = 1e-9;
 
 // What messages say of a quantity over time.
 typedef struct Words {
@@ -123,10 +128,18 @@ static bool read_point(const Entry *entry, const Node *node, TimeTable *table, E
     return true;
 }
 
-bool over_time_store(const Entry *entry, TimeTable *table, Err *err)
+bool over_time_store(const Entries *entries, const Entry *entry, TimeTable *table, Err *err)
 {
     const Node *node = entry->node;
     TimeTable read = {.count = 0};
+    WaveRead wave;
+    if (waves_is_one(entry)) {
+        if (!waves_read(entries, entry, entry->row->dimension, 1.0, &wave, err)) {
+            return false;
+        }
+        *table = (TimeTable){.count = 1, .values = {wave.mean}, .wave = wave.wave};
+        return true;
+    }
     if (node->kind != NODE_LIST) {
         read.count = 1;
         if (!read_value(entry, node, &read.values[0], err)) {
@@ -147,14 +160,16 @@ bool over_time_store(const Entry *entry, TimeTable *table, Err *err)
     return true;
 }
 
-bool over_time_store_speed(const Entry *entry, Driver *driver, Err *err)
+bool over_time_store_speed(const Entries *entries, const Entry *entry, Driver *driver, Err *err)
 {
-    if (!over_time_store(entry, &driver->table, err)) {
+    const double period_s = driver->table.period_s;
+    if (!over_time_store(entries, entry, &driver->table, err)) {
         return false;
     }
+    driver->table.period_s = period_s;
     driver->has_angles = false;
     drive_complete(driver);
-    bool is_constant = true;
+    bool is_constant = driver->table.wave.amplitude == 0.0;
     for (size_t i = 0; i < driver->table.count; i++) {
         is_constant = is_constant && driver->table.values[i] == driver->speed;
     }
@@ -164,17 +179,43 @@ bool over_time_store_speed(const Entry *entry, Driver *driver, Err *err)
     return true;
 }
 
-bool over_time_store_angles(const Entry *entry, Driver *driver, Err *err)
+// A sinusoid begins with angle 0 where the case does not say its mean.
+static bool read_swing(const Entries *entries, const Entry *entry, bool is_soft, TimeTable *table,
+                       Err *err)
 {
-    TimeTable read = {.period_s = driver->table.period_s};
-    if (!over_time_store(entry, &read, err)) {
+    WaveRead read;
+    if (!waves_read(entries, entry, DIMENSION_ANGLE, 1.0, &read, err)) {
         return false;
     }
-    const Node *node = entry->node;
-    if (node->kind != NODE_LIST || read.count < 2) {
-        return refuse(entry, node, err, "%s takes two points at least", entry->row->path);
+    const double first = wave_at(&read.wave, 0.0);
+    if (read.has_mean && !is_soft &&
+        !(fabs(read.mean + first) <= ANGLE_ROUNDING * fabs(read.wave.amplitude))) {
+        return refuse(entry, entry->node, err,
+                      "%s counts from the start, so that it begins with 0: without mean it does",
+                      entry->row->path);
     }
-    if (read.values[0] != 0.0) {
+    *table = (TimeTable){.count = 1, .wave = read.wave};
+    table->values[0] = read.has_mean && is_soft ? read.mean : -first;
+    return true;
+}
+
+bool over_time_store_angles(const Entries *entries, const Entry *entry, Driver *driver, Err *err)
+{
+    const bool is_soft = strncmp(entry->row->path, "drive.", strlen("drive.")) == 0 &&
+                         entries_blame(entries, "drive.stiffness drive.damping", 0) != NULL;
+    const double period_s = driver->table.period_s;
+    TimeTable read;
+    if (!(waves_is_one(entry) ? read_swing(entries, entry, is_soft, &read, err)
+                              : over_time_store(entries, entry, &read, err))) {
+        return false;
+    }
+    read.period_s = period_s;
+    const Node *node = entry->node;
+    if (!waves_is_one(entry) && !is_soft && (node->kind != NODE_LIST || read.count < 2)) {
+        return refuse(entry, node, err, "%s takes two points at least%s", entry->row->path,
+                      node->kind != NODE_LIST ? "; only a soft drive holds one angle" : "");
+    }
+    if (!waves_is_one(entry) && !is_soft && read.values[0] != 0.0) {
         return refuse(entry, node->first, err, "%s counts from the start, so that it begins with 0",
                       entry->row->path);
     }

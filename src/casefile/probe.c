@@ -16,6 +16,7 @@
 #include "casefile/tolerance.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,6 +74,7 @@ static ProbeKind kind_of(SchemaType type)
     case SCHEMA_ANCHOR:
     case SCHEMA_BETWEEN:
     case SCHEMA_CURVE:
+    case SCHEMA_SIGNAL:
     case SCHEMA_EXPECT:
         return PROBE_OTHER;
     default:
@@ -88,18 +90,45 @@ static bool refuse_group(const Probe *probe, const Source *source, const Node *v
                         schema_form(probe->entries.form)->key);
 }
 
+// What a part of a sinusoid takes, by its dimension.
+#define PROBE_PART_ROW(id, ...)                                                                    \
+    [id] = {.path = "signals.*",                                                                   \
+            .type = SCHEMA_QUANTITY,                                                               \
+            .dimension = id,                                                                       \
+            .low = -INFINITY,                                                                      \
+            .high = INFINITY},
+static const SchemaRow PART_ROWS[DIMENSION_COUNT] = {UNITS_DIMENSION_LIST(PROBE_PART_ROW)};
+
+// The row of a part: of mean and amplitude in the dimension of the value, which of a signal is that
+// of a key that uses it.
+static const SchemaRow *part_row(const Entries *entries, const ProbeKey *key)
+{
+    const Entry *own = entries_at(entries, key->row, key->index);
+    Dimension dimension = key->row->dimension;
+    for (size_t i = 0; key->row->type == SCHEMA_SIGNAL && i < entries->count; i++) {
+        const Entry *user = &entries->entries[i];
+        const Entry *signal = entries_resolve(entries, user).signal;
+        dimension = signal != NULL && signal == own ? user->row->dimension : dimension;
+    }
+    dimension = key->part == ENTRY_FREQUENCY ? DIMENSION_FREQUENCY
+                : key->part == ENTRY_PHASE   ? DIMENSION_ANGLE
+                                             : dimension;
+    return &PART_ROWS[dimension];
+}
+
 bool probe_key(const Probe *probe, const Source *source, const Node *value, ProbeKey *key, Err *err)
 {
     // a name that is new must not stay
     Entries entries = entries_copy(&probe->entries);
     ProbeKey found = {0};
     bool is_good = entries_key(&entries, value->key->text, keys_text_start(value), source,
-                               &found.row, &found.index, err);
+                               &found.row, &found.index, &found.part, err);
     if (is_good && found.row == NULL) {
         is_good = refuse_group(probe, source, value, err);
     }
     if (is_good) {
         text_copy(found.path, sizeof found.path, value->key->text);
+        found.row = found.part == ENTRY_WHOLE ? found.row : part_row(&entries, &found);
         found.kind = kind_of(found.row->type);
         if (found.row->family == SCHEMA_JOINT) {
             found.joint_kind = joint_kind_find(&entries, found.index);
@@ -129,7 +158,12 @@ static Scenario *scratch_scenario(const ProbeKey *key)
 bool probe_check(const Probe *probe, const Source *source, const ProbeKey *key, const Node *value,
                  Err *err)
 {
-    const Entry entry = {key->row, key->index, value, source};
+    const Entry entry = {key->row, key->index, value, source, NULL};
+    ProbeNumber number;
+    if (key->part != ENTRY_WHOLE || key->row->type == SCHEMA_SIGNAL) {
+        // what it is of says what it may be
+        return key->part == ENTRY_WHOLE || probe_number(source, key, value, &number, err);
+    }
     Scenario *scratch = scratch_scenario(key);
     if (key->row->family == SCHEMA_JOINT) {
         Joint *joint = &scratch->linkage.joints[key->index];

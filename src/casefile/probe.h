@@ -18,7 +18,8 @@ typedef enum ProbeKind {
 typedef struct ProbeKey {
     char path[CASEFILE_KEY_SIZE];
     const SchemaRow *row;
-    size_t index; // of the member of the row's family
+    size_t index;   // of the member of the row's family
+    EntryPart part; // of its value, where that may be a sinusoid
     ProbeKind kind;
     JointKind joint_kind; // of a joint's key
 } ProbeKey;

@@ -7,7 +7,7 @@
 
 bool schema_is_setting(const SchemaRow *row)
 {
-    return row->type != SCHEMA_EXPECT;
+    return row->type != SCHEMA_EXPECT && row->type != SCHEMA_SIGNAL;
 }
 
 const SchemaRow *schema_find(const char *path)
@@ -93,8 +93,8 @@ static void describe_torque(const SchemaRow *row, bool with_example, Text *text)
                     units_dimension_name(row->dimension), units_example(row->dimension),
                     units_si(row->dimension), units_si(row->dimension));
     } else {
-        text_append(text, "%s, or a list of [time, %s]", units_dimension_name(row->dimension),
-                    is_force ? "force" : "torque");
+        text_append(text, "%s, a list of [time, %s], or a sinusoid",
+                    units_dimension_name(row->dimension), is_force ? "force" : "torque");
     }
 }
 
@@ -135,12 +135,14 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
         [SCHEMA_BETWEEN] = {"[body, body]", "two bodies such as [ground, pin]"},
         [SCHEMA_BODY_NAME] = {"a body", "a body"},
         [SCHEMA_JOINT_NAME] = {"a joint", "a joint"},
-        [SCHEMA_SPEED] = {"an angular speed, or a list of [time, speed]",
+        [SCHEMA_SPEED] = {"an angular speed, a list of [time, speed], or a sinusoid",
                           "a speed such as 1000 rpm, or points [[0 s, 0 rpm], [10 ms, 1000 rpm]]"},
-        [SCHEMA_ANGLES] = {"a list of [time, angle]",
+        [SCHEMA_ANGLES] = {"a list of [time, angle], or a sinusoid",
                            "points [[0 s, 0 deg], [0.5 s, 90 deg], [1 s, 0 deg]]"},
         [SCHEMA_LOAD_PERIOD] = {"none, or a time, an angle or a length",
                                 "none, or a time, an angle or a length such as 720 deg"},
+        [SCHEMA_SIGNAL] = {"a value, a list of points, or a sinusoid",
+                           "a value, points or a sinusoid, as what uses it takes"},
         [SCHEMA_EXPECT] = {"a mapping of paths to limits", "a mapping of paths to limits"},
     };
     switch (row->type) {
@@ -168,7 +170,7 @@ void schema_describe(const SchemaRow *row, bool with_example, Text *text)
                     with_example
                         ? "%s such as %s, points [[0 deg, 0 %s], [90 deg, 1 %s]], or a file "
                           "such as load.csv"
-                        : "%s, a list of points, or a CSV file",
+                        : "%s, a list of points, a CSV file, or a sinusoid",
                     units_dimension_name(row->dimension), units_example(row->dimension),
                     units_si(row->dimension), units_si(row->dimension));
         break;
@@ -276,7 +278,8 @@ size_t schema_member_count(const Scenario *scenario, SchemaFamily family)
                                                 linkage->torsion_count,
                                                 linkage->bushing_count,
                                                 linkage->load_count,
-                                                linkage->further_count};
+                                                linkage->further_count,
+                                                0}; // signals are used up by what names them
     return counts[family];
 }
 

@@ -49,11 +49,12 @@ typedef enum SchemaType {
     SCHEMA_ANGLES,           // list of [time, angle] -> Driver
     SCHEMA_LOAD,             // force or torque, a list of points, or a CSV file -> Load
     SCHEMA_LOAD_PERIOD,      // time, angle or length -> the period of a Load
+    SCHEMA_SIGNAL,           // what any of the four before may have -> nothing: used by its name
     SCHEMA_EXPECT,           // mapping of paths to limits -> expectations; no setting of a run
 } SchemaType;
 
 // Keys that come once, or once a body, joint, traced point, spring, bushing, load or drive. A `*`
-// in the path stands for the name of that.
+// in the path stands for the name of that. A signal is a value, not a group of keys.
 typedef enum SchemaFamily {
     SCHEMA_SINGLE,
     SCHEMA_BODY,
@@ -64,6 +65,7 @@ typedef enum SchemaFamily {
     SCHEMA_BUSHING,
     SCHEMA_LOAD_FAMILY,
     SCHEMA_DRIVE,
+    SCHEMA_SIGNAL_FAMILY,
     SCHEMA_FAMILY_COUNT,
 } SchemaFamily;
 

@@ -29,9 +29,17 @@ const SchemaGroup SCHEMA_GROUPS[] = {
     {"loads", "Forces and torques from outside, in the plane: on a body, or along the coordinate of a "
               "joint, such as a gas force on a piston; constant, or over time, the crank's angle or "
               "the joint's position."},
+    {"signals", "Values over time under names of their own, each for any number of loads and drives: "
+                "`loads.left.force: gust`. A sinusoid is mean + amplitude sin(2 pi frequency t + phase), "
+                "written {mean: 1 N, amplitude: 3 N, frequency: 50 Hz, phase: 30 deg}; mean is 0 by "
+                "default, of an angle what lets it begin with 0, and phase 0 deg. Parts of one have paths, "
+                "for --set and studies: `signals.gust.amplitude`, and without a name "
+                "`loads.left.force.amplitude`."},
     {"drive", "How the crank turns; optional with bodies. At a constant speed, or over time; with bodies "
-              "also by a torque, a force or a motor, or softly after a speed: they then start with "
-              "their own speeds, at rest by default, and the run has a duration."},
+              "also by a torque, a force or a motor: they then start with their own speeds, at rest by "
+              "default, and the run has a duration. A soft drive (stiffness, damping) follows a speed "
+              "or an angle, or holds one angle: it starts with the speed that it follows, and a run "
+              "after a constant speed has revolutions or a duration."},
     {"drives", "Further drives beside `drive`, each named by the joint about which it turns a body, in "
                "the plane: a five-bar has two. Angles of the crank are those of `drive`. The run "
                "has a duration."},

@@ -202,9 +202,10 @@ static unsigned drive_bits(const Scenario *scenario)
     const bool is_torque = linkage->torque.table.count > 0;
     const bool is_steady = drive_is_steady(&linkage->driver);
     const bool is_soft = linkage->torque.followed.is_present;
+    const bool may_turn = is_steady || drive_is_steady(&linkage->torque.followed);
     return bit(DRIVE, linkage->driver.is_present || is_soft) | bit(TORQUE, is_torque && !is_force) |
            bit(FORCE, is_torque && is_force) |
-           bit(DRIVEN, linkage->driver.is_present || is_torque) | bit(TURNING, is_steady) |
+           bit(DRIVEN, linkage->driver.is_present || is_torque) | bit(TURNING, may_turn) |
            bit(TIMED, !is_steady) | bit(REPEATING, scenario_settling_period(scenario) > 0.0);
 }
 
@@ -265,6 +266,7 @@ static bool torque_applies(const SchemaRow *row, const Linkage *linkage)
         return is_motor;
     case offsetof(Scenario, linkage.torque.stiffness):
     case offsetof(Scenario, linkage.torque.slope):
+    case offsetof(Scenario, linkage.torque.limit):
         return is_soft;
     default:
         return true;

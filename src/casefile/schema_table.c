@@ -35,6 +35,7 @@ const SchemaFamilyRow SCHEMA_FAMILIES[SCHEMA_FAMILY_COUNT] = {
     [SCHEMA_BUSHING] = {"bushings", "bushing", SIZE_MAX},
     [SCHEMA_LOAD_FAMILY] = {"loads", "load", SIZE_MAX},
     [SCHEMA_DRIVE] = {"drives", "drive", SIZE_MAX},
+    [SCHEMA_SIGNAL_FAMILY] = {"signals", "signal", SIZE_MAX},
 };
 
 static const char *const LOAD_FRAMES[] = {"world", "body", NULL};
@@ -130,7 +131,8 @@ static const char *const SLIDER_SIDES[] = {"right", "left", NULL};
     .offset = field, .needs = MEMBER
 #define ANGLES_DOC \
     "angle by which the body has turned since the start, at points of time, the first 0; between " \
-    "them it moves by the profile, before and after them it stands"
+    "them it moves by the profile, before and after them it stands; or a sinusoid. A soft drive may " \
+    "hold one angle, and begin with any"
 #define PROFILE_DOC \
     "from one angle to the next: cycloid, polynomial (3-4-5) and trapezoid (of the speed, in " \
     "thirds) rest at each; a cubic spline goes through all"
@@ -321,6 +323,9 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "loads.*.torque", .type = SCHEMA_LOAD, LOAD(table), .dimension = DIMENSION_TORQUE,
      .low = -1e9, .high = 1e9, .doc = "likewise; counter-clockwise positive"},
 
+    {.path = "signals.*", .type = SCHEMA_SIGNAL, .family = SCHEMA_SIGNAL_FAMILY, .is_required = true,
+     .doc = "what a value of loads, drive.speed, angle, torque or force may be over time, for use by "
+            "its name"},
     {.path = "drive.joint", .type = SCHEMA_JOINT_NAME, .form = SCHEMA_LONG,
      AT(linkage.driver.joint), .is_required = true, .needs = DRIVEN,
      .doc = "the ideal joint with the ground about which the drive turns a body; of a torque any "
@@ -329,8 +334,9 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "drive.speed", .type = SCHEMA_SPEED, .dimension = DIMENSION_ANGULAR_SPEED,
      AT(linkage.driver), .low = -1e6, .high = 1e6, .is_required = true,
      .rivalry = SCHEMA_DRIVING, .side = 0, .needs = DRIVE,
-     .doc = "angular velocity of the driven body, counter-clockwise positive: constant and not 0, "
-            "or linear in time between up to 32 points, not all 0, with constant ends"},
+     .doc = "angular velocity of the driven body, counter-clockwise positive: constant and not 0 (of "
+            "a soft drive 0 holds it where it starts), or linear in time between up to 32 points, not "
+            "all 0, with constant ends, or a sinusoid"},
     {.path = "drive.angle", .type = SCHEMA_ANGLES, .dimension = DIMENSION_ANGLE,
      AT(linkage.driver), .low = -1e6, .high = 1e6, .default_words = "none",
      .rivalry = SCHEMA_DRIVING, .side = 4, .needs = DRIVE, .doc = "instead of speed: " ANGLES_DOC},
@@ -366,12 +372,16 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "drive.stiffness", .form = SCHEMA_LONG, .dimension = DIMENSION_TORSION_SPRING,
      AT(linkage.torque.stiffness), .low = 0.0, .high = 1e12, .default_words = "none",
      .needs = TORQUE,
-     .doc = "of a soft drive, beside speed: torque over the angle by which the body is behind "
-            "what the speed prescribes, as of a belt or controller"},
+     .doc = "of a soft drive, beside speed or angle: torque over the angle by which the body is "
+            "behind what these prescribe, as of a belt or controller"},
     {.path = "drive.damping", .form = SCHEMA_LONG, .dimension = DIMENSION_TORSION_DAMPING,
      AT(linkage.torque.slope), .low = 0.0, .high = 1e12, .default_words = "none",
      .needs = TORQUE,
      .doc = "likewise, torque over the difference of the speeds"},
+    {.path = "drive.torque-limit", .form = SCHEMA_LONG, .dimension = DIMENSION_TORQUE,
+     AT(linkage.torque.limit), .low = 0.0, .high = 1e9, .low_is_open = true,
+     .default_words = "none", .needs = TORQUE,
+     .doc = "of a soft drive: the largest torque that stiffness and damping give, to either side"},
     {.path = "drives.*.speed", .type = SCHEMA_SPEED, .dimension = DIMENSION_ANGULAR_SPEED,
      FURTHER(0), .low = -1e6, .high = 1e6, .is_required = true, .rivalry = SCHEMA_DRIVING,
      .side = 0, .doc = "of the body that turns about that joint, as drive.speed; 0 rpm holds it"},
@@ -483,7 +493,8 @@ const SchemaRow SCHEMA_ROWS[] = {
             "take two to be shown whole"},
     {.path = "run.duration", .dimension = DIMENSION_TIME, AT(run.duration),
      .low = 0.0, .high = 1e6, .low_is_open = true, .needs = TIMED,
-     .doc = "length of a run without a drive of constant speed"},
+     .doc = "length of a run without a drive of constant speed, or with a soft one instead of "
+            "revolutions"},
     {.path = "run.samples", .type = SCHEMA_INTEGER, AT(run.samples), .low = 1.0, .high = 1e7,
      .doc = "samples per revolution, or in the run where it has a duration"},
     {.path = "run.step", .dimension = DIMENSION_TIME, AT(run.step), .low = 0.0, .high = 1.0,

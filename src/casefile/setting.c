@@ -276,8 +276,22 @@ static void set_points(CasefileSetting *setting, size_t count, const double *at,
     snprintf(setting->unit, sizeof setting->unit, "%s, %s", over_unit, unit);
 }
 
+// A sinusoid as a case would write it.
+static void set_wave(CasefileSetting *setting, const SchemaRow *row, double mean, const Wave *wave)
+{
+    const char *unit = units_si(row->dimension);
+    setting->kind = CASEFILE_WORD;
+    snprintf(setting->text, sizeof setting->text,
+             "{mean: %.17g %s, amplitude: %.17g %s, frequency: %.17g Hz, phase: %.17g rad}", mean,
+             unit, wave->amplitude, unit, wave->rate / (2.0 * M_PI), wave->phase);
+}
+
 static void set_over_time(CasefileSetting *setting, const SchemaRow *row, const TimeTable *table)
 {
+    if (table->count > 0 && wave_exists(&table->wave)) {
+        set_wave(setting, row, table->values[0], &table->wave);
+        return;
+    }
     set_points(setting, table->count, table->times, table->values, "s", units_si(row->dimension));
 }
 
@@ -302,6 +316,10 @@ static void set_load(CasefileSetting *setting, const SchemaRow *row, const Linka
                      const Load *load)
 {
     const LoadTable *table = &load->table;
+    if (wave_exists(&table->wave)) {
+        set_wave(setting, row, table->values[0], &table->wave);
+        return;
+    }
     set_points(setting, table->count, table->at, table->values,
                units_si(loads_dimension(linkage, load)), units_si(row->dimension));
 }

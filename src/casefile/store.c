@@ -13,7 +13,9 @@
 #include "casefile/target.h"
 #include "casefile/teeth.h"
 #include "casefile/tolerance.h"
+#include "casefile/waves.h"
 
+#include <ctype.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -215,7 +217,7 @@ static bool store_start(const Target *target, Joint *joint)
                             "centred, or [distance, tilt] such as [0.1 mm, 0.05 deg]", target->err,
                             "%s takes a distance and an angle", target->path);
     }
-    const Entry tilt = {&TILT, target->entry->index, pair[1], target->entry->source};
+    const Entry tilt = {&TILT, target->entry->index, pair[1], target->entry->source, NULL};
     Target of_tilt = *target;
     of_tilt.entry = &tilt;
     TargetNumber distance = {.value = 0.0};
@@ -361,14 +363,15 @@ static bool store_speed(const Target *target)
 {
     Driver *driver = target->field;
     TargetNumber number;
-    if (target->entry->node->kind == NODE_LIST) {
-        return over_time_store_speed(target->entry, driver, target->err);
+    if (target->entry->node->kind == NODE_LIST || waves_is_one(target->entry)) {
+        return over_time_store_speed(target->entries, target->entry, driver, target->err);
     }
     if (!target_number(target, target->entry->node, &number)) {
         return false;
     }
     driver->speed = number.value;
     driver->table.count = 0;
+    driver->table.wave = (Wave){.rate = 0.0};
     driver->has_angles = false;
     return true;
 }
@@ -376,6 +379,9 @@ static bool store_speed(const Target *target)
 // Stores a value that has no tolerance, or no longer has one.
 static bool store_plain(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
+    if (entry->row->type == SCHEMA_SIGNAL) {
+        return true; // it is understood where its name stands
+    }
     Target target = {.entries = entries, .entry = entry, .err = err};
     schema_path(entry->row, entries_name(entries, entry->row, entry->index), target.path);
     target.field = schema_field(entry->row, scenario, entry->index);
@@ -439,17 +445,19 @@ static bool store_plain(const Entries *entries, const Entry *entry, Scenario *sc
     case SCHEMA_CURVE:
         return bushings_store_curve(&target, target.field);
     case SCHEMA_TORQUE:
-        return over_time_store(entry, target.field, err);
+        return over_time_store(entries, entry, target.field, err);
     case SCHEMA_SPEED:
         return store_speed(&target);
     case SCHEMA_ANGLES:
-        return over_time_store_angles(entry, target.field, err);
+        return over_time_store_angles(entries, entry, target.field, err);
     case SCHEMA_LOAD:
         return loads_store_value(&target, &scenario->linkage,
                                  &scenario->linkage.loads[entry->index]);
     case SCHEMA_LOAD_PERIOD:
         return loads_store_period(&target, &scenario->linkage,
                                   &scenario->linkage.loads[entry->index]);
+    case SCHEMA_SIGNAL:
+        return true; // as above
     case SCHEMA_EXPECT:
         return expect_store(entries, entry, scenario, err);
     default:
@@ -476,7 +484,7 @@ static void store_limits(const Scenario *scenario, ToleratedLength *length)
 // A fit of both is that of the pin, too.
 static bool store_fit(const Entries *entries, const Entry *hole, Scenario *scenario, Err *err)
 {
-    const Entry pin = {schema_find("joints.*.pin"), hole->index, hole->node, hole->source};
+    const Entry pin = {schema_find("joints.*.pin"), hole->index, hole->node, hole->source, NULL};
     if (strcmp(hole->row->path, "joints.*.hole") != 0 || hole->node->kind != NODE_SCALAR ||
         !fit_is_of_both(hole->node->text)) {
         return true;
@@ -488,15 +496,28 @@ static bool store_fit(const Entries *entries, const Entry *hole, Scenario *scena
                                           "no pin, or a hole with one class such as 30 H7");
 }
 
+// A word where a case has signals is the name of none of them; a load may have that of a file.
+static bool is_unknown_signal(const Entries *entries, const Entry *entry)
+{
+    return entries_is_signal(entry->row) && entry->row->type != SCHEMA_SIGNAL &&
+           entries->names[SCHEMA_SIGNAL_FAMILY].count > 0 && entry->node->kind == NODE_SCALAR &&
+           isalpha((unsigned char)entry->node->text[0]) && strchr(entry->node->text, '.') == NULL;
+}
+
 bool store_value(const Entries *entries, const Entry *entry, Scenario *scenario, Err *err)
 {
     const SchemaRow row = own_row(entry, scenario);
+    const Entry resolved = entries_resolve(entries, entry);
+    if (resolved.signal == NULL && is_unknown_signal(entries, entry)) {
+        return entries_refuse_name(entries, entry->source, SCHEMA_SIGNAL_FAMILY, false,
+                                   entry->node->text, entry->node->span, err);
+    }
     const size_t before = scenario->tolerance_count;
     PlainNode plain;
-    if (!tolerance_take(entry, &row, scenario, &plain, err)) {
+    if (!tolerance_take(&resolved, &row, scenario, &plain, err)) {
         return false;
     }
-    Entry stored = *entry;
+    Entry stored = resolved;
     stored.node = plain.node;
     if (!store_plain(entries, &stored, scenario, err)) {
         return false;

@@ -20,6 +20,7 @@ enum { UNITS_NAME_SIZE = 32 };
     member(DIMENSION_MASS, "a mass", "0.29 kg", "kg") \
     member(DIMENSION_INERTIA, "a moment of inertia", "173.92 kg mm^2", "kg m^2") \
     member(DIMENSION_ANGULAR_SPEED, "an angular speed", "1000 rpm", "rad/s") \
+    member(DIMENSION_FREQUENCY, "a frequency", "50 Hz", "Hz") \
     member(DIMENSION_ANGLE, "an angle", "30 deg", "rad") \
     member(DIMENSION_TIME, "a time", "1 us", "s") \
     member(DIMENSION_ACCELERATION, "an acceleration", "9.80665 m/s^2", "m/s^2") \

@@ -5,9 +5,11 @@
 #include "engine/protocol.h"
 
 #include "contact/law.h"
+#include "model/loads.h"
 
 #include <assert.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 
 const char ENGINE_HELLO[] = "{\"jointplay-driver\": 1, \"ask\": \"hello\"}\n";
@@ -78,7 +80,17 @@ bool engine_check(const char *engine, const Scenario *scenario, Err *err)
     if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
         return engine_refuse(engine, "a drive whose speed changes over time", err);
     }
-    if (linkage->torque.followed.is_present && !drive_is_steady(&linkage->torque.followed)) {
+    if (linkage->torque.limit > 0.0) {
+        return engine_refuse(engine, "a soft drive with a torque limit", err);
+    }
+    if (time_table_changes(&linkage->torque.table) && wave_exists(&linkage->torque.table.wave)) {
+        return engine_refuse(engine, "a torque that is a sinusoid", err);
+    }
+    if (isfinite(loads_shortest_wave(linkage))) {
+        return engine_refuse(engine, "a load that is a sinusoid", err);
+    }
+    if (linkage->torque.followed.is_present && !drive_is_steady(&linkage->torque.followed) &&
+        !drive_is_held(&linkage->torque.followed)) {
         return engine_refuse(engine, "a soft drive whose speed changes over time", err);
     }
     const Torque *torque = &linkage->torque;

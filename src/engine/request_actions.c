@@ -3,7 +3,8 @@
 //
 // A drive by torque is a load over time along its joint's coordinate; what it takes per speed, of a
 // motor or a soft drive, is a torsion damper. A soft drive that follows phi_0 + w t by a spring k
-// and a damper c is a torsion spring to the angle 0 with a load k (phi_0 + w t) + c w.
+// and a damper c is a torsion spring to the angle 0 with a load k (phi_0 + w t) + c w; one that is
+// held has no w.
 #include "engine/protocol.h"
 
 #include "model/loads.h"
@@ -160,7 +161,8 @@ static void add_torque(const Scenario *scenario, json_t *torsions, json_t *loads
     }
     if (followed->is_present) {
         const double end_s = 2.0 * scenario_duration(scenario); // engines go a step beyond the end
-        const double start = stiffness * followed->start + torque->slope * followed->speed;
+        const double held = drive_is_held(followed) ? followed->table.values[0] : 0.0;
+        const double start = stiffness * (followed->start + held) + torque->slope * followed->speed;
         points = json_pack("[o, o]", engine_pair((Vec2){0.0, start}),
                            engine_pair((Vec2){end_s, start + stiffness * followed->speed * end_s}));
         json_array_append_new(loads, torque_object(linkage, points, 0.0));

@@ -105,7 +105,9 @@ static double period_of(const Driver *driver)
     if (driver->table.count == 0) {
         return driver->speed != 0.0 ? 2.0 * M_PI / fabs(driver->speed) : 0.0;
     }
-    return driver->table.period_s > 0.0 ? driver->table.period_s : INFINITY;
+    return drive_is_held(driver)        ? 0.0
+           : drive_period(driver) > 0.0 ? drive_period(driver)
+                                        : INFINITY;
 }
 
 // Takes in a drive. The words say which it is.
@@ -113,7 +115,11 @@ static void add_drive(Search *search, const Driver *driver, const char *name)
 {
     Beat beat = {.period_s = period_of(driver)};
     snprintf(beat.name, sizeof beat.name, "%s", name);
-    if (!isfinite(beat.period_s)) {
+    if (!isfinite(beat.period_s) && wave_exists(&driver->table.wave)) {
+        const Beat wave = {"the wave of its speed", wave_period(&driver->table.wave)};
+        beat.period_s = 2.0 * M_PI / fabs(driver->table.values[0]);
+        refuse_pair(search, &beat, &wave);
+    } else if (!isfinite(beat.period_s)) {
         end_search(search, "the speed of its drive changes without a drive.period");
     } else if (beat.period_s > 0.0) {
         add_beat(search, &beat);
@@ -129,10 +135,13 @@ static void add_torque(Search *search, const Linkage *linkage)
     if (followed->is_present && (torque->stiffness > 0.0 || followed->table.count > 0)) {
         add_drive(search, followed, "the drive");
     }
-    if (torque->table.count < 2) {
+    if (!time_table_changes(&torque->table)) {
         return;
     }
-    if (torque->table.period_s > 0.0) {
+    if (wave_exists(&torque->table.wave)) {
+        const Beat beat = {"the drive", wave_period(&torque->table.wave)};
+        add_beat(search, &beat);
+    } else if (torque->table.period_s > 0.0) {
         const Beat beat = {"the drive", torque->table.period_s};
         add_beat(search, &beat);
     } else {
@@ -179,6 +188,12 @@ static void add_crank_load(Search *search, const Load *load, const Driver *drive
 static void add_load(Search *search, const Linkage *linkage, const Load *load)
 {
     const Driver *driver = crank_drive(linkage);
+    if (wave_exists(&load->table.wave)) {
+        Beat wave = {.period_s = wave_period(&load->table.wave)};
+        snprintf(wave.name, sizeof wave.name, "load '%s'", load->name);
+        add_beat(search, &wave);
+        return;
+    }
     if (load->table.count < 2 || load->over == LOAD_OVER_POSITION) {
         return;
     }
@@ -200,7 +215,10 @@ static void add_load(Search *search, const Linkage *linkage, const Load *load)
 // Why nothing has a period.
 static const char *no_beat(const Linkage *linkage)
 {
-    return linkage->torque.followed.is_present ? "its drive is soft, and turns it at no given speed"
+    return linkage->torque.followed.is_present && drive_is_held(&linkage->torque.followed)
+               ? "its drive holds an angle, and no load repeats over time"
+           : linkage->torque.followed.is_present
+               ? "its drive is soft, and turns it at no given speed"
            : linkage->torque.table.count > 0
                ? "a torque or force drives it at no given speed, and nothing repeats over time"
                : "nothing drives it at a given speed, and no load repeats over time";

@@ -2,6 +2,7 @@
 //
 //     speeds    omega = w_i + alpha_i (t - t_i),  angle = start + the integral of omega
 //     angles    angle = start + a_i + sum of a_k tau^k - lift sin(2 pi tau) / (2 pi)
+//     a wave    omega = w + A sin(r t + p),  or  angle = start + a + A sin(r t + p)
 // with tau = (t - t_i) / T between two points, T and the lift from one to the other; the last term
 // is that of a cycloid. Source of the laws of motion: Norton, Cam Design and Manufacturing
 // Handbook, 2009, chapter 2 (cycloid, 3-4-5 polynomial, trapezoid of the speed).
@@ -95,6 +96,10 @@ static Move find_move(const Driver *driver, double from_s)
 static long double angle_by_moves(const Driver *driver, long double time_s)
 {
     const Move move = find_move(driver, (double)time_s);
+    const Wave *wave = &driver->table.wave;
+    if (wave_exists(wave)) {
+        return move.terms[0] + wave->amplitude * sinl(wave->rate * time_s + wave->phase);
+    }
     if (move.width_s == 0.0) {
         return move.terms[0];
     }
@@ -147,18 +152,27 @@ static DrivePiece piece_of_move(const Move *move, long double tau)
 
 DrivePiece drive_piece(const Driver *driver, double from_s)
 {
+    if (is_constant(driver)) {
+        return (DrivePiece){.is_uniform = true, .terms = {driver->speed}};
+    }
+    const Wave *wave = &driver->table.wave;
+    if (wave_exists(wave)) {
+        DrivePiece piece = {.swing = wave_from(wave, from_s)};
+        if (!has_angles(driver)) {
+            piece.swing = wave_integral(&piece.swing);
+            piece.terms[0] = driver->table.values[0];
+        }
+        return piece;
+    }
     if (has_angles(driver)) {
         const Move move = find_move(driver, from_s);
         return move.width_s == 0.0
                    ? (DrivePiece){.is_uniform = true}
                    : piece_of_move(&move, ((long double)from_s - move.time_s) / move.width_s);
     }
-    DrivePiece piece = {.is_uniform = true, .terms = {driver->speed}};
-    if (!is_constant(driver)) {
-        piece.terms[0] = time_table_at(&driver->table, from_s);
-        piece.terms[1] = 0.5 * time_table_piece(&driver->table, from_s).slope;
-    }
-    return piece;
+    return (DrivePiece){.is_uniform = true,
+                        .terms = {time_table_at(&driver->table, from_s),
+                                  0.5 * time_table_piece(&driver->table, from_s).slope}};
 }
 
 DriveState drive_piece_at(const DrivePiece *piece, double since_s)
@@ -182,6 +196,14 @@ DriveState drive_piece_at(const DrivePiece *piece, double since_s)
         state.omega -= piece->wave / piece->width_s * cos(before + 2.0 * half);
         state.alpha += piece->wave / piece->width_s * rate * sin(before + 2.0 * half);
     }
+    if (wave_exists(&piece->swing)) {
+        const Wave *swing = &piece->swing;
+        const double lift = swing->amplitude * swing->rate;
+        const double at = swing->rate * s + swing->phase;
+        state.angle += wave_growth(swing, 0.0, s);
+        state.omega += lift * cos(at);
+        state.alpha -= lift * swing->rate * sin(at);
+    }
     return state;
 }
 
@@ -192,6 +214,10 @@ DriveState drive_at(const Driver *driver, double time_s)
 
 DriveState drive_since(const Driver *driver, double from_s, double time_s)
 {
+    if (is_constant(driver)) {
+        return (DriveState){(time_s - from_s) * driver->speed + drive_angle(driver, from_s),
+                            driver->speed, 0.0};
+    }
     const DrivePiece piece = drive_piece(driver, from_s);
     DriveState state = drive_piece_at(&piece, time_s - from_s);
     state.angle += drive_angle(driver, from_s);
@@ -232,9 +258,35 @@ static void find_rests(const DrivePiece *piece, double rests_s[2])
     }
 }
 
+// A wave turns back where its speed v + A r cos(r t + p) passes through zero. It does so in every
+// period, each like the first but for the way of the mean speed, so that only the first and the
+// last can have the furthest.
+static void extend_by_wave(DriveExtent *extent, const Driver *driver, double to_s)
+{
+    const DrivePiece piece = drive_piece(driver, 0.0);
+    const Wave *swing = &piece.swing;
+    const double share = -piece.terms[0] / (swing->amplitude * swing->rate);
+    const double period_s = wave_period(swing);
+    extend(extent, driver, to_s);
+    for (int side = 0; fabs(share) <= 1.0 && side < 2; side++) {
+        const double phase = side == 0 ? acos(share) : -acos(share);
+        const double turned = fmod(phase - swing->phase, 2.0 * M_PI);
+        const double first_s = (turned < 0.0 ? turned + 2.0 * M_PI : turned) / swing->rate;
+        const double last_s = first_s + floor((to_s - first_s) / period_s) * period_s;
+        if (first_s <= to_s) {
+            extend(extent, driver, first_s);
+            extend(extent, driver, last_s);
+        }
+    }
+}
+
 DriveExtent drive_extent(const Driver *driver, double to_s)
 {
     DriveExtent extent = {0.0, 0.0};
+    if (!is_constant(driver) && wave_exists(&driver->table.wave)) {
+        extend_by_wave(&extent, driver, to_s);
+        return extent;
+    }
     for (double start_s = 0.0; start_s < to_s;) {
         const double end_s = fmin(to_s, drive_next_kink(driver, start_s));
         const DrivePiece piece = drive_piece(driver, start_s);
@@ -256,8 +308,45 @@ bool drive_is_steady(const Driver *driver)
     return driver->is_present && is_constant(driver) && !driver->is_one_of_several;
 }
 
+bool drive_is_smooth(const Driver *driver)
+{
+    return is_constant(driver) || drive_is_held(driver) || wave_exists(&driver->table.wave);
+}
+
+bool drive_is_held(const Driver *driver)
+{
+    return has_angles(driver) && !time_table_changes(&driver->table);
+}
+
+// Periods of a wave in which its mean speed may make whole turns; beyond that some number of them
+// is near any ratio.
+enum { DRIVE_PERIODS_MOST = 64 };
+
+// 1: of a turn, what the digits of a speed and a frequency may leave
+static const double DRIVE_TURN_ROUNDING = 1e-9;
+
+double drive_period(const Driver *driver)
+{
+    const TimeTable *table = &driver->table;
+    const double wave_s = wave_period(&table->wave);
+    if (is_constant(driver) || !wave_exists(&table->wave)) {
+        return is_constant(driver) ? 0.0 : table->period_s;
+    }
+    const double turns = has_angles(driver) ? 0.0 : table->values[0] * wave_s / (2.0 * M_PI);
+    for (int count = 1; count <= DRIVE_PERIODS_MOST; count++) {
+        const double all = count * turns;
+        if (fabs(all - round(all)) <= DRIVE_TURN_ROUNDING * fmax(1.0, fabs(all))) {
+            return count * wave_s;
+        }
+    }
+    return 0.0;
+}
+
 double drive_turned_in_period(const Driver *driver)
 {
+    if (!is_constant(driver) && wave_exists(&driver->table.wave)) {
+        return has_angles(driver) ? 0.0 : driver->table.values[0] * drive_period(driver);
+    }
     return has_angles(driver) ? driver->gain
                               : (double)time_table_integral(&driver->table, driver->table.period_s);
 }
@@ -314,6 +403,10 @@ void drive_complete(Driver *driver)
 {
     if (!has_angles(driver)) {
         driver->speed = is_constant(driver) ? driver->speed : time_table_largest(&driver->table);
+        return;
+    }
+    if (wave_exists(&driver->table.wave)) {
+        driver->speed = driver->table.wave.amplitude * driver->table.wave.rate;
         return;
     }
     find_slopes(driver);

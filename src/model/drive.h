@@ -1,7 +1,8 @@
 // How a drive turns its body about its joint with the ground: at constant speed, or by a table over
 // time, which may repeat in periods of whole turns. The table has speeds, linear between its
 // points, or angles, between which one of the usual laws of motion turns the body. What jumps at
-// the points, the speed's slope or the angle's second or third rate, are the kinks.
+// the points, the speed's slope or the angle's second or third rate, are the kinks. A
+// sinusoid is a table of one point with a wave; one angle alone is held.
 #pragma once
 
 #include "model/time_table.h"
@@ -58,6 +59,7 @@ typedef struct DrivePiece {
     double wave;               // rad, the lift of a cycloid; 0: there is none
     double phase;              // 1, tau at the instant
     double width_s;            // s, between its two points
+    Wave swing;                // of the angle, rad, its phase that at the instant
 } DrivePiece;
 
 DrivePiece drive_piece(const Driver *driver, double from_s);
@@ -82,6 +84,17 @@ bool drive_is_steady(const Driver *driver);
 
 // The angle by which a drive with a table turns in each period, rad.
 double drive_turned_in_period(const Driver *driver);
+
+// Whether it has no kinks: a constant speed, an angle that is held, or a sinusoid.
+bool drive_is_smooth(const Driver *driver);
+
+// Whether it prescribes one angle that stays.
+bool drive_is_held(const Driver *driver);
+
+// The period after which a drive that is not steady is the same again, whole turns away, s: that of
+// its table or of its wave, or as many of the latter as its mean speed needs for whole turns; 0:
+// there is none.
+double drive_period(const Driver *driver);
 
 // Takes the largest speed and a spline's slopes from the table, where there is one: after a change
 // of it.

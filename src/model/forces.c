@@ -7,7 +7,8 @@
 // Bushings: model/bushing.c. Torque of the drive: M on the turned body of its joint, -M on the
 // other. At a prismatic joint it is a force F along the line on body b at its anchor, -F on body a
 // at that point. Of a motor or a soft drive (Torque) what the rate takes, slope times it, counts as
-// a damper's, for the solvers, and as the drive's, for the energy.
+// a damper's, for the solvers, and as the drive's, for the energy. Of a drive with a limit all of
+// it is the drive's, and forces_loads has what is left of it.
 //     energy  sum k (|d| - l)^2 / 2 + sum k (phi - phi_0)^2 / 2
 #include "model/forces.h"
 
@@ -179,7 +180,7 @@ void forces_add_dampers(const Linkage *linkage, const Motion *motions, BodyLoad 
     }
     add_bushings(linkage, motions, bushing_drag, loads);
     add_gap_dampers(linkage, motions, loads);
-    if (linkage->torque.slope > 0.0) {
+    if (linkage->torque.slope > 0.0 && linkage->torque.limit == 0.0) {
         const double rate = forces_drive_rate(linkage, motions);
         forces_add_moment(linkage, linkage->torque.joint, -linkage->torque.slope * rate, loads);
     }
@@ -275,6 +276,10 @@ void forces_loads(const Linkage *linkage, const Motion *motions, double time_s, 
     }
     forces_add_springs(linkage, motions, loads);
     forces_add_dampers(linkage, motions, loads);
+    if (linkage->torque.limit > 0.0) {
+        forces_add_torque(linkage, motions, forces_drive_torque(linkage, motions, time_s), loads);
+        return;
+    }
     forces_add_torque(linkage, motions,
                       time_table_at(&linkage->torque.table, time_s) +
                           forces_followed(linkage, motions, time_s),
@@ -326,7 +331,17 @@ double forces_damping_power(const Linkage *linkage, const Motion *motions)
     return power;
 }
 
+double forces_within_limit(const Torque *torque, double unlimited)
+{
+    return torque->limit == 0.0 ? unlimited : fmin(fmax(unlimited, -torque->limit), torque->limit);
+}
+
 double forces_drive_torque(const Linkage *linkage, const Motion *motions, double time_s)
+{
+    return forces_within_limit(&linkage->torque, forces_drive_unlimited(linkage, motions, time_s));
+}
+
+double forces_drive_unlimited(const Linkage *linkage, const Motion *motions, double time_s)
 {
     const Torque *torque = &linkage->torque;
     const double rate = torque->slope > 0.0 ? forces_drive_rate(linkage, motions) : 0.0;

@@ -61,6 +61,10 @@ void forces_add_along(const Linkage *linkage, int joint, double value, const Mot
 double forces_followed(const Linkage *linkage, const Motion *motions, double time_s);
 double forces_drive_torque(const Linkage *linkage, const Motion *motions, double time_s);
 
+// The same of a soft drive before its limit, N m, and what the limit leaves of that.
+double forces_drive_unlimited(const Linkage *linkage, const Motion *motions, double time_s);
+double forces_within_limit(const Torque *torque, double unlimited);
+
 // Add the load of one damper that pulls along a spring's line with a tension, N.
 void forces_add_tension(const Spring *spring, const SpringLine *line, const Motion *motions,
                         double tension, BodyLoad *loads);

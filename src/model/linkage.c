@@ -110,9 +110,9 @@ double linkage_period(const Linkage *linkage)
         return 2.0 * M_PI / fabs(driver->speed);
     }
     // of several drives what all of them have in common
-    double period_s = driver->table.period_s;
+    double period_s = drive_period(driver);
     for (size_t i = 0; i < linkage->further_count; i++) {
-        period_s = linkage->further[i].table.period_s == period_s ? period_s : 0.0;
+        period_s = drive_period(&linkage->further[i]) == period_s ? period_s : 0.0;
     }
     return driver->table.count > 0 ? period_s : 0.0;
 }

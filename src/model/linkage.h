@@ -267,7 +267,7 @@ typedef struct Bushing {
 // Pushes the turned body of a joint, and the other one the other way (linkage_turning), by a torque
 // over time. At a prismatic joint it is a force on body b along the joint's line, at the anchor of
 // body b, and the other way on body a. With the joint's angle phi and its rate,
-//     M(t) + stiffness (phi_d(t) - phi) + slope (omega_d(t) - omega)
+//     M(t) + stiffness (phi_d(t) - phi) + slope (omega_d(t) - omega),  at most the limit in size,
 // so that it also is a motor with a straight line of torque over speed (no phi_d), or a soft drive
 // that follows an angle phi_d(t) through a belt or a controller.
 typedef struct Torque {
@@ -277,6 +277,7 @@ typedef struct Torque {
     double stiffness; // N m/rad
     Driver followed;  // phi_d and omega_d; where it is not present both are 0
     double no_load;   // rad/s, of a motor: where its torque is 0; 0: it is none
+    double limit;     // N m, of a soft drive: the largest torque to either side; 0: none
     double inertia;   // kg m^2, of its rotor, which turns with the turned body
 } Torque;
 

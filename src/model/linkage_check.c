@@ -244,7 +244,8 @@ static bool check_driver(const Linkage *linkage, size_t number, Err *err)
     if (linkage_drive_of_body(linkage, joint->body_b) != (int)number) {
         return err_set(err, ERR_CASE, "two drives turn one body, at joint '%s'", joint->name);
     }
-    if ((number == 0 && !(driver->speed != 0.0)) || !isfinite(driver->speed) ||
+    const bool may_stand = number > 0 || drive_is_held(driver);
+    if ((!may_stand && !(driver->speed != 0.0)) || !isfinite(driver->speed) ||
         !isfinite(driver->start)) {
         return err_set(err, ERR_CASE, "drive speed %g rad/s, allowed: any speed but 0",
                        driver->speed);

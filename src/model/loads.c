@@ -66,9 +66,8 @@ double load_value(const Linkage *linkage, const Load *load, const Motion *motion
         return load_piece_at(&piece, at);
     }
     const Clock clock = clock_of(linkage, load);
-    const LoadPiece piece =
-        load_table_piece(&load->table, argument_from(&clock, from_s), clock.rate);
-    return load_piece_at(&piece, clock.start + clock.rate * time_s);
+    return load_table_value(&load->table, argument_from(&clock, from_s), clock.rate,
+                            clock.start + clock.rate * time_s);
 }
 
 // How fast the argument of such a load grows.
@@ -104,7 +103,7 @@ static double mean_passed(const Linkage *linkage, const Load *load, const Motion
 double load_mean(const Linkage *linkage, const Load *load, const Motion *motions, double from_s,
                  double to_s)
 {
-    if (load->table.count <= 1) {
+    if (load->table.count <= 1 && !wave_exists(&load->table.wave)) {
         return load_value(linkage, load, motions, 0.5 * (from_s + to_s), from_s);
     }
     if (!load_is_timed(linkage, load)) {
@@ -240,6 +239,15 @@ static double next_point(const Linkage *linkage, double time_s,
 double loads_next_bend(const Linkage *linkage, double time_s)
 {
     return next_point(linkage, time_s, has_bends);
+}
+
+double loads_shortest_wave(const Linkage *linkage)
+{
+    double shortest_s = INFINITY;
+    for (size_t i = 0; i < linkage->load_count; i++) {
+        shortest_s = fmin(shortest_s, wave_period(&linkage->loads[i].table.wave));
+    }
+    return shortest_s;
 }
 
 double loads_next_jump(const Linkage *linkage, double time_s)

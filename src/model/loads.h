@@ -50,3 +50,6 @@ double loads_next_bend(const Linkage *linkage, double time_s);
 
 // Likewise of those that jump alone.
 double loads_next_jump(const Linkage *linkage, double time_s);
+
+// The shortest period of a load that is a sinusoid, s; INFINITY where none is.
+double loads_shortest_wave(const Linkage *linkage);

@@ -200,7 +200,7 @@ bool scenario_has_closed_form(const Scenario *scenario)
 bool scenario_is_extrapolable(const Scenario *scenario)
 {
     return !scenario_has_clearance(scenario) && !scenario->linkage.is_spatial &&
-           scenario->linkage.driver.table.count == 0;
+           drive_is_smooth(&scenario->linkage.driver) && scenario->linkage.torque.limit == 0.0;
 }
 
 bool scenario_integrates_contacts(const Scenario *scenario)

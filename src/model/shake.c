@@ -157,16 +157,29 @@ static void shake_joint(Joint *joint, bool has_own, uint64_t *seed)
     shake_friction(&joint->friction, seed);
 }
 
+// The amplitude of a sinusoid; most cases have none, and nothing is drawn for it. Its frequency
+// says what period a motion has, and is exact.
+static void shake_wave(Wave *wave, uint64_t *seed)
+{
+    if (wave_exists(wave)) {
+        shake(&wave->amplitude, seed);
+    }
+}
+
 static void shake_torque(Torque *torque, uint64_t *seed)
 {
     shake(&torque->table.values[0], seed); // of a motor the torque at rest
     for (size_t i = 1; i < torque->table.count; i++) {
         shake(&torque->table.values[i], seed);
     }
+    shake_wave(&torque->table.wave, seed);
     shake(&torque->no_load, seed);
     shake(&torque->inertia, seed);
     shake(&torque->stiffness, seed);
     shake(&torque->slope, seed);
+    if (torque->limit > 0.0) {
+        shake(&torque->limit, seed);
+    }
     if (torque->no_load != 0.0) {
         torque->slope = torque->table.values[0] / torque->no_load;
     }
@@ -178,6 +191,7 @@ static void shake_drive(Driver *driver, uint64_t *seed)
     for (size_t i = 0; i < driver->table.count; i++) {
         shake(&driver->table.values[i], seed);
     }
+    shake_wave(&driver->table.wave, seed);
     drive_complete(driver);
 }
 
@@ -235,6 +249,7 @@ static void shake_forces(Linkage *linkage, uint64_t *seed)
         for (size_t k = 0; k < table->count; k++) {
             shake(&table->values[k], seed);
         }
+        shake_wave(&table->wave, seed);
         load_table_settle(table);
     }
     shake_drive(&linkage->driver, seed);

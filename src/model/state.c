@@ -164,10 +164,12 @@ static void shift_loads(Linkage *linkage, double time_s, double turns_rad)
         load->shift += load->over == LOAD_OVER_TIME    ? time_s
                        : load->over == LOAD_OVER_CRANK ? turns_rad
                                                        : 0.0;
-        if (load->table.period > 0.0) {
+        const bool is_wave = wave_exists(&load->table.wave);
+        const double period = is_wave ? wave_period(&load->table.wave) : load->table.period;
+        if (period > 0.0) {
             // whole periods are none, to the last bit
-            const double of_a_period = remainder(load->shift, load->table.period);
-            const bool is_whole = fabs(of_a_period) <= PERIOD_ROUNDING * load->table.period;
+            const double of_a_period = remainder(load->shift, period);
+            const bool is_whole = fabs(of_a_period) <= PERIOD_ROUNDING * period;
             load->shift = is_whole ? 0.0 : of_a_period;
         }
     }

@@ -14,6 +14,11 @@ bool time_table_is_ordered(const TimeTable *table)
             return false;
         }
     }
+    if (table->count > 0 && wave_exists(&table->wave) &&
+        !(table->count == 1 && isfinite(table->wave.amplitude) && isfinite(table->wave.rate) &&
+          isfinite(table->wave.phase))) {
+        return false;
+    }
     const size_t last = table->count - 1;
     return table->period_s == 0.0 || table->count == 0 ||
            (isfinite(table->period_s) && table->times[last] - table->times[0] < table->period_s);
@@ -101,10 +106,18 @@ TimePiece time_table_between(const TimeTable *table, size_t from)
     return piece;
 }
 
+bool time_table_changes(const TimeTable *table)
+{
+    return table->count > 1 || wave_exists(&table->wave);
+}
+
 double time_table_at(const TimeTable *table, double time_s)
 {
     if (table->count == 0) {
         return 0.0;
+    }
+    if (wave_exists(&table->wave)) {
+        return table->values[0] + wave_at(&table->wave, time_s);
     }
     const long after = point_after(table, time_s);
     const TimePiece piece = time_table_piece(table, time_s);
@@ -132,6 +145,9 @@ double time_table_next_bend(const TimeTable *table, double time_s)
 
 double time_table_mean(const TimeTable *table, double from_s, double to_s)
 {
+    if (wave_exists(&table->wave)) {
+        return table->values[0] + wave_mean(&table->wave, from_s, to_s);
+    }
     // piece by piece: the mean of a line is its value in the middle
     double sum = 0.0;
     for (double start_s = from_s; start_s < to_s;) {
@@ -167,6 +183,12 @@ static long double integral_to(const TimeTable *table, long double time_s)
 long double time_table_integral(const TimeTable *table, long double time_s)
 {
     const long double period_s = table->period_s;
+    if (wave_exists(&table->wave)) {
+        const Wave *wave = &table->wave;
+        const long double half = 0.5L * wave->rate * time_s;
+        return time_s * table->values[0] +
+               2.0L * wave->amplitude / wave->rate * sinl(wave->phase + half) * sinl(half);
+    }
     if (!(period_s > 0.0L && time_s > period_s)) {
         return integral_to(table, time_s);
     }
@@ -180,5 +202,5 @@ double time_table_largest(const TimeTable *table)
     for (size_t i = 0; i < table->count; i++) {
         largest = fabs(table->values[i]) > fabs(largest) ? table->values[i] : largest;
     }
-    return largest;
+    return wave_exists(&table->wave) ? largest + copysign(table->wave.amplitude, largest) : largest;
 }

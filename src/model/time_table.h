@@ -5,6 +5,8 @@
 // on, so that no bend lies in its past.
 #pragma once
 
+#include "base/wave.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -15,6 +17,7 @@ typedef struct TimeTable {
     double times[TIME_TABLE_MAX];  // s, increasing
     double values[TIME_TABLE_MAX]; // in the quantity's unit
     double period_s;               // longer than from the first point to the last; 0: none
+    Wave wave;                     // added to the one point that there is then
 } TimeTable;
 
 // A piece of a table: value + slope (t - time_s).
@@ -33,7 +36,7 @@ bool time_table_is_ordered(const TimeTable *table);
 
 double time_table_at(const TimeTable *table, double time_s);
 
-// The piece that holds from a time on: at a bend the one after it.
+// The piece that holds from a time on: at a bend the one after it; without the wave.
 TimePiece time_table_piece(const TimeTable *table, double time_s);
 
 // The piece from a point to the next, in the first period; there must be a next one.
@@ -41,6 +44,9 @@ TimePiece time_table_between(const TimeTable *table, size_t from);
 
 // The first time after the one given at which the table bends, s; INFINITY after the last.
 double time_table_next_bend(const TimeTable *table, double time_s);
+
+// Whether it changes: by points or by a wave.
+bool time_table_changes(const TimeTable *table);
 
 // The mean between two different times, the earlier one first.
 double time_table_mean(const TimeTable *table, double from_s, double to_s);

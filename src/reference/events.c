@@ -313,6 +313,10 @@ void events_find(const System *system, Dop853 *integrator, const EventPoints *po
             found->events[found->count++] = event;
         }
     }
+    if (system->kind->torque != NULL && system->scenario->linkage.torque.limit > 0.0 &&
+        drive_limit_find(system, integrator, &found->events[found->count])) {
+        found->count++;
+    }
     if (system->bristle_count > 0) {
         bristle_events_find(system, integrator, points, found);
     }
@@ -330,7 +334,7 @@ const Event *events_first(const EventList *found)
 // Whether an event begins or ends at the wall.
 static bool is_at_wall(const System *system, const Event *event)
 {
-    return !event->is_bristle &&
+    return !event->is_bristle && !event->is_drive &&
            (event->mode == CONTACT_APART || system->contacts[event->contact].mode == CONTACT_APART);
 }
 
@@ -404,7 +408,8 @@ void events_gather(const System *system, const Dop853 *integrator, const EventPo
     for (size_t i = 0; i < all; i++) {
         const Event *event = &found->events[i];
         bool is_now =
-            (event->contact == landed->contact && event->is_bristle == landed->is_bristle) ||
+            (event->contact == landed->contact && event->is_bristle == landed->is_bristle &&
+             event->is_drive == landed->is_drive) ||
             fabs(event->time - time_s) <= same_s;
         if (!is_now && is_at_wall(system, event)) {
             const double rounding = rounding_of(system, end, event->contact, CONTACT_APART, 0);
@@ -422,8 +427,11 @@ void events_apply(System *system, const EventList *events, double time_s, const 
 {
     for (size_t i = 0; i < events->count; i++) {
         const Event *event = &events->events[i];
-        if (event->is_bristle) {
-            continue; // bristle_events_apply
+        if (event->is_drive) {
+            system->side = event->side;
+        }
+        if (event->is_drive || event->is_bristle) {
+            continue; // of a bristle: bristle_events_apply
         }
         Contact *contact = &system->contacts[event->contact];
         if (contact->mode == CONTACT_APART) {

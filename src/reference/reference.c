@@ -381,7 +381,7 @@ static void mechanism_contacts(const void *state, ContactState (*states)[JOINT_P
     system_give_contacts(system, mechanism->end_s, states);
     for (size_t i = 0; i < stepper->events.count; i++) {
         const Event *event = &stepper->events.events[i];
-        if (event->is_bristle) {
+        if (event->is_bristle || event->is_drive) {
             continue;
         }
         const Contact *contact = &system->contacts[event->contact];

@@ -64,6 +64,26 @@ static bool refuse_steps(const Pace *pace, const System *system, double time_s, 
                                                : "");
 }
 
+// What keeps changing. Returns false, with ERR_SOLVER.
+static bool refuse_events(const Pace *pace, const System *system, const Event *event, double time_s,
+                          Err *err)
+{
+    const double within_s = time_s - pace->instant_s;
+    if (event->is_drive) {
+        return err_set(err, ERR_SOLVER,
+                       "the torque of the drive keeps reaching and leaving its limit: %zu changes "
+                       "within %.3g s",
+                       pace->events, within_s);
+    }
+    const char *name =
+        event->is_bristle
+            ? system->scenario->linkage.joints[system->bristles[event->contact].joint].name
+            : joint_name(system, event->contact);
+    return err_set(err, ERR_SOLVER,
+                   "the %s of %s keeps beginning and ending: %zu changes within %.3g s",
+                   event->is_bristle ? "friction" : "contact", name, pace->events, within_s);
+}
+
 bool pace_keep(Pace *pace, const System *system, const EventList *events, double time_s, Err *err)
 {
     const double turn_s = pace_turn_of(system);
@@ -72,16 +92,10 @@ bool pace_keep(Pace *pace, const System *system, const EventList *events, double
         pace->events = 0;
     }
     pace->events += events->count;
-    if (pace->events > EVENTS_MOST * (system->contact_count + system->bristle_count)) {
-        const Event *event = &events->events[0];
-        const char *name =
-            event->is_bristle
-                ? system->scenario->linkage.joints[system->bristles[event->contact].joint].name
-                : joint_name(system, event->contact);
-        return err_set(err, ERR_SOLVER,
-                       "the %s of %s keeps beginning and ending: %zu changes within %.3g s",
-                       event->is_bristle ? "friction" : "contact", name, pace->events,
-                       time_s - pace->instant_s);
+    const bool has_limit = system->scenario->linkage.torque.limit > 0.0;
+    const size_t parts = system->contact_count + system->bristle_count + (has_limit ? 1 : 0);
+    if (pace->events > EVENTS_MOST * parts) {
+        return refuse_events(pace, system, &events->events[0], time_s, err);
     }
     pace->steps++;
     if (pace->steps == STEPS_COUNTED) {
@@ -570,11 +584,27 @@ static void follow_releases(Stepper *stepper)
     }
 }
 
+// The longest step that still sees a sinusoid which acts or drives: with two in each of its periods
+// none passes for something slower.
+static double wave_limit(const Linkage *linkage)
+{
+    const Torque *torque = &linkage->torque;
+    double shortest_s = fmin(loads_shortest_wave(linkage), wave_period(&torque->table.wave));
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        shortest_s = fmin(shortest_s, wave_period(&linkage_drive(linkage, i)->table.wave));
+    }
+    if (torque->followed.is_present) {
+        shortest_s = fmin(shortest_s, wave_period(&torque->followed.table.wave));
+    }
+    return 0.5 * shortest_s;
+}
+
 bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
 {
     memset(stepper, 0, sizeof *stepper);
     stepper->scenario = scenario;
     stepper->duration_s = scenario_duration(scenario);
+    stepper->wave_s = wave_limit(&scenario->linkage);
     stepper->system = !scenario->linkage.is_spatial ? plane_system_create(scenario, err)
                       : space_flat_is(scenario)     ? flat_system_create(scenario, err)
                                                     : space_system_create(scenario, err);
@@ -585,7 +615,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     Dop853 *integrator = &stepper->integrator;
     system_find_needs(system);
     dop853_init(integrator, system_size(system), system_sum_index(system, 0));
-    const size_t event_most = system->contact_count + system->bristle_count + 1;
+    const size_t event_most = system->contact_count + system->bristle_count + 2;
     stepper->events.events = calloc(event_most, sizeof(Event));
     stepper->found.events = calloc(event_most, sizeof(Event));
     assert(stepper->events.events != NULL && stepper->found.events != NULL);
@@ -595,6 +625,7 @@ bool stepper_init(Stepper *stepper, const Scenario *scenario, Err *err)
     if (system->bristle_count > 0) {
         bristle_events_start(system, integrator->y);
     }
+    drive_limit_start(system, integrator->y);
     integrator->rates = system->kind->rates;
     integrator->slopes = system->kind->slopes;
     integrator->coupling = system->coupling;
@@ -716,8 +747,8 @@ static void apply_events(Stepper *stepper)
     const bool was_flight = is_flight(system);
     for (size_t i = 0; i < stepper->events.count; i++) {
         Event *event = &stepper->events.events[i];
-        event->is_onset =
-            !event->is_bristle && system->contacts[event->contact].mode == CONTACT_APART;
+        event->is_onset = !event->is_bristle && !event->is_drive &&
+                          system->contacts[event->contact].mode == CONTACT_APART;
     }
     events_apply(system, &stepper->events, integrator->time, integrator->y);
     for (size_t i = 0; i < stepper->events.count; i++) {
@@ -777,7 +808,7 @@ static double smooth_limit(const Stepper *stepper)
     bend_s = linkage->torque.followed.is_present
                  ? fmin(bend_s, drive_next_kink(&linkage->torque.followed, after_s))
                  : bend_s;
-    return fmin(stepper->duration_s, bend_s) - time_s;
+    return fmin(fmin(stepper->duration_s, bend_s) - time_s, stepper->wave_s);
 }
 
 // The longest step in which no free pin crosses more than its play, nor a stop more than its size:

@@ -16,13 +16,15 @@ typedef struct Event {
     bool is_full;     // it stays in its mode, and passes where its damping is whole
     ContactWall wall; // of a slot that it comes to, in its mode; WALL_NEAREST: it is no such event
     bool is_onset;    // nothing touched before: set where it is applied
+    bool is_drive;    // of a soft drive with a limit (reference/drive_limit.c)
+    int side;         // of that: where its torque is then
     // of a bristle (reference/bristle_events.c), whose number stands in place of the contact's:
     bool is_bristle;
     BristleMode bends; // the mode that begins
     int face;          // of a guide that presses then
 } Event;
 
-// Events of a step, at most one a contact, and behind them one a bristle.
+// Events of a step, at most one a contact, a bristle and the drive.
 typedef struct EventList {
     size_t count;
     Event *events; // owned by the stepper, one a contact
@@ -44,6 +46,11 @@ bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *poin
 
 // The time of one point.
 double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
+
+// The first event of a drive with a limit in the tried step (reference/drive_limit.c); false where
+// there is none. At the start it finds where the torque is.
+bool drive_limit_find(const System *system, Dop853 *integrator, Event *event);
+void drive_limit_start(System *system, const double *y);
 
 // The first event of each contact in the step, as far as there is one.
 void events_find(const System *system, Dop853 *integrator, const EventPoints *points,
@@ -127,6 +134,7 @@ typedef struct Stepper {
     Stiffness stiffness;
     bool has_step;
     double duration_s;
+    double wave_s;       // the longest step that sees every sinusoid, s
     SpeedScale scale;    // largest speeds so far
     bool is_after_onset; // whether a contact began where the present step does
     double onset_step;   // s, length that the first step of the last contact had

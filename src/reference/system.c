@@ -141,6 +141,7 @@ void system_carry(System *system, Carry *carry)
         CARRY(carry, system->bristles[i].face);
         CARRY(carry, system->bristles[i].pair.damping);
     }
+    CARRY(carry, system->side);
     CARRY(carry, system->is_astray);
     CARRY(carry, system->torn);
     system->kind->carry(system, carry);

@@ -238,6 +238,12 @@ typedef struct SystemState {
     Press *contacts; // by contact
 } SystemState;
 
+// The torque of a soft drive with a limit.
+typedef struct DriveTorque {
+    double unlimited; // N m, by stiffness and damping alone
+    double terms;     // N m, sum of the sizes of what it is the sum of, for its rounding
+} DriveTorque;
+
 typedef struct SystemKind {
     // Room for a state of these equations; the caller frees it.
     SystemState *(*state_create)(const System *system);
@@ -264,6 +270,8 @@ typedef struct SystemKind {
     // The number of the joint whose friction had no single answer, where a state had none for that
     // reason; else -1.
     int (*jammed)(const System *system);
+    // The torque of the drive before its limit; NULL where no drive has one.
+    DriveTorque (*torque)(const System *system, double since_s, const double *y);
     // How a contact is to the walls of its slot; NULL where there are no slots.
     WallPlace (*wall)(const System *system, size_t contact, double since_s, const double *y);
     // Writes the coordinates that press depends on. Returns how many there are; 0 where it
@@ -310,9 +318,11 @@ struct System {
     size_t coordinate_count;
     SystemCoordinate *coordinates;
     Coupling *coupling; // owned by the equations
-    bool has_loads;     // whether their work is added up
-    bool is_astray;     // whether the loops' energy has jumped, as it does at a change point
-    int torn; // the number of an ideal joint that its loop could not keep closed; -1: none
+    int side; // of a soft drive with a limit: +1 or -1 while its torque is at that; it changes at
+              // events only
+    bool has_loads; // whether their work is added up
+    bool is_astray; // whether the loops' energy has jumped, as it does at a change point
+    int torn;       // the number of an ideal joint that its loop could not keep closed; -1: none
     size_t contact_count;
     Contact *contacts;
     size_t bristle_count;

@@ -15,6 +15,7 @@ typedef enum BodiesKind {
     BODIES_PLAIN,
     BODIES_SPRUNG,
     BODIES_RUN_UP,
+    BODIES_SERVO,
 } BodiesKind;
 
 typedef struct Pin {
@@ -275,11 +276,85 @@ static void write_run_up(Sketch *sketch, FILE *file)
             fall_ms, end, unit);
 }
 
+// A sinusoid about a mean, in a unit.
+static void write_wave(Draw *draw, double mean, double amplitude, const char *unit, FILE *file)
+{
+    fprintf(file, "{mean: %.4g %s, amplitude: %.4g %s, frequency: %.4g Hz, phase: %.4g deg}", mean,
+            unit, amplitude, unit, draw_log_between(draw, 4.0, 120.0),
+            draw_between(draw, -180.0, 180.0));
+}
+
+// What a drive follows or prescribes: a speed, or an angle about the start.
+static void write_swing(Draw *draw, bool may_hold, FILE *file)
+{
+    const size_t which = draw_below(draw, may_hold ? 4 : 2);
+    const double speed = draw_between(draw, -300.0, 300.0);
+    switch (which) {
+    case 0:
+        fprintf(file, "speed: ");
+        write_wave(draw, speed, draw_between(draw, 0.05, 1.2) * speed, "rpm", file);
+        break;
+    case 1:
+        fprintf(file, "angle: {amplitude: %.4g deg, frequency: %.4g Hz, phase: %.4g deg}",
+                draw_log_between(draw, 0.5, 15.0), draw_log_between(draw, 3.0, 40.0),
+                draw_between(draw, -180.0, 180.0));
+        break;
+    case 2:
+        fprintf(file, "angle: %.4g deg", draw_between(draw, -40.0, 40.0));
+        break;
+    default:
+        fprintf(file, "speed: %.4g rpm", speed);
+    }
+}
+
+// A controller with or without a limit, a torque or a prescribed motion by sinusoids, and loads.
+static void write_servo(Sketch *sketch, FILE *file)
+{
+    Draw *draw = &sketch->draw;
+    const size_t which = draw_below(draw, 4);
+    if (which == 0) {
+        const double torque = draw_log_between(draw, 0.01, 5.0);
+        fprintf(file, "torsion-springs:\n  bearing: {joint: joint-0, damping: %.4g N m s/rad}\n",
+                draw_log_between(draw, 1e-3, 0.1));
+        fprintf(file, "drive: {joint: joint-0, torque: ");
+        write_wave(draw, draw_between(draw, -1.0, 1.0) * torque, torque, "N m", file);
+        fprintf(file, "}\n");
+    } else {
+        fprintf(file, "drive: {joint: joint-0, ");
+        write_swing(draw, which > 1, file);
+        if (which > 1) {
+            const double stiffness = draw_log_between(draw, 0.2, 100.0);
+            fprintf(file, ", stiffness: %.4g N m/rad, damping: %.4g N m s/rad", stiffness,
+                    stiffness * draw_log_between(draw, 1e-3, 5e-2));
+            if (draw_chance(draw, 0.8)) {
+                fprintf(file, ", torque-limit: %.4g N m",
+                        stiffness * draw_log_between(draw, 0.01, 0.5));
+            }
+        }
+        fprintf(file, "}\n");
+    }
+    fprintf(file, "loads:\n");
+    for (size_t i = 0; i < sketch->body_count; i += 1 + draw_below(draw, 3)) {
+        const bool is_force = draw_chance(draw, 0.5);
+        fprintf(file, "  load-%zu: {body: body-%zu, ", i, i);
+        if (is_force) {
+            fprintf(file,
+                    "direction: %.4g deg, frame: %s, force: ", draw_between(draw, -180.0, 180.0),
+                    draw_chance(draw, 0.5) ? "body" : "world");
+        } else {
+            fprintf(file, "torque: ");
+        }
+        const double size = draw_log_between(draw, 0.01, is_force ? 5.0 : 0.3);
+        write_wave(draw, draw_between(draw, -1.0, 1.0) * size, size, is_force ? "N" : "N m", file);
+        fprintf(file, "}\n");
+    }
+}
+
 static void write_case(uint64_t seed, FILE *file, BodiesKind kind)
 {
     Sketch sketch = {.draw = draw_start(seed)};
     const bool is_sprung = kind == BODIES_SPRUNG;
-    const size_t which = draw_below(&sketch.draw, kind == BODIES_RUN_UP ? 4 : 5);
+    const size_t which = draw_below(&sketch.draw, kind >= BODIES_RUN_UP ? 4 : 5);
     if (which == 4) {
         const Point pivot = {draw_between(&sketch.draw, -0.5, 0.5), 0.0};
         add_chain(&sketch, -1, pivot, 1 + draw_below(&sketch.draw, 4));
@@ -306,6 +381,12 @@ static void write_case(uint64_t seed, FILE *file, BodiesKind kind)
                     torque, -0.5 * torque);
         }
     }
+    if (kind == BODIES_SERVO) {
+        write_servo(&sketch, file);
+        draw_contact(&sketch.draw, file);
+        draw_run(&sketch.draw, "duration: 0.5 s", file);
+        return;
+    }
     if (kind == BODIES_RUN_UP) {
         write_run_up(&sketch, file);
         sketch.is_driven = false;
@@ -330,6 +411,17 @@ static void write_run_ups(uint64_t seed, FILE *file)
 {
     write_case(seed, file, BODIES_RUN_UP);
 }
+
+static void write_servos(uint64_t seed, FILE *file)
+{
+    write_case(seed, file, BODIES_SERVO);
+}
+
+const CaseKind CASE_SERVOS = {
+    .name = "servos",
+    .summary = "driven ones by controllers with and without a limit, and by sinusoids, under loads",
+    .write = write_servos,
+};
 
 const CaseKind CASE_BODIES = {
     .name = "bodies",

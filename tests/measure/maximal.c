@@ -454,6 +454,16 @@ static Real corner_of(const Motor *motor, size_t contact)
                                       maximal->kind->corner(maximal, contact, motor->next)));
 }
 
+// The same of the torque of a soft drive, which may be beyond its limit to either side.
+static Real limit_of(const Motor *motor, Real length)
+{
+    const Maximal *maximal = motor->maximal;
+    return maximal->kind->limit == NULL
+               ? 1.0L
+               : passing(maximal->kind->limit(maximal, motor->time_s, motor->y),
+                         maximal->kind->limit(maximal, motor->time_s + length, motor->next));
+}
+
 static void change_mode(Motor *motor, size_t contact, MaximalMode after)
 {
     MaximalContact *of = &motor->maximal->contacts[contact];
@@ -546,6 +556,7 @@ static bool advance(Motor *motor, Real most, Real *wanted, int *idle)
             }
             whole = fminl(whole, corner_of(motor, i) * length);
         }
+        whole = fminl(whole, limit_of(motor, length) * length);
         if (whole < length) {
             length = whole;
             is_cut = true;

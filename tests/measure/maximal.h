@@ -40,6 +40,9 @@ typedef struct MaximalKind {
     MaximalGap (*gap)(const Maximal *maximal, size_t contact, const Real *y);
     // How far a contact is beyond where the curvature of its gap jumps, m; NULL: nowhere.
     Real (*corner)(const Maximal *maximal, size_t contact, const Real *y);
+    // How far the torque of a soft drive is beyond its limit, N m, where it has a corner; NULL:
+    // nowhere.
+    Real (*limit)(const Maximal *maximal, Real time_s, const Real *y);
     // Puts a state on the drive's path and back on the ideal joints.
     void (*project)(const Maximal *maximal, Real time_s, Real *y);
     void (*sample)(const Maximal *maximal, const Real *y, Trajectory *trajectory, size_t sample);

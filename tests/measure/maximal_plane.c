@@ -296,6 +296,36 @@ static void meet_rows(const Plane *plane, size_t count, const Row *rows, Real *r
     free(matrix);
 }
 
+// Where a drive without points is at a time: at a constant speed, held, or by a sinusoid.
+typedef struct Path {
+    Real angle;
+    Real omega;
+    Real alpha;
+} Path;
+
+static Path path_of(const Driver *driver, Real t)
+{
+    const Wave *wave = &driver->table.wave;
+    if (driver->table.count == 0) {
+        return (Path){driver->start + driver->speed * t, driver->speed, 0.0L};
+    }
+    const Real a = wave->amplitude;
+    const Real w = wave->rate;
+    const Real p = wave->phase;
+    if (driver->has_angles) {
+        return (Path){driver->start + driver->table.values[0] + a * sinl(w * t + p),
+                      a * w * cosl(w * t + p), -a * w * w * sinl(w * t + p)};
+    }
+    const Real v = driver->table.values[0];
+    return (Path){driver->start + v * t + a / w * (cosl(p) - cosl(w * t + p)),
+                  v + a * sinl(w * t + p), a * w * cosl(w * t + p)};
+}
+
+static bool is_wave(const Driver *driver)
+{
+    return driver->table.count > 0 && driver->table.wave.rate > 0.0;
+}
+
 // Puts the driven body on its path.
 static void put_driven(const Plane *plane, Real time_s, Real *q, Real *v)
 {
@@ -313,6 +343,11 @@ static void put_driven(const Plane *plane, Real time_s, Real *q, Real *v)
     Real *of = q + 3 * plane->driven;
     Real *rate = v + 3 * plane->driven;
     of[2] = drive_angle_exact(driver, time_s);
+    if (is_wave(driver)) {
+        const Path path = path_of(driver, time_s);
+        of[2] = path.angle;
+        omega = path.omega;
+    }
     const Vec arm = turned(direction_of(of[2]), joint->anchor_b);
     of[0] = joint->anchor_a.x - arm.x;
     of[1] = joint->anchor_a.y - arm.y;
@@ -768,6 +803,27 @@ static void add_springs(const Plane *plane, View view, Real *accelerations)
     }
 }
 
+// The torque of a soft drive, before its limit.
+static Real followed_torque(const Plane *plane, Real time_s, View view)
+{
+    const Torque *torque = &plane->linkage->torque;
+    const Joint *joint = &plane->linkage->joints[torque->joint];
+    const Path path = path_of(&torque->followed, time_s);
+    const Real sign = joint->body_b == LINKAGE_GROUND ? -1.0L : 1.0L;
+    const Real angle = sign * (angle_of(view, joint->body_b) - angle_of(view, joint->body_a));
+    const Real rate = sign * (omega_of(view, joint->body_b) - omega_of(view, joint->body_a));
+    return torque->stiffness * (path.angle - angle) + torque->slope * (path.omega - rate);
+}
+
+static Real limit(const Maximal *maximal, Real time_s, const Real *y)
+{
+    const Plane *plane = plane_of(maximal);
+    const Torque *torque = &plane->linkage->torque;
+    return torque->limit == 0.0
+               ? -1.0L
+               : fabsl(followed_torque(plane, time_s, view_of(plane, y))) - torque->limit;
+}
+
 static void add_torque(const Plane *plane, double since_s, Real time_s, View view,
                        Real *accelerations)
 {
@@ -776,7 +832,14 @@ static void add_torque(const Plane *plane, double since_s, Real time_s, View vie
         return;
     }
     const TimePiece piece = time_table_piece(&torque->table, since_s);
-    const Real value = piece.value + piece.slope * (time_s - piece.time_s);
+    const Wave *wave = &torque->table.wave;
+    Real value =
+        piece.value + piece.slope * (time_s - piece.time_s) +
+        (wave->rate > 0.0 ? wave->amplitude * sinl(wave->rate * time_s + wave->phase) : 0.0L);
+    if (torque->followed.is_present) {
+        value = followed_torque(plane, time_s, view);
+        value = torque->limit > 0.0 ? fminl(fmaxl(value, -torque->limit), torque->limit) : value;
+    }
     const Joint *joint = &plane->linkage->joints[torque->joint];
     if (joint->kind != JOINT_PRISMATIC) {
         turn_joint(plane, torque->joint, value, accelerations);
@@ -789,13 +852,24 @@ static void add_torque(const Plane *plane, double since_s, Real time_s, View vie
               vec_times(value, along_of(view, joint->body_a, joint->direction)), accelerations);
 }
 
-// Constant torques on bodies; other loads are refused.
-static void add_loads(const Plane *plane, Real *accelerations)
+// Torques on bodies and forces at their points, constant or sinusoids; other loads are refused.
+static void add_loads(const Plane *plane, Real time_s, View view, Real *accelerations)
 {
     for (size_t i = 0; i < plane->linkage->load_count; i++) {
         const Load *load = &plane->linkage->loads[i];
+        const Wave *wave = &load->table.wave;
         const Vec none = {0.0L, 0.0L};
-        push(plane, load->body, none, none, load->table.values[0], accelerations);
+        Real value = load->table.values[0];
+        value +=
+            wave->rate > 0.0 ? wave->amplitude * sinl(wave->rate * time_s + wave->phase) : 0.0L;
+        if (load->kind == LOAD_TORQUE) {
+            push(plane, load->body, none, none, value, accelerations);
+            continue;
+        }
+        const Vec along = load->frame == LOAD_IN_BODY ? along_of(view, load->body, load->direction)
+                                                      : direction_of(load->direction);
+        push(plane, load->body, arm_of(view, load->body, load->anchor), vec_times(value, along),
+             0.0L, accelerations);
     }
 }
 
@@ -803,7 +877,7 @@ static bool has_other_loads(const Linkage *linkage)
 {
     for (size_t i = 0; i < linkage->load_count; i++) {
         const Load *load = &linkage->loads[i];
-        if (load->kind != LOAD_TORQUE || load->table.count != 1) {
+        if (load->kind == LOAD_ALONG || load->table.count != 1) {
             return true;
         }
     }
@@ -833,8 +907,10 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
     if (plane->driven != LINKAGE_GROUND) {
         const Driver *driver = &linkage->driver;
         const Joint *joint = &linkage->joints[driver->joint];
-        const Real alpha =
-            driver->table.count > 0 ? time_table_piece(&driver->table, since_s).slope : 0.0;
+        const Real alpha = is_wave(driver) ? path_of(driver, time_s).alpha
+                           : driver->table.count > 0
+                               ? time_table_piece(&driver->table, since_s).slope
+                               : 0.0;
         const Real omega = view.v[3 * plane->driven + 2];
         const Vec arm = arm_of(view, plane->driven, joint->anchor_b);
         Real *of = accelerations + 3 * plane->driven;
@@ -845,7 +921,7 @@ static void rates(const Maximal *maximal, double since_s, Real time_s, const Rea
     add_contacts(plane, view, accelerations);
     add_springs(plane, view, accelerations);
     add_torque(plane, since_s, time_s, view, accelerations);
-    add_loads(plane, accelerations);
+    add_loads(plane, time_s, view, accelerations);
     Row *rows = zeroed(ROW_MOST * linkage->joint_count, sizeof *rows);
     Real *right = zeroed(ROW_MOST * linkage->joint_count, sizeof *right);
     const size_t count = list_rows(plane, view, false, rows);
@@ -898,6 +974,7 @@ static const MaximalKind PLANE = {
     .rates = rates,
     .gap = gap,
     .corner = corner,
+    .limit = limit,
     .project = project,
     .sample = sample,
     .fastest = fastest,
@@ -961,7 +1038,11 @@ Maximal *maximal_plane_create(const Scenario *scenario, const MaximalFlaw *flaw,
         return NULL;
     }
     if (has_other_loads(linkage)) {
-        err_set(err, ERR_CASE, "of loads these equations have constant torques on bodies alone");
+        err_set(err, ERR_CASE, "of loads these equations have constants and sinusoids on bodies");
+        return NULL;
+    }
+    if (linkage->torque.followed.is_present && linkage->torque.followed.table.count > 1) {
+        err_set(err, ERR_CASE, "soft drives follow no points in these equations");
         return NULL;
     }
     if (!touch_list(scenario, &places, &count, err)) {

@@ -25,6 +25,7 @@ extern const CaseKind CASE_SLOTS;
 extern const CaseKind CASE_HOLES;
 extern const CaseKind CASE_GROWING;
 extern const CaseKind CASE_RUN_UPS;
+extern const CaseKind CASE_SERVOS;
 extern const CaseKind CASE_SPACE;
 extern const CaseKind CASE_SPACE_DRIVEN;
 

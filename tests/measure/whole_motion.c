@@ -49,7 +49,7 @@ static const CaseKind *const KINDS[] = {
     &CASE_FOUR_BAR, &CASE_BODIES,       &CASE_SPRUNG,    &CASE_SLIDERS, &CASE_BALLS,
     &CASE_LIMITS,   &CASE_PENDULA,      &CASE_FOUR_BARS, &CASE_HOLES,   &CASE_ROTORS,
     &CASE_RACKS,    &CASE_GEARS,        &CASE_CAMS,      &CASE_SLOTS,   &CASE_RUN_UPS,
-    &CASE_SPACE,    &CASE_SPACE_DRIVEN, &CASE_GROWING};
+    &CASE_SPACE,    &CASE_SPACE_DRIVEN, &CASE_GROWING,   &CASE_SERVOS};
 
 typedef struct Result {
     char message[160]; // why the case could not be judged

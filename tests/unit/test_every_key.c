@@ -78,6 +78,7 @@ static const char *const UNWRITTEN[] = {
     "drive.rotor-inertia",
     "drive.stiffness",
     "drive.damping",
+    "drive.torque-limit",
     // of the contact model and the rows of the program's own world, which the library has not
     "contact.model",
     "contact.penalty",

@@ -251,6 +251,26 @@ static void limits_of_a_joint_vary_in_its_own_units(void **state)
     spec_finish(&spec);
 }
 
+// Parts of sinusoids vary as numbers in units of their own: of a signal in those of what uses it.
+static void parts_of_sinusoids_vary(void **state)
+{
+    (void)state;
+    Spec spec = study_read("mechanisms/shaken-lever.yaml",
+                           "vary:\n"
+                           "  signals.shaker.amplitude: {from: 5 N, to: 6 N, count: 3}\n"
+                           "  loads.across.force.phase: [0 deg, 90 deg]\n"
+                           "  loads.end.force.frequency: [19 Hz, 20 Hz]\n");
+    assert_string_equal(spec.variables[0].column_unit, "N");
+    assert_true(spec.variables[0].low == 5.0 && spec.variables[0].high == 6.0);
+    assert_string_equal(spec.variables[1].column_unit, "rad");
+    assert_string_equal(spec.variables[2].column_unit, "Hz");
+    Scenario first = first_scenario(&spec);
+    assert_true(first.linkage.loads[0].table.wave.amplitude == 5.0);
+    assert_true(first.linkage.loads[1].table.wave.amplitude == 5.0);
+    scenario_free(&first);
+    spec_finish(&spec);
+}
+
 // Those that come with the program are read, and their first, middle and last runs are cases.
 static void the_studies_of_the_program_are_good(void **state)
 {
@@ -293,6 +313,7 @@ int main(void)
         cmocka_unit_test(a_number_that_is_a_joints_own_makes_other_runs),
         cmocka_unit_test(a_study_that_is_not_there_is_an_error_of_the_file),
         cmocka_unit_test(limits_of_a_joint_vary_in_its_own_units),
+        cmocka_unit_test(parts_of_sinusoids_vary),
         cmocka_unit_test(the_studies_of_the_program_are_good),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -582,7 +582,8 @@ static Axis torque_axis(const RunReport *report, bool is_angle)
                  .low = INFINITY,
                  .high = -INFINITY};
     for (size_t i = 0; i < table->count; i++) {
-        plot_joints_take(&axis, table->values[i]);
+        plot_joints_take(&axis, table->values[i] - table->wave.amplitude);
+        plot_joints_take(&axis, table->values[i] + table->wave.amplitude);
     }
     axis_round(&axis.low, &axis.high);
     return axis;
@@ -613,7 +614,7 @@ void plot_limits_loop(const PlotView *view, PlotPanel panel)
 bool plot_limits_has_loop(const Linkage *linkage)
 {
     const TimeTable *table = &linkage->torque.table;
-    bool is_changing = false;
+    bool is_changing = time_table_changes(table) && table->count == 1;
     for (size_t i = 1; i < table->count; i++) {
         is_changing = is_changing || table->values[i] != table->values[0];
     }

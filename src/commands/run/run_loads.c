@@ -101,6 +101,28 @@ static void write_bushings(const Linkage *linkage, size_t width, Text *text)
     alike_end(alike, "  bushings    ", ": ", width, text);
 }
 
+void run_loads_write_wave(double mean, const Wave *wave, double scale, const char *unit, Text *text)
+{
+    text_append(text, "%.6g %s +- %.6g %s at %.6g Hz", scale * mean, unit, scale * wave->amplitude,
+                unit, wave->rate / (2.0 * M_PI));
+}
+
+// What a soft drive follows.
+static void write_followed(const Driver *driver, Text *text)
+{
+    const TimeTable *table = &driver->table;
+    if (drive_is_held(driver)) {
+        text_append(text, "holds %.6g deg", (driver->start + table->values[0]) * UNITS_DEG);
+    } else if (table->count > 0 && wave_exists(&table->wave)) {
+        text_append(text, "follows ");
+        run_loads_write_wave(table->values[0], &table->wave,
+                             driver->has_angles ? UNITS_DEG : UNITS_RPM,
+                             driver->has_angles ? "deg" : "rpm", text);
+    } else {
+        text_append(text, "follows %.6g rpm", driver->speed * UNITS_RPM);
+    }
+}
+
 // A motor, or a drive that follows its speed softly; false where the torque is neither.
 static bool write_motor(const Linkage *linkage, Text *text)
 {
@@ -110,9 +132,14 @@ static bool write_motor(const Linkage *linkage, Text *text)
         text_append(text, "  drive       motor at %s, %.6g N m at rest, none at %.6g rpm\n", name,
                     torque->table.values[0], torque->no_load * UNITS_RPM);
     } else if (torque->followed.is_present) {
-        text_append(text,
-                    "  drive       follows %.6g rpm at %s by %.4g N m/rad and %.4g N m s/rad\n",
-                    torque->followed.speed * UNITS_RPM, name, torque->stiffness, torque->slope);
+        text_append(text, "  drive       ");
+        write_followed(&torque->followed, text);
+        text_append(text, " at %s by %.4g N m/rad and %.4g N m s/rad", name, torque->stiffness,
+                    torque->slope);
+        if (torque->limit > 0.0) {
+            text_append(text, ", at most %.4g N m", torque->limit);
+        }
+        text_append(text, "\n");
     } else {
         return false;
     }
@@ -140,7 +167,9 @@ static void run_text_write_torque(const Linkage *linkage, Text *text)
     const char *unit = is_force ? "N" : "N m";
     const Range values = range_of(table->values, table->count);
     text_append(text, "  drive       %s ", is_force ? "force" : "torque");
-    if (values.least == values.most) {
+    if (wave_exists(&table->wave)) {
+        run_loads_write_wave(table->values[0], &table->wave, 1.0, unit, text);
+    } else if (values.least == values.most) {
         text_append(text, "%.6g %s", values.least, unit);
     } else {
         text_append(text, "%.6g to %.6g %s by %zu points over time", values.least, values.most,
@@ -160,11 +189,15 @@ static void write_loads(const Linkage *linkage, size_t width, Text *text)
         const Range values = range_of(table->values, table->count);
         Text said;
         text_init(&said);
-        text_append(&said, "%.6g", values.least);
+        if (wave_exists(&table->wave)) {
+            run_loads_write_wave(table->values[0], &table->wave, 1.0, unit, &said);
+        } else {
+            text_append(&said, "%.6g", values.least);
+        }
         if (table->count > 1) {
             text_append(&said, " to %.6g %s by %zu points over %s", values.most, unit, table->count,
                         OVERS[load->over]);
-        } else {
+        } else if (!wave_exists(&table->wave)) {
             text_append(&said, " %s", unit);
         }
         text_append(&said, load->kind == LOAD_ALONG ? " along %s" : " on %s",

@@ -545,7 +545,12 @@ static void write_table_of(const Driver *driver, Text *text)
     static const char *const PROFILES[] = {"cycloids", "polynomials", "trapezoids", "a spline"};
     const TimeTable *table = &driver->table;
     const size_t last = table->count - 1;
-    if (driver->has_angles) {
+    if (wave_exists(&table->wave)) {
+        run_loads_write_wave(driver->has_angles ? 0.0 : table->values[0], &table->wave,
+                             driver->has_angles ? UNITS_DEG : UNITS_RPM,
+                             driver->has_angles ? "deg" : "rpm", text);
+        text_append(text, "\n");
+    } else if (driver->has_angles) {
         const DriveExtent extent =
             drive_extent(driver, table->period_s > 0.0 ? table->period_s : table->times[last]);
         text_append(text, "by %.4g to %.4g deg over time in %s, %zu points\n",

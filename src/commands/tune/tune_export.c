@@ -510,6 +510,11 @@ const char *tune_export_lacks_case(const Scenario *scenario)
     if (scenario->linkage.load_count > 0 || torque->slope > 0.0 || torque->stiffness > 0.0) {
         return "programs have no loads, motors or soft drives";
     }
+    const Driver *driver = &scenario->linkage.driver;
+    if (wave_exists(&torque->table.wave) ||
+        (driver->table.count > 0 && wave_exists(&driver->table.wave))) {
+        return "programs have no sinusoids";
+    }
     const bool has_one = scenario->linkage.further_count == 0;
     return has_one && !scenario->linkage.driver.has_angles ? NULL
                                                            : "programs have one drive, of a speed";

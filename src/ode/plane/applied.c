@@ -12,6 +12,10 @@
 //
 // The row of a bushing along its axis e is that of a line from its point B on body b to B - l e on
 // body a: its rate is e . (v_B - v_a(B)) whatever l is, and its force goes through B.
+// Of a soft drive with a limit the row has the whole torque M = S - c (r + r') / 2, with S of the
+// stiffness and of what it follows, and with ODE's bound on the force of a motor:
+//     J v' + (2/c) M = -r + (2/c) S,   -L <= M <= L
+// Without damping M is S within the limit.
 #include "ode/plane/applied.h"
 
 #include "base/zeroed.h"
@@ -207,6 +211,12 @@ void applied_carry(Applied *applied, Carry *carry)
     CARRY(carry, applied->turning);
 }
 
+// Whether a row has the whole torque of a drive with a limit.
+static bool has_limited_row(const Applied *applied)
+{
+    return applied->motor.row != NULL && applied->linkage->torque.limit > 0.0;
+}
+
 // The bodies as the engine holds them, their angles in the turn that they were in last.
 static void read_motions(const Applied *applied, Motion *motions)
 {
@@ -329,6 +339,17 @@ static void set_gaps(Applied *applied, double step_s, double share, bool is_mean
     }
 }
 
+// The row of a soft drive with a limit: what it is without its rate, and the speed that is wanted.
+static void set_limited(Applied *applied, double softness, bool is_mean)
+{
+    const Linkage *linkage = applied->linkage;
+    const double rate = forces_drive_rate(linkage, applied->motions);
+    applied->wanted = softness * applied->held - (is_mean ? rate : 0.0);
+    dJointSetAMotorParam(applied->motor.row, dParamCFM, softness);
+    dJointSetAMotorParam(applied->motor.row, dParamVel, applied->wanted);
+    dJointSetAMotorParam(applied->motor.row, dParamFMax, linkage->torque.limit);
+}
+
 static void set_rows(Applied *applied, double step_s, AppliedRule rule, int direction)
 {
     applied->motor.late = 0.0;
@@ -351,6 +372,10 @@ static void set_rows(Applied *applied, double step_s, AppliedRule rule, int dire
     }
     set_bushings(applied, step_s, share, is_mean);
     set_gaps(applied, step_s, share, is_mean);
+    if (has_limited_row(applied)) {
+        set_limited(applied, 1.0 / (share * linkage->torque.slope), is_mean);
+        return;
+    }
     set_turn(applied, applied->motor.row, linkage->torque.joint,
              1.0 / (share * linkage->torque.slope), is_mean);
 }
@@ -374,6 +399,12 @@ static void push_loads(Applied *applied, const Motion *motions, double from_s, d
         applied->rates[i] = load_rate(linkage, load, motions);
         load_add(linkage, load, applied->pushed[i], motions, applied->loads);
     }
+}
+
+// What the rate of the start takes off a torque whose row has all of it.
+static double lost_by_rate(const Applied *applied)
+{
+    return has_limited_row(applied) ? applied->linkage->torque.slope * applied->turning : 0.0;
 }
 
 void applied_push_at(Applied *applied, const Motion *motions, double start_s, double step_s,
@@ -405,8 +436,12 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
     applied->torque = time_table_mean(&torque->table, from_s, to_s) +
                       forces_followed(linkage, motions, motions_s);
     applied->turning = torque->table.count > 0 ? forces_drive_rate(linkage, motions) : 0.0;
+    applied->held = applied->torque;
+    applied->torque = forces_within_limit(torque, applied->torque - lost_by_rate(applied));
     forces_add_springs(linkage, motions, applied->loads);
-    forces_add_torque(linkage, motions, applied->torque, applied->loads);
+    if (!has_limited_row(applied)) {
+        forces_add_torque(linkage, motions, applied->torque, applied->loads);
+    }
     push_loads(applied, motions, from_s, to_s);
     for (size_t i = 0; i < linkage->body_count; i++) {
         const BodyLoad *load = &applied->loads[i];
@@ -415,6 +450,9 @@ void applied_push_at(Applied *applied, const Motion *motions, double start_s, do
     }
     set_rows(applied, step_s, rule, direction);
     forces_add_dampers(linkage, motions, applied->loads);
+    if (has_limited_row(applied)) {
+        forces_add_torque(linkage, motions, applied->torque, applied->loads);
+    }
 }
 
 void applied_push_late(Applied *applied, const Motion *beyond)
@@ -444,7 +482,10 @@ void applied_push_late(Applied *applied, const Motion *beyond)
             applied->gaps[GAP_DAMPING_ROWS * i + k].late = drags[k].damping * drags[k].rate;
         }
     }
-    if (applied->motor.row != NULL) {
+    if (has_limited_row(applied)) {
+        applied->wanted -= 2.0 * forces_drive_rate(linkage, beyond);
+        dJointSetAMotorParam(applied->motor.row, dParamVel, applied->wanted);
+    } else if (applied->motor.row != NULL) {
         applied->motor.late = -linkage->torque.slope * forces_drive_rate(linkage, beyond);
     }
     forces_add_dampers(linkage, beyond, applied->late);
@@ -566,6 +607,9 @@ AppliedWork applied_book(Applied *applied, double step_s)
     for (size_t i = 0; i < linkage->body_count; i++) {
         applied->loads[i] = (BodyLoad){{0.0, 0.0}, 0.0};
     }
+    if (has_limited_row(applied)) {
+        applied->torque = applied->motor.feedback.t1[2];
+    }
     forces_add_springs(linkage, applied->motions, applied->loads);
     forces_add_torque(linkage, applied->motions, applied->torque, applied->loads);
     for (size_t i = 0; i < linkage->load_count; i++) {
@@ -573,8 +617,10 @@ AppliedWork applied_book(Applied *applied, double step_s)
     }
     work.damping =
         take_dampers(applied, step_s) + take_bushings(applied, step_s) + take_gaps(applied, step_s);
-    work.slope =
-        -take_turn(applied, &applied->motor, linkage->torque.joint, linkage->torque.slope, step_s);
+    if (!has_limited_row(applied)) {
+        work.slope = -take_turn(applied, &applied->motor, linkage->torque.joint,
+                                linkage->torque.slope, step_s);
+    }
     if (linkage->torque.table.count > 0 || linkage->load_count > 0) {
         read_motions(applied, applied->seen);
     }

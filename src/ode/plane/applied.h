@@ -39,7 +39,10 @@ typedef struct Applied {
     AppliedRow motor;      // of the drive's torque, where its rate takes some
     double *pushed;        // N or N m, by load: mean over the step
     double *rates;         // m/s or rad/s, by load, at its start
-    double torque;         // N m, mean over the step, but for what the rate takes
+    double torque;         // N m, mean over the step, but for what the rate takes; of a drive
+                           // with a limit all of it
+    double held;           // N m, of a drive with a limit: without what the rate takes, unlimited
+    double wanted;         // rad/s, of its row: the speed on its right-hand side
     double turning;        // rad/s, rate of the drive's joint at its start
 } Applied;
 

@@ -695,6 +695,14 @@ static void dynamics_start_loads(const Dynamics *dynamics, Loads *loads)
     }
 }
 
+// The torque of a drive with a limit, on the side where it is through the step.
+static double sided_torque(const System *system, const Motion *motions, double time_s)
+{
+    const Linkage *linkage = &system->scenario->linkage;
+    return system->side != 0 ? system->side * linkage->torque.limit
+                             : forces_drive_unlimited(linkage, motions, time_s);
+}
+
 // Adds springs, dampers, a torque and loads; fills in their powers.
 static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState *state,
                         Loads *loads)
@@ -712,6 +720,11 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
     BodyLoad *added = dynamics->room.added;
     const double from_s = tree_from(tree);
     loads_of_all(linkage, motions, time_s, from_s, added);
+    if (linkage->torque.limit > 0.0) {
+        const double torque = sided_torque(&dynamics->system, motions, time_s) -
+                              forces_drive_torque(linkage, motions, time_s);
+        forces_add_torque(linkage, motions, torque, added);
+    }
     for (int i = 0; i < (int)linkage->body_count; i++) {
         const int drive = tree_drive_of(tree, i);
         if (drive >= 0) {
@@ -724,6 +737,10 @@ static void load_forces(const Dynamics *dynamics, double since_s, DynamicsState 
         }
     }
     state->drive_power = forces_torque_power(linkage, motions, time_s);
+    if (linkage->torque.limit > 0.0) {
+        state->drive_power =
+            sided_torque(&dynamics->system, motions, time_s) * forces_drive_rate(linkage, motions);
+    }
     state->damping_power = forces_damping_power(linkage, motions);
     state->load_power = loads_power(linkage, motions, time_s, from_s);
 }

@@ -131,6 +131,24 @@ static int plane_jammed(const System *system)
     return plane_dynamics_of(system)->rub != NULL ? rub_jammed(plane_dynamics_of(system)) : -1;
 }
 
+static DriveTorque plane_torque(const System *system, double since_s, const double *y)
+{
+    const Dynamics *dynamics = plane_dynamics_of(system);
+    const Tree *tree = &dynamics->tree;
+    const Linkage *linkage = tree->linkage;
+    const Torque *torque = &linkage->torque;
+    TreeState *state = &dynamics->room.state->tree;
+    tree_evaluate(tree, since_s, y, y + system->coordinate_count, state);
+    const double time_s = tree_time(tree, since_s);
+    const DriveState to = drive_at(&torque->followed, time_s);
+    const JointTurn turn = forces_drive_turn(linkage, state->motions);
+    return (DriveTorque){
+        .unlimited = forces_drive_unlimited(linkage, state->motions, time_s),
+        .terms = torque->stiffness * (fabs(to.angle) + fabs(turn.angle)) +
+                 torque->slope * (fabs(to.omega) + fabs(turn.rate)),
+    };
+}
+
 static WallPlace plane_wall(const System *system, size_t contact, double since_s, const double *y)
 {
     return dynamics_contact_wall(plane_dynamics_of(system), contact, since_s, y);
@@ -509,6 +527,7 @@ static const SystemKind PLANE = {
     .hold = plane_hold,
     .jammed = plane_jammed,
     .wall = plane_wall,
+    .torque = plane_torque,
     .needs = dynamics_contact_needs,
     .sizes = plane_sizes,
     .crossing = plane_crossing,
