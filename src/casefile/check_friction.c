@@ -100,6 +100,14 @@ static bool check_contacts(const Entries *entries, const Scenario *scenario, Err
         const Entry *own = entries_find(entries, "joints.*.friction-law", i);
         const Entry *law = own != NULL ? own : entries_find(entries, "contact.friction-law", 0);
         const char *word = OPTIONS_FRICTION_LAWS[joint->friction.law];
+        if (joint->friction.law == BRISTLE_LUGRE) {
+            return entries_refuse(
+                law, err,
+                "LuGre's model is for ideal joints, and joint '%s' has play: in an "
+                "impact its bristle's damper alone would hold many times the "
+                "friction\nallowed: friction-law: regularized, stick",
+                joint->name);
+        }
         if (scenario->linkage.is_spatial) {
             return entries_refuse(law, err,
                                   "in space the friction of joint '%s' is regularized\nallowed: "
