@@ -25,3 +25,15 @@ JointFriction joint_friction_whole(const ContactOptions *contact, const Joint *j
     whole.damping = whole.damping > 0.0 ? whole.damping : contact->presliding_damping;
     return whole;
 }
+
+int joint_friction_first_unusual(const Linkage *linkage)
+{
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint_friction_is(joint) ||
+            (!joint_is_ideal(joint->kind) && joint->friction.law != BRISTLE_REGULARIZED)) {
+            return i;
+        }
+    }
+    return -1;
+}
