@@ -9,6 +9,7 @@
 #include "sample.h"
 
 #include "base/lcg.h"
+#include "run/drive_torque.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -290,6 +291,40 @@ static void pivots_rub_in_ode_with_order_two(void **state)
     assert_true(halved < plain / 1.7 && halved > plain / 3.0); // the control: order one
 }
 
+static void a_drive_turns_against_friction(void **state)
+{
+    (void)state;
+    static const char TEXT[] =
+        "bodies:\n  crank: {mass: 0.5 kg, inertia: 0.001 kg m^2, at: [50 mm, 0 mm]}\n"
+        "  coupler: {mass: 0.7 kg, inertia: 0.01 kg m^2, at: [165 mm, 122 mm]}\n"
+        "  rocker: {mass: 0.8 kg, inertia: 0.01 kg m^2, at: [265 mm, 122 mm]}\n"
+        "joints:\n"
+        "  a: {between: [ground, crank], at: [0 m, 0 m], friction: 0.2, friction-radius: 10 mm}\n"
+        "  b: {between: [crank, coupler], at: [100 mm, 0 m], friction-torque: 0.01 N m}\n"
+        "  c: {between: [coupler, rocker], at: [230 mm, 244 mm], friction: 0.2, friction-radius: "
+        "10 mm}\n  d: {between: [ground, rocker], at: [300 mm, 0 m]}\n"
+        "drive: {joint: a, speed: 100 rpm}\n"
+        "run: {revolutions: 1, samples: 2000, step: 100 us, backends: [reference, ode]}\n"
+        "ode: {stepping: staggered}\n";
+    const Scenario scenario = case_of(TEXT);
+    static const BackendKind BACKENDS[] = {BACKEND_REFERENCE, BACKEND_ODE};
+    for (size_t i = 0; i < 2; i++) {
+        Trajectory *run = complete_run(&scenario, BACKENDS[i]);
+        double work = 0.0; // of the torque by Euler's law
+        for (size_t k = 0; k + 1 < run->sample_count; k++) {
+            const double mean = 0.5 * (drive_torque_at(&scenario, run, 0, k) +
+                                       drive_torque_at(&scenario, run, 0, k + 1));
+            work += mean * scenario.linkage.driver.speed * (run->times[k + 1] - run->times[k]);
+        }
+        // a whole turn
+        assert_near(run->energy.drive_work, run->energy.friction, 1e-5 * run->energy.friction);
+        // ODE's forces are those of the middles of steps, which is half a step of the torque
+        const double share = BACKENDS[i] == BACKEND_REFERENCE ? 1e-6 : 2e-2;
+        assert_close(work, run->energy.friction, share);
+        trajectory_destroy(run);
+    }
+}
+
 static void other_ways_of_ode_refuse_friction(void **state)
 {
     (void)state;
@@ -554,6 +589,7 @@ int main(void)
         cmocka_unit_test(lugre_has_its_published_numbers),
         cmocka_unit_test(a_pin_with_play_holds_inside_its_friction_circle),
         cmocka_unit_test(pivots_rub_in_ode_with_order_two),
+        cmocka_unit_test(a_drive_turns_against_friction),
         cmocka_unit_test(other_ways_of_ode_refuse_friction),
         cmocka_unit_test(random_mechanisms_move_as_by_other_equations),
         cmocka_unit_test(another_friction_moves_them_otherwise),

@@ -115,7 +115,8 @@ static bool advance_plain(Plain *plain, Err *err)
     read_velocities(plain);
     if (!is_lean) {
         plain->applied = applied_book(&plain->world.applied, plain->step_s);
-        plain->rubbed = rubbing_book(rubbing, plain->step_s, plain->world.applied.loads);
+        plain->rubbed =
+            rubbing_book(rubbing, plain->step_s, plain->world.applied.loads, plain->joints);
         plain->drive_work =
             contact_rows_drive_power(&plain->contacts, start_s, plain->offsets, plain->joints) *
                 plain->step_s +

@@ -180,7 +180,7 @@ static void note_turn(RubbingRow *row, double end_rate)
     row->gained = gained;
 }
 
-double rubbing_book(Rubbing *rubbing, double step_s, BodyLoad *loads)
+double rubbing_book(Rubbing *rubbing, double step_s, BodyLoad *loads, JointState *joints)
 {
     double lost = 0.0;
     for (size_t i = 0; i < rubbing->count; i++) {
@@ -195,18 +195,24 @@ double rubbing_book(Rubbing *rubbing, double step_s, BodyLoad *loads)
                          : -row->torque * copysign(bristle_left(&pair, mean), mean);
         }
         forces_add_moment(rubbing->linkage, row->joint, moment, loads);
+        row->moment = moment;
+        joints[row->joint].moment_on_b = 0.0;
         lost -= step_s * moment * mean;
         note_turn(row, end_rate);
     }
     return lost;
 }
 
-void rubbing_note(Rubbing *rubbing, const JointState *joints)
+void rubbing_note(Rubbing *rubbing, JointState *joints)
 {
     for (size_t i = 0; i < rubbing->count; i++) {
         RubbingRow *row = &rubbing->rows[i];
         row->pressing[1] = row->pressing[0];
         row->pressing[0] = joints[row->joint].force;
         row->known++;
+        int sides[2];
+        linkage_turning(rubbing->linkage, row->joint, &sides[0], &sides[1]);
+        const bool is_of_b = sides[0] == rubbing->linkage->joints[row->joint].body_b;
+        joints[row->joint].moment_on_b = is_of_b ? row->moment : -row->moment;
     }
 }

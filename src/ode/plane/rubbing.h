@@ -24,6 +24,7 @@ typedef struct RubbingRow {
     double late;        // N m, on the turned body, that the last step is still owed
     double rate;        // rad/s, at the step's start
     double torque;      // N m, that sliding holds in the step
+    double moment;      // N m, on the turned body, in all
     double pushed;      // N m, on the turned body, beside the row
     bool has_row;       // in the step
 } RubbingRow;
@@ -46,9 +47,10 @@ void rubbing_carry(Rubbing *rubbing, Carry *carry);
 // Before a step, the bodies having the speeds of its start: puts the rows to them.
 void rubbing_push(Rubbing *rubbing, double step_s, AppliedRule rule);
 
-// After it, the bodies having the speeds of its end: adds the torques to the loads, by body.
-// Returns the work lost, J.
-double rubbing_book(Rubbing *rubbing, double step_s, BodyLoad *loads);
+// After it, the bodies having the speeds of its end: adds the torques to the loads, by body, and
+// takes those of the step before from the joints. Returns the work lost, J.
+double rubbing_book(Rubbing *rubbing, double step_s, BodyLoad *loads, JointState *joints);
 
-// Takes the joints' forces of the step, for the next ones.
-void rubbing_note(Rubbing *rubbing, const JointState *joints);
+// Behind what is worked out from joints and loads: takes the joints' forces of the step, for the
+// next ones, and tells the joints the moments that they give their bodies.
+void rubbing_note(Rubbing *rubbing, JointState *joints);

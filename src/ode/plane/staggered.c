@@ -206,7 +206,8 @@ static void book(Staggered *staggered, double middle_s, Stride *stride)
     const Linkage *linkage = &staggered->scenario->linkage;
     World *world = &staggered->world;
     const AppliedWork applied = applied_book(&world->applied, staggered->step_s);
-    stride->rubbed = rubbing_book(&world->rubbing, staggered->step_s, world->applied.loads);
+    stride->rubbed =
+        rubbing_book(&world->rubbing, staggered->step_s, world->applied.loads, stride->joints);
     const double power = contact_rows_drive_power(&staggered->contacts, middle_s,
                                                   staggered->offsets, stride->joints);
     stride->drive_work = staggered->step_s * power + applied.torque + applied.slope;
