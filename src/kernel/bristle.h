@@ -93,13 +93,12 @@ static inline BristleHold bristle_hold(const BristlePair *pair, BristleMode mode
         hold.share = tanh(speed / pair->speed);
         break;
     case BRISTLE_STICK:
-        hold.share =
-            way == 0.0 ? bristle_bent(pair, bend, speed) : way * bristle_left(pair, speed);
+        hold.share = way == 0.0 ? bristle_bent(pair, bend, speed) : way * bristle_left(pair, speed);
         hold.bending = bristle_slides(mode) ? 0.0 : speed;
         break;
     case BRISTLE_LUGRE:
-        hold.bending = speed - pair->ratio * way * speed * bend /
-                                   (pair->limit * bristle_left(pair, speed));
+        hold.bending =
+            speed - pair->ratio * way * speed * bend / (pair->limit * bristle_left(pair, speed));
         hold.share = pair->ratio * bend / pair->limit + pair->damping * hold.bending;
         break;
     }

@@ -330,8 +330,8 @@ const Event *events_first(const EventList *found)
 // Whether an event begins or ends at the wall.
 static bool is_at_wall(const System *system, const Event *event)
 {
-    return !event->is_bristle && (event->mode == CONTACT_APART ||
-                                  system->contacts[event->contact].mode == CONTACT_APART);
+    return !event->is_bristle &&
+           (event->mode == CONTACT_APART || system->contacts[event->contact].mode == CONTACT_APART);
 }
 
 // The contact at the end of the tried step.

@@ -475,9 +475,8 @@ static bool hinged_find_state(const Hinged *hinged, double since_s, const double
 static bool is_hinged(const Dynamics *dynamics)
 {
     const Linkage *linkage = dynamics->tree.linkage;
-    bool is_plain =
-        dynamics->articulated->is_plain && !dynamics->has_forces &&
-        dynamics->tree.drive_count <= 1 && dynamics->rub == NULL;
+    bool is_plain = dynamics->articulated->is_plain && !dynamics->has_forces &&
+                    dynamics->tree.drive_count <= 1 && dynamics->rub == NULL;
     for (size_t i = 0; i < linkage->joint_count; i++) {
         is_plain = is_plain && joint_pivots(linkage->joints[i].kind);
     }
