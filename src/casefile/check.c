@@ -5,7 +5,6 @@
 #include "casefile/build.h"
 #include "casefile/check_forces.h"
 #include "casefile/check_friction.h"
-#include "casefile/check_friction.h"
 #include "casefile/check_joints.h"
 #include "casefile/check_space.h"
 #include "casefile/drives.h"
@@ -414,8 +413,8 @@ bool check_values(const Entries *entries, const Scenario *scenario, Err *err)
                                     "kg mm^2, at: [0 mm, 0 mm]}");
     }
     return check_joints(entries, scenario, err) && check_space(entries, scenario, err) &&
-           check_friction(entries, scenario, err) &&
-           check_friction(entries, scenario, err) && check_forces(entries, scenario, err) && drives_check(entries, linkage, err) &&
+           check_friction(entries, scenario, err) && check_friction(entries, scenario, err) &&
+           check_forces(entries, scenario, err) && drives_check(entries, linkage, err) &&
            check_speeds(entries, linkage, err) && check_contact(entries, scenario, err) &&
            check_run(entries, scenario, err) && check_collider(entries, scenario, err);
 }

@@ -4,6 +4,7 @@
 #include "model/joint_friction.h"
 
 static const char STEADY[] = "joints.*.friction-torque joints.*.friction-force";
+static const char OF_IDEAL[] = "joints.*.friction joints.*.friction-torque joints.*.friction-force";
 static const char OF_BRISTLE[] =
     "joints.*.presliding-damping joints.*.presliding joints.*.breakaway-ratio";
 static const char OF_ANY[] = "joints.*.friction-law joints.*.friction-speed "
@@ -107,6 +108,14 @@ static bool check_contacts(const Entries *entries, const Scenario *scenario, Err
         const Entry *own = entries_find(entries, "joints.*.friction-law", i);
         const Entry *law = own != NULL ? own : entries_find(entries, "contact.friction-law", 0);
         const char *word = OPTIONS_FRICTION_LAWS[joint->friction.law];
+        if (joint->friction.law == BRISTLE_LUGRE) {
+            return entries_refuse(
+                law, err,
+                "LuGre's model is for ideal joints, and joint '%s' has play: in an "
+                "impact its bristle's damper alone would hold many times the "
+                "friction\nallowed: friction-law: regularized, stick",
+                joint->name);
+        }
         if (scenario->linkage.is_spatial) {
             return entries_refuse(law, err,
                                   "in space the friction of joint '%s' is regularized\nallowed: "
@@ -135,6 +144,39 @@ static bool check_contacts(const Entries *entries, const Scenario *scenario, Err
     return true;
 }
 
+// What ODE knows of the friction of ideal joints (ode/plane/rubbing.c).
+static bool check_ode(const Entries *entries, const Scenario *scenario, const Entry *culprit,
+                      Err *err)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const Linkage *linkage = &scenario->linkage;
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (joint_friction_is(joint) &&
+            (joint_slides(joint->kind) || joint->friction.law == BRISTLE_LUGRE)) {
+            const Entry *own = entries_blame(entries, OF_IDEAL, i);
+            return entries_refuse(own, err,
+                                  "ODE does not know the friction of joint '%s': it has that of "
+                                  "ideal pivots, regularized or stick\nallowed: run.backends: "
+                                  "[reference]",
+                                  joint->name);
+        }
+    }
+    const bool is_impulse = scenario_has_clearance(scenario) && ode->map == ODE_MAP_IMPULSE;
+    if (scenario->run.step == 0.0 || ode->solver != ODE_DIRECT || is_impulse ||
+        (ode->stepping != ODE_PLAIN && ode->stepping != ODE_STAGGERED)) {
+        const Entry *way =
+            entries_blame(entries, "ode.map ode.stepping ode.solver run.step run.backends", 0);
+        return entries_refuse(way != NULL ? way : culprit, err,
+                              "ODE has the friction of ideal joints, as of joint '%s', in given "
+                              "steps alone\nallowed: run.backends: [reference], or a step such as "
+                              "run.step: 10 us with ode.stepping: staggered or plain, solver: "
+                              "direct and a map such as midpoint",
+                              linkage->joints[joint_friction_first(linkage)].name);
+    }
+    return true;
+}
+
 // Where friction of ideal joints is not known.
 static bool check_solvers(const Entries *entries, const Scenario *scenario, Err *err)
 {
@@ -143,9 +185,7 @@ static bool check_solvers(const Entries *entries, const Scenario *scenario, Err 
         return true;
     }
     const char *name = scenario->linkage.joints[first].name;
-    const Entry *culprit =
-        entries_blame(entries, "joints.*.friction joints.*.friction-torque joints.*.friction-force",
-                      (size_t)first);
+    const Entry *culprit = entries_blame(entries, OF_IDEAL, (size_t)first);
     if (scenario->linkage.is_spatial) {
         return entries_refuse(culprit, err,
                               "in space the ideal joint '%s' has no friction\nallowed: space: "
@@ -154,7 +194,10 @@ static bool check_solvers(const Entries *entries, const Scenario *scenario, Err 
     }
     for (size_t i = 0; i < scenario->run.backend_count; i++) {
         const BackendKind backend = scenario->run.backends[i];
-        if (backend != BACKEND_REFERENCE) {
+        if (backend == BACKEND_ODE && !check_ode(entries, scenario, culprit, err)) {
+            return false;
+        }
+        if (backend != BACKEND_REFERENCE && backend != BACKEND_ODE) {
             const Entry *asked = entries_find(entries, "run.backends", 0);
             return entries_refuse(asked != NULL ? asked : culprit, err,
                                   "the backend %s does not know the friction of ideal joints, as "

@@ -448,7 +448,7 @@ const SchemaRow SCHEMA_ROWS[] = {
     {.path = "contact.friction-law", .type = SCHEMA_CHOICE, AT(contact.friction_law),
      .words = OPTIONS_FRICTION_LAWS, .needs = FRICTION | IMPACT,
      .doc = "regularized: sets in over friction-speed, and creeps at rest; stick: holds at rest, by "
-            "a bristle that bends up to presliding; lugre: the model of that name"},
+            "a bristle that bends up to presliding; lugre: the model of that name, of ideal joints"},
     {.path = "contact.breakaway-ratio", AT(contact.breakaway_ratio), .low = 1.0, .high = 1e2,
      .needs = FRICTION | IMPACT, .wants = BRISTLED,
      .doc = "of friction-law stick and lugre: static over sliding friction; it falls as "

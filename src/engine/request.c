@@ -5,6 +5,7 @@
 #include "engine/protocol.h"
 
 #include "contact/law.h"
+#include "model/joint_friction.h"
 #include "model/loads.h"
 
 #include <assert.h>
@@ -60,8 +61,11 @@ static KindWords words_of(JointKind kind)
 
 static bool check_joint(const char *engine, const Joint *joint, Err *err)
 {
-    const char *lacks =
-        joint->limits.kind != LIMIT_NONE ? "limits of a joint" : words_of(joint->kind).lacks;
+    const char *lacks = joint->limits.kind != LIMIT_NONE ? "limits of a joint"
+                        : joint_friction_is(joint)       ? "friction of an ideal joint"
+                        : joint->friction.law != BRISTLE_REGULARIZED
+                            ? "friction that is not regularized"
+                            : words_of(joint->kind).lacks;
     return lacks == NULL || refuse_joint(engine, lacks, joint, err);
 }
 

@@ -166,24 +166,21 @@ static inline BristlePair bristle_pressed(const BristlePair *pair, double pressi
     return pressed;
 }
 
-// The mode in which a contact begins, whose bristle is straight and damped without bound, for
-// nothing presses yet.
-static inline BristleMode bristle_onset(const BristlePair *pair, double speed)
+// The mode in which a contact that sticks begins: its bristle is straight, and damped without
+// bound, for nothing presses yet.
+static inline BristleMode bristle_onset(double speed)
 {
-    if (pair->law == BRISTLE_LUGRE) {
-        return bristle_begin(pair, 0.0, speed);
-    }
-    return speed == 0.0 || pair->law == BRISTLE_REGULARIZED ? BRISTLE_STICKING
-           : speed > 0.0                                    ? BRISTLE_YIELDING_FORTH
-                                                            : BRISTLE_YIELDING_BACK;
+    return speed > 0.0   ? BRISTLE_YIELDING_FORTH
+           : speed < 0.0 ? BRISTLE_YIELDING_BACK
+                         : BRISTLE_STICKING;
 }
 
 // The shortest time in which friction changes what slides, s, if all of it would accelerate that by
-// so much, m/s^2, that it is up to so much, N; of LuGre's law while it sticks.
+// so much, m/s^2, that it is up to so much, N; of the law of stick.
 static inline double bristle_time(const BristlePair *pair, BristleMode mode, double pressing,
                                   double most)
 {
-    if (pair->law == BRISTLE_STICK && bristle_slides(mode)) {
+    if (bristle_slides(mode)) {
         return INFINITY;
     }
     const double damping = bristle_damping(pair, pair->zeta, pressing, pair->mass);

@@ -42,21 +42,13 @@ BristleRates kernel_bristle_rates(const KernelContact *contact, KernelBend *bend
     const double stiffness = pair.ratio / pair.limit;
     const double damping_rate =
         pressing[0] > 0.0 ? -0.5 * pair.damping * pressing[1] / pressing[0] : 0.0;
-    BristleRates rates = {.share = hold.share};
     bend->bending = hold.bending;
-    if (pair.law == BRISTLE_LUGRE) {
-        const double left = bristle_left(&pair, speed[0]);
-        bend->bending_rate = speed[1] - stiffness * way / left *
-                                            (speed[1] * bend->bend + speed[0] * hold.bending -
-                                             speed[0] * bend->bend * slope / left);
-    } else {
-        bend->bending_rate = bristle_slides(mode) ? 0.0 : speed[1];
-    }
-    const bool is_bent = pair.law == BRISTLE_LUGRE || way == 0.0;
-    rates.share_rate = is_bent ? stiffness * hold.bending + damping_rate * hold.bending +
-                                     pair.damping * bend->bending_rate
-                               : way * slope;
-    return rates;
+    bend->bending_rate = bristle_slides(mode) ? 0.0 : speed[1];
+    return (BristleRates){
+        .share = hold.share,
+        .share_rate = way == 0.0 ? (stiffness + damping_rate) * speed[0] + pair.damping * speed[1]
+                                 : way * slope,
+    };
 }
 
 static double bend_after(KernelBend from, double h, double first, double second)
@@ -108,8 +100,7 @@ void kernel_bristle_begin(Kernel *kernel, size_t number, KernelPoint *point)
     point->bends[number] = (KernelBend){0.0, 0.0, 0.0};
     contact->state.bend = 0.0;
     if (contact->has_bristle) {
-        contact->state.bristle =
-            bristle_onset(&contact->law.bristle, kernel_force_sliding(kernel, point, number));
+        contact->state.bristle = bristle_onset(kernel_force_sliding(kernel, point, number));
     }
 }
 

@@ -70,8 +70,8 @@ void kernel_add(Kernel *kernel, const KernelContact *contact, size_t rows)
     added->row_count = rows;
     added->has_friction =
         added->law.friction > 0.0 && (rows > KERNEL_ROWS_PLAIN || added->shape == KERNEL_LINE);
-    added->has_bristle = added->has_friction && rows < KERNEL_ROWS_MOST &&
-                         added->law.bristle.law != BRISTLE_REGULARIZED;
+    added->has_bristle =
+        added->has_friction && rows < KERNEL_ROWS_MOST && added->law.bristle.law == BRISTLE_STICK;
     kernel->has_bristles = kernel->has_bristles || added->has_bristle;
     for (size_t i = 0; i < rows; i++) {
         kernel->contact_of[kernel->row_count++] = (int)kernel->contact_count;

@@ -9,7 +9,7 @@
 #include "model/scale.h"
 
 #include "base/zeroed.h"
-
+#include "model/joint_friction.h"
 #include "model/loads.h"
 
 // How far the body of a drive reaches from its pivot, m.
@@ -172,7 +172,9 @@ ScaleFloor scale_floor(const Scenario *scenario)
     double moving = scale.moving;
     double changing = scale.changing;
     const bool is_driven = take_drives(&scenario->linkage, &moving, &changing);
-    const bool is_pressed = !is_driven && has_play(&scenario->linkage);
+    // a bristle that holds is pressed like a contact
+    const bool is_pressed = !is_driven && (has_play(&scenario->linkage) ||
+                                           joint_friction_first(&scenario->linkage) >= 0);
     const ScaleFloor floor = {
         .speed = (is_pressed ? REST_PRESSED : REST) * moving,
         .acceleration = REST * changing,

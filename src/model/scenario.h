@@ -114,7 +114,8 @@ double scenario_sample_time(const Scenario *scenario, size_t sample);
 // The friction of a joint with play: its own, or the contact's.
 static inline double scenario_friction(const Scenario *scenario, const Joint *joint)
 {
-    return joint->contact.has_friction && !joint_is_ideal(joint->kind) ? joint->contact.friction : scenario->contact.friction;
+    return joint->contact.has_friction && !joint_is_ideal(joint->kind) ? joint->contact.friction
+                                                                       : scenario->contact.friction;
 }
 
 // The restitution likewise.

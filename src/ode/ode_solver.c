@@ -2,6 +2,7 @@
 //
 // Hands on to the way of stepping that the scenario asks for; each is a solver of its own.
 #include "model/independent.h"
+#include "model/joint_friction.h"
 #include "model/solver.h"
 #include "ode/stepping.h"
 
@@ -30,8 +31,40 @@ static const Solver *choose(const Scenario *scenario)
     return is_spatial ? IN_SPACE[scenario->ode.stepping] : IN_PLANE[scenario->ode.stepping];
 }
 
+// Friction that some ways of stepping do not know.
+static bool check_friction(const Scenario *scenario, Err *err)
+{
+    const Linkage *linkage = &scenario->linkage;
+    const int first = joint_friction_first_unusual(linkage);
+    if (first < 0) {
+        return true;
+    }
+    const bool is_known =
+        scenario->ode.solver == ODE_DIRECT && !linkage->is_spatial &&
+        !scenario_integrates_contacts(scenario) &&
+        (scenario->ode.stepping == ODE_PLAIN || scenario->ode.stepping == ODE_STAGGERED);
+    for (size_t i = 0; i < linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        const bool is_pivot = joint_is_ideal(joint->kind) && joint_pivots(joint->kind) &&
+                              joint->friction.law != BRISTLE_LUGRE;
+        if (joint_friction_is(joint)
+                ? !is_known || !is_pivot
+                : !joint_is_ideal(joint->kind) && joint->friction.law != BRISTLE_REGULARIZED) {
+            return err_set(err, ERR_CASE,
+                           "ODE does not know the friction of joint %s: it has that of ideal "
+                           "pivots, regularized or stick, with solver direct, stepping plain or "
+                           "staggered, and no map impulse, in the plane",
+                           joint->name);
+        }
+    }
+    return true;
+}
+
 static bool ode_open(const Scenario *scenario, void **state, Err *err)
 {
+    if (!check_friction(scenario, err)) {
+        return false;
+    }
     // measure/chosen_run.c finds one
     assert(scenario->run.step > 0.0);
     Ode *ode = calloc(1, sizeof *ode);

@@ -3,10 +3,11 @@
 //
 //     I alpha + s x m (a - g) = T + M + sum of (r x F + c)
 //
-// with s from the pivot to the centre of mass, g gravity, M the moment of springs and dampers, and
-// of each other joint its force F at the arm r and its moment c.
+// with s from the pivot to the centre of mass, g gravity, M the moment of springs and dampers and
+// of friction in the pivot, and of each other joint its force F at the arm r and its moment c.
 #include "run/drive_torque.h"
 #include "contact/touch.h"
+#include "model/joint_friction.h"
 #include "model/loads.h"
 
 #include <assert.h>
@@ -79,6 +80,9 @@ double drive_torque_of(const Scenario *scenario, const Motion *motions, const Jo
                     moment_of_loads(linkage, motions, time_s, driven, point);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
+        if ((int)i == pivoted && joint_friction_is(joint)) {
+            torque -= (joint->body_b == driven ? 1.0 : -1.0) * states[i].moment_on_b;
+        }
         if ((int)i == pivoted || (joint->body_a != driven && joint->body_b != driven)) {
             continue;
         }

@@ -27,6 +27,7 @@ static const Assumption ASSUMPTIONS[] = {
     {"contact.restitution-speed", "at"},
     {"contact.friction", "friction"},
     {"contact.friction-speed", "friction speed"},
+    {"contact.presliding", "presliding"},
     {"contact.impact-speed-floor", NULL},
     {"contact.penalty", "penalty"},
     {"gravity", "gravity"},
@@ -130,6 +131,22 @@ static bool has_assumed_eye(const Scenario *scenario)
     return false;
 }
 
+// Whether some ideal joint has a bristle whose presliding nobody gave, nor any contact with one.
+static bool has_assumed_bend(const Scenario *scenario)
+{
+    bool has_any = false;
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        const bool is_ideal = joint_is_ideal(joint->kind);
+        if (!is_ideal && joint->friction.law != BRISTLE_REGULARIZED) {
+            return false; // contact.presliding
+        }
+        has_any = has_any || (is_ideal && joint->friction.law != BRISTLE_REGULARIZED &&
+                              joint->friction.presliding == 0.0);
+    }
+    return has_any;
+}
+
 // Calls back with each assumption.
 static void each_assumption(const Scenario *scenario,
                             void (*take)(const Scenario *, const CasefileSetting *,
@@ -164,6 +181,13 @@ static void each_assumption(const Scenario *scenario,
         text_copy(eye.key, sizeof eye.key, "joints.*.eye-radius");
         text_copy(eye.text, sizeof eye.text, "twice their holes");
         take(scenario, &eye, "eyes", context);
+    }
+    if (has_assumed_bend(scenario)) {
+        CasefileSetting bend = {
+            .kind = CASEFILE_NUMBER, .number_count = 1, .numbers = {scenario->contact.presliding}};
+        text_copy(bend.key, sizeof bend.key, "joints.*.presliding");
+        text_copy(bend.unit, sizeof bend.unit, "m");
+        take(scenario, &bend, "presliding", context);
     }
 }
 

@@ -312,7 +312,7 @@ static inline void hold_bushings(const char *engine, const char *way, double ste
     if (!casefile_load_text("bushings", TEXT, strlen(TEXT), NULL, 0, &read, &err)) {
         fail_msg("%s", err.text);
     }
-    const Scenario scenario = kept_instead(&read);
+    Scenario scenario = kept_instead(&read);
     const Refined found = refined(engine, way, &scenario, step_s, 0.5 * step_s);
     if (!(found.order > order - 0.3) || !(found.coarse < error)) {
         fail_msg("%s %s: order %g, error %g", engine, way, found.order, found.coarse);

@@ -48,6 +48,7 @@ typedef struct Stride {
     double drive_work; // J
     double load_work;  // J
     double damped;     // J, in dampers
+    double rubbed;     // J, in the friction of ideal joints
     ContactEnergy energy;
 } Stride;
 
@@ -203,7 +204,10 @@ static void read_speeds(const Staggered *staggered, Stride *stride)
 static void book(Staggered *staggered, double middle_s, Stride *stride)
 {
     const Linkage *linkage = &staggered->scenario->linkage;
-    const AppliedWork applied = applied_book(&staggered->world.applied, staggered->step_s);
+    World *world = &staggered->world;
+    const AppliedWork applied = applied_book(&world->applied, staggered->step_s);
+    stride->rubbed =
+        rubbing_book(&world->rubbing, staggered->step_s, world->applied.loads, stride->joints);
     const double power = contact_rows_drive_power(&staggered->contacts, middle_s,
                                                   staggered->offsets, stride->joints);
     stride->drive_work = staggered->step_s * power + applied.torque + applied.slope;
@@ -213,6 +217,7 @@ static void book(Staggered *staggered, double middle_s, Stride *stride)
         stride->impulse[i] = stride->joints[i].force * staggered->step_s;
     }
     stride->energy = contact_rows_energy(&staggered->contacts);
+    rubbing_note(&world->rubbing, stride->joints);
 }
 
 static bool advance_staggered(Staggered *staggered, Stride *stride, Err *err)
@@ -227,6 +232,7 @@ static bool advance_staggered(Staggered *staggered, Stride *stride, Err *err)
         stride->middle[i] = world_snapshot(world, i);
     }
     applied_push(&world->applied, stride->start_s, step_s, APPLIED_AT_MEAN, 1);
+    rubbing_push(&world->rubbing, step_s, APPLIED_AT_MEAN);
     if (!contact_rows_make(&staggered->contacts, step_s, stride->joints, stride->approach, err)) {
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
                              err);
@@ -263,10 +269,44 @@ static void guess_before(Staggered *staggered)
     }
 }
 
+static bool staggered_carry(void *state, Carry *carry);
+
+// Friction comes from what presses in the step before: the first step is taken some times, until it
+// is what presses in that step itself.
+enum { PRIMING_STEPS = 6 };
+
+static bool prime_friction(Staggered *staggered, Err *err)
+{
+    Rubbing *rubbing = &staggered->world.rubbing;
+    bool is_good = true;
+    for (int i = 0; i < PRIMING_STEPS && is_good && rubbing->count > 0; i++) {
+        Carry carry = {0};
+        carry_begin(&carry, false);
+        staggered_carry(staggered, &carry);
+        is_good = advance_staggered(staggered, staggered->ahead, err);
+        double *pressing = zeroed(rubbing->count, sizeof *pressing);
+        for (size_t k = 0; k < rubbing->count; k++) {
+            pressing[k] = rubbing->rows[k].pressing[0];
+        }
+        carry_begin(&carry, true);
+        staggered_carry(staggered, &carry);
+        carry_finish(&carry);
+        for (size_t k = 0; k < rubbing->count; k++) {
+            rubbing->rows[k].pressing[0] = pressing[k];
+            rubbing->rows[k].known = 0;
+        }
+        free(pressing);
+    }
+    return is_good;
+}
+
 static bool staggered_step(void *state, double stop_s, Err *err)
 {
     (void)stop_s; // a fixed step: samples are looked up inside it
     Staggered *staggered = state;
+    if (staggered->steps == 0 && !prime_friction(staggered, err)) {
+        return false;
+    }
     // the first time also the steps before time zero, so that they are timed, and one ahead
     do {
         Stride *const spare = staggered->before;
@@ -299,6 +339,7 @@ static void stride_carry(const Linkage *linkage, Stride *stride, Carry *carry)
     CARRY(carry, stride->drive_work);
     CARRY(carry, stride->load_work);
     CARRY(carry, stride->damped);
+    CARRY(carry, stride->rubbed);
     CARRY(carry, stride->energy);
 }
 
@@ -334,7 +375,7 @@ static StepRecord staggered_record(const void *state)
         .drive_work = now->drive_work,
         .load_work = now->load_work,
         .dissipated = now->energy.dissipated + now->damped,
-        .friction = now->energy.friction,
+        .friction = now->energy.friction + now->rubbed,
         .elastic = now->energy.elastic,
     };
 }

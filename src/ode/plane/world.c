@@ -723,6 +723,8 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
         }
     }
     applied_make(linkage, world->id, world->bodies, motions, &world->applied);
+    rubbing_make(scenario, world->id, world->bodies, &world->rubbing);
+    world->applied.is_any = world->applied.is_any || world->rubbing.count > 0;
     return true;
 }
 
@@ -739,6 +741,7 @@ void world_finish(World *world)
     free(world->feedback);
     free(world->sliding);
     free(world->pairs);
+    rubbing_finish(&world->rubbing);
     applied_finish(&world->applied);
     world_hold_free(world->hold);
     ends_free(world->ends);
@@ -756,6 +759,7 @@ void world_carry(World *world, Carry *carry)
     }
     if (!world->linkage->is_spatial) {
         applied_carry(&world->applied, carry);
+        rubbing_carry(&world->rubbing, carry);
     }
 }
 

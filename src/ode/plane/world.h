@@ -8,6 +8,7 @@
 #include "ode/jobs.h"
 #include "ode/plane/applied.h"
 #include "ode/plane/collider.h"
+#include "ode/plane/rubbing.h"
 #include "ode/plane/world_hold.h"
 
 #include <ode/ode.h>
@@ -90,6 +91,7 @@ typedef struct World {
     WorldHold *hold;        // of the ideal joints where they have no rows in ODE; else NULL
     size_t constraint_rows; // scalar rows of the ideal joints, all independent
     Applied applied;        // springs, dampers, torque
+    Rubbing rubbing;        // friction of ideal pivots
 } World;
 
 // ODE's body of a body of the linkage; 0 for the ground.

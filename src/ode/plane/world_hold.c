@@ -11,6 +11,7 @@
 
 #include "base/zeroed.h"
 #include "model/forces.h"
+#include "model/joint_friction.h"
 #include "model/joint_rows.h"
 #include "model/response.h"
 
@@ -38,7 +39,7 @@ bool world_hold_is_alone(const Scenario *scenario)
     const bool has_contacts =
         scenario_has_clearance(scenario) && !scenario_integrates_contacts(scenario);
     return scenario->ode.solver == ODE_DIRECT && scenario->ode.cfm == 0.0 && !has_contacts &&
-           !forces_damp(&scenario->linkage);
+           !forces_damp(&scenario->linkage) && joint_friction_first(&scenario->linkage) < 0;
 }
 
 WorldHold *world_hold_make(const Scenario *scenario, size_t most_rows)

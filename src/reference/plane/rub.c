@@ -586,6 +586,9 @@ enum { HOLD_SWEEPS = 1000 }; // of joints that hardly hold each other: what is l
 
 static const double HOLD_SETTLED = 1e-14; // of the presliding
 
+// of the speed that uses friction up in the bristle's damper: what slides no faster stands
+static const double HOLD_SPEED = 0.01;
+
 static double rub_acceleration(const Tree *tree, const TreeState *state, int joint)
 {
     const int *bodies = tree->end_bodies + 2 * joint;
@@ -605,7 +608,8 @@ static double hold_one(Dynamics *dynamics, size_t number, const bool *is_bent, d
     const Bristle *bristle = &system->bristles[number];
     DynamicsState *state = dynamics->room.state;
     const BristleAt at = rub_bristle(dynamics, number, 0.0, y);
-    if (bristle->pair.law != BRISTLE_STICK || is_bent[number] || fabs(at.speed) > at.rounding ||
+    if (bristle->pair.law != BRISTLE_STICK || is_bent[number] ||
+        fabs(at.speed) * at.damping > HOLD_SPEED ||
         !dynamics_evaluate(dynamics, 0.0, y, state, NULL)) {
         return 0.0;
     }

@@ -1,0 +1,56 @@
+// The friction of ideal pivots in a world of ODE: rows about their axes.
+#pragma once
+
+#include "base/carry.h"
+#include "model/forces.h"
+#include "model/scenario.h"
+#include "model/trajectory.h"
+#include "ode/plane/applied.h"
+
+#include <ode/ode.h>
+
+// The friction of one pivot.
+typedef struct RubbingRow {
+    int joint;
+    dJointID row; // NULL: a drive has both of its bodies
+    dJointFeedback feedback;
+    JointFriction law;
+    double arm;         // m, mu times the radius; 0: steady
+    double radius;      // m, at which speeds count
+    double mobility;    // rad/(N m s^2), of the two bodies by themselves
+    double pressing[2]; // N, in the last step and in the one before it
+    int known;          // of these
+    double gained;      // rad/s, of the rate in the last step
+    double late;        // N m, on the turned body, that the last step is still owed
+    double rate;        // rad/s, at the step's start
+    double torque;      // N m, that sliding holds in the step
+    double moment;      // N m, on the turned body, in all
+    double pushed;      // N m, on the turned body, beside the row
+    bool has_row;       // in the step
+} RubbingRow;
+
+typedef struct Rubbing {
+    const Linkage *linkage;
+    const dBodyID *bodies; // of the world
+    size_t count;
+    RubbingRow *rows; // owned
+} Rubbing;
+
+// Makes the rows of a scenario's pivots. Part of world_build.
+void rubbing_make(const Scenario *scenario, dWorldID world, const dBodyID *bodies,
+                  Rubbing *rubbing);
+void rubbing_finish(Rubbing *rubbing);
+
+// Carries what is known of the last steps.
+void rubbing_carry(Rubbing *rubbing, Carry *carry);
+
+// Before a step, the bodies having the speeds of its start: puts the rows to them.
+void rubbing_push(Rubbing *rubbing, double step_s, AppliedRule rule);
+
+// After it, the bodies having the speeds of its end: adds the torques to the loads, by body, and
+// takes those of the step before from the joints. Returns the work lost, J.
+double rubbing_book(Rubbing *rubbing, double step_s, BodyLoad *loads, JointState *joints);
+
+// Behind what is worked out from joints and loads: takes the joints' forces of the step, for the
+// next ones, and tells the joints the moments that they give their bodies.
+void rubbing_note(Rubbing *rubbing, JointState *joints);
