@@ -20,8 +20,8 @@ static bool touches_at(const Trajectory *run, size_t sample, const Touch *places
         const TouchPose pose = touch_pose(&run->linkage, &places[i], motions);
         if (pose.gap < 0.0 && pose.has_normal) {
             touches = true;
-            *is_fast = *is_fast ||
-                       fabs(touch_sliding(&run->linkage, &places[i], &pose, motions)) > speed;
+            *is_fast =
+                *is_fast || fabs(touch_sliding(&run->linkage, &places[i], &pose, motions)) > speed;
         }
     }
     return touches;

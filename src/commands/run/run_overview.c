@@ -687,7 +687,8 @@ static void write_creep(const RunReport *report, Text *text)
     text_init(&words);
     text_append(&words, "Friction of %s creeps: it slides slower than ", of->name);
     units_append(&words, law_options(&report->scenario->contact, of).friction_speed, "m/s");
-    text_append(&words, " for %.3g %% of the time in which it is loaded. friction-law: stick holds.",
+    text_append(&words,
+                " for %.3g %% of the time in which it is loaded. friction-law: stick holds.",
                 100.0 * creep_share(report->scenario, run, (size_t)joint));
     append_paragraph(words.data, text);
     text_finish(&words);
