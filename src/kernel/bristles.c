@@ -10,7 +10,7 @@
 // of a margin, beyond which a mode is over
 static const double MARGIN_PASSED = 1e-9;
 
-enum { MARGINS = 2, ROOT_HALVINGS = 50, SETTLES_MOST = 4 };
+enum { MARGINS = 2, END_HALVINGS = 50, SETTLES_MOST = 4 };
 
 // Contacts to go through: none where no friction holds.
 static inline size_t count_of(const Kernel *kernel)
@@ -148,7 +148,7 @@ static double find_end(Kernel *kernel, LocalStep *step, size_t number, int which
     double low = 0.0;
     double high = width_s;
     BristleMode next;
-    for (int i = 0; i < ROOT_HALVINGS && high - low > 1e-13 * width_s; i++) {
+    for (int i = 0; i < END_HALVINGS && high - low > 1e-13 * width_s; i++) {
         const double middle = 0.5 * (low + high);
         kernel_local_step_inside(kernel, step, number, middle);
         const bool is_over =

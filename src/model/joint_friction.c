@@ -37,15 +37,3 @@ double joint_friction_mass(const Linkage *linkage, const Joint *joint)
     }
     return inverse > 0.0 ? 1.0 / inverse : 0.0;
 }
-
-int joint_friction_first_unusual(const Linkage *linkage)
-{
-    for (int i = 0; i < (int)linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        if (joint_friction_is(joint) ||
-            (!joint_is_ideal(joint->kind) && joint->friction.law != BRISTLE_REGULARIZED)) {
-            return i;
-        }
-    }
-    return -1;
-}

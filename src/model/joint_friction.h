@@ -18,10 +18,6 @@ static inline bool joint_friction_is(const Joint *joint)
 // Whether a joint of a linkage has any; and the first that has, or -1.
 int joint_friction_first(const Linkage *linkage);
 
-// The first joint of an ideal kind with friction, or with play and a friction that is not
-// regularized; -1: none.
-int joint_friction_first_unusual(const Linkage *linkage);
-
 // m, of a pivot.
 static inline double joint_friction_radius(const Joint *joint)
 {

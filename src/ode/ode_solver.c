@@ -31,29 +31,32 @@ static const Solver *choose(const Scenario *scenario)
     return is_spatial ? IN_SPACE[scenario->ode.stepping] : IN_PLANE[scenario->ode.stepping];
 }
 
-// Friction that some ways of stepping do not know.
+// Whether the friction of a joint is known where the case is stepped so: of ideal pivots where they
+// have rows, of contacts that stick where those are integrated within the step.
+static bool knows_friction(const Scenario *scenario, const Joint *joint)
+{
+    const OdeOptions *ode = &scenario->ode;
+    const bool is_within = scenario_integrates_contacts(scenario) && !scenario->linkage.is_spatial;
+    if (!joint_is_ideal(joint->kind)) {
+        return joint->friction.law == BRISTLE_REGULARIZED ||
+               (joint->friction.law == BRISTLE_STICK && is_within);
+    }
+    return !joint_friction_is(joint) ||
+           (joint_pivots(joint->kind) && joint->friction.law != BRISTLE_LUGRE &&
+            ode->solver == ODE_DIRECT && !scenario->linkage.is_spatial && !is_within &&
+            (ode->stepping == ODE_PLAIN || ode->stepping == ODE_STAGGERED));
+}
+
 static bool check_friction(const Scenario *scenario, Err *err)
 {
-    const Linkage *linkage = &scenario->linkage;
-    const int first = joint_friction_first_unusual(linkage);
-    if (first < 0) {
-        return true;
-    }
-    const bool is_known =
-        scenario->ode.solver == ODE_DIRECT && !linkage->is_spatial &&
-        !scenario_integrates_contacts(scenario) &&
-        (scenario->ode.stepping == ODE_PLAIN || scenario->ode.stepping == ODE_STAGGERED);
-    for (size_t i = 0; i < linkage->joint_count; i++) {
-        const Joint *joint = &linkage->joints[i];
-        const bool is_pivot = joint_is_ideal(joint->kind) && joint_pivots(joint->kind) &&
-                              joint->friction.law != BRISTLE_LUGRE;
-        if (joint_friction_is(joint)
-                ? !is_known || !is_pivot
-                : !joint_is_ideal(joint->kind) && joint->friction.law != BRISTLE_REGULARIZED) {
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (!knows_friction(scenario, joint)) {
             return err_set(err, ERR_CASE,
-                           "ODE does not know the friction of joint %s: it has that of ideal "
-                           "pivots, regularized or stick, with solver direct, stepping plain or "
-                           "staggered, and no map impulse, in the plane",
+                           "ODE does not know the friction of joint %s: in the plane it has that "
+                           "of ideal pivots, regularized or stick, with solver direct, stepping "
+                           "plain or staggered, and no map impulse, and stick of joints with play "
+                           "with that map",
                            joint->name);
         }
     }

@@ -377,6 +377,52 @@ static void a_servo_with_backlash_holds_its_arm(void **state)
     scenario_free(&scenario);
 }
 
+// What its shaft has to hold, over its friction, of a servo that has come to rest; and how fast it
+// still goes, rad/s.
+static double band_used(double friction, const char *law, double *rate)
+{
+    char text[2048];
+    snprintf(text, sizeof text,
+             "bodies:\n"
+             "  rotor: {mass: 0.5 kg, inertia: 0.002 kg m^2, at: [0 mm, 0 mm]}\n"
+             "  arm: {mass: 2 kg, inertia: 0.01 kg m^2, at: [100 mm, 0 mm]}\n"
+             "joints:\n"
+             "  shaft: {between: [ground, rotor], at: [0 mm, 0 mm], friction-torque: %.17g N m,\n"
+             "          friction-law: %s}\n"
+             "  gear: {between: [rotor, arm], at: [0 mm, 0 mm], backlash: 1 deg,\n"
+             "         stiffness: 5000 N m/rad, viscous-coefficient: 5 N m s/rad}\n"
+             "drive: {joint: shaft, angle: 20 deg, stiffness: 60 N m/rad, damping: 2 N m s/rad,\n"
+             "        torque-limit: 4 N m}\n"
+             "run: {duration: 4 s, samples: 40, start: centred, backends: [reference]}\n",
+             friction, law);
+    Scenario scenario = scenario_of(text, NULL, 0);
+    Trajectory *run = complete_run(&scenario, BACKEND_REFERENCE);
+    const size_t last = run->sample_count - 1;
+    const double rotor = trajectory_motion(run, last, 0)->angle;
+    const double arm = trajectory_motion(run, last, 1)->angle;
+    *rate = trajectory_motion(run, last, 0)->omega;
+    trajectory_destroy(run);
+    scenario_free(&scenario);
+    return (60.0 * (M_PI / 9.0 - rotor) - 2.0 * G * 0.1 * cos(arm)) / friction;
+}
+
+static void a_servo_with_friction_sticks_within_its_band(void **state)
+{
+    (void)state;
+    static const double FRICTIONS[] = {0.1, 0.3, 0.5, 0.8};
+    double most = 0.0;
+    double rate;
+    for (size_t i = 0; i < sizeof FRICTIONS / sizeof *FRICTIONS; i++) {
+        const double used = band_used(FRICTIONS[i], "stick", &rate);
+        assert_true(fabs(used) <= 1.0);
+        assert_near(rate, 0.0, 1e-9);
+        most = fmax(most, fabs(used));
+    }
+    assert_true(most > 0.1);
+    // the control: what creeps has come to where nothing is left to hold
+    assert_near(band_used(0.5, "regularized", &rate), 0.0, 0.05);
+}
+
 // ODE's ways in the plane: the same work of the drive, none of it lost, and the same rest.
 static void ode_gives_a_limited_drive_its_work(void **state)
 {
@@ -487,6 +533,7 @@ int main(void)
         cmocka_unit_test(ode_keeps_its_order_over_corners),
         cmocka_unit_test(a_chosen_step_holds_over_corners),
         cmocka_unit_test(a_servo_with_backlash_holds_its_arm),
+        cmocka_unit_test(a_servo_with_friction_sticks_within_its_band),
         cmocka_unit_test(ode_gives_a_limited_drive_its_work),
         cmocka_unit_test(a_limited_drive_follows_a_sinusoid),
         cmocka_unit_test(a_moment_beyond_the_limit_is_seen),

@@ -99,15 +99,17 @@ static bool advance_plain(Plain *plain, Err *err)
         plain->before[i] = now;
     }
     applied_push(&plain->world.applied, start_s, plain->step_s, APPLIED_AT_END, 1);
-    rubbing_push(&plain->world.rubbing, plain->step_s, APPLIED_AT_END);
+    Rubbing *rubbing = plain->world.rubbing.count > 0 ? &plain->world.rubbing : NULL;
+    if (rubbing != NULL) {
+        rubbing_push(rubbing, plain->step_s, APPLIED_AT_END);
+    }
     const bool is_quick = plain->scenario->ode.solver == ODE_QUICK;
     if (!contact_rows_make(&plain->contacts, plain->step_s, plain->joints, plain->approach, err) ||
         !world_step(&plain->world, plain->step_s, is_quick, err)) {
         return stepping_fail(plain->scenario, start_s, plain->steps + 1, plain->step_s, err);
     }
-    Rubbing *rubbing = &plain->world.rubbing;
     // friction comes from the joints' forces
-    const bool is_lean = plain->scenario->run.is_lean && rubbing->count == 0;
+    const bool is_lean = plain->scenario->run.is_lean && rubbing == NULL;
     if (!is_lean) {
         world_joint_forces(&plain->world, plain->joints);
     }
@@ -115,13 +117,17 @@ static bool advance_plain(Plain *plain, Err *err)
     read_velocities(plain);
     if (!is_lean) {
         plain->applied = applied_book(&plain->world.applied, plain->step_s);
-        plain->rubbed =
-            rubbing_book(rubbing, plain->step_s, plain->world.applied.loads, plain->joints);
+        if (rubbing != NULL) {
+            plain->rubbed =
+                rubbing_book(rubbing, plain->step_s, plain->world.applied.loads, plain->joints);
+        }
         plain->drive_work =
             contact_rows_drive_power(&plain->contacts, start_s, plain->offsets, plain->joints) *
                 plain->step_s +
             plain->applied.torque + plain->applied.slope;
-        rubbing_note(rubbing, plain->joints);
+        if (rubbing != NULL) {
+            rubbing_note(rubbing, plain->joints);
+        }
     }
     for (size_t i = 0; i < plain->scenario->linkage.joint_count; i++) {
         plain->impulse[i] = plain->joints[i].force * plain->step_s;

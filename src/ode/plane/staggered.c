@@ -206,8 +206,10 @@ static void book(Staggered *staggered, double middle_s, Stride *stride)
     const Linkage *linkage = &staggered->scenario->linkage;
     World *world = &staggered->world;
     const AppliedWork applied = applied_book(&world->applied, staggered->step_s);
-    stride->rubbed =
-        rubbing_book(&world->rubbing, staggered->step_s, world->applied.loads, stride->joints);
+    if (world->rubbing.count > 0) {
+        stride->rubbed =
+            rubbing_book(&world->rubbing, staggered->step_s, world->applied.loads, stride->joints);
+    }
     const double power = contact_rows_drive_power(&staggered->contacts, middle_s,
                                                   staggered->offsets, stride->joints);
     stride->drive_work = staggered->step_s * power + applied.torque + applied.slope;
@@ -217,7 +219,9 @@ static void book(Staggered *staggered, double middle_s, Stride *stride)
         stride->impulse[i] = stride->joints[i].force * staggered->step_s;
     }
     stride->energy = contact_rows_energy(&staggered->contacts);
-    rubbing_note(&world->rubbing, stride->joints);
+    if (world->rubbing.count > 0) {
+        rubbing_note(&world->rubbing, stride->joints);
+    }
 }
 
 static bool advance_staggered(Staggered *staggered, Stride *stride, Err *err)
@@ -232,7 +236,9 @@ static bool advance_staggered(Staggered *staggered, Stride *stride, Err *err)
         stride->middle[i] = world_snapshot(world, i);
     }
     applied_push(&world->applied, stride->start_s, step_s, APPLIED_AT_MEAN, 1);
-    rubbing_push(&world->rubbing, step_s, APPLIED_AT_MEAN);
+    if (world->rubbing.count > 0) {
+        rubbing_push(&world->rubbing, step_s, APPLIED_AT_MEAN);
+    }
     if (!contact_rows_make(&staggered->contacts, step_s, stride->joints, stride->approach, err)) {
         return stepping_fail(staggered->scenario, stride->start_s, staggered->steps + 1, step_s,
                              err);
