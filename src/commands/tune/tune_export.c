@@ -8,6 +8,7 @@
 #include "contact/map.h"
 #include "kernel/conforming.h"
 #include "measure/chosen_run.h"
+#include "model/joint_friction.h"
 #include "write/number.h"
 #include "write/table.h"
 #include "write/units.h"
@@ -514,6 +515,15 @@ const char *tune_export_lacks_case(const Scenario *scenario)
     if (wave_exists(&torque->table.wave) ||
         (driver->table.count > 0 && wave_exists(&driver->table.wave))) {
         return "programs have no sinusoids";
+    }
+    for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
+        const Joint *joint = &scenario->linkage.joints[i];
+        if (joint_friction_is(joint)) {
+            return "programs have no friction of ideal joints";
+        }
+        if (linkage_has_play(joint) && joint->friction.law != BRISTLE_REGULARIZED) {
+            return "programs have no friction that sticks";
+        }
     }
     const bool has_one = scenario->linkage.further_count == 0;
     return has_one && !scenario->linkage.driver.has_angles ? NULL
