@@ -49,8 +49,9 @@ static void overview_head(const Overview *overview, bool has_crank, const Overvi
     text_append(html,
                 "<div class=\"wide\"><table class=\"numbers\">\n<caption>%sargest angular "
                 "acceleration of each body, ",
-                overview->joint_count + overview->ideal_count > 0 ? "Largest force of each joint, l"
-                                                                  : "L");
+                overview->joint_count + overview->ideal_count + overview->bushing_count > 0
+                    ? "Largest force of each joint, l"
+                    : "L");
     if (is_random) {
         text_append(html, "of %zu %s of the settled motion", overview->motion->counted,
                     has_crank ? "revolutions" : "periods");
@@ -74,12 +75,14 @@ static void append_overview(const RunReport *report, Text *html)
     const size_t ideals =
         run_overview_has_ideal(&overview) ? least(overview.ideal_count, JOINTS_MOST) : 0;
     const size_t bodies = least(overview.body_count, BODIES_MOST);
-    if (joints + ideals + bodies > 0) {
+    const size_t bushings = least(overview.bushing_count, JOINTS_MOST);
+    if (joints + ideals + bushings + bodies > 0) {
         OverviewColumn columns[OVERVIEW_COLUMN_MAX];
         const size_t count = run_overview_columns(&overview, has_crank, columns);
         overview_head(&overview, has_crank, columns, count, html);
         write_rows(overview.joints, joints, columns, count, html);
         write_rows(overview.ideal_joints, ideals, columns, count, html);
+        write_rows(overview.bushings, bushings, columns, count, html);
         write_rows(overview.bodies, bodies, columns, count, html);
         write_rows(overview.drives, overview.drive_count, columns, count, html);
         text_append(html, "</tbody></table></div>\n");

@@ -528,7 +528,10 @@ void plot_run_write(const void *of, Text *svg)
     PlotView view = plot_view_begin(report);
     PanelChoice panels[PANEL_MAX] = {0};
     const size_t count = choose_panels(&view, panels);
-    const size_t all = count + FIRST_PANELS;
+    // bodies may hang on nothing but bushings and springs
+    const bool has_joints = report->scenario->linkage.joint_count > 0;
+    const size_t first = FIRST_PANELS - (has_joints ? 0 : 1);
+    const size_t all = count + first;
     const double rows_below = (double)((all + 1) / 2) - 2.0;
     Text legend;
     text_init(&legend);
@@ -540,9 +543,11 @@ void plot_run_write(const void *of, Text *svg)
     text_finish(&legend);
     plot_motions_draw(&view, 0, place_panel(&view, sheet, 0, ""));
     plot_motions_draw(&view, 1, place_panel(&view, sheet, 1, ""));
-    plot_joints_forces(&view, place_panel(&view, sheet, 2, "Force in the joint"));
+    if (has_joints) {
+        plot_joints_forces(&view, place_panel(&view, sheet, 2, "Force in the joint"));
+    }
     for (size_t i = 0; i < count; i++) {
-        const PlotPanel panel = place_panel(&view, sheet, FIRST_PANELS + i, "");
+        const PlotPanel panel = place_panel(&view, sheet, first + i, "");
         if (panels[i].draw != NULL) {
             panels[i].draw(&view, panel);
         } else {
