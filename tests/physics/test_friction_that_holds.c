@@ -170,6 +170,24 @@ static void friction_without_an_answer_is_refused(void **state)
     }
 }
 
+// How far the bristle of the first joint is bent where a run ends, m, and when that is, s.
+static double bend_at_end(const Scenario *scenario, double duration_s, double *end_s)
+{
+    const Solver *solver = registry_solver(BACKEND_REFERENCE);
+    void *state = NULL;
+    Err err = {0};
+    assert_true(solver->open(scenario, &state, &err));
+    do {
+        assert_true(solver->step(state, duration_s, &err));
+        const StepRecord record = solver->record(state);
+        *end_s = solver_reached(&record);
+    } while (*end_s < duration_s);
+    ContactState states[1][JOINT_PLACES] = {{{0}}};
+    solver->contacts(state, states);
+    solver->close(state);
+    return states[0][JOINT_PLACES - 1].bend;
+}
+
 static void lugre_has_its_published_numbers(void **state)
 {
     (void)state;
@@ -187,6 +205,11 @@ static void lugre_has_its_published_numbers(void **state)
         "reference: {tolerance: 1e-12}\n";
     static const double SLIPS[] = {7.45801467, 13.82073449, 20.18345431};
     Trajectory *run = run_text(TEXT);
+    const Scenario scenario = case_of(TEXT);
+    double end_s;
+    const double bend = bend_at_end(&scenario, 25.0, &end_s);
+    assert_near(end_s, 25.0, 1e-12);
+    assert_near(bend, 1.18167955e-5, 1e-13);
     assert_near(motion_at_end(run, 0)->position.x, 1.90883920, 1e-8);
     assert_near(motion_at_end(run, 0)->velocity.x, 9.42415459e-6, 1e-12);
     size_t slips = 0;
