@@ -16,6 +16,8 @@
 // 40 (1995) 419; Dupont, Hayward, Armstrong and Altpeter, likewise 47 (2002) 787 (elasto-plastic).
 #pragma once
 
+#include "kernel/friction_law.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -92,7 +94,7 @@ static inline BristleHold bristle_hold(const BristlePair *pair, BristleMode mode
     BristleHold hold = {0.0, 0.0};
     switch (pair->law) {
     case BRISTLE_REGULARIZED:
-        hold.share = tanh(speed / pair->speed);
+        hold.share = friction_hold(speed, pair->speed).held;
         break;
     case BRISTLE_STICK:
         hold.share = way == 0.0 ? bristle_bent(pair, bend, speed) : way * bristle_left(pair, speed);

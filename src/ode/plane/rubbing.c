@@ -19,6 +19,7 @@
 #include "ode/plane/rubbing.h"
 
 #include "base/zeroed.h"
+#include "kernel/friction_law.h"
 #include "model/joint_friction.h"
 
 #include <math.h>
@@ -126,9 +127,9 @@ static void set_smooth(RubbingRow *row, double step_s, AppliedRule rule)
         set_row(row, 0.0, speed / row->torque, row->torque);
         return;
     }
-    const double held = tanh(row->rate / speed);
-    const double slope = row->torque * (1.0 - held * held) / speed;
-    row->pushed -= row->torque * held;
+    const FrictionHold hold = friction_hold(row->rate, speed);
+    const double slope = row->torque * hold.slope;
+    row->pushed -= row->torque * hold.held;
     if (slope > RUBBING_SLOPE_LEAST * row->torque / speed) {
         const double share = rule == APPLIED_AT_MEAN ? 0.5 : 1.0;
         set_row(row, row->rate, 1.0 / (share * slope), dInfinity);
@@ -191,7 +192,7 @@ double rubbing_book(Rubbing *rubbing, double step_s, BodyLoad *loads, JointState
         if (row->row == NULL) {
             const BristlePair pair = pair_of(row);
             moment = row->law.law == BRISTLE_REGULARIZED
-                         ? -row->torque * tanh(mean / pair.speed)
+                         ? -row->torque * friction_hold(mean, pair.speed).held
                          : -row->torque * copysign(bristle_left(&pair, mean), mean);
         }
         forces_add_moment(rubbing->linkage, row->joint, moment, loads);
