@@ -32,7 +32,8 @@ double creep_share(const Scenario *scenario, const Trajectory *run, size_t joint
     const Joint *of = &run->linkage.joints[joint];
     const ContactOptions own = law_options(&scenario->contact, of);
     if (!trajectory_feels_play(run, of) || linkage_is_torsional(of) || run->linkage.is_spatial ||
-        !(own.friction > 0.0) || own.model != CONTACT_IMPACT) {
+        !(own.friction > 0.0) || own.friction_law != BRISTLE_REGULARIZED ||
+        own.model != CONTACT_IMPACT) {
         return NAN;
     }
     Touch places[TOUCH_CORNERS];
@@ -49,14 +50,14 @@ double creep_share(const Scenario *scenario, const Trajectory *run, size_t joint
     return loaded > 0 ? (double)slow / (double)loaded : NAN;
 }
 
-int creep_worst(const Scenario *scenario, const Trajectory *run)
+int creep_worst(const Scenario *scenario, const Trajectory *run, double *most)
 {
     int worst = -1;
-    double most = CREEP_NOTED;
+    *most = CREEP_NOTED;
     for (size_t i = 0; i < run->joint_count; i++) {
         const double share = creep_share(scenario, run, i);
-        if (share > most) {
-            most = share;
+        if (share > *most) {
+            *most = share;
             worst = (int)i;
         }
     }

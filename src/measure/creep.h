@@ -9,5 +9,6 @@
 // in space.
 double creep_share(const Scenario *scenario, const Trajectory *run, size_t joint);
 
-// The joint that creeps most, of a share of which a reader is to know; -1: none does.
-int creep_worst(const Scenario *scenario, const Trajectory *run);
+// The joint that creeps most, of a share of which a reader is to know, which is written; -1: none
+// does.
+int creep_worst(const Scenario *scenario, const Trajectory *run, double *most);

@@ -678,7 +678,8 @@ static void write_restitution(const Scenario *scenario, Text *text)
 static void write_creep(const RunReport *report, Text *text)
 {
     const Trajectory *run = overview_run(report);
-    const int joint = run != NULL ? creep_worst(report->scenario, run) : -1;
+    double share;
+    const int joint = run != NULL ? creep_worst(report->scenario, run, &share) : -1;
     if (joint < 0) {
         return;
     }
@@ -689,7 +690,7 @@ static void write_creep(const RunReport *report, Text *text)
     units_append(&words, law_options(&report->scenario->contact, of).friction_speed, "m/s");
     text_append(&words,
                 " for %.3g %% of the time in which it is loaded. friction-law: stick holds.",
-                100.0 * creep_share(report->scenario, run, (size_t)joint));
+                100.0 * share);
     append_paragraph(words.data, text);
     text_finish(&words);
 }
