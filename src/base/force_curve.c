@@ -6,6 +6,8 @@
 //     m = 3 (h_0 + h_1) / ((2 h_1 + h_0) / d_0 + (h_1 + 2 h_0) / d_1)
 #include "base/force_curve.h"
 
+#include "base/load_table.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -41,46 +43,22 @@ void force_curve_settle(ForceCurve *curve, ForceCurveShape shape)
     }
 }
 
-// A polynomial of s = at - from.
-typedef struct CurvePiece {
-    double from;
-    double c[4];
-} CurvePiece;
-
 // The piece that begins at a point.
-static CurvePiece piece_of(const ForceCurve *curve, size_t piece)
+static LoadPiece piece_of(const ForceCurve *curve, size_t piece)
 {
     const double h = width_of(curve, piece);
     const double d = secant_of(curve, piece);
     const double m0 = curve->is_smooth ? curve->slopes[piece] : d;
     const double m1 = curve->is_smooth ? curve->slopes[piece + 1] : d;
-    return (CurvePiece){
+    return (LoadPiece){
         curve->at[piece],
         {curve->values[piece], m0, (3.0 * d - 2.0 * m0 - m1) / h, (m0 + m1 - 2.0 * d) / (h * h)}};
 }
 
 // The line on which the curve goes on beyond its first or last point.
-static CurvePiece end_of(const ForceCurve *curve, size_t point)
+static LoadPiece end_of(const ForceCurve *curve, size_t point)
 {
-    return (CurvePiece){curve->at[point], {curve->values[point], curve->slopes[point], 0.0, 0.0}};
-}
-
-static double value_of(const CurvePiece *piece, double at)
-{
-    const double s = at - piece->from;
-    const double *c = piece->c;
-    return c[0] + s * (c[1] + s * (c[2] + s * c[3]));
-}
-
-// The integral of a piece between two deflections.
-static double integral_of(const CurvePiece *piece, double from, double to)
-{
-    const double *c = piece->c;
-    const double a = from - piece->from;
-    const double b = to - piece->from;
-    const double upper = b * (c[0] + b * (c[1] / 2.0 + b * (c[2] / 3.0 + b * c[3] / 4.0)));
-    const double lower = a * (c[0] + a * (c[1] / 2.0 + a * (c[2] / 3.0 + a * c[3] / 4.0)));
-    return upper - lower;
+    return (LoadPiece){curve->at[point], {curve->values[point], curve->slopes[point], 0.0, 0.0}};
 }
 
 double force_curve_at(const ForceCurve *curve, double deflection)
@@ -95,28 +73,29 @@ double force_curve_at(const ForceCurve *curve, double deflection)
         low = is_before ? middle + 1 : low;
         high = is_before ? high : middle;
     }
-    const CurvePiece piece = low == 0     ? end_of(curve, 0)
-                             : low > last ? end_of(curve, last)
-                                          : piece_of(curve, low - 1);
-    return value_of(&piece, deflection);
+    const LoadPiece piece = low == 0     ? end_of(curve, 0)
+                            : low > last ? end_of(curve, last)
+                                         : piece_of(curve, low - 1);
+    return load_piece_at(&piece, deflection);
 }
 
 // The integral from the first point to a deflection.
 static double integral_from_first(const ForceCurve *curve, double deflection)
 {
     const size_t last = curve->count - 1;
-    CurvePiece piece = end_of(curve, 0);
+    LoadPiece piece = end_of(curve, 0);
     if (deflection <= curve->at[0]) {
-        return integral_of(&piece, curve->at[0], deflection);
+        return load_piece_integral(&piece, curve->at[0], deflection);
     }
     double sum = 0.0;
     for (size_t i = 0; i < last && curve->at[i] < deflection; i++) {
         piece = piece_of(curve, i);
-        sum += integral_of(&piece, curve->at[i], fmin(deflection, curve->at[i + 1]));
+        sum += load_piece_integral(&piece, curve->at[i], fmin(deflection, curve->at[i + 1]));
     }
     piece = end_of(curve, last);
-    return deflection > curve->at[last] ? sum + integral_of(&piece, curve->at[last], deflection)
-                                        : sum;
+    return deflection > curve->at[last]
+               ? sum + load_piece_integral(&piece, curve->at[last], deflection)
+               : sum;
 }
 
 double force_curve_energy(const ForceCurve *curve, double deflection)

@@ -167,8 +167,7 @@ double load_table_next(const LoadTable *table, double at, double sign)
     return next;
 }
 
-// The integral of a piece between two arguments.
-static double integral_of(const LoadPiece *piece, double from, double to)
+double load_piece_integral(const LoadPiece *piece, double from, double to)
 {
     const double *c = piece->c;
     const double a = from - piece->from;
@@ -197,7 +196,7 @@ double load_table_mean(const LoadTable *table, double from, double to)
         const LoadPiece piece = load_table_piece(table, at, sign);
         const double next = load_table_next(table, at, sign);
         const double end = sign * (next - to) < 0.0 ? next : to;
-        sum += integral_of(&piece, at, end);
+        sum += load_piece_integral(&piece, at, end);
         at = end;
     }
     return sum / (to - from);

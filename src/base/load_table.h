@@ -46,6 +46,9 @@ LoadPiece load_table_piece(const LoadTable *table, double at, double sign);
 
 double load_piece_at(const LoadPiece *piece, double at);
 
+// The integral of a piece between two arguments.
+double load_piece_integral(const LoadPiece *piece, double from, double to);
+
 // The first point after an argument in that direction; INFINITY with its sign where there is none.
 double load_table_next(const LoadTable *table, double at, double sign);
 

@@ -9,7 +9,6 @@
 // that the step need not end on one to the last bit.
 #include "reference/stepper.h"
 
-#include "base/root.h"
 #include "base/zeroed.h"
 
 #include <math.h>
@@ -18,10 +17,6 @@
 // in a step: where a margin is looked at beside its end. Where it has come back by then its least
 // is looked for.
 enum { BRISTLE_POINTS = 4 };
-
-// Halvings of the way to where a margin is used up: it may be zero at the start of the step, where
-// an event has put it.
-enum { BRISTLE_HALVINGS = 24 };
 
 // of a margin: what rounding and the error of a step may leave of one that an event has made zero
 static const double BRISTLE_ROUNDING = 1e-12;
@@ -66,21 +61,6 @@ static double bristle_margin_at(double time, void *context)
     return bristle_margin(&pair, bristle->mode, margin->which, at.bend, at.speed, &margin->next);
 }
 
-// Where a margin turns negative between two times.
-static double bristle_crossing(BristleMargin *margin, double first, double last)
-{
-    double good = last;
-    for (int i = 0; i < BRISTLE_HALVINGS; i++) {
-        good = first + 0.5 * (good - first);
-        if (bristle_margin_at(good, margin) > 0.0) {
-            double time = last;
-            root_find(bristle_margin_at, margin, good, last, 0.0, &time);
-            return time;
-        }
-    }
-    return first;
-}
-
 // The time of the least of a margin that falls and rises again, by the parabola through three
 // points that are equally far apart.
 static double least_between(double middle, double apart, const double margins[3])
@@ -100,14 +80,14 @@ static double used_up(BristleMargin *margin)
             i == BRISTLE_POINTS ? start + margin->integrator->tried : start + i * apart;
         margins[i] = bristle_margin_at(time, margin);
         if (i > 0 && margins[i] < -margin->rounding) {
-            return bristle_crossing(margin, time - apart, time);
+            return events_crossing(bristle_margin_at, margin, time - apart, time);
         }
         const bool has_turned =
             i > 1 && margins[i - 1] < margins[i - 2] && margins[i - 1] < margins[i];
         if (has_turned) {
             const double least = least_between(time - apart, apart, margins + i - 2);
             if (bristle_margin_at(least, margin) < -margin->rounding) {
-                return bristle_crossing(margin, time - 2.0 * apart, least);
+                return events_crossing(bristle_margin_at, margin, time - 2.0 * apart, least);
             }
         }
     }
@@ -178,9 +158,7 @@ static void find_mode(System *system, size_t number, const double *y)
         bristle->mode = at.bend > 0.0 ? BRISTLE_SLIDING_FORTH : BRISTLE_SLIDING_BACK;
     } else if (bristle->contact >= 0 && pair.law == BRISTLE_STICK && at.damping == 0.0) {
         // where hardly anything presses yet, whatever slides yields
-        bristle->mode = fabs(at.speed) <= at.rounding ? BRISTLE_STICKING
-                        : at.speed > 0.0              ? BRISTLE_YIELDING_FORTH
-                                                      : BRISTLE_YIELDING_BACK;
+        bristle->mode = bristle_onset(fabs(at.speed) <= at.rounding ? 0.0 : at.speed);
     } else {
         bristle->mode = bristle_begin(&pair, at.bend, at.speed);
     }

@@ -148,18 +148,16 @@ static bool has_margin(const Contact *contact, int which)
     return which != MARGIN_WALL || contact->has_walls;
 }
 
-// Where the margin first turns negative between two times, the first of which may be the event
-// that the step began with: there it is zero but for rounding, of either sign.
-static double crossing(Margin *margin, double first, double last)
+double events_crossing(RootFunction margin, void *context, double first, double last)
 {
     double good = last;
     for (int i = 0; i < HALVINGS; i++) {
         good = first + 0.5 * (good - first);
-        if (margin_at(good, margin) > 0.0) {
+        if (margin(good, context) > 0.0) {
             // where the polynomial sees no change of sign, the state at the end alone does: it is
             // there
             double time = last;
-            root_find(margin_at, margin, good, last, 0.0, &time);
+            root_find(margin, context, good, last, 0.0, &time);
             return time;
         }
     }
@@ -278,18 +276,18 @@ static void events_evaluate_at(Margin *margin, const EventPoints *points, Event 
         double top = time;
         if (margin->which == MARGIN_WALL) {
             if (has_left_wall(margin, before, time, state, &top)) {
-                note_event(margin, crossing(margin, before, top), top, event);
+                note_event(margin, events_crossing(margin_at, margin, before, top), top, event);
                 return;
             }
             before = time;
             continue;
         }
         if (can_turn && has_been_there(margin, before, time, state, outward, &top)) {
-            note_event(margin, crossing(margin, before, top), top, event);
+            note_event(margin, events_crossing(margin_at, margin, before, top), top, event);
             return;
         }
         if (is_used_up(margin, state, margin_of(press, contact, margin->which))) {
-            note_event(margin, crossing(margin, before, time), time, event);
+            note_event(margin, events_crossing(margin_at, margin, before, time), time, event);
             return;
         }
         before = time;

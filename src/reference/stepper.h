@@ -1,6 +1,7 @@
 // The motion step by step: from event to event, each step no longer than its error allows.
 #pragma once
 
+#include "base/root.h"
 #include "model/scale.h"
 #include "reference/integrators.h"
 #include "reference/system.h"
@@ -46,6 +47,10 @@ bool events_evaluate(const System *system, Dop853 *integrator, EventPoints *poin
 
 // The time of one point.
 double events_point_time(const Dop853 *integrator, const EventPoints *points, size_t point);
+
+// Where a margin first turns negative between two times, the first of which may be the event that
+// the step began with: there it is zero but for rounding, of either sign.
+double events_crossing(RootFunction margin, void *context, double first, double last);
 
 // The first event of a drive with a limit in the tried step (reference/drive_limit.c); false where
 // there is none. At the start it finds where the torque is.

@@ -260,16 +260,16 @@ static void set_turn(const Applied *applied, dJointID row, int joint, double sof
     }
 }
 
-// Puts the row of a bushing along one of its axes where it stands: its line is as long as its
-// wanted rate needs for little rounding, and one that no direction is lost on.
-static void set_axis(const AppliedRow *row, const Bushing *bushing, const BushingPose *pose,
-                     size_t axis, double softness, double wanted, double step_s)
+// Puts the row of a line along a direction to a point where it stands: as long as its wanted rate
+// needs for little rounding, and one that no direction is lost on. The body at the point is the
+// row's first, or its second.
+static void set_direction(const AppliedRow *row, Vec2 point, Vec2 along, bool is_first,
+                          double softness, double wanted, double step_s)
 {
     const double length = fmax(LINE_BUSHING, fabs(wanted));
-    const Vec2 far = vec2_sub(pose->point, vec2_scale(length, pose->axes[axis]));
-    const bool is_held = bushing->body_a == LINKAGE_GROUND;
-    const Vec2 first = is_held ? pose->point : far;
-    const Vec2 second = is_held ? far : pose->point;
+    const Vec2 far = vec2_sub(point, vec2_scale(length, along));
+    const Vec2 first = is_first ? point : far;
+    const Vec2 second = is_first ? far : point;
     dJointSetDBallAnchor1(row->row, first.x, first.y, 0.0);
     dJointSetDBallAnchor2(row->row, second.x, second.y, 0.0);
     const SpringLine line = {.distance = length};
@@ -290,7 +290,8 @@ static void set_bushings(Applied *applied, double step_s, double share, bool is_
             int second;
             row->late = 0.0;
             if (row->row != NULL && axis < 2) {
-                set_axis(row, bushing, pose, axis, softness, wanted, step_s);
+                set_direction(row, pose->point, pose->axes[axis], bushing->body_a == LINKAGE_GROUND,
+                              softness, wanted, step_s);
             } else if (row->row != NULL) {
                 // the motor's rate is that of its first body
                 const double side = bushing_bodies(bushing, &first, &second);
@@ -314,16 +315,9 @@ static void set_gap(const Joint *joint, const Motion *motions, const AppliedRow 
         return;
     }
     // the line goes from body a to body b, so that its length has the row's rate
-    const double length = fmax(LINE_BUSHING, fabs(wanted));
     const Vec2 along = {drag->row.x[1], drag->row.y[1]};
-    const Vec2 b = gap_damping_point(drag, motions, 1, joint->body_b);
-    const Vec2 a = vec2_sub(b, vec2_scale(length, along));
-    const Vec2 first = side == 0 ? a : b;
-    const Vec2 second = side == 0 ? b : a;
-    dJointSetDBallAnchor1(row->row, first.x, first.y, 0.0);
-    dJointSetDBallAnchor2(row->row, second.x, second.y, 0.0);
-    const SpringLine line = {.distance = length};
-    set_line(row, &line, softness, wanted, step_s);
+    set_direction(row, gap_damping_point(drag, motions, 1, joint->body_b), along, side != 0,
+                  softness, wanted, step_s);
 }
 
 static void set_gaps(Applied *applied, double step_s, double share, bool is_mean)
