@@ -144,35 +144,37 @@ static bool check_contacts(const Entries *entries, const Scenario *scenario, Err
     return true;
 }
 
-// What ODE knows of the friction of ideal joints (ode/plane/rubbing.c).
+// What ODE knows of the friction of ideal joints: all but LuGre's where it integrates contacts
+// (ode/plane/impulse_rubs.c), else that of pivots that have rows (ode/plane/rubbing.c).
 static bool check_ode(const Entries *entries, const Scenario *scenario, const Entry *culprit,
                       Err *err)
 {
     const OdeOptions *ode = &scenario->ode;
     const Linkage *linkage = &scenario->linkage;
+    const bool is_within = knows_bristles(scenario);
+    const bool has_rows =
+        ode->solver == ODE_DIRECT && (ode->stepping == ODE_PLAIN || ode->stepping == ODE_STAGGERED);
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
-        if (joint_friction_is(joint) &&
-            (joint_slides(joint->kind) || joint->friction.law == BRISTLE_LUGRE)) {
-            const Entry *own = entries_blame(entries, OF_IDEAL, i);
-            return entries_refuse(own, err,
-                                  "ODE does not know the friction of joint '%s': it has that of "
-                                  "ideal pivots, regularized or stick\nallowed: run.backends: "
-                                  "[reference]",
+        if (!joint_friction_is(joint)) {
+            continue;
+        }
+        if (joint->friction.law == BRISTLE_LUGRE) {
+            return entries_refuse(entries_blame(entries, OF_IDEAL, i), err,
+                                  "ODE does not know LuGre's friction, as of joint '%s'\nallowed: "
+                                  "friction-law: stick, or run.backends: [reference]",
                                   joint->name);
         }
-    }
-    const bool is_impulse = scenario_has_clearance(scenario) && ode->map == ODE_MAP_IMPULSE;
-    if (scenario->run.step == 0.0 || ode->solver != ODE_DIRECT || is_impulse ||
-        (ode->stepping != ODE_PLAIN && ode->stepping != ODE_STAGGERED)) {
-        const Entry *way =
-            entries_blame(entries, "ode.map ode.stepping ode.solver run.step run.backends", 0);
-        return entries_refuse(way != NULL ? way : culprit, err,
-                              "ODE has the friction of ideal joints, as of joint '%s', in given "
-                              "steps alone\nallowed: run.backends: [reference], or a step such as "
-                              "run.step: 10 us with ode.stepping: staggered or plain, solver: "
-                              "direct and a map such as midpoint",
-                              linkage->joints[joint_friction_first(linkage)].name);
+        if (!is_within && (joint_slides(joint->kind) || !has_rows)) {
+            const Entry *way =
+                entries_blame(entries, "ode.map ode.stepping ode.solver run.backends", 0);
+            return entries_refuse(way != NULL ? way : culprit, err,
+                                  "ODE does not know the friction of the ideal joint '%s' in this "
+                                  "way\nallowed: ode.stepping: staggered with map: impulse, of "
+                                  "pivots plain or staggered with solver: direct and any map, or "
+                                  "run.backends: [reference]",
+                                  joint->name);
+        }
     }
     return true;
 }

@@ -34,14 +34,16 @@ BristleRates kernel_bristle_rates(const KernelContact *contact, KernelBend *bend
         bend->bending = bend->bending_rate = 0.0;
         return (BristleRates){0.0, 0.0};
     }
-    const BristlePair pair = bristle_pressed(&contact->law.bristle, pressing[0]);
+    const BristlePair pair = contact->is_rub ? contact->law.bristle
+                                             : bristle_pressed(&contact->law.bristle, pressing[0]);
     const BristleMode mode = contact->state.bristle;
     const BristleHold hold = bristle_hold(&pair, mode, bend->bend, speed[0]);
     const double way = bristle_way(mode);
     const double slope = left_slope(&pair, speed[0]) * speed[1];
     const double stiffness = pair.ratio / pair.limit;
-    const double damping_rate =
-        pressing[0] > 0.0 ? -0.5 * pair.damping * pressing[1] / pressing[0] : 0.0;
+    const double damping_rate = pressing[0] > 0.0 && !contact->is_rub
+                                    ? -0.5 * pair.damping * pressing[1] / pressing[0]
+                                    : 0.0;
     bend->bending = hold.bending;
     bend->bending_rate = bristle_slides(mode) ? 0.0 : speed[1];
     return (BristleRates){
@@ -109,6 +111,11 @@ static double margin_at(const Kernel *kernel, const KernelPoint *point, size_t n
                         BristleMode *next)
 {
     const KernelContact *contact = &kernel->contacts[number];
+    if (contact->is_rub) {
+        return bristle_margin(&contact->law.bristle, contact->state.bristle, which,
+                              point->bends[number].bend,
+                              kernel_force_sliding(kernel, point, number), next);
+    }
     const double pressing = contact->law.friction * kernel_force_pressing(kernel, point, number);
     if (pressing == 0.0 && kernel_point_pose(kernel, point, number)->approach_speed < 0.0) {
         return INFINITY;
@@ -188,8 +195,13 @@ bool kernel_bristles_follow(Kernel *kernel, double width_s)
     bool is_any = false;
     for (size_t i = 0; i < count_of(kernel); i++) {
         if (kernel->work->mode_ends_s[i] <= width_s) {
-            kernel->contacts[i].state.bristle = kernel->work->modes[i];
+            KernelContact *contact = &kernel->contacts[i];
+            const bool has_slid = bristle_slides(contact->state.bristle);
+            contact->state.bristle = kernel->work->modes[i];
             is_any = true;
+            if (contact->is_rub && has_slid) {
+                kernel_rub_stick(kernel, i);
+            }
         }
     }
     return is_any;

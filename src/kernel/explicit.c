@@ -24,6 +24,7 @@
 // Sources: R. P. K. Chan and A. Y. J. Tsai, Numer. Algorithms 53 (2010) 171, for the two methods.
 #include "kernel/internal.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -201,6 +202,21 @@ double kernel_explicit_bend(const ExplicitStep *step, const KernelPoint *from, s
     return start->bend + h * s * (start->bending + s * (slope / 2.0 + s * (a / 3.0 + s * b / 4.0)));
 }
 
+void kernel_explicit_forces(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
+                            double since_s, double *force)
+{
+    const double h = step->width_s;
+    const double s = since_s / h;
+    for (size_t i = 0; i < kernel->row_count; i++) {
+        double a;
+        double b;
+        const double slope = h * from->rate[i];
+        find_cubic(step->middle, from->force[i], slope, step->inside->force[i],
+                   h * step->inside->rate[i], &a, &b);
+        force[i] = from->force[i] + s * (slope + s * (a + s * b));
+    }
+}
+
 void kernel_explicit_extend(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
                             KernelPoint *to)
 {
@@ -228,11 +244,52 @@ static double third_change(const KernelContact *contact, const ExplicitStep *ste
     return 12.0 * sqrt(square) / (step->middle * step->middle * step->middle);
 }
 
+// What says how large a contact's error is, and how large it may be.
+typedef struct Allowance {
+    double frequency; // rad/s
+    double fastest;   // 1/s, that or whatever else changes its force faster
+    double force;     // N
+} Allowance;
+
+static Allowance allow_contact(const Kernel *kernel, const ExplicitStep *step,
+                               const KernelPoint *from, size_t number)
+{
+    const KernelContact *contact = &kernel->contacts[number];
+    const PinHole pose = *kernel_point_pose(kernel, step->inside, number);
+    const double depth = fmax(pose.penetration, 0.0);
+    const double frequency = kernel_force_frequency(kernel, number, pose.normal, depth);
+    double fastest = frequency;
+    if (contact->law.friction > 0.0) {
+        fastest = fmax(fastest, 1.0 / kernel_force_friction_time(kernel, number, from->force));
+    }
+    const bool is_linear = contact->law.family == FORCE_LAW_POWER && contact->law.exponent == 1.0 &&
+                           contact->law.full_damping_depth == 0.0;
+    if (!is_linear && depth > 0.0) {
+        fastest = fmax(fastest, 1.5 * fabs(pose.approach_speed) / depth);
+    }
+    const double *force = step->inside->force + contact->first_row;
+    return (Allowance){
+        .frequency = frequency,
+        .fastest = fastest,
+        .force =
+            fmax(contact->force_per_speed * fmax(fabs(pose.approach_speed),
+                                                 IMPACT_FORCE_SHARE * contact->state.impact_speed),
+                 vec2_length((Vec2){force[0], force[1]})),
+    };
+}
+
+static Allowance allow_rub(const Kernel *kernel, const KernelPoint *from, size_t number)
+{
+    return (Allowance){
+        .fastest = 1.0 / kernel_rub_time(kernel, from, number),
+        .force = fmax(kernel_rub_of(kernel, number)->most, DBL_MIN),
+    };
+}
+
 double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const KernelPoint *from,
                              double longest_s[2])
 {
     const double h = step->width_s;
-    const KernelPoint *inside = step->inside;
     double worst = 0.0;
     longest_s[0] = longest_s[1] = INFINITY;
     step->extends = true;
@@ -241,28 +298,12 @@ double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const Ker
         if (!contact->state.is_touching) {
             continue;
         }
-        const PinHole pose = *kernel_point_pose(kernel, inside, i);
-        const double depth = fmax(pose.penetration, 0.0);
-        const double frequency = kernel_force_frequency(kernel, i, pose.normal, depth);
-        double fastest = frequency;
-        if (contact->law.friction > 0.0) {
-            fastest = fmax(fastest, 1.0 / kernel_force_friction_time(kernel, i, from->force));
-        }
-        const bool is_linear = contact->law.family == FORCE_LAW_POWER &&
-                               contact->law.exponent == 1.0 &&
-                               contact->law.full_damping_depth == 0.0;
-        if (!is_linear && depth > 0.0) {
-            fastest = fmax(fastest, 1.5 * fabs(pose.approach_speed) / depth);
-        }
+        const Allowance of =
+            contact->is_rub ? allow_rub(kernel, from, i) : allow_contact(kernel, step, from, i);
         const double changes = third_change(contact, step, from);
-        const double *force = inside->force + contact->first_row;
-        const double allowed =
-            contact->tolerance *
-            fmax(contact->force_per_speed * fmax(fabs(pose.approach_speed),
-                                                 IMPACT_FORCE_SHARE * contact->state.impact_speed),
-                 vec2_length((Vec2){force[0], force[1]}));
+        const double allowed = contact->tolerance * of.force;
         // error over what is allowed, of either order at this length
-        const double theta = fastest * h;
+        const double theta = of.fastest * h;
         const double errors[2] = {ERROR_FACTORS[0] * theta * changes / allowed,
                                   ERROR_FACTORS[1] * theta * theta * changes / allowed};
         const double own = errors[step->order - 4];
@@ -272,7 +313,7 @@ double kernel_explicit_error(const Kernel *kernel, ExplicitStep *step, const Ker
         const double shares[2] = {1.0 / sqrt(sqrt(errors[0])), pow(errors[1], -1.0 / 5.0)};
         for (int k = 0; k < 2; k++) {
             const double wanted_s = EXPLICIT_SAFETY * shares[k] * h;
-            longest_s[k] = fmin(longest_s[k], fmin(wanted_s, THETA_MOST[k] / frequency));
+            longest_s[k] = fmin(longest_s[k], fmin(wanted_s, THETA_MOST[k] / of.frequency));
         }
     }
     return worst;

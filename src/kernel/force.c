@@ -100,7 +100,7 @@ double kernel_force_sliding(const Kernel *kernel, const KernelPoint *point, size
     double speed[KERNEL_ROWS_MOST] = {point->known[contact].speed[0],
                                       point->known[contact].speed[1]};
     if (of->shape == KERNEL_LINE) {
-        return speed[1];
+        return speed[of->is_rub ? 0 : 1];
     }
     for (size_t i = KERNEL_ROWS_PLAIN; i < of->row_count; i++) {
         speed[i] = kernel_motion_speed(kernel, of->first_row + i, point->time_s, point->impulse,
@@ -218,7 +218,7 @@ void kernel_force_find_touching(Kernel *kernel, const KernelPoint *point, double
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
         double *own = force + contact->first_row;
-        if (!contact->state.is_touching) {
+        if (!contact->state.is_touching || contact->is_rub) {
             memset(own, 0, contact->row_count * sizeof *own);
             continue;
         }
@@ -237,6 +237,10 @@ void kernel_force_find_touching(Kernel *kernel, const KernelPoint *point, double
         if (contact->has_friction) {
             powers[1] += add_friction(kernel, point, i, touch->speed, pose, normal, force);
         }
+    }
+    if (kernel->rub_count > 0) {
+        kernel_rubs_press(kernel, point, force, powers);
+        is_any = true;
     }
     kernel->evaluations += is_any ? 1 : 0;
     kernel_count_work(kernel);
@@ -752,7 +756,7 @@ void kernel_rates_find(Kernel *kernel, KernelPoint *point)
     memset(point->power_rates, 0, sizeof point->power_rates);
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (contact->state.is_touching) {
+        if (contact->state.is_touching && !contact->is_rub) {
             MovingContact moving = {
                 .contact = contact,
                 .bend = &point->bends[i],
@@ -762,5 +766,8 @@ void kernel_rates_find(Kernel *kernel, KernelPoint *point)
             find_moving(kernel, point, forces, &touching[i], &moving);
             rate_contact(&moving, &touching[i], point);
         }
+    }
+    if (kernel->rub_count > 0) {
+        kernel_rubs_rate(kernel, point);
     }
 }

@@ -385,6 +385,36 @@ void kernel_slot_find_part(Kernel *kernel, size_t contact, KernelPoint *point);
 // has.
 bool kernel_slots_follow(Kernel *kernel, KernelPoint *point);
 
+// The friction of ideal joints in a kernel that has some (kernel/rubs.c).
+
+// Before a run: finds what they would hold, and how strongly bristles are damped, of those of which
+// that is not known yet.
+void kernel_rubs_begin(Kernel *kernel, KernelPoint *point);
+
+// Damps the bristle of one that begins to stick, by what presses then and what moves on it.
+void kernel_rub_stick(Kernel *kernel, size_t contact);
+
+// In a first run: bends the bristles of those that stand, by what their accelerations ask for, once
+// their modes are known. Returns whether it is the first.
+bool kernel_rubs_hold(Kernel *kernel, KernelPoint *point);
+
+// Adds these frictions to the forces in all rows at a point, which the contacts have written, and
+// what they take to the powers.
+void kernel_rubs_press(Kernel *kernel, const KernelPoint *point, double *force, double powers[2]);
+
+// The same of the rates: after forces and rates of all else have been written to the point.
+void kernel_rubs_rate(Kernel *kernel, KernelPoint *point);
+
+// The rub of a contact that is one.
+KernelRub *kernel_rub_of(const Kernel *kernel, size_t contact);
+
+// How long a local step may be for it from a completed point, s.
+double kernel_rub_time(const Kernel *kernel, const KernelPoint *point, size_t contact);
+
+// Lets the faces of guides press that press most at a completed point. Returns whether any is
+// another one: then its rates are to be found anew.
+bool kernel_rubs_face(Kernel *kernel, const KernelPoint *point);
+
 // Explicit local steps of a kernel, which use the forces and their rates.
 
 // A step from a completed point: what it was made from, and where it leads.
@@ -408,6 +438,10 @@ void kernel_explicit_inside(const Kernel *kernel, const ExplicitStep *step, cons
 // The bend of a contact's bristle at a time since the step's start, likewise, m.
 double kernel_explicit_bend(const ExplicitStep *step, const KernelPoint *from, size_t contact,
                             double since_s);
+
+// Writes the forces a time after the start of a step by the same cubic.
+void kernel_explicit_forces(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
+                            double since_s, double *force);
 
 // Writes the forces and powers at the end of a step by the same cubic.
 void kernel_explicit_extend(const Kernel *kernel, const ExplicitStep *step, const KernelPoint *from,
@@ -496,6 +530,9 @@ void kernel_bristles_give(Kernel *kernel, const KernelPoint *point);
 bool kernel_bristles_shorten(Kernel *kernel, LocalStep *step, const KernelPoint *to,
                              double *width_s);
 bool kernel_bristles_follow(Kernel *kernel, double width_s);
+
+// Shortens a local step to where another face of a guide begins to press; returns whether one does.
+bool kernel_rubs_shorten(Kernel *kernel, LocalStep *step, double *width_s);
 
 // Takes a local step of at most `left_s` up to the first time at which contacts begin or end in it;
 // `events` is how many do so there, which is in the kernel's work. Returns false where the step is

@@ -58,7 +58,7 @@ typedef enum KernelPart {
     KERNEL_PART_HIGH,    // and the one that comes last
 } KernelPart;
 
-// One contact point. The first seven are given, and the state where it touches already as it is
+// One contact point. The first eight are given, and the state where it touches already as it is
 // added; the rest lives on from one step to the next. A disc outside another is a hole of negative
 // size: the same formulas hold for both.
 typedef struct KernelContact {
@@ -71,6 +71,7 @@ typedef struct KernelContact {
     int joint;               // contacts of one joint have the same number, and follow each other
     int siblings[2];         // the first and the last contact that can touch together with this
                              // one, counted from here; 0 and 0 where there is none
+    bool is_rub;             // whether it is the friction of an ideal joint (KernelRub)
     bool has_friction;
     bool has_bristle; // whether that holds
     size_t first_row;
@@ -86,6 +87,28 @@ typedef struct KernelContact {
     bool is_overdamped;        // its damping stops the pin long before its spring would
 } KernelContact;
 
+// The friction of an ideal joint that turns or slides, which grows with the joint's reaction. It is
+// a contact that touches always, at a line whose gap is the joint's coordinate less what it never
+// comes to, and all of it acts in the first row. With R the reaction at a time t in the step, f the
+// forces in all rows and P their impulses,
+//     R = R_m + R'_m (t - h/2) + (A + A' (t - h/2)) f + B P,   friction  T = s a N,   N = |R|, or
+//     of a guide its
+// larger part; s the share that is held, a the arm, as `law.friction` has it. What f holds of such
+// frictions is in R as well (kernel/rubs.c). A local step ends where another part presses.
+typedef struct KernelRub {
+    size_t contact;
+    bool is_guide;
+    int face;              // of a guide: which part presses, x or y, forth or back
+    double steady;         // N, that N is always; 0: as the reaction has it
+    double reaction[2];    // R_m: N, of a guide N across and the couple over half its length
+    double rate[2];        // R'_m, N/s
+    const double *answers; // A: by row of the kernel, two numbers each; not owned
+    const double *turning; // A', 1/s, likewise
+    const double *late;    // B, 1/s, likewise
+    double most;           // what it would hold as it was found last, N or N m; 0: nothing yet
+    bool is_new;           // whether there has been no run yet
+} KernelRub;
+
 // Contacts that are integrated together.
 typedef struct Kernel {
     size_t contact_count;
@@ -94,6 +117,8 @@ typedef struct Kernel {
     int *contact_of;         // of a row: which of the contacts here
     size_t contact_room;     // of these arrays
     bool has_bristles;       // whether the friction of any of them holds
+    size_t rub_count;        // of these that are frictions of ideal joints
+    KernelRub *rubs;         // these; owned
     size_t row_room;
     double phase;        // rad of a contact's oscillation in one local step; 0: as many as suit
     double stiff_phase;  // rad, likewise, where steps are implicit
@@ -145,8 +170,10 @@ typedef struct KernelPose {
 // A kernel of no contacts yet.
 Kernel kernel_start(double phase);
 
-// Adds a contact, of which the first seven members are given, with its rows:
-// KERNEL_ROWS_PLAIN, or more of one with friction, but for a line's.
+// Adds a contact, of which the first eight members are given, with its rows:
+// KERNEL_ROWS_PLAIN, or more of one with friction, but for a line's. Where it is the friction of an
+// ideal joint, what the reaction is like is to be written to the kernel's last rub, before a run
+// but for what a run finds. A kernel with such is no island's.
 void kernel_add(Kernel *kernel, const KernelContact *contact, size_t rows);
 
 // Makes room for what a step is given, once all contacts are there: mobilities, all zero, between

@@ -340,6 +340,10 @@ static double limit_explicit(const Kernel *kernel, const KernelPoint *from, bool
         if (!contact->state.is_touching) {
             continue;
         }
+        if (contact->is_rub) {
+            longest_s = fmin(longest_s, kernel_rub_time(kernel, from, i));
+            continue;
+        }
         const PinHole pose = *kernel_point_pose(kernel, from, i);
         const double depth = fmax(pose.penetration, 0.0);
         if (pose.penetration < 0.0) {
@@ -422,7 +426,7 @@ static double take_local_step(Kernel *kernel, LocalStep *step, double left_s, Ke
     const double limit_s = limit_explicit(kernel, step->from, &may_be_stiff);
     double frictionless_s;
     double explicit_s;
-    if (may_be_stiff && !kernel->has_bristles) {
+    if (may_be_stiff && !kernel->has_bristles && kernel->rub_count == 0) {
         explicit_s = choose_width(kernel, step->from, left_s, &frictionless_s);
         if (kernel_implicit_is_needed(kernel, step->from, explicit_s, frictionless_s)) {
             step->method = LOCAL_STEP_IMPLICIT;
@@ -675,6 +679,12 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
         kernel_bristles_shorten(kernel, step, to, &width_s)) {
         is_solved = try_local_step(kernel, step, width_s, to);
     }
+    bool has_turned = false; // a guide, on another face
+    if (is_solved && kernel->rub_count > 0 && step->method == LOCAL_STEP_EXPLICIT &&
+        kernel_rubs_shorten(kernel, step, &width_s)) {
+        is_solved = try_local_step(kernel, step, width_s, to);
+        has_turned = true;
+    }
     *events = is_solved ? find_events(kernel, step, to, &width_s) : 0;
     if (*events != 0) {
         is_solved = step_to_first_event(kernel, step, &width_s, to);
@@ -689,6 +699,6 @@ bool kernel_local_step(Kernel *kernel, LocalStep *step, double left_s, KernelPoi
     const bool has_moved = kernel_slots_follow(kernel, to);
     const bool has_changed = kernel->has_bristles && step->method == LOCAL_STEP_EXPLICIT &&
                              kernel_bristles_follow(kernel, width_s);
-    step->is_ended = !has_moved && !has_changed && step->is_ended;
+    step->is_ended = !has_moved && !has_changed && !has_turned && step->is_ended;
     return true;
 }

@@ -70,6 +70,11 @@ void kernel_add(Kernel *kernel, const KernelContact *contact, size_t rows)
     added->row_count = rows;
     added->has_friction =
         added->law.friction > 0.0 && (rows > KERNEL_ROWS_PLAIN || added->shape == KERNEL_LINE);
+    if (added->is_rub) {
+        kernel->rubs = memory_grown(kernel->rubs, kernel->rub_count + 1, sizeof *kernel->rubs);
+        kernel->rubs[kernel->rub_count++] =
+            (KernelRub){.contact = kernel->contact_count, .is_new = true};
+    }
     added->has_bristle =
         added->has_friction && rows < KERNEL_ROWS_MOST && added->law.bristle.law == BRISTLE_STICK;
     kernel->has_bristles = kernel->has_bristles || added->has_bristle;
@@ -175,6 +180,11 @@ void kernel_carry(Kernel *kernel, Carry *carry)
 {
     CARRY_ARRAY(carry, kernel->contacts, kernel->contact_count);
     CARRY_ARRAY(carry, kernel->free, kernel->row_count);
+    for (size_t i = 0; i < kernel->rub_count; i++) {
+        CARRY(carry, kernel->rubs[i].reaction);
+        CARRY(carry, kernel->rubs[i].most);
+        CARRY(carry, kernel->rubs[i].is_new);
+    }
     CARRY(carry, kernel->longest_s);
     CARRY(carry, kernel->duration_before_s);
     CARRY(carry, kernel->stiff_width_s);
@@ -186,6 +196,7 @@ void kernel_finish(Kernel *kernel)
 {
     free(kernel->contacts);
     free(kernel->contact_of);
+    free(kernel->rubs);
     free(kernel->mobility);
     free(kernel->drift);
     free(kernel->mobility_rate);
@@ -475,6 +486,19 @@ static double allowed_error(const Kernel *kernel, double change)
                                  : ERROR_SHARE * change;
 }
 
+// of what presses in an ideal joint, the least change in a step by which its friction is judged
+static const double RUB_CHANGE_LEAST = 1e-3;
+
+// The same of the friction of an ideal joint, where what presses changes by a share.
+static double rub_tolerance(const Kernel *kernel, size_t number, double duration_s)
+{
+    const KernelRub *rub = kernel_rub_of(kernel, number);
+    const double change =
+        duration_s * hypot(rub->rate[0], rub->rate[1]) / hypot(rub->reaction[0], rub->reaction[1]);
+    const double known = change < 1.0 ? fmax(change, RUB_CHANGE_LEAST) : RUB_CHANGE_LEAST;
+    return fmin(allowed_error(kernel, known), TOLERANCE_MOST);
+}
+
 // Sets the errors allowed: a share of what comes of the response being taken as constant, which
 // moves a pin by W' h^2 / 12 for each newton second.
 static void set_tolerances(Kernel *kernel, double duration_s)
@@ -484,7 +508,9 @@ static void set_tolerances(Kernel *kernel, double duration_s)
     for (size_t i = 0; i < kernel->contact_count; i++) {
         KernelContact *contact = &kernel->contacts[i];
         const double *own = kernel_mobility(kernel, contact->first_row, contact->first_row);
-        if (phase > 0.0) {
+        if (contact->is_rub) {
+            contact->tolerance = rub_tolerance(kernel, i, duration_s);
+        } else if (phase > 0.0) {
             contact->tolerance = phase * phase * phase * phase * PHASE_ERROR;
         } else if (kernel->duration_before_s > 0.0) {
             const double change = response_change(kernel, contact) * duration_s / between_s;
@@ -549,7 +575,7 @@ static void resume_contacts(Kernel *kernel, const KernelPoint *point)
 {
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *contact = &kernel->contacts[i];
-        if (contact->state.is_touching && contact->frequency == 0.0) {
+        if (contact->state.is_touching && !contact->is_rub && contact->frequency == 0.0) {
             expect_contact(kernel, i, kernel_point_pose(kernel, point, i)->normal);
         }
     }
@@ -625,6 +651,15 @@ static void begin_step(const Kernel *kernel, KernelPoint *point)
     memset(point->losses, 0, sizeof point->losses);
 }
 
+// Finds forces and rates at the end of a local step.
+static void complete(Kernel *kernel, KernelPoint *point)
+{
+    kernel_rates_find(kernel, point);
+    if (kernel->rub_count > 0 && kernel_rubs_face(kernel, point)) {
+        kernel_rates_find(kernel, point);
+    }
+}
+
 bool kernel_run(Kernel *kernel, double duration)
 {
     KernelPoint *from = &kernel->work->ends[0];
@@ -635,9 +670,13 @@ bool kernel_run(Kernel *kernel, double duration)
     kernel->event_count = 0;
     set_tolerances(kernel, duration);
     resume_contacts(kernel, from);
+    kernel_rubs_begin(kernel, from);
     kernel_bristles_take(kernel, from);
+    if (kernel_rubs_hold(kernel, from)) {
+        kernel_bristles_take(kernel, from);
+    }
     settle_contacts(kernel, from);
-    kernel_rates_find(kernel, from);
+    complete(kernel, from);
     kernel_nodes_add(kernel, from);
     const double rounding_s = 1e-14 * duration;
     while (duration - from->time_s > rounding_s) {
@@ -662,7 +701,7 @@ bool kernel_run(Kernel *kernel, double duration)
         if (step.is_ended && events == 0) {
             kernel_explicit_extend(kernel, &step.explicit, from, to);
         } else {
-            kernel_rates_find(kernel, to);
+            complete(kernel, to);
         }
         kernel_nodes_add(kernel, to);
         const bool is_over = rest_contacts(kernel, from, to);
@@ -671,7 +710,7 @@ bool kernel_run(Kernel *kernel, double duration)
             change_contacts(kernel, to);
         }
         if (events != 0 || is_over) {
-            kernel_rates_find(kernel, to);
+            complete(kernel, to);
             kernel_nodes_add(kernel, to);
         }
         KernelPoint *const spare = from;

@@ -142,6 +142,17 @@ void response_free(const Response *response, const Motion *motions, Vec2 gravity
     memcpy(rates, gamma + response->ideal_rows, response_play_rows(response) * sizeof *rates);
 }
 
+void response_free_reactions(const Response *response, const Motion *motions, Vec2 gravity,
+                             const BodyLoad *loads, double *reactions)
+{
+    double *gamma = response->work;
+    response_rows_loose(response, motions, gravity, loads, gamma);
+    response_solve(response, gamma);
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        reactions[i] = -gamma[i];
+    }
+}
+
 // The accelerations of all bodies if no joint held them.
 static void accelerate_loose(const Linkage *linkage, const Motion *motions, Vec2 gravity,
                              const BodyLoad *loads, double *accelerations)

@@ -48,6 +48,11 @@ const double *response_block(const Response *response, size_t place, size_t othe
 void response_free(const Response *response, const Motion *motions, Vec2 gravity,
                    const BodyLoad *loads, double *rates);
 
+// Writes the forces, N, with which the ideal joints hold the bodies then: two rows a joint, on its
+// body b.
+void response_free_reactions(const Response *response, const Motion *motions, Vec2 gravity,
+                             const BodyLoad *loads, double *reactions);
+
 // Writes the accelerations of all bodies then, three each: x, y, angle.
 void response_accelerate(const Response *response, const Motion *motions, Vec2 gravity,
                          const BodyLoad *loads, double *accelerations);

@@ -50,11 +50,19 @@ ResponseDrift response_drift_create(const Response *response)
     };
 }
 
+void response_drift_want_late(const Response *response, ResponseDrift *drift)
+{
+    drift->turned = zeroed(response_play_rows(response) * response->ideal_rows, sizeof(double));
+    drift->late = zeroed(response_play_rows(response) * response->ideal_rows, sizeof(double));
+}
+
 void response_drift_finish(ResponseDrift *drift)
 {
     free(drift->answers);
     free(drift->rates);
     free(drift->drift);
+    free(drift->turned);
+    free(drift->late);
     free(drift->turning);
     free(drift->ahead);
     *drift = (ResponseDrift){.answers = NULL};
@@ -176,6 +184,17 @@ static inline void push_turning(const Linkage *linkage, const ResponseDrift *dri
     }
 }
 
+// What the rates of the ideal rows, as their speeds have changed, ask of these: twice, for they are
+// of second degree in the speeds.
+static void find_late(const Response *response, const double *turned, double *late)
+{
+    memcpy(late, turned, response->ideal_rows * sizeof *late);
+    response_solve(response, late);
+    for (size_t i = 0; i < response->ideal_rows; i++) {
+        late[i] *= -2.0;
+    }
+}
+
 void response_drift_find(Response *response, const Motion *motions, double short_s,
                          ResponseDrift *drift)
 {
@@ -199,11 +218,18 @@ void response_drift_find(Response *response, const Motion *motions, double short
             }
             drift->drift[row * play + of] = sum;
         }
+        if (drift->late != NULL) {
+            find_late(response, turned, drift->late + of * response->ideal_rows);
+        }
         // the ideal joints stay closed
         for (size_t i = 0; i < response->ideal_rows; i++) {
             turned[i] = -turned[i] - response_row_of(&response->rows[i], rate);
         }
         response_solve(response, turned);
+        if (drift->turned != NULL) {
+            memcpy(drift->turned + of * response->ideal_rows, turned,
+                   response->ideal_rows * sizeof *turned);
+        }
         for (size_t i = 0; i < response->ideal_rows; i++) {
             response_row_push(response->linkage, &response->rows[i], turned[i], rate);
         }

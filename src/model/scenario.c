@@ -3,6 +3,7 @@
 
 #include "base/zeroed.h"
 #include "model/common_period.h"
+#include "model/joint_friction.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -200,13 +201,15 @@ bool scenario_has_closed_form(const Scenario *scenario)
 bool scenario_is_extrapolable(const Scenario *scenario)
 {
     return !scenario_has_clearance(scenario) && !scenario->linkage.is_spatial &&
-           drive_is_smooth(&scenario->linkage.driver) && scenario->linkage.torque.limit == 0.0;
+           drive_is_smooth(&scenario->linkage.driver) && scenario->linkage.torque.limit == 0.0 &&
+           joint_friction_first(&scenario->linkage) < 0;
 }
 
 bool scenario_integrates_contacts(const Scenario *scenario)
 {
     return scenario->ode.stepping == ODE_STAGGERED && scenario->ode.map == ODE_MAP_IMPULSE &&
-           scenario->contact.model == CONTACT_IMPACT && scenario_has_clearance(scenario);
+           scenario->contact.model == CONTACT_IMPACT &&
+           (scenario_has_clearance(scenario) || joint_friction_first(&scenario->linkage) >= 0);
 }
 
 Scenario scenario_with_step(const Scenario *scenario, double step_s)

@@ -174,6 +174,7 @@ static void take_part(Impulse *impulse)
     part->record.drive_work = part->is_last ? span->drive_work : 0.0;
     part->record.load_work = part->is_last ? span->load_work : 0.0;
     part->record.dissipated += part->is_last ? span->damped : 0.0;
+    part->record.friction += part->is_last ? span->rubbed : 0.0;
 }
 
 // Takes the next step and begins to hand it on.
@@ -256,6 +257,11 @@ void impulse_contacts(const void *state, ContactState (*states)[JOINT_PLACES])
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const int place = impulse->kind->place(impulse->own, i);
         const int joint = kernel->contacts[i].joint;
+        if (kernel->contacts[i].is_rub) {
+            states[joint][place].bend = kernel->contacts[i].state.bend;
+            states[joint][place].bristle = kernel->contacts[i].state.bristle;
+            continue;
+        }
         states[joint][place] = kernel->contacts[i].state;
         if (impulse->view.is_flat &&
             joint_has_hole(impulse->view.scenario->linkage.joints[joint].kind)) {

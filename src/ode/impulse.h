@@ -139,6 +139,7 @@ typedef struct ImpulseSpan {
     double drive_work; // J
     double load_work;  // J
     double damped;     // J, in dampers
+    double rubbed;     // J, in pivots that drives turn
 } ImpulseSpan;
 
 // What is read of a mechanism and of its steps; it stays where it is from step to step.

@@ -102,7 +102,7 @@ static void mark_interval(Marks *marks, const Kernel *kernel, size_t node)
         return;
     }
     for (size_t joint = 0; joint < kernel->contact_count; joint++) {
-        if (kernel_touches(kernel, node, joint)) {
+        if (kernel_touches(kernel, node, joint) && !kernel->contacts[joint].is_rub) {
             mark_maxima(marks, kernel, joint, node);
         }
     }
@@ -249,6 +249,9 @@ void impulse_part_add_contacts(ImpulsePart *part, const Kernel *kernel, const Ma
     }
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const KernelContact *place = &kernel->contacts[i];
+        if (place->is_rub) {
+            continue;
+        }
         const bool is_touching = kernel_touches(kernel, mark->node, i);
         const size_t row = place->first_row;
         if (is_touching) {

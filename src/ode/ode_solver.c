@@ -31,19 +31,25 @@ static const Solver *choose(const Scenario *scenario)
     return is_spatial ? IN_SPACE[scenario->ode.stepping] : IN_PLANE[scenario->ode.stepping];
 }
 
-// Whether the friction of a joint is known where the case is stepped so: of ideal pivots where they
-// have rows, of contacts that stick where those are integrated within the step.
+// Whether the friction of a joint is known where the case is stepped so: in the plane all but
+// LuGre's where contacts are integrated within the step, and otherwise regularized friction of
+// joints with play, and that of ideal pivots where they have rows.
 static bool knows_friction(const Scenario *scenario, const Joint *joint)
 {
     const OdeOptions *ode = &scenario->ode;
-    const bool is_within = scenario_integrates_contacts(scenario) && !scenario->linkage.is_spatial;
-    if (!joint_is_ideal(joint->kind)) {
-        return joint->friction.law == BRISTLE_REGULARIZED ||
-               (joint->friction.law == BRISTLE_STICK && is_within);
+    const bool is_spatial = scenario->linkage.is_spatial;
+    const bool is_ideal = joint_is_ideal(joint->kind);
+    if (joint->friction.law == BRISTLE_REGULARIZED && (!is_ideal || !joint_friction_is(joint))) {
+        return true;
     }
-    return !joint_friction_is(joint) ||
-           (joint_pivots(joint->kind) && joint->friction.law != BRISTLE_LUGRE &&
-            ode->solver == ODE_DIRECT && !scenario->linkage.is_spatial && !is_within &&
+    if (is_ideal && !joint_friction_is(joint)) {
+        return true;
+    }
+    if (is_spatial || joint->friction.law == BRISTLE_LUGRE) {
+        return false;
+    }
+    return scenario_integrates_contacts(scenario) ||
+           (is_ideal && joint_pivots(joint->kind) && ode->solver == ODE_DIRECT &&
             (ode->stepping == ODE_PLAIN || ode->stepping == ODE_STAGGERED));
 }
 
@@ -52,12 +58,13 @@ static bool check_friction(const Scenario *scenario, Err *err)
     for (size_t i = 0; i < scenario->linkage.joint_count; i++) {
         const Joint *joint = &scenario->linkage.joints[i];
         if (!knows_friction(scenario, joint)) {
-            return err_set(err, ERR_CASE,
-                           "ODE does not know the friction of joint %s: in the plane it has that "
-                           "of ideal pivots, regularized or stick, with solver direct, stepping "
-                           "plain or staggered, and no map impulse, and stick of joints with play "
-                           "with that map",
-                           joint->name);
+            return err_set(
+                err, ERR_CASE,
+                "ODE does not know the friction of joint %s: in the plane it has all but "
+                "LuGre's with stepping staggered and map impulse; with other maps that "
+                "of ideal pivots, with solver direct and stepping plain or staggered, "
+                "and no stick of joints with play",
+                joint->name);
         }
     }
     return true;

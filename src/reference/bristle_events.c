@@ -164,6 +164,13 @@ static void find_mode(System *system, size_t number, const double *y)
     }
 }
 
+static void find_modes(System *system, const double *y)
+{
+    for (size_t i = 0; i < system->bristle_count; i++) {
+        find_mode(system, i, y);
+    }
+}
+
 void bristle_events_onset(System *system, size_t contact, double *y)
 {
     for (size_t i = 0; i < system->bristle_count; i++) {
@@ -203,9 +210,8 @@ void bristle_events_start(System *system, double *y)
             joints[system->bristles[i].joint].contacts[system_bristle_place(system, i)].bend;
     }
     free(dampings);
+    find_modes(system, y);
     system->kind->hold(system, y);
     find_faces(system, y);
-    for (size_t i = 0; i < system->bristle_count; i++) {
-        find_mode(system, i, y);
-    }
+    find_modes(system, y);
 }

@@ -7,7 +7,10 @@
 #include "sample.h"
 
 #include "base/lcg.h"
+#include "measure/chosen_run.h"
 #include "measure/creep.h"
+#include "run/registry.h"
+#include "run/run.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -24,10 +27,16 @@ static Scenario case_of(const char *text)
     return kept_instead(&scenario);
 }
 
+// At the step of the text, or at one that ODE chooses.
 static Trajectory *run_text(const char *text, BackendKind backend)
 {
     const Scenario scenario = case_of(text);
-    return complete_run(&scenario, backend);
+    if (!backend_run_is_chosen(&scenario, backend)) {
+        return complete_run(&scenario, backend);
+    }
+    Trajectory *run = backend_run(&scenario, backend, NULL, (ChosenWatch){.begin = NULL}, NULL);
+    assert_true(run->is_complete);
+    return run;
 }
 
 // The largest difference of ODE's angular velocities to those of the reference, of another text, in
@@ -140,6 +149,126 @@ static void its_error_is_of_second_order(void **state)
     assert_true(least > 100.0);
 }
 
+// A slider-crank of which all joints rub, with play at its crank pin, drawn likewise.
+static void write_rubbing(uint64_t seed, const char *law, double friction, double step_us,
+                          char *text)
+{
+    double draws[7];
+    for (size_t i = 0; i < 7; i++) {
+        draws[i] = 0.5 * (1.0 + lcg_draw(&seed));
+    }
+    const double crank = 40.0 + 20.0 * draws[0];
+    const double slider = crank + 120.0 + 40.0 * draws[1];
+    snprintf(text, TEXT_SIZE,
+             "bodies:\n"
+             "  crank: {mass: 0.3 kg, inertia: 100 kg mm^2, at: [0 mm, 0 mm]}\n"
+             "  rod: {mass: 0.2 kg, inertia: 250 kg mm^2, at: [%.17g mm, 0 mm]}\n"
+             "  slider: {mass: %.17g kg, inertia: 100 kg mm^2, at: [%.17g mm, 0 mm]}\n"
+             "joints:\n"
+             "  pivot: {between: [ground, crank], at: [0 mm, 0 mm], friction: %.17g, "
+             "friction-radius: 15 mm}\n"
+             "  pin: {between: [crank, rod], at: [%.17g mm, 0 mm], radial-clearance: %.17g um, "
+             "width: 20 mm, friction: %.17g}\n"
+             "  wrist: {between: [rod, slider], at: [%.17g mm, 0 mm], friction: %.17g, "
+             "friction-radius: 10 mm}\n"
+             "  guide: {between: [ground, slider], at: [%.17g mm, 0 mm], along: 0 deg, friction: "
+             "%.17g, friction-length: %.17g mm}\n"
+             "drive: {joint: pivot, speed: %.17g rpm}\n"
+             "contact: {stiffness: 2e10 N/m^1.5, damping: exact, restitution: 0.3, "
+             "friction-law: %s, resting-speed: none}\n"
+             "run: {start: centred, revolutions: 0.3, samples: 432, step: %.17g us, backends: "
+             "[reference, ode]}\n",
+             0.5 * (crank + slider), 0.1 + 0.2 * draws[2], slider, friction, crank,
+             20.0 + 60.0 * draws[3], 0.5 * friction, slider, friction, slider, 0.5 * friction,
+             30.0 + 40.0 * draws[4], 300.0 + 500.0 * draws[5], law, step_us);
+}
+
+static void ideal_joints_rub_beside_one_with_play(void **state)
+{
+    (void)state;
+    static const char *const LAWS[] = {"regularized", "stick"};
+    char text[TEXT_SIZE];
+    char other[TEXT_SIZE];
+    for (size_t i = 0; i < 2; i++) {
+        double exponents = 0.0;
+        double least = INFINITY;
+        const size_t count = sample_size(4);
+        for (uint64_t seed = 1; seed <= count; seed++) {
+            write_rubbing(seed, LAWS[i], 0.2, 100.0, text);
+            const double coarse = apart(text, text);
+            write_rubbing(seed, LAWS[i], 0.2, 25.0, text);
+            const double fine = apart(text, text);
+            write_rubbing(seed, LAWS[i], 0.18, 25.0, other);
+            least = fmin(least, apart(text, other) / fine);
+            exponents += 0.5 * log2(coarse / fine) / (double)count;
+        }
+        print_message("%s: order %.2f, less friction %.3g times as far off\n", LAWS[i], exponents,
+                      least);
+        assert_true(exponents > 1.5);
+        // the control: a tenth less friction moves them otherwise
+        assert_true(least > 20.0);
+    }
+}
+
+// Two rods that hang, free but for friction, stick and slide: nothing but it slows them down.
+static void write_rods(const char *law, double friction, const char *step, char *text)
+{
+    snprintf(
+        text, TEXT_SIZE,
+        "bodies:\n  one: {mass: 1 kg, inertia: 0.02 kg m^2, at: [200 mm, 0 mm]}\n"
+        "  two: {mass: 0.5 kg, inertia: 0.01 kg m^2, at: [550 mm, 50 mm]}\n"
+        "joints:\n"
+        "  pin: {between: [ground, one], at: [0 m, 0 m], friction: 0.3, friction-radius: 20 mm}\n"
+        "  elbow: {between: [one, two], at: [400 mm, 0 m], friction: %.17g, friction-radius: "
+        "15 mm}\n"
+        "gravity: 9.81 m/s^2\ncontact: {friction-law: %s}\n"
+        "run: {duration: 1 s, samples: 500, %s, backends: [reference, ode]}\n",
+        friction, law, step);
+}
+
+static void ideal_joints_alone_rub_with_order_two(void **state)
+{
+    (void)state;
+    static const char *const LAWS[] = {"regularized", "stick"};
+    char text[TEXT_SIZE];
+    char other[TEXT_SIZE];
+    for (size_t i = 0; i < 2; i++) {
+        write_rods(LAWS[i], 0.2, "step: 1 ms", text);
+        const double coarse = apart(text, text);
+        write_rods(LAWS[i], 0.2, "step: 250 us", text);
+        const double fine = apart(text, text);
+        write_rods(LAWS[i], 0.202, "step: 250 us", other);
+        print_message("%s: %.2g, then %.2g\n", LAWS[i], coarse, fine);
+        assert_true(coarse < 2e-5 && fine < coarse / 12.0);
+        assert_true(apart(text, other) > 100.0 * fine);
+        // a step that ODE chooses itself keeps what is asked for
+        write_rods(LAWS[i], 0.2, "tolerance: 1e-5", text);
+        assert_true(apart(text, text) < 1e-5);
+    }
+}
+
+static void friction_without_an_answer_is_refused_in_ode(void **state)
+{
+    (void)state;
+    static const char FORMAT[] =
+        "bodies:\n  rod: {mass: 1 kg, inertia: 0.001 kg m^2, at: [0.3 m, 0 m]}\n"
+        "joints:\n  pin: {between: [ground, rod], at: [0 m, 0 m], friction: %.17g, "
+        "friction-radius: 500 mm, friction-law: stick}\ngravity: 9.80665 m/s^2\n"
+        "run: {duration: 1 ms, samples: 2, step: 1 us, backends: [ode]}\n";
+    // a friction of 1 N m changes the reaction by m l / (I + m l^2)
+    const double most = (0.001 + 0.09) / 0.3 / 0.5;
+    for (int i = 0; i < 2; i++) {
+        char text[TEXT_SIZE];
+        snprintf(text, sizeof text, FORMAT, most * (i == 0 ? 1.0 - 1e-3 : 1.0 + 1e-9));
+        const Scenario scenario = case_of(text);
+        Trajectory *run =
+            run_scenario(&scenario, registry_solver(BACKEND_ODE), (RunWatch){NULL, NULL});
+        assert_int_equal(run->is_complete, i == 0);
+        assert_true(i == 0 || strstr(run->message, "friction of joint pin has no single answer"));
+        trajectory_destroy(run);
+    }
+}
+
 static void a_scheme_without_bristles_is_refused(void **state)
 {
     (void)state;
@@ -157,6 +286,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lever_holds_where_the_reference_holds_it),
         cmocka_unit_test(its_error_is_of_second_order),
+        cmocka_unit_test(ideal_joints_rub_beside_one_with_play),
+        cmocka_unit_test(ideal_joints_alone_rub_with_order_two),
+        cmocka_unit_test(friction_without_an_answer_is_refused_in_ode),
         cmocka_unit_test(a_scheme_without_bristles_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -77,7 +77,8 @@ static bool plane_take(void *own, ImpulseSpan *span, Err *err)
         return false;
     }
     *span = (ImpulseSpan){step->scheme.start_s, step->scheme.end_s, step->scheme.width_s,
-                          step->drive_work,     step->load_work,    step->damped};
+                          step->drive_work,     step->load_work,    step->damped,
+                          step->rubbed};
     return true;
 }
 
@@ -165,6 +166,9 @@ static void impulse_step_carry(ImpulseStep *step, Carry *carry)
     CARRY_ARRAY(carry, step->mean, step->scenario->linkage.joint_count);
     if (step->scheme.has_drift) {
         carry_few_rows(step, carry);
+    }
+    if (step->rubs.count > 0) {
+        impulse_rubs_carry(&step->rubs, &step->scheme.kernel, carry);
     }
     if (carry->is_back && step->scheme.count > 0) {
         response_place(&step->response, step->middle);

@@ -237,6 +237,12 @@ static void find_places(const ImpulseStep *step, const ImpulseScope *scope, Impu
     for (size_t n = 0; n < scope->place_count; n++) {
         const size_t i = scope->part.places[n];
         const Touch *place = &step->places[i];
+        if (i >= step->touch_count) {
+            const size_t row = step->scheme.kernel.contacts[i].first_row;
+            depths[i] = 0.0;
+            impulse_rubs_add(linkage, place, sums->force[row], motions, &joints[place->joint]);
+            continue;
+        }
         const KernelPose pose = look_at_place(step, i, at, sums);
         depths[i] = pose.pose.penetration;
         if (linkage->joints[place->joint].limits.kind != LIMIT_NONE) {
@@ -370,6 +376,7 @@ static void find_drives(const ImpulseStep *step, const Motion *motions, JointSta
         const int body = linkage_drive_body(linkage, i);
         const BodyLoad load = applied_on(&step->world.applied, body);
         stepping_drive_force(step->scenario, i, &motions[body], &load, joints);
+        impulse_rubs_add_driven(step->scenario, i, &motions[body], joints);
     }
 }
 

@@ -74,6 +74,7 @@ static void free_arrays(ImpulseStep *step)
     free(step->middle);
     free(step->after);
     response_drift_finish(&step->drift);
+    impulse_rubs_finish(&step->rubs);
     free(step->mean);
     impulse_curves_finish(&step->curves);
     for (size_t i = 0; work != NULL && i < 2; i++) {
@@ -165,14 +166,20 @@ static bool init_kernel(ImpulseStep *step, Err *err)
     if (!touch_list(scenario, &step->places, &step->place_count, err)) {
         return false;
     }
+    step->touch_count = step->place_count;
+    step->place_count += impulse_rubs_list(scenario, step->places + step->touch_count);
     const bool has_friction = law_has_friction(scenario);
     touch_response(&scenario->linkage, step->places, step->place_count, has_friction,
                    &step->response);
     for (size_t i = 0; i < step->place_count; i++) {
-        const KernelContact added = joint_of(step, &step->places[i]);
+        const Touch *place = &step->places[i];
+        const KernelContact added =
+            i < step->touch_count ? joint_of(step, place) : impulse_rubs_contact(scenario, place);
         const size_t rows = response_place_rows(&step->response.places[i]);
         kernel_add(&step->scheme.kernel, &added, rows);
     }
+    impulse_rubs_make(scenario, &step->response, step->touch_count, step->places,
+                      &step->scheme.kernel, &step->rubs);
     return true;
 }
 
@@ -183,7 +190,7 @@ static void make_scheme(ImpulseStep *step)
     const size_t rows = kernel_rows(&scheme->kernel);
     kernel_step_make_room(scheme, 3 * body_count(step), step->response.ideal_rows);
     scheme->coupling = coupling_of(&step->response);
-    if (step->place_count > IMPULSE_FEW_PLACES) {
+    if (step->touch_count > IMPULSE_FEW_PLACES && step->rubs.count == 0) {
         kernel_step_make_islands(scheme);
         response_groups_init(&step->response, &step->groups);
         return;
@@ -191,6 +198,9 @@ static void make_scheme(ImpulseStep *step)
     kernel_make_room(&scheme->kernel, rows);
     if (rows <= IMPULSE_FEW_ROWS && !step->scenario->ode.is_frozen) {
         step->drift = response_drift_create(&step->response);
+        if (step->rubs.count > 0) {
+            response_drift_want_late(&step->response, &step->drift);
+        }
         step->curves = impulse_curves_create(&step->scenario->linkage, step->place_count, rows);
         kernel_step_make_drift(scheme, step->drift.rates, step->drift.drift);
     }
@@ -291,7 +301,7 @@ static void fill_rows(ImpulseStep *step)
         double *speed = kernel->speed + kernel->contacts[i].first_row;
         if (touch_is_scalar(place)) {
             const TouchPose pose = touch_pose(linkage, place, step->before);
-            position[0] = pose.gap;
+            position[0] = i < step->touch_count ? pose.gap : IMPULSE_RUB_GAP;
             position[1] = 0.0;
             speed[0] = -pose.approach_speed;
             speed[1] = touch_sliding(linkage, place, &pose, step->before);
@@ -336,7 +346,7 @@ static double gap_at(const KernelContact *joint, Vec2 position)
 static bool is_near_wall(const ImpulseStep *step, double width_s)
 {
     const Kernel *kernel = &step->scheme.kernel;
-    for (size_t i = 0; i < step->place_count; i++) {
+    for (size_t i = 0; i < step->touch_count; i++) {
         const KernelContact *joint = &kernel->contacts[i];
         const size_t row = joint->first_row;
         // the free acceleration of the step before will do
@@ -365,6 +375,17 @@ static bool refuse_joints(const ImpulseStep *step)
 {
     return err_set(step->err, ERR_SOLVER,
                    "the ideal joints are redundant here: give one joint of the loop some play");
+}
+
+// Likewise as the friction of a joint has no single answer.
+static bool refuse_friction(const ImpulseStep *step, int joint)
+{
+    return err_set(step->err, ERR_SOLVER,
+                   "the friction of joint %s has no single answer: it changes what presses there "
+                   "by as much as that changes it, as where its coefficient times the radius of "
+                   "its pin comes up to the arm that it works on; lower friction or "
+                   "friction-radius",
+                   step->scenario->linkage.joints[joint].name);
 }
 
 static bool plane_find_start(void *own, double *accelerations)
@@ -405,13 +426,25 @@ static void plane_find_middle(void *own, const double *beyond)
 static bool plane_respond(void *own)
 {
     ImpulseStep *step = own;
+    KernelStep *scheme = &step->scheme;
     if (!response_place(&step->response, step->middle)) {
         return refuse_joints(step);
+    }
+    if (step->rubs.count > 0) {
+        impulse_rubs_keep(&step->rubs, &scheme->kernel,
+                          scheme->has_drift && scheme->steady > 0 ? scheme->total.impulse : NULL);
     }
     if (step->scheme.has_drift) {
         response_drift_columns(&step->response, step->scheme.columns[0], &step->drift);
         response_drift_find(&step->response, step->middle, 0.5 * step->scheme.width_s,
                             &step->drift);
+    }
+    if (step->rubs.count > 0) {
+        const int failed = impulse_rubs_respond(
+            &step->rubs, &step->response, scheme->has_drift ? &step->drift : NULL, &scheme->kernel);
+        if (failed >= 0) {
+            return refuse_friction(step, failed);
+        }
     }
     return true;
 }
@@ -429,8 +462,14 @@ static void plane_accelerate(void *own, const double *gained)
             motions[i].omega += gained[3 * i + 2];
         }
     }
-    response_free(&step->response, motions, scenario_gravity(step->scenario),
-                  applied->is_any ? applied->loads : NULL, step->scheme.kernel.free);
+    const BodyLoad *loads = applied->is_any ? applied->loads : NULL;
+    const Vec2 gravity = scenario_gravity(step->scenario);
+    KernelStep *scheme = &step->scheme;
+    response_free(&step->response, motions, gravity, loads, scheme->kernel.free);
+    const bool is_known = scheme->has_drift && scheme->steady > 0 && scheme->is_calm;
+    const double since_s = is_known ? scheme->middles_s[0] - scheme->middles_s[1] : 0.0;
+    impulse_rubs_react(&step->rubs, &step->response, motions, gravity, loads, since_s,
+                       &scheme->kernel);
 }
 
 static void plane_push(void *own, double after_s, const double *impulses, double *speeds)

@@ -7,6 +7,7 @@
 #include "model/trajectory.h"
 #include "ode/impulse.h"
 #include "ode/plane/impulse_curves.h"
+#include "ode/plane/impulse_rubs.h"
 #include "ode/plane/world.h"
 #include "ode/stepping.h"
 
@@ -30,7 +31,10 @@ typedef struct ImpulseStep {
     ResponseGroups groups; // where there are islands
     ImpulseScope whole;
     size_t place_count;
-    Touch *places; // owned, as are all arrays here
+    size_t
+        touch_count; // of these, the first, at which bodies touch; the others are joints that rub
+    Touch *places;   // owned, as are all arrays here
+    ImpulseRubs rubs;
     ImpulseTicks ticks;
     Motion *before;                      // at the start of the last step
     Motion *middle;                      // at mid-step, with the speeds of its start
@@ -39,6 +43,7 @@ typedef struct ImpulseStep {
     double drive_work;                   // J, in the whole step
     double load_work;                    // J, of loads, likewise
     double damped;                       // J, in dampers, likewise
+    double rubbed;                       // J, in pivots that drives turn, likewise
     ResponseDrift drift;                 // with drift: of few rows
     ImpulseCurves curves;                // what is inside the step, once there have been so many
     JointState *mean;                    // mean forces of the ideal joints

@@ -28,6 +28,10 @@ static void add_mean(const ImpulseStep *step, size_t number, const Motion *middl
     const Touch *place = &step->places[number];
     const double *sum = step->scheme.total.impulse + step->scheme.kernel.contacts[number].first_row;
     const Vec2 force = {sum[0] / step->scheme.width_s, sum[1] / step->scheme.width_s};
+    if (number >= step->touch_count) {
+        impulse_rubs_add(&step->scenario->linkage, place, force.x, middle, mean);
+        return;
+    }
     if (step->scenario->linkage.joints[place->joint].limits.kind != LIMIT_NONE) {
         impulse_step_add_end(&step->scenario->linkage, place, force.x, middle, mean);
         return;
@@ -58,7 +62,7 @@ static void find_play_means(ImpulseStep *step, const Motion *middle)
     const Linkage *linkage = &step->scenario->linkage;
     JointState *means = step->work->joints;
     memcpy(means, step->mean, linkage->joint_count * sizeof *means);
-    for (size_t i = 0; i < step->place_count; i++) {
+    for (size_t i = 0; i < step->touch_count; i++) {
         const int joint = step->places[i].joint;
         // what holds a joint beside its limited coordinate is known
         if (linkage->joints[joint].limits.kind == LIMIT_NONE) {
@@ -76,7 +80,7 @@ static void find_driven_offsets(ImpulseStep *step, const Motion *middle, int bod
 {
     const Linkage *linkage = &step->scenario->linkage;
     stepping_offsets(linkage, middle, body, offsets);
-    for (size_t i = 0; i < step->place_count; i++) {
+    for (size_t i = 0; i < step->touch_count; i++) {
         const int joint = step->places[i].joint;
         const bool is_beside =
             touch_is_scalar(&step->places[i]) || touch_has_walls(&step->places[i]);
@@ -257,8 +261,13 @@ static double work_of_drive(ImpulseStep *step, size_t drive, const Motion *middl
     }
     const BodyLoad load = applied_on(&step->world.applied, body);
     find_driven_offsets(step, middle, body, step->work->offsets);
-    return work + step->scheme.width_s * stepping_drive(step->scenario, drive, driven, &load,
-                                                        step->work->offsets, step->work->joints);
+    work += step->scheme.width_s * stepping_drive(step->scenario, drive, driven, &load,
+                                                  step->work->offsets, step->work->joints);
+    const double rubbed =
+        step->scheme.width_s *
+        impulse_rubs_add_driven(step->scenario, drive, driven, step->work->joints);
+    step->rubbed += rubbed;
+    return work + rubbed;
 }
 
 void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
@@ -269,6 +278,7 @@ void impulse_step_find_work(ImpulseStep *step, const Motion *middle)
     find_mean_motions(step, middle, motions);
     const AppliedWork applied = applied_book(&step->world.applied, step->scheme.width_s);
     double work = 0.0;
+    step->rubbed = 0.0;
     for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
         work += work_of_drive(step, i, middle, motions);
     }

@@ -723,7 +723,9 @@ bool world_build(const Scenario *scenario, const Motion *motions, World *world, 
         }
     }
     applied_make(linkage, world->id, world->bodies, motions, &world->applied);
-    rubbing_make(scenario, world->id, world->bodies, &world->rubbing);
+    if (!scenario_integrates_contacts(scenario)) {
+        rubbing_make(scenario, world->id, world->bodies, &world->rubbing);
+    }
     world->applied.is_any = world->applied.is_any || world->rubbing.count > 0;
     return true;
 }

@@ -73,7 +73,11 @@ static bool space_take(void *own, ImpulseSpan *span, Err *err)
         return false;
     }
     *span = (ImpulseSpan){
-        step->scheme.start_s, step->scheme.end_s, step->scheme.width_s, step->drive_work, 0.0, 0.0};
+        .start_s = step->scheme.start_s,
+        .end_s = step->scheme.end_s,
+        .width_s = step->scheme.width_s,
+        .drive_work = step->drive_work,
+    };
     return true;
 }
 

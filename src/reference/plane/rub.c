@@ -8,9 +8,8 @@
 //     F_i = s_i k_i |p_i + sum_j D_ij F_j|,   k = mu r, or mu
 // D comes from solving the equations of motion with each F_j by itself, F from Newton's method. The
 // right side contracts, and has one fixed point, where the matrix k_i r_i |D_ij| has an eigenvalue
-// below 1, r_i >= |s_i|: it has in a weighted maximum norm what (A x)_i < x_i says for some x > 0
-// (Collatz, Wielandt). Of a single body on a fixed pivot D is about 1 over its arm: where mu r
-// comes up to that, friction may have no answer, or two, and is refused.
+// below 1, r_i >= |s_i| (model/friction_answer.h). Of a single body on a fixed pivot D is about 1
+// over its arm: where mu r comes up to that, friction may have no answer, or two, and is refused.
 //
 // Of a guide N has corners, where another of the faces Q, -Q, 2 M / l, -2 M / l presses most: those
 // are events, between which the face that presses goes on by itself.
@@ -18,6 +17,7 @@
 
 #include "base/dense.h"
 #include "base/zeroed.h"
+#include "model/friction_answer.h"
 #include "model/joint_friction.h"
 
 #include <assert.h>
@@ -30,7 +30,6 @@ enum {
     RUB_FACES = 4,
     RUB_SOLVES = 4,      // full solutions at most: the first has all but rounding
     RUB_ITERATIONS = 30, // of Newton's method, on the linear reactions
-    RUB_POWERS = 24,     // by which the eigenvalue is bounded
 };
 
 // of what acts on the bodies: what rounding leaves of a friction, and of what presses
@@ -52,8 +51,7 @@ struct RubRoom {
     Vec2 *change;          // D, row by row
     double *matrix;        // likewise
     double *side;          //
-    double *weight;        // x
-    double *weighed;       // A x
+    double *weight;        // two numbers each
     double *mobility;      // by coordinate and by row of a loop
 };
 
@@ -126,7 +124,6 @@ RubRoom *rub_create(const Dynamics *dynamics)
     room->tried = room->friction + n;
     room->side = room->friction + 2 * n;
     room->weight = room->friction + 3 * n;
-    room->weighed = room->friction + 4 * n;
     room->matrix = room->friction + 5 * n;
     room->pressed = zeroed(2 * n, sizeof *room->pressed);
     room->before = room->pressed + n;
@@ -304,33 +301,10 @@ static bool has_answer(const Dynamics *dynamics)
                 bristle->arm * bristle->pair.ratio *
                 (bristle->face < 0 ? vec2_length(change) : fmax(fabs(change.x), fabs(change.y)));
         }
-        room->weight[i] = 1.0;
     }
-    for (int power = 0; power < RUB_POWERS; power++) {
-        double worst = 0.0;
-        double most = 0.0;
-        for (size_t i = 0; i < n; i++) {
-            double sum = 0.0;
-            for (size_t j = 0; j < n; j++) {
-                sum += room->matrix[i * n + j] * room->weight[j];
-            }
-            room->weighed[i] = sum;
-            const double over = sum / room->weight[i];
-            if (!(over <= worst)) {
-                worst = over;
-                room->jammed = system->bristles[i].joint;
-            }
-            most = fmax(most, sum + room->weight[i]);
-        }
-        if (worst < 1.0) {
-            room->jammed = -1;
-            return true;
-        }
-        for (size_t i = 0; i < n; i++) {
-            room->weight[i] = (room->weighed[i] + room->weight[i]) / most;
-        }
-    }
-    return false;
+    const int failed = friction_answer_fails(n, room->matrix, room->weight);
+    room->jammed = failed < 0 ? -1 : system->bristles[failed].joint;
+    return failed < 0;
 }
 
 // Newton's method for the frictions, with what presses linear in them from a solution on. The

@@ -1,0 +1,40 @@
+// Bounds the largest eigenvalue of a matrix without negative numbers.
+#include "model/friction_answer.h"
+
+#include <math.h>
+
+enum { POWERS = 24 }; // by which the eigenvalue is bounded
+
+int friction_answer_fails(size_t n, const double *matrix, double *room)
+{
+    double *weight = room;
+    double *weighed = room + n;
+    int worst = -1;
+    for (size_t i = 0; i < n; i++) {
+        weight[i] = 1.0;
+    }
+    for (int power = 0; power < POWERS; power++) {
+        double largest = 0.0;
+        double most = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            double sum = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                sum += matrix[i * n + j] * weight[j];
+            }
+            weighed[i] = sum;
+            const double over = sum / weight[i];
+            if (!(over <= largest)) {
+                largest = over;
+                worst = (int)i;
+            }
+            most = fmax(most, sum + weight[i]);
+        }
+        if (largest < 1.0) {
+            return -1;
+        }
+        for (size_t i = 0; i < n; i++) {
+            weight[i] = (weighed[i] + weight[i]) / most;
+        }
+    }
+    return worst;
+}

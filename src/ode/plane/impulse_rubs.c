@@ -1,0 +1,257 @@
+// Fills in what the kernel is to know of the reactions of joints that rub.
+//
+// Reactions beside the kernel's rows, at mid-step as the free accelerations are: lambda = -D_ii^-1
+// gamma_i (model/response.c); a force of 1 in a row brings A with it, and as speeds change by an
+// impulse of 1 there, B (model/response_drift.h). How they change by themselves is seen from the
+// step before, less what its impulses did.
+#include "ode/plane/impulse_rubs.h"
+
+#include "base/zeroed.h"
+#include "kernel/friction_law.h"
+#include "model/friction_answer.h"
+#include "model/joint_friction.h"
+#include "model/joint_rows.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// The arm of a friction that grows with what presses, or of a steady one what it is.
+static double arm_of(const Joint *joint)
+{
+    if (!joint->contact.has_friction || joint->friction.steady > 0.0) {
+        return joint->friction.steady;
+    }
+    return joint->contact.friction *
+           (joint_slides(joint->kind) ? 1.0 : joint_friction_radius(joint));
+}
+
+static bool is_driven_pivot(const Linkage *linkage, int joint)
+{
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        if (linkage_drive(linkage, i)->joint == joint) {
+            return true;
+        }
+    }
+    return false;
+}
+
+size_t impulse_rubs_list(const Scenario *scenario, Touch *places)
+{
+    const Linkage *linkage = &scenario->linkage;
+    size_t count = 0;
+    for (int i = 0; i < (int)linkage->joint_count; i++) {
+        const Joint *joint = &linkage->joints[i];
+        if (!joint_friction_is(joint) || is_driven_pivot(linkage, i)) {
+            continue;
+        }
+        const bool slides = joint_slides(joint->kind);
+        places[count++] = (Touch){
+            .joint = i,
+            .place = JOINT_PLACES - 1,
+            .shape = slides ? TOUCH_LINE : TOUCH_TURN,
+            .anchor_a = joint->anchor_a,
+            .anchor_b = joint->anchor_b,
+            .direction = joint->direction,
+            .sign = slides ? 0.0 : coordinate_sense(joint),
+        };
+    }
+    return count;
+}
+
+KernelContact impulse_rubs_contact(const Scenario *scenario, const Touch *place)
+{
+    const Joint *joint = &scenario->linkage.joints[place->joint];
+    const JointFriction whole = joint_friction_whole(&scenario->contact, joint);
+    const double reach = joint_slides(joint->kind) ? 1.0 : joint_friction_radius(joint);
+    const ContactState *start = &joint->contacts[place->place];
+    return (KernelContact){
+        .law = {.family = FORCE_LAW_POWER,
+                .exponent = 1.0,
+                .friction = arm_of(joint),
+                .friction_speed = whole.speed / reach,
+                .bristle = {.law = whole.law,
+                            .ratio = whole.ratio,
+                            .limit = whole.presliding / reach,
+                            .speed = whole.speed / reach,
+                            .zeta = whole.damping}},
+        .shape = KERNEL_LINE,
+        .joint = place->joint,
+        .state = {.is_touching = true, .bend = start->bend, .bristle = start->bristle},
+        .is_rub = true,
+    };
+}
+
+static size_t ideal_row_of(const Response *response, int joint)
+{
+    for (size_t row = 0; row < response->ideal_rows; row += 2) {
+        if (response->joint_of[row] == joint) {
+            return row;
+        }
+    }
+    assert(false); // an ideal joint that no drive turns has rows
+    return 0;
+}
+
+void impulse_rubs_make(const Scenario *scenario, const Response *response, size_t first,
+                       const Touch *places, Kernel *kernel, ImpulseRubs *rubs)
+{
+    const size_t n = kernel->rub_count;
+    const size_t rows = kernel->row_count;
+    *rubs = (ImpulseRubs){
+        .scenario = scenario,
+        .count = n,
+        .rubs = zeroed(n, sizeof *rubs->rubs),
+        .answers = zeroed(2 * n * rows, sizeof(double)),
+        .turning = zeroed(2 * n * rows, sizeof(double)),
+        .late = zeroed(2 * n * rows, sizeof(double)),
+        .reactions = zeroed(response->ideal_rows, sizeof(double)),
+        .unit = zeroed(rows, sizeof(double)),
+        .changes = zeroed(n * (n + 2), sizeof(double)),
+    };
+    for (size_t i = 0; i < n; i++) {
+        ImpulseRub *rub = &rubs->rubs[i];
+        KernelRub *of = &kernel->rubs[i];
+        rub->place = first + i;
+        rub->joint = places[rub->place].joint;
+        rub->row = ideal_row_of(response, rub->joint);
+        const Joint *joint = &scenario->linkage.joints[rub->joint];
+        const bool slides = joint_slides(joint->kind);
+        rub->weigh = !slides                        ? 1.0
+                     : joint->friction.length > 0.0 ? 2.0 / joint->friction.length
+                                                    : 0.0;
+        of->is_guide = slides;
+        of->steady = joint->friction.steady > 0.0 ? 1.0 : 0.0;
+        of->answers = rubs->answers + 2 * i * rows;
+        of->turning = rubs->turning + 2 * i * rows;
+        of->late = rubs->late + 2 * i * rows;
+    }
+}
+
+void impulse_rubs_finish(ImpulseRubs *rubs)
+{
+    free(rubs->rubs);
+    free(rubs->answers);
+    free(rubs->turning);
+    free(rubs->late);
+    free(rubs->reactions);
+    free(rubs->unit);
+    free(rubs->changes);
+    *rubs = (ImpulseRubs){.count = 0};
+}
+
+void impulse_rubs_carry(ImpulseRubs *rubs, const Kernel *kernel, Carry *carry)
+{
+    CARRY_ARRAY(carry, rubs->late, 2 * rubs->count * kernel->row_count);
+}
+
+void impulse_rubs_keep(ImpulseRubs *rubs, const Kernel *kernel, const double *impulses)
+{
+    for (size_t i = 0; i < rubs->count; i++) {
+        const double *late = rubs->late + 2 * i * kernel->row_count;
+        for (size_t k = 0; k < 2; k++) {
+            double *before = &rubs->rubs[i].before[k];
+            *before = kernel->rubs[i].reaction[k];
+            for (size_t row = 0; impulses != NULL && row < kernel->row_count; row++) {
+                *before += late[2 * row + k] * impulses[row];
+            }
+        }
+    }
+}
+
+// Takes the two numbers of a joint from those of all ideal rows.
+static void take_pair(const ImpulseRub *rub, const double *rows, double *pair)
+{
+    pair[0] = rows[rub->row];
+    pair[1] = rub->weigh * rows[rub->row + 1];
+}
+
+// By how much what presses in a joint changes with a pair of numbers, at most.
+static double size_of(const KernelRub *rub, const double *pair)
+{
+    return rub->steady > 0.0 ? 0.0
+           : rub->is_guide   ? fmax(fabs(pair[0]), fabs(pair[1]))
+                             : hypot(pair[0], pair[1]);
+}
+
+int impulse_rubs_respond(ImpulseRubs *rubs, const Response *response, const ResponseDrift *drift,
+                         Kernel *kernel)
+{
+    const size_t n = rubs->count;
+    const size_t rows = kernel->row_count;
+    for (size_t row = 0; row < rows; row++) {
+        rubs->unit[row] = 1.0;
+        response_react(response, rubs->unit, rubs->reactions);
+        rubs->unit[row] = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            const size_t at = 2 * (i * rows + row);
+            take_pair(&rubs->rubs[i], rubs->reactions, rubs->answers + at);
+            if (drift != NULL) {
+                const size_t first = row * response->ideal_rows;
+                take_pair(&rubs->rubs[i], drift->turned + first, rubs->turning + at);
+                take_pair(&rubs->rubs[i], drift->late + first, rubs->late + at);
+            }
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        const KernelRub *of = &kernel->rubs[i];
+        const ForceLaw *law = &kernel->contacts[of->contact].law;
+        const double ratio = law->bristle.law == BRISTLE_STICK ? law->bristle.ratio : 1.0;
+        for (size_t j = 0; j < n; j++) {
+            const size_t row = kernel->contacts[kernel->rubs[j].contact].first_row;
+            rubs->changes[i * n + j] = law->friction * ratio * size_of(of, of->answers + 2 * row);
+        }
+    }
+    const int failed = friction_answer_fails(n, rubs->changes, rubs->changes + n * n);
+    return failed < 0 ? -1 : rubs->rubs[failed].joint;
+}
+
+void impulse_rubs_react(ImpulseRubs *rubs, const Response *response, const Motion *middle,
+                        Vec2 gravity, const BodyLoad *loads, double since_s, Kernel *kernel)
+{
+    if (rubs->count == 0) {
+        return;
+    }
+    response_free_reactions(response, middle, gravity, loads, rubs->reactions);
+    for (size_t i = 0; i < rubs->count; i++) {
+        KernelRub *of = &kernel->rubs[i];
+        take_pair(&rubs->rubs[i], rubs->reactions, of->reaction);
+        for (size_t k = 0; k < 2; k++) {
+            const double change = of->reaction[k] - rubs->rubs[i].before[k];
+            of->rate[k] = since_s > 0.0 ? change / since_s : 0.0;
+        }
+    }
+}
+
+void impulse_rubs_add(const Linkage *linkage, const Touch *place, double held,
+                      const Motion *motions, JointState *state)
+{
+    if (touch_is_torque(place)) {
+        state->moment_on_b += coordinate_sense(&linkage->joints[place->joint]) * place->sign * held;
+        return;
+    }
+    const Vec2 along = joint_rows_along(linkage, motions, place->joint);
+    state->force_on_b = vec2_add(state->force_on_b, vec2_scale(held, along));
+}
+
+double impulse_rubs_add_driven(const Scenario *scenario, size_t drive, const Motion *driven,
+                               JointState *joints)
+{
+    const int number = linkage_drive(&scenario->linkage, drive)->joint;
+    const Joint *joint = &scenario->linkage.joints[number];
+    if (!joint_friction_is(joint)) {
+        return 0.0;
+    }
+    const JointFriction whole = joint_friction_whole(&scenario->contact, joint);
+    const double most = joint->friction.steady > 0.0 ? joint->friction.steady
+                                                     : arm_of(joint) * joints[number].force;
+    const BristlePair pair = {
+        .ratio = whole.ratio,
+        .speed = whole.speed / joint_friction_radius(joint),
+    };
+    const double held = whole.law == BRISTLE_REGULARIZED
+                            ? friction_hold(driven->omega, pair.speed).held
+                            : copysign(bristle_left(&pair, driven->omega), driven->omega);
+    joints[number].moment_on_b = -most * held;
+    return most * held * driven->omega;
+}
