@@ -274,7 +274,7 @@ void World::push()
         const PinHole pose = driver_pose(&joint, felt.data());
         driver_follow(&joint, &pose, &contacts[i], &answer.totals[i]);
         forces[i] = actions_add_contact(&joint, &contacts[i], &pose, felt.data(), actions.data());
-        answer.totals[i].force_max = std::max(answer.totals[i].force_max, vec2_length(forces[i]));
+        driver_note_force(&answer, i, &pose, vec2_length(forces[i]), of->step_s, &contacts[i]);
     }
     act(actions.data());
 }

@@ -192,10 +192,10 @@ static void find_forces(ChipmunkRun *run)
     for (size_t i = 0; i < run->of->joint_count; i++) {
         PinHole pose;
         if (!run->is_native && follow(run, i, &pose)) {
-            DriverTotals *totals = &run->run.totals[i];
             run->forces[i] = actions_add_contact(&run->of->joints[i], &run->contacts[i], &pose,
                                                  run->motions, run->actions);
-            totals->force_max = fmax(totals->force_max, vec2_length(run->forces[i]));
+            driver_note_force(&run->run, i, &pose, vec2_length(run->forces[i]), run->of->step_s,
+                              &run->contacts[i]);
         }
     }
 }
