@@ -373,6 +373,20 @@ static void say_hello(const DriverIdentity *identity)
     json_decref(line);
 }
 
+void driver_answer(const json_t *line)
+{
+    json_dumpf(line, answers, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    fputc('\n', answers);
+    fflush(answers);
+}
+
+static char *asked_model;
+
+const char *driver_asked_model(void)
+{
+    return asked_model;
+}
+
 DriverCase *driver_read(const DriverIdentity *identity, int *status)
 {
     open_answers();
@@ -400,6 +414,10 @@ DriverCase *driver_read(const DriverIdentity *identity, int *status)
         if (!is_known) {
             driver_fail("there is no way '%s'", of->way);
         }
+    }
+    if (ask != NULL && strcmp(ask, "model") == 0) {
+        const char *file = json_string_value(member(request, "file"));
+        asked_model = strdup(file != NULL ? file : "");
     }
     json_decref(request);
     return of;

@@ -182,6 +182,14 @@ typedef struct DriverRun {
 // for, or where the request is none: then it has said so, and *status is the program's.
 DriverCase *driver_read(const DriverIdentity *identity, int *status);
 
+// The file that the driver is asked to read as a model of its own engine, where driver_read has
+// returned NULL; NULL: it is not asked for that.
+const char *driver_asked_model(void);
+
+// Writes a line of the answer, an object of jansson's.
+struct json_t;
+void driver_answer(const struct json_t *line);
+
 // Say that the run failed, or what of the case the driver cannot express, and end the program.
 void driver_fail(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
 void driver_refuse(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));

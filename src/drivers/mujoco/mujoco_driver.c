@@ -243,10 +243,10 @@ int main(void)
     const DriverIdentity identity = {"MuJoCo", mj_versionString(), "double", WAYS};
     int status;
     const DriverCase *of = driver_read(&identity, &status);
-    if (of == NULL) {
-        return status;
-    }
     mju_user_error = complain;
+    if (of == NULL) {
+        return driver_asked_model() != NULL ? mujoco_tell_model(driver_asked_model()) : status;
+    }
     mju_user_warning = complain;
     const bool is_native = driver_is_way(of, "native");
     if (is_native) {
