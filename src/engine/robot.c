@@ -82,7 +82,8 @@ static json_t *ask(const EngineDriver *driver, const char *path, Err *err)
     json_decref(request);
     free(text);
     if (!is_answered) {
-        err_set(err, ERR_SOLVER, "%s: the driver '%s' %s", path, driver->name, own.text);
+        err_set(err, ERR_SOLVER, "%s: the driver '%s', as it read the model, %s", path,
+                driver->name, own.text);
     } else if (reply.fault != NULL) {
         err_set(err, ERR_CASE, "%s: %s", path, reply.fault);
     } else if (reply.model == NULL) {

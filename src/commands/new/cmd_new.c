@@ -111,14 +111,18 @@ static bool find_path(const NewOptions *options, char path[FILE_PATH_SIZE], Err 
     return length < FILE_PATH_SIZE || err_set(err, ERR_FILE, "the path of the case is too long");
 }
 
-// Whether the text is a case, as it must be.
+// Whether the text is a case, as it must be. What is wrong stands at a line that nobody has seen.
 static bool check_case(const char *model, const Text *text, Err *err)
 {
+    static const char NAME[] = "case:";
     Scenario scenario;
     Err own = {0};
-    if (!casefile_load_text("its case", text->data, text->length, NULL, 0, &scenario, &own)) {
+    if (!casefile_load_text("case", text->data, text->length, NULL, 0, &scenario, &own)) {
+        const char *words = own.text;
+        words += strncmp(words, NAME, sizeof NAME - 1) == 0 ? sizeof NAME - 1 : 0;
+        words += strspn(words, "0123456789: ");
         return err_set(err, ERR_CASE, "%s cannot be carried by a case: %.*s", model,
-                       (int)strcspn(own.text, "\n"), own.text);
+                       (int)strcspn(words, "\n"), words);
     }
     scenario_free(&scenario);
     return true;

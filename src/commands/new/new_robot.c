@@ -173,7 +173,8 @@ static void fix_what_leaves(RobotCase *of)
         const RobotJoint *joint = &robot->joints[i];
         if (of->is_planar && joint->kind == ROBOT_SLIDE && are_parallel(joint->axis, of->normal)) {
             of->fates[i] = ROBOT_FIXED;
-            robot_case_note(of, "joint '%s', which slides out of the plane", joint->name);
+            robot_case_note(of, "joint '%s', which slides out of the plane",
+                            robot_case_joint(of, joint));
         } else {
             moves[joint->body] = true;
         }
@@ -265,7 +266,7 @@ static bool check_body(RobotCase *of, int body, Err *err)
         of->fates[numbers[i]] = ROBOT_LOOSE;
         if (!is_bare(&own[i])) {
             robot_case_note(of, "damping, limits and the like of joint '%s', for its body is free",
-                            own[i].name);
+                            of->joints[numbers[i]]);
         }
     }
     if (is_free) {

@@ -40,6 +40,12 @@ void robot_case_note(RobotCase *of, const char *format, ...) __attribute__((form
 // The name in the case of a body or the ground.
 const char *robot_case_body(const RobotCase *of, int body);
 
+// The name in the case of one of the robot's joints.
+static inline const char *robot_case_joint(const RobotCase *of, const RobotJoint *joint)
+{
+    return of->joints[joint - of->robot->joints];
+}
+
 // What a joint or loop is fixed to or held by.
 static inline int robot_case_held(const RobotCase *of, int body)
 {

@@ -17,12 +17,18 @@
 // m: what is less is a rounding of a place
 static const double PLACE_LEAST = 1e-13;
 
+// m: places of pins that are nearer to each other are one, which only roundings keep apart
+static const double PLACE_ALIKE = 1e-9;
+
 // m: of the spring that stands for one along a slide
 static const double SLIDE_SPRING = 10.0;
 
 // rad/s, and 1: of gears on their teeth, and their damping ratio
 static const double TEETH_FREQUENCY = 2.0e4;
 static const double TEETH_DAMPING = 0.5;
+
+// 1: of the hinges in a loop
+static const double LOOP_PARALLEL = 1e-6;
 
 // 1: by which a ratio of teeth may miss the model's, and teeth up to which one is looked for
 static const double RATIO_OFF = 1e-9;
@@ -60,16 +66,12 @@ static void add_armature(RobotCase *of, const RobotJoint *joint, Mat3 *inertia)
 {
     if (joint->kind != ROBOT_HINGE || parent_of(of, joint) != ROBOT_GROUND) {
         robot_case_note(of, "the armature of joint '%s', which is none between ground and a hinge",
-                        joint->name);
+                        robot_case_joint(of, joint));
         return;
     }
-    const double axis[3] = {joint->axis.x, joint->axis.y, joint->axis.z};
-    double *to = &inertia->row[0].x;
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            to[3 * i + k] += joint->armature * axis[i] * axis[k];
-        }
-    }
+    inertia->row[0].x += joint->armature;
+    inertia->row[1].y += joint->armature;
+    inertia->row[2].z += joint->armature;
 }
 
 static void write_body(RobotCase *of, size_t number, Text *text)
@@ -105,7 +107,8 @@ static void write_limits(RobotCase *of, const RobotJoint *joint, double sign, Te
     }
     const double *range = joint->range;
     if (!(range[0] <= 0.0 && range[1] >= 0.0 && range[0] < range[1])) {
-        robot_case_note(of, "the limits of joint '%s', beyond which it starts", joint->name);
+        robot_case_note(of, "the limits of joint '%s', beyond which it starts",
+                        robot_case_joint(of, joint));
         return;
     }
     const bool is_turn = joint->kind == ROBOT_HINGE;
@@ -127,6 +130,43 @@ static double write_axis(const RobotJoint *joint, Text *text)
     return is_down ? -1.0 : 1.0;
 }
 
+// A place, or that of the first hinge which is there but for roundings.
+static Vec3 alike(const RobotCase *of, Vec3 place)
+{
+    for (size_t i = 0; i < of->robot->joint_count; i++) {
+        const RobotJoint *joint = &of->robot->joints[i];
+        if (of->fates[i] == ROBOT_STAYS && joint->kind == ROBOT_HINGE &&
+            vec3_length(vec3_sub(joint->place, place)) < PLACE_ALIKE) {
+            return joint->place;
+        }
+    }
+    return place;
+}
+
+// The place of a joint. A slide's may be anywhere on its body: where a pin of that is, which then
+// is at no distance from it that only roundings make.
+static Vec3 place_of(const RobotCase *of, const RobotJoint *joint)
+{
+    const Robot *robot = of->robot;
+    if (joint->kind != ROBOT_SLIDE) {
+        return alike(of, joint->place);
+    }
+    for (size_t i = 0; i < robot->loop_count; i++) {
+        for (int side = 0; side < 2; side++) {
+            if (robot_case_held(of, robot->loops[i].bodies[side]) == joint->body) {
+                return alike(of, robot->loops[i].place);
+            }
+        }
+    }
+    for (size_t i = 0; i < robot->joint_count; i++) {
+        if (of->fates[i] == ROBOT_STAYS && robot->joints[i].kind == ROBOT_HINGE &&
+            parent_of(of, &robot->joints[i]) == joint->body) {
+            return alike(of, robot->joints[i].place);
+        }
+    }
+    return joint->place;
+}
+
 // Returns whether the joint has friction.
 static bool write_joint(RobotCase *of, size_t number, Text *text)
 {
@@ -134,7 +174,7 @@ static bool write_joint(RobotCase *of, size_t number, Text *text)
     double sign = joint->kind == ROBOT_HINGE ? robot_case_sign(of, joint) : 1.0;
     text_append(text, "  %s: {between: [%s, %s], at: ", of->joints[number],
                 robot_case_body(of, parent_of(of, joint)), robot_case_body(of, joint->body));
-    put_place(of, joint->place, text);
+    put_place(of, place_of(of, joint), text);
     if (joint->kind == ROBOT_SLIDE) {
         text_append(
             text, ", along: %.15g rad",
@@ -150,7 +190,7 @@ static bool write_joint(RobotCase *of, size_t number, Text *text)
                     joint->friction, joint->kind == ROBOT_HINGE ? "N m" : "N");
     } else if (joint->friction > 0.0) {
         robot_case_note(of, "the friction of joint '%s': in space ideal joints have none",
-                        joint->name);
+                        robot_case_joint(of, joint));
     }
     text_append(text, "}\n");
     return is_rubbing;
@@ -167,16 +207,23 @@ static const RobotJoint *carrier_of(const RobotCase *of, int body)
     return NULL;
 }
 
-// Whether all hinges from a body to the ground have a direction, which is found where there is none
-// yet.
-static bool have_axis(const RobotCase *of, int body, Vec3 *axis, bool *is_found)
+// Whether a body is another, or is carried by it.
+static bool is_below(const RobotCase *of, int body, int other)
 {
-    while (body != ROBOT_GROUND) {
+    while (body != other && body != ROBOT_GROUND) {
+        body = robot_case_held(of, of->robot->bodies[body].parent);
+    }
+    return body == other;
+}
+
+// Whether all hinges from a body to what carries both of them have a direction, which is found
+// where there is none yet.
+static bool have_axis(const RobotCase *of, int body, int other, Vec3 *axis, bool *is_found)
+{
+    while (!is_below(of, other, body)) {
         const RobotJoint *joint = carrier_of(of, body);
-        if (joint == NULL) {
-            return false;
-        }
-        if (*is_found && vec3_length(vec3_cross(*axis, joint->axis)) > 1e-6) {
+        if (joint == NULL ||
+            (*is_found && vec3_length(vec3_cross(*axis, joint->axis)) > LOOP_PARALLEL)) {
             return false;
         }
         *axis = joint->axis;
@@ -199,20 +246,20 @@ static bool write_loop(RobotCase *of, size_t number, Text *text)
     RobotJoint hinge = {.axis = of->normal};
     bool is_found = false;
     if (bodies[0] == bodies[1]) {
-        robot_case_note(of, "the loop '%s', which holds what is fixed", loop->name);
+        robot_case_note(of, "the loop '%s', which holds what is fixed", of->loops[number]);
         return false;
     }
-    if (!of->is_planar && !(have_axis(of, bodies[0], &hinge.axis, &is_found) &&
-                            have_axis(of, bodies[1], &hinge.axis, &is_found))) {
+    if (!of->is_planar && !(have_axis(of, bodies[0], bodies[1], &hinge.axis, &is_found) &&
+                            have_axis(of, bodies[1], bodies[0], &hinge.axis, &is_found))) {
         robot_case_note(of, "the loop '%s', a ball joint: the hinges in it are not parallel",
-                        loop->name);
+                        of->loops[number]);
         return false;
     }
     text_append(text, "  %s:\n    between: [%s, %s]\n    at: ", of->loops[number],
                 robot_case_body(of, bodies[0]), robot_case_body(of, bodies[1]));
     Text place;
     text_init(&place);
-    put_place(of, loop->place, &place);
+    put_place(of, alike(of, loop->place), &place);
     if (!of->is_planar) {
         write_axis(&hinge, &place);
     }
@@ -282,8 +329,8 @@ static void write_coupling(RobotCase *of, size_t number, Text *text)
         lacks = "whose ratio is none of teeth";
     }
     if (lacks != NULL) {
-        robot_case_note(of, "the coupling of joint '%s' with '%s', %s", joints[0]->name,
-                        joints[1]->name, lacks);
+        robot_case_note(of, "the coupling of joint '%s' with '%s', %s",
+                        robot_case_joint(of, joints[0]), robot_case_joint(of, joints[1]), lacks);
         return;
     }
     if (ratio > 0.0) {
@@ -330,27 +377,31 @@ static void write_ends(const RobotCase *of, Text *text)
     free(carries);
 }
 
-// Returns whether any joint has friction.
+// Returns whether any joint has friction. Bodies that are all free have none.
 static bool write_joints(RobotCase *of, Text *text)
 {
     const Robot *robot = of->robot;
     bool is_rubbing = false;
     bool has_loop = false;
-    text_append(text, "\njoints:\n");
+    Text joints;
+    text_init(&joints);
     for (size_t i = 0; i < robot->joint_count; i++) {
         if (of->fates[i] == ROBOT_STAYS) {
-            is_rubbing = write_joint(of, i, text) || is_rubbing;
+            is_rubbing = write_joint(of, i, &joints) || is_rubbing;
         }
     }
     for (size_t i = 0; i < robot->loop_count; i++) {
-        has_loop = write_loop(of, i, text) || has_loop;
+        has_loop = write_loop(of, i, &joints) || has_loop;
     }
     for (size_t i = 0; i < robot->coupling_count; i++) {
-        write_coupling(of, i, text);
+        write_coupling(of, i, &joints);
     }
-    if (!has_loop) {
-        write_ends(of, text);
+    if (joints.length > 0 && !has_loop) {
+        write_ends(of, &joints);
     }
+    text_append(text, "%s", joints.length > 0 ? "\njoints:\n" : "");
+    text_append_bytes(text, joints.data, joints.length);
+    text_finish(&joints);
     return is_rubbing;
 }
 
@@ -431,7 +482,7 @@ static void write_springs(RobotCase *of, RobotJointKind kind, Text *text)
         }
         if (!of->is_planar) {
             robot_case_note(of, "spring and damper of joint '%s': a case in space has none",
-                            joint->name);
+                            robot_case_joint(of, joint));
             continue;
         }
         if (is_first) {

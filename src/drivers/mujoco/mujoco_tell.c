@@ -303,7 +303,8 @@ static void leave_out_the_rest(const Tell *tell)
         colliding += model->geom_contype[i] != 0 || model->geom_conaffinity[i] != 0 ? 1 : 0;
     }
     if (colliding > 0) {
-        leave_out(tell, "the contacts of %d shapes: nothing collides", colliding);
+        leave_out(tell, "contacts of bodies: nothing collides, as %d of the shapes could",
+                  colliding);
     }
     for (int i = 0; i < model->ntendon; i++) {
         leave_out(tell, "tendon '%s'", name_of(model, mjOBJ_TENDON, i));

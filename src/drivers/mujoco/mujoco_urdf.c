@@ -124,6 +124,23 @@ static void note_mimic(const Tag *tag, const char *joint, Urdf *urdf)
     mimic->offset = read_number(tag, "offset", 0.0);
 }
 
+// MuJoCo does not bear a kind of joint that it does not know.
+static void check_joint(const Tag *tag, const char *name)
+{
+    static const char *const KINDS[] = {"revolute", "continuous", "prismatic",
+                                        "fixed",    "floating",   "planar"};
+    char kind[URDF_NAME_SIZE];
+    bool is_known = false;
+    read_attribute(tag, "type", kind);
+    for (size_t i = 0; i < sizeof KINDS / sizeof *KINDS; i++) {
+        is_known = is_known || strcmp(kind, KINDS[i]) == 0;
+    }
+    // those of transmissions have no type
+    if (!is_known && kind[0] != '\0') {
+        driver_refuse("joint '%s' of type '%s', which URDF has not", name, kind);
+    }
+}
+
 void urdf_prepare(char *text, size_t size, Urdf *urdf)
 {
     *urdf = (Urdf){.mimic_count = 0};
@@ -154,6 +171,7 @@ void urdf_prepare(char *text, size_t size, Urdf *urdf)
             at = blank(&tag, is_named(&tag, "visual") ? "visual" : "collision");
         } else if (is_named(&tag, "joint")) {
             read_attribute(&tag, "name", joint);
+            check_joint(&tag, joint);
         } else if (is_named(&tag, "mimic")) {
             note_mimic(&tag, joint, urdf);
         }
