@@ -34,10 +34,10 @@ static const double LOOP_PARALLEL = 1e-6;
 static const double RATIO_OFF = 1e-9;
 enum { TEETH_MOST = 2000 };
 
-// A number with its unit.
+// A number with its unit, 0 without a sign.
 static void put(Text *text, double value, const char *unit)
 {
-    text_append(text, "%.15g %s", value, unit);
+    text_append(text, "%.15g %s", value + 0.0, unit);
 }
 
 static double clean(double place)
@@ -65,7 +65,8 @@ static int parent_of(const RobotCase *of, const RobotJoint *joint)
 static void add_armature(RobotCase *of, const RobotJoint *joint, Mat3 *inertia)
 {
     if (joint->kind != ROBOT_HINGE || parent_of(of, joint) != ROBOT_GROUND) {
-        robot_case_note(of, "the armature of joint '%s', which is none between ground and a hinge",
+        robot_case_note(of,
+                        "the armature of joint '%s': only that of a hinge with the ground counts",
                         robot_case_joint(of, joint));
         return;
     }

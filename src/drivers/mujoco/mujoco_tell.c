@@ -58,6 +58,15 @@ static json_t *vector(const mjtNum *of)
     return json_pack("[f, f, f]", of[0], of[1], of[2]);
 }
 
+// Adds something that is told, of numbers that are.
+static void append(json_t *array, json_t *object, const char *what, const char *name)
+{
+    if (object == NULL) {
+        driver_refuse("%s '%s' with numbers that are not finite", what, name);
+    }
+    json_array_append_new(array, object);
+}
+
 // What moves together with a body: mass, centre, and inertia about it in the world's axes.
 typedef struct Lump {
     mjtNum mass;
@@ -119,7 +128,7 @@ static json_t *bodies_array(const Tell *tell)
     json_t *bodies = json_array();
     for (int i = 1; i < tell->model->nbody; i++) {
         if (tell->model->body_weldid[i] == i && tell->numbers[i] >= 0) {
-            json_array_append_new(bodies, body_object(tell, i));
+            append(bodies, body_object(tell, i), "body", name_of(tell->model, mjOBJ_BODY, i));
         }
     }
     return bodies;
@@ -172,6 +181,9 @@ static json_t *joint_object(const Tell *tell, int joint)
     const mjModel *model = tell->model;
     const int kind = model->jnt_type[joint];
     const int freedom = model->jnt_dofadr[joint];
+    if (kind >= mjJNT_SLIDE && !(mju_norm3(tell->data->xaxis + 3 * joint) > 0.5)) {
+        driver_refuse("joint '%s' whose axis has no direction", name_of(model, mjOBJ_JOINT, joint));
+    }
     json_t *object = json_pack(
         "{s:o, s:s, s:i, s:o, s:o, s:f, s:f, s:f}", "name", name_string(model, mjOBJ_JOINT, joint),
         "kind", KINDS[kind], "body", tell->numbers[model->jnt_bodyid[joint]], "position_m",
@@ -196,7 +208,7 @@ static json_t *joints_array(const Tell *tell)
 {
     json_t *joints = json_array();
     for (int i = 0; i < tell->model->njnt; i++) {
-        json_array_append_new(joints, joint_object(tell, i));
+        append(joints, joint_object(tell, i), "joint", name_of(tell->model, mjOBJ_JOINT, i));
     }
     return joints;
 }
@@ -215,10 +227,11 @@ static void add_equality(const Tell *tell, int id, json_t *loops, json_t *coupli
         mjtNum place[3];
         mju_rotVecMat(place, data, tell->data->xmat + 9 * first);
         mju_addTo3(place, tell->data->xpos + 3 * first);
-        json_array_append_new(
-            loops, json_pack("{s:o, s:i, s:i, s:o}", "name", name_string(model, mjOBJ_EQUALITY, id),
-                             "body_a", tell->numbers[first], "body_b",
-                             second > 0 ? tell->numbers[second] : -1, "position_m", vector(place)));
+        append(loops,
+               json_pack("{s:o, s:i, s:i, s:o}", "name", name_string(model, mjOBJ_EQUALITY, id),
+                         "body_a", tell->numbers[first], "body_b",
+                         second > 0 ? tell->numbers[second] : -1, "position_m", vector(place)),
+               "equality", name);
     } else if (model->eq_type[id] == mjEQ_JOINT && second >= 0) {
         const bool is_straight =
             data[0] == 0.0 && data[2] == 0.0 && data[3] == 0.0 && data[4] == 0.0 && data[1] != 0.0;
@@ -291,7 +304,7 @@ static void add_actuator(const Tell *tell, int id, json_t *actuators)
     if (model->actuator_dyntype[id] != mjDYN_NONE) {
         leave_out(tell, "the dynamics of actuator '%s'", name);
     }
-    json_array_append_new(actuators, object);
+    append(actuators, object, "actuator", name);
 }
 
 // What else the model has.
