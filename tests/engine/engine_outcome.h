@@ -54,8 +54,10 @@ static inline Outcome hold_against(const Scenario *scenario, Trajectory *run, Ba
     Trajectory *reference = run_scenario(scenario, registry_solver(truth), NOBODY);
     const size_t joint = joint_with_play(scenario);
     outcome.error = error_against(run, reference, INFINITY);
-    outcome.force_ratio =
-        run->joints[joint].force_max.value / reference->joints[joint].force_max.value;
+    if (joint < scenario->linkage.joint_count) {
+        outcome.force_ratio =
+            run->joints[joint].force_max.value / reference->joints[joint].force_max.value;
+    }
     trajectory_destroy(reference);
     trajectory_destroy(run);
     return outcome;
