@@ -2,7 +2,7 @@
 # one sentence, and write nothing then; and do its comments hold where they are uncommented? The
 # control is a model that it takes.
 # Usage: new_from.py PROGRAM MODELS, with the driver of MuJoCo in JOINTPLAY_DRIVERS. Prints TAP.
-import os, re, subprocess, sys, tempfile
+import json, os, re, subprocess, sys, tempfile
 
 program, models = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 
@@ -168,6 +168,41 @@ def comments_hold_where_they_are_uncommented():
                 .replace("base]", "l1]"))
 
 
+def motion_of(text):
+    write("motion.yaml", text)
+    code, output, errors = call("run", "motion.yaml", "-q", "--quick", "--backend", "reference", "--json",
+                                "--set", "run.duration=0.2 s", "--set", "run.backends=[reference]")
+    assert code == 0, errors
+    return [body["omega_max_rad_s"] for body in json.loads(output)["runs"][0]["bodies"].values()]
+
+
+def a_tree_that_is_closed_is_the_loop_of_mujoco():
+    loop = call("new", "-q", "--from", f"{models}/four-bar.xml", "-")[1]
+    links = ""
+    for name, mass, inertia, x, y in re.findall(
+            r"^  (\w+): {mass: (\S+) kg, inertia: (\S+) kg m\^2, at: \[(\S+) m, (\S+) m\]}", loop, re.M):
+        origin = {"crank": (0, 0), "coupler": (0.1, 0.02), "rocker": (0.35, 0)}[name]
+        links += (f'<link name="{name}"><inertial><origin xyz="{float(x) - origin[0]:.15g} 0 {float(y) - origin[1]:.15g}"/>'
+                  f'<mass value="{mass}"/><inertia ixx="{inertia}" iyy="{inertia}" izz="{inertia}" ixy="0" ixz="0" iyz="0"/>'
+                  '</inertial></link>')
+    assert links.count("<link") == 3, loop
+    for name, parent, child, place, rest in (
+            ("a", "base", "crank", "0 0 0", '<dynamics damping="0.001"/>'), ("b", "crank", "coupler", ".1 0 .02", ""),
+            ("c", "base", "rocker", ".35 0 0", "")):
+        links += (f'<joint name="{name}" type="continuous"><parent link="{parent}"/><child link="{child}"/>'
+                  f'<origin xyz="{place}"/><axis xyz="0 1 0"/>{rest}</joint>')
+    write("tree.urdf", ROBOT.format(links))
+    tree = call("new", "-q", "--from", "tree.urdf", "-")[1]
+    closed = re.sub(r"# closing-rocker: {between: \[rocker, coupler\], at: .*}",
+                    "closing-rocker: {between: [rocker, coupler], at: [0.3 m, 0.17 m]}", tree)
+    assert closed != tree, tree
+    ends = re.sub(r",\n    low: .* N m s/rad", "", loop)
+    assert ends != loop
+    known, found, open_ = motion_of(ends), motion_of(closed), motion_of(tree)
+    assert all(abs(a - b) <= 1e-8 * abs(a) for a, b in zip(known, found)), (known, found)
+    assert any(abs(a - b) > 1e-2 * abs(a) for a, b in zip(known, open_)), (known, open_)
+
+
 def the_control_a_model_is_taken_and_nothing_is_replaced():
     assert call("new", "--from", f"{models}/four-bar.xml") == (0, "", "wrote four-bar.yaml\n")
     before = read("four-bar.yaml")
@@ -179,7 +214,7 @@ def the_control_a_model_is_taken_and_nothing_is_replaced():
 
 
 tests = [value for value in list(globals().values()) if callable(value) and value.__module__ == "__main__"
-         and value.__name__ not in ("call", "write", "read", "mjcf", "run_changed")]
+         and value.__name__ not in ("call", "write", "read", "mjcf", "run_changed", "motion_of")]
 print(f"1..{len(tests)}")
 failed = 0
 for number, test in enumerate(tests, 1):

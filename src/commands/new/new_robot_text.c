@@ -352,11 +352,12 @@ static void write_coupling(RobotCase *of, size_t number, Text *text)
                 2.0 * TEETH_DAMPING * TEETH_FREQUENCY / yielding);
 }
 
-// Where a joint could close a chain that is open.
+// Where a joint could close a chain that is open: between an end and the ground, and between ends.
 static void write_ends(const RobotCase *of, Text *text)
 {
     const Robot *robot = of->robot;
     bool *carries = memory_zeroed(robot->body_count, sizeof *carries);
+    int last = ROBOT_GROUND;
     for (size_t i = 0; i < robot->body_count; i++) {
         const int parent = robot_case_held(of, robot->bodies[i].parent);
         if (of->held[i] == (int)i && parent != ROBOT_GROUND) {
@@ -368,12 +369,16 @@ static void write_ends(const RobotCase *of, Text *text)
                 "bodies cannot say, add a\n  # joint at the point that both bodies share, "
                 "ideal or with hole and pin:\n");
     for (size_t i = 0; i < robot->body_count; i++) {
-        if (of->held[i] == (int)i && !carries[i]) {
-            text_append(text, "  # closing-%s: {between: [%s, ground], at: ", of->bodies[i],
-                        of->bodies[i]);
-            put_place(of, robot->bodies[i].centre, text);
-            text_append(text, "}\n");
+        if (of->held[i] != (int)i || carries[i]) {
+            continue;
         }
+        const Vec3 own = robot->bodies[i].centre;
+        const Vec3 other = last != ROBOT_GROUND ? robot->bodies[last].centre : own;
+        text_append(text, "  # closing-%s: {between: [%s, %s], at: ", of->bodies[i], of->bodies[i],
+                    robot_case_body(of, last));
+        put_place(of, vec3_scale(0.5, vec3_add(own, other)), text);
+        text_append(text, "}\n");
+        last = (int)i;
     }
     free(carries);
 }
