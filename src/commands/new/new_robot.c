@@ -3,7 +3,8 @@
 // In the plane where all hinges are parallel and all slides lie across them, or along them: what a
 // slide moves out of the plane is fixed, for it does not change the motion in the plane. Three
 // joints that let a body move freely in the plane are none. In space there are hinges alone, and
-// bodies without a joint.
+// bodies without a joint. Of several joints of one body all but the last carry bodies of their own,
+// so light that they change nothing that can be seen.
 #include "commands/new/new_robot.h"
 
 #include "base/memory.h"
@@ -14,6 +15,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+// 1: mass and inertia of a body between two joints, of what the last one carries
+static const double BETWEEN_SHARE = 1e-8;
+
+// kg, kg m^2: of such a body, which a case takes
+static const double MASS_LEAST = 1e-9;
+static const double INERTIA_LEAST = 1e-18;
 
 // 1: of directions that were written with six digits or turned by MuJoCo
 static const double PARALLEL = 1e-6;
@@ -249,15 +257,72 @@ static size_t joints_of(const RobotCase *of, int body, size_t numbers[], size_t 
     return count;
 }
 
-// One joint at most holds a body.
+// Adds a body that one joint carries, and the next moves another against. Returns its number.
+static int add_between(RobotCase *of, int body, size_t joint, const RobotJoint *next)
+{
+    Robot *robot = of->robot;
+    const size_t number = robot->body_count++;
+    robot->bodies = memory_grown(robot->bodies, robot->body_count, sizeof *robot->bodies);
+    of->bodies = memory_grown(of->bodies, robot->body_count, sizeof *of->bodies);
+    of->held = memory_grown(of->held, robot->body_count, sizeof *of->held);
+    RobotBody *made = &robot->bodies[number];
+    *made = robot->bodies[body];
+    made->mass = fmax(BETWEEN_SHARE * made->mass, MASS_LEAST);
+    made->centre = next->place;
+    made->inertia = (Mat3){{{INERTIA_LEAST, 0.0, 0.0}, //
+                            {0.0, INERTIA_LEAST, 0.0},
+                            {0.0, 0.0, INERTIA_LEAST}}};
+    for (int i = 0; i < 3; i++) {
+        const Vec3 own = vec3_scale(BETWEEN_SHARE, of->robot->bodies[body].inertia.row[i]);
+        made->inertia.row[i] = vec3_add(made->inertia.row[i], own);
+    }
+    char name[2 * LINKAGE_NAME_SIZE];
+    snprintf(name, sizeof name, "%s-on-%s", of->bodies[body], of->joints[joint]);
+    made->name[0] = '\0';
+    make_name(of, "between", number, name, of->bodies, number);
+    of->held[number] = (int)number;
+    robot->joints[joint].body = (int)number;
+    return (int)number;
+}
+
+// Puts bodies between the joints of one.
+static void put_between(RobotCase *of, int body, const size_t numbers[], size_t count)
+{
+    robot_case_note(of,
+                    "ODE, for body '%s' has %zu joints, with bodies of 1e-8 of its mass "
+                    "between them",
+                    of->bodies[body], count);
+    of->has_between = true;
+    for (size_t i = 0; i + 1 < count; i++) {
+        const int made = add_between(of, body, numbers[i], &of->robot->joints[numbers[i + 1]]);
+        of->robot->bodies[body].parent = made;
+    }
+}
+
+static bool check_kind(const RobotCase *of, const RobotJoint *joint, const char *name, Err *err)
+{
+    if (joint->kind == ROBOT_BALL) {
+        return err_set(err, ERR_CASE,
+                       "body '%s' has a ball joint, and a case has pivots and sliders alone", name);
+    }
+    return of->is_planar || joint->kind == ROBOT_HINGE ||
+           err_set(err, ERR_CASE,
+                   "body '%s' slides, and its hinges are not all parallel: a case in space has "
+                   "pivots alone",
+                   name);
+}
+
+// The joints of a body, of which one at most is to hold it.
 static bool check_body(RobotCase *of, int body, Err *err)
 {
-    enum { MOST = 4 };
+    enum { MOST = 6 };
     size_t numbers[MOST];
-    RobotJoint own[MOST];
+    RobotJoint own[MOST] = {{.body = body}};
     const size_t count = joints_of(of, body, numbers, MOST);
-    const char *name = of->bodies[body];
-    for (size_t i = 0; i < count && i < MOST; i++) {
+    if (count > MOST) {
+        return err_set(err, ERR_CASE, "body '%s' has %zu joints", of->bodies[body], count);
+    }
+    for (size_t i = 0; i < count; i++) {
         own[i] = of->robot->joints[numbers[i]];
     }
     const bool is_free = count == 1 ? own[0].kind == ROBOT_FREE
@@ -269,25 +334,15 @@ static bool check_body(RobotCase *of, int body, Err *err)
                             of->joints[numbers[i]]);
         }
     }
-    if (is_free) {
-        return true;
+    for (size_t i = 0; !is_free && i < count; i++) {
+        if (!check_kind(of, &own[i], of->bodies[body], err)) {
+            return false;
+        }
     }
-    if (count > 1) {
-        return err_set(
-            err, ERR_CASE,
-            "body '%s' has %zu joints, and a case has one between two bodies: put a body "
-            "between them",
-            name, count);
+    if (!is_free && count > 1) {
+        put_between(of, body, numbers, count);
     }
-    if (count == 1 && own[0].kind == ROBOT_BALL) {
-        return err_set(err, ERR_CASE,
-                       "body '%s' has a ball joint, and a case has pivots and sliders alone", name);
-    }
-    return of->is_planar || count == 0 || own[0].kind == ROBOT_HINGE ||
-           err_set(err, ERR_CASE,
-                   "body '%s' slides, and its hinges are not all parallel: a case in space has "
-                   "pivots alone",
-                   name);
+    return true;
 }
 
 bool robot_case_make(Robot *robot, RobotCase *of, Err *err)
@@ -308,7 +363,8 @@ bool robot_case_make(Robot *robot, RobotCase *of, Err *err)
     fix_what_leaves(of);
     take_in_what_is_fixed(of);
     bool is_any = false;
-    for (size_t i = 0; i < robot->body_count; i++) {
+    const size_t count = robot->body_count; // bodies between joints come behind them
+    for (size_t i = 0; i < count; i++) {
         is_any = is_any || of->held[i] == (int)i;
         if (of->held[i] == (int)i && !check_body(of, (int)i, err)) {
             return false;

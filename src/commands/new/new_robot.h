@@ -26,6 +26,7 @@ typedef struct RobotCase {
     CaseName *joints;
     CaseName *loops;
     CaseName *couplings;
+    bool has_between; // bodies that stand between two joints of one
     size_t note_count;
     char **notes; // what is left out, a sentence each
 } RobotCase;

@@ -92,8 +92,8 @@ static void write_body(RobotCase *of, size_t number, Text *text)
         text_append(text,
                     ",\n    inertia-x: %.15g kg m^2, inertia-y: %.15g kg m^2, product-xy: %.15g kg "
                     "m^2,\n    product-xz: %.15g kg m^2, product-yz: %.15g kg m^2",
-                    inertia.row[0].x, inertia.row[1].y, -inertia.row[0].y, -inertia.row[0].z,
-                    -inertia.row[1].z);
+                    inertia.row[0].x, inertia.row[1].y, 0.0 - inertia.row[0].y,
+                    0.0 - inertia.row[0].z, 0.0 - inertia.row[1].z);
     }
     text_append(text, "}\n");
 }
@@ -599,7 +599,7 @@ void robot_case_write(RobotCase *of, const char *file, Text *text)
     write_actuators(of, &below);
     write_gravity(of, &below);
     text_append(&below, "run: {duration: 1 s, samples: 1000, backends: [reference%s]}\n",
-                is_rubbing ? "" : ", ode");
+                is_rubbing || of->has_between ? "" : ", ode");
     // what is left out is known by now
     write_head(of, file, text);
     text_append_bytes(text, below.data, below.length);
