@@ -46,6 +46,7 @@ static const Model MODELS[] = {
     {"rubbing-pendulum.xml", 1e-4, 0.2, ROUNDING, 0, NULL},
     {"universal.xml", 1e-3, 0.3, BETWEEN, 2, NULL},
     {"sliding-hinge.xml", 1e-3, 0.4, BETWEEN, 2, NULL},
+    {"sprung-base.xml", 1e-3, 0.4, BETWEEN, 1, NULL},
     {"two-link.urdf", 1e-3, 0.5, ROUNDING, 0, NULL},
     {"scara.urdf", 1e-3, 0.5, ROUNDING, 2, NULL},
     {"cart.urdf", 1e-3, 0.5, ROUNDING, 0, NULL},

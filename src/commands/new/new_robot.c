@@ -223,25 +223,36 @@ static void take_in_what_is_fixed(RobotCase *of)
     }
 }
 
-static bool is_bare(const RobotJoint *joint)
+// Whether nothing acts in a joint but what it moves.
+static bool is_bare(const RobotCase *of, const RobotJoint *joint)
 {
-    return !joint->is_limited && joint->stiffness == 0.0 && joint->damping == 0.0 &&
-           joint->friction == 0.0 && joint->armature == 0.0;
+    bool is_driven = false;
+    for (size_t i = 0; i < of->robot->actuator_count; i++) {
+        is_driven = is_driven || &of->robot->joints[of->robot->actuators[i].joint] == joint;
+    }
+    return !is_driven && !joint->is_limited && joint->stiffness == 0.0 && joint->damping == 0.0 &&
+           joint->friction == 0.0;
 }
 
-// Whether joints, the first of so many of one body, let it move freely in the plane.
-static bool are_free(const RobotJoint *joints, size_t count)
+// Whether the joints of one body, so many by their numbers, let it move freely: in space a free
+// joint, in the plane a hinge and two slides in which nothing acts.
+static bool are_free(const RobotCase *of, const size_t numbers[], size_t count)
 {
-    size_t hinges = 0;
+    const RobotJoint *all = of->robot->joints;
     const RobotJoint *slides[3];
     size_t slide_count = 0;
-    for (size_t i = 0; i < count && count == 3; i++) {
-        hinges += joints[i].kind == ROBOT_HINGE ? 1 : 0;
-        if (joints[i].kind == ROBOT_SLIDE) {
-            slides[slide_count++] = &joints[i];
+    if (count == 1 || !of->is_planar || count != 3) {
+        return count == 1 && all[numbers[0]].kind == ROBOT_FREE;
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (!is_bare(of, &all[numbers[i]])) {
+            return false;
+        }
+        if (all[numbers[i]].kind == ROBOT_SLIDE) {
+            slides[slide_count++] = &all[numbers[i]];
         }
     }
-    return hinges == 1 && slide_count == 2 && !are_parallel(slides[0]->axis, slides[1]->axis);
+    return slide_count == 2 && !are_parallel(slides[0]->axis, slides[1]->axis);
 }
 
 // The joints of one body that stay, in order.
@@ -312,34 +323,39 @@ static bool check_kind(const RobotCase *of, const RobotJoint *joint, const char 
                    name);
 }
 
+// Lets a body be free of its joints.
+static void set_free(RobotCase *of, const size_t numbers[], size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const RobotJoint *joint = &of->robot->joints[numbers[i]];
+        of->fates[numbers[i]] = ROBOT_LOOSE;
+        if (joint->armature > 0.0 || joint->damping > 0.0 || joint->friction > 0.0) {
+            robot_case_note(of,
+                            "armature, damping and friction of joint '%s', for its body is free",
+                            robot_case_joint(of, joint));
+        }
+    }
+}
+
 // The joints of a body, of which one at most is to hold it.
 static bool check_body(RobotCase *of, int body, Err *err)
 {
     enum { MOST = 6 };
     size_t numbers[MOST];
-    RobotJoint own[MOST] = {{.body = body}};
     const size_t count = joints_of(of, body, numbers, MOST);
     if (count > MOST) {
         return err_set(err, ERR_CASE, "body '%s' has %zu joints", of->bodies[body], count);
     }
+    if (are_free(of, numbers, count)) {
+        set_free(of, numbers, count);
+        return true;
+    }
     for (size_t i = 0; i < count; i++) {
-        own[i] = of->robot->joints[numbers[i]];
-    }
-    const bool is_free = count == 1 ? own[0].kind == ROBOT_FREE
-                                    : of->is_planar && count == 3 && are_free(own, count);
-    for (size_t i = 0; is_free && i < count; i++) {
-        of->fates[numbers[i]] = ROBOT_LOOSE;
-        if (!is_bare(&own[i])) {
-            robot_case_note(of, "damping, limits and the like of joint '%s', for its body is free",
-                            of->joints[numbers[i]]);
-        }
-    }
-    for (size_t i = 0; !is_free && i < count; i++) {
-        if (!check_kind(of, &own[i], of->bodies[body], err)) {
+        if (!check_kind(of, &of->robot->joints[numbers[i]], of->bodies[body], err)) {
             return false;
         }
     }
-    if (!is_free && count > 1) {
+    if (count > 1) {
         put_between(of, body, numbers, count);
     }
     return true;
