@@ -280,14 +280,12 @@ static bool check_first(const Entries *entries, const Linkage *linkage, Err *err
         "torques and motors beside it as loads and springs");
 }
 
-bool drives_check(const Entries *entries, const Linkage *linkage, Err *err)
+// The joint that the first drive names.
+static bool check_named(const Entries *entries, const Entry *entry, const Linkage *linkage,
+                        Err *err)
 {
-    const Entry *entry = entries_find(entries, "drive.joint", 0);
-    if (!check_first(entries, linkage, err)) {
-        return false;
-    }
     const Joint *driven = &linkage->joints[linkage->driver.joint];
-    if (entry != NULL && entries_find(entries, "drive.force", 0) != NULL) {
+    if (entries_find(entries, "drive.force", 0) != NULL) {
         return joint_has_position(driven->kind) ||
                entries_refuse(entry, err,
                               "a force cannot push along joint '%s', which %s\nallowed: an ideal "
@@ -295,8 +293,15 @@ bool drives_check(const Entries *entries, const Linkage *linkage, Err *err)
                               driven->name, linkage_has_play(driven) ? "has play" : "has no line");
     }
     const bool is_torque = joint_has_angle(driven->kind) && linkage->torque.table.count > 0;
-    bool is_good =
-        entry == NULL || is_torque || check_driven_joint(entries, &CRANK_KEYS, 0, driven, err);
+    return is_torque || check_driven_joint(entries, &CRANK_KEYS, 0, driven, err);
+}
+
+bool drives_check(const Entries *entries, const Linkage *linkage, Err *err)
+{
+    // a case without a drive may have no joint at all
+    const Entry *entry = entries_find(entries, "drive.joint", 0);
+    bool is_good = check_first(entries, linkage, err) &&
+                   (entry == NULL || check_named(entries, entry, linkage, err));
     for (size_t i = 0; is_good && i < linkage->further_count; i++) {
         is_good = check_further(entries, linkage, i, err);
     }

@@ -90,6 +90,59 @@ def nothing_is_replaced_unless_it_is_said():
     assert call("new", "-")[1] == read("four-bar.yaml")
 
 
+HELLO = {"jointplay-driver": 1, "engine": "Lies", "version": "1", "precision": "double", "ways": ["force"]}
+BODY = {"name": "b", "parent": -1, "mass_kg": 1, "position_m": [1, 0, 0], "inertia_kg_m2": [1, 1, 1, 0, 0, 0]}
+JOINT = {"name": "j", "kind": "hinge", "body": 0, "position_m": [0, 0, 0], "axis": [0, 0, 1]}
+
+
+def model(**changed):
+    return json.dumps({"model": {"format": "XML", "gravity_m_s2": [0, -9.81, 0], "bodies": [BODY],
+                                 "joints": [JOINT], **changed}})
+
+
+# what a driver says behind its first line, exit status, words
+LIES = [
+    ([], 4, "does not read models"),
+    (['{"failed": "no"}'], 3, "robot.xml: no"),
+    (['{"refused": "a robot\\nthat is none"}'], 3, "robot.xml: a robot"),
+    (["{}"], 4, "none of the protocol"),
+    (["model"], 4, "none of the protocol"),
+    (['{"model": []}'], 4, "none of the protocol"),
+    (['{"model": {}}'], 3, "nothing moves"),
+    ([model(bodies=[{**BODY, "mass_kg": 0}])], 4, "a model that is none"),
+    ([model(bodies=[{}])], 4, "a model that is none"),
+    ([model(joints=[{**JOINT, "body": 1}])], 4, "a model that is none"),
+    ([model(joints=[{**JOINT, "kind": "screw"}])], 4, "a model that is none"),
+    ([model(joints=[{**JOINT, "axis": [0, 0, 0]}])], 4, "a model that is none"),
+    ([model(couplings=[{"joint_a": 0, "joint_b": 7}])], 4, "a model that is none"),
+    ([model(actuators=[{"joint": -1}])], 4, "a model that is none"),
+    ([model(bodies=[{**BODY, "inertia_kg_m2": [1, 1, -1, 0, 0, 0]}])], 3, "cannot be carried by a case"),
+    ([model(loops=[{"body_a": 0, "body_b": 0, "position_m": [0, 0, 0]}])], 0, ""),
+    ([model()], 0, ""),
+]
+
+
+def a_driver_that_lies_of_a_model_is_not_believed():
+    os.mkdir("drivers")
+    write("robot.xml", "<robot/>")
+    for number, (lines, wanted, words) in enumerate(LIES):
+        write("drivers/jointplay-mujoco", "#!/bin/sh\nread -r request\ncat <<'end'\n" + json.dumps(HELLO) +
+              "\nend\ncase $request in *hello*) exit ;; esac\ncat <<'end'\n" + "".join(f"{line}\n" for line in lines) +
+              "end\n")
+        os.chmod("drivers/jointplay-mujoco", 0o755)
+        done = subprocess.run([program, "new", "--from", "robot.xml", f"robot-{number}.yaml"], capture_output=True,
+                              text=True, env={**os.environ, "JOINTPLAY_DRIVERS": os.path.abspath("drivers")})
+        assert done.returncode == wanted and words in done.stderr, (lines, done.returncode, done.stderr)
+        assert os.path.exists(f"robot-{number}.yaml") == (wanted == 0), lines
+
+
+def without_a_driver_no_model_is_read():
+    done = subprocess.run([program, "new", "--from", "robot.xml", "none.yaml"], capture_output=True, text=True,
+                          env={**os.environ, "JOINTPLAY_DRIVERS": "/nowhere"})
+    assert done.returncode == 2 and "where MuJoCo is installed" in done.stderr, done.stderr
+    assert not os.path.exists("none.yaml")
+
+
 def an_unknown_kind_names_those_that_there_are():
     status, _, errors = call("new", "--kind", "bicycle")
     assert status == 2 and "allowed: " + ", ".join(KINDS) in errors, errors
@@ -102,6 +155,8 @@ CLAIMS = [
     without_words_it_is_a_four_bar,
     nothing_is_replaced_unless_it_is_said,
     an_unknown_kind_names_those_that_there_are,
+    a_driver_that_lies_of_a_model_is_not_believed,
+    without_a_driver_no_model_is_read,
 ]
 
 print(f"1..{len(CLAIMS)}")

@@ -83,7 +83,6 @@ class World
     Tree tree{};
     double trial_s = 0.0;
     std::vector<DriverMotion> tried;
-    std::vector<Vec2> bends;
 };
 
 btVector3 to_vector(Vec2 a)
@@ -275,7 +274,7 @@ void World::push()
         const PinHole pose = driver_pose(&joint, felt.data());
         driver_follow(&joint, &pose, &contacts[i], &answer.totals[i]);
         forces[i] = actions_add_contact(&joint, &contacts[i], &pose, felt.data(), actions.data());
-        answer.totals[i].force_max = std::max(answer.totals[i].force_max, vec2_length(forces[i]));
+        driver_note_force(&answer, i, &pose, vec2_length(forces[i]), of->step_s, &contacts[i]);
     }
     act(actions.data());
 }
@@ -363,11 +362,11 @@ void World::place(size_t i, const DriverMotion &motion)
 // The contacts within the step: the world is asked for accelerations, and moves nothing itself.
 void World::accelerate(const double *q, const double *v, const DriverAction *given, double *a)
 {
-    trial_place(&tree, q, v, trial_s, tried.data(), bends.data());
+    trial_place(&tree, q, v, given, tried.data(), actions.data());
     for (size_t i = 0; i < bodies.size(); i++) {
         place(i, tried[i]);
     }
-    act(given);
+    act(actions.data());
     world.stepSimulation(trial_s, 0);
     for (size_t i = 0; i < bodies.size(); i++) {
         now[i] = tried[i];
@@ -377,7 +376,7 @@ void World::accelerate(const double *q, const double *v, const DriverAction *giv
             now[i].omega = bodies[i]->getAngularVelocity().z();
         }
     }
-    trial_read(&tree, tried.data(), now.data(), bends.data(), trial_s, a);
+    trial_read(&tree, tried.data(), now.data(), trial_s, a);
 }
 
 void World::run_trials()
@@ -385,7 +384,6 @@ void World::run_trials()
     tree = tree_make(of);
     trial_s = trial_step(of);
     tried.resize(bodies.size());
-    bends.resize(bodies.size());
     std::snprintf(answer.settings, sizeof answer.settings,
                   "btMLCPSolver with btDantzigSolver, ERP 1, CFM 0, driven body kinematic, bodies "
                   "kept in the plane, trials of %.3g s",

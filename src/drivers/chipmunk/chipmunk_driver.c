@@ -12,6 +12,7 @@
 // as is usual, acts where the bodies no longer are: then the law fails at steps above 1 us. The
 // driven body is kinematic, about its pivot. Errors of joints are corrected in the next step, all
 // of them.
+#include "drivers/chipmunk/chipmunk_line.h"
 #include "drivers/common/trial.h"
 
 #include <chipmunk/chipmunk.h>
@@ -106,6 +107,9 @@ static void make_body(ChipmunkRun *run, size_t i)
 
 static void hold(ChipmunkRun *run, size_t joint, cpConstraint *constraint)
 {
+    if (constraint == NULL) {
+        driver_fail("there is no memory");
+    }
     cpConstraintSetErrorBias(constraint, 0.0);
     cpSpaceAddConstraint(run->space, constraint);
     run->holds[joint] = constraint;
@@ -124,10 +128,7 @@ static void make_joint(ChipmunkRun *run, size_t i, bool is_native)
     if (joint->kind == DRIVER_REVOLUTE) {
         hold(run, i, cpPivotJointNew2(a, b, on_a, on_b));
     } else if (joint->kind == DRIVER_PRISMATIC) {
-        // a groove has ends: far away
-        const double reach = 1e3;
-        const cpVect along = cpvmult(cpvforangle(joint->direction), reach);
-        hold(run, i, cpGrooveJointNew(a, b, cpvsub(on_a, along), cpvadd(on_a, along), on_b));
+        hold(run, i, chipmunk_line_new(a, b, cpvforangle(joint->direction)));
         const double held = cpBodyGetAngle(b) - cpBodyGetAngle(a);
         // a rotary limit of no width holds nothing as long as it is kept
         cpConstraint *angle = cpGearJointNew(a, b, held, 1.0);
@@ -191,10 +192,10 @@ static void find_forces(ChipmunkRun *run)
     for (size_t i = 0; i < run->of->joint_count; i++) {
         PinHole pose;
         if (!run->is_native && follow(run, i, &pose)) {
-            DriverTotals *totals = &run->run.totals[i];
             run->forces[i] = actions_add_contact(&run->of->joints[i], &run->contacts[i], &pose,
                                                  run->motions, run->actions);
-            totals->force_max = fmax(totals->force_max, vec2_length(run->forces[i]));
+            driver_note_force(&run->run, i, &pose, vec2_length(run->forces[i]), run->of->step_s,
+                              &run->contacts[i]);
         }
     }
 }
@@ -372,7 +373,7 @@ typedef struct Trials {
     double step_s; // of a trial
     DriverMotion *before;
     DriverMotion *after;
-    Vec2 *bends;
+    DriverAction *actions;
 } Trials;
 
 // Puts a body where the trial has it, in the frame that Chipmunk has of it.
@@ -395,14 +396,14 @@ static void accelerate(void *engine, const double *q, const double *v, const Dri
 {
     Trials *trials = engine;
     ChipmunkRun *run = trials->run;
-    trial_place(&trials->tree, q, v, trials->step_s, trials->before, trials->bends);
+    trial_place(&trials->tree, q, v, actions, trials->before, trials->actions);
     for (size_t i = 0; i < run->of->body_count; i++) {
         place(run, i, &trials->before[i]);
     }
-    push(run, actions);
+    push(run, trials->actions);
     cpSpaceStep(run->space, trials->step_s);
     read_motions(run, trials->after);
-    trial_read(&trials->tree, trials->before, trials->after, trials->bends, trials->step_s, a);
+    trial_read(&trials->tree, trials->before, trials->after, trials->step_s, a);
 }
 
 // Doubles the iterations until the accelerations of the start change no more.
@@ -454,7 +455,7 @@ static _Noreturn void run_trials(ChipmunkRun *run)
                      .step_s = trial_step(run->of),
                      .before = room(bodies, sizeof *trials.before),
                      .after = room(bodies, sizeof *trials.after),
-                     .bends = room(bodies, sizeof *trials.bends)};
+                     .actions = room(bodies, sizeof *trials.actions)};
     let_move(run, stay);
     choose_iterations(&trials);
     tell_settings(run);

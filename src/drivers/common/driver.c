@@ -373,6 +373,20 @@ static void say_hello(const DriverIdentity *identity)
     json_decref(line);
 }
 
+void driver_answer(const json_t *line)
+{
+    json_dumpf(line, answers, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    fputc('\n', answers);
+    fflush(answers);
+}
+
+static char *asked_model;
+
+const char *driver_asked_model(void)
+{
+    return asked_model;
+}
+
 DriverCase *driver_read(const DriverIdentity *identity, int *status)
 {
     open_answers();
@@ -400,6 +414,10 @@ DriverCase *driver_read(const DriverIdentity *identity, int *status)
         if (!is_known) {
             driver_fail("there is no way '%s'", of->way);
         }
+    }
+    if (ask != NULL && strcmp(ask, "model") == 0) {
+        const char *file = json_string_value(member(request, "file"));
+        asked_model = strdup(file != NULL ? file : "");
     }
     json_decref(request);
     return of;
@@ -430,6 +448,7 @@ DriverRun driver_run_start(const DriverCase *of)
         .forces = memory(of->sample_count * of->joint_count, sizeof *run.forces),
         .totals = memory(of->joint_count, sizeof *run.totals),
         .touches = memory(of->joint_count, sizeof *run.touches),
+        .peaks = memory(of->joint_count, sizeof *run.peaks),
     };
     for (size_t i = 0; i < DRIVER_STAMPS; i++) {
         run.stamps[i].motions = memory(of->body_count, sizeof(DriverMotion));
@@ -598,11 +617,12 @@ static void record_stamps(DriverRun *run)
         const DriverJoint *joint = &run->of->joints[i];
         if (joint->kind == DRIVER_PIN_IN_HOLE) {
             const PinHole pose = driver_pose(joint, last->motions);
-            run->touches[i] = (DriverTouch){.eccentricity = pose.eccentricity,
-                                            .force = last->forces[i],
-                                            .force_max = vec2_length(last->forces[i]),
-                                            .depth_max = pose.penetration,
-                                            .approach = run->totals[i].approach};
+            run->touches[i] =
+                (DriverTouch){.eccentricity = pose.eccentricity,
+                              .force = last->forces[i],
+                              .force_max = fmax(vec2_length(last->forces[i]), run->peaks[i].force),
+                              .depth_max = fmax(pose.penetration, run->peaks[i].depth),
+                              .approach = run->totals[i].approach};
         }
     }
     driver_run_record(run, last->velocity_s, now->velocity_s, now->motions, run->touches);
@@ -787,10 +807,12 @@ void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact 
                    DriverTotals *totals)
 {
     ContactState *state = &contact->state;
+    contact->begun_share = 0.0;
     if (pose->penetration > 0.0) {
         if (!state->is_touching) {
             const double before = fmax(contact->gap_before, 0.0);
             const double share = before / (before + pose->penetration);
+            contact->begun_share = 1.0 - share;
             *state = contact_state_begun((1.0 - share) * contact->approach_before +
                                          share * pose->approach_speed);
             totals->begun++;
@@ -803,4 +825,26 @@ void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact 
     }
     contact->gap_before = pose->gap;
     contact->approach_before = pose->approach_speed;
+}
+
+void driver_note_force(DriverRun *run, size_t joint, const PinHole *pose, double force,
+                       double step_s, DriverContact *contact)
+{
+    DriverPeak *peak = &run->peaks[joint];
+    *peak = (DriverPeak){.force = 0.0};
+    if (!(pose->penetration > 0.0)) {
+        contact->peaks = (ContactPeaks){.force = 0.0};
+        return;
+    }
+    if (contact->begun_share > 0.0) {
+        // a damper may press from the first instant on
+        const double speed = contact->state.impact_speed;
+        contact_peaks_begin(&contact->peaks,
+                            force_law_viscous(&run->of->joints[joint].law, 0.0) * speed,
+                            contact->begun_share * step_s);
+    }
+    contact_peaks_note_step(&contact->peaks, force, pose->penetration, 1.0, step_s);
+    *peak = (DriverPeak){contact->peaks.force, contact->peaks.depth};
+    run->totals[joint].force_max = fmax(run->totals[joint].force_max, peak->force);
+    run->totals[joint].depth_max = fmax(run->totals[joint].depth_max, peak->depth);
 }

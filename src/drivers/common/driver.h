@@ -4,6 +4,7 @@
 
 #include "base/force_curve.h"
 #include "base/load_table.h"
+#include "kernel/contact_peaks.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 #include "kernel/pin_hole.h"
@@ -149,6 +150,12 @@ typedef struct DriverTouch {
     double approach;   // m/s, closing speed at which its last contact began
 } DriverTouch;
 
+// The largest of a contact in its last two steps, between them too; 0 where it has ended.
+typedef struct DriverPeak {
+    double force; // N
+    double depth; // m
+} DriverPeak;
+
 // A run under way.
 typedef struct DriverRun {
     const DriverCase *of;
@@ -160,6 +167,7 @@ typedef struct DriverRun {
     bool is_linear;       // between two stamps; else a cubic through four
     DriverTotals *totals; // by joint
     DriverTouch *touches; // room, by joint
+    DriverPeak *peaks;    // by joint
     double *records;      // of steps: times, velocities of bodies, joints
     size_t record_count;
     size_t record_room;
@@ -173,6 +181,14 @@ typedef struct DriverRun {
 // Reads the request and says what the program is. Returns NULL where that was all that was asked
 // for, or where the request is none: then it has said so, and *status is the program's.
 DriverCase *driver_read(const DriverIdentity *identity, int *status);
+
+// The file that the driver is asked to read as a model of its own engine, where driver_read has
+// returned NULL; NULL: it is not asked for that.
+const char *driver_asked_model(void);
+
+// Writes a line of the answer, an object of jansson's.
+struct json_t;
+void driver_answer(const struct json_t *line);
 
 // Say that the run failed, or what of the case the driver cannot express, and end the program.
 void driver_fail(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
@@ -223,6 +239,8 @@ typedef struct DriverContact {
     ContactState state;
     double gap_before;
     double approach_before;
+    double begun_share; // of the last step, since the contact began in it; 0: it did not
+    ContactPeaks peaks;
 } DriverContact;
 
 // The pin of a joint in its hole, from the motions of all bodies.
@@ -242,6 +260,11 @@ DriverPress driver_press(const DriverJoint *joint, const DriverContact *contact,
 // that between the speeds at both ends of the step.
 void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,
                    DriverTotals *totals);
+
+// Notes the force of a contact that has been followed to the end of a step of a length, s: its
+// largest force and depth are between the steps.
+void driver_note_force(DriverRun *run, size_t joint, const PinHole *pose, double force,
+                       double step_s, DriverContact *contact);
 
 // A point of a body, or of the ground, and its velocity.
 Vec2 driver_point(const DriverMotion *motions, int body, Vec2 local);

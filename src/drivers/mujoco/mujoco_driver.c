@@ -96,7 +96,11 @@ static void stamp(MujocoRun *run, double position_s, double velocity_s, const Ve
         driver_follow(joint, &pose, &run->contacts[i], totals);
         now->forces[i] =
             forces != NULL ? forces[i] : driver_press(joint, &run->contacts[i], &pose, felt).force;
-        totals->force_max = fmax(totals->force_max, vec2_length(now->forces[i]));
+        const double force = vec2_length(now->forces[i]);
+        totals->force_max = fmax(totals->force_max, force);
+        if (forces == NULL) {
+            driver_note_force(&run->run, i, &pose, force, run->of->step_s, &run->contacts[i]);
+        }
     }
     driver_run_stamped(&run->run);
     mujoco_check(run);
@@ -239,10 +243,10 @@ int main(void)
     const DriverIdentity identity = {"MuJoCo", mj_versionString(), "double", WAYS};
     int status;
     const DriverCase *of = driver_read(&identity, &status);
-    if (of == NULL) {
-        return status;
-    }
     mju_user_error = complain;
+    if (of == NULL) {
+        return driver_asked_model() != NULL ? mujoco_tell_model(driver_asked_model()) : status;
+    }
     mju_user_warning = complain;
     const bool is_native = driver_is_way(of, "native");
     if (is_native) {

@@ -46,7 +46,7 @@ class World
     void add_loops();
     void set_start(State &state);
     void read(const State &state, DriverMotion *motions);
-    void follow(const DriverMotion *now, ::Vec2 *on_joints);
+    void follow(const DriverMotion *now, double step_s, ::Vec2 *on_joints);
     void stamp(const State &state);
     void sample(const State &state);
     void record(double start_s, double end_s, const DriverMotion *now);
@@ -222,7 +222,7 @@ void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
 }
 
 // Follows the contacts to the end of a step, and finds their forces.
-void World::follow(const DriverMotion *now, ::Vec2 *on_joints)
+void World::follow(const DriverMotion *now, double step_s, ::Vec2 *on_joints)
 {
     for (size_t i = 0; i < of->joint_count; i++) {
         const DriverJoint &joint = of->joints[i];
@@ -232,7 +232,7 @@ void World::follow(const DriverMotion *now, ::Vec2 *on_joints)
             DriverTotals &totals = answer.totals[i];
             driver_follow(&joint, &pose, &contacts[i], &totals);
             on_joints[i] = driver_press(&joint, &contacts[i], &pose, now).force;
-            totals.force_max = std::max(totals.force_max, vec2_length(on_joints[i]));
+            driver_note_force(&answer, i, &pose, vec2_length(on_joints[i]), step_s, &contacts[i]);
         }
     }
 }
@@ -242,7 +242,7 @@ void World::stamp(const State &state)
     DriverStamp *now = driver_run_stamp(&answer);
     now->position_s = now->velocity_s = state.getTime();
     read(state, now->motions);
-    follow(now->motions, now->forces);
+    follow(now->motions, of->step_s, now->forces);
     driver_run_stamped(&answer);
 }
 
@@ -269,8 +269,10 @@ void World::record(double start_s, double end_s, const DriverMotion *now)
         const DriverJoint &joint = of->joints[i];
         if (joint.kind == DRIVER_PIN_IN_HOLE) {
             const PinHole pose = driver_pose(&joint, now);
-            touches[i] = DriverTouch{pose.eccentricity, forces_now[i], vec2_length(forces_now[i]),
-                                     pose.penetration, answer.totals[i].approach};
+            touches[i] = DriverTouch{pose.eccentricity, forces_now[i],
+                                     std::max(vec2_length(forces_now[i]), answer.peaks[i].force),
+                                     std::max(pose.penetration, answer.peaks[i].depth),
+                                     answer.totals[i].approach};
         }
     }
     driver_run_record(&answer, start_s, end_s, now, touches.data());
@@ -289,7 +291,7 @@ void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
             const double before_s = std::max(followed_s, 0.0);
             followed_s = integrator.getAdvancedTime();
             read(integrator.getAdvancedState(), now.data());
-            follow(now.data(), forces_now.data());
+            follow(now.data(), followed_s - before_s, forces_now.data());
             record(before_s, followed_s, now.data());
         }
     }
