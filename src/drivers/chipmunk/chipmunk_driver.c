@@ -33,12 +33,13 @@ static const double SOLVED = 1e-9;
 
 typedef struct ChipmunkRun {
     const DriverCase *of;
+    Tree tree;
     int iterations;
     cpSpace *space;
     cpBody **bodies;         // by body; owned, as all arrays
     Vec2 *centres;           // of each body's frame, where the centre of mass is
     cpConstraint **holds;    // by joint; NULL of a law
-    DriverContact *contacts; // by joint
+    DriverContact *contacts; // by place
     DriverMotion *motions;
     DriverMotion *before;  // of the step before
     Vec2 *forces;          // by joint, on body b
@@ -121,6 +122,9 @@ static void make_joint(ChipmunkRun *run, size_t i, bool is_native)
     if (run->of->has_drive && run->of->drive_joint == (int)i) {
         return; // the kinematic body stands on it
     }
+    if (trial_holds(&run->tree, i)) {
+        return;
+    }
     if (joint->kind == DRIVER_REVOLUTE) {
         hold(run, i, cpPivotJointNew2(a, b, on_a, on_b));
     } else if (joint->kind == DRIVER_PRISMATIC) {
@@ -133,7 +137,7 @@ static void make_joint(ChipmunkRun *run, size_t i, bool is_native)
         cpConstraint *angle = cpGearJointNew(a, b, held, 1.0);
         cpConstraintSetErrorBias(angle, 0.0);
         cpSpaceAddConstraint(run->space, angle);
-    } else if (is_native) {
+    } else if (joint->kind == DRIVER_PIN_IN_HOLE && is_native) {
         hold(run, i, cpSlideJointNew(a, b, on_a, on_b, 0.0, joint->clearance));
     }
 }
@@ -171,31 +175,15 @@ static void read_felt(ChipmunkRun *run)
     }
 }
 
-// Follows the contact of a joint, with the bodies as they are. False where it is no pin in a hole.
-static bool follow(ChipmunkRun *run, size_t joint, PinHole *pose)
-{
-    const DriverJoint *of = &run->of->joints[joint];
-    if (of->kind != DRIVER_PIN_IN_HOLE) {
-        return false;
-    }
-    *pose = driver_pose(of, run->motions);
-    driver_follow(of, pose, &run->contacts[joint], &run->run.totals[joint]);
-    return true;
-}
-
 // Follows the contacts and finds the forces of their laws, of springs and of loads.
 static void find_forces(ChipmunkRun *run)
 {
     read_felt(run);
     actions_find(run->of, run->motions, run->from_s, run->to_s, run->actions);
-    for (size_t i = 0; i < run->of->joint_count; i++) {
-        PinHole pose;
-        if (!run->is_native && follow(run, i, &pose)) {
-            DriverTotals *totals = &run->run.totals[i];
-            run->forces[i] = actions_add_contact(&run->of->joints[i], &run->contacts[i], &pose,
-                                                 run->motions, run->actions);
-            totals->force_max = fmax(totals->force_max, vec2_length(run->forces[i]));
-        }
+    if (!run->is_native) {
+        places_follow(run->of, run->motions, run->contacts, run->run.totals);
+        places_press(run->of, run->contacts, run->motions, run->actions, run->forces,
+                     run->run.totals);
     }
 }
 
@@ -203,13 +191,7 @@ static void find_forces(ChipmunkRun *run)
 static void find_first_forces(ChipmunkRun *run)
 {
     read_motions(run, run->motions);
-    for (size_t i = 0; i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
-        if (joint->kind == DRIVER_PIN_IN_HOLE) {
-            const PinHole pose = driver_pose(joint, run->motions);
-            run->forces[i] = driver_press(joint, &run->contacts[i], &pose, run->motions).force;
-        }
-    }
+    places_press(run->of, run->contacts, run->motions, NULL, run->forces, NULL);
 }
 
 // Lets forces and moments act on the bodies until the end of the step under way.
@@ -256,14 +238,13 @@ static void stamp(ChipmunkRun *run, double velocity_s)
 static void read_slides(ChipmunkRun *run)
 {
     read_motions(run, run->motions);
-    for (size_t i = 0; i < run->of->joint_count; i++) {
-        PinHole pose;
-        if (follow(run, i, &pose)) {
-            DriverTotals *totals = &run->run.totals[i];
-            const double force = cpConstraintGetImpulse(run->holds[i]) / run->of->step_s;
-            run->forces[i] = vec2_scale(force, pose.normal);
-            totals->force_max = fmax(totals->force_max, force);
-        }
+    places_follow(run->of, run->motions, run->contacts, run->run.totals);
+    for (size_t i = 0; i < run->of->place_count; i++) {
+        const DriverPlace *place = &run->of->places[i];
+        DriverTotals *totals = &run->run.totals[place->joint];
+        const double force = cpConstraintGetImpulse(run->holds[place->joint]) / run->of->step_s;
+        run->forces[place->joint] = vec2_scale(force, place_pose(place, run->motions).normal);
+        totals->force_max = fmax(totals->force_max, force);
     }
 }
 
@@ -294,18 +275,19 @@ static void make(const DriverCase *of, ChipmunkRun *run)
                          .bodies = room(of->body_count, sizeof *run->bodies),
                          .centres = room(of->body_count, sizeof *run->centres),
                          .holds = room(of->joint_count, sizeof *run->holds),
-                         .contacts = room(of->joint_count, sizeof *run->contacts),
+                         .contacts = places_start(of),
+                         .tree = tree_make(of),
                          .motions = room(of->body_count, sizeof *run->motions),
                          .before = room(of->body_count, sizeof *run->before),
                          .forces = room(of->joint_count, sizeof *run->forces),
                          .actions = room(of->body_count, sizeof *run->actions),
                          .is_native = is_native,
                          .run = driver_run_start(of)};
-    const bool is_open = tree_make(of).left_count == 0;
+    const bool is_open = run->tree.left_count == 0;
     const int open = driver_is_way(of, "kernel") ? ITERATIONS_TRIAL
                      : is_native                 ? ITERATIONS_SLIDING
                                                  : ITERATIONS_OPEN;
-    run->iterations = is_open ? open : ITERATIONS_CLOSED;
+    run->iterations = is_open || driver_is_way(of, "kernel") ? open : ITERATIONS_CLOSED;
     cpSpaceSetIterations(run->space, run->iterations);
     cpSpaceSetGravity(run->space, to_vect(of->gravity));
     cpSpaceSetUserData(run->space, run);
@@ -314,7 +296,6 @@ static void make(const DriverCase *of, ChipmunkRun *run)
     }
     for (size_t i = 0; i < of->joint_count; i++) {
         make_joint(run, i, is_native);
-        run->contacts[i].state = of->joints[i].contact;
     }
     read_motions(run, run->before);
 }
@@ -450,7 +431,7 @@ static _Noreturn void run_trials(ChipmunkRun *run)
 {
     const size_t bodies = run->of->body_count;
     Trials trials = {.run = run,
-                     .tree = tree_make(run->of),
+                     .tree = run->tree,
                      .step_s = trial_step(run->of),
                      .before = room(bodies, sizeof *trials.before),
                      .after = room(bodies, sizeof *trials.after),
@@ -458,7 +439,7 @@ static _Noreturn void run_trials(ChipmunkRun *run)
     let_move(run, stay);
     choose_iterations(&trials);
     tell_settings(run);
-    trial_run(&trials.tree, accelerate, &trials, &run->run);
+    trial_run(&trials.tree, &(TrialEngine){accelerate, NULL, &trials}, &run->run);
 }
 
 int main(void)

@@ -5,7 +5,8 @@
 // ways whose velocities jump of the line between two.
 #include "drivers/common/driver.h"
 
-#include "kernel/friction_law.h"
+#include "drivers/common/place.h"
+#include "drivers/common/reading.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -17,15 +18,6 @@
 #include <unistd.h>
 
 enum { PROTOCOL = 3, REQUEST_MOST = 1 << 28 };
-
-static void *memory(size_t count, size_t size)
-{
-    void *room = calloc(count + 1, size);
-    if (room == NULL) {
-        driver_fail("there is no memory");
-    }
-    return room;
-}
 
 static double clock_s(void)
 {
@@ -80,284 +72,6 @@ void driver_refuse(const char *format, ...)
 
 // The request.
 
-static const json_t *member(const json_t *object, const char *key)
-{
-    const json_t *value = json_object_get(object, key);
-    if (value == NULL) {
-        driver_fail("the request has no '%s'", key);
-    }
-    return value;
-}
-
-static double number(const json_t *object, const char *key)
-{
-    return json_number_value(member(object, key));
-}
-
-static Vec2 pair(const json_t *object, const char *key)
-{
-    const json_t *value = member(object, key);
-    return (Vec2){json_number_value(json_array_get(value, 0)),
-                  json_number_value(json_array_get(value, 1))};
-}
-
-static void copy_text(const json_t *object, const char *key, char target[DRIVER_NAME_SIZE])
-{
-    const char *text = json_string_value(member(object, key));
-    snprintf(target, DRIVER_NAME_SIZE, "%s", text != NULL ? text : "");
-}
-
-static DriverBody read_body(const json_t *object)
-{
-    DriverBody body = {.mass = number(object, "mass_kg"),
-                       .inertia = number(object, "inertia_kg_m2"),
-                       .start = {.position = pair(object, "position_m"),
-                                 .angle = number(object, "angle_rad"),
-                                 .velocity = pair(object, "velocity_m_s"),
-                                 .omega = number(object, "omega_rad_s")}};
-    copy_text(object, "name", body.name);
-    return body;
-}
-
-static ForceLaw read_law(const json_t *object)
-{
-    ForceLaw law = {.family = FORCE_LAW_POWER};
-    const char *family = json_string_value(member(object, "family"));
-    if (strcmp(family, "conforming") == 0) {
-        law.family = FORCE_LAW_CONFORMING;
-        law.conforming.stiffness = number(object, "stiffness_N_m");
-        law.conforming.play = number(object, "play_m");
-        const json_t *series = member(object, "series");
-        for (size_t i = 0; i < CONFORMING_TERMS; i++) {
-            law.conforming.series[i] = json_number_value(json_array_get(series, i));
-        }
-    } else if (strcmp(family, "power") == 0) {
-        law.stiffness = number(object, "stiffness_N_m");
-        law.exponent = number(object, "exponent");
-    } else {
-        law.family = FORCE_LAW_LOGARITHMIC;
-        law.compliance = number(object, "compliance_m_N");
-        law.offset = number(object, "offset");
-        law.log_scale = number(object, "log_scale");
-    }
-    law.hysteresis = number(object, "hysteresis");
-    law.viscous = number(object, "viscous_N_s_m");
-    law.full_damping_depth = number(object, "full_damping_depth_m");
-    law.impact_speed_floor = number(object, "impact_speed_floor_m_s");
-    law.resting_speed = number(object, "resting_speed_m_s");
-    law.friction = number(object, "friction");
-    law.friction_speed = number(object, "friction_speed_m_s");
-    return law;
-}
-
-static ContactState read_contact(const json_t *object)
-{
-    if (json_is_null(object)) {
-        return (ContactState){.is_touching = false};
-    }
-    return (ContactState){.is_touching = true,
-                          .is_slack = json_is_true(member(object, "is_slack")),
-                          .is_released = json_is_true(member(object, "is_released")),
-                          .is_resting = json_is_true(member(object, "is_resting")),
-                          .impact_speed = number(object, "impact_speed_m_s"),
-                          .damping_speed = number(object, "damping_speed_m_s"),
-                          .age_s = number(object, "age_s")};
-}
-
-static DriverJoint read_joint(const json_t *object)
-{
-    DriverJoint joint = {.kind = DRIVER_REVOLUTE};
-    copy_text(object, "name", joint.name);
-    joint.bodies[0] = (int)number(object, "body_a");
-    joint.bodies[1] = (int)number(object, "body_b");
-    joint.anchors[0] = pair(object, "anchor_a_m");
-    joint.anchors[1] = pair(object, "anchor_b_m");
-    const char *kind = json_string_value(member(object, "kind"));
-    if (strcmp(kind, "prismatic") == 0) {
-        joint.kind = DRIVER_PRISMATIC;
-        joint.direction = number(object, "direction_rad");
-    } else if (strcmp(kind, "pin-in-hole") == 0) {
-        joint.kind = DRIVER_PIN_IN_HOLE;
-        joint.clearance = number(object, "radial_clearance_m");
-        joint.hole_radius = number(object, "hole_radius_m");
-        joint.law = read_law(member(object, "law"));
-        joint.contact = read_contact(member(object, "contact"));
-    } else if (strcmp(kind, "revolute") != 0) {
-        driver_refuse("the %s '%s'", kind, joint.name);
-    }
-    return joint;
-}
-
-static void read_drive(const json_t *drive, DriverCase *of)
-{
-    of->driven_body = DRIVER_GROUND;
-    of->has_drive = !json_is_null(drive);
-    if (of->has_drive) {
-        of->driven_body = (int)number(drive, "body");
-        of->drive_joint = (int)number(drive, "joint");
-        of->drive_speed = number(drive, "speed_rad_s");
-    }
-}
-
-static DriverSpring read_spring(const json_t *object)
-{
-    return (DriverSpring){.bodies = {(int)number(object, "body_a"), (int)number(object, "body_b")},
-                          .anchors = {pair(object, "anchor_a_m"), pair(object, "anchor_b_m")},
-                          .stiffness = number(object, "stiffness_N_m"),
-                          .length = number(object, "length_m"),
-                          .damping = number(object, "damping_N_s_m")};
-}
-
-static DriverTorsion read_torsion(const json_t *object)
-{
-    return (DriverTorsion){.joint = (int)number(object, "joint"),
-                           .stiffness = number(object, "stiffness_N_m_rad"),
-                           .angle = number(object, "angle_rad"),
-                           .damping = number(object, "damping_N_m_s_rad")};
-}
-
-// One of the curves of a bushing; without points there is none.
-static void read_curve(const json_t *object, const char *key, ForceCurveShape shape,
-                       ForceCurve *curve)
-{
-    const json_t *points = member(object, key);
-    curve->count = json_array_size(points);
-    if (curve->count > FORCE_CURVE_MAX || curve->count == 1) {
-        driver_fail("a bushing has a curve of %zu points", curve->count);
-    }
-    for (size_t i = 0; i < curve->count; i++) {
-        const json_t *point = json_array_get(points, i);
-        curve->at[i] = json_number_value(json_array_get(point, 0));
-        curve->values[i] = json_number_value(json_array_get(point, 1));
-    }
-    force_curve_settle(curve, shape);
-}
-
-static void read_bushing(const json_t *object, DriverBushing *bushing)
-{
-    const char *word = json_string_value(member(object, "shape"));
-    const bool is_smooth =
-        word != NULL && strcmp(word, FORCE_CURVE_SHAPES[FORCE_CURVE_SMOOTH]) == 0;
-    const ForceCurveShape shape = is_smooth ? FORCE_CURVE_SMOOTH : FORCE_CURVE_LINEAR;
-    const Vec2 stiffness = pair(object, "stiffness_N_m");
-    const Vec2 damping = pair(object, "damping_N_s_m");
-    *bushing = (DriverBushing){
-        .bodies = {(int)number(object, "body_a"), (int)number(object, "body_b")},
-        .anchors = {pair(object, "anchor_a_m"), pair(object, "anchor_b_m")},
-        .direction = number(object, "direction_rad"),
-        .angle = number(object, "angle_rad"),
-        .stiffness = {stiffness.x, stiffness.y, number(object, "stiffness_N_m_rad")},
-        .damping = {damping.x, damping.y, number(object, "damping_N_m_s_rad")},
-    };
-    read_curve(object, "force_x", shape, &bushing->curves[0]);
-    read_curve(object, "force_y", shape, &bushing->curves[1]);
-    read_curve(object, "torque", shape, &bushing->curves[2]);
-}
-
-static void read_table(const json_t *object, LoadTable *table)
-{
-    const json_t *points = member(object, "points");
-    const char *shape = json_string_value(member(object, "shape"));
-    table->count = json_array_size(points);
-    table->period = number(object, "period");
-    if (table->count > LOAD_TABLE_MAX) {
-        driver_fail("a load has more than %d points", LOAD_TABLE_MAX);
-    }
-    for (size_t i = 0; i < table->count; i++) {
-        const json_t *point = json_array_get(points, i);
-        table->at[i] = json_number_value(json_array_get(point, 0));
-        table->values[i] = json_number_value(json_array_get(point, 1));
-    }
-    for (int i = 0; i < LOAD_SHAPE_COUNT; i++) {
-        table->shape =
-            shape != NULL && strcmp(shape, LOAD_SHAPES[i]) == 0 ? (LoadShape)i : table->shape;
-    }
-    load_table_settle(table);
-}
-
-static void read_load(const json_t *object, DriverLoad *load)
-{
-    const json_t *over = json_object_get(object, "over_joint");
-    load->over_joint = over != NULL ? (int)json_number_value(over) : -1;
-    load->shift = number(object, "shift");
-    load->rate = over != NULL ? 0.0 : number(object, "rate");
-    read_table(object, &load->table);
-    if (json_object_get(object, "joint") != NULL) {
-        load->kind = DRIVER_ALONG;
-        load->joint = (int)number(object, "joint");
-        return;
-    }
-    load->kind = DRIVER_TORQUE;
-    load->body = (int)number(object, "body");
-    if (json_object_get(object, "direction_rad") != NULL) {
-        load->kind = DRIVER_FORCE;
-        load->anchor = pair(object, "anchor_m");
-        load->direction = number(object, "direction_rad");
-        load->turns_along = json_is_true(member(object, "turns_along"));
-    }
-}
-
-// What acts on the bodies; a request of protocol 1 has nothing of it, one of 2 no bushings.
-static void read_actions(const json_t *request, DriverCase *of)
-{
-    const json_t *springs = json_object_get(request, "springs");
-    const json_t *torsions = json_object_get(request, "torsion_springs");
-    const json_t *bushings = json_object_get(request, "bushings");
-    const json_t *loads = json_object_get(request, "loads");
-    of->bushing_count = json_array_size(bushings);
-    of->bushings = memory(of->bushing_count, sizeof *of->bushings);
-    for (size_t i = 0; i < of->bushing_count; i++) {
-        read_bushing(json_array_get(bushings, i), &of->bushings[i]);
-    }
-    of->spring_count = json_array_size(springs);
-    of->torsion_count = json_array_size(torsions);
-    of->load_count = json_array_size(loads);
-    of->springs = memory(of->spring_count, sizeof *of->springs);
-    of->torsions = memory(of->torsion_count, sizeof *of->torsions);
-    of->loads = memory(of->load_count, sizeof *of->loads);
-    for (size_t i = 0; i < of->spring_count; i++) {
-        of->springs[i] = read_spring(json_array_get(springs, i));
-    }
-    for (size_t i = 0; i < of->torsion_count; i++) {
-        of->torsions[i] = read_torsion(json_array_get(torsions, i));
-    }
-    for (size_t i = 0; i < of->load_count; i++) {
-        read_load(json_array_get(loads, i), &of->loads[i]);
-    }
-}
-
-static DriverCase *read_case(const json_t *request)
-{
-    DriverCase *of = memory(1, sizeof *of);
-    copy_text(request, "way", of->way);
-    of->step_s = number(request, "step_s");
-    of->duration_s = number(request, "duration_s");
-    of->record_s = json_number_value(json_object_get(request, "record_s"));
-    of->gravity = pair(request, "gravity_m_s2");
-    of->wants_model = json_is_true(json_object_get(request, "model"));
-    const json_t *bodies = member(request, "bodies");
-    const json_t *joints = member(request, "joints");
-    const json_t *times = member(request, "sample_times_s");
-    of->body_count = json_array_size(bodies);
-    of->joint_count = json_array_size(joints);
-    of->sample_count = json_array_size(times);
-    of->bodies = memory(of->body_count, sizeof *of->bodies);
-    of->joints = memory(of->joint_count, sizeof *of->joints);
-    of->sample_times = memory(of->sample_count, sizeof *of->sample_times);
-    for (size_t i = 0; i < of->body_count; i++) {
-        of->bodies[i] = read_body(json_array_get(bodies, i));
-    }
-    for (size_t i = 0; i < of->joint_count; i++) {
-        of->joints[i] = read_joint(json_array_get(joints, i));
-    }
-    for (size_t i = 0; i < of->sample_count; i++) {
-        of->sample_times[i] = json_number_value(json_array_get(times, i));
-    }
-    read_drive(member(request, "drive"), of);
-    read_actions(request, of);
-    return of;
-}
-
 static void say_hello(const DriverIdentity *identity)
 {
     json_t *ways = json_array();
@@ -392,7 +106,7 @@ DriverCase *driver_read(const DriverIdentity *identity, int *status)
     const char *ask = json_string_value(json_object_get(request, "ask"));
     DriverCase *of = NULL;
     if (ask != NULL && strcmp(ask, "run") == 0) {
-        of = read_case(request);
+        of = driver_read_case(request);
         bool is_known = false;
         for (size_t i = 0; identity->ways[i] != NULL; i++) {
             is_known = is_known || driver_is_way(of, identity->ways[i]);
@@ -426,14 +140,18 @@ DriverRun driver_run_start(const DriverCase *of)
 {
     DriverRun run = {
         .of = of,
-        .motions = memory(of->sample_count * of->body_count, sizeof *run.motions),
-        .forces = memory(of->sample_count * of->joint_count, sizeof *run.forces),
-        .totals = memory(of->joint_count, sizeof *run.totals),
-        .touches = memory(of->joint_count, sizeof *run.touches),
+        .motions = driver_room(of->sample_count * of->body_count, sizeof *run.motions),
+        .forces = driver_room(of->sample_count * of->joint_count, sizeof *run.forces),
+        .totals = driver_room(of->joint_count, sizeof *run.totals),
+        .touches = driver_room(of->joint_count, sizeof *run.touches),
+        .touched = driver_room(of->joint_count, sizeof *run.touched),
     };
+    for (size_t i = 0; i < of->place_count; i++) {
+        run.touched[of->places[i].joint] = true;
+    }
     for (size_t i = 0; i < DRIVER_STAMPS; i++) {
-        run.stamps[i].motions = memory(of->body_count, sizeof(DriverMotion));
-        run.stamps[i].forces = memory(of->joint_count, sizeof(Vec2));
+        run.stamps[i].motions = driver_room(of->body_count, sizeof(DriverMotion));
+        run.stamps[i].forces = driver_room(of->joint_count, sizeof(Vec2));
     }
     return run;
 }
@@ -579,7 +297,7 @@ void driver_run_record(DriverRun *run, double start_s, double end_s, const Drive
         body[2] = motions[i].omega;
     }
     for (size_t i = 0; i < run->of->joint_count; i++, body += RECORD_JOINT) {
-        if (run->of->joints[i].kind == DRIVER_PIN_IN_HOLE) {
+        if (run->touched[i]) {
             record_touch(&touches[i], before_s, end_s - start_s, body);
         }
     }
@@ -594,17 +312,7 @@ static void record_stamps(DriverRun *run)
     }
     const DriverStamp *last = &run->stamps[run->stamp_count - 2];
     const DriverStamp *now = last + 1;
-    for (size_t i = 0; i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
-        if (joint->kind == DRIVER_PIN_IN_HOLE) {
-            const PinHole pose = driver_pose(joint, last->motions);
-            run->touches[i] = (DriverTouch){.eccentricity = pose.eccentricity,
-                                            .force = last->forces[i],
-                                            .force_max = vec2_length(last->forces[i]),
-                                            .depth_max = pose.penetration,
-                                            .approach = run->totals[i].approach};
-        }
-    }
+    places_touches(run->of, last->motions, last->forces, run->totals, run->touches);
     driver_run_record(run, last->velocity_s, now->velocity_s, now->motions, run->touches);
 }
 
@@ -719,7 +427,7 @@ void driver_run_write(DriverRun *run)
     _Exit(ferror(answers) ? 1 : 0);
 }
 
-// Pins in their holes.
+// Points of bodies.
 
 Vec2 driver_point(const DriverMotion *motions, int body, Vec2 local)
 {
@@ -735,72 +443,4 @@ Vec2 driver_point_velocity(const DriverMotion *motions, int body, Vec2 local)
     }
     const Vec2 arm = vec2_rotate(motions[body].angle, local);
     return vec2_add(motions[body].velocity, vec2_scale(motions[body].omega, vec2_perp(arm)));
-}
-
-PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions)
-{
-    const Vec2 hole = driver_point(motions, joint->bodies[0], joint->anchors[0]);
-    const Vec2 pin = driver_point(motions, joint->bodies[1], joint->anchors[1]);
-    const Vec2 going =
-        vec2_sub(driver_point_velocity(motions, joint->bodies[1], joint->anchors[1]),
-                 driver_point_velocity(motions, joint->bodies[0], joint->anchors[0]));
-    return pin_hole_pose(hole, pin, going, joint->clearance);
-}
-
-static double omega_of(const DriverMotion *motions, int body)
-{
-    return body == DRIVER_GROUND ? 0.0 : motions[body].omega;
-}
-
-// With n the normal, t = perp n, R the hole's radius and r = R - |e|, the pin slides at
-//     v_t = t . (v_b - v_a) + R w_a - r w_b,   friction  mu N tanh(v_t / v_s)  against it
-DriverPress driver_press(const DriverJoint *joint, const DriverContact *contact,
-                         const PinHole *pose, const DriverMotion *motions)
-{
-    if (!(pose->penetration > 0.0)) {
-        return (DriverPress){.force = {0.0, 0.0}};
-    }
-    const double began = fmax(contact->approach_before, pose->approach_speed);
-    const double speed = contact->state.is_touching ? contact->state.damping_speed : began;
-    const double force =
-        force_law_force(&joint->law, pose->penetration, pose->approach_speed, speed);
-    DriverPress press = {.force = vec2_scale(force, pose->normal)};
-    if (joint->law.friction > 0.0) {
-        const int *bodies = joint->bodies;
-        const Vec2 tangent = vec2_perp(pose->normal);
-        const double pin_arm = joint->hole_radius - pose->eccentricity_size;
-        const Vec2 going = vec2_sub(driver_point_velocity(motions, bodies[1], joint->anchors[1]),
-                                    driver_point_velocity(motions, bodies[0], joint->anchors[0]));
-        const double sliding = vec2_dot(tangent, going) +
-                               joint->hole_radius * omega_of(motions, bodies[0]) -
-                               pin_arm * omega_of(motions, bodies[1]);
-        const double held =
-            joint->law.friction * force * friction_hold(sliding, joint->law.friction_speed).held;
-        press.force = vec2_sub(press.force, vec2_scale(held, tangent));
-        press.moments[0] = -joint->hole_radius * held;
-        press.moments[1] = pin_arm * held;
-    }
-    return press;
-}
-
-void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,
-                   DriverTotals *totals)
-{
-    ContactState *state = &contact->state;
-    if (pose->penetration > 0.0) {
-        if (!state->is_touching) {
-            const double before = fmax(contact->gap_before, 0.0);
-            const double share = before / (before + pose->penetration);
-            *state = contact_state_begun((1.0 - share) * contact->approach_before +
-                                         share * pose->approach_speed);
-            totals->begun++;
-            totals->approach = state->impact_speed;
-        }
-        contact_state_follow(state, pose->approach_speed, joint->law.resting_speed);
-        totals->depth_max = fmax(totals->depth_max, pose->penetration);
-    } else {
-        state->is_touching = false;
-    }
-    contact->gap_before = pose->gap;
-    contact->approach_before = pose->approach_speed;
 }
