@@ -402,7 +402,7 @@ static void write_record(const DriverRun *run, const double *record)
     fprintf(answers, "],\"joints\":[");
     for (size_t i = 0; i < run->of->joint_count; i++, at += RECORD_JOINT) {
         fprintf(answers, "%s", i > 0 ? "," : "");
-        if (run->of->joints[i].kind != DRIVER_PIN_IN_HOLE) {
+        if (!run->touched[i]) {
             fprintf(answers, "null");
             continue;
         }

@@ -20,7 +20,7 @@
 #include <string.h>
 
 // of the velocities: what they are changed by for S
-static const double NUDGE = 1e-3;
+static const double NUDGE = 1e-6;
 
 // rad, that the fastest body turns in a short step: its square is the error of directions, and
 // over it rounding is seen
@@ -28,6 +28,9 @@ static const double TRIAL_PHASE = 4e-4;
 
 // rad, by which the fastest body turns between the two: the square of it is the error
 static const double BEND_PHASE = 3e-5;
+
+// rad, likewise between the two places at which responses are compared
+static const double TURN_PHASE = 1e-3;
 
 // of a step: times that are nearer to each other are one
 static const double TIME_ROUNDING = 1e-9;
@@ -40,6 +43,7 @@ typedef struct Trial {
     DriverRun *run;
     double *other;         // by coordinate; owned, as all arrays
     double *changed;       // by coordinate
+    double *later;         // likewise
     DriverMotion *motions; // by body
     DriverMotion *tried;   // of a trial
     Vec2 *bends;
@@ -232,18 +236,36 @@ static void find_row_accelerations(Trial *trial, const double *v, const double *
     }
 }
 
-// A, from a trial with a force in each row: one that does as much as all that acts.
-static void try_rows(Trial *trial)
+// The same by a trial with a force in each row: one that does as much as all that acts.
+static void try_rows(Trial *trial, const double *q, const double *v, const double *free,
+                     double *columns)
 {
-    const double size = 1.0 + sqrt(dot(trial->in.free, trial->in.free, trial->in.count));
-    for (size_t k = 0; k < trial->in.rows; k++) {
-        double *response = trial->in.responses[0] + k * trial->in.count;
-        memset(trial->in.work, 0, trial->in.rows * sizeof *trial->in.work);
-        trial->in.work[k] = 1.0;
-        evaluate(trial, trial->in.q_middle, trial->in.v_middle, trial->in.work, size, response);
-        for (size_t i = 0; i < trial->in.count; i++) {
-            response[i] = (response[i] - trial->in.free[i]) / size;
+    Within *in = &trial->in;
+    const double size = 1.0 + sqrt(dot(free, free, in->count));
+    for (size_t k = 0; k < in->rows; k++) {
+        double *column = columns + k * in->count;
+        memset(in->work, 0, in->rows * sizeof *in->work);
+        in->work[k] = 1.0;
+        evaluate(trial, q, v, in->work, size, column);
+        for (size_t i = 0; i < in->count; i++) {
+            column[i] = (column[i] - free[i]) / size;
         }
+    }
+}
+
+// Writes what unit forces in the rows do to the accelerations, where the bodies of `motions` and
+// the Jacobian are; `free` is what they are without.
+static void find_columns(Trial *trial, const double *q, const double *v, const double *free,
+                         double *columns)
+{
+    Within *in = &trial->in;
+    if (trial->engine->respond == NULL) {
+        try_rows(trial, q, v, free, columns);
+        return;
+    }
+    trial->engine->respond(trial->engine->engine, in->rows, in->jacobian, columns);
+    for (size_t k = 0; k < in->rows; k++) {
+        hold_restrain(&trial->hold, columns + k * in->count);
     }
 }
 
@@ -251,20 +273,37 @@ static void try_rows(Trial *trial)
 static void find_response(Trial *trial)
 {
     Within *in = &trial->in;
-    within_age_responses(in, middle_of(trial));
-    if (trial->engine->respond == NULL) {
-        try_rows(trial);
-    } else {
-        trial->engine->respond(trial->engine->engine, in->rows, in->jacobian, in->responses[0]);
-        for (size_t k = 0; k < in->rows; k++) {
-            hold_restrain(&trial->hold, in->responses[0] + k * in->count);
-        }
-    }
+    find_columns(trial, in->q_middle, in->v_middle, in->free, in->response);
     for (size_t i = 0; i < in->rows; i++) {
         for (size_t k = 0; k < in->rows; k++) {
             *kernel_mobility(&in->kernel, i, k) =
-                dot(in->jacobian + i * in->count, in->responses[0] + k * in->count, in->count);
+                dot(in->jacobian + i * in->count, in->response + k * in->count, in->count);
         }
+    }
+}
+
+// A', from A where the bodies are a little later at the mean rates of the step. It matters where
+// contacts have pushed alone.
+static void find_rate(Trial *trial)
+{
+    Within *in = &trial->in;
+    const size_t count = in->count;
+    const double later_s = TURN_PHASE / BEND_PHASE * little_of(trial);
+    memset(in->rate, 0, in->rows * count * sizeof *in->rate);
+    if (!within_has_pushed(in)) {
+        return;
+    }
+    double *q = trial->later;
+    memcpy(q, in->q_middle, count * sizeof *q);
+    add(q, in->nudged, later_s, count);
+    hold_settle(&trial->hold, trial->start_s, middle_of(trial) + later_s, q, in->nudged);
+    tree_motions(trial->tree, q, in->nudged, trial->motions);
+    hold_place(&trial->hold, trial->motions);
+    find_jacobian(trial);
+    evaluate(trial, q, in->nudged, NULL, 0.0, trial->changed);
+    find_columns(trial, q, in->nudged, trial->changed, in->rate);
+    for (size_t i = 0; i < in->rows * count; i++) {
+        in->rate[i] = (in->rate[i] - in->response[i]) / later_s;
     }
 }
 
@@ -274,7 +313,7 @@ static void find_drift(Trial *trial)
     const size_t count = trial->in.count;
     const double speed = sqrt(dot(trial->in.v_middle, trial->in.v_middle, count));
     for (size_t k = 0; k < trial->in.rows; k++) {
-        const double *response = trial->in.responses[0] + k * count;
+        const double *response = trial->in.response + k * count;
         const double size = sqrt(dot(response, response, count));
         if (!(size > 0.0)) {
             continue; // a turn of the ground: nothing follows it
@@ -300,9 +339,12 @@ static void find_accelerations(Trial *trial, double step_s)
     Within *in = &trial->in;
     const double per_s = 1.0 / step_s;
     memcpy(in->nudged, in->v_middle, in->count * sizeof *in->nudged);
-    within_add_rows(in, in->responses[0], in->sums.moment, per_s, in->nudged);
+    within_add_rows(in, in->response, in->sums.moment, per_s, in->nudged);
     evaluate(trial, in->q_middle, in->nudged, in->sums.impulse, per_s, trial->other);
     within_take_accelerations(in, trial->other, step_s);
+    if (getenv("VM"))
+        memcpy(in->nudged, in->v_middle, in->count * sizeof *in->nudged);
+    find_rate(trial);
 }
 
 static void take_step(Trial *trial, double step_s)
@@ -317,7 +359,6 @@ static void take_step(Trial *trial, double step_s)
     find_jacobian(trial);
     evaluate(trial, in->q_middle, in->v_middle, NULL, 0.0, in->free);
     find_response(trial);
-    within_find_rate(in);
     find_row_accelerations(trial, in->v_middle, in->free, in->kernel.free);
     find_drift(trial);
     within_find_free_rate(in, step_s);
@@ -349,6 +390,7 @@ static Trial make(const Tree *tree, const TrialEngine *engine, DriverRun *run)
                    .run = run,
                    .other = driver_room(tree->coordinates, sizeof *trial.other),
                    .changed = driver_room(tree->coordinates, sizeof *trial.changed),
+                   .later = driver_room(tree->coordinates, sizeof *trial.later),
                    .motions = driver_room(of->body_count, sizeof *trial.motions),
                    .bends = driver_room(of->body_count, sizeof *trial.bends),
                    .tried = driver_room(of->body_count, sizeof *trial.tried),

@@ -35,8 +35,8 @@ void within_open(const DriverCase *of, size_t count, Within *in)
     for (size_t i = 0; i < sizeof by_coordinate / sizeof *by_coordinate; i++) {
         *by_coordinate[i] = numbers(count);
     }
-    double **by_block[] = {&in->responses[0], &in->responses[1], &in->responses[2], &in->rate,
-                           &in->bend_rate,    &in->bend_before,  &in->jacobian,     &in->bend};
+    double **by_block[] = {&in->response,    &in->rate,     &in->bend_rate,
+                           &in->bend_before, &in->jacobian, &in->bend};
     for (size_t i = 0; i < sizeof by_block / sizeof *by_block; i++) {
         *by_block[i] = numbers(in->rows * count);
     }
@@ -81,8 +81,8 @@ void within_find_middle(Within *in, double step_s)
     add(in->q_middle, in->v, 0.5 * step_s, count);
     add(in->q_middle, in->ahead, 0.125 * step_s * step_s, count);
     if (in->known > 0) {
-        within_add_rows(in, in->responses[0], in->sums.impulse,
-                        0.125 * step_s * step_s / in->before_s, in->q_middle);
+        within_add_rows(in, in->response, in->sums.impulse, 0.125 * step_s * step_s / in->before_s,
+                        in->q_middle);
     }
     // the parabola of the last step, about its middle, from its end to half a step behind that
     const double from = 0.5 * in->before_s;
@@ -114,28 +114,13 @@ void within_find_free_rate(Within *in, double step_s)
     }
 }
 
-void within_age_responses(Within *in, double middle_s)
+bool within_has_pushed(const Within *in)
 {
-    double *oldest = in->responses[KERNEL_COLUMNS_KNOWN - 1];
-    memmove(in->responses + 1, in->responses, (KERNEL_COLUMNS_KNOWN - 1) * sizeof *in->responses);
-    memmove(in->middles_s + 1, in->middles_s, (KERNEL_COLUMNS_KNOWN - 1) * sizeof *in->middles_s);
-    in->responses[0] = oldest;
-    in->middles_s[0] = middle_s;
-}
-
-void within_find_rate(Within *in)
-{
-    double times_s[KERNEL_COLUMNS_KNOWN];
-    for (size_t i = 0; i < KERNEL_COLUMNS_KNOWN; i++) {
-        times_s[i] = in->middles_s[i] - in->middles_s[0];
+    bool has = false;
+    for (size_t i = 0; i < in->rows; i++) {
+        has = has || in->sums.impulse[i] != 0.0;
     }
-    const size_t known =
-        in->known + 1 < KERNEL_COLUMNS_KNOWN ? in->known + 1 : KERNEL_COLUMNS_KNOWN;
-    const KernelShares shares = kernel_columns_shares(times_s, known, 0.0);
-    memset(in->rate, 0, in->rows * in->count * sizeof *in->rate);
-    for (size_t i = 0; i < known; i++) {
-        add(in->rate, in->responses[i], shares.rate[i], in->rows * in->count);
-    }
+    return has;
 }
 
 void within_find_rows(Within *in, const DriverMotion *motions)
@@ -164,7 +149,7 @@ void within_take_accelerations(Within *in, const double *a, double step_s)
 {
     const double apart_s = apart_of(in, step_s);
     memcpy(in->a, a, in->count * sizeof *in->a);
-    within_add_rows(in, in->responses[0], in->sums.impulse, -1.0 / step_s, in->a);
+    within_add_rows(in, in->response, in->sums.impulse, -1.0 / step_s, in->a);
     within_add_rows(in, in->bend, in->sums.moment, -1.0 / step_s, in->a);
     for (size_t i = 0; i < in->rows * in->count; i++) {
         in->bend_rate[i] = in->known > 0 ? (in->bend[i] - in->bend_before[i]) / apart_s : 0.0;
@@ -202,7 +187,7 @@ void within_find_inside(const Within *in, double since_s, double step_s, const K
     memcpy(v, in->v, in->count * sizeof *v);
     add_beside(in, since_s, 0.5 * step_s, q, v);
     const KernelColumns columns = {
-        .rows = in->rows, .coordinates = in->count, .columns = in->responses[0], .rates = in->rate};
+        .rows = in->rows, .coordinates = in->count, .columns = in->response, .rates = in->rate};
     kernel_columns_push(&columns, off_s, sums->impulse, sums->moment, v, q);
     within_add_rows(in, in->bend, sums->moment, 1.0, v);
     within_add_rows(in, in->bend_rate, sums->moment, off_s, v);

@@ -28,19 +28,18 @@ typedef struct Within {
     double *v_middle;
     double *free; // G, at mid-step
     double *nudged;
-    double *responses[KERNEL_COLUMNS_KNOWN]; // A: row by row
-    double *rate;                            // A'
-    double *jacobian;                        // row by row
-    double *bend;                            // B
+    double *response; // A: row by row
+    double *rate;     // A'
+    double *jacobian; // row by row
+    double *bend;     // B
     double *bend_rate;
     double *bend_before;
     double *drift;       // S
     double *free_before; // by row
     double *work;
-    size_t known;                           // steps since the scheme was started
-    size_t calm_steps;                      // in a row, in which the contacts pushed little
-    double before_s;                        // length of the step before
-    double middles_s[KERNEL_COLUMNS_KNOWN]; // of the responses: when they were
+    size_t known;      // steps since the scheme was started
+    size_t calm_steps; // in a row, in which the contacts pushed little
+    double before_s;   // length of the step before
 } Within;
 
 // Makes the contacts of a case, one a place, and all room.
@@ -63,10 +62,8 @@ void within_find_middle(Within *in, double step_s);
 void within_keep_free(Within *in);
 void within_find_free_rate(Within *in, double step_s);
 
-// The responses become those of the step before, the newest of the middle of this one; then A'
-// there, from A there and before.
-void within_age_responses(Within *in, double middle_s);
-void within_find_rate(Within *in);
+// Whether the contacts have pushed in the step that has been integrated.
+bool within_has_pushed(const Within *in);
 
 // Where the rows are at the step's start, and how fast they go.
 void within_find_rows(Within *in, const DriverMotion *motions);
