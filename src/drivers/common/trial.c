@@ -282,26 +282,27 @@ static void find_response(Trial *trial)
     }
 }
 
-// A', from A where the bodies are a little later at the mean rates of the step. It matters where
-// contacts have pushed alone.
+// A', from A where the bodies are a little later. It matters where contacts have pushed alone.
 static void find_rate(Trial *trial)
 {
     Within *in = &trial->in;
     const size_t count = in->count;
-    const double later_s = TURN_PHASE / BEND_PHASE * little_of(trial);
     memset(in->rate, 0, in->rows * count * sizeof *in->rate);
     if (!within_has_pushed(in)) {
         return;
     }
+    const double later_s = TURN_PHASE / BEND_PHASE * little_of(trial);
     double *q = trial->later;
+    double *v = in->nudged;
     memcpy(q, in->q_middle, count * sizeof *q);
-    add(q, in->nudged, later_s, count);
-    hold_settle(&trial->hold, trial->start_s, middle_of(trial) + later_s, q, in->nudged);
-    tree_motions(trial->tree, q, in->nudged, trial->motions);
+    memcpy(v, in->v_middle, count * sizeof *v);
+    add(q, v, later_s, count);
+    hold_settle(&trial->hold, trial->start_s, middle_of(trial) + later_s, q, v);
+    tree_motions(trial->tree, q, v, trial->motions);
     hold_place(&trial->hold, trial->motions);
     find_jacobian(trial);
-    evaluate(trial, q, in->nudged, NULL, 0.0, trial->changed);
-    find_columns(trial, q, in->nudged, trial->changed, in->rate);
+    evaluate(trial, q, v, NULL, 0.0, trial->changed);
+    find_columns(trial, q, v, trial->changed, in->rate);
     for (size_t i = 0; i < in->rows * count; i++) {
         in->rate[i] = (in->rate[i] - in->response[i]) / later_s;
     }
@@ -342,8 +343,6 @@ static void find_accelerations(Trial *trial, double step_s)
     within_add_rows(in, in->response, in->sums.moment, per_s, in->nudged);
     evaluate(trial, in->q_middle, in->nudged, in->sums.impulse, per_s, trial->other);
     within_take_accelerations(in, trial->other, step_s);
-    if (getenv("VM"))
-        memcpy(in->nudged, in->v_middle, in->count * sizeof *in->nudged);
     find_rate(trial);
 }
 
