@@ -230,7 +230,9 @@ static bool check_record(const EngineReply *reply, Err *err)
     }
     for (size_t i = 0; i < records->joint_count; i++) {
         const EngineTouch touch = engine_records_joint(records, last, i);
-        if (vec2_length(touch.eccentricity) > most || touch.depth_max > most) {
+        // the gap of a stop may be larger than any body, and that of a hinge is an angle
+        const bool is_bounded = joint_has_hole(reply->scenario->linkage.joints[i].kind);
+        if (is_bounded && (vec2_length(touch.eccentricity) > most || touch.depth_max > most)) {
             return err_set(err, ERR_SOLVER,
                            "its line 'step' of %.6g s has as 'joints[%zu]' an eccentricity or a "
                            "depth above the longest reach of a body, %.3g m",

@@ -4,6 +4,7 @@
 // (ode/plane/impulse.c, ode/space/space_impulse.c).
 #pragma once
 
+#include "kernel/marks.h"
 #include "kernel/step.h"
 #include "model/response_groups.h"
 #include "model/solver.h"
@@ -61,26 +62,6 @@ bool impulse_take_scheme(const Scenario *scenario, KernelStep *step, Err *err);
 
 // Carries the step, its contacts, and the tick at its end.
 void impulse_carry_scheme(KernelStep *step, ImpulseTicks *ticks, Carry *carry);
-
-// The instants within a step at which something stands out: contacts begin or end, forces and
-// depths have their maxima, the step ends.
-typedef struct Mark {
-    double time_s; // since the start of the step
-    size_t node;   // of the kernel: the state there is that of the interval behind it
-    bool is_peak;  // whether it is there for a maximum alone
-} Mark;
-
-typedef struct Marks {
-    size_t count;
-    size_t room;
-    size_t next; // the first that has not been handed on
-    Mark *marks; // in order of time; owned
-} Marks;
-
-// Finds the marks of a kernel that has run. The last is the step's end. Of many maxima those
-// that others nearly coincide with have no mark of their own.
-void marks_find(Marks *marks, const Kernel *kernel);
-void marks_finish(Marks *marks);
 
 // The parts in which a step with contacts integrated inside it is handed on: they end where a
 // contact begins, ends, or shows a maximum, so that no peak is missed whatever the step.

@@ -5,9 +5,9 @@
 // Of an angle lengths are angles, forces torques and masses inertias.
 #pragma once
 
-#include "contact/contact_peaks.h"
 #include "contact/law_row.h"
 #include "contact/onset.h"
+#include "kernel/contact_peaks.h"
 #include "kernel/contact_state.h"
 #include "ode/stepping.h"
 

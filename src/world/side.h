@@ -1,9 +1,9 @@
 // One side of a joint with play: where it touches, how hard, and what came of it since it was made.
 #pragma once
 
-#include "contact/contact_peaks.h"
 #include "contact/law_row.h"
 #include "contact/overlap.h"
+#include "kernel/contact_peaks.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 

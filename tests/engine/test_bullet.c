@@ -87,6 +87,12 @@ static void springs_and_torques_act(void **state)
     hold_random_springs(BULLET, 41u);
 }
 
+static void sliders_go_along_any_line(void **state)
+{
+    (void)state;
+    hold_random_sliders(BULLET, 20u);
+}
+
 static void bushings_act(void **state)
 {
     (void)state;
@@ -112,6 +118,7 @@ int main(void)
         cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(sliders_go_along_any_line),
         cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),

@@ -136,6 +136,12 @@ static void springs_and_torques_act(void **state)
     hold_random_springs(CHIPMUNK, 40u);
 }
 
+static void sliders_go_along_any_line(void **state)
+{
+    (void)state;
+    hold_random_sliders(CHIPMUNK, 20u);
+}
+
 static void bushings_act(void **state)
 {
     (void)state;
@@ -162,6 +168,7 @@ int main(void)
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(its_step_can_be_chosen),
         cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(sliders_go_along_any_line),
         cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),

@@ -82,6 +82,18 @@ static void springs_and_torques_act(void **state)
     hold_random_springs(SIMBODY, 39u);
 }
 
+static void sliders_go_along_any_line(void **state)
+{
+    (void)state;
+    hold_random_sliders(SIMBODY, 20u);
+}
+
+static void the_largest_force_is_between_steps(void **state)
+{
+    (void)state;
+    hold_largest_force(SIMBODY, "force");
+}
+
 static void bushings_act(void **state)
 {
     (void)state;
@@ -108,6 +120,8 @@ int main(void)
         cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
         cmocka_unit_test(springs_and_torques_act),
+        cmocka_unit_test(sliders_go_along_any_line),
+        cmocka_unit_test(the_largest_force_is_between_steps),
         cmocka_unit_test(bushings_act),
         cmocka_unit_test(loads_and_motors_act),
         cmocka_unit_test(friction_acts),

@@ -1,7 +1,7 @@
 // Are the instants at which a contact shows its greatest force found, and its ends?
 #include "single_pin.h"
 
-#include "ode/impulse.h"
+#include "kernel/marks.h"
 
 static const double DURATION_S = 2e-4;
 

@@ -83,7 +83,6 @@ class World
     // of trials
     double trial_s = 0.0;
     std::vector<DriverMotion> tried;
-    std::vector<Vec2> bends;
 };
 
 btVector3 to_vector(Vec2 a)
@@ -269,7 +268,7 @@ void World::push()
     const double from_s = now_s - lag_s;
     actions_find(of, felt.data(), from_s, from_s + of->step_s, actions.data());
     places_follow(of, felt.data(), contacts, answer.totals);
-    places_press(of, contacts, felt.data(), actions.data(), forces.data(), answer.totals);
+    places_press(of, contacts, felt.data(), actions.data(), forces.data(), &answer, of->step_s);
     act(actions.data());
 }
 
@@ -356,11 +355,11 @@ void World::place(size_t i, const DriverMotion &motion)
 // The contacts within the step: the world is asked for accelerations, and moves nothing itself.
 void World::accelerate(const double *q, const double *v, const DriverAction *given, double *a)
 {
-    trial_place(&tree, q, v, trial_s, tried.data(), bends.data());
+    trial_place(&tree, q, v, given, tried.data(), actions.data());
     for (size_t i = 0; i < bodies.size(); i++) {
         place(i, tried[i]);
     }
-    act(given);
+    act(actions.data());
     world.stepSimulation(trial_s, 0);
     for (size_t i = 0; i < bodies.size(); i++) {
         now[i] = tried[i];
@@ -370,14 +369,13 @@ void World::accelerate(const double *q, const double *v, const DriverAction *giv
             now[i].omega = bodies[i]->getAngularVelocity().z();
         }
     }
-    trial_read(&tree, tried.data(), now.data(), bends.data(), trial_s, a);
+    trial_read(&tree, tried.data(), now.data(), trial_s, a);
 }
 
 void World::run_trials()
 {
     trial_s = trial_step(of);
     tried.resize(bodies.size());
-    bends.resize(bodies.size());
     std::snprintf(answer.settings, sizeof answer.settings,
                   "btMLCPSolver with btDantzigSolver, ERP 1, CFM 0, driven body kinematic, bodies "
                   "kept in the plane, trials of %.3g s",

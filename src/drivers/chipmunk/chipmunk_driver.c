@@ -12,6 +12,7 @@
 // as is usual, acts where the bodies no longer are: then the law fails at steps above 1 us. The
 // driven body is kinematic, about its pivot. Errors of joints are corrected in the next step, all
 // of them.
+#include "drivers/chipmunk/chipmunk_line.h"
 #include "drivers/common/trial.h"
 
 #include <chipmunk/chipmunk.h>
@@ -29,7 +30,13 @@ enum { ITERATIONS_OPEN = 10, ITERATIONS_SLIDING = 30, ITERATIONS_CLOSED = 100 };
 // Differences of trials are no better than the solver: so many as leave this share of the
 // accelerations, found at the start. How many these are depends on the masses: 30 to 240.
 enum { ITERATIONS_TRIAL = 30, ITERATIONS_TRIAL_MOST = 1000 };
-static const double SOLVED = 1e-9;
+static const double SOLVED = 1e-12;
+
+// rad and m, by which coordinates are apart where it is tried; and m/s^2 and rad/s^2, with what
+enum { TRIED_PLACES = 4 };
+static const double TRIED_APART = 0.4;
+static const double TRIED_ACCELERATION = 100.0;
+static const double TRIED_TURNING = 1e4;
 
 typedef struct ChipmunkRun {
     const DriverCase *of;
@@ -107,6 +114,9 @@ static void make_body(ChipmunkRun *run, size_t i)
 
 static void hold(ChipmunkRun *run, size_t joint, cpConstraint *constraint)
 {
+    if (constraint == NULL) {
+        driver_fail("there is no memory");
+    }
     cpConstraintSetErrorBias(constraint, 0.0);
     cpSpaceAddConstraint(run->space, constraint);
     run->holds[joint] = constraint;
@@ -128,10 +138,7 @@ static void make_joint(ChipmunkRun *run, size_t i, bool is_native)
     if (joint->kind == DRIVER_REVOLUTE) {
         hold(run, i, cpPivotJointNew2(a, b, on_a, on_b));
     } else if (joint->kind == DRIVER_PRISMATIC) {
-        // a groove has ends: far away
-        const double reach = 1e3;
-        const cpVect along = cpvmult(cpvforangle(joint->direction), reach);
-        hold(run, i, cpGrooveJointNew(a, b, cpvsub(on_a, along), cpvadd(on_a, along), on_b));
+        hold(run, i, chipmunk_line_new(a, b, cpvforangle(joint->direction)));
         const double held = cpBodyGetAngle(b) - cpBodyGetAngle(a);
         // a rotary limit of no width holds nothing as long as it is kept
         cpConstraint *angle = cpGearJointNew(a, b, held, 1.0);
@@ -182,8 +189,8 @@ static void find_forces(ChipmunkRun *run)
     actions_find(run->of, run->motions, run->from_s, run->to_s, run->actions);
     if (!run->is_native) {
         places_follow(run->of, run->motions, run->contacts, run->run.totals);
-        places_press(run->of, run->contacts, run->motions, run->actions, run->forces,
-                     run->run.totals);
+        places_press(run->of, run->contacts, run->motions, run->actions, run->forces, &run->run,
+                     run->of->step_s);
     }
 }
 
@@ -191,7 +198,7 @@ static void find_forces(ChipmunkRun *run)
 static void find_first_forces(ChipmunkRun *run)
 {
     read_motions(run, run->motions);
-    places_press(run->of, run->contacts, run->motions, NULL, run->forces, NULL);
+    places_press(run->of, run->contacts, run->motions, NULL, run->forces, NULL, 0.0);
 }
 
 // Lets forces and moments act on the bodies until the end of the step under way.
@@ -353,7 +360,7 @@ typedef struct Trials {
     double step_s; // of a trial
     DriverMotion *before;
     DriverMotion *after;
-    Vec2 *bends;
+    DriverAction *actions;
 } Trials;
 
 // Puts a body where the trial has it, in the frame that Chipmunk has of it.
@@ -376,46 +383,76 @@ static void accelerate(void *engine, const double *q, const double *v, const Dri
 {
     Trials *trials = engine;
     ChipmunkRun *run = trials->run;
-    trial_place(&trials->tree, q, v, trials->step_s, trials->before, trials->bends);
+    trial_place(&trials->tree, q, v, actions, trials->before, trials->actions);
     for (size_t i = 0; i < run->of->body_count; i++) {
         place(run, i, &trials->before[i]);
     }
-    push(run, actions);
+    push(run, trials->actions);
     cpSpaceStep(run->space, trials->step_s);
     read_motions(run, trials->after);
-    trial_read(&trials->tree, trials->before, trials->after, trials->bends, trials->step_s, a);
+    trial_read(&trials->tree, trials->before, trials->after, trials->step_s, a);
 }
 
-// Doubles the iterations until the accelerations of the start change no more.
+// The accelerations under actions that move every body, asked for after others: the solver begins
+// with what it found last.
+static void accelerate_anew(Trials *trials, const double *q, const double *v, DriverAction *actions,
+                            double *a)
+{
+    const DriverCase *of = trials->run->of;
+    memset(actions, 0, of->body_count * sizeof *actions);
+    accelerate(trials, q, v, actions, a);
+    for (size_t i = 0; i < of->body_count; i++) {
+        const double sign = i % 2 == 0 ? 1.0 : -1.0;
+        const double size = sign * TRIED_ACCELERATION * of->bodies[i].mass;
+        actions[i] = (DriverAction){{size, size}, -sign * TRIED_TURNING * of->bodies[i].inertia};
+    }
+    accelerate(trials, q, v, actions, a);
+}
+
+// Whether half as many iterations find the same accelerations but for a share of them; leaves the
+// solver with as many as there were.
+static bool is_solved(Trials *trials, const double *q, const double *v)
+{
+    ChipmunkRun *run = trials->run;
+    const size_t count = trials->tree.coordinates;
+    double *a[2] = {room(count, sizeof **a), room(count, sizeof **a)};
+    DriverAction *actions = room(run->of->body_count, sizeof *actions);
+    double change = 0.0;
+    double size = 0.0;
+    for (int half = 1; half >= 0; half--) {
+        cpSpaceSetIterations(run->space, run->iterations / (half + 1));
+        accelerate_anew(trials, q, v, actions, a[half]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        change = fmax(change, fabs(a[0][i] - a[1][i]));
+        size = fmax(size, fabs(a[0][i]));
+    }
+    free(actions);
+    free(a[1]);
+    free(a[0]);
+    return change <= SOLVED * size;
+}
+
+// Doubles the iterations until accelerations change no more, at the start and where each coordinate
+// is elsewhere: how many are needed depends on how the bodies stand.
 static void choose_iterations(Trials *trials)
 {
     ChipmunkRun *run = trials->run;
     const size_t count = trials->tree.coordinates;
     double *q = room(count, sizeof *q);
     double *v = room(count, sizeof *v);
-    double *a[2] = {room(count, sizeof **a), room(count, sizeof **a)}; // now, and with half as many
-    DriverAction *actions = room(run->of->body_count, sizeof *actions);
-    double change;
-    double size;
     tree_start(&trials->tree, v);
-    accelerate(trials, q, v, actions, a[0]);
-    do {
-        run->iterations *= 2;
-        cpSpaceSetIterations(run->space, run->iterations);
-        memcpy(a[1], a[0], count * sizeof *a[0]);
-        accelerate(trials, q, v, actions, a[0]);
-        change = 0.0;
-        size = 0.0;
+    run->iterations *= 2;
+    for (int place = 0; place < TRIED_PLACES; place++) {
         for (size_t i = 0; i < count; i++) {
-            change = fmax(change, fabs(a[0][i] - a[1][i]));
-            size = fmax(size, fabs(a[0][i]));
+            q[i] = TRIED_APART * place * (i % 2 == 0 ? 1.0 : -1.0);
         }
-    } while (change > SOLVED * size && run->iterations < ITERATIONS_TRIAL_MOST);
+        while (!is_solved(trials, q, v) && run->iterations < ITERATIONS_TRIAL_MOST) {
+            run->iterations *= 2;
+        }
+    }
     run->iterations /= 2; // which were enough
     cpSpaceSetIterations(run->space, run->iterations);
-    free(actions);
-    free(a[1]);
-    free(a[0]);
     free(v);
     free(q);
 }
@@ -435,7 +472,7 @@ static _Noreturn void run_trials(ChipmunkRun *run)
                      .step_s = trial_step(run->of),
                      .before = room(bodies, sizeof *trials.before),
                      .after = room(bodies, sizeof *trials.after),
-                     .bends = room(bodies, sizeof *trials.bends)};
+                     .actions = room(bodies, sizeof *trials.actions)};
     let_move(run, stay);
     choose_iterations(&trials);
     tell_settings(run);

@@ -109,6 +109,20 @@ static void say_hello(const DriverIdentity *identity)
     json_decref(line);
 }
 
+void driver_answer(const json_t *line)
+{
+    json_dumpf(line, answers, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    fputc('\n', answers);
+    fflush(answers);
+}
+
+static char *asked_model;
+
+const char *driver_asked_model(void)
+{
+    return asked_model;
+}
+
 DriverCase *driver_read(const DriverIdentity *identity, int *status)
 {
     open_answers();
@@ -136,6 +150,10 @@ DriverCase *driver_read(const DriverIdentity *identity, int *status)
         if (!is_known) {
             driver_fail("there is no way '%s'", of->way);
         }
+    }
+    if (ask != NULL && strcmp(ask, "model") == 0) {
+        const char *file = json_string_value(json_object_get(request, "file"));
+        asked_model = strdup(file != NULL ? file : "");
     }
     json_decref(request);
     return of;
@@ -167,6 +185,7 @@ DriverRun driver_run_start(const DriverCase *of)
         .totals = driver_room(of->joint_count, sizeof *run.totals),
         .touches = driver_room(of->joint_count, sizeof *run.touches),
         .touched = driver_room(of->joint_count, sizeof *run.touched),
+        .peaks = driver_room(of->joint_count, sizeof *run.peaks),
     };
     for (size_t i = 0; i < of->place_count; i++) {
         run.touched[of->places[i].joint] = true;
@@ -334,7 +353,7 @@ static void record_stamps(DriverRun *run)
     }
     const DriverStamp *last = &run->stamps[run->stamp_count - 2];
     const DriverStamp *now = last + 1;
-    places_touches(run->of, last->motions, last->forces, run->totals, run->touches);
+    places_touches(run, last->motions, last->forces, run->touches);
     driver_run_record(run, last->velocity_s, now->velocity_s, now->motions, run->touches);
 }
 

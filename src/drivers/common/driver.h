@@ -7,6 +7,7 @@
 #include "base/force_curve.h"
 #include "base/load_table.h"
 #include "base/mesh.h"
+#include "kernel/contact_peaks.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
 #include "kernel/pin_hole.h"
@@ -209,6 +210,12 @@ typedef struct DriverTouch {
     double approach;   // m/s, closing speed at which its last contact began
 } DriverTouch;
 
+// The largest of a contact in its last two steps, between them too; 0 where it has ended.
+typedef struct DriverPeak {
+    double force; // N
+    double depth; // m
+} DriverPeak;
+
 // A run under way.
 typedef struct DriverRun {
     const DriverCase *of;
@@ -221,6 +228,7 @@ typedef struct DriverRun {
     DriverTotals *totals; // by joint
     DriverTouch *touches; // room, by joint
     bool *touched;        // by joint: whether bodies can touch in it
+    DriverPeak *peaks;    // by joint
     double *records;      // of steps: times, velocities of bodies, joints
     size_t record_count;
     size_t record_room;
@@ -234,6 +242,14 @@ typedef struct DriverRun {
 // Reads the request and says what the program is. Returns NULL where that was all that was asked
 // for, or where the request is none: then it has said so, and *status is the program's.
 DriverCase *driver_read(const DriverIdentity *identity, int *status);
+
+// The file that the driver is asked to read as a model of its own engine, where driver_read has
+// returned NULL; NULL: it is not asked for that.
+const char *driver_asked_model(void);
+
+// Writes a line of the answer, an object of jansson's.
+struct json_t;
+void driver_answer(const struct json_t *line);
 
 // Say that the run failed, or what of the case the driver cannot express, and end the program.
 void driver_fail(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));

@@ -310,10 +310,12 @@ static void follow(const DriverPlace *place, const PlacePose *pose, DriverContac
 {
     ContactState *state = &contact->state;
     const double depth = -pose->gap;
+    contact->begun_share = 0.0;
     if (depth > 0.0) {
         if (!state->is_touching) {
             const double before = fmax(contact->gap_before, 0.0);
             const double share = before / (before + depth);
+            contact->begun_share = 1.0 - share;
             *state = contact_state_begun((1.0 - share) * contact->approach_before +
                                          share * pose->approach);
             totals->begun++;
@@ -380,10 +382,10 @@ static void push_row(const DriverPlace *place, const PlaceRow *row, double value
 }
 
 // Lets a place press. Returns the force on body b, or the torque, and how large it is.
-static Vec2 press(const DriverPlace *place, const DriverContact *contact,
+static Vec2 press(const DriverPlace *place, const DriverContact *contact, const PlacePose *at,
                   const DriverMotion *motions, DriverAction *actions, double *size)
 {
-    const PlacePose pose = place_pose(place, motions);
+    const PlacePose pose = *at;
     const double pressing = pressing_of(place, contact, &pose);
     *size = pressing;
     if (pressing == 0.0) {
@@ -406,43 +408,87 @@ static Vec2 press(const DriverPlace *place, const DriverContact *contact,
     return force;
 }
 
-void places_press(const DriverCase *of, const DriverContact *contacts, const DriverMotion *motions,
-                  DriverAction *actions, Vec2 *forces, DriverTotals *totals)
+// Notes the force of a contact that has been followed to the end of a step.
+static void note_force(const DriverPlace *place, const PlacePose *pose, double force, double step_s,
+                       DriverContact *contact, DriverPeak *peak)
+{
+    if (!(pose->gap < 0.0)) {
+        contact->peaks = (ContactPeaks){.force = 0.0};
+        return;
+    }
+    if (contact->begun_share > 0.0) {
+        // a damper may press from the first instant on
+        const double speed = contact->state.impact_speed;
+        contact_peaks_begin(&contact->peaks, force_law_viscous(&place->law, 0.0) * speed,
+                            contact->begun_share * step_s);
+    }
+    contact_peaks_note_step(&contact->peaks, force, -pose->gap, 1.0, step_s);
+    peak->force = fmax(peak->force, contact->peaks.force);
+    peak->depth = fmax(peak->depth, contact->peaks.depth);
+}
+
+// Lets the places of a joint press, from the first on. Returns the first of another.
+static size_t press_joint(const DriverCase *of, size_t first, DriverContact *contacts,
+                          const DriverMotion *motions, DriverAction *actions, Vec2 *force,
+                          double step_s, DriverPeak *peak)
+{
+    double sum = 0.0;
+    size_t i = first;
+    *peak = (DriverPeak){.force = 0.0};
+    for (; i < of->place_count && of->places[i].joint == of->places[first].joint; i++) {
+        const DriverPlace *place = &of->places[i];
+        const PlacePose pose = place_pose(place, motions);
+        double size;
+        *force = vec2_add(*force, press(place, &contacts[i], &pose, motions, actions, &size));
+        sum += size;
+        if (step_s > 0.0) {
+            note_force(place, &pose, size, step_s, &contacts[i], peak);
+        }
+    }
+    peak->force = fmax(peak->force, sum);
+    return i;
+}
+
+void places_press(const DriverCase *of, DriverContact *contacts, const DriverMotion *motions,
+                  DriverAction *actions, Vec2 *forces, DriverRun *run, double step_s)
 {
     for (size_t i = 0; i < of->joint_count; i++) {
         forces[i] = NOTHING;
     }
     for (size_t i = 0; i < of->place_count;) {
         const int joint = of->places[i].joint;
-        double sum = 0.0;
-        for (; i < of->place_count && of->places[i].joint == joint; i++) {
-            double size;
-            const Vec2 force = press(&of->places[i], &contacts[i], motions, actions, &size);
-            forces[joint] = vec2_add(forces[joint], force);
-            sum += size;
-        }
-        if (totals != NULL) {
-            totals[joint].force_max = fmax(totals[joint].force_max, sum);
+        DriverPeak peak;
+        i = press_joint(of, i, contacts, motions, actions, &forces[joint],
+                        run != NULL ? step_s : 0.0, &peak);
+        if (run != NULL) {
+            run->peaks[joint] = peak;
+            run->totals[joint].force_max = fmax(run->totals[joint].force_max, peak.force);
+            run->totals[joint].depth_max = fmax(run->totals[joint].depth_max, peak.depth);
         }
     }
 }
 
-void places_touches(const DriverCase *of, const DriverMotion *motions, const Vec2 *forces,
-                    const DriverTotals *totals, DriverTouch *touches)
+void places_touches(const DriverRun *run, const DriverMotion *motions, const Vec2 *forces,
+                    DriverTouch *touches)
 {
+    const DriverCase *of = run->of;
     for (size_t i = 0; i < of->place_count;) {
-        const int joint = of->places[i].joint;
-        DriverTouch *touch = &touches[joint];
-        *touch = (DriverTouch){.force = forces[joint],
-                               .force_max = vec2_length(forces[joint]),
-                               .approach = totals[joint].approach};
+        const DriverPlace *first = &of->places[i];
+        const DriverPeak *peak = &run->peaks[first->joint];
+        const Vec2 force = forces[first->joint];
         double least = INFINITY;
-        for (; i < of->place_count && of->places[i].joint == joint; i++) {
+        Vec2 offset = NOTHING;
+        for (; i < of->place_count && of->places[i].joint == first->joint; i++) {
             const PlacePose pose = place_pose(&of->places[i], motions);
             least = fmin(least, pose.gap);
-            touch->eccentricity =
-                of->places[i].shape == DRIVER_HOLE ? pose.offset : (Vec2){least, 0.0};
+            offset = pose.offset;
         }
-        touch->depth_max = fmax(-least, 0.0);
+        touches[first->joint] = (DriverTouch){
+            .eccentricity = first->shape == DRIVER_HOLE ? offset : (Vec2){least, 0.0},
+            .force = force,
+            .force_max = fmax(vec2_length(force), peak->force),
+            .depth_max = fmax(fmax(-least, 0.0), peak->depth),
+            .approach = run->totals[first->joint].approach,
+        };
     }
 }

@@ -46,6 +46,8 @@ typedef struct DriverContact {
     ContactState state;
     double gap_before;
     double approach_before;
+    double begun_share; // of the last step, since the contact began in it; 0: it did not
+    ContactPeaks peaks;
 } DriverContact;
 
 // Those of all places, at the start; zeroed of places that do not touch.
@@ -57,11 +59,12 @@ void places_follow(const DriverCase *of, const DriverMotion *motions, DriverCont
                    DriverTotals *totals);
 
 // Adds what the contacts press their bodies with, friction included; NULL: to nothing. Writes the
-// forces on body b by joint (those of joints that do not touch are 0), and keeps the largest where
-// there are totals.
-void places_press(const DriverCase *of, const DriverContact *contacts, const DriverMotion *motions,
-                  DriverAction *actions, Vec2 *forces, DriverTotals *totals);
+// forces on body b by joint (those of joints that do not touch are 0). Where a run is given, they
+// have been followed to the end of a step of a length, s, and their largest forces and depths,
+// which are between the steps, are noted.
+void places_press(const DriverCase *of, DriverContact *contacts, const DriverMotion *motions,
+                  DriverAction *actions, Vec2 *forces, DriverRun *run, double step_s);
 
 // Writes what the joints do in a step with forces that are given.
-void places_touches(const DriverCase *of, const DriverMotion *motions, const Vec2 *forces,
-                    const DriverTotals *totals, DriverTouch *touches);
+void places_touches(const DriverRun *run, const DriverMotion *motions, const Vec2 *forces,
+                    DriverTouch *touches);

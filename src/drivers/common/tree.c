@@ -71,9 +71,11 @@ Tree tree_make(const DriverCase *of)
     Tree tree = {.of = of,
                  .bodies = calloc(of->body_count + 1, sizeof *tree.bodies),
                  .order = calloc(of->body_count + 1, sizeof *tree.order),
-                 .is_left = calloc(of->joint_count + 1, sizeof *tree.is_left)};
+                 .is_left = calloc(of->joint_count + 1, sizeof *tree.is_left),
+                 .bends = calloc(of->body_count + 1, sizeof *tree.bends)};
     bool *is_reached = calloc(of->body_count + 1, sizeof *is_reached);
-    if (tree.bodies == NULL || tree.order == NULL || tree.is_left == NULL || is_reached == NULL) {
+    if (tree.bodies == NULL || tree.order == NULL || tree.is_left == NULL || tree.bends == NULL ||
+        is_reached == NULL) {
         driver_fail("there is no memory");
     }
     for (size_t i = 0; i < of->joint_count; i++) {

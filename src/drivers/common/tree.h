@@ -30,6 +30,7 @@ typedef struct Tree {
     bool *is_left;    // by joint: an ideal one that the tree does not hold
     size_t coordinates;
     size_t left_count;
+    Vec2 *bends; // room, by body
 } Tree;
 
 // The tree of a case, by sliding joints first. Refuses a case with a sliding joint in a loop of

@@ -20,11 +20,12 @@
 #include <string.h>
 
 // of the velocities: what they are changed by for S
-static const double NUDGE = 1e-6;
+static const double NUDGE = 1e-5;
 
-// rad, that the fastest body turns in a short step: its square is the error of directions, and
-// over it rounding is seen
-static const double TRIAL_PHASE = 4e-4;
+// A step of a trial, s, in which joints that are open by a rounding are closed by accelerations of
+// that over its square; and rad that the fastest body may turn in it: Bullet stops at pi / 2.
+static const double TRIAL_S = 1e-4;
+static const double TRIAL_PHASE = 0.1;
 
 // rad, by which the fastest body turns between the two: the square of it is the error
 static const double BEND_PHASE = 3e-5;
@@ -46,7 +47,6 @@ typedef struct Trial {
     double *later;         // likewise
     DriverMotion *motions; // by body
     DriverMotion *tried;   // of a trial
-    Vec2 *bends;
     DriverAction *actions; // by body
     bool has_walls;        // whether any place is no point
     double start_s;        // of the step under way
@@ -174,7 +174,7 @@ static Vec2 bend_of(const Trial *trial, int body, Vec2 local)
     }
     const DriverMotion *motion = &trial->motions[body];
     const Vec2 arm = vec2_rotate(motion->angle, local);
-    return vec2_sub(trial->bends[body], vec2_scale(motion->omega * motion->omega, arm));
+    return vec2_sub(trial->tree->bends[body], vec2_scale(motion->omega * motion->omega, arm));
 }
 
 // Adds J' v of the pins.
@@ -224,7 +224,7 @@ static double little_of(const Trial *trial)
 static void find_row_accelerations(Trial *trial, const double *v, const double *a, double *rows)
 {
     tree_motions(trial->tree, trial->in.q_middle, v, trial->motions);
-    tree_bends(trial->tree, trial->motions, v, trial->bends);
+    tree_bends(trial->tree, trial->motions, v, trial->tree->bends);
     for (size_t i = 0; i < trial->in.rows; i++) {
         rows[i] = dot(trial->in.jacobian + i * trial->in.count, a, trial->in.count);
     }
@@ -391,7 +391,6 @@ static Trial make(const Tree *tree, const TrialEngine *engine, DriverRun *run)
                    .changed = driver_room(tree->coordinates, sizeof *trial.changed),
                    .later = driver_room(tree->coordinates, sizeof *trial.later),
                    .motions = driver_room(of->body_count, sizeof *trial.motions),
-                   .bends = driver_room(of->body_count, sizeof *trial.bends),
                    .tried = driver_room(of->body_count, sizeof *trial.tried),
                    .actions = driver_room(of->body_count, sizeof *trial.actions)};
     for (size_t i = 0; i < of->place_count; i++) {
@@ -473,21 +472,28 @@ double trial_step(const DriverCase *of)
     for (size_t i = 0; i < of->body_count; i++) {
         fastest = fmax(fastest, fabs(of->bodies[i].start.omega));
     }
-    return fastest > 0.0 ? fmin(of->step_s, TRIAL_PHASE / fastest) : of->step_s;
+    return fastest > 0.0 ? fmin(TRIAL_S, TRIAL_PHASE / fastest) : TRIAL_S;
 }
 
-void trial_place(const Tree *tree, const double *q, const double *v, double step_s,
-                 DriverMotion *motions, Vec2 *bends)
+void trial_place(const Tree *tree, const double *q, const double *v, const DriverAction *given,
+                 DriverMotion *motions, DriverAction *actions)
 {
     tree_motions(tree, q, v, motions);
-    tree_bends(tree, motions, v, bends);
+    tree_bends(tree, motions, v, tree->bends);
     for (size_t i = 0; i < tree->of->body_count; i++) {
-        motions[i].position = vec2_sub(motions[i].position, vec2_scale(step_s * step_s, bends[i]));
+        actions[i] = given[i];
+        actions[i].force =
+            vec2_sub(given[i].force, vec2_scale(tree->of->bodies[i].mass, tree->bends[i]));
     }
 }
 
+static Vec2 gained(const DriverMotion *before, const DriverMotion *after, double step_s)
+{
+    return vec2_scale(1.0 / step_s, vec2_sub(after->velocity, before->velocity));
+}
+
 void trial_read(const Tree *tree, const DriverMotion *before, const DriverMotion *after,
-                const Vec2 *bends, double step_s, double *a)
+                double step_s, double *a)
 {
     for (size_t i = 0; i < tree->of->body_count; i++) {
         const TreeBody *body = &tree->bodies[i];
@@ -495,8 +501,7 @@ void trial_read(const Tree *tree, const DriverMotion *before, const DriverMotion
         const double turning = (after[i].omega - before[i].omega) / step_s;
         const double carried =
             has_parent ? (after[body->parent].omega - before[body->parent].omega) / step_s : 0.0;
-        const Vec2 going = vec2_sub(
-            vec2_scale(1.0 / step_s, vec2_sub(after[i].velocity, before[i].velocity)), bends[i]);
+        const Vec2 going = gained(&before[i], &after[i], step_s);
         double *own = a + body->first;
         if (body->kind == TREE_FREE) {
             own[0] = going.x;
@@ -508,9 +513,7 @@ void trial_read(const Tree *tree, const DriverMotion *before, const DriverMotion
             Vec2 held = {0.0, 0.0};
             Vec2 from = {0.0, 0.0};
             if (has_parent) {
-                held = vec2_sub(vec2_scale(1.0 / step_s, vec2_sub(after[body->parent].velocity,
-                                                                  before[body->parent].velocity)),
-                                bends[body->parent]);
+                held = gained(&before[body->parent], &after[body->parent], step_s);
                 from = before[body->parent].position;
             }
             const Vec2 arm = vec2_sub(before[i].position, from);

@@ -36,18 +36,17 @@ void trial_run(const Tree *tree, const TrialEngine *engine, DriverRun *run)
 
 // For engines whose coordinates are those of bodies, and whose joints are held by velocities at
 // the end of a step:
-//     J v' = -C/dt      C how far the joints are open, J their Jacobian
-// v' = v + dt a is right where J a = -J' v, so that C has to be dt^2 J' v: the bodies are moved
-// apart by -dt^2 times the accelerations that their velocities alone give them.
+//     J v' = 0      J the joints' Jacobian
+// Accelerations are right where J a = -J' v. Those that velocities alone give the bodies, b, are
+// so: with forces -M b besides, the engine is left to find a - b, for which J (a - b) = 0.
 
-// Such a short step for evaluations, s.
+// The length of a step for evaluations, s. It changes what they are by rounding alone.
 double trial_step(const DriverCase *of);
 
-// The bodies for it: velocities those of the coordinates, positions moved apart. `bends` has room
-// by body: the accelerations that come of velocities alone, m/s^2.
-void trial_place(const Tree *tree, const double *q, const double *v, double step_s,
-                 DriverMotion *motions, Vec2 *bends);
+// The bodies for it, and what is to act on them.
+void trial_place(const Tree *tree, const double *q, const double *v, const DriverAction *given,
+                 DriverMotion *motions, DriverAction *actions);
 
 // The coordinates' accelerations from the bodies' velocities before and after such a step.
 void trial_read(const Tree *tree, const DriverMotion *before, const DriverMotion *after,
-                const Vec2 *bends, double step_s, double *a);
+                double step_s, double *a);

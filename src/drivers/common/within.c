@@ -2,6 +2,8 @@
 // samples, records and totals.
 #include "drivers/common/within.h"
 
+#include "kernel/marks.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -237,69 +239,138 @@ static void make_samples(const WithinStep *step, DriverRun *run)
     }
 }
 
-// One place at a node, and what of it stands for the part of the step that ends there.
-static void look_at_place(const WithinStep *step, size_t node, double time_s, size_t i,
-                          DriverRun *run)
+// The force of a contact at a share of the interval behind a node.
+static double force_between(const Kernel *kernel, size_t contact, size_t node, double share)
 {
-    const Kernel *kernel = step->kernel;
-    const DriverPlace *place = &run->of->places[i];
-    DriverTouch *touch = &run->touches[place->joint];
-    DriverTotals *totals = &run->totals[place->joint];
-    ContactState *state = &step->states[i].state;
-    const bool touches = kernel_touches(kernel, node, i);
-    const PinHole pose = kernel_pose(kernel, i, node, time_s, step->sums).pose;
-    if (touches && !state->is_touching) {
-        totals->begun++;
-        totals->approach = pose.approach_speed;
-    }
-    state->is_touching = touches;
-    const double *force = kernel_node_forces(kernel, node) + kernel->contacts[i].first_row;
-    const bool is_first = i == 0 || run->of->places[i - 1].joint != place->joint;
-    const Vec2 least = {is_first ? pose.gap : fmin(pose.gap, touch->eccentricity.x), 0.0};
-    const double depth = touches ? fmax(pose.penetration, 0.0) : 0.0;
-    *touch = (DriverTouch){
-        .eccentricity = place->shape == DRIVER_HOLE ? pose.eccentricity : least,
-        .force_max = hypot(force[0], force[1]) + (is_first ? 0.0 : touch->force_max),
-        .depth_max = is_first ? depth : fmax(depth, touch->depth_max),
-        .approach = totals->approach,
-    };
-    totals->force_max = fmax(totals->force_max, touch->force_max);
-    totals->depth_max = fmax(totals->depth_max, pose.penetration);
+    double impulse[KERNEL_ROWS_MOST];
+    double moment[KERNEL_ROWS_MOST];
+    double force[KERNEL_ROWS_MOST];
+    const double *times = kernel->times + node;
+    kernel_contact_at(kernel, contact, node, times[0] + share * (times[1] - times[0]), impulse,
+                      moment, force);
+    return hypot(force[0], force[1]);
 }
 
-// Records the part from a node to the next.
-static void record_part(const WithinStep *step, size_t node, DriverRun *run)
+// The largest force within the interval behind a node: that of the kernel where a cubic through
+// four of its forces, at the ends and thirds, has its top; 0 where that has none inside. Marks need
+// a node on either side of one, which short steps have not.
+static double top_between(const Kernel *kernel, size_t contact, size_t node)
+{
+    double forces[4];
+    for (int i = 0; i < 4; i++) {
+        forces[i] = force_between(kernel, contact, node, i / 3.0);
+    }
+    // f' = a u^2 + b u + c, u from 0 to 3
+    const double first = forces[1] - forces[0];
+    const double second = forces[2] - 2.0 * forces[1] + forces[0];
+    const double third = forces[3] - 3.0 * forces[2] + 3.0 * forces[1] - forces[0];
+    const double a = 0.5 * third;
+    const double b = second - third;
+    const double c = first - 0.5 * second + third / 3.0;
+    const double root = sqrt(fmax(b * b - 4.0 * a * c, 0.0));
+    const double at = 2.0 * c / (root - b);
+    return at > 0.0 && at < 3.0 ? force_between(kernel, contact, node, at / 3.0) : 0.0;
+}
+
+// Notes which contacts touch from a node on, how fast those come that begin there, and how hard
+// they press up to the next.
+static void note_contacts(const WithinStep *step, size_t node, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
-    const double start_s = kernel->times[node];
-    const double end_s = kernel->times[node + 1];
-    const double *before = kernel_node_values(kernel, node);
-    const double *after = kernel_node_values(kernel, node + 1);
-    step->motions(step->adapter, end_s, step->sums, step->room);
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        const int joint = run->of->places[i].joint;
+        ContactState *state = &step->states[i].state;
+        const bool touches = kernel_touches(kernel, node, i);
+        if (touches && !state->is_touching) {
+            const double time_s = kernel->times[node];
+            kernel_at(kernel, node, time_s, step->sums);
+            run->totals[joint].begun++;
+            run->totals[joint].approach =
+                kernel_pose(kernel, i, node, time_s, step->sums).pose.approach_speed;
+        }
+        state->is_touching = touches;
+        if (touches && node + 1 < kernel->node_count) {
+            double *force_max = &run->touches[joint].force_max;
+            *force_max = fmax(*force_max, top_between(kernel, i, node));
+        }
+    }
+}
+
+// What of each joint stands for the part of the step that ends at a mark, with what marks at its
+// start have shown. Of several places forces are added up.
+static void look_at(const WithinStep *step, const Mark *mark, DriverRun *run)
+{
+    const Kernel *kernel = step->kernel;
+    for (size_t i = 0; i < kernel->contact_count;) {
+        const DriverPlace *place = &run->of->places[i];
+        DriverTouch *touch = &run->touches[place->joint];
+        DriverTotals *totals = &run->totals[place->joint];
+        double size = 0.0;
+        double least = INFINITY;
+        for (; i < kernel->contact_count && run->of->places[i].joint == place->joint; i++) {
+            const KernelPose at = kernel_pose(kernel, i, mark->node, mark->time_s, step->sums);
+            size += at.is_touching ? vec2_length(at.force) : 0.0;
+            least = fmin(least, at.pose.gap);
+            touch->depth_max = fmax(touch->depth_max, at.is_touching ? at.pose.penetration : 0.0);
+            touch->eccentricity =
+                place->shape == DRIVER_HOLE ? at.pose.eccentricity : (Vec2){least, 0.0};
+        }
+        touch->force_max = fmax(touch->force_max, size);
+        touch->approach = totals->approach;
+        totals->force_max = fmax(totals->force_max, touch->force_max);
+        totals->depth_max = fmax(totals->depth_max, touch->depth_max);
+    }
+}
+
+// Records the part up to a mark, from a time in the step and the impulses there.
+static void record_part(const WithinStep *step, double from_s, const double *before,
+                        const Mark *mark, DriverRun *run)
+{
+    const Kernel *kernel = step->kernel;
+    const double per_s = 1.0 / (mark->time_s - from_s);
+    step->motions(step->adapter, mark->time_s, step->sums, step->room);
     for (size_t i = 0; i < kernel->contact_count; i++) {
         const DriverPlace *place = &run->of->places[i];
         const size_t row = kernel->contacts[i].first_row;
-        const double mean[2] = {(after[row] - before[row]) / (end_s - start_s),
-                                (after[row + 1] - before[row + 1]) / (end_s - start_s)};
+        const double *after = step->sums->impulse;
+        const double mean[2] = {per_s * (after[row] - before[row]),
+                                per_s * (after[row + 1] - before[row + 1])};
         Vec2 *force = &run->touches[place->joint].force;
         *force = vec2_add(*force, force_of(place, step->room, mean));
     }
-    driver_run_record(run, step->start_s + start_s, step->start_s + end_s, step->room,
+    driver_run_record(run, step->start_s + from_s, step->start_s + mark->time_s, step->room,
                       run->touches);
+    for (size_t i = 0; i < kernel->contact_count; i++) {
+        run->touches[run->of->places[i].joint] = (DriverTouch){.force_max = 0.0};
+    }
 }
 
 void within_look(const WithinStep *step, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
+    const size_t rows = kernel_rows(kernel);
+    double *before = numbers(rows);
+    double from_s = 0.0;
+    size_t noted = 0;
+    Marks marks = {.count = 0};
     make_samples(step, run);
-    for (size_t node = 0; node < kernel->node_count; node++) {
-        const double time_s = kernel->times[node];
-        kernel_at(kernel, node, time_s, step->sums);
-        for (size_t i = 0; i < kernel->contact_count; i++) {
-            look_at_place(step, node, time_s, i, run);
+    marks_find(&marks, kernel);
+    for (size_t i = 0; i < marks.count; i++) {
+        const Mark *mark = &marks.marks[i];
+        for (; noted <= mark->node; noted++) {
+            note_contacts(step, noted, run);
         }
-        if (node > 0 && run->of->record_s > 0.0 && time_s > kernel->times[node - 1]) {
-            record_part(step, node - 1, run);
+        kernel_at(kernel, mark->node, mark->time_s, step->sums);
+        look_at(step, mark, run);
+        if (run->of->record_s > 0.0 && mark->time_s > from_s) {
+            record_part(step, from_s, before, mark, run);
+            memcpy(before, step->sums->impulse, rows * sizeof *before);
+            from_s = mark->time_s;
         }
     }
+    for (; noted < kernel->node_count; noted++) {
+        note_contacts(step, noted, run);
+    }
+    marks_finish(&marks);
+    free(before);
 }

@@ -35,7 +35,7 @@ static void push(const mjModel *model, mjData *data)
     double *pushes = run->coordinates; // they have been read
     actions_find(run->of, run->acted, run->from_s, run->to_s, run->actions);
     if (are_contacts_pushed) {
-        places_press(run->of, run->contacts, run->acted, run->actions, run->pressed, NULL);
+        places_press(run->of, run->contacts, run->acted, run->actions, run->pressed, NULL, 0.0);
     }
     memset(pushes, 0, run->tree.coordinates * sizeof *pushes);
     tree_act(&run->tree, run->acted, run->actions, pushes);
@@ -78,7 +78,7 @@ static void stamp(MujocoRun *run, double position_s, double velocity_s, const Ve
     const DriverMotion *felt = at_positions(run, position_s - velocity_s, now->motions);
     places_follow(run->of, felt, run->contacts, run->run.totals);
     if (forces == NULL) {
-        places_press(run->of, run->contacts, felt, NULL, now->forces, run->run.totals);
+        places_press(run->of, run->contacts, felt, NULL, now->forces, &run->run, run->of->step_s);
     }
     for (size_t i = 0; forces != NULL && i < run->of->joint_count; i++) {
         DriverTotals *totals = &run->run.totals[i];
@@ -236,10 +236,10 @@ int main(void)
     const DriverIdentity identity = {"MuJoCo", mj_versionString(), "double", WAYS};
     int status;
     const DriverCase *of = driver_read(&identity, &status);
-    if (of == NULL) {
-        return status;
-    }
     mju_user_error = complain;
+    if (of == NULL) {
+        return driver_asked_model() != NULL ? mujoco_tell_model(driver_asked_model()) : status;
+    }
     mju_user_warning = complain;
     const bool is_native = driver_is_way(of, "native");
     if (is_native) {

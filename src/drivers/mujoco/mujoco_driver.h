@@ -46,5 +46,9 @@ void mujoco_check(const MujocoRun *run);
 // Lets springs and loads act, and contacts by their law where the way is not to do so itself.
 void mujoco_let_act(MujocoRun *run, bool has_contacts);
 
+// Reads a model, MJCF or URDF, and answers with what a mechanism of it is. Returns the status of
+// the program.
+int mujoco_tell_model(const char *path);
+
 // The contacts integrated within the step, by jointplay's kernel.
 void mujoco_run_kernel(MujocoRun *run) __attribute__((noreturn));

@@ -46,7 +46,7 @@ class World
     void add_loops();
     void set_start(State &state);
     void read(const State &state, DriverMotion *motions);
-    void follow(const DriverMotion *now, ::Vec2 *on_joints);
+    void follow(const DriverMotion *now, double step_s, ::Vec2 *on_joints);
     void stamp(const State &state);
     void sample(const State &state);
     void record(double start_s, double end_s, const DriverMotion *now);
@@ -203,7 +203,7 @@ void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
         const double now_s = state.getTime();
         read(state, motions.data());
         actions_find(of, motions.data(), now_s, now_s, actions.data());
-        places_press(of, contacts, motions.data(), actions.data(), forces_now.data(), nullptr);
+        places_press(of, contacts, motions.data(), actions.data(), forces_now.data(), nullptr, 0.0);
         acting = actions.data();
     }
     for (size_t i = 0; acting != nullptr && i < of->body_count; i++) {
@@ -213,10 +213,10 @@ void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
 }
 
 // Follows the contacts to the end of a step, and finds their forces.
-void World::follow(const DriverMotion *now, ::Vec2 *on_joints)
+void World::follow(const DriverMotion *now, double step_s, ::Vec2 *on_joints)
 {
     places_follow(of, now, contacts, answer.totals);
-    places_press(of, contacts, now, nullptr, on_joints, answer.totals);
+    places_press(of, contacts, now, nullptr, on_joints, &answer, step_s);
 }
 
 void World::stamp(const State &state)
@@ -224,7 +224,7 @@ void World::stamp(const State &state)
     DriverStamp *now = driver_run_stamp(&answer);
     now->position_s = now->velocity_s = state.getTime();
     read(state, now->motions);
-    follow(now->motions, now->forces);
+    follow(now->motions, of->step_s, now->forces);
     driver_run_stamped(&answer);
 }
 
@@ -233,7 +233,7 @@ void World::sample(const State &state)
 {
     DriverMotion *at = driver_run_motions(&answer);
     read(state, at);
-    places_press(of, contacts, at, nullptr, driver_run_forces(&answer), nullptr);
+    places_press(of, contacts, at, nullptr, driver_run_forces(&answer), nullptr, 0.0);
     driver_run_sampled(&answer);
 }
 
@@ -241,7 +241,7 @@ void World::sample(const State &state)
 void World::record(double start_s, double end_s, const DriverMotion *now)
 {
     std::vector<DriverTouch> touches(of->joint_count);
-    places_touches(of, now, forces_now.data(), answer.totals, touches.data());
+    places_touches(&answer, now, forces_now.data(), touches.data());
     driver_run_record(&answer, start_s, end_s, now, touches.data());
 }
 
@@ -258,7 +258,7 @@ void World::run_adaptive(RungeKuttaMersonIntegrator &integrator)
             const double before_s = std::max(followed_s, 0.0);
             followed_s = integrator.getAdvancedTime();
             read(integrator.getAdvancedState(), now.data());
-            follow(now.data(), forces_now.data());
+            follow(now.data(), followed_s - before_s, forces_now.data());
             record(before_s, followed_s, now.data());
         }
     }

@@ -3,7 +3,7 @@
 // They are taken to be largest on the parabola through three steps, of which the first may be the
 // onset. What a step has that overlaps in a part of it alone is no value at its middle, and no
 // point of a parabola.
-#include "contact/contact_peaks.h"
+#include "kernel/contact_peaks.h"
 
 #include <math.h>
 
