@@ -216,7 +216,7 @@ static double little_of(const Trial *trial)
     for (size_t i = 0; i < trial->in.of->body_count; i++) {
         fastest = fmax(fastest, fabs(trial->motions[i].omega));
     }
-    const double step_s = trial->end_s - trial->start_s;
+    const double step_s = trial->in.of->step_s;
     return fastest * step_s > BEND_PHASE ? BEND_PHASE / fastest : step_s;
 }
 
@@ -427,6 +427,11 @@ static void start_scheme(Trial *trial)
     trial->end_s = trial->start_s;
     find_holding(trial, in->q, in->v);
     evaluate(trial, in->q, in->v, NULL, 0.0, in->a);
+    // what the rows feel there, from which it changes up to the middle of the first step
+    memcpy(in->q_middle, in->q, in->count * sizeof *in->q);
+    tree_motions(trial->tree, in->q, in->v, trial->motions);
+    find_jacobian(trial);
+    find_row_accelerations(trial, in->v, in->a, in->kernel.free);
 }
 
 void trial_run(const Tree *tree, const TrialEngine *engine, DriverRun *run)

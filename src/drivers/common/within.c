@@ -66,6 +66,7 @@ void within_add_rows(const Within *in, const double *columns, const double *by_r
 void within_start(Within *in)
 {
     in->known = 0;
+    in->before_s = 0.0;
     in->calm_steps = 0;
     memset(in->a_rate, 0, in->count * sizeof *in->a_rate);
     memset(in->a_bend, 0, in->count * sizeof *in->a_bend);
@@ -104,7 +105,7 @@ void within_keep_free(Within *in)
 {
     const bool is_calm = kernel_columns_free_after(in->rows, in->drift, in->sums.impulse,
                                                    in->kernel.free, in->free_before);
-    in->calm_steps = in->known > 0 && is_calm ? in->calm_steps + 1 : 0;
+    in->calm_steps = is_calm ? in->calm_steps + 1 : 0;
 }
 
 void within_find_free_rate(Within *in, double step_s)
