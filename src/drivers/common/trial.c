@@ -8,7 +8,7 @@
 //     A = G(q_m, v_m, 1) - G(q_m, v_m, 0),  W = J A;  or as the engine responds
 //     2 S = (F(v_m + e A) - F(v_m)) / e,    B = (G(v_m + e A) - G(v_m)) / e,   W' = S + S'
 //     P, Q, R                                       the kernel's impulses, and their integrals
-//     a + B Q/h + A P/h = G(q_m, v_m + A Q/h, P/h)
+//     a + B Q/h + A P/h = G(q_m, v_m + A Q/h + B R/h, P/h)
 //     v' = v + h a + h^3/24 a'' + B Q + B' (h/2 Q - R) + A P + A' (h/2 P - Q)
 //     q' = q + h v + h^2/2 a - h^3/12 a' + h^4/48 a'' + B R + A Q + A' (h/2 Q - 2 R)
 // J' v of a pin is known; of other places it is the difference of J v a little before and behind,
@@ -20,7 +20,7 @@
 #include <string.h>
 
 // of the velocities: what they are changed by for S
-static const double NUDGE = 1e-5;
+static const double NUDGE = 1e-4;
 
 // A step of a trial, s, in which joints that are open by a rounding are closed by accelerations of
 // that over its square; and rad that the fastest body may turn in it: Bullet stops at pi / 2.
@@ -31,7 +31,7 @@ static const double TRIAL_PHASE = 0.1;
 static const double BEND_PHASE = 3e-5;
 
 // rad, likewise between the two places at which responses are compared
-static const double TURN_PHASE = 1e-3;
+static const double TURN_PHASE = 2e-5;
 
 // of a step: times that are nearer to each other are one
 static const double TIME_ROUNDING = 1e-9;
@@ -282,7 +282,8 @@ static void find_response(Trial *trial)
     }
 }
 
-// A', from A where the bodies are a little later. It matters where contacts have pushed alone.
+// A', from A where the bodies are a little later at the mean rates of the step, which have been found
+// for the accelerations. It matters where contacts have pushed alone.
 static void find_rate(Trial *trial)
 {
     Within *in = &trial->in;
@@ -295,7 +296,6 @@ static void find_rate(Trial *trial)
     double *q = trial->later;
     double *v = in->nudged;
     memcpy(q, in->q_middle, count * sizeof *q);
-    memcpy(v, in->v_middle, count * sizeof *v);
     add(q, v, later_s, count);
     hold_settle(&trial->hold, trial->start_s, middle_of(trial) + later_s, q, v);
     tree_motions(trial->tree, q, v, trial->motions);
@@ -341,6 +341,7 @@ static void find_accelerations(Trial *trial, double step_s)
     const double per_s = 1.0 / step_s;
     memcpy(in->nudged, in->v_middle, in->count * sizeof *in->nudged);
     within_add_rows(in, in->response, in->sums.moment, per_s, in->nudged);
+    within_add_rows(in, in->bend, in->sums.moment + in->rows, per_s, in->nudged);
     evaluate(trial, in->q_middle, in->nudged, in->sums.impulse, per_s, trial->other);
     within_take_accelerations(in, trial->other, step_s);
     find_rate(trial);
@@ -427,11 +428,6 @@ static void start_scheme(Trial *trial)
     trial->end_s = trial->start_s;
     find_holding(trial, in->q, in->v);
     evaluate(trial, in->q, in->v, NULL, 0.0, in->a);
-    // what the rows feel there, from which it changes up to the middle of the first step
-    memcpy(in->q_middle, in->q, in->count * sizeof *in->q);
-    tree_motions(trial->tree, in->q, in->v, trial->motions);
-    find_jacobian(trial);
-    find_row_accelerations(trial, in->v, in->a, in->kernel.free);
 }
 
 void trial_run(const Tree *tree, const TrialEngine *engine, DriverRun *run)

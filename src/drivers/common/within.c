@@ -105,7 +105,7 @@ void within_keep_free(Within *in)
 {
     const bool is_calm = kernel_columns_free_after(in->rows, in->drift, in->sums.impulse,
                                                    in->kernel.free, in->free_before);
-    in->calm_steps = is_calm ? in->calm_steps + 1 : 0;
+    in->calm_steps = in->known > 0 && is_calm ? in->calm_steps + 1 : 0;
 }
 
 void within_find_free_rate(Within *in, double step_s)
