@@ -506,7 +506,7 @@ static inline void hold_whole_cases(const char *engine)
          "drives.right-pivot.profile=polynomial"},
         {"cases/mechanisms/motor-flywheel.yaml", "run.duration=0.1 s",
          "drive.no-load-speed=303 rpm"},
-        {"cases/mechanisms/servo-arm.yaml", "run.duration=0.1 s", "drive.torque-limit=4.04 N m"},
+        {"cases/mechanisms/servo-arm.yaml", "run.duration=0.05 s", "drive.torque-limit=4.04 N m"},
         {"cases/mechanisms/rack-and-pinion.yaml", "run.duration=50 ms",
          "joints.teeth.backlash=0.101 mm"},
         {"cases/mechanisms/slider-crank-guide.yaml", "run.duration=5 ms",
