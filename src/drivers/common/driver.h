@@ -14,6 +14,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 enum { DRIVER_GROUND = -1, DRIVER_NAME_SIZE = 64, DRIVER_STAMPS = 4 };
 
@@ -250,6 +251,9 @@ const char *driver_asked_model(void);
 // Writes a line of the answer, an object of jansson's.
 struct json_t;
 void driver_answer(const struct json_t *line);
+
+// Opens what answers are written to: the program's standard output, which engines are kept from.
+FILE *driver_open_answers(void);
 
 // Say that the run failed, or what of the case the driver cannot express, and end the program.
 void driver_fail(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));

@@ -6,15 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void *driver_room(size_t count, size_t size)
-{
-    void *room = calloc(count + 1, size);
-    if (room == NULL) {
-        driver_fail("there is no memory");
-    }
-    return room;
-}
-
 static const json_t *member(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);

@@ -282,8 +282,8 @@ static void find_response(Trial *trial)
     }
 }
 
-// A', from A where the bodies are a little later at the mean rates of the step, which have been found
-// for the accelerations. It matters where contacts have pushed alone.
+// A', from A where the bodies are a little later at the mean rates of the step, which have been
+// found for the accelerations. It matters where contacts have pushed alone.
 static void find_rate(Trial *trial)
 {
     Within *in = &trial->in;
