@@ -91,9 +91,13 @@ static void ask(Trial *trial, const double *q, const double *v, double *a)
     trial->run->steps += trial->engine->respond == NULL ? 1 : 0;
 }
 
-// Puts the bodies there, and finds what acts on them.
-static void begin_trial(Trial *trial, const double *q, const double *v)
+// Puts the bodies there where something acts on them, or is to, and finds what acts.
+static void begin_trial(Trial *trial, const double *q, const double *v, bool is_pushed)
 {
+    if (!is_pushed && !actions_any(trial->in.of)) {
+        memset(trial->actions, 0, trial->in.of->body_count * sizeof *trial->actions);
+        return;
+    }
     tree_motions(trial->tree, q, v, trial->tried);
     actions_find(trial->in.of, trial->tried, trial->start_s, trial->end_s, trial->actions);
 }
@@ -107,7 +111,7 @@ static double middle_of(const Trial *trial)
 static void evaluate(Trial *trial, const double *q, const double *v, const double *forces,
                      double scale, double *a)
 {
-    begin_trial(trial, q, v);
+    begin_trial(trial, q, v, forces != NULL);
     for (size_t i = 0; forces != NULL && i < trial->in.kernel.contact_count; i++) {
         const KernelContact *contact = &trial->in.kernel.contacts[i];
         for (size_t k = 0; k < contact->row_count; k++) {
@@ -128,7 +132,7 @@ static void find_holding(Trial *trial, const double *q, const double *v)
     }
     tree_motions(trial->tree, q, v, trial->motions);
     hold_place(hold, trial->motions);
-    begin_trial(trial, q, v);
+    begin_trial(trial, q, v, true);
     ask(trial, q, v, trial->other);
     if (trial->engine->respond != NULL) {
         trial->engine->respond(trial->engine->engine, hold->rows, hold->jacobian, hold->columns);
@@ -137,7 +141,7 @@ static void find_holding(Trial *trial, const double *q, const double *v)
     const double size = 1.0 + sqrt(dot(trial->other, trial->other, count));
     for (size_t k = 0; k < hold->rows; k++) {
         double *column = hold->columns + k * count;
-        begin_trial(trial, q, v);
+        begin_trial(trial, q, v, true);
         hold_push(hold, k, trial->tried, size, trial->actions);
         ask(trial, q, v, column);
         for (size_t i = 0; i < count; i++) {

@@ -37,6 +37,26 @@ static void place(Adapter *by, const double *q)
     mj_fwdPosition(by->model, by->data);
 }
 
+// Adds what forces and moments on the bodies do along the coordinates; most often there are none.
+static void push(Adapter *by, const double *q, const double *v, const DriverAction *actions)
+{
+    const Tree *tree = &by->run->tree;
+    bool is_any = false;
+    for (size_t i = 0; i < tree->of->body_count; i++) {
+        const DriverAction *on = &actions[i];
+        is_any = is_any || on->force.x != 0.0 || on->force.y != 0.0 || on->moment != 0.0;
+    }
+    if (!is_any) {
+        return;
+    }
+    memset(by->pushes, 0, by->count * sizeof *by->pushes);
+    tree_motions(tree, q, v, by->run->acted);
+    tree_act(tree, by->run->acted, actions, by->pushes);
+    for (size_t i = 0; i < by->count; i++) {
+        by->data->qacc[by->addresses[i]] += by->pushes[i];
+    }
+}
+
 // The accelerations at positions and rates, under forces and moments on the bodies.
 static void accelerate(void *engine, const double *q, const double *v, const DriverAction *actions,
                        double *a)
@@ -46,15 +66,10 @@ static void accelerate(void *engine, const double *q, const double *v, const Dri
     place(by, q);
     for (size_t i = 0; i < by->count; i++) {
         data->qvel[by->addresses[i]] = v[i];
-        by->pushes[i] = 0.0;
     }
     mj_fwdVelocity(by->model, data);
     mju_sub(data->qacc, data->qfrc_passive, data->qfrc_bias, by->model->nv);
-    tree_motions(&by->run->tree, q, v, by->run->acted);
-    tree_act(&by->run->tree, by->run->acted, actions, by->pushes);
-    for (size_t i = 0; i < by->count; i++) {
-        data->qacc[by->addresses[i]] += by->pushes[i];
-    }
+    push(by, q, v, actions);
     mj_solveM(by->model, data, data->qacc, data->qacc, 1);
     for (size_t i = 0; i < by->count; i++) {
         a[i] = data->qacc[by->addresses[i]];
