@@ -31,6 +31,7 @@ enum { ITERATIONS_OPEN = 10, ITERATIONS_SLIDING = 30, ITERATIONS_CLOSED = 100 };
 // accelerations, found at the start. How many these are depends on the masses: 30 to 240.
 enum { ITERATIONS_TRIAL = 30, ITERATIONS_TRIAL_MOST = 1000 };
 static const double SOLVED = 1e-12;
+static const double SOLVED_LEAST = 1e-8; // above which a case is refused
 
 // rad and m, by which coordinates are apart where it is tried; and m/s^2 and rad/s^2, with what
 enum { TRIED_PLACES = 4 };
@@ -411,7 +412,7 @@ static void accelerate_anew(Trials *trials, const double *q, const double *v, Dr
 
 // Whether half as many iterations find the same accelerations but for a share of them; leaves the
 // solver with as many as there were.
-static bool is_solved(Trials *trials, const double *q, const double *v)
+static bool is_solved(Trials *trials, const double *q, const double *v, double share)
 {
     ChipmunkRun *run = trials->run;
     const size_t count = trials->tree.coordinates;
@@ -430,7 +431,7 @@ static bool is_solved(Trials *trials, const double *q, const double *v)
     free(actions);
     free(a[1]);
     free(a[0]);
-    return change <= SOLVED * size;
+    return change <= share * size;
 }
 
 // Doubles the iterations until accelerations change no more, at the start and where each coordinate
@@ -447,8 +448,13 @@ static void choose_iterations(Trials *trials)
         for (size_t i = 0; i < count; i++) {
             q[i] = TRIED_APART * place * (i % 2 == 0 ? 1.0 : -1.0);
         }
-        while (!is_solved(trials, q, v) && run->iterations < ITERATIONS_TRIAL_MOST) {
+        while (!is_solved(trials, q, v, SOLVED) && run->iterations < ITERATIONS_TRIAL_MOST) {
             run->iterations *= 2;
+        }
+        if (!is_solved(trials, q, v, SOLVED_LEAST)) {
+            driver_refuse("contacts within the step of bodies whose masses differ so much that %d "
+                          "iterations do not solve them",
+                          run->iterations);
         }
     }
     run->iterations /= 2; // which were enough
