@@ -31,7 +31,7 @@ enum { ITERATIONS_OPEN = 10, ITERATIONS_SLIDING = 30, ITERATIONS_CLOSED = 100 };
 // accelerations, found at the start. How many these are depends on the masses: 30 to 240.
 enum { ITERATIONS_TRIAL = 30, ITERATIONS_TRIAL_MOST = 1000 };
 static const double SOLVED = 1e-12;
-static const double SOLVED_LEAST = 1e-8; // above which a case is refused
+static const double SOLVED_LEAST = 1e-6; // above which a case is refused
 
 // rad and m, by which coordinates are apart where it is tried; and m/s^2 and rad/s^2, with what
 enum { TRIED_PLACES = 4 };
