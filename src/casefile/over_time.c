@@ -4,7 +4,7 @@
 #include "casefile/quantity.h"
 #include "casefile/waves.h"
 
-#include "model/drive.h"
+#include "base/drive.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -8,14 +8,14 @@
 //     hole    gap = c - |d|,      n = -d / |d|       c radial clearance
 //     disc    gap = |d| - c,      n =  d / |d|       c sum of the radii
 //     line    gap = m . d - c,    n =  m             m the line's normal, c radius on body b
-//     cam     gap = distance from the profile - c, n its normal there (model/cam.h)
+//     cam     gap = distance from the profile - c, n its normal there (base/cam.h)
 //     slot    gap = c - |e|,      n = -e / |e|       c half its width less the pin's radius
 // with e from the nearest point of the slot's middle line, which goes through anchor a at right
 // angles to m, half its length to either side (kernel/pin_hole.h).
 // The ends of a slider's coordinate are lines across it. Of an angle and of teeth the gap is that
 // of the coordinate q itself (model/coordinate.h):
 //     turn    gap = s q - c,      no n               a torque s N on body b, in the sense of q
-//     teeth   model/mesh.h
+//     teeth   base/mesh.h
 //     rack    gap = s q - c,      n = s t            t the pitch line's direction
 // s is 1 at the low end and c its value, -1 at the high end and c less its value. Lengths are
 // angles at a turn, and forces torques.

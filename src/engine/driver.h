@@ -26,6 +26,7 @@ typedef struct EngineDriver {
     char precision[ENGINE_TEXT_SIZE]; // "double"
     size_t way_count;
     char ways[ENGINE_WAY_MAX][ENGINE_NAME_SIZE]; // in which it can run a case
+    unsigned takes[ENGINE_WAY_MAX]; // by way: what it takes, by the numbers of engine/features.h
 } EngineDriver;
 
 // Whether a word can be the name of a driver: lower-case letters, digits and '-', a letter first.

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "engine/converse.h"
+#include "engine/features.h"
 #include "engine/protocol.h"
 #include "model/options.h"
 
@@ -200,6 +201,16 @@ bool engine_given(const char *name_and_program, EngineDriver *driver, Err *err)
     return ask_hello(driver, err);
 }
 
+// What a driver says that it takes in a way.
+static unsigned takes_in(const EngineDriver *driver, const char *way)
+{
+    unsigned takes = 0;
+    for (size_t i = 0; i < driver->way_count; i++) {
+        takes = strcmp(driver->ways[i], way) == 0 ? driver->takes[i] : takes;
+    }
+    return takes;
+}
+
 // Whether a driver can be told of all of a scenario.
 static bool check_protocol(const EngineDriver *driver, const Scenario *scenario, Err *err)
 {
@@ -207,7 +218,7 @@ static bool check_protocol(const EngineDriver *driver, const Scenario *scenario,
     if (!engine_check(driver->name, scenario, err)) {
         return false;
     }
-    const int protocol = engine_needs(&scenario->linkage, needed);
+    const int protocol = engine_needs(scenario, needed);
     if (protocol <= driver->protocol) {
         return true;
     }
@@ -217,14 +228,30 @@ static bool check_protocol(const EngineDriver *driver, const Scenario *scenario,
     return engine_refuse(driver->name, what, err);
 }
 
+// Whether a driver can be told of it and takes it in a way; what it does not take is said.
+static bool check_told(const EngineDriver *driver, const char *way, const Scenario *scenario,
+                       EngineSaid *said, Err *err)
+{
+    char needed[ENGINE_NEED_SIZE];
+    if (!check_protocol(driver, scenario, err)) {
+        said->is_refused = true;
+        return false;
+    }
+    if (!engine_features_lack(scenario, takes_in(driver, way), needed)) {
+        return true;
+    }
+    said->is_refused = true;
+    text_copy(said->refused, sizeof said->refused, needed);
+    return engine_refuse(driver->name, needed, err);
+}
+
 // Runs the scenario and fills the trajectory.
 static bool fill(const EngineDriver *driver, const char *way, const Scenario *scenario,
                  double time_limit_s, Trajectory *trajectory, EngineSaid *said,
                  EngineRecords *records, Err *err)
 {
     EngineDriver again = *driver; // what it says of itself in this run
-    if (!check_protocol(driver, scenario, err)) {
-        said->is_refused = true;
+    if (!check_told(driver, way, scenario, said, err)) {
         return false;
     }
     char *request = engine_request(scenario, way, records != NULL ? records->record_s : 0.0,

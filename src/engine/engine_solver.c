@@ -221,16 +221,20 @@ static void take_touch(EngineState *state, size_t joint, const EngineTouch *touc
         hold_joint(state, joint);
         return;
     }
-    const double play = linkage_radial_clearance(&state->scenario->linkage.joints[joint]);
-    const double gap = play - vec2_length(touch->eccentricity);
+    const Joint *of = &state->scenario->linkage.joints[joint];
+    const double gap = joint_has_hole(of->kind)
+                           ? linkage_radial_clearance(of) - vec2_length(touch->eccentricity)
+                           : touch->eccentricity.x;
     const double force = vec2_length(touch->force);
+    const bool is_torque = linkage_is_torsional(of);
     const double length_s = state->end_s - state->start_s;
     state->peaks[joint] =
         (JointPeak){.force = or_zero(touch->force_max), .depth = or_zero(touch->depth_max)};
     state->joints[joint] = (JointState){
-        .eccentricity = touch->eccentricity,
+        .eccentricity = joint_has_hole(of->kind) ? touch->eccentricity : (Vec2){0.0, 0.0},
         .gap = gap,
-        .force_on_b = touch->force,
+        .force_on_b = is_torque ? (Vec2){0.0, 0.0} : touch->force,
+        .moment_on_b = is_torque ? touch->force.x : 0.0,
         .force = force,
         // at the instant of its onset a pin is in the wall by rounding
         .is_touching =
@@ -276,8 +280,12 @@ static void take_interval(EngineState *state)
     }
     for (size_t i = 0; i < answer->joint_count; i++) {
         const JointState *joint = trajectory_state(answer, sample, i);
-        const EngineTouch touch = {.eccentricity = joint->eccentricity,
-                                   .force = joint->force_on_b,
+        const Joint *of = &state->scenario->linkage.joints[i];
+        const Vec2 torque = {joint->moment_on_b, 0.0};
+        const Vec2 gap = {joint->gap, 0.0};
+        const EngineTouch touch = {.eccentricity =
+                                       joint_has_hole(of->kind) ? joint->eccentricity : gap,
+                                   .force = linkage_is_torsional(of) ? torque : joint->force_on_b,
                                    .impulse = length_s * joint->force,
                                    .approach = NAN,
                                    .force_max = NAN,

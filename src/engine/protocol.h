@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/driver.h"
+#include "kernel/force_law.h"
 
 #include <jansson.h>
 
@@ -17,10 +18,23 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
 // Two numbers, as a place, a velocity or a point of a table.
 json_t *engine_pair(Vec2 value);
 
+// The law of a contact, and what it brings along at time zero: null where it does not touch.
+json_t *engine_law_object(const ForceLaw *law);
+json_t *engine_contact_object(const ContactState *state);
+
+// Adds a sinusoid where there is one.
+void engine_add_wave(const Wave *wave, json_t *object);
+
+// Adds what touches, but for pins in holes. Fails with ERR_CASE where a contact has no law.
+bool engine_add_touches(const Scenario *scenario, json_t *request, Err *err);
+
+// Adds drives that are more than one at a constant speed, and what turns like a servo.
+void engine_add_drives(const Scenario *scenario, json_t *request);
+
 // The oldest protocol that has words for a scenario, and the first thing in it that no older one
 // has, such as "springs ('x')"; empty where there is none.
 enum { ENGINE_NEED_SIZE = 96 };
-int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE]);
+int engine_needs(const Scenario *scenario, char what[ENGINE_NEED_SIZE]);
 
 // Adds what acts on the bodies beside joints and gravity to the request: springs, torsion springs,
 // bushings and loads, a drive's torque being one (docs/drivers.md).

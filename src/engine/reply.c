@@ -9,8 +9,10 @@
 #include "base/memory.h"
 #include "base/printable.h"
 #include "base/text.h"
+#include "engine/features.h"
 #include "engine/row.h"
 #include "model/joint_rows.h"
+#include "ode/stepping.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -118,6 +120,25 @@ static bool read_rows(const json_t *object, const char *line, const char *key, s
     return is_right;
 }
 
+// What a driver takes in each of its ways; words that are not known are passed over.
+static bool take_words(EngineDriver *driver, const json_t *takes, Err *err)
+{
+    for (size_t i = 0; i < driver->way_count; i++) {
+        const json_t *words = json_object_get(takes, driver->ways[i]);
+        driver->takes[i] = 0;
+        for (size_t k = 0; k < json_array_size(words); k++) {
+            const char *word = json_string_value(json_array_get(words, k));
+            if (word == NULL) {
+                return refuse_key(err, "jointplay-driver", "takes", "lists of words by way");
+            }
+            const EngineFeature feature = engine_feature_of(word);
+            driver->takes[i] |= feature < ENGINE_FEATURE_COUNT ? 1U << feature : 0U;
+        }
+    }
+    return takes == NULL || json_is_object(takes) ||
+           refuse_key(err, "jointplay-driver", "takes", "lists of words by way");
+}
+
 static bool take_hello(EngineReply *reply, const json_t *line, Err *err)
 {
     EngineDriver *driver = reply->driver;
@@ -148,7 +169,7 @@ static bool take_hello(EngineReply *reply, const json_t *line, Err *err)
     }
     driver->way_count = count;
     reply->is_introduced = true;
-    return true;
+    return take_words(driver, json_object_get(line, "takes"), err);
 }
 
 // The size of a mechanism: the largest reach of a body, m.
@@ -209,7 +230,9 @@ static bool check_record(const EngineReply *reply, Err *err)
     }
     for (size_t i = 0; i < records->joint_count; i++) {
         const EngineTouch touch = engine_records_joint(records, last, i);
-        if (vec2_length(touch.eccentricity) > most || touch.depth_max > most) {
+        // the gap of a stop may be larger than any body, and that of a hinge is an angle
+        const bool is_bounded = joint_has_hole(reply->scenario->linkage.joints[i].kind);
+        if (is_bounded && (vec2_length(touch.eccentricity) > most || touch.depth_max > most)) {
             return err_set(err, ERR_SOLVER,
                            "its line 'step' of %.6g s has as 'joints[%zu]' an eccentricity or a "
                            "depth above the longest reach of a body, %.3g m",
@@ -261,34 +284,32 @@ static bool check_jump(const EngineReply *reply, Err *err)
 static bool check_drive(const EngineReply *reply, Err *err)
 {
     const Linkage *linkage = &reply->scenario->linkage;
-    const int driven = linkage_driven_body(linkage);
-    if (driven < 0) {
-        return true;
+    for (size_t i = 0; i < linkage_drive_count(linkage); i++) {
+        const double turned = reply->sample.bodies[linkage_drive_body(linkage, i)].angle;
+        const double off = turned - drive_angle(linkage_drive(linkage, i), reply->sample.time_s);
+        if (!(fabs(off) <= DRIVE_OFF_MOST)) {
+            return err_set(err, ERR_SOLVER, "after %.6g s its drive is %.3g rad off",
+                           reply->sample.time_s, off);
+        }
     }
-    const Sample *sample = &reply->sample;
-    const double off = sample->bodies[driven].angle - drive_angle(&linkage->driver, sample->time_s);
-    return fabs(off) <= DRIVE_OFF_MOST ||
-           err_set(err, ERR_SOLVER, "after %.6g s its drive is %.3g rad off", sample->time_s, off);
+    return true;
 }
 
-// Where a joint is in a sample. Returns how far its anchors are apart, m: of a slider across its
-// line, which may lie anywhere and turn with a body.
+// Where a joint is in a sample. Returns how far its bodies are from where it holds them, m; 0 of
+// one that holds nothing.
 static double fill_place(EngineReply *reply, size_t joint)
 {
     const Linkage *linkage = &reply->scenario->linkage;
-    const Motion *motions = reply->sample.bodies;
-    const Vec2 gap = linkage_joint_gap(linkage, motions, (int)joint).position;
-    JointState *state = &reply->sample.joints[joint];
-    state->eccentricity = gap;
-    if (!joint_slides(linkage->joints[joint].kind)) {
-        return vec2_length(gap);
+    const Joint *of = &linkage->joints[joint];
+    stepping_observe_joint(linkage, joint, &reply->sample);
+    if (!joint_holds(of->kind)) {
+        return 0.0;
     }
     JointRows rows;
-    joint_rows_find(linkage, motions, (int)joint, &rows);
-    state->eccentricity =
-        (Vec2){vec2_dot(joint_rows_along(linkage, motions, (int)joint), gap), rows.position[0]};
-    state->tilt = remainder(rows.position[1], 2.0 * M_PI);
-    return fabs(rows.position[0]);
+    joint_rows_find(linkage, reply->sample.bodies, (int)joint, &rows);
+    const double across =
+        joint_slides(of->kind) ? fabs(rows.position[0]) : hypot(rows.position[0], rows.position[1]);
+    return across - linkage_radial_clearance(of);
 }
 
 // Whether the ideal joints hold; keeps how far they open.
@@ -300,8 +321,6 @@ static bool check_joints(EngineReply *reply, Err *err)
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Joint *joint = &linkage->joints[i];
         const double opening = fill_place(reply, i) - linkage_radial_clearance(joint);
-        reply->sample.joints[i].gap = linkage_has_play(joint) ? -opening : 0.0;
-        reply->sample.joints[i].is_touching = !linkage_has_play(joint) || opening > 0.0;
         if (!(opening <= most)) {
             return err_set(err, ERR_SOLVER, "after %.6g s the joint '%s' is %.3g m apart",
                            reply->sample.time_s, joint->name, opening);
@@ -325,6 +344,9 @@ static void fill_sample(EngineReply *reply, const double *bodies, const double *
     for (size_t i = 0; i < linkage->joint_count; i++) {
         const Vec2 force = {joints[JOINT_NUMBERS * i], joints[JOINT_NUMBERS * i + 1]};
         sample->joints[i] = (JointState){.force_on_b = force, .force = vec2_length(force)};
+        if (linkage_is_torsional(&linkage->joints[i])) {
+            sample->joints[i] = (JointState){.moment_on_b = force.x, .force = fabs(force.x)};
+        }
     }
     sample->crank_rad =
         linkage->driver.is_present ? drive_angle(&linkage->driver, sample->time_s) : 0.0;

@@ -5,8 +5,8 @@
 #include "engine/protocol.h"
 
 #include "contact/law.h"
+#include "engine/features.h"
 #include "model/joint_friction.h"
-#include "model/loads.h"
 
 #include <assert.h>
 #include <jansson.h>
@@ -23,50 +23,39 @@ bool engine_refuse(const char *engine, const char *what, Err *err)
                    what);
 }
 
-static bool refuse_joint(const char *engine, const char *what, const Joint *joint, Err *err)
-{
-    char words[ENGINE_NEED_SIZE];
-    snprintf(words, sizeof words, "%s (joint '%s')", what, joint->name);
-    return engine_refuse(engine, words, err);
-}
-
-// What the protocol calls a kind of joint; or NULL, and what it has not.
-typedef struct KindWords {
-    const char *word;
-    const char *lacks;
-} KindWords;
-
-static KindWords words_of(JointKind kind)
+// What the protocol calls a kind of joint.
+static const char *word_of(JointKind kind)
 {
     switch (kind) {
     case JOINT_REVOLUTE:
-        return (KindWords){"revolute", NULL};
+        return "revolute";
     case JOINT_CLEARANCE:
-        return (KindWords){"pin-in-hole", NULL};
+        return "pin-in-hole";
     case JOINT_PRISMATIC:
-        return (KindWords){"prismatic", NULL};
+        return "prismatic";
     case JOINT_GUIDE:
-        return (KindWords){NULL, "a block between guides"};
+        return "guide";
     case JOINT_STOP:
-        return (KindWords){NULL, "stops"};
+        return "stop";
     case JOINT_GEAR:
-        return (KindWords){NULL, "gears"};
+        return "gears";
     case JOINT_RACK:
-        return (KindWords){NULL, "a rack and pinion"};
+        return "rack";
     case JOINT_KIND_COUNT:
         break;
     }
-    return (KindWords){NULL, "this kind of joint"};
+    return "joint";
 }
 
 static bool check_joint(const char *engine, const Joint *joint, Err *err)
 {
-    const char *lacks = joint->limits.kind != LIMIT_NONE ? "limits of a joint"
-                        : joint_friction_is(joint)       ? "friction of an ideal joint"
+    const char *lacks = joint_friction_is(joint) ? "friction of an ideal joint"
                         : joint->friction.law != BRISTLE_REGULARIZED
                             ? "friction that is not regularized"
-                            : words_of(joint->kind).lacks;
-    return lacks == NULL || refuse_joint(engine, lacks, joint, err);
+                            : NULL;
+    char words[ENGINE_NEED_SIZE];
+    snprintf(words, sizeof words, "%s (joint '%s')", lacks != NULL ? lacks : "", joint->name);
+    return lacks == NULL || engine_refuse(engine, words, err);
 }
 
 bool engine_check(const char *engine, const Scenario *scenario, Err *err)
@@ -77,30 +66,6 @@ bool engine_check(const char *engine, const Scenario *scenario, Err *err)
     }
     if (scenario->contact.model != CONTACT_IMPACT && scenario_has_clearance(scenario)) {
         return engine_refuse(engine, "contact.model: poisson", err);
-    }
-    if (linkage->further_count > 0) {
-        return engine_refuse(engine, "several drives", err);
-    }
-    if (linkage->driver.is_present && !drive_is_steady(&linkage->driver)) {
-        return engine_refuse(engine, "a drive whose speed changes over time", err);
-    }
-    if (linkage->torque.limit > 0.0) {
-        return engine_refuse(engine, "a soft drive with a torque limit", err);
-    }
-    if (time_table_changes(&linkage->torque.table) && wave_exists(&linkage->torque.table.wave)) {
-        return engine_refuse(engine, "a torque that is a sinusoid", err);
-    }
-    if (isfinite(loads_shortest_wave(linkage))) {
-        return engine_refuse(engine, "a load that is a sinusoid", err);
-    }
-    if (linkage->torque.followed.is_present && !drive_is_steady(&linkage->torque.followed) &&
-        !drive_is_held(&linkage->torque.followed)) {
-        return engine_refuse(engine, "a soft drive whose speed changes over time", err);
-    }
-    const Torque *torque = &linkage->torque;
-    if (torque->table.count > 0 && joint_has_position(linkage->joints[torque->joint].kind) &&
-        (torque->slope > 0.0 || torque->followed.is_present)) {
-        return engine_refuse(engine, "a motor or soft drive along a line", err);
     }
     for (size_t i = 0; i < linkage->joint_count; i++) {
         if (!check_joint(engine, &linkage->joints[i], err)) {
@@ -150,7 +115,7 @@ static json_t *elastic_object(const ForceLaw *law)
                      series_array(law));
 }
 
-static json_t *law_object(const ForceLaw *law)
+json_t *engine_law_object(const ForceLaw *law)
 {
     json_t *object = elastic_object(law);
     const int is_added = json_object_update_new(
@@ -164,7 +129,7 @@ static json_t *law_object(const ForceLaw *law)
 }
 
 // A contact that is under way at the start, or null.
-static json_t *contact_object(const ContactState *state)
+json_t *engine_contact_object(const ContactState *state)
 {
     if (!state->is_touching) {
         return json_null();
@@ -178,7 +143,7 @@ static json_t *contact_object(const ContactState *state)
 static json_t *joint_object(const Scenario *scenario, const Joint *joint, Err *err)
 {
     json_t *object = json_pack("{s:s, s:s, s:i, s:i, s:o, s:o}", "name", joint->name, "kind",
-                               words_of(joint->kind).word, "body_a", joint->body_a, "body_b",
+                               word_of(joint->kind), "body_a", joint->body_a, "body_b",
                                joint->body_b, "anchor_a_m", engine_pair(joint->anchor_a),
                                "anchor_b_m", engine_pair(joint->anchor_b));
     if (joint_slides(joint->kind)) {
@@ -194,8 +159,8 @@ static json_t *joint_object(const Scenario *scenario, const Joint *joint, Err *e
         json_object_set_new(object, "radial_clearance_m",
                             json_real(linkage_radial_clearance(joint)));
         json_object_set_new(object, "hole_radius_m", json_real(joint->clearance.hole_radius));
-        json_object_set_new(object, "law", law_object(&law));
-        json_object_set_new(object, "contact", contact_object(&joint->contacts[0]));
+        json_object_set_new(object, "law", engine_law_object(&law));
+        json_object_set_new(object, "contact", engine_contact_object(&joint->contacts[0]));
     }
     return object;
 }
@@ -212,10 +177,10 @@ static json_t *times_array(const Scenario *scenario)
 static json_t *drive_object(const Linkage *linkage)
 {
     const Driver *driver = &linkage->driver;
-    return driver->is_present ? json_pack("{s:i, s:i, s:f, s:f}", "joint", driver->joint, "body",
-                                          linkage_driven_body(linkage), "speed_rad_s",
-                                          driver->speed, "start_rad", driver->start)
-                              : json_null();
+    return drive_is_steady(driver) ? json_pack("{s:i, s:i, s:f, s:f}", "joint", driver->joint,
+                                               "body", linkage_driven_body(linkage), "speed_rad_s",
+                                               driver->speed, "start_rad", driver->start)
+                                   : json_null();
 }
 
 char *engine_request(const Scenario *scenario, const char *way, double record_s, bool wants_model,
@@ -236,7 +201,7 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
         }
     }
     char needed[ENGINE_NEED_SIZE];
-    const int protocol = engine_needs(linkage, needed);
+    const int protocol = engine_needs(scenario, needed);
     json_t *request = json_pack(
         "{s:i, s:s, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "jointplay-driver", protocol, "ask",
         "run", "way", way, "step_s", scenario->run.step, "duration_s", scenario_duration(scenario),
@@ -245,6 +210,10 @@ char *engine_request(const Scenario *scenario, const char *way, double record_s,
     assert(request != NULL);
     if (protocol > 1) {
         engine_add_actions(scenario, request);
+    }
+    if (is_whole && engine_features_lack(scenario, 0, needed)) {
+        engine_add_drives(scenario, request);
+        is_whole = engine_add_touches(scenario, request, err);
     }
     if (wants_model) {
         json_object_set_new(request, "model", json_true());

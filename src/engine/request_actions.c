@@ -5,6 +5,7 @@
 // motor or a soft drive, is a torsion damper. A soft drive that follows phi_0 + w t by a spring k
 // and a damper c is a torsion spring to the angle 0 with a load k (phi_0 + w t) + c w; one that is
 // held has no w.
+#include "engine/features.h"
 #include "engine/protocol.h"
 
 #include "model/loads.h"
@@ -19,9 +20,13 @@ static bool has_torque(const Linkage *linkage)
     return linkage->torque.table.count > 0;
 }
 
-int engine_needs(const Linkage *linkage, char what[ENGINE_NEED_SIZE])
+int engine_needs(const Scenario *scenario, char what[ENGINE_NEED_SIZE])
 {
+    const Linkage *linkage = &scenario->linkage;
     what[0] = '\0';
+    if (engine_features_lack(scenario, 0, what)) {
+        return 3;
+    }
     for (size_t i = 0; linkage->gap_damper_count > 0 && i < linkage->joint_count; i++) {
         if (linkage->joints[i].contact.gap_damping > 0.0) {
             snprintf(what, ENGINE_NEED_SIZE, "damping in a gap ('%s')", linkage->joints[i].name);
@@ -129,6 +134,7 @@ static json_t *load_object(const Linkage *linkage, const Load *load)
                               engine_pair((Vec2){load->table.at[i], load->table.values[i]}));
     }
     json_object_set_new(object, "points", points);
+    engine_add_wave(&load->table.wave, object);
     json_object_set_new(object, "shape", json_string(LOAD_SHAPES[load->table.shape]));
     json_object_set_new(object, "period", json_real(load->table.period));
     return object;
@@ -195,7 +201,7 @@ void engine_add_actions(const Scenario *scenario, json_t *request)
     for (size_t i = 0; i < linkage->load_count; i++) {
         json_array_append_new(loads, load_object(linkage, &linkage->loads[i]));
     }
-    if (has_torque(linkage)) {
+    if (has_torque(linkage) && !engine_has_servo(linkage)) {
         add_torque(scenario, torsions, loads);
     }
     if (json_array_size(bushings) > 0) {

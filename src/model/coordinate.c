@@ -2,7 +2,7 @@
 //
 //     revolute     q = phi_b - phi_a        (the other sign where b is the ground)
 //     prismatic    q = t . d
-//     gears        model/mesh.h
+//     gears        base/mesh.h
 //     rack         q = t . d + r_b (phi_b - phi_a)
 // t the line's direction on body a, d from anchor a to anchor b; r_b the pitch radius. A push along
 // the coordinate of teeth is a force on body b, and the other way on body a, at P: of a rack along
@@ -102,10 +102,20 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
     return coordinate_sense(of) * (b - a);
 }
 
+Mesh coordinate_mesh(const Linkage *linkage, const Joint *joint)
+{
+    const Gear *gear = &joint->gear;
+    return (Mesh){
+        .gear = gear,
+        .error = gear->error > 0 ? &linkage->profiles[gear->error - 1] : NULL,
+        .relief = gear->relief > 0 ? &linkage->profiles[gear->relief - 1] : NULL,
+    };
+}
+
 MeshFlank coordinate_flank(const Linkage *linkage, const Motion *motions, int joint, double sign)
 {
     const Joint *of = &linkage->joints[joint];
-    const Mesh mesh = mesh_of(linkage, of);
+    const Mesh mesh = coordinate_mesh(linkage, of);
     return mesh_flank(&mesh, sign, linkage_joint_gap(linkage, motions, joint).position,
                       angle_of(motions, of->body_a), angle_of(motions, of->body_b));
 }

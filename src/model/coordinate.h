@@ -6,8 +6,8 @@
 // pitch circle has come along the rack's pitch line, m. Angles count beyond a turn.
 #pragma once
 
+#include "base/mesh.h"
 #include "model/joint_rows.h"
-#include "model/mesh.h"
 
 // The values between which the coordinate is free.
 double coordinate_low(const Joint *joint);
@@ -26,6 +26,9 @@ double coordinate_rate(const Linkage *linkage, const Motion *motions, int joint)
 // The sign with which the coordinate of a revolute joint follows the angle of body b less that of
 // body a: -1 where b is the ground.
 double coordinate_sense(const Joint *joint);
+
+// A pair of gears with its tables.
+Mesh coordinate_mesh(const Linkage *linkage, const Joint *joint);
 
 // The flank of a pair of gears with a sign, 1 at the low end of the coordinate and -1 at the high
 // one.

@@ -164,7 +164,7 @@ static inline bool joint_has_rack(JointKind kind)
     return joint_is_among(kind, JOINTS_WITH_RACK);
 }
 
-// Whether the teeth of two gears touch (model/mesh.h).
+// Whether the teeth of two gears touch (base/mesh.h).
 static inline bool joint_has_mesh(JointKind kind)
 {
     return joint_is_among(kind, JOINTS_WITH_MESH);

@@ -5,15 +5,16 @@
 // The ground is no body; it has the number LINKAGE_GROUND and the fixed frame of the world, y up.
 #pragma once
 
+#include "base/cam.h"
+#include "base/drive.h"
 #include "base/err.h"
 #include "base/force_curve.h"
 #include "base/load_table.h"
+#include "base/mesh.h"
 #include "base/vec2.h"
 #include "base/vec3.h"
 #include "kernel/bristle.h"
 #include "kernel/contact_state.h"
-#include "model/cam.h"
-#include "model/drive.h"
 #include "model/joint.h"
 
 #include <stdbool.h>
@@ -124,31 +125,6 @@ typedef struct Limits {
     double low;      // rad or m, of LIMIT_STOPS; -INFINITY: none
     double high;     // rad or m; INFINITY: none
 } Limits;
-
-// A pair of gears. Their pitch circles touch on the line of their centres while these are as far
-// from each other as the case places them; of an internal gear and its pinion one radius is
-// negative, and both together are that distance.
-//
-// Of a rack body a is the rack and body b the pinion. The pitch line goes through the anchor on the
-// rack, along Joint.direction; the pinion's radius is the distance of its centre from the line,
-// negative to the right of it.
-typedef struct Gear {
-    int pivots[2];          // numbers of the joints about which body a (a rack: on which it slides)
-                            // and body b turn
-    double teeth[2];        // of gears, or in their ratio; of an internal gear negative
-    double radius_a;        // m, of the pitch circles; set where bodies are placed; of a rack
-                            // infinite
-    double radius_b;        // m
-    double pressure_angle;  // rad, of gears, where the pitch circles touch; 0: they push along
-                            // the pitch circles' tangent
-    size_t error;           // of gears: which of the linkage's profiles is the transmission error,
-                            // counted from 1; 0: none
-    size_t relief;          // and which the relief of both flanks
-    size_t repeats;         // how often they come in a turn of the first gear; 0: once
-    double zero;            // rad: what their angle counts from
-    bool is_backlash_angle; // until then: whether Limits.backlash is an angle of body b, rad
-    bool is_start_angle;    // likewise Limits.start
-} Gear;
 
 // What a joint with play has of its own in place of what the contact's options say. Of a joint
 // whose limited coordinate is an angle forces are torques, N m, and lengths angles, rad.

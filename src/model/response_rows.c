@@ -9,7 +9,7 @@
 //     theirs    n . d'' + 2 w_a t . d' - w_a^2 n . d + alpha_a t . d
 //               t . d'' - 2 w_a n . d' - w_a^2 t . d - alpha_a (n . d - r) - alpha_b r
 // Ends of a coordinate: model/coordinate.h. At a cam likewise with the normal where it is met, and
-// the terms of model/cam.h.
+// the terms of base/cam.h.
 #include "model/response_rows.h"
 
 #include "model/coordinate.h"

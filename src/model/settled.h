@@ -2,8 +2,8 @@
 // that was found, and how sure it is.
 #pragma once
 
+#include "base/drive.h"
 #include "base/err.h"
-#include "model/drive.h"
 #include "model/linkage.h"
 
 #include <stdint.h>

@@ -1,9 +1,9 @@
 // Tells which linkages in space never leave the plane, and makes planar ones of them.
 #include "model/space_flat.h"
 
+#include "base/drive.h"
 #include "base/union_find.h"
 #include "base/zeroed.h"
-#include "model/drive.h"
 #include "model/forces.h"
 #include "model/space.h"
 

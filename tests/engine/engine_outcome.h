@@ -167,6 +167,15 @@ static inline double omega_error(const char *engine, const char *way, const Scen
     return hold_against(scenario, run, BACKEND_REFERENCE).error.omega_max;
 }
 
+// The same of all speeds.
+static inline double max_error(const char *engine, const char *way, const Scenario *changed,
+                               const Scenario *scenario)
+{
+    const EngineDriver driver = engine_named(engine);
+    Trajectory *run = engine_run(&driver, way, changed, LIMIT_S, NULL);
+    return hold_against(scenario, run, BACKEND_REFERENCE).error.max;
+}
+
 // The errors of a case at a step and a shorter one, at which the scenario is left, and the order of
 // the error between them.
 typedef struct Refined {
@@ -473,5 +482,59 @@ static inline void hold_friction(const char *engine)
     const double without = omega_error(engine, "force", &changed, &scenario);
     if (!(without > 3.0 * force)) {
         fail_msg("friction as a force: %g, %g without", force, without);
+    }
+}
+
+// A case that has what pins in holes have not, and a change of that.
+typedef struct WholeCase {
+    const char *path;
+    const char *length; // of the run
+    const char *change;
+} WholeCase;
+
+// Each of these is taken whole: contacts within the step, as good as ODE's own up to a factor of 3,
+// and with one of its own numbers changed by a little far worse.
+static inline void hold_whole_cases(const char *engine)
+{
+    static const WholeCase CASES[] = {
+        {"cases/mechanisms/stop-rebound.yaml", "run.duration=0.4 s",
+         "joints.hinge.stiffness=1.01e4 N m/rad"},
+        {"cases/mechanisms/gear-pair.yaml", "run.duration=0.06 s", "joints.mesh.backlash=0.101 mm"},
+        {"cases/mechanisms/cam-roller.yaml", "run.revolutions=0.4",
+         "springs.valve-spring.stiffness=6.06 kN/m"},
+        {"cases/mechanisms/planetary-gear.yaml", "run.duration=10 ms",
+         "joints.outer.backlash=50.5 um"},
+        {"cases/mechanisms/five-bar.yaml", "run.duration=0.1 s",
+         "drives.right-pivot.profile=polynomial"},
+        {"cases/mechanisms/motor-flywheel.yaml", "run.duration=0.1 s",
+         "drive.no-load-speed=303 rpm"},
+        {"cases/mechanisms/servo-arm.yaml", "run.duration=0.05 s", "drive.torque-limit=4.04 N m"},
+        {"cases/mechanisms/rack-and-pinion.yaml", "run.duration=50 ms",
+         "joints.teeth.backlash=0.101 mm"},
+        {"cases/mechanisms/slider-crank-guide.yaml", "run.duration=5 ms",
+         "joints.slider-guide.block=50.02 mm"},
+        {"cases/mechanisms/pin-slot.yaml", "run.revolutions=0.2",
+         "joints.play.slot=[40 mm, 8.21 mm]"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        const WholeCase *of = &CASES[i];
+        const char *const overrides[] = {of->length, "run.samples=200", "run.start=centred",
+                                         of->change};
+        Scenario scenario = load(of->path, overrides, 3);
+        Scenario changed = load(of->path, overrides, 4);
+        scenario.run.step = changed.run.step = 20e-6;
+        const double ode =
+            hold_against(&scenario, run_scenario(&scenario, registry_solver(BACKEND_ODE), NOBODY),
+                         BACKEND_REFERENCE)
+                .error.max;
+        const double kernel = max_error(engine, "kernel", &scenario, &scenario);
+        if (!(kernel <= 3.0 * ode)) {
+            fail_msg("%s, %s: %g against ODE's %g", engine, of->path, kernel, ode);
+        }
+        const double control = max_error(engine, "kernel", &changed, &scenario);
+        if (!(control > 10.0 * kernel)) {
+            fail_msg("%s, %s: %g with %s, %g without", engine, of->path, control, of->change,
+                     kernel);
+        }
     }
 }

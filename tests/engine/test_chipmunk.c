@@ -160,12 +160,19 @@ static void friction_acts(void **state)
     hold_friction(CHIPMUNK);
 }
 
+static void whole_cases_are_taken(void **state)
+{
+    (void)state;
+    hold_whole_cases(CHIPMUNK);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_in_the_step_are_as_good_as_those_of_ode),
         cmocka_unit_test(steps_tell_of_every_contact),
         cmocka_unit_test(every_number_is_named),
+        cmocka_unit_test(whole_cases_are_taken),
         cmocka_unit_test(its_step_can_be_chosen),
         cmocka_unit_test(springs_and_torques_act),
         cmocka_unit_test(sliders_go_along_any_line),

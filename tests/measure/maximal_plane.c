@@ -9,9 +9,9 @@
 //     prismatic    n . d = 0,  phi_b - phi_a = held
 #include "maximal.h"
 
+#include "base/drive.h"
 #include "base/zeroed.h"
 #include "contact/touch.h"
-#include "model/drive.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 // nearest?
 #include "close.h"
 
+#include "base/cam.h"
 #include "base/lcg.h"
-#include "model/cam.h"
 
 #include <stdbool.h>
 #include <string.h>

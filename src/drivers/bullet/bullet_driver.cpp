@@ -59,6 +59,7 @@ class World
     void start_staggered();
 
     const DriverCase *of;
+    Tree tree;
     bool is_staggered;
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
@@ -71,7 +72,7 @@ class World
     std::vector<std::unique_ptr<btRigidBody>> bodies;
     std::vector<std::unique_ptr<btTypedConstraint>> constraints;
     std::vector<Vec2> centres; // of each body's frame, where the centre of mass is
-    std::vector<DriverContact> contacts;
+    DriverContact *contacts;   // by place
     std::vector<DriverMotion> now;
     std::vector<DriverMotion> before; // velocities of the step before
     std::vector<Vec2> forces;
@@ -80,7 +81,6 @@ class World
     double lag_s = 0.0; // of velocities behind positions
     DriverRun answer;
     // of trials
-    Tree tree{};
     double trial_s = 0.0;
     std::vector<DriverMotion> tried;
 };
@@ -96,9 +96,10 @@ btTransform to_transform(Vec2 place, double angle)
 }
 
 World::World(const DriverCase *given)
-    : of(given), is_staggered(driver_is_way(given, "staggered")), centres(given->body_count),
-      contacts(given->joint_count), now(given->body_count), before(given->body_count),
-      forces(given->joint_count), actions(given->body_count), answer(driver_run_start(given))
+    : of(given), tree(tree_make(given)), is_staggered(driver_is_way(given, "staggered")),
+      centres(given->body_count), contacts(places_start(given)), now(given->body_count),
+      before(given->body_count), forces(given->joint_count), actions(given->body_count),
+      answer(driver_run_start(given))
 {
     world.setGravity(to_vector(of->gravity));
     // joints that have opened are closed within the next step
@@ -114,7 +115,6 @@ World::World(const DriverCase *given)
     }
     for (size_t i = 0; i < of->joint_count; i++) {
         add_joint(i);
-        contacts[i].state = of->joints[i].contact;
     }
     read(now);
     before = now;
@@ -175,7 +175,8 @@ btTransform World::anchor(const DriverJoint &joint, int side, double turn) const
 void World::add_joint(size_t i)
 {
     const DriverJoint &joint = of->joints[i];
-    if (joint.kind == DRIVER_PIN_IN_HOLE || (of->has_drive && of->drive_joint == int(i))) {
+    if (!driver_is_ideal(&joint) || (of->has_drive && of->drive_joint == int(i)) ||
+        trial_holds(&tree, i)) {
         return;
     }
     btRigidBody &a = body(joint.bodies[0]);
@@ -266,16 +267,8 @@ void World::push()
     before = now;
     const double from_s = now_s - lag_s;
     actions_find(of, felt.data(), from_s, from_s + of->step_s, actions.data());
-    for (size_t i = 0; i < of->joint_count; i++) {
-        const DriverJoint &joint = of->joints[i];
-        if (joint.kind != DRIVER_PIN_IN_HOLE) {
-            continue;
-        }
-        const PinHole pose = driver_pose(&joint, felt.data());
-        driver_follow(&joint, &pose, &contacts[i], &answer.totals[i]);
-        forces[i] = actions_add_contact(&joint, &contacts[i], &pose, felt.data(), actions.data());
-        driver_note_force(&answer, i, &pose, vec2_length(forces[i]), of->step_s, &contacts[i]);
-    }
+    places_follow(of, felt.data(), contacts, answer.totals);
+    places_press(of, contacts, felt.data(), actions.data(), forces.data(), &answer, of->step_s);
     act(actions.data());
 }
 
@@ -330,9 +323,9 @@ void World::start_staggered()
         made.setLinearVelocity(to_vector(vec2_sub(start[i].velocity, vec2_scale(0.5, gained))));
         made.setAngularVelocity(btVector3(0.0, 0.0, start[i].omega - 0.5 * turned));
     }
-    for (size_t i = 0; i < of->joint_count; i++) {
-        contacts[i].state = of->joints[i].contact;
-        answer.totals[i] = DriverTotals{};
+    for (size_t i = 0; i < of->place_count; i++) {
+        contacts[i].state = of->places[i].contact;
+        answer.totals[of->places[i].joint] = DriverTotals{};
     }
     now = start;
     read(now);
@@ -381,19 +374,18 @@ void World::accelerate(const double *q, const double *v, const DriverAction *giv
 
 void World::run_trials()
 {
-    tree = tree_make(of);
     trial_s = trial_step(of);
     tried.resize(bodies.size());
     std::snprintf(answer.settings, sizeof answer.settings,
                   "btMLCPSolver with btDantzigSolver, ERP 1, CFM 0, driven body kinematic, bodies "
                   "kept in the plane, trials of %.3g s",
                   trial_s);
-    trial_run(
-        &tree,
-        [](void *engine, const double *q, const double *v, const DriverAction *given, double *a) {
-            static_cast<World *>(engine)->accelerate(q, v, given, a);
+    const TrialEngine engine = {
+        [](void *own, const double *q, const double *v, const DriverAction *given, double *a) {
+            static_cast<World *>(own)->accelerate(q, v, given, a);
         },
-        this, &answer);
+        nullptr, this};
+    trial_run(&tree, &engine, &answer);
 }
 
 void World::run()

@@ -1,4 +1,4 @@
-// Finds the forces and moments on the bodies of a case: springs, bushings, loads and contacts.
+// Finds the forces and moments on the bodies of a case: springs, bushings, loads and servos.
 //
 // Between points p_a and p_b, d = p_b - p_a, n = d / |d|:
 //     force (k (|d| - l) + c d|d|/dt) n on body a, the other way on body b
@@ -17,7 +17,7 @@
 bool actions_any(const DriverCase *of)
 {
     return of->spring_count > 0 || of->torsion_count > 0 || of->bushing_count > 0 ||
-           of->load_count > 0;
+           of->load_count > 0 || of->servo_count > 0;
 }
 
 static void add_at(const DriverMotion *motions, int body, Vec2 point, Vec2 force,
@@ -35,20 +35,6 @@ void actions_add(const DriverMotion *motions, int body, Vec2 local, Vec2 force,
                  DriverAction *actions)
 {
     add_at(motions, body, driver_point(motions, body, local), force, actions);
-}
-
-Vec2 actions_add_contact(const DriverJoint *joint, const DriverContact *contact,
-                         const PinHole *pose, const DriverMotion *motions, DriverAction *actions)
-{
-    const DriverPress press = driver_press(joint, contact, pose, motions);
-    for (int side = 0; side < 2 && pose->penetration > 0.0; side++) {
-        if (joint->bodies[side] != DRIVER_GROUND) {
-            actions_add(motions, joint->bodies[side], joint->anchors[side],
-                        vec2_scale(side == 0 ? -1.0 : 1.0, press.force), actions);
-            actions[joint->bodies[side]].moment += press.moments[side];
-        }
-    }
-    return press.force;
 }
 
 static void add_spring(const DriverSpring *spring, const DriverMotion *motions,
@@ -139,15 +125,19 @@ static Coordinate angle_of(const DriverJoint *joint, const DriverMotion *motions
 
 static Coordinate coordinate_of(const DriverJoint *joint, const DriverMotion *motions)
 {
-    if (joint->kind != DRIVER_PRISMATIC) {
+    if (!joint->slides) {
         return angle_of(joint, motions);
     }
     const int a = joint->bodies[0];
     const double turned = a == DRIVER_GROUND ? 0.0 : motions[a].angle;
     Coordinate is = {.along = vec2_rotate(turned + joint->direction, (Vec2){1.0, 0.0})};
-    is.value =
-        vec2_dot(is.along, vec2_sub(driver_point(motions, joint->bodies[1], joint->anchors[1]),
-                                    driver_point(motions, a, joint->anchors[0])));
+    const Vec2 gap = vec2_sub(driver_point(motions, joint->bodies[1], joint->anchors[1]),
+                              driver_point(motions, a, joint->anchors[0]));
+    const Vec2 going = vec2_sub(driver_point_velocity(motions, joint->bodies[1], joint->anchors[1]),
+                                driver_point_velocity(motions, a, joint->anchors[0]));
+    const double omega = a == DRIVER_GROUND ? 0.0 : motions[a].omega;
+    is.value = vec2_dot(is.along, gap);
+    is.rate = vec2_dot(is.along, vec2_sub(going, vec2_scale(omega, vec2_perp(gap))));
     return is;
 }
 
@@ -163,7 +153,7 @@ static void add_along(const DriverJoint *joint, double value, const DriverMotion
                       DriverAction *actions)
 {
     const Coordinate is = coordinate_of(joint, motions);
-    if (joint->kind != DRIVER_PRISMATIC) {
+    if (!joint->slides) {
         add_moment(&is, value, actions);
         return;
     }
@@ -183,8 +173,22 @@ static double value_of(const DriverCase *of, const DriverLoad *load, const Drive
         return load_table_mean(&load->table, load->shift + load->rate * from_s,
                                load->shift + load->rate * to_s);
     }
-    const LoadPiece piece = load_table_piece(&load->table, at, load->rate < 0.0 ? -1.0 : 1.0);
-    return load_piece_at(&piece, at);
+    return load_table_value(&load->table, at, load->rate < 0.0 ? -1.0 : 1.0, at);
+}
+
+// What a servo does in the middle of two times.
+static double servo_value(const DriverCase *of, const DriverServo *servo,
+                          const DriverMotion *motions, double from_s, double to_s)
+{
+    const Coordinate is = coordinate_of(&of->joints[servo->joint], motions);
+    const double mean = to_s > from_s ? time_table_mean(&servo->table, from_s, to_s)
+                                      : time_table_at(&servo->table, from_s);
+    double value = mean - servo->slope * is.rate;
+    if (servo->followed.is_present) {
+        const DriveState to = drive_since(&servo->followed, from_s, 0.5 * (from_s + to_s));
+        value += servo->stiffness * (to.angle - is.value) + servo->slope * to.omega;
+    }
+    return servo->limit > 0.0 ? fmin(fmax(value, -servo->limit), servo->limit) : value;
 }
 
 static void add_load(const DriverCase *of, const DriverLoad *load, double value,
@@ -228,5 +232,10 @@ void actions_find(const DriverCase *of, const DriverMotion *motions, double from
     for (size_t i = 0; i < of->load_count; i++) {
         add_load(of, &of->loads[i], value_of(of, &of->loads[i], motions, from_s, to_s), motions,
                  actions);
+    }
+    for (size_t i = 0; i < of->servo_count; i++) {
+        const DriverServo *servo = &of->servos[i];
+        add_along(&of->joints[servo->joint], servo_value(of, servo, motions, from_s, to_s), motions,
+                  actions);
     }
 }

@@ -1,5 +1,5 @@
-// What acts on the bodies beside joints and gravity, as a force and a moment on each: springs,
-// loads and contacts, for every engine alike.
+// What acts on the bodies beside joints, contacts and gravity, as a force and a moment on each:
+// springs, bushings, loads and servos, for every engine alike.
 #pragma once
 
 #include "drivers/common/driver.h"
@@ -10,10 +10,10 @@ typedef struct DriverAction {
     double moment;
 } DriverAction;
 
-// Whether there are springs, bushings or loads.
+// Whether there are springs, bushings, loads or servos.
 bool actions_any(const DriverCase *of);
 
-// Writes what springs, bushings and loads do with the bodies so; of loads over time the mean
+// Writes what these do with the bodies so; of what is over time the mean
 // between two times, s, which may be equal.
 void actions_find(const DriverCase *of, const DriverMotion *motions, double from_s, double to_s,
                   DriverAction *actions);
@@ -21,7 +21,3 @@ void actions_find(const DriverCase *of, const DriverMotion *motions, double from
 // Adds a force at a point of a body, in its frame; of the ground nothing.
 void actions_add(const DriverMotion *motions, int body, Vec2 local, Vec2 force,
                  DriverAction *actions);
-
-// Adds what a contact presses its bodies with. Returns the force on body b, N.
-Vec2 actions_add_contact(const DriverJoint *joint, const DriverContact *contact,
-                         const PinHole *pose, const DriverMotion *motions, DriverAction *actions);

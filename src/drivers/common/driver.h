@@ -2,8 +2,11 @@
 // (docs/drivers.md). Everything is in SI units; bodies move in the plane.
 #pragma once
 
+#include "base/cam.h"
+#include "base/drive.h"
 #include "base/force_curve.h"
 #include "base/load_table.h"
+#include "base/mesh.h"
 #include "kernel/contact_peaks.h"
 #include "kernel/contact_state.h"
 #include "kernel/force_law.h"
@@ -11,6 +14,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 enum { DRIVER_GROUND = -1, DRIVER_NAME_SIZE = 64, DRIVER_STAMPS = 4 };
 
@@ -33,19 +37,70 @@ typedef enum DriverJointKind {
     DRIVER_REVOLUTE,
     DRIVER_PRISMATIC,
     DRIVER_PIN_IN_HOLE,
+    DRIVER_TOUCHING, // a guide, a stop, gears or a rack: it holds nothing, and has places
 } DriverJointKind;
 
 typedef struct DriverJoint {
     char name[DRIVER_NAME_SIZE];
     DriverJointKind kind;
-    int bodies[2];        // a and b; DRIVER_GROUND
-    Vec2 anchors[2];      // in their frames
-    double direction;     // of a line, in body a's frame
-    double clearance;     // radial, of a pin in its hole
-    double hole_radius;   // likewise
-    ForceLaw law;         // likewise
-    ContactState contact; // under way at the start
+    bool slides;      // whether its coordinate is the way along a line, not an angle
+    int bodies[2];    // a and b; DRIVER_GROUND
+    Vec2 anchors[2];  // in their frames
+    double direction; // of a line, in body a's frame
+    double clearance; // radial, of a pin in its hole
+    ForceLaw law;     // likewise
 } DriverJoint;
+
+// How what touches at a place is shaped (docs/drivers.md).
+typedef enum DriverShape {
+    DRIVER_HOLE,
+    DRIVER_DISC,
+    DRIVER_LINE,
+    DRIVER_CAM,
+    DRIVER_SLOT,
+    DRIVER_TURN,
+    DRIVER_TEETH,
+    DRIVER_RACK,
+    DRIVER_SHAPE_COUNT,
+} DriverShape;
+
+// A place at which the bodies of a joint touch: a pin in its hole, a stop, a corner of a block, an
+// end of a coordinate, a flank.
+typedef struct DriverPlace {
+    int joint;
+    DriverShape shape;
+    int bodies[2];      // those of the joint
+    Vec2 anchors[2];    // in their frames
+    double direction;   // in body a's frame: of a line's normal, across a slot, of a rack
+    double clearance;   // m, rad of a turn
+    double sign;        // of a coordinate at one of its ends
+    double radii[2];    // m
+    double half_length; // m, of a slot's middle line
+    int siblings[2];    // as the kernel has them
+    Cam cam;            // of a cam
+    Gear gear;          // of gears, as what follows
+    Profile *tables;    // owned: of a cam, or the transmission error and the relief of teeth
+    double middle;      // m, in the middle of their gap
+    ForceLaw law;
+    ContactState contact; // under way at the start
+} DriverPlace;
+
+// A drive whose speed is not constant, or that is not alone: it turns a body about its joint.
+typedef struct DriverDrive {
+    int body;
+    Driver law;
+} DriverDrive;
+
+// What turns or pushes along the coordinate of a joint over time, and follows an angle:
+//     M(t) + stiffness (phi_d(t) - phi) + slope (omega_d(t) - omega),  at most the limit in size
+typedef struct DriverServo {
+    int joint;
+    TimeTable table;
+    double stiffness;
+    double slope;
+    double limit;    // 0: none
+    Driver followed; // phi_d and omega_d; both 0 where it is not present
+} DriverServo;
 
 // A spring with a damper between two points; and one that turns the bodies of a joint.
 typedef struct DriverSpring {
@@ -109,7 +164,13 @@ typedef struct DriverCase {
     DriverBushing *bushings;
     size_t load_count;
     DriverLoad *loads;
-    bool has_drive;
+    size_t place_count; // pins in holes first, then all others; those of a joint follow each other
+    DriverPlace *places;
+    size_t servo_count;
+    DriverServo *servos;
+    size_t drive_count; // 0 where one drive turns at a constant speed, or none does
+    DriverDrive *drives;
+    bool has_drive; // whether one turns a body at a constant speed
     int driven_body;
     int drive_joint;
     double drive_speed; // rad/s
@@ -141,10 +202,10 @@ typedef struct DriverTotals {
     double approach; // m/s, closing speed at which the last of them began
 } DriverTotals;
 
-// What a joint with play did in a step.
+// What a joint that touches did in a step.
 typedef struct DriverTouch {
-    Vec2 eccentricity; // m, pin centre less hole centre
-    Vec2 force;        // N, on body b, its mean
+    Vec2 eccentricity; // m, pin centre less hole centre; of others the least gap, and 0
+    Vec2 force;        // N, on body b, its mean; of a torque that, and 0
     double force_max;  // N
     double depth_max;  // m
     double approach;   // m/s, closing speed at which its last contact began
@@ -167,6 +228,7 @@ typedef struct DriverRun {
     bool is_linear;       // between two stamps; else a cubic through four
     DriverTotals *totals; // by joint
     DriverTouch *touches; // room, by joint
+    bool *touched;        // by joint: whether bodies can touch in it
     DriverPeak *peaks;    // by joint
     double *records;      // of steps: times, velocities of bodies, joints
     size_t record_count;
@@ -190,9 +252,21 @@ const char *driver_asked_model(void);
 struct json_t;
 void driver_answer(const struct json_t *line);
 
+// Opens what answers are written to: the program's standard output, which engines are kept from.
+FILE *driver_open_answers(void);
+
 // Say that the run failed, or what of the case the driver cannot express, and end the program.
 void driver_fail(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
 void driver_refuse(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
+
+// Zeroed room for so many, and one; ends the program where there is none.
+void *driver_room(size_t count, size_t size);
+
+// Whether a joint holds its bodies without play.
+static inline bool driver_is_ideal(const DriverJoint *joint)
+{
+    return joint->kind == DRIVER_REVOLUTE || joint->kind == DRIVER_PRISMATIC;
+}
 
 // Whether the way is that one.
 bool driver_is_way(const DriverCase *of, const char *way);
@@ -231,40 +305,6 @@ void driver_run_record(DriverRun *run, double start_s, double end_s, const Drive
 
 // Ends the clock, writes the answer, and ends the program: what it has is given back by that.
 void driver_run_write(DriverRun *run) __attribute__((noreturn));
-
-// A pin in its hole whose law acts as a force.
-
-// A contact, and what its pin did at the end of the step before.
-typedef struct DriverContact {
-    ContactState state;
-    double gap_before;
-    double approach_before;
-    double begun_share; // of the last step, since the contact began in it; 0: it did not
-    ContactPeaks peaks;
-} DriverContact;
-
-// The pin of a joint in its hole, from the motions of all bodies.
-PinHole driver_pose(const DriverJoint *joint, const DriverMotion *motions);
-
-// What a contact presses with, friction included: the force on body b at the pin's centre, on body
-// a the other way at the hole's, N, and the moments on a and b beside these, N m.
-typedef struct DriverPress {
-    Vec2 force;
-    double moments[2];
-} DriverPress;
-
-DriverPress driver_press(const DriverJoint *joint, const DriverContact *contact,
-                         const PinHole *pose, const DriverMotion *motions);
-
-// Follows a contact to the end of a step. It began where the gap was zero, and its impact speed is
-// that between the speeds at both ends of the step.
-void driver_follow(const DriverJoint *joint, const PinHole *pose, DriverContact *contact,
-                   DriverTotals *totals);
-
-// Notes the force of a contact that has been followed to the end of a step of a length, s: its
-// largest force and depth are between the steps.
-void driver_note_force(DriverRun *run, size_t joint, const PinHole *pose, double force,
-                       double step_s, DriverContact *contact);
 
 // A point of a body, or of the ground, and its velocity.
 Vec2 driver_point(const DriverMotion *motions, int body, Vec2 local);

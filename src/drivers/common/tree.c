@@ -57,7 +57,7 @@ static int next_joint(const Tree *tree, const bool *is_reached, bool is_sliding)
     const DriverCase *of = tree->of;
     for (size_t i = 0; i < of->joint_count; i++) {
         const DriverJoint *joint = &of->joints[i];
-        const bool is_ideal = joint->kind != DRIVER_PIN_IN_HOLE;
+        const bool is_ideal = driver_is_ideal(joint);
         if (is_ideal && (joint->kind == DRIVER_PRISMATIC) == is_sliding &&
             is_in(is_reached, joint->bodies[0]) != is_in(is_reached, joint->bodies[1])) {
             return (int)i;
@@ -79,7 +79,7 @@ Tree tree_make(const DriverCase *of)
         driver_fail("there is no memory");
     }
     for (size_t i = 0; i < of->joint_count; i++) {
-        tree.is_left[i] = of->joints[i].kind != DRIVER_PIN_IN_HOLE;
+        tree.is_left[i] = driver_is_ideal(&of->joints[i]);
     }
     for (size_t count = 0; count < of->body_count; count++) {
         int number = next_joint(&tree, is_reached, true);

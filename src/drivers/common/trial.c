@@ -1,12 +1,18 @@
-// Steps an engine with the contacts of pins in holes integrated within its steps, by trials.
+// Steps an engine with contacts integrated within its steps, by trials.
 //
-// The scheme is that of drivers/mujoco/mujoco_kernel.c, with G(q, v, f) the engine's accelerations
-// of the coordinates under forces f in the rows, F = J G + J' v those of the rows:
-//     A = G(q_m, v_m, 1) - G(q_m, v_m, 0),  W = J A
-//     2 S = (F(v_m + e A) - F(v_m)) / e,    B = (G(v_m + e A) - G(v_m)) / e
-//     a + B Q/h + A P/h = G(q_m, v_m + A Q/h, P/h)
+// q and v are the coordinates of the tree and their rates; u the rows of the contacts, J their
+// Jacobian; G(q, v, f) the engine's accelerations under forces f in the rows, with loops and drives
+// held (drivers/common/hold.h), F = J G + J' v those of the rows. A step h:
+//     q_m = q + h/2 v + h^2/8 (a + A P/h)                      a, P, A of the step before
+//     v_m = v + h/2 a + 3/8 h^2 a' + 7/48 h^3 a''              behind a step as long as this one
+//     A = G(q_m, v_m, 1) - G(q_m, v_m, 0),  W = J A;  or as the engine responds
+//     2 S = (F(v_m + e A) - F(v_m)) / e,    B = (G(v_m + e A) - G(v_m)) / e,   W' = S + S'
+//     P, Q, R                                       the kernel's impulses, and their integrals
+//     a + B Q/h + A P/h = G(q_m, v_m + A Q/h + B R/h, P/h)
 //     v' = v + h a + h^3/24 a'' + B Q + B' (h/2 Q - R) + A P + A' (h/2 P - Q)
 //     q' = q + h v + h^2/2 a - h^3/12 a' + h^4/48 a'' + B R + A Q + A' (h/2 Q - 2 R)
+// J' v of a pin is known; of other places it is the difference of J v a little before and behind,
+// as the rates v go there.
 #include "drivers/common/trial.h"
 
 #include <math.h>
@@ -14,24 +20,37 @@
 #include <string.h>
 
 // of the velocities: what they are changed by for S
-static const double NUDGE = 1e-3;
+static const double NUDGE = 1e-4;
 
 // A step of a trial, s, in which joints that are open by a rounding are closed by accelerations of
 // that over its square; and rad that the fastest body may turn in it: Bullet stops at pi / 2.
 static const double TRIAL_S = 1e-4;
 static const double TRIAL_PHASE = 0.1;
 
+// rad, by which the fastest body turns between the two: the square of it is the error
+static const double BEND_PHASE = 3e-5;
+
+// rad, likewise between the two places at which responses are compared
+static const double TURN_PHASE = 2e-5;
+
+// of a step: times that are nearer to each other are one
+static const double TIME_ROUNDING = 1e-9;
+
 typedef struct Trial {
     Within in;
+    Hold hold;
     const Tree *tree;
-    TrialAccelerate accelerate;
-    void *engine;
+    const TrialEngine *engine;
     DriverRun *run;
     double *other;         // by coordinate; owned, as all arrays
+    double *changed;       // by coordinate
+    double *later;         // likewise
     DriverMotion *motions; // by body
     DriverMotion *tried;   // of a trial
     DriverAction *actions; // by body
+    bool has_walls;        // whether any place is no point
     double start_s;        // of the step under way
+    double end_s;
 } Trial;
 
 // to += scale from
@@ -51,48 +70,102 @@ static double dot(const double *a, const double *b, size_t count)
     return sum;
 }
 
-// The engine's accelerations under forces in the rows; NULL: none.
+// Lets a row of a place act on its bodies.
+static void push_place(const Trial *trial, size_t i, size_t row, double value)
+{
+    const DriverPlace *place = &trial->in.of->places[i];
+    const PlaceRow of = place_row(place, trial->tried, row);
+    for (int side = 0; side < 2; side++) {
+        if (place->bodies[side] != DRIVER_GROUND) {
+            DriverAction *action = &trial->actions[place->bodies[side]];
+            action->force = vec2_add(action->force, vec2_scale(value, of.along[side]));
+            action->moment += value * of.turn[side];
+        }
+    }
+}
+
+// Asks the engine, with what acts and what has been added to that.
+static void ask(Trial *trial, const double *q, const double *v, double *a)
+{
+    trial->engine->accelerate(trial->engine->engine, q, v, trial->actions, a);
+    trial->run->steps += trial->engine->respond == NULL ? 1 : 0;
+}
+
+// Puts the bodies there where something acts on them, or is to, and finds what acts.
+static void begin_trial(Trial *trial, const double *q, const double *v, bool is_pushed)
+{
+    if (!is_pushed && !actions_any(trial->in.of)) {
+        memset(trial->actions, 0, trial->in.of->body_count * sizeof *trial->actions);
+        return;
+    }
+    tree_motions(trial->tree, q, v, trial->tried);
+    actions_find(trial->in.of, trial->tried, trial->start_s, trial->end_s, trial->actions);
+}
+
+static double middle_of(const Trial *trial)
+{
+    return 0.5 * (trial->start_s + trial->end_s);
+}
+
+// The engine's accelerations under forces in the rows; NULL: none. What is held is held.
 static void evaluate(Trial *trial, const double *q, const double *v, const double *forces,
                      double scale, double *a)
 {
-    const Within *in = &trial->in;
-    const DriverCase *of = in->of;
-    tree_motions(trial->tree, q, v, trial->tried);
-    actions_find(of, trial->tried, trial->start_s, trial->start_s + of->step_s, trial->actions);
-    for (size_t i = 0; forces != NULL && i < in->kernel.contact_count; i++) {
-        const DriverJoint *joint = &of->joints[in->joints[i]];
-        const KernelContact *contact = &in->kernel.contacts[i];
-        const double *own = forces + contact->first_row;
-        for (size_t side = 0; side < 2; side++) {
-            const int body = joint->bodies[side];
-            const double sign = side == 0 ? -scale : scale;
-            actions_add(trial->tried, body, joint->anchors[side],
-                        (Vec2){sign * own[0], sign * own[1]}, trial->actions);
-            if (contact->row_count > KERNEL_ROWS_PLAIN && body != DRIVER_GROUND) {
-                trial->actions[body].moment += scale * own[KERNEL_ROW_TURN + side];
-            }
+    begin_trial(trial, q, v, forces != NULL);
+    for (size_t i = 0; forces != NULL && i < trial->in.kernel.contact_count; i++) {
+        const KernelContact *contact = &trial->in.kernel.contacts[i];
+        for (size_t k = 0; k < contact->row_count; k++) {
+            push_place(trial, i, k, scale * forces[contact->first_row + k]);
         }
     }
-    trial->accelerate(trial->engine, q, v, trial->actions, a);
-    trial->run->steps++;
+    ask(trial, q, v, a);
+    hold_accelerate(&trial->hold, q, v, trial->start_s, middle_of(trial), a);
+}
+
+// What the rows that hold do to the accelerations, at the middle or at the start of a step.
+static void find_holding(Trial *trial, const double *q, const double *v)
+{
+    Hold *hold = &trial->hold;
+    const size_t count = trial->in.count;
+    if (hold->rows == 0) {
+        return;
+    }
+    tree_motions(trial->tree, q, v, trial->motions);
+    hold_place(hold, trial->motions);
+    begin_trial(trial, q, v, true);
+    ask(trial, q, v, trial->other);
+    if (trial->engine->respond != NULL) {
+        trial->engine->respond(trial->engine->engine, hold->rows, hold->jacobian, hold->columns);
+        return;
+    }
+    const double size = 1.0 + sqrt(dot(trial->other, trial->other, count));
+    for (size_t k = 0; k < hold->rows; k++) {
+        double *column = hold->columns + k * count;
+        begin_trial(trial, q, v, true);
+        hold_push(hold, k, trial->tried, size, trial->actions);
+        ask(trial, q, v, column);
+        for (size_t i = 0; i < count; i++) {
+            column[i] = (column[i] - trial->other[i]) / size;
+        }
+    }
 }
 
 // J at the positions of the motions.
 static void find_jacobian(Trial *trial)
 {
-    memset(trial->in.jacobian, 0, trial->in.rows * trial->in.count * sizeof *trial->in.jacobian);
-    for (size_t i = 0; i < trial->in.kernel.contact_count; i++) {
-        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i]];
-        const KernelContact *contact = &trial->in.kernel.contacts[i];
-        double *rows = trial->in.jacobian + contact->first_row * trial->in.count;
-        for (size_t k = 0; k < KERNEL_ROWS_PLAIN; k++, rows += trial->in.count) {
-            const Vec2 unit = {k == 0 ? 1.0 : 0.0, k == 0 ? 0.0 : 1.0};
-            tree_push(trial->tree, trial->motions, joint->bodies[1], joint->anchors[1], unit, rows);
-            tree_push(trial->tree, trial->motions, joint->bodies[0], joint->anchors[0],
-                      vec2_scale(-1.0, unit), rows);
-        }
-        for (size_t side = 0; KERNEL_ROW_TURN + side < contact->row_count; side++) {
-            tree_turn(trial->tree, joint->bodies[side], 1.0, rows + side * trial->in.count);
+    const Within *in = &trial->in;
+    memset(in->jacobian, 0, in->rows * in->count * sizeof *in->jacobian);
+    for (size_t i = 0; i < in->kernel.contact_count; i++) {
+        const DriverPlace *place = &in->of->places[i];
+        const KernelContact *contact = &in->kernel.contacts[i];
+        for (size_t k = 0; k < contact->row_count; k++) {
+            const PlaceRow row = place_row(place, trial->motions, k);
+            double *to = in->jacobian + (contact->first_row + k) * in->count;
+            for (int side = 0; side < 2; side++) {
+                tree_push(trial->tree, trial->motions, place->bodies[side], (Vec2){0.0, 0.0},
+                          row.along[side], to);
+                tree_turn(trial->tree, place->bodies[side], row.turn[side], to);
+            }
         }
     }
 }
@@ -108,6 +181,49 @@ static Vec2 bend_of(const Trial *trial, int body, Vec2 local)
     return vec2_sub(trial->tree->bends[body], vec2_scale(motion->omega * motion->omega, arm));
 }
 
+// Adds J' v of the pins.
+static void add_bends_of_points(Trial *trial, double *rows)
+{
+    for (size_t i = 0; i < trial->in.kernel.contact_count; i++) {
+        const DriverPlace *place = &trial->in.of->places[i];
+        if (place_is_point(place)) {
+            const Vec2 bend = vec2_sub(bend_of(trial, place->bodies[1], place->anchors[1]),
+                                       bend_of(trial, place->bodies[0], place->anchors[0]));
+            double *own = rows + trial->in.kernel.contacts[i].first_row;
+            own[0] = bend.x + own[0];
+            own[1] = bend.y + own[1];
+        }
+    }
+}
+
+// Adds the rates of all other rows a little later, times a factor.
+static void add_rates_at(Trial *trial, const double *v, double since_s, double factor, double *rows)
+{
+    const Within *in = &trial->in;
+    memcpy(trial->other, in->q_middle, in->count * sizeof *trial->other);
+    add(trial->other, v, since_s, in->count);
+    tree_motions(trial->tree, trial->other, v, trial->tried);
+    for (size_t i = 0; i < in->kernel.contact_count; i++) {
+        const DriverPlace *place = &in->of->places[i];
+        for (size_t k = 0; !place_is_point(place) && k < KERNEL_ROW_TURN; k++) {
+            const PlaceRow row = place_row(place, trial->tried, k);
+            rows[in->kernel.contacts[i].first_row + k] +=
+                factor * place_rate(place, &row, trial->tried);
+        }
+    }
+}
+
+// How long before and behind is a little, s.
+static double little_of(const Trial *trial)
+{
+    double fastest = 0.0;
+    for (size_t i = 0; i < trial->in.of->body_count; i++) {
+        fastest = fmax(fastest, fabs(trial->motions[i].omega));
+    }
+    const double step_s = trial->in.of->step_s;
+    return fastest * step_s > BEND_PHASE ? BEND_PHASE / fastest : step_s;
+}
+
 // u'' = J a + J' v at the middle's positions and velocities like those there.
 static void find_row_accelerations(Trial *trial, const double *v, const double *a, double *rows)
 {
@@ -116,36 +232,83 @@ static void find_row_accelerations(Trial *trial, const double *v, const double *
     for (size_t i = 0; i < trial->in.rows; i++) {
         rows[i] = dot(trial->in.jacobian + i * trial->in.count, a, trial->in.count);
     }
-    for (size_t i = 0; i < trial->in.kernel.contact_count; i++) {
-        const DriverJoint *joint = &trial->in.of->joints[trial->in.joints[i]];
-        const Vec2 bend = vec2_sub(bend_of(trial, joint->bodies[1], joint->anchors[1]),
-                                   bend_of(trial, joint->bodies[0], joint->anchors[0]));
-        double *own = rows + trial->in.kernel.contacts[i].first_row;
-        own[0] = bend.x + own[0];
-        own[1] = bend.y + own[1];
+    add_bends_of_points(trial, rows);
+    if (trial->has_walls) {
+        const double little_s = little_of(trial);
+        add_rates_at(trial, v, little_s, 0.5 / little_s, rows);
+        add_rates_at(trial, v, -little_s, -0.5 / little_s, rows);
     }
 }
 
-// A and W, from a trial with a force in each row: one that does as much as all that acts.
-static void find_response(Trial *trial)
+// The same by a trial with a force in each row: one that does as much as all that acts.
+static void try_rows(Trial *trial, const double *q, const double *v, const double *free,
+                     double *columns)
 {
-    within_age_responses(&trial->in);
-    const double size = 1.0 + sqrt(dot(trial->in.free, trial->in.free, trial->in.count));
-    for (size_t k = 0; k < trial->in.rows; k++) {
-        double *response = trial->in.responses[0] + k * trial->in.count;
-        memset(trial->in.work, 0, trial->in.rows * sizeof *trial->in.work);
-        trial->in.work[k] = 1.0;
-        evaluate(trial, trial->in.q_middle, trial->in.v_middle, trial->in.work, size, response);
-        for (size_t i = 0; i < trial->in.count; i++) {
-            response[i] = (response[i] - trial->in.free[i]) / size;
+    Within *in = &trial->in;
+    const double size = 1.0 + sqrt(dot(free, free, in->count));
+    for (size_t k = 0; k < in->rows; k++) {
+        double *column = columns + k * in->count;
+        memset(in->work, 0, in->rows * sizeof *in->work);
+        in->work[k] = 1.0;
+        evaluate(trial, q, v, in->work, size, column);
+        for (size_t i = 0; i < in->count; i++) {
+            column[i] = (column[i] - free[i]) / size;
         }
     }
-    for (size_t i = 0; i < trial->in.rows; i++) {
-        for (size_t k = 0; k < trial->in.rows; k++) {
-            *kernel_mobility(&trial->in.kernel, i, k) =
-                dot(trial->in.jacobian + i * trial->in.count,
-                    trial->in.responses[0] + k * trial->in.count, trial->in.count);
+}
+
+// Writes what unit forces in the rows do to the accelerations, where the bodies of `motions` and
+// the Jacobian are; `free` is what they are without.
+static void find_columns(Trial *trial, const double *q, const double *v, const double *free,
+                         double *columns)
+{
+    Within *in = &trial->in;
+    if (trial->engine->respond == NULL) {
+        try_rows(trial, q, v, free, columns);
+        return;
+    }
+    trial->engine->respond(trial->engine->engine, in->rows, in->jacobian, columns);
+    for (size_t k = 0; k < in->rows; k++) {
+        hold_restrain(&trial->hold, columns + k * in->count);
+    }
+}
+
+// A and W.
+static void find_response(Trial *trial)
+{
+    Within *in = &trial->in;
+    find_columns(trial, in->q_middle, in->v_middle, in->free, in->response);
+    for (size_t i = 0; i < in->rows; i++) {
+        for (size_t k = 0; k < in->rows; k++) {
+            *kernel_mobility(&in->kernel, i, k) =
+                dot(in->jacobian + i * in->count, in->response + k * in->count, in->count);
         }
+    }
+}
+
+// A', from A where the bodies are a little later at the mean rates of the step, which have been
+// found for the accelerations. It matters where contacts have pushed alone.
+static void find_rate(Trial *trial)
+{
+    Within *in = &trial->in;
+    const size_t count = in->count;
+    memset(in->rate, 0, in->rows * count * sizeof *in->rate);
+    if (!within_has_pushed(in)) {
+        return;
+    }
+    const double later_s = TURN_PHASE / BEND_PHASE * little_of(trial);
+    double *q = trial->later;
+    double *v = in->nudged;
+    memcpy(q, in->q_middle, count * sizeof *q);
+    add(q, v, later_s, count);
+    hold_settle(&trial->hold, trial->start_s, middle_of(trial) + later_s, q, v);
+    tree_motions(trial->tree, q, v, trial->motions);
+    hold_place(&trial->hold, trial->motions);
+    find_jacobian(trial);
+    evaluate(trial, q, v, NULL, 0.0, trial->changed);
+    find_columns(trial, q, v, trial->changed, in->rate);
+    for (size_t i = 0; i < in->rows * count; i++) {
+        in->rate[i] = (in->rate[i] - in->response[i]) / later_s;
     }
 }
 
@@ -155,7 +318,7 @@ static void find_drift(Trial *trial)
     const size_t count = trial->in.count;
     const double speed = sqrt(dot(trial->in.v_middle, trial->in.v_middle, count));
     for (size_t k = 0; k < trial->in.rows; k++) {
-        const double *response = trial->in.responses[0] + k * count;
+        const double *response = trial->in.response + k * count;
         const double size = sqrt(dot(response, response, count));
         if (!(size > 0.0)) {
             continue; // a turn of the ground: nothing follows it
@@ -163,10 +326,10 @@ static void find_drift(Trial *trial)
         const double nudge = NUDGE * (speed > 0.0 ? speed : 1.0) / size;
         memcpy(trial->in.nudged, trial->in.v_middle, count * sizeof *trial->in.nudged);
         add(trial->in.nudged, response, nudge, count);
-        evaluate(trial, trial->in.q_middle, trial->in.nudged, NULL, 0.0, trial->other);
-        find_row_accelerations(trial, trial->in.nudged, trial->other, trial->in.work);
+        evaluate(trial, trial->in.q_middle, trial->in.nudged, NULL, 0.0, trial->changed);
+        find_row_accelerations(trial, trial->in.nudged, trial->changed, trial->in.work);
         for (size_t i = 0; i < count; i++) {
-            trial->in.bend[k * count + i] = (trial->other[i] - trial->in.free[i]) / nudge;
+            trial->in.bend[k * count + i] = (trial->changed[i] - trial->in.free[i]) / nudge;
         }
         for (size_t i = 0; i < trial->in.rows; i++) {
             trial->in.drift[i * trial->in.rows + k] =
@@ -181,21 +344,25 @@ static void find_accelerations(Trial *trial, double step_s)
     Within *in = &trial->in;
     const double per_s = 1.0 / step_s;
     memcpy(in->nudged, in->v_middle, in->count * sizeof *in->nudged);
-    within_add_rows(in, in->responses[0], in->sums.moment, per_s, in->nudged);
+    within_add_rows(in, in->response, in->sums.moment, per_s, in->nudged);
+    within_add_rows(in, in->bend, in->sums.moment + in->rows, per_s, in->nudged);
     evaluate(trial, in->q_middle, in->nudged, in->sums.impulse, per_s, trial->other);
     within_take_accelerations(in, trial->other, step_s);
+    find_rate(trial);
 }
 
 static void take_step(Trial *trial, double step_s)
 {
     Within *in = &trial->in;
     within_find_middle(in, step_s);
+    find_holding(trial, in->q_middle, in->v_middle);
+    hold_settle(&trial->hold, trial->start_s, middle_of(trial), in->q_middle, in->v_middle);
     within_keep_free(in);
     tree_motions(trial->tree, in->q_middle, in->v_middle, trial->motions);
+    hold_place(&trial->hold, trial->motions);
     find_jacobian(trial);
     evaluate(trial, in->q_middle, in->v_middle, NULL, 0.0, in->free);
     find_response(trial);
-    within_find_rate(in, step_s);
     find_row_accelerations(trial, in->v_middle, in->free, in->kernel.free);
     find_drift(trial);
     within_find_free_rate(in, step_s);
@@ -204,6 +371,7 @@ static void take_step(Trial *trial, double step_s)
     within_integrate(in, step_s);
     find_accelerations(trial, step_s);
     within_find_end(in, step_s);
+    hold_settle(&trial->hold, trial->start_s, trial->end_s, in->q_next, in->v_next);
 }
 
 // The bodies at a time in the step that has been taken.
@@ -211,66 +379,92 @@ static void read_inside(void *adapter, double since_s, const KernelSums *sums,
                         DriverMotion *motions)
 {
     Trial *trial = adapter;
-    within_find_inside(&trial->in, since_s, trial->in.of->step_s, sums, trial->in.nudged,
-                       trial->other);
-    tree_motions(trial->tree, trial->in.nudged, trial->other, motions);
+    Within *in = &trial->in;
+    within_find_inside(in, since_s, trial->end_s - trial->start_s, sums, in->nudged, trial->other);
+    hold_settle(&trial->hold, trial->start_s, trial->start_s + since_s, in->nudged, trial->other);
+    tree_motions(trial->tree, in->nudged, trial->other, motions);
 }
 
-static void *room(size_t count, size_t size)
-{
-    void *made = calloc(count + 1, size);
-    if (made == NULL) {
-        driver_fail("there is no memory");
-    }
-    return made;
-}
-
-static Trial make(const Tree *tree, TrialAccelerate accelerate, void *engine, DriverRun *run)
+static Trial make(const Tree *tree, const TrialEngine *engine, DriverRun *run)
 {
     const DriverCase *of = tree->of;
-    if (tree->left_count > 0) {
-        driver_refuse("contacts within the step beside a loop of ideal joints");
-    }
-    Trial trial = {.tree = tree,
-                   .accelerate = accelerate,
+    Trial trial = {.hold = hold_make(tree),
+                   .tree = tree,
                    .engine = engine,
                    .run = run,
-                   .other = within_numbers(tree->coordinates),
-                   .motions = room(of->body_count, sizeof *trial.motions),
-                   .tried = room(of->body_count, sizeof *trial.tried),
-                   .actions = room(of->body_count, sizeof *trial.actions)};
+                   .other = driver_room(tree->coordinates, sizeof *trial.other),
+                   .changed = driver_room(tree->coordinates, sizeof *trial.changed),
+                   .later = driver_room(tree->coordinates, sizeof *trial.later),
+                   .motions = driver_room(of->body_count, sizeof *trial.motions),
+                   .tried = driver_room(of->body_count, sizeof *trial.tried),
+                   .actions = driver_room(of->body_count, sizeof *trial.actions)};
+    for (size_t i = 0; i < of->place_count; i++) {
+        trial.has_walls = trial.has_walls || !place_is_point(&of->places[i]);
+    }
     within_open(of, tree->coordinates, &trial.in);
     return trial;
 }
 
-void trial_run(const Tree *tree, TrialAccelerate accelerate, void *engine, DriverRun *run)
+// The next time at which accelerations jump: at a kink of a drive, or where a load over time does.
+static double next_jump(const DriverCase *of, double time_s)
 {
-    Trial trial = make(tree, accelerate, engine, run);
-    const double step_s = tree->of->step_s;
-    DriverContact *states = room(tree->of->joint_count, sizeof *states);
-    KernelSums sums = kernel_sums(trial.in.rows);
-    const WithinStep still = {.kernel = &trial.in.kernel,
-                              .joints = trial.in.joints,
-                              .states = states,
-                              .step_s = step_s,
-                              .motions = read_inside,
-                              .adapter = &trial,
-                              .room = room(tree->of->body_count, sizeof(DriverMotion)),
-                              .sums = &sums};
-    for (size_t i = 0; i < tree->of->joint_count; i++) {
-        states[i].state = tree->of->joints[i].contact;
+    double next_s = INFINITY;
+    for (size_t i = 0; i < of->drive_count; i++) {
+        next_s = fmin(next_s, drive_next_kink(&of->drives[i].law, time_s));
     }
+    for (size_t i = 0; i < of->load_count; i++) {
+        const DriverLoad *load = &of->loads[i];
+        if (load->table.shape == LOAD_STEPS && load->over_joint < 0 && load->rate != 0.0) {
+            const double sign = load->rate < 0.0 ? -1.0 : 1.0;
+            const double at =
+                load_table_next(&load->table, load->shift + load->rate * time_s, sign);
+            next_s = fmin(next_s, (at - load->shift) / load->rate);
+        }
+    }
+    return next_s;
+}
+
+// Starts the scheme where a step begins.
+static void start_scheme(Trial *trial)
+{
+    Within *in = &trial->in;
+    within_start(in);
+    trial->end_s = trial->start_s;
+    find_holding(trial, in->q, in->v);
+    evaluate(trial, in->q, in->v, NULL, 0.0, in->a);
+}
+
+void trial_run(const Tree *tree, const TrialEngine *engine, DriverRun *run)
+{
+    Trial trial = make(tree, engine, run);
+    const double step_s = tree->of->step_s;
+    KernelSums sums = kernel_sums(trial.in.rows);
+    WithinStep step = {.kernel = &trial.in.kernel,
+                       .states = places_start(tree->of),
+                       .motions = read_inside,
+                       .adapter = &trial,
+                       .room = driver_room(tree->of->body_count, sizeof(DriverMotion)),
+                       .sums = &sums};
+    size_t tick = 0;
+    bool is_jump = true;
     driver_run_begin(run);
     tree_start(tree, trial.in.v);
-    evaluate(&trial, trial.in.q, trial.in.v, NULL, 0.0, trial.in.a);
     while (!driver_run_is_full(run)) {
-        WithinStep step = still;
-        step.start_s = step_s * (double)trial.in.steps;
-        trial.start_s = step.start_s;
-        take_step(&trial, step_s);
-        trial.in.steps++;
+        if (is_jump) {
+            start_scheme(&trial);
+        }
+        const double tick_s = step_s * (double)(tick + 1);
+        const double jump_s = next_jump(tree->of, trial.start_s);
+        is_jump = jump_s < tick_s + TIME_ROUNDING * step_s;
+        trial.end_s = is_jump ? jump_s : tick_s;
+        tick += trial.end_s > tick_s - TIME_ROUNDING * step_s ? 1 : 0;
+        step.start_s = trial.start_s;
+        step.step_s = trial.end_s - trial.start_s;
+        take_step(&trial, step.step_s);
+        run->steps += engine->respond != NULL ? 1 : 0;
         within_look(&step, run);
-        within_go_on(&trial.in);
+        within_go_on(&trial.in, step.step_s);
+        trial.start_s = trial.end_s;
     }
     driver_run_write(run);
 }

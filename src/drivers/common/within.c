@@ -8,35 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-double *within_numbers(size_t count)
-{
-    double *room = calloc(count + 1, sizeof *room);
-    if (room == NULL) {
-        driver_fail("there is no memory");
-    }
-    return room;
-}
-
 static void add_contacts(const DriverCase *of, Within *in)
 {
-    size_t contacts = 0;
-    for (size_t i = 0; i < of->joint_count; i++) {
-        const DriverJoint *joint = &of->joints[i];
-        if (joint->kind != DRIVER_PIN_IN_HOLE) {
-            continue;
-        }
-        const KernelContact contact = {.law = joint->law,
-                                       .shape = KERNEL_HOLE,
-                                       .radial_clearance = joint->clearance,
-                                       .hole_radius = joint->hole_radius,
-                                       .joint = (int)i,
-                                       .state = joint->contact};
-        in->joints[contacts++] = i;
-        kernel_add(&in->kernel, &contact,
-                   joint->law.friction > 0.0 ? KERNEL_ROWS_PLANE : KERNEL_ROWS_PLAIN);
-    }
-    if (contacts == 0) {
-        driver_refuse("contacts within the step without a pin that has play");
+    for (size_t i = 0; i < of->place_count; i++) {
+        const KernelContact contact = place_contact(&of->places[i]);
+        const bool has_turns = contact.shape != KERNEL_LINE && contact.law.friction > 0.0;
+        kernel_add(&in->kernel, &contact, has_turns ? KERNEL_ROWS_PLANE : KERNEL_ROWS_PLAIN);
     }
     in->rows = kernel_rows(&in->kernel);
     kernel_make_room(&in->kernel, in->rows);
@@ -44,29 +21,30 @@ static void add_contacts(const DriverCase *of, Within *in)
     in->sums = kernel_sums(in->rows);
 }
 
+static double *numbers(size_t count)
+{
+    return driver_room(count, sizeof(double));
+}
+
 void within_open(const DriverCase *of, size_t count, Within *in)
 {
     *in = (Within){.of = of, .count = count, .kernel = kernel_start(0.0)};
-    in->joints = calloc(of->joint_count + 1, sizeof *in->joints);
-    if (in->joints == NULL) {
-        driver_fail("there is no memory");
-    }
     add_contacts(of, in);
     double **by_coordinate[] = {&in->q,     &in->v,        &in->q_next,   &in->v_next,
                                 &in->a,     &in->a_rate,   &in->a_bend,   &in->a_change,
                                 &in->ahead, &in->q_middle, &in->v_middle, &in->free,
                                 &in->nudged};
     for (size_t i = 0; i < sizeof by_coordinate / sizeof *by_coordinate; i++) {
-        *by_coordinate[i] = within_numbers(count);
+        *by_coordinate[i] = numbers(count);
     }
-    double **by_block[] = {&in->responses[0], &in->responses[1], &in->responses[2], &in->rate,
-                           &in->bend_rate,    &in->bend_before,  &in->jacobian,     &in->bend};
+    double **by_block[] = {&in->response,    &in->rate,     &in->bend_rate,
+                           &in->bend_before, &in->jacobian, &in->bend};
     for (size_t i = 0; i < sizeof by_block / sizeof *by_block; i++) {
-        *by_block[i] = within_numbers(in->rows * count);
+        *by_block[i] = numbers(in->rows * count);
     }
-    in->drift = within_numbers(in->rows * in->rows);
-    in->free_before = within_numbers(in->rows);
-    in->work = within_numbers(in->rows);
+    in->drift = numbers(in->rows * in->rows);
+    in->free_before = numbers(in->rows);
+    in->work = numbers(in->rows);
 }
 
 // to += scale from
@@ -85,6 +63,17 @@ void within_add_rows(const Within *in, const double *columns, const double *by_r
     }
 }
 
+void within_start(Within *in)
+{
+    in->known = 0;
+    in->before_s = 0.0;
+    in->calm_steps = 0;
+    memset(in->a_rate, 0, in->count * sizeof *in->a_rate);
+    memset(in->a_bend, 0, in->count * sizeof *in->a_bend);
+    memset(in->a_change, 0, in->count * sizeof *in->a_change);
+    memset(in->sums.impulse, 0, in->rows * sizeof *in->sums.impulse);
+}
+
 void within_find_middle(Within *in, double step_s)
 {
     const size_t count = in->count;
@@ -94,66 +83,58 @@ void within_find_middle(Within *in, double step_s)
     memcpy(in->v_middle, in->v, count * sizeof *in->v);
     add(in->q_middle, in->v, 0.5 * step_s, count);
     add(in->q_middle, in->ahead, 0.125 * step_s * step_s, count);
-    within_add_rows(in, in->responses[0], in->sums.impulse, 0.125 * step_s, in->q_middle);
+    if (in->known > 0) {
+        within_add_rows(in, in->response, in->sums.impulse, 0.125 * step_s * step_s / in->before_s,
+                        in->q_middle);
+    }
     // the parabola of the last step, about its middle, from its end to half a step behind that
-    const double cube = step_s * step_s * step_s;
+    const double from = 0.5 * in->before_s;
+    const double to = from + 0.5 * step_s;
     add(in->v_middle, in->ahead, 0.5 * step_s, count);
-    add(in->v_middle, in->a_rate, 3.0 / 8.0 * step_s * step_s, count);
-    add(in->v_middle, in->a_bend, 7.0 / 48.0 * cube, count);
+    add(in->v_middle, in->a_rate, 0.5 * (to * to - from * from), count);
+    add(in->v_middle, in->a_bend, (to * to * to - from * from * from) / 6.0, count);
+}
+
+// From the middle of the step before to that of this one, s.
+static double apart_of(const Within *in, double step_s)
+{
+    return 0.5 * (in->before_s + step_s);
 }
 
 void within_keep_free(Within *in)
 {
     const bool is_calm = kernel_columns_free_after(in->rows, in->drift, in->sums.impulse,
                                                    in->kernel.free, in->free_before);
-    in->calm_steps = in->steps > 0 && is_calm ? in->calm_steps + 1 : 0;
+    in->calm_steps = in->known > 0 && is_calm ? in->calm_steps + 1 : 0;
 }
 
 void within_find_free_rate(Within *in, double step_s)
 {
     for (size_t i = 0; i < in->rows; i++) {
         in->kernel.free_rate[i] =
-            in->calm_steps > 0 ? (in->kernel.free[i] - in->free_before[i]) / step_s : 0.0;
+            in->calm_steps > 0 ? (in->kernel.free[i] - in->free_before[i]) / apart_of(in, step_s)
+                               : 0.0;
     }
 }
 
-void within_age_responses(Within *in)
+bool within_has_pushed(const Within *in)
 {
-    double *oldest = in->responses[KERNEL_COLUMNS_KNOWN - 1];
-    memmove(in->responses + 1, in->responses, (KERNEL_COLUMNS_KNOWN - 1) * sizeof *in->responses);
-    in->responses[0] = oldest;
-}
-
-void within_find_rate(Within *in, double step_s)
-{
-    const double times_s[KERNEL_COLUMNS_KNOWN] = {0.0, -step_s, -2.0 * step_s};
-    const size_t known =
-        in->steps + 1 < KERNEL_COLUMNS_KNOWN ? in->steps + 1 : KERNEL_COLUMNS_KNOWN;
-    const KernelShares shares = kernel_columns_shares(times_s, known, 0.0);
-    memset(in->rate, 0, in->rows * in->count * sizeof *in->rate);
-    for (size_t i = 0; i < known; i++) {
-        add(in->rate, in->responses[i], shares.rate[i], in->rows * in->count);
+    bool has = false;
+    for (size_t i = 0; i < in->rows; i++) {
+        has = has || in->sums.impulse[i] != 0.0;
     }
+    return has;
 }
 
 void within_find_rows(Within *in, const DriverMotion *motions)
 {
     for (size_t i = 0; i < in->kernel.contact_count; i++) {
-        const DriverJoint *joint = &in->of->joints[in->joints[i]];
+        const DriverPlace *place = &in->of->places[i];
         const KernelContact *contact = &in->kernel.contacts[i];
-        double *position = in->kernel.position + contact->first_row;
-        double *speed = in->kernel.speed + contact->first_row;
-        const PinHole pose = driver_pose(joint, motions);
-        const Vec2 going =
-            vec2_sub(driver_point_velocity(motions, joint->bodies[1], joint->anchors[1]),
-                     driver_point_velocity(motions, joint->bodies[0], joint->anchors[0]));
-        position[0] = pose.eccentricity.x;
-        position[1] = pose.eccentricity.y;
-        speed[0] = going.x;
-        speed[1] = going.y;
-        for (size_t side = 0; KERNEL_ROW_TURN + side < contact->row_count; side++) {
-            const int body = joint->bodies[side];
-            speed[KERNEL_ROW_TURN + side] = body == DRIVER_GROUND ? 0.0 : motions[body].omega;
+        place_position(place, motions, in->kernel.position + contact->first_row);
+        for (size_t k = 0; k < contact->row_count; k++) {
+            const PlaceRow row = place_row(place, motions, k);
+            in->kernel.speed[contact->first_row + k] = place_rate(place, &row, motions);
         }
     }
 }
@@ -169,17 +150,18 @@ void within_integrate(Within *in, double step_s)
 
 void within_take_accelerations(Within *in, const double *a, double step_s)
 {
+    const double apart_s = apart_of(in, step_s);
     memcpy(in->a, a, in->count * sizeof *in->a);
-    within_add_rows(in, in->responses[0], in->sums.impulse, -1.0 / step_s, in->a);
+    within_add_rows(in, in->response, in->sums.impulse, -1.0 / step_s, in->a);
     within_add_rows(in, in->bend, in->sums.moment, -1.0 / step_s, in->a);
     for (size_t i = 0; i < in->rows * in->count; i++) {
-        in->bend_rate[i] = in->steps > 0 ? (in->bend[i] - in->bend_before[i]) / step_s : 0.0;
+        in->bend_rate[i] = in->known > 0 ? (in->bend[i] - in->bend_before[i]) / apart_s : 0.0;
         in->bend_before[i] = in->bend[i];
     }
     for (size_t i = 0; i < in->count; i++) {
         const double before = in->a_change[i];
-        in->a_change[i] = in->calm_steps > 0 ? (in->a[i] - in->ahead[i]) / step_s : 0.0;
-        in->a_bend[i] = in->calm_steps > 1 ? (in->a_change[i] - before) / step_s : 0.0;
+        in->a_change[i] = in->calm_steps > 0 ? (in->a[i] - in->ahead[i]) / apart_s : 0.0;
+        in->a_bend[i] = in->calm_steps > 1 ? (in->a_change[i] - before) / apart_s : 0.0;
         in->a_rate[i] = in->a_change[i] + 0.5 * step_s * in->a_bend[i];
     }
 }
@@ -208,7 +190,7 @@ void within_find_inside(const Within *in, double since_s, double step_s, const K
     memcpy(v, in->v, in->count * sizeof *v);
     add_beside(in, since_s, 0.5 * step_s, q, v);
     const KernelColumns columns = {
-        .rows = in->rows, .coordinates = in->count, .columns = in->responses[0], .rates = in->rate};
+        .rows = in->rows, .coordinates = in->count, .columns = in->response, .rates = in->rate};
     kernel_columns_push(&columns, off_s, sums->impulse, sums->moment, v, q);
     within_add_rows(in, in->bend, sums->moment, 1.0, v);
     within_add_rows(in, in->bend_rate, sums->moment, off_s, v);
@@ -221,10 +203,23 @@ void within_find_end(Within *in, double step_s)
     within_find_inside(in, step_s, step_s, &in->sums, in->q_next, in->v_next);
 }
 
-void within_go_on(Within *in)
+void within_go_on(Within *in, double step_s)
 {
+    in->known++;
+    in->before_s = step_s;
     memcpy(in->q, in->q_next, in->count * sizeof *in->q);
     memcpy(in->v, in->v_next, in->count * sizeof *in->v);
+}
+
+// The force of a place on body b from those in its rows; of a torque that, and 0.
+static Vec2 force_of(const DriverPlace *place, const DriverMotion *motions, const double *in_rows)
+{
+    Vec2 force = {0.0, 0.0};
+    for (size_t k = 0; k < KERNEL_ROW_TURN; k++) {
+        const PlaceRow row = place_row(place, motions, k);
+        force = vec2_add(force, place_force(place, &row, in_rows[k]));
+    }
+    return force;
 }
 
 static void make_samples(const WithinStep *step, DriverRun *run)
@@ -232,11 +227,14 @@ static void make_samples(const WithinStep *step, DriverRun *run)
     const Kernel *kernel = step->kernel;
     while (!driver_run_is_full(run) && driver_run_next(run) <= step->start_s + step->step_s) {
         const double since_s = driver_run_next(run) - step->start_s;
+        DriverMotion *motions = driver_run_motions(run);
         kernel_at(kernel, kernel_node(kernel, since_s), since_s, step->sums);
-        step->motions(step->adapter, since_s, step->sums, driver_run_motions(run));
+        step->motions(step->adapter, since_s, step->sums, motions);
         for (size_t i = 0; i < kernel->contact_count; i++) {
-            const double *force = step->sums->force + kernel->contacts[i].first_row;
-            driver_run_forces(run)[step->joints[i]] = (Vec2){force[0], force[1]};
+            const DriverPlace *place = &run->of->places[i];
+            const double *in_rows = step->sums->force + kernel->contacts[i].first_row;
+            Vec2 *force = &driver_run_forces(run)[place->joint];
+            *force = vec2_add(*force, force_of(place, motions, in_rows));
         }
         driver_run_sampled(run);
     }
@@ -281,8 +279,8 @@ static void note_contacts(const WithinStep *step, size_t node, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        const size_t joint = step->joints[i];
-        ContactState *state = &step->states[joint].state;
+        const int joint = run->of->places[i].joint;
+        ContactState *state = &step->states[i].state;
         const bool touches = kernel_touches(kernel, node, i);
         if (touches && !state->is_touching) {
             const double time_s = kernel->times[node];
@@ -299,20 +297,26 @@ static void note_contacts(const WithinStep *step, size_t node, DriverRun *run)
     }
 }
 
-// What of each contact stands for the part of the step that ends at a mark, with what marks at its
-// start have shown.
+// What of each joint stands for the part of the step that ends at a mark, with what marks at its
+// start have shown. Of several places forces are added up.
 static void look_at(const WithinStep *step, const Mark *mark, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
-    for (size_t i = 0; i < kernel->contact_count; i++) {
-        DriverTotals *totals = &run->totals[step->joints[i]];
-        const KernelPose at = kernel_pose(kernel, i, mark->node, mark->time_s, step->sums);
-        const double depth = at.is_touching ? fmax(at.pose.penetration, 0.0) : 0.0;
-        const double size = at.is_touching ? vec2_length(at.force) : 0.0;
-        DriverTouch *touch = &run->touches[step->joints[i]];
-        touch->eccentricity = at.pose.eccentricity;
+    for (size_t i = 0; i < kernel->contact_count;) {
+        const DriverPlace *place = &run->of->places[i];
+        DriverTouch *touch = &run->touches[place->joint];
+        DriverTotals *totals = &run->totals[place->joint];
+        double size = 0.0;
+        double least = INFINITY;
+        for (; i < kernel->contact_count && run->of->places[i].joint == place->joint; i++) {
+            const KernelPose at = kernel_pose(kernel, i, mark->node, mark->time_s, step->sums);
+            size += at.is_touching ? vec2_length(at.force) : 0.0;
+            least = fmin(least, at.pose.gap);
+            touch->depth_max = fmax(touch->depth_max, at.is_touching ? at.pose.penetration : 0.0);
+            touch->eccentricity =
+                place->shape == DRIVER_HOLE ? at.pose.eccentricity : (Vec2){least, 0.0};
+        }
         touch->force_max = fmax(touch->force_max, size);
-        touch->depth_max = fmax(touch->depth_max, depth);
         touch->approach = totals->approach;
         totals->force_max = fmax(totals->force_max, touch->force_max);
         totals->depth_max = fmax(totals->depth_max, touch->depth_max);
@@ -324,17 +328,21 @@ static void record_part(const WithinStep *step, double from_s, const double *bef
                         const Mark *mark, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
+    const double per_s = 1.0 / (mark->time_s - from_s);
+    step->motions(step->adapter, mark->time_s, step->sums, step->room);
     for (size_t i = 0; i < kernel->contact_count; i++) {
+        const DriverPlace *place = &run->of->places[i];
         const size_t row = kernel->contacts[i].first_row;
         const double *after = step->sums->impulse;
-        const Vec2 impulse = {after[row] - before[row], after[row + 1] - before[row + 1]};
-        run->touches[step->joints[i]].force = vec2_scale(1.0 / (mark->time_s - from_s), impulse);
+        const double mean[2] = {per_s * (after[row] - before[row]),
+                                per_s * (after[row + 1] - before[row + 1])};
+        Vec2 *force = &run->touches[place->joint].force;
+        *force = vec2_add(*force, force_of(place, step->room, mean));
     }
-    step->motions(step->adapter, mark->time_s, step->sums, step->room);
     driver_run_record(run, step->start_s + from_s, step->start_s + mark->time_s, step->room,
                       run->touches);
     for (size_t i = 0; i < kernel->contact_count; i++) {
-        run->touches[step->joints[i]] = (DriverTouch){.force_max = 0.0};
+        run->touches[run->of->places[i].joint] = (DriverTouch){.force_max = 0.0};
     }
 }
 
@@ -342,7 +350,7 @@ void within_look(const WithinStep *step, DriverRun *run)
 {
     const Kernel *kernel = step->kernel;
     const size_t rows = kernel_rows(kernel);
-    double *before = within_numbers(rows);
+    double *before = numbers(rows);
     double from_s = 0.0;
     size_t noted = 0;
     Marks marks = {.count = 0};

@@ -2,22 +2,20 @@
 // kernel.
 #pragma once
 
-#include "drivers/common/driver.h"
+#include "drivers/common/place.h"
 #include "kernel/columns.h"
 #include "kernel/kernel.h"
 
-// A step in the coordinates of an engine, in the words of drivers/mujoco/mujoco_kernel.c: what does
-// not depend on how the engine is asked. Rows are two a pin, pin less
-// hole, in the world's x and y, and with friction two more, the turns of the hole's and the pin's
-// body.
+// A step in the coordinates of a tree, in the words of drivers/common/trial.c: what does not depend
+// on how the engine is asked. Rows are those of the places (drivers/common/place.h). Steps may have
+// any length; where accelerations jump the scheme starts anew.
 typedef struct Within {
     const DriverCase *of;
     size_t rows;
-    size_t count;   // coordinates
-    size_t *joints; // by contact: its number in the case; owned, as all arrays
+    size_t count; // coordinates
     Kernel kernel;
     KernelSums sums;
-    double *q; // of the step's start; by coordinate, as the next ones
+    double *q; // of the step's start; by coordinate, as the next ones; owned, as all arrays
     double *v;
     double *q_next;
     double *v_next;
@@ -30,25 +28,26 @@ typedef struct Within {
     double *v_middle;
     double *free; // G, at mid-step
     double *nudged;
-    double *responses[KERNEL_COLUMNS_KNOWN]; // A: row by row
-    double *rate;                            // A'
-    double *jacobian;                        // row by row
-    double *bend;                            // B
+    double *response; // A: row by row
+    double *rate;     // A'
+    double *jacobian; // row by row
+    double *bend;     // B
     double *bend_rate;
     double *bend_before;
     double *drift;       // S
     double *free_before; // by row
     double *work;
-    size_t steps;      // of the run
+    size_t known;      // steps since the scheme was started
     size_t calm_steps; // in a row, in which the contacts pushed little
+    double before_s;   // length of the step before
 } Within;
 
-// Makes the contacts of the pins in holes of a case, and all room. Refuses a case
-// without any.
+// Makes the contacts of a case, one a place, and all room.
 void within_open(const DriverCase *of, size_t count, Within *in);
 
-// Zeroed room for so many numbers; ends the driver where there is none.
-double *within_numbers(size_t count);
+// Starts the scheme, at the start of a run or where accelerations jump: what was before is
+// forgotten.
+void within_start(Within *in);
 
 // Adds sums over the rows of A, or of A', to something by coordinate.
 void within_add_rows(const Within *in, const double *columns, const double *by_row, double scale,
@@ -63,9 +62,8 @@ void within_find_middle(Within *in, double step_s);
 void within_keep_free(Within *in);
 void within_find_free_rate(Within *in, double step_s);
 
-// The responses become those of the step before; then A' at mid-step, from A there and before.
-void within_age_responses(Within *in);
-void within_find_rate(Within *in, double step_s);
+// Whether the contacts have pushed in the step that has been integrated.
+bool within_has_pushed(const Within *in);
 
 // Where the rows are at the step's start, and how fast they go.
 void within_find_rows(Within *in, const DriverMotion *motions);
@@ -84,7 +82,7 @@ void within_find_inside(const Within *in, double since_s, double step_s, const K
 void within_find_end(Within *in, double step_s);
 
 // The next step starts where this one has ended.
-void within_go_on(Within *in);
+void within_go_on(Within *in, double step_s);
 
 // How all bodies move at a time since the start of the step, s, from the kernel's sums there.
 typedef void (*WithinMotions)(void *adapter, double since_s, const KernelSums *sums,
@@ -92,9 +90,8 @@ typedef void (*WithinMotions)(void *adapter, double since_s, const KernelSums *s
 
 // A step that the kernel has integrated.
 typedef struct WithinStep {
-    const Kernel *kernel;
-    const size_t *joints;  // by contact
-    DriverContact *states; // by joint: whether it touched at the step's start
+    const Kernel *kernel;  // a contact of it is a place
+    DriverContact *states; // by place: whether it touched at the step's start
     double start_s;
     double step_s;
     WithinMotions motions;

@@ -33,18 +33,9 @@ static void push(const mjModel *model, mjData *data)
     }
     mujoco_read(run, data->qpos, data->qvel, run->acted);
     double *pushes = run->coordinates; // they have been read
-    bool is_any = actions_any(run->of);
     actions_find(run->of, run->acted, run->from_s, run->to_s, run->actions);
-    for (size_t i = 0; are_contacts_pushed && i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
-        if (joint->kind == DRIVER_PIN_IN_HOLE) {
-            const PinHole pose = driver_pose(joint, run->acted);
-            is_any = is_any || pose.penetration > 0.0;
-            actions_add_contact(joint, &run->contacts[i], &pose, run->acted, run->actions);
-        }
-    }
-    if (!is_any) {
-        return;
+    if (are_contacts_pushed) {
+        places_press(run->of, run->contacts, run->acted, run->actions, run->pressed, NULL, 0.0);
     }
     memset(pushes, 0, run->tree.coordinates * sizeof *pushes);
     tree_act(&run->tree, run->acted, run->actions, pushes);
@@ -85,22 +76,14 @@ static void stamp(MujocoRun *run, double position_s, double velocity_s, const Ve
     now->velocity_s = velocity_s;
     mujoco_read(run, run->data->qpos, run->data->qvel, now->motions);
     const DriverMotion *felt = at_positions(run, position_s - velocity_s, now->motions);
-    for (size_t i = 0; i < run->of->joint_count; i++) {
-        const DriverJoint *joint = &run->of->joints[i];
+    places_follow(run->of, felt, run->contacts, run->run.totals);
+    if (forces == NULL) {
+        places_press(run->of, run->contacts, felt, NULL, now->forces, &run->run, run->of->step_s);
+    }
+    for (size_t i = 0; forces != NULL && i < run->of->joint_count; i++) {
         DriverTotals *totals = &run->run.totals[i];
-        now->forces[i] = (Vec2){0.0, 0.0};
-        if (joint->kind != DRIVER_PIN_IN_HOLE) {
-            continue;
-        }
-        const PinHole pose = driver_pose(joint, felt);
-        driver_follow(joint, &pose, &run->contacts[i], totals);
-        now->forces[i] =
-            forces != NULL ? forces[i] : driver_press(joint, &run->contacts[i], &pose, felt).force;
-        const double force = vec2_length(now->forces[i]);
-        totals->force_max = fmax(totals->force_max, force);
-        if (forces == NULL) {
-            driver_note_force(&run->run, i, &pose, force, run->of->step_s, &run->contacts[i]);
-        }
+        now->forces[i] = forces[i];
+        totals->force_max = fmax(totals->force_max, vec2_length(now->forces[i]));
     }
     driver_run_stamped(&run->run);
     mujoco_check(run);
@@ -122,7 +105,7 @@ static void run_force(MujocoRun *run)
 
 static bool is_touching(const MujocoRun *run)
 {
-    for (size_t i = 0; i < run->of->joint_count; i++) {
+    for (size_t i = 0; i < run->of->place_count; i++) {
         if (run->contacts[i].state.is_touching) {
             return true;
         }
@@ -177,6 +160,16 @@ static void run_staggered(MujocoRun *run)
     free(rates);
 }
 
+// The normal of the pin of a joint in its hole.
+static Vec2 normal_of(const MujocoRun *run, size_t joint)
+{
+    size_t place = 0;
+    while (run->of->places[place].joint != (int)joint) {
+        place++;
+    }
+    return place_pose(&run->of->places[place], run->motions).normal;
+}
+
 // The forces of the tendons at their limits.
 static void read_tendons(const MujocoRun *run, Vec2 *forces)
 {
@@ -187,10 +180,10 @@ static void read_tendons(const MujocoRun *run, Vec2 *forces)
         if (run->of->joints[i].kind != DRIVER_PIN_IN_HOLE) {
             continue;
         }
-        const PinHole pose = driver_pose(&run->of->joints[i], run->motions);
+        const Vec2 normal = normal_of(run, i);
         for (int row = 0; row < data->nefc; row++) {
             if (data->efc_type[row] == mjCNSTR_LIMIT_TENDON && data->efc_id[row] == tendon) {
-                forces[i] = vec2_scale(data->efc_force[row], pose.normal);
+                forces[i] = vec2_scale(data->efc_force[row], normal);
             }
         }
         tendon++;

@@ -1,6 +1,7 @@
 // What the files of MuJoCo's driver share: the model made of a case, and the ways to step it.
 #pragma once
 
+#include "drivers/common/place.h"
 #include "drivers/common/tree.h"
 
 #include <mujoco/mujoco.h>
@@ -16,9 +17,10 @@ typedef struct MujocoRun {
     double *coordinates; // of the tree
     double *rates;
     DriverMotion *motions;
-    DriverContact *contacts; // by joint
+    DriverContact *contacts; // by place
     DriverMotion *acted;     // by body, as is felt where forces are asked for
     DriverAction *actions;   // by body
+    Vec2 *pressed;           // by joint: forces of the contacts
     double from_s;           // between which loads act as their mean
     double to_s;
     bool is_instant; // or as at MuJoCo's time
@@ -49,4 +51,4 @@ void mujoco_let_act(MujocoRun *run, bool has_contacts);
 int mujoco_tell_model(const char *path);
 
 // The contacts integrated within the step, by jointplay's kernel.
-void mujoco_run_kernel(MujocoRun *run);
+void mujoco_run_kernel(MujocoRun *run) __attribute__((noreturn));

@@ -9,6 +9,7 @@
 // (documentation, "Computation"). With solref = (-s, -c) and d as small as is allowed, f = -(s r +
 // c v) / A: a spring and a damper, s = A k and c = A b, whatever hangs on it. A is known once
 // MuJoCo has made the model, which is therefore made twice.
+#include "drivers/common/trial.h"
 #include "drivers/mujoco/mujoco_driver.h"
 
 #include <stdarg.h>
@@ -112,7 +113,7 @@ static void add_loops(const MujocoRun *run, const MujocoModel *how, Xml *xml)
     add(xml, "<equality>\n");
     for (size_t i = 0; i < run->of->joint_count; i++) {
         const DriverJoint *joint = &run->of->joints[i];
-        if (!run->tree.is_left[i]) {
+        if (!run->tree.is_left[i] || trial_holds(&run->tree, i)) {
             continue;
         }
         // the anchor is in the frame of the first body, which is no ground
@@ -239,7 +240,8 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
     run->coordinates = room(count, sizeof *run->coordinates);
     run->rates = room(count, sizeof *run->rates);
     run->motions = room(of->body_count, sizeof *run->motions);
-    run->contacts = room(of->joint_count, sizeof *run->contacts);
+    run->contacts = places_start(of);
+    run->pressed = room(of->joint_count, sizeof *run->pressed);
     run->acted = room(of->body_count, sizeof *run->acted);
     run->actions = room(of->body_count, sizeof *run->actions);
     tree_start(&run->tree, run->rates);
@@ -257,9 +259,6 @@ void mujoco_make(const DriverCase *of, const MujocoModel *how, MujocoRun *run)
     run->run.model = xml.text;
     run->data = mj_makeData(run->model);
     mj_resetDataKeyframe(run->model, run->data, 0);
-    for (size_t i = 0; i < of->joint_count; i++) {
-        run->contacts[i].state = of->joints[i].contact;
-    }
     mujoco_read(run, run->data->qpos, run->data->qvel, run->motions);
 }
 

@@ -62,7 +62,7 @@ class World
     SimbodyMatterSubsystem matter{system};
     GeneralForceSubsystem forces{system};
     std::vector<MobilizedBody> bodies;
-    std::vector<DriverContact> contacts;
+    DriverContact *contacts; // by place
     std::vector<DriverMotion> motions;
     std::vector<DriverAction> actions; // by body
     std::vector<double> coordinates;
@@ -106,7 +106,7 @@ Transform to_transform(double angle, ::Vec2 place)
 }
 
 World::World(const DriverCase *given)
-    : of(given), tree(tree_make(given)), bodies(given->body_count), contacts(given->joint_count),
+    : of(given), tree(tree_make(given)), bodies(given->body_count), contacts(places_start(given)),
       motions(given->body_count), actions(given->body_count), coordinates(tree.coordinates),
       rates(tree.coordinates), forces_now(given->joint_count), answer(driver_run_start(given))
 {
@@ -116,9 +116,6 @@ World::World(const DriverCase *given)
         add_body(tree.order[i]);
     }
     add_loops();
-    for (size_t i = 0; i < of->joint_count; i++) {
-        contacts[i].state = of->joints[i].contact;
-    }
     if (of->has_drive) {
         if (tree.bodies[of->driven_body].joint != of->drive_joint) {
             driver_refuse("a driven body that another joint holds");
@@ -149,7 +146,7 @@ void World::add_body(size_t i)
 void World::add_loops()
 {
     for (size_t i = 0; i < of->joint_count; i++) {
-        if (!tree.is_left[i]) {
+        if (!tree.is_left[i] || trial_holds(&tree, i)) {
             continue;
         }
         const DriverJoint &joint = of->joints[i];
@@ -206,13 +203,7 @@ void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
         const double now_s = state.getTime();
         read(state, motions.data());
         actions_find(of, motions.data(), now_s, now_s, actions.data());
-        for (size_t i = 0; i < of->joint_count; i++) {
-            const DriverJoint &joint = of->joints[i];
-            if (joint.kind == DRIVER_PIN_IN_HOLE) {
-                const PinHole pose = driver_pose(&joint, motions.data());
-                actions_add_contact(&joint, &contacts[i], &pose, motions.data(), actions.data());
-            }
-        }
+        places_press(of, contacts, motions.data(), actions.data(), forces_now.data(), nullptr, 0.0);
         acting = actions.data();
     }
     for (size_t i = 0; acting != nullptr && i < of->body_count; i++) {
@@ -224,17 +215,8 @@ void World::push(const State &state, Vector_<SpatialVec> &on_bodies)
 // Follows the contacts to the end of a step, and finds their forces.
 void World::follow(const DriverMotion *now, double step_s, ::Vec2 *on_joints)
 {
-    for (size_t i = 0; i < of->joint_count; i++) {
-        const DriverJoint &joint = of->joints[i];
-        on_joints[i] = ::Vec2{0.0, 0.0};
-        if (joint.kind == DRIVER_PIN_IN_HOLE) {
-            const PinHole pose = driver_pose(&joint, now);
-            DriverTotals &totals = answer.totals[i];
-            driver_follow(&joint, &pose, &contacts[i], &totals);
-            on_joints[i] = driver_press(&joint, &contacts[i], &pose, now).force;
-            driver_note_force(&answer, i, &pose, vec2_length(on_joints[i]), step_s, &contacts[i]);
-        }
-    }
+    places_follow(of, now, contacts, answer.totals);
+    places_press(of, contacts, now, nullptr, on_joints, &answer, step_s);
 }
 
 void World::stamp(const State &state)
@@ -251,13 +233,7 @@ void World::sample(const State &state)
 {
     DriverMotion *at = driver_run_motions(&answer);
     read(state, at);
-    for (size_t i = 0; i < of->joint_count; i++) {
-        const DriverJoint &joint = of->joints[i];
-        if (joint.kind == DRIVER_PIN_IN_HOLE) {
-            const PinHole pose = driver_pose(&joint, at);
-            driver_run_forces(&answer)[i] = driver_press(&joint, &contacts[i], &pose, at).force;
-        }
-    }
+    places_press(of, contacts, at, nullptr, driver_run_forces(&answer), nullptr, 0.0);
     driver_run_sampled(&answer);
 }
 
@@ -265,16 +241,7 @@ void World::sample(const State &state)
 void World::record(double start_s, double end_s, const DriverMotion *now)
 {
     std::vector<DriverTouch> touches(of->joint_count);
-    for (size_t i = 0; i < of->joint_count; i++) {
-        const DriverJoint &joint = of->joints[i];
-        if (joint.kind == DRIVER_PIN_IN_HOLE) {
-            const PinHole pose = driver_pose(&joint, now);
-            touches[i] = DriverTouch{pose.eccentricity, forces_now[i],
-                                     std::max(vec2_length(forces_now[i]), answer.peaks[i].force),
-                                     std::max(pose.penetration, answer.peaks[i].depth),
-                                     answer.totals[i].approach};
-        }
-    }
+    places_touches(&answer, now, forces_now.data(), touches.data());
     driver_run_record(&answer, start_s, end_s, now, touches.data());
 }
 
@@ -335,12 +302,12 @@ void World::run_trials()
     is_trial = true;
     trial = system.realizeTopology();
     std::snprintf(answer.settings, sizeof answer.settings, "none: no integrator of Simbody's");
-    trial_run(
-        &tree,
-        [](void *engine, const double *q, const double *v, const DriverAction *given, double *a) {
-            static_cast<World *>(engine)->accelerate(q, v, given, a);
+    const TrialEngine engine = {
+        [](void *own, const double *q, const double *v, const DriverAction *given, double *a) {
+            static_cast<World *>(own)->accelerate(q, v, given, a);
         },
-        this, &answer);
+        nullptr, this};
+    trial_run(&tree, &engine, &answer);
 }
 
 void World::run()

@@ -7,13 +7,13 @@
 #include "reference/plane/dynamics.h"
 #include "model/loads.h"
 
+#include "base/mesh.h"
 #include "base/zeroed.h"
 #include "contact/law.h"
 #include "kernel/friction_law.h"
 #include "kernel/pin_hole.h"
 #include "model/coordinate.h"
 #include "model/forces.h"
-#include "model/mesh.h"
 #include "reference/plane/articulated.h"
 #include "reference/plane/tree.h"
 
@@ -235,7 +235,7 @@ static double angle_of(const TreeState *state, int body)
 MeshFlank dynamics_flank(const Tree *tree, const TreeState *state, const PlaneSite *site)
 {
     const int *bodies = tree->end_bodies + 2 * site->pair;
-    const Mesh mesh = mesh_of(tree->linkage, &tree->linkage->joints[site->touch.joint]);
+    const Mesh mesh = coordinate_mesh(tree->linkage, &tree->linkage->joints[site->touch.joint]);
     return mesh_flank(&mesh, site->touch.sign, tree_pair_gap(tree, state, site->pair),
                       angle_of(state, bodies[0]), angle_of(state, bodies[1]));
 }

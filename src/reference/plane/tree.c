@@ -9,10 +9,10 @@
 #include "reference/plane/tree.h"
 
 #include "base/layout.h"
+#include "base/mesh.h"
 #include "base/sincos.h"
 #include "model/coordinate.h"
 #include "model/joint_rows.h"
-#include "model/mesh.h"
 #include "reference/span.h"
 
 #include <assert.h>

@@ -1,6 +1,6 @@
 // Finds how far a hinge has turned within its play, or a gear against another, in a tree.
+#include "base/mesh.h"
 #include "model/coordinate.h"
-#include "model/mesh.h"
 #include "reference/plane/tree.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 // sinusoid is a table of one point with a wave; one angle alone is held.
 #pragma once
 
-#include "model/time_table.h"
+#include "base/time_table.h"
 
 #include <stdbool.h>
 

@@ -6,7 +6,7 @@
 // with tau = (t - t_i) / T between two points, T and the lift from one to the other; the last term
 // is that of a cycloid. Source of the laws of motion: Norton, Cam Design and Manufacturing
 // Handbook, 2009, chapter 2 (cycloid, 3-4-5 polynomial, trapezoid of the speed).
-#include "model/drive.h"
+#include "base/drive.h"
 
 #include "base/dense.h"
 

@@ -10,8 +10,8 @@
 // w_a, w_b how fast the bodies turn.
 #pragma once
 
+#include "base/profile.h"
 #include "base/vec2.h"
-#include "model/profile.h"
 
 typedef struct Cam {
     const Profile *profile; // NULL: there is none

@@ -1,17 +1,7 @@
 // Finds where the teeth of a pair of gears stand and how their flanks come nearer.
-#include "model/mesh.h"
+#include "base/mesh.h"
 
 #include <math.h>
-
-Mesh mesh_of(const Linkage *linkage, const Joint *joint)
-{
-    const Gear *gear = &joint->gear;
-    return (Mesh){
-        .gear = gear,
-        .error = gear->error > 0 ? &linkage->profiles[gear->error - 1] : NULL,
-        .relief = gear->relief > 0 ? &linkage->profiles[gear->relief - 1] : NULL,
-    };
-}
 
 double mesh_position(const Gear *gear, Vec2 offset, double angle_a, double angle_b, double near)
 {

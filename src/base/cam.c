@@ -1,5 +1,5 @@
 // Finds the gap between a cam's profile and its follower, and its rates.
-#include "model/cam.h"
+#include "base/cam.h"
 
 #include <math.h>
 

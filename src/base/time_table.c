@@ -2,7 +2,7 @@
 //
 //     f(t) = f_i + (f_i+1 - f_i) (t - t_i) / (t_i+1 - t_i)     t_i <= t < t_i+1
 //     f(t + T) = f(t)                                          with a period T
-#include "model/time_table.h"
+#include "base/time_table.h"
 
 #include <math.h>
 

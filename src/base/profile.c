@@ -9,7 +9,7 @@
 // band.
 //
 // A curve r(t) about a centre has the curvature (r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^1.5.
-#include "model/profile.h"
+#include "base/profile.h"
 
 #include "base/banded.h"
 

@@ -22,7 +22,36 @@
 // involute gearing, Litvin and Fuentes, Gear Geometry and Applied Theory, 2004, chapter 10.
 #pragma once
 
-#include "model/linkage.h"
+#include "base/profile.h"
+#include "base/vec2.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+// A pair of gears. Their pitch circles touch on the line of their centres while these are as far
+// from each other as the case places them; of an internal gear and its pinion one radius is
+// negative, and both together are that distance.
+//
+// Of a rack body a is the rack and body b the pinion. The pitch line goes through the anchor on the
+// rack, along its direction; the pinion's radius is the distance of its centre from the line,
+// negative to the right of it.
+typedef struct Gear {
+    int pivots[2];          // numbers of the joints about which body a (a rack: on which it slides)
+                            // and body b turn
+    double teeth[2];        // of gears, or in their ratio; of an internal gear negative
+    double radius_a;        // m, of the pitch circles; set where bodies are placed; of a rack
+                            // infinite
+    double radius_b;        // m
+    double pressure_angle;  // rad, of gears, where the pitch circles touch; 0: they push along
+                            // the pitch circles' tangent
+    size_t error;           // of gears: which of the linkage's profiles is the transmission error,
+                            // counted from 1; 0: none
+    size_t relief;          // and which the relief of both flanks
+    size_t repeats;         // how often they come in a turn of the first gear; 0: once
+    double zero;            // rad: what their angle counts from
+    bool is_backlash_angle; // until then: whether the backlash is an angle of body b, rad
+    bool is_start_angle;    // likewise where it starts
+} Gear;
 
 // What a pair of gears is made of.
 typedef struct Mesh {
@@ -31,8 +60,6 @@ typedef struct Mesh {
     const Profile *error;
     const Profile *relief;
 } Mesh;
-
-Mesh mesh_of(const Linkage *linkage, const Joint *joint);
 
 // A flank: all that follows from where the gears are.
 typedef struct MeshFlank {
