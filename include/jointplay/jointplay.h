@@ -430,6 +430,7 @@ typedef struct JpBegun {
     double age;          /* s, >= 0, since then */
     bool is_released;    /* it has been compressed and released since */
     bool is_resting;     /* and compressed again: it is damped by the contact's resting speed */
+    double bend;         /* m, of the friction of a pin that sticks: see JpPinState */
 } JpBegun;
 
 /* Says that of one side, before the first step; without it the contact begins in that step, with
@@ -469,6 +470,19 @@ JP_API JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpErro
  * two ends of its hole, each with half of the contact's force, and may tilt; without one it touches
  * at the hole's centre, for pins that stay parallel to their holes: your other joints hold all but
  * the play then. The force on the pin is along the line from its axis to the hole's centre. */
+
+/* The friction against the sliding of the pin at the wall, at a speed of v. */
+typedef enum JpFrictionLaw {
+    /* mu F tanh(v / friction_speed): at rest it creeps */
+    JP_FRICTION_REGULARIZED,
+    /* It holds at rest, by a bristle at the wall that bends with the sliding, up to presliding: of
+     * mu F it holds breakaway_ratio bend / presliding and its damping, but at most
+     * 1 + (breakaway_ratio - 1) exp(-(v / friction_speed)^2). Of steps with JP_STEPPING_IMPULSE and
+     * of pins without a width; in a step whose contacts are made with rows (JP_COARSE) friction is
+     * regularized. */
+    JP_FRICTION_STICK,
+} JpFrictionLaw;
+
 typedef struct JpPinInHole {
     double hole_radius;
     double pin_radius; /* m, smaller: the difference is the radial play */
@@ -478,12 +492,20 @@ typedef struct JpPinInHole {
     double pin[3];     /* m, the pin's centre in the frame of its body, or in the world */
     double axis[3];    /* of both, in the world as the bodies stand now; of any length */
     JpContact contact; /* of the whole pin; jp_contact_of_pin has the laws */
-    double friction;   /* 1, mu: mu F tanh(v / friction_speed) against the sliding at the wall */
+    double friction;   /* 1, mu, of what presses, F */
     double friction_speed; /* m/s, > 0 */
+    JpFrictionLaw friction_law;
+    /* of JP_FRICTION_STICK */
+    double presliding;         /* m, > 0: how far the bristle bends before the pin slides */
+    double breakaway_ratio;    /* 1, >= 1: static over sliding friction */
+    double presliding_damping; /* 1, > 0: damping ratio of what moves on the bristle */
+    double presliding_mass;    /* kg, of that; 0: both bodies against each other, where one that is
+                                * kinematic, or the world, does not move */
 } JpPinInHole;
 
 /* No radii yet; no width, no collars, at the centres of the bodies, about z; the default contact,
- * no friction, a friction speed of 1e-3. */
+ * no friction, a friction speed of 1e-3, regularized; a presliding of 5e-6, a breakaway ratio and a
+ * damping ratio of 1. */
 JP_API JpPinInHole jp_pin_default(void);
 
 /* One of the bodies may be NULL, the world. JP_ERROR_OUTSIDE where the pin is beyond the wall of
@@ -498,11 +520,15 @@ typedef struct JpPinState {
     double tilt;            /* rad, of the pin's axis against the hole's */
     double force[3];        /* N, in the world, on the pin, mean of the last step */
     double gap;             /* m, of the end that is nearest to the wall; below 0 inside */
-    double slid;            /* J, lost in friction since the pin was made */
+    double slid;            /* J, that friction took since the pin was made; with what bristles
+                             * have not given back */
     bool is_touching;       /* anywhere */
     size_t end_count;       /* 1, or 2 of a hole with a width */
     JpSide ends[2];         /* along the line to the hole's centre; at -width/2 first */
     JpSide collars[2];      /* along the axis; the first pushes the pin up it */
+    /* m, of the bristle of JP_FRICTION_STICK while the pin touches, at most presliding to either
+     * side; above 0 where the pin has turned about its axis, against its hole, by the right hand */
+    double bend;
 } JpPinState;
 JP_API JpStatus jp_pin_state(const JpJoint *joint, JpPinState *state, JpError *error);
 

@@ -55,6 +55,19 @@ JpStatus play_check_bodies(const JpJoint *joint, JpError *error)
                               play_name(joint).text);
 }
 
+double play_mass(const JpJoint *joint)
+{
+    double inverse = 0.0;
+    for (int i = 0; i < 2; i++) {
+        dMass mass;
+        if (joint->bodies[i] != NULL && !dBodyIsKinematic(joint->bodies[i])) {
+            dBodyGetMass(joint->bodies[i], &mass);
+            inverse += 1.0 / mass.mass;
+        }
+    }
+    return inverse > 0.0 ? 1.0 / inverse : 0.0;
+}
+
 // Sums: one that overflows is as good as one that is infinite.
 bool play_is_finite(const JpJoint *joint)
 {
@@ -65,7 +78,7 @@ bool play_is_finite(const JpJoint *joint)
         for (size_t k = 0; k < place_side_count(place); k++) {
             const Side *side = &place->sides[k];
             sum += side->force + side->force_max + side->depth_max + side->impulse + side->work +
-                   side->state.impact_speed;
+                   side->state.impact_speed + side->state.bend;
         }
     }
     return isfinite(sum);

@@ -136,6 +136,10 @@ bool play_is_side_finite(const JpSide *side);
 // Adds a joint to a world; NULL where there is no memory.
 JpJoint *play_add(JpWorld *world, PlayKind kind, const dBodyID bodies[2]);
 
+// kg, of the two bodies of a joint against each other; what is kinematic, or the world, is held. 0
+// where both are.
+double play_mass(const JpJoint *joint);
+
 // The mobility of a place along its direction with all bodies free, its rotor's included.
 double play_mobility(const JpJoint *joint, const Place *place);
 

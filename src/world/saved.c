@@ -21,7 +21,7 @@
 static const char MAGIC[16] = "jointplay state";
 
 // Counts up where the words of a state or their meaning change.
-static const uint64_t FORMAT = 2;
+static const uint64_t FORMAT = 3;
 
 enum { WORD = 8 };
 
@@ -168,6 +168,16 @@ static void walk_body(Walk *walk, BodyRecord *record)
     walk_numbers(walk, record->found_past.speeds, BODY_NUMBERS, OF_BODY, "a body's speeds before");
 }
 
+static void walk_mode(Walk *walk, BristleMode *field)
+{
+    const uint64_t word = next_word(walk, *field);
+    if (walk->aim == WALK_READ) {
+        *field = (BristleMode)word;
+    } else if (walk->aim == WALK_CHECK && word > BRISTLE_SLIDING_BACK) {
+        note_wrong(walk, "the mode of a contact's bristle", (double)word);
+    }
+}
+
 static void walk_state(Walk *walk, ContactState *state)
 {
     walk_flag(walk, &state->is_touching, "whether a contact touches");
@@ -177,6 +187,8 @@ static void walk_state(Walk *walk, ContactState *state)
     walk_number(walk, &state->impact_speed, SIZE, "a contact's impact speed");
     walk_number(walk, &state->damping_speed, SIZE, "the speed in a contact's damping");
     walk_number(walk, &state->age_s, SIZE, "a contact's age");
+    walk_number(walk, &state->bend, FINITE, "the bend of a contact's bristle");
+    walk_mode(walk, &state->bristle);
 }
 
 static void walk_peaks(Walk *walk, ContactPeaks *peaks)
