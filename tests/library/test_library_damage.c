@@ -367,7 +367,7 @@ static void what_is_wrong_is_named(void **state)
     (void)state;
     enum { FORMAT = 2, BODY_COUNT = 4, LAST_STEP = 7, POSITION = 19, TURN = 22, ENABLED = 38 };
     Scene scene = make(JP_STEPPING_IMPULSE);
-    assert_says(&scene, FORMAT, 1, 2.0, "reads format 2");
+    assert_says(&scene, FORMAT, 1, 2.0, "reads format 3");
     assert_says(&scene, BODY_COUNT, 1, 0.0, "made in another way than this one with 3 bodies");
     assert_says(&scene, LAST_STEP, 1, -1.0, "word 7 of the state, the step before, is -1");
     assert_says(&scene, POSITION, 1, NAN, "word 19 of the state, a body's position, is nan");

@@ -145,11 +145,96 @@ static void a_lever_that_friction_does_not_hold_turns(void **state)
     lever_finish(&sliding);
 }
 
+static void assert_says(const JpPinInHole *pin, JpStepping stepping, const char *says)
+{
+    JpWorldOptions options = jp_world_options_default();
+    options.stepping = stepping;
+    JpWorld *play;
+    JpJoint *joint = NULL;
+    JpError error;
+    const dWorldID world = dWorldCreate();
+    must(jp_world_create(world, &options, &play, NULL));
+    assert_int_equal(jp_pin_create(play, NULL, dBodyCreate(world), pin, &joint, &error),
+                     JP_ERROR_ARGUMENT);
+    if (strstr(error.text, says) == NULL) {
+        fail_msg("\"%s\" is not in \"%s\"", says, error.text);
+    }
+    assert_null(joint);
+    jp_world_destroy(play);
+    dWorldDestroy(world);
+}
+
+static JpPinInHole good(void)
+{
+    JpPinInHole pin = stick(1.0);
+    pin.hole_radius = PIN_RADIUS + PLAY;
+    pin.pin_radius = PIN_RADIUS;
+    pin.contact.stiffness = 1e8;
+    return pin;
+}
+
+static void what_cannot_stick_is_refused_by_name(void **state)
+{
+    (void)state;
+    JpPinInHole pin = good();
+    assert_says(&pin, JP_STEPPING_PLAIN, "worlds with JP_STEPPING_IMPULSE");
+    assert_says(&pin, JP_STEPPING_STAGGERED, "worlds with JP_STEPPING_IMPULSE");
+    pin.width = 0.01;
+    assert_says(&pin, JP_STEPPING_IMPULSE, "this one has a width of 0.01");
+    pin = good();
+    pin.friction_law = (JpFrictionLaw)7;
+    assert_says(&pin, JP_STEPPING_IMPULSE, "the law of friction is 7");
+    pin = good();
+    pin.presliding = 0.0;
+    assert_says(&pin, JP_STEPPING_IMPULSE, "the presliding is 0");
+    pin = good();
+    pin.breakaway_ratio = 0.5;
+    assert_says(&pin, JP_STEPPING_IMPULSE, "the breakaway ratio is 0.5");
+    pin.breakaway_ratio = NAN;
+    assert_says(&pin, JP_STEPPING_IMPULSE, "the breakaway ratio is nan");
+    pin = good();
+    pin.presliding_damping = -1.0;
+    assert_says(&pin, JP_STEPPING_IMPULSE, "the presliding's damping is -1");
+    pin = good();
+    pin.presliding_mass = INFINITY;
+    assert_says(&pin, JP_STEPPING_IMPULSE, "the presliding's mass is inf");
+}
+
+static void a_bend_is_taken_where_there_is_a_bristle(void **state)
+{
+    (void)state;
+    JpPinInHole pin = stick(1.0);
+    Lever lever = lever_make(0.0, &pin);
+    dBodySetPosition(lever.body, 0, -PLAY - 1e-8, 0);
+    JpBegun begun = {.impact_speed = 1e-3, .bend = 2e-6};
+    must(jp_joint_begun(lever.pin, 0, &begun, NULL));
+    JpPinState now;
+    must(jp_pin_state(lever.pin, &now, NULL));
+    assert_true(now.bend == begun.bend);
+    JpError error;
+    begun.bend = -5.1e-6;
+    assert_int_equal(jp_joint_begun(lever.pin, 0, &begun, &error), JP_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.text, "bends by 5e-06 m at most"));
+    begun.bend = NAN;
+    assert_int_equal(jp_joint_begun(lever.pin, 0, &begun, &error), JP_ERROR_ARGUMENT);
+    lever_finish(&lever);
+    pin.friction_law = JP_FRICTION_REGULARIZED;
+    lever = lever_make(0.0, &pin);
+    dBodySetPosition(lever.body, 0, -PLAY - 1e-8, 0);
+    begun.bend = 1e-6;
+    assert_int_equal(jp_joint_begun(lever.pin, 0, &begun, &error), JP_ERROR_ARGUMENT);
+    begun.bend = 0.0;
+    must(jp_joint_begun(lever.pin, 0, &begun, NULL));
+    lever_finish(&lever);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_lever_holds_with_the_bend_that_statics_gives),
         cmocka_unit_test(a_lever_that_friction_does_not_hold_turns),
+        cmocka_unit_test(what_cannot_stick_is_refused_by_name),
+        cmocka_unit_test(a_bend_is_taken_where_there_is_a_bristle),
     };
     return cmocka_run_group_tests(tests, ode_group_setup, ode_group_teardown);
 }

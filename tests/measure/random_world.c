@@ -237,6 +237,7 @@ static void add_pin(RandomWorld *made, dBodyID hole, dBodyID body, const double 
         jp_contact_of_pin((JpPinLaw)pick(made, 6), &sizes, &pin.contact, NULL);
     }
     pin.friction = made->is_passive || pick(made, 2) == 0 ? 0.0 : between(made, 0.05, 0.5);
+    pin.friction_law = made->is_sticking && is_flat ? JP_FRICTION_STICK : JP_FRICTION_REGULARIZED;
     RandomPlay of = {
         .contact = pin.contact, .is_pin = true, .bodies = {hole, body}, .width = pin.width};
     memcpy(of.point, pin.pin, sizeof of.point);
@@ -386,7 +387,8 @@ RandomWorld random_world(unsigned number, JpStepping stepping)
                         .resolved = INFINITY,
                         .random = lcg_stirred(number),
                         .is_passive = number % 3 == 0,
-                        .is_wild = number % 5 == 0};
+                        .is_wild = number % 5 == 0,
+                        .is_sticking = number % 2 == 0 && stepping == JP_STEPPING_IMPULSE};
     made.step = made.is_wild ? size_between(&made, 1e-8, 1.0) : size_between(&made, 1e-5, 1e-3);
     JpWorldOptions options = jp_world_options_default();
     options.stepping = stepping;
