@@ -485,14 +485,14 @@ typedef enum JpFrictionLaw {
 
 typedef struct JpPinInHole {
     double hole_radius;
-    double pin_radius; /* m, smaller: the difference is the radial play */
-    double width;      /* m, of the hole along its axis; 0: it touches at its centre alone */
-    double axial_play; /* m, to either side until a collar stops the pin; may be infinity */
-    double hole[3];    /* m, the hole's centre in the frame of its body, or in the world */
-    double pin[3];     /* m, the pin's centre in the frame of its body, or in the world */
-    double axis[3];    /* of both, in the world as the bodies stand now; of any length */
-    JpContact contact; /* of the whole pin; jp_contact_of_pin has the laws */
-    double friction;   /* 1, mu, of what presses, F */
+    double pin_radius;     /* m, smaller: the difference is the radial play */
+    double width;          /* m, of the hole along its axis; 0: it touches at its centre alone */
+    double axial_play;     /* m, to either side until a collar stops the pin; may be infinity */
+    double hole[3];        /* m, the hole's centre in the frame of its body, or in the world */
+    double pin[3];         /* m, the pin's centre in the frame of its body, or in the world */
+    double axis[3];        /* of both, in the world as the bodies stand now; of any length */
+    JpContact contact;     /* of the whole pin; jp_contact_of_pin has the laws */
+    double friction;       /* 1, mu, of what presses, F */
     double friction_speed; /* m/s, > 0 */
     JpFrictionLaw friction_law;
     /* of JP_FRICTION_STICK */

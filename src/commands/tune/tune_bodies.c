@@ -87,9 +87,9 @@ double tune_bodies_bristle_mass(const Linkage *linkage, const Joint *joint)
     bool is_other = false;
     for (int side = 0; side < 2; side++) {
         const int body = linkage_end(joint, side).body;
-        is_other = is_other ||
-                   (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) >= 0 &&
-                    !tune_bodies_is_led(linkage, body));
+        is_other =
+            is_other || (body != LINKAGE_GROUND && linkage_drive_of_body(linkage, body) >= 0 &&
+                         !tune_bodies_is_led(linkage, body));
     }
     return is_other ? joint_friction_mass(linkage, joint) : 0.0;
 }

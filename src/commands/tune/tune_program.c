@@ -313,8 +313,8 @@ static bool make_pin(LibraryWorld *world, int number, Err *err)
     if (contact.friction > 0.0) {
         pin.friction = contact.friction;
         pin.friction_speed = contact.friction_speed;
-        pin.friction_law = contact.friction_law == BRISTLE_STICK ? JP_FRICTION_STICK
-                                                                 : JP_FRICTION_REGULARIZED;
+        pin.friction_law =
+            contact.friction_law == BRISTLE_STICK ? JP_FRICTION_STICK : JP_FRICTION_REGULARIZED;
         pin.presliding = contact.presliding;
         pin.breakaway_ratio = contact.breakaway_ratio;
         pin.presliding_damping = contact.presliding_damping;
