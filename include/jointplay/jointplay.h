@@ -370,6 +370,48 @@ typedef struct JpWorldStats {
 } JpWorldStats;
 JP_API JpStatus jp_world_stats(const JpWorld *world, JpWorldStats *stats, JpError *error);
 
+/* ---- friction -------------------------------------------------------------------------------- */
+
+/* Of what slides at a speed of v, against that, a coefficient of mu and a force F that presses. */
+typedef enum JpFrictionLaw {
+    /* mu F tanh(v / friction speed): at rest it creeps */
+    JP_FRICTION_REGULARIZED,
+    /* It holds at rest: at most mu F (1 + (breakaway ratio - 1) exp(-(v / friction speed)^2)). */
+    JP_FRICTION_STICK,
+} JpFrictionLaw;
+
+/* The dry friction of one of your hinges or sliders, which is ideal but for it, in steps of every
+ * JpStepping. Friction that sticks holds its coordinate, but for a slip of 1e-8 of the speed that
+ * it would change in a step. With JP_STEPPING_IMPULSE it is a bound of the world: see
+ * jp_world_step. What presses is ODE's feedback of the joint in the last two steps, extrapolated to
+ * the step: of order 2 in smooth motion, and 1 where it jumps, as in impacts. A joint without
+ * feedback gets one of the library's (dJointSetFeedback). What acts along the axis of a hinge, and
+ * moments across an axis, press on nothing. On a hinge, forces and lengths are torques and angles;
+ * its coordinate is that of a joint with play, see below. */
+typedef struct JpFriction {
+    double steady;      /* N m or N, >= 0, that sliding holds whatever presses; or else */
+    double coefficient; /* 1, mu, >= 0, of the joint's force across its axis: one of both is 0 */
+    double radius;      /* m, > 0 of a hinge with a coefficient: of its pin, on which that acts */
+    JpFrictionLaw law;
+    double speed;           /* rad/s or m/s, > 0: the friction speed */
+    double breakaway_ratio; /* 1, >= 1, of JP_FRICTION_STICK */
+} JpFriction;
+
+/* None yet, which sticks; a speed of 1e-3, a breakaway ratio of 1. */
+JP_API JpFriction jp_friction_default(void);
+JP_API JpStatus jp_friction_create(JpWorld *world, dJointID joint, const JpFriction *friction,
+                                   JpJoint **created, JpError *error);
+
+typedef struct JpFrictionState {
+    double position; /* rad or m, of the coordinate */
+    double speed;    /* rad/s or m/s */
+    double force;    /* N m or N, mean of the last step: on the first body along the coordinate */
+    double most;     /* N m or N, that sliding held in it */
+    double slid;     /* J, lost since it was made */
+    bool is_sticking;
+} JpFrictionState;
+JP_API JpStatus jp_friction_state(const JpJoint *joint, JpFrictionState *state, JpError *error);
+
 /* ---- joints with play -------------------------------------------------------------------------
  *
  * They act on one of your hinges or sliders, which continues to constrain all but its coordinate:
@@ -469,20 +511,12 @@ JP_API JpStatus jp_joint_state(const JpJoint *joint, JpJointState *state, JpErro
  * A round pin in a round hole of another body, or of the world. With a width the pin touches at the
  * two ends of its hole, each with half of the contact's force, and may tilt; without one it touches
  * at the hole's centre, for pins that stay parallel to their holes: your other joints hold all but
- * the play then. The force on the pin is along the line from its axis to the hole's centre. */
-
-/* The friction against the sliding of the pin at the wall, at a speed of v. */
-typedef enum JpFrictionLaw {
-    /* mu F tanh(v / friction_speed): at rest it creeps */
-    JP_FRICTION_REGULARIZED,
-    /* It holds at rest, by a bristle at the wall that bends with the sliding, up to presliding: of
-     * mu F it holds breakaway_ratio bend / presliding and its damping, but at most
-     * 1 + (breakaway_ratio - 1) exp(-(v / friction_speed)^2). Of steps with JP_STEPPING_IMPULSE and
-     * of pins without a width; in a step whose contacts are made with rows (JP_COARSE) friction is
-     * regularized. */
-    JP_FRICTION_STICK,
-} JpFrictionLaw;
-
+ * the play then. The force on the pin is along the line from its axis to the hole's centre.
+ *
+ * Friction that sticks is a bristle at the wall that bends with the sliding, up to presliding: of
+ * mu F it holds breakaway_ratio bend / presliding and its damping. It is of steps with
+ * JP_STEPPING_IMPULSE, and of pins without a width; in a step whose contacts are made with rows
+ * (JP_COARSE) friction is regularized. */
 typedef struct JpPinInHole {
     double hole_radius;
     double pin_radius;     /* m, smaller: the difference is the radial play */

@@ -95,5 +95,5 @@ void rub_row_note(RubRow *row, double pressing)
 {
     row->pressing[1] = row->pressing[0];
     row->pressing[0] = pressing;
-    row->known++;
+    row->known = row->known < 2 ? row->known + 1 : 2; // more are not told apart
 }

@@ -17,6 +17,7 @@ static void keep_joint(JpJoint *joint)
     found->rotor = joint->rotor;
     found->force = joint->force;
     found->last = joint->coordinate.last;
+    found->rub = joint->rub.found;
     for (size_t i = 0; i < joint->place_count; i++) {
         const Place *place = &joint->places[i];
         memcpy(found->places[i].sides, place->sides, sizeof place->sides);
@@ -31,6 +32,7 @@ static void put_back_joint(JpJoint *joint)
     joint->rotor = found->rotor;
     joint->force = found->force;
     joint->coordinate.last = found->last;
+    joint->rub.found = found->rub;
     for (size_t i = 0; i < joint->place_count; i++) {
         Place *place = &joint->places[i];
         memcpy(place->sides, found->places[i].sides, sizeof place->sides);
