@@ -31,14 +31,17 @@ typedef struct RandomWorld {
     bool is_wild;     // of sizes that nobody builds
     bool is_plain;    // of sizes that are neither wild nor too stiff for the step
     bool is_sticking; // pins without a width have friction that sticks
+    bool is_rubbing;  // hinges and sliders have friction
+    size_t rub_count; // joints that were given some
     bool is_passive;  // nothing drives it and nothing rubs: its energy cannot grow
     uint64_t random;  // goes on with drives
 } RandomWorld;
 
 // Of every three worlds one is passive, of every five one is wild; in every second one with
-// impulses friction sticks where it can. With rows, the others are stepped so that their contacts
-// are resolved, but for one of four, which is as stiff as it comes. No world is refused: what the
-// library refuses to make is left out.
+// impulses friction of pins sticks where it can, and in one of four that are not passive joints
+// have friction. With rows, the others are stepped so that their contacts are resolved, but for one
+// of four, which is as stiff as it comes. No world is refused: what the library refuses to make is
+// left out.
 RandomWorld random_world(unsigned number, JpStepping stepping);
 void random_world_finish(RandomWorld *made);
 
