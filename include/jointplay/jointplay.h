@@ -385,9 +385,10 @@ typedef enum JpFrictionLaw {
  * it would change in a step. With JP_STEPPING_IMPULSE it is a bound of the world: see
  * jp_world_step. What presses is ODE's feedback of the joint in the last two steps, extrapolated to
  * the step: of order 2 in smooth motion, and 1 where it jumps, as in impacts. A joint without
- * feedback gets one of the library's (dJointSetFeedback). What acts along the axis of a hinge, and
- * moments across an axis, press on nothing. On a hinge, forces and lengths are torques and angles;
- * its coordinate is that of a joint with play, see below. */
+ * feedback gets one of the library's (dJointSetFeedback). Regularized friction that would change a
+ * speed by more than half the friction speed in a step is a straight line up to mu F there. What
+ * acts along the axis of a hinge, and moments across an axis, press on nothing. On a hinge, forces
+ * and lengths are torques and angles; its coordinate is that of a joint with play, see below. */
 typedef struct JpFriction {
     double steady;      /* N m or N, >= 0, that sliding holds whatever presses; or else */
     double coefficient; /* 1, mu, >= 0, of the joint's force across its axis: one of both is 0 */
