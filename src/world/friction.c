@@ -149,8 +149,7 @@ static void set_motor(JpJoint *joint)
     dJointSetAMotorParam(rub->motor, dParamFMax, row->most);
 }
 
-// The row does nothing until it is set.
-static void rest(JpJoint *joint)
+void friction_rest(JpJoint *joint)
 {
     if (!joint->coordinate.is_angle) {
         joint->rub.motor = NULL;
@@ -189,7 +188,7 @@ static void push_joint(JpJoint *joint, double step)
     if (row->arm > 0.0 && dJointGetFeedback(joint->coordinate.joint) == NULL) {
         dJointSetFeedback(joint->coordinate.joint, &rub->reaction);
     }
-    rest(joint);
+    friction_rest(joint);
     rub->along = coordinate_direction(&joint->coordinate);
     row->mobility = direction_mobility(&rub->along);
     // the row is of the axis where forces are evaluated, and rates are those of the step's ends
@@ -270,7 +269,7 @@ static JpStatus try_step(JpWorld *world, double step, JpError *error)
             joint->rub.found.row.pressing[0] = pressing_of(joint);
         }
         if (is_rubbing(joint)) {
-            rest(joint);
+            friction_rest(joint);
         }
     }
     dJointGroupEmpty(world->rows);
@@ -319,7 +318,7 @@ static void book_joint(JpJoint *joint, double step)
         row->pair.law == BRISTLE_STICK && row->has_row && fabs(held) < (1.0 - AT_BOUND) * row->most;
     rub_row_end(row, end_rate);
     rub_row_note(row, row->arm > 0.0 ? pressing_of(joint) : 0.0);
-    rest(joint);
+    friction_rest(joint);
 }
 
 void friction_book(JpWorld *world, double step)

@@ -8,5 +8,8 @@
 // which is kept, too. What presses in the first step is tried. Fails where ODE has no memory.
 JpStatus friction_push(JpWorld *world, double step, JpError *error);
 
+// The row of a joint with friction does nothing until the next step.
+void friction_rest(JpJoint *joint);
+
 // After it, the bodies having the speeds of its end: reads what friction was, and what pressed.
 void friction_book(JpWorld *world, double step);

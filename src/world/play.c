@@ -132,7 +132,7 @@ void jp_joint_destroy(JpJoint *joint)
         }
     }
     if (joint->kind == PLAY_FRICTION) {
-        if (joint->rub.motor != NULL) {
+        if (joint->coordinate.is_angle && joint->rub.motor != NULL) {
             dJointDestroy(joint->rub.motor);
         }
         if (dJointGetFeedback(joint->coordinate.joint) == &joint->rub.reaction) {
