@@ -22,7 +22,7 @@
 static const double PIN_RADIUS = 10e-3; // m
 static const double PLAY = 50e-6;       // m
 static const double FRICTION = 0.1;
-static const double STEP_S = 200e-6;
+static const double STEP_S = 500e-6;
 static const double GRAVITY = 9.81; // m/s^2
 
 typedef struct Lever {
@@ -49,7 +49,7 @@ static Lever lever_make(double beside, const JpPinInHole *friction)
     pin.hole_radius = PIN_RADIUS + PLAY;
     pin.pin_radius = PIN_RADIUS;
     pin.pin[0] = -beside;
-    pin.contact.stiffness = 1e8;
+    pin.contact.stiffness = 1e7;
     pin.contact.damping = JP_DAMPING_VISCOUS;
     must(jp_damper_of(pin.contact.stiffness, 0.3, 1.0, &pin.contact.damper, NULL));
     must(jp_pin_create(lever.play, NULL, lever.body, &pin, &lever.pin, NULL));
@@ -129,6 +129,7 @@ static void a_lever_that_friction_does_not_hold_turns(void **state)
     const double before = turn_of(&creeping);
     run(&creeping, 1.0, 1.1);
     const double rate = -pin.friction_speed * atanh(0.5) / PIN_RADIUS;
+    print_message("# regularized: %.3f rad in the first second\n", before);
     // c and tan phi change by some parts in a thousand as it turns
     assert_near(turn_of(&creeping) - before, 0.1 * rate, 0.01 * fabs(0.1 * rate));
     JpPinState now;
@@ -139,6 +140,7 @@ static void a_lever_that_friction_does_not_hold_turns(void **state)
     pin = stick(1.0);
     Lever sliding = lever_make(1.2e-3, &pin);
     run(&sliding, 0.0, 1.0);
+    print_message("# beyond its circle: %.3f rad in the first second\n", turn_of(&sliding));
     assert_true(turn_of(&sliding) < -0.5);
     must(jp_pin_state(sliding.pin, &now, NULL));
     assert_true(now.slid > 0.0);
