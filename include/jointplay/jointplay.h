@@ -382,8 +382,9 @@ typedef enum JpFrictionLaw {
 
 /* The dry friction of one of your hinges or sliders, which is ideal but for it, in steps of every
  * JpStepping. Friction that sticks holds its coordinate, but for a slip of 1e-8 of the speed that
- * it would change in a step. With JP_STEPPING_IMPULSE it is a bound of the world: see
- * jp_world_step. What presses is ODE's feedback of the joint in the last two steps, extrapolated to
+ * it would change in a step. With JP_STEPPING_IMPULSE the world's response has a bend where
+ * friction begins to slide or to stick, as with a motor of ODE that has a bound: such steps take
+ * more of ODE. What presses is ODE's feedback of the joint in the last two steps, extrapolated to
  * the step: of order 2 in smooth motion, and 1 where it jumps, as in impacts. A joint without
  * feedback gets one of the library's (dJointSetFeedback). Regularized friction that would change a
  * speed by more than half the friction speed in a step is a straight line up to mu F there. What
